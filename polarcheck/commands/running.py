@@ -15,6 +15,7 @@ from polarcheck.commands.output import bug_lines, say, say_lines, warn
 
 if TYPE_CHECKING:
     from polarcheck.batch.baselines import Baselines
+    from polarcheck.batch.cache.outcomes import Cache
     from polarcheck.batch.tasks import Checked, Outcome, Task
     from polarcheck.commands.progress import Bar
     from polarcheck.commands.watching import Seen
@@ -94,10 +95,15 @@ class Runner:
     workers: processes, 0 for as many as pay.
     cluster: address of a scheduler.
     seen: with --watch, the outcomes of the last run, of which those that cannot have changed are used again.
+    cache: the outcomes of earlier runs; with a cluster or `seen` it is not used.
     """
 
-    def __init__(self, most: int, workers: int, cluster: str | None, seen: Seen | None = None) -> None:
-        self._most, self._workers, self._cluster, self._seen = most, workers, cluster, seen
+    def __init__(
+        self, most: int, workers: int, cluster: str | None, seen: Seen | None = None, cache: Cache | None = None
+    ) -> None:
+        self._most, self._workers, self._cluster = most, workers, cluster
+        # Both take outcomes from before, and have the others checked.
+        self._before = seen if cluster is not None or seen is not None else cache
 
     def check(
         self,
@@ -120,7 +126,7 @@ class Runner:
         from polarcheck.batch import tasks as batch
 
         with (
-            self._outcomes(tasks) if self._seen is None else self._seen.outcomes(tasks, self._outcomes) as outcomes,
+            self._outcomes(tasks) if self._before is None else self._before.outcomes(tasks, self._outcomes) as outcomes,
             contextlib.closing(bar.watched(outcomes)) as watched,
         ):
             suppressed = silencing.without_known(watched, tasks, baselines)
@@ -145,6 +151,13 @@ class Runner:
             else:
                 outcomes = _as_it_pays(tasks, self._most, cores())
             yield stack.enter_context(contextlib.closing(outcomes))
+
+
+def cache(most: int, folder: str | None) -> Cache:
+    """Return the outcomes of earlier runs. most: bytes of a program. folder: instead of those beside job files."""
+    from polarcheck.batch.cache.outcomes import Cache
+
+    return Cache(most, folder)
 
 
 def cores() -> int:

@@ -87,9 +87,16 @@ class JobFile(msgspec.Struct, frozen=True):
                 applying += [(number, entry) for entry in sorted(matched)]
         return tuple(applying)
 
-    def merged(self, layers: Sequence[tuple[int, int]]) -> Merged:
-        """Return the merged job of layers. Raises JobError, which names file, line and key."""
-        return job_layers.merged([self.layer(number, entry) for number, entry in layers])
+    def merged(self, layers: Sequence[tuple[int, int]], over: Sequence[Layer] = ()) -> Merged:
+        """
+        Return the merged job of layers. Raises JobError, which names file, line and key.
+
+        over: layers that lie over those of the file; with a [[part]] among them, those of the file do not count.
+        """
+        found = [self.layer(number, entry) for number, entry in layers]
+        if any(isinstance(layer, PartLayer) for layer in over):
+            found = [layer for layer in found if not isinstance(layer, PartLayer)]
+        return job_layers.merged([*found, *over])
 
     @property
     def excluding(self) -> Layer | None:

@@ -26,6 +26,7 @@ from polarcheck.settings.selection import Rules
 
 if TYPE_CHECKING:
     from polarcheck.settings.jobs_above import LeftBehind
+    from polarcheck.settings.keywords import Keywords
 
 
 class Options(msgspec.Struct, frozen=True):
@@ -34,6 +35,7 @@ class Options(msgspec.Struct, frozen=True):
 
     use_baseline: False to ignore the baseline that a job file names.
     extras: functions that add data to the reports of files.
+    keywords: those of a Python function, which lie over the job files.
     """
 
     machine: str | None = None
@@ -62,6 +64,11 @@ class Options(msgspec.Struct, frozen=True):
     drawing_layers: Sequence[str] = ()
     tolerance: float | None = None
     extras: Sequence[Extra] = ()
+    keywords: Keywords | None = None
+
+    def spelled(self, option: str) -> str:
+        """Return an option as its user writes it, for messages: --select, or a keyword of a Python function."""
+        return option if self.keywords is None else self.keywords.spelled(option)
 
 
 class OfPrograms:
@@ -201,10 +208,11 @@ class SettingsMaker:
 
     def __init__(self, options: Options) -> None:
         if options.drawing_layers and not options.drawings:
-            raise UsageError("--drawing-layer: give the drawing by --drawing, too; a [[part]] has layers of its own")
+            layers, drawings = options.spelled("--drawing-layer"), options.spelled("--drawing").rpartition(" ")[2]
+            raise UsageError(f"{layers}: give the drawing by {drawings}, too; a [[part]] has layers of its own")
         self._options = options
         self._known = load_all()
-        self._changes = changes(options.changes)
+        self._changes = options.keywords.changes if options.keywords else changes(options.changes)
         self._profiles: dict[str, profiles.Profile] = {}
         self._rules: dict[str, tuple[list[Rule], dict[str, str]]] = {}
         self._hashes: dict[int, str] = {}
@@ -215,7 +223,7 @@ class SettingsMaker:
     def applied(self, file: JobFile, layers: Layers) -> Applied:
         """Return the settings of layers of a job file."""
         options = self._options
-        merged = file.merged(layers)
+        merged = file.merged(layers, options.keywords.layers if options.keywords else ())
         job = _changed(merged.job, options)
         name = options.machine or job.machine or profiles.DEFAULT
         profile = self._profile(name, merged)
@@ -232,6 +240,7 @@ class SettingsMaker:
             rules=rules,
             severities=levels,
             read=_files_read(options, job, profile, file, baseline),
+            job_file=file.path,
             fail_on=job.fail_on,
             strict=job.strict,
             encoding=job.encoding,
@@ -244,7 +253,7 @@ class SettingsMaker:
         return Applied(settings, merged, profile, file)
 
     def _profile(self, name: str, merged: Merged) -> profiles.Profile:
-        over: list[profiles.Change] = [("--set", self._changes)]
+        over: list[profiles.Change] = [(self._options.spelled("--set"), self._changes)]
         for layer in reversed(merged.layers):
             limits = layer.table.get("limits")
             if limits:
@@ -274,8 +283,9 @@ class SettingsMaker:
         options, machine = self._options, profile.machine
         key = repr((id(profile), job.select, job.ignore, list(job.severities.items())))
         if key not in self._rules:
-            levels = selection.severities(options.severities, options.select, job, merged.at, self._known, machine)
-            rules = selection.chosen(options.select, options.ignore, job, merged.at, self._known, machine)
+            names = selection.Names(options.select, options.ignore, options.severities, options.spelled)
+            levels = selection.severities(names, job, merged.at, self._known, machine)
+            rules = selection.chosen(names, job, merged.at, self._known, machine)
             self._rules[key] = rules, levels
         return self._rules[key]
 
