@@ -436,8 +436,27 @@ class Producer(msgspec.Struct, frozen=True):
     version: str
 
 
+class NotRead(msgspec.Struct, frozen=True):
+    """
+    Files of walked folders that may be NC programs by their look, and were not read.
+
+    ending: with its point, in lower case; empty for files without ending.
+    files: their number.
+    first: the path of the first of them.
+    """
+
+    ending: str
+    files: int
+    first: str
+
+
 class Summary(msgspec.Struct, frozen=True, kw_only=True):
-    """Counts over all files."""
+    """
+    Counts over all files.
+
+    not_read: of the folders that were walked, by ending.
+    excluded: programs that patterns exclude; in folders of more than 50,000 entries there may be more.
+    """
 
     files: int
     errors: int
@@ -448,6 +467,8 @@ class Summary(msgspec.Struct, frozen=True, kw_only=True):
     unverified: int
     fail: int
     unreadable: int
+    not_read: list[NotRead] = []
+    excluded: int = 0
 
 
 class Report(msgspec.Struct, frozen=True, kw_only=True):

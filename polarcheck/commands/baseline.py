@@ -23,7 +23,7 @@ DECIDING = (
     *("paths", "machine", "changes", "tools", "offsets", "units", "select", "ignore", "severities", "inline"),
     *("config", "no_config", "drawings", "drawing_layers", "tolerance", "block_skip", "subprograms"),
     *("max_blocks", "max_statements", "max_seconds"),
-    *("radius_from_comments", "extensions", "encoding", "max_size", "workers", "cluster"),
+    *("radius_from_comments", "extensions", "exclude", "encoding", "max_size", "workers", "cluster"),
 )
 _FILE = "polarcheck-baseline.json"
 

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from polarcheck.commands.progress import Bar
     from polarcheck.commands.watching import Seen
     from polarcheck.finding import FileReport
+    from polarcheck.reading.walking import Skipped
     from polarcheck.settings.of_programs import OfPrograms
 
 #: Processes are started once they save more time than this [s]. A fork, as on Linux, costs little; a spawned process
@@ -63,27 +64,39 @@ def planned(
     *,
     force_exclude: bool = False,
     named: Mapping[str, Any] | None = None,
+    skipped: list[Skipped] | None = None,
 ) -> list[Task]:
     """
     Return the programs of paths, with the settings of each.
 
-    force_exclude: skip excluded files even if they are named.
+    Where all programs of the folders are excluded or have other endings, that is a failure: nothing was checked.
+
+    force_exclude: skip excluded files even if they are named; nothing need be left.
     named: the file that standard input is judged as (standard_input.judged_as).
+    skipped: takes what the walks did not read.
     """
     from polarcheck.batch import tasks as batch
 
     paths = settings_of.left(paths, warn) if force_exclude else paths
+    empty: list[str] = []
+    skipped = [] if skipped is None else skipped
     tasks = batch.plan(
         paths,
         settings_of,
         extensions,
         faults.failures.append,
-        warn,
+        empty.append,
         excluded_in=settings_of.excluded_in,
+        extensions_in=settings_of.extensions_in,
+        skipped=skipped,
         **(named or {}),
     )
-    for line in (*settings_of.unmatched(paths), *settings_of.left_behind()):
-        warn(line)
+    if not tasks and not force_exclude and any(entry.programs for entry in skipped):
+        faults.failures += [f"nothing to check: {line}" for line in empty]
+    else:
+        empty += settings_of.unmatched(paths, [task.place for task in tasks], extensions)
+        for line in (*empty, *settings_of.left_behind()):
+            warn(line)
     return tasks
 
 
