@@ -27,10 +27,13 @@ class Settings(msgspec.Struct, frozen=True):
     rules: the selected rules.
     severities: error, warning, note or off by rule, where they differ from the machine's.
     read: the files from which the settings were read.
+    job_file: the nearest job file; None without one.
     fail_on: the lowest severity that fails a file, or never.
     strict: an unverified file fails, too.
     encoding: of the program; None to detect it.
     inline: allow comments of the program are respected.
+    baseline: the file of known findings.
+    baseline_named_by: the place in the job file that names it; empty if an option does.
     decided: what of this the user has written, for reports.
     profile_sha256: of the machine.
     extras: module-level functions, since other processes import them by name; called in this order.
@@ -42,10 +45,13 @@ class Settings(msgspec.Struct, frozen=True):
     rules: Sequence[Rule]
     severities: Mapping[str, str]
     read: Sequence[Path] = ()
+    job_file: Path | None = None
     fail_on: str = "warning"
     strict: bool = False
     encoding: str | None = None
     inline: bool = True
+    baseline: Path | None = None
+    baseline_named_by: str = ""
     decided: Decided = Decided()
     profile_sha256: str = ""
     extras: Sequence[Extra] = ()

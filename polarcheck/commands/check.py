@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import os
+from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
@@ -14,24 +16,31 @@ from polarcheck.commands import (
     picturing,
     reporting,
     running,
+    show_files,
     silencing,
     standard_input,
     watching,
 )
-from polarcheck.commands.diff_base import diff_base, narrowed
+from polarcheck.commands.diff_base import changed_files, diff_base, narrowed, with_callers
 from polarcheck.commands.exit_codes import COULD_NOT_RUN
 from polarcheck.commands.options import option
-from polarcheck.commands.output import COLUMNS, columns, draws_dots, in_color, say, warn
+from polarcheck.commands.output import COLUMNS, columns, draws_dots, in_color, say, show, warn
 from polarcheck.reports import formats
+
+if TYPE_CHECKING:
+    from polarcheck.reading.walking import Skipped
 
 #: With more files than this the default format is short.
 _LONG = 3
 #: Options that change the look or the destination of a report, the workers or the set of files, but no finding.
 _OF_OUTPUT = (
     *("stdin_filename", "form", "outputs", "color", "quiet", "following", "silenced", "statistics", "shown_too"),
-    *("diff_base", "workers", "cluster", "watch", *fixing.NAMES),
+    *("lists_files", "exclude"),
+    *("diff_base", "with_callers", "workers", "cluster", "watch", "cache_dir", "no_cache", *fixing.NAMES),
 )
 _FORMATS = formats()
+#: The formats that count what the walks did not read; for others standard error does.
+_WITH_SUMMARY = ("text", "short", "github", "json", "jsonl")
 
 
 def _outputs(ctx: click.Context, parameter: click.Parameter, values: tuple[str, ...]) -> list[tuple[str, Path]]:
@@ -47,7 +56,7 @@ def _outputs(ctx: click.Context, parameter: click.Parameter, values: tuple[str, 
 
 
 @click.command
-@click.argument("paths", nargs=-1, required=True, metavar="PATH...")
+@click.argument("paths", nargs=-1, metavar="PATH...")
 @options.executing("programs")
 @options.judging
 @options.comparing
@@ -68,25 +77,32 @@ def _outputs(ctx: click.Context, parameter: click.Parameter, values: tuple[str, 
     help="A report in a file, too.",
 )
 @silencing.baseline
+@silencing.no_baseline
+@silencing.fail_on_stale
 @reporting.statistics
 @diff_base
+@with_callers
 @options.force_exclude
 @options.extensions
+@options.exclude
 @options.max_size
 @standard_input.filename
 @options.jobs
 @options.cluster
+@options.cache_dir
+@options.no_cache
 @watching.watch
 @option("--color", type=click.Choice(["auto", "always", "never"]), default="auto", show_default=True)
 @option("--show-following", "following", is_flag=True, help="In text, what follows from a finding, too.")
 @silencing.show_silenced
 @option("--part", "part", is_flag=True, help="In text, JSON and pages, what the program makes, too.")
 @reporting.paths
+@show_files.show_files
 @option("-q", "--quiet", is_flag=True, help="Findings only.")
 @fixing.wanted
 @options.debug
 @click.pass_context
-def check(ctx: click.Context, /, paths: tuple[str, ...], watch: bool, **arguments: Any) -> None:
+def check(ctx: click.Context, /, paths: tuple[str, ...], watch: bool, with_callers: bool, **arguments: Any) -> None:
     """
     Check NC programs: files, folders, or - for standard input.
 
@@ -102,8 +118,16 @@ def check(ctx: click.Context, /, paths: tuple[str, ...], watch: bool, **argument
     understood or written, 3 for a bug; 130 or 143 where it was interrupted or terminated: what was finished until then
     is reported.
     """
+    changed = None
+    if with_callers:
+        changed = changed_files(paths, {"--diff-base": arguments["diff_base"], "--watch": watch})
+        paths = (os.curdir,)
+    elif not paths:
+        raise click.MissingParameter(ctx=ctx, param=next(one for one in ctx.command.params if one.name == "paths"))
     fields = {name: arguments.pop(name) for name in _Arguments._fields if name in arguments}
-    chosen = _Arguments(**fields, paths=paths, command=_command(ctx), debug=options.DEBUG in ctx.meta, more=arguments)
+    chosen = _Arguments(
+        **fields, paths=paths, changed=changed, command=_command(ctx), debug=options.DEBUG in ctx.meta, more=arguments
+    )
     run = partial(_check, chosen)
     if watch:
         watching.refuse(
@@ -116,6 +140,7 @@ class _Arguments(NamedTuple):
     """
     The arguments of the command line.
 
+    changed: the files of --with-callers; None without it.
     command: the command line that checks one of the files with the same options.
     more: the options that apply to programs, for Options.
 
@@ -123,24 +148,30 @@ class _Arguments(NamedTuple):
     """
 
     paths: tuple[str, ...]
+    changed: Sequence[str] | None
     command: str
     debug: bool
     more: dict[str, Any]
     form: str | None
     outputs: list[tuple[str, Path]]
     no_config: bool
+    no_baseline: bool
+    fail_on_stale: bool
     force_exclude: bool
     extensions: tuple[str, ...]
     max_size: int
     stdin_filename: str | None
     workers: int
     cluster: str | None
+    cache_dir: str | None
+    no_cache: bool
     color: str
     quiet: bool
     following: bool
     silenced: bool
     statistics: bool
     part: bool
+    lists_files: bool
     shown_too: str | None
     fixes: fixing.Wanted
     diff_base: str | None
@@ -182,6 +213,9 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
 
     keep_within_memory()
     reporting.refuse(arguments.form, arguments.statistics)
+    if arguments.lists_files:
+        needing = {"-o": arguments.outputs, "--fix": arguments.fixes.fix, "--diff": arguments.fixes.diff}
+        show_files.refuse(arguments.form, {**needing, "--watch": seen is not None})
     wants_pictures = picturing.FORMAT in (arguments.form, *(form for form, _ in arguments.outputs))
     extras = reporting.extras(arguments.shown_too, arguments.form, arguments.outputs)
     extras += picturing.extras() if wants_pictures else ()
@@ -190,8 +224,14 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
         from polarcheck.parts.part_report import part_of
 
         extras = (*extras, part_of, compared_in)
-    applies = Options(use_config=not arguments.no_config, extras=extras, **arguments.more)
+    applies = Options(
+        use_config=not arguments.no_config,
+        use_baseline=not arguments.no_baseline,
+        extras=extras,
+        **arguments.more,
+    )
     faults = running.Faults(arguments.debug)
+    skipped: list[Skipped] = []
     tasks = running.planned(
         arguments.paths,
         OfPrograms(applies),
@@ -199,16 +239,21 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
         faults,
         force_exclude=arguments.force_exclude,
         named=standard_input.judged_as(arguments.paths, arguments.stdin_filename),
+        skipped=skipped,
     )
     pictures, outputs, written = picturing.of_outputs(
         arguments.outputs, arguments.form == picturing.FORMAT, tasks, "-o html:"
     )
     overwriting.refuse(written, tasks)
-    tasks = narrowed(tasks, arguments.diff_base, arguments.max_size, not arguments.quiet)
+    tasks = narrowed(tasks, arguments.diff_base, arguments.changed, arguments.max_size, not arguments.quiet)
+    if arguments.lists_files:
+        show(show_files.text(arguments.form or "text", tasks, skipped).encode())
+        return faults.report()
     is_colored = in_color(arguments.color)
     shown_in = fixing.Shown(arguments.quiet, is_colored, arguments.debug, bool(arguments.outputs))
-    baseline = None if applies.baseline is None else silencing.Known(applies.baseline, arguments.paths)
-    fixed = fixing.run(arguments.fixes, tasks, arguments.max_size, shown_in, silencing.suppressor(tasks, baseline))
+    baselines = silencing.of_run(tasks, arguments.paths)
+    suppress = None if baselines is None else baselines.copy().without_known
+    fixed = fixing.run(arguments.fixes, tasks, arguments.max_size, shown_in, suppress)
     if fixed.ends:
         return max(faults.report(), fixed.status)
     form = arguments.form or ("text" if len(tasks) <= _LONG or arguments.shown_too else "short")
@@ -224,7 +269,7 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
             silenced=arguments.silenced,
             fixed=fixed.fixed,
             dots=draws_dots(),
-            has_baseline=applies.baseline is not None,
+            has_baseline=baselines is not None,
             drawn=pictures.drawn,
         ),
         tasks,
@@ -234,11 +279,14 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
     live_report = live.Live(
         form, shown, len(tasks), bar.hide, in_place_of_findings=arguments.statistics, to_error=fixed.has_output
     )
-    runner = running.Runner(arguments.max_size, arguments.workers, arguments.cluster, seen)
+    cache = None if arguments.no_cache else running.cache(arguments.max_size, arguments.cache_dir)
+    runner = running.Runner(arguments.max_size, arguments.workers, arguments.cluster, seen, cache)
     pictures.begin(plain)
-    checked = runner.check(tasks, bar, faults, baseline, live_report.file, pictures.split)
+    pictures.end(reporting.unread(report.summary))
+    checked = runner.check(tasks, bar, faults, baselines, live_report.file, pictures.split)
     pictures.end()
-    status = max(int(checked.failed), fixed.status, faults.report())
+    is_stale = arguments.fail_on_stale and silencing.stale(baselines)
+    status = max(int(checked.failed or is_stale), fixed.status, faults.report())
     reason = checked.broken_off
     if checked.stopped is not None:
         status, how = signals.exit_status(checked.stopped)
@@ -248,14 +296,19 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
         checked.files,
         tasks[0].settings.machine_id if tasks else profiles.machine_id(applies.machine or profiles.DEFAULT),
         interrupted=batch.interrupted(reason, checked.files, tasks) if reason else None,
+        skipped=skipped,
     )
-    if checked.stopped is None and arguments.diff_base is None:
+    pictures.end(reporting.unread(report.summary))
+    if checked.stopped is None and arguments.diff_base is None and arguments.changed is None:
         running.warn_unused(applies.tools, checked.called)
         running.warn_without_part(applies.tolerance, tasks)
     for error in reporting.written(outputs, form, report, plain._replace(lines=checked.lines)):
         say(str(error))
         status = max(status, COULD_NOT_RUN)
     live_report.end(report, checked.lines)
+    if form not in _WITH_SUMMARY and not arguments.quiet:
+        for line in reporting.unread(report.summary):
+            warn(line)
     if form == "concise" and not arguments.quiet and any(file.verdict == "unverified" for file in report.files):
         warn("some rules could not be evaluated; --format text says which, and what to give")
     return status
