@@ -15,6 +15,7 @@ from polarcheck.errors import PolarcheckWarning, SourceError, UsageError
 from polarcheck.finding import FileReport, Report
 from polarcheck.machines import profiles
 from polarcheck.reading import files
+from polarcheck.reading.walking import Skipped
 from polarcheck.settings.of_programs import OfPrograms
 
 _FUNCTION = "polarcheck.check()"
@@ -44,16 +45,25 @@ def check(
     """
     settings_of = OfPrograms(options(_FUNCTION, CheckKeywords, keywords))
     named, failures, doubts = paths_of(_FUNCTION, paths), list[str](), list[str]()
+    skipped: list[Skipped] = []
     tasks = batch.plan(
-        named, settings_of, [*extensions], failures.append, doubts.append, excluded_in=settings_of.excluded_in
+        named,
+        settings_of,
+        [*extensions],
+        failures.append,
+        doubts.append,
+        excluded_in=settings_of.excluded_in,
+        extensions_in=settings_of.extensions_in,
+        skipped=skipped,
     )
-    for doubt in (*doubts, *settings_of.unmatched(named)):
+    doubts += settings_of.unmatched(named, [task.place for task in tasks], [*extensions])
+    for doubt in (*doubts, *settings_of.left_behind()):
         warnings.warn(doubt, PolarcheckWarning, stacklevel=2)
     if failures:
         raise SourceError(failures[0])
     with closing(_outcomes(tasks, processes, max_size)) as outcomes:
         reports = [_report(outcome) for outcome in outcomes]
-    return batch.report(reports, tasks[0].settings.machine_id if tasks else profiles.DEFAULT)
+    return batch.report(reports, tasks[0].settings.machine_id if tasks else profiles.DEFAULT, skipped=skipped)
 
 
 def _outcomes(tasks: Sequence[Task], processes: int, most: int) -> Generator[Outcome, None, None]:

@@ -282,9 +282,7 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
     cache = None if arguments.no_cache else running.cache(arguments.max_size, arguments.cache_dir)
     runner = running.Runner(arguments.max_size, arguments.workers, arguments.cluster, seen, cache)
     pictures.begin(plain)
-    pictures.end(reporting.unread(report.summary))
     checked = runner.check(tasks, bar, faults, baselines, live_report.file, pictures.split)
-    pictures.end()
     is_stale = arguments.fail_on_stale and silencing.stale(baselines)
     status = max(int(checked.failed or is_stale), fixed.status, faults.report())
     reason = checked.broken_off

@@ -27,6 +27,7 @@ from polarcheck.settings.selection import Rules
 
 if TYPE_CHECKING:
     from polarcheck.settings.jobs_above import LeftBehind
+    from polarcheck.settings.keywords import Keywords
     from polarcheck.settings.walk_patterns import WalkPatterns
 
 
@@ -66,6 +67,11 @@ class Options(msgspec.Struct, frozen=True):
     tolerance: float | None = None
     extras: Sequence[Extra] = ()
     exclude: Sequence[str] = ()
+    keywords: Keywords | None = None
+
+    def spelled(self, option: str) -> str:
+        """Return an option as its user writes it, for messages: --select, or a keyword of a Python function."""
+        return option if self.keywords is None else self.keywords.spelled(option)
 
 
 class OfPrograms:
