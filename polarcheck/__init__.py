@@ -1,3 +1,85 @@
-"""polarcheck: checks NC programs that use polar coordinate interpolation, before the lathe does."""
+"""
+polarcheck: checks NC programs that use polar coordinate interpolation, before the lathe does.
+
+    >>> import polarcheck
+    >>> report = polarcheck.check("O1234.NC", machine="fanuc-30i", tools={8: 6.35})
+    >>> trace = polarcheck.trace("O1234.NC", tools={8: 6.35})
+
+All that is public is listed in `polarcheck.__all__`; docs/api.md says what is promised. A function is imported when it
+is first used: `import polarcheck` alone loads no other module.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from polarcheck import errors as errors
+    from polarcheck.api.checks import check as check
+    from polarcheck.api.checks import check_text as check_text
+    from polarcheck.api.feed_tables import Feeds as Feeds
+    from polarcheck.api.feed_tables import feeds as feeds
+    from polarcheck.api.feed_tables import feeds_text as feeds_text
+    from polarcheck.api.lathes import machine as machine
+    from polarcheck.api.lathes import machine_names as machine_names
+    from polarcheck.api.parts import MadePart as MadePart
+    from polarcheck.api.parts import part as part
+    from polarcheck.api.parts import part_text as part_text
+    from polarcheck.api.rendering import render as render
+    from polarcheck.api.traces import Trace as Trace
+    from polarcheck.api.traces import trace as trace
+    from polarcheck.api.traces import trace_text as trace_text
+    from polarcheck.finding import FileReport as FileReport
+    from polarcheck.finding import Finding as Finding
+    from polarcheck.finding import Report as Report
+    from polarcheck.machines.job import Stock as Stock
+    from polarcheck.machines.job import Tool as Tool
+    from polarcheck.machines.job import WorkOffset as WorkOffset
+    from polarcheck.machines.machine import Machine as Machine
+    from polarcheck.machines.part import Part as Part
 
 __version__ = "0.1.0"
+
+#: What is public, and the module of each; the imports above tell type checkers the same.
+_MODULES = {
+    "check": "api.checks",
+    "check_text": "api.checks",
+    "feeds": "api.feed_tables",
+    "feeds_text": "api.feed_tables",
+    "machine": "api.lathes",
+    "machine_names": "api.lathes",
+    "part": "api.parts",
+    "part_text": "api.parts",
+    "render": "api.rendering",
+    "trace": "api.traces",
+    "trace_text": "api.traces",
+    "Feeds": "api.feed_tables",
+    "FileReport": "finding",
+    "Finding": "finding",
+    "Machine": "machines.machine",
+    "MadePart": "api.parts",
+    "Part": "machines.part",
+    "Report": "finding",
+    "Stock": "machines.job",
+    "Tool": "machines.job",
+    "Trace": "api.traces",
+    "WorkOffset": "machines.job",
+}
+__all__ = [*_MODULES, "errors", "__version__"]
+
+
+def __getattr__(name: str) -> Any:
+    """Import what is public when it is first used."""
+    import importlib
+
+    if name == "errors":
+        return importlib.import_module("polarcheck.errors")
+    if name not in _MODULES:
+        raise AttributeError(f"module 'polarcheck' has no attribute {name!r}")
+    value = getattr(importlib.import_module(f"polarcheck.{_MODULES[name]}"), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

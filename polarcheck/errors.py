@@ -27,6 +27,10 @@ class PolarcheckError(Exception):
     """Base of all errors; its text is one line that names the file or option, the key, and what was expected."""
 
 
+class PolarcheckWarning(UserWarning):
+    """What the command line would write to standard error beside a report, for callers of the functions for Python."""
+
+
 class UsageError(PolarcheckError):
     """An option or argument without a meaning."""
 

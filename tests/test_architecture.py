@@ -20,6 +20,7 @@ ORDER = (
     ("commands",),
     ("server",),
     ("certification",),
+    ("api",),
     ("reports",),
     ("pictures",),
     ("batch",),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -65,8 +65,8 @@ class _CaseFile(JobFile, frozen=True):
     def paths(self) -> list[Path]:
         return list(dict.fromkeys(layer.written.path for layer in self.of_case))
 
-    def merged(self, layers: object) -> Merged:
-        return job_layers.merged(self.of_case)
+    def merged(self, layers: object, over: Sequence[Layer] = ()) -> Merged:
+        return job_layers.merged([*self.of_case, *over])
 
 
 class ConditionsOfCases:

@@ -19,6 +19,7 @@ _RULE = "part-differs-from-drawing"
 @options.comparing
 @narrower("--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True)
 @options.extensions
+@options.exclude
 @options.max_size
 @options.jobs
 @options.debug

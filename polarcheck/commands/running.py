@@ -14,11 +14,13 @@ from polarcheck.commands.exit_codes import BUG, CLEAN, COULD_NOT_RUN
 from polarcheck.commands.output import bug_lines, say, say_lines, warn
 
 if TYPE_CHECKING:
+    from polarcheck.batch.baselines import Baselines
     from polarcheck.batch.cache.outcomes import Cache
     from polarcheck.batch.tasks import Checked, Outcome, Task
     from polarcheck.commands.progress import Bar
     from polarcheck.commands.watching import Seen
     from polarcheck.finding import FileReport
+    from polarcheck.reading.walking import Skipped
     from polarcheck.settings.of_programs import OfPrograms
 
 #: Processes are started once they save more time than this [s]. A fork, as on Linux, costs little; a spawned process
@@ -62,27 +64,39 @@ def planned(
     *,
     force_exclude: bool = False,
     named: Mapping[str, Any] | None = None,
+    skipped: list[Skipped] | None = None,
 ) -> list[Task]:
     """
     Return the programs of paths, with the settings of each.
 
-    force_exclude: skip excluded files even if they are named.
+    Where all programs of the folders are excluded or have other endings, that is a failure: nothing was checked.
+
+    force_exclude: skip excluded files even if they are named; nothing need be left.
     named: the file that standard input is judged as (standard_input.judged_as).
+    skipped: takes what the walks did not read.
     """
     from polarcheck.batch import tasks as batch
 
     paths = settings_of.left(paths, warn) if force_exclude else paths
+    empty: list[str] = []
+    skipped = [] if skipped is None else skipped
     tasks = batch.plan(
         paths,
         settings_of,
         extensions,
         faults.failures.append,
-        warn,
+        empty.append,
         excluded_in=settings_of.excluded_in,
+        extensions_in=settings_of.extensions_in,
+        skipped=skipped,
         **(named or {}),
     )
-    for line in (*settings_of.unmatched(paths), *settings_of.left_behind()):
-        warn(line)
+    if not tasks and not force_exclude and any(entry.programs for entry in skipped):
+        faults.failures += [f"nothing to check: {line}" for line in empty]
+    else:
+        empty += settings_of.unmatched(paths, [task.place for task in tasks], extensions)
+        for line in (*empty, *settings_of.left_behind()):
+            warn(line)
     return tasks
 
 
@@ -109,14 +123,14 @@ class Runner:
         tasks: Sequence[Task],
         bar: Bar,
         faults: Faults,
-        baseline: silencing.Known | None = None,
+        baselines: Baselines | None = None,
         show: Callable[[FileReport, Mapping[int, str]], None] | None = None,
         take: Callable[[Iterable[Outcome]], Iterator[Outcome]] | None = None,
     ) -> Checked:
         """
         Return the outcomes of the programs, up to an interrupt.
 
-        baseline: the file of known findings, which are silenced.
+        baselines: of known findings, which are silenced.
         show: takes each report in its turn.
         take: removes data from the reports that is not shown, such as pictures.
 
@@ -128,7 +142,7 @@ class Runner:
             self._outcomes(tasks) if self._before is None else self._before.outcomes(tasks, self._outcomes) as outcomes,
             contextlib.closing(bar.watched(outcomes)) as watched,
         ):
-            suppressed = silencing.without_known(watched, tasks, baseline)
+            suppressed = silencing.without_known(watched, tasks, baselines)
             reported = suppressed if take is None else take(suppressed)
             return batch.gather(reported, faults.failures.append, faults.bug, show)
 

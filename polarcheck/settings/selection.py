@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Sequence
 from functools import partial
-from typing import Any
+from typing import Any, NamedTuple
 
 from polarcheck.checking import rule as all_rules
 from polarcheck.checking.rule import Rule
@@ -20,6 +20,21 @@ _ALARM = re.compile(r"([A-Za-z]{0,3})\s?0*(\d{1,9})")
 Rules = dict[str, Rule]
 #: Returns the place of a key of a job: `polarcheck.toml:12`.
 Place = Callable[[str], str]
+
+
+class Names(NamedTuple):
+    """
+    What the command line, or the keywords of a Python function, say of rules.
+
+    selected, ignored: names of rules, groups and alarms.
+    levels: RULE=LEVEL.
+    spelled: returns an option as its user writes it, for messages.
+    """
+
+    selected: Sequence[str] = ()
+    ignored: Sequence[str] = ()
+    levels: Sequence[str] = ()
+    spelled: Callable[[str], str] = str
 
 
 def select(names: Iterable[str], known: Rules, machine: Machine) -> Rules:
@@ -62,39 +77,32 @@ def _of_alarm(alarm: re.Match[str], known: Rules, machine: Machine) -> list[Rule
     return rules
 
 
-def chosen(
-    selected: Sequence[str], ignored: Sequence[str], job: Job, at: Place, known: Rules, machine: Machine
-) -> list[Rule]:
+def chosen(names: Names, job: Job, at: Place, known: Rules, machine: Machine) -> list[Rule]:
     """
     Return the rules to run; --select overrides what the job selects and ignores.
 
-    selected, ignored: the names of the command line.
     at: returns the place of a key of the job.
 
     Raises UsageError, with the option or the key of the file, for an unknown name, and if no rule is left.
     """
     rules, without = known, {}
-    if selected:
-        rules = _named("--select", select, selected, known, machine)
+    if names.selected:
+        rules = _named(names.spelled("--select"), select, names.selected, known, machine)
     else:
         if job.select:
             rules = _named(lambda: f"{at('select')}: select", select, job.select, known, machine)
         without = _named(lambda: f"{at('ignore')}: ignore", select, job.ignore, known, machine)
-    without = without | _named("--ignore", select, ignored, known, machine)
+    without = without | _named(names.spelled("--ignore"), select, names.ignored, known, machine)
     left = [rule for name, rule in rules.items() if name not in without]
     if not left:
         raise UsageError("no rule is left to check: all that are selected are ignored, too")
     return left
 
 
-def severities(
-    levels: Iterable[str], selected: Iterable[str], job: Job, at: Place, known: Rules, machine: Machine
-) -> dict[str, str]:
+def severities(names: Names, job: Job, at: Place, known: Rules, machine: Machine) -> dict[str, str]:
     """
     Return the severities that differ from the profile, by rule; a rule that is selected by its name is never off.
 
-    levels: RULE=LEVEL of the command line.
-    selected: the names of --select.
     at: returns the place of a key of the job.
 
     Raises UsageError, with the option or the key of the file.
@@ -102,9 +110,11 @@ def severities(
     of_job: dict[str, str] = {}
     for name, level in job.severities.items():
         of_job |= _named(partial(_of_severity, at, name), _levels, [(name, level)], known, machine)
-    of_command = _named("--severity", _levels, [_pair(option) for option in levels], known, machine)
+    of_command = _named(
+        names.spelled("--severity"), _levels, [_pair(option) for option in names.levels], known, machine
+    )
     changed = of_job | of_command
-    for name in selected:
+    for name in names.selected:
         rule = known.get(name.strip().lower().replace("_", "-"))
         if rule and rule.name not in of_command and rule.level({**machine.severities, **changed}) == "off":
             changed[rule.name] = rule.severity.name.lower()

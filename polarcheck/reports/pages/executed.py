@@ -11,16 +11,12 @@ import msgspec
 import numpy as np
 from msgspec import UNSET, UnsetType
 
-from polarcheck.arrays import Floats
 from polarcheck.checking.phrases.offsets import called_tool, key_of, option
 from polarcheck.checking.quantity import rounded
 from polarcheck.columns.trace import Trace
 from polarcheck.machines.modal import FeedMode, Motion, Side
-from polarcheck.table.dynamics import Dynamics
-from polarcheck.table.moves import Moves, programmed_moves, z_along
+from polarcheck.table.executed_moves import KINDS, PROGRAMMED, executed_moves
 from polarcheck.table.tool_center import ToolCenter
-
-KINDS = {Motion.CW: "cw", Motion.CCW: "ccw"}
 
 
 class Move(msgspec.Struct, frozen=True):
@@ -73,48 +69,30 @@ def _point(value: complex) -> list[float | None]:
     return [rounded(value.real), rounded(value.imag)]
 
 
-def running(trace: Trace, tool_center: ToolCenter, path: str) -> tuple[Moves, dict[str, Floats]]:
-    """
-    Return the moves of a path, and their highest rates and times by the names of Move.
-
-    For the path of the tool center ("tool") they are those at the actual feed, for the programmed path at F in force.
-    """
-    if path != "tool":
-        table = programmed_moves(trace)
-        return table, {name: getattr(table, name) for name in (*_RATES, "time")}
-    runs = Dynamics(trace, tool_center)
-    return runs.moves, {**{name: getattr(runs, name) for name in _RATES}, "time": runs.move_time}
-
-
-_RATES = ("c_feed", "x_feed", "c_acceleration", "x_acceleration")
-
-
 def moves(trace: Trace, tool_center: ToolCenter, path: str) -> Iterator[Move]:
     """Yield the moves of the tool center path ("tool") or of the programmed path ("programmed"), in order."""
-    table, runs = running(trace, tool_center, path)
-    c_from, c_to = table.c_angles
-    z_from, z_to = z_along(trace, table)
+    table = executed_moves(trace, tool_center, path)
     for index in range(len(table)):
-        center, row = table.center[index], table.row[index]
+        center = table.center[index]
         yield Move(
-            line=int(trace.blocks.line_in_file[row]),
+            line=int(table.line[index]),
             section=int(table.section[index]),
             kind=KINDS.get(Motion(int(table.kind[index])), "line"),
             start=_point(table.start[index]),
             end=_point(table.end[index]),
             center=None if np.isnan(center) else _point(center),
-            z=[rounded(z_from[index]), rounded(z_to[index])],
-            path=path if table.is_of_tool[index] else "programmed",
-            radius=rounded(trace.compensation.radius_of_move[row]),
+            z=[rounded(table.z_from[index]), rounded(table.z_to[index])],
+            path=path if table.is_of_tool[index] else PROGRAMMED,
+            radius=rounded(table.radius[index]),
             feed=rounded(table.feed[index]),
-            x_axis=[rounded(abs(table.start[index])), rounded(abs(table.end[index]))],
-            c_axis=[rounded(c_from[index]), rounded(c_to[index])],
+            x_axis=[rounded(table.x_from[index]), rounded(table.x_to[index])],
+            c_axis=[rounded(table.c_from[index]), rounded(table.c_to[index])],
             nearest=rounded(table.nearest[index]),
-            c_feed=rounded(runs["c_feed"][index]),
-            x_feed=rounded(runs["x_feed"][index]),
-            c_acceleration=rounded(runs["c_acceleration"][index]),
-            x_acceleration=rounded(runs["x_acceleration"][index]),
-            time=rounded(runs["time"][index]),
+            c_feed=rounded(table.c_feed[index]),
+            x_feed=rounded(table.x_feed[index]),
+            c_acceleration=rounded(table.c_acceleration[index]),
+            x_acceleration=rounded(table.x_acceleration[index]),
+            time=rounded(table.time[index]),
             channel=trace.text.source.channel or UNSET,
         )
 

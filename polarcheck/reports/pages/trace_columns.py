@@ -14,7 +14,8 @@ from polarcheck.columns.trace import Trace
 from polarcheck.machines.modal import FeedMode, Motion, Side
 from polarcheck.reading.excerpt import visible
 from polarcheck.reports.pages.aligned import Column, table
-from polarcheck.reports.pages.executed import FEED_MODES, KINDS, SIDES, running
+from polarcheck.reports.pages.executed import FEED_MODES, SIDES
+from polarcheck.table.executed_moves import KINDS, running
 from polarcheck.table.moves import Moves, z_along
 from polarcheck.table.tool_center import ToolCenter
 

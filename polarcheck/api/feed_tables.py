@@ -1,0 +1,77 @@
+"""The highest F of each block."""
+
+from __future__ import annotations
+
+from typing import Unpack
+
+import msgspec
+
+from polarcheck.api.keywords import ExecutionKeywords, PathName, takes
+from polarcheck.api.programs import NAMELESS, Call, Program
+from polarcheck.checking import check
+from polarcheck.checking.causes import READ_OTHERWISE
+from polarcheck.checking.rule import load_all
+from polarcheck.feed_table.table import FeedTable, feed_table
+from polarcheck.finding import Finding
+from polarcheck.reading.files import LARGEST
+
+
+class Feeds(msgspec.Struct, frozen=True, kw_only=True):
+    """
+    The highest F of each block of a program.
+
+    path: as it is reported.
+    machine: the name of the machine, or the path of its file.
+    tables: one for each channel, with its rows, sections and limits.
+    findings: why nothing of this can be believed, if the program is for another control.
+    missing: in one line, which moves are computed as programmed for want of R, and what to give; else empty.
+    """
+
+    path: str
+    machine: str
+    tables: list[FeedTable]
+    findings: list[Finding]
+    missing: str
+
+
+@takes(ExecutionKeywords)
+def feeds(path: PathName, *, max_size: int = LARGEST, **keywords: Unpack[ExecutionKeywords]) -> Feeds:
+    """
+    Return for each cutting block of the polar sections the highest F that keeps the limits of the machine [mm/min].
+
+    max_size: a larger file is not read [bytes].
+
+    Raises SourceError if the file cannot be read, UsageError, JobError or MachineError for a wrong setting,
+    TooHardError if the program takes too long.
+    """
+    call = Call("polarcheck.feeds()", ExecutionKeywords, keywords).with_one_state()
+    return _feeds(call.of_path(path, max_size))
+
+
+@takes(ExecutionKeywords)
+def feeds_text(text: str | bytes, *, name: str = NAMELESS, **keywords: Unpack[ExecutionKeywords]) -> Feeds:
+    """
+    Return the highest F of each block of a text, as `feeds` does of a file.
+
+    name: the path that it is reported as, and by which entries of a job file apply to it. No job file is read unless
+        `config` names one, or use_config=True asks for the one nearest to this path.
+
+    Raises as `feeds` does.
+    """
+    call = Call("polarcheck.feeds_text()", ExecutionKeywords, keywords).with_one_state()
+    return _feeds(call.of_text(text, name))
+
+
+def _feeds(program: Program) -> Feeds:
+    from polarcheck.reports.pages.executed import without_radius
+
+    rules = [rule for name, rule in load_all().items() if name in READ_OTHERWISE]
+    with program.runs() as runs:
+        missing = [without_radius(run["trace"], run["tool_center"]) for _, run in runs]
+        return Feeds(
+            path=program.path,
+            machine=program.settings.name,
+            tables=[feed_table(run) for _, run in runs],
+            findings=check.check_runs(runs, rules, program.settings.severities).findings,
+            missing="; ".join(text for text in missing if text),
+        )

@@ -1,0 +1,307 @@
+"""The keywords that the functions for Python share: what a job file says, over the job files that are read."""
+
+from __future__ import annotations
+
+import inspect
+import math
+import numbers
+import os
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import Any, Literal, TypeAlias, TypedDict, TypeVar
+
+import msgspec
+
+from polarcheck.errors import UsageError, suggestion
+from polarcheck.machines.job import Running, Stock, Tool, WorkOffset
+from polarcheck.machines.part import Part
+from polarcheck.reading.files import shown
+from polarcheck.settings.keywords import keywords
+from polarcheck.settings.of_programs import Options
+
+PathName: TypeAlias = str | os.PathLike[str]
+Values: TypeAlias = Mapping[str, Any]
+Severity: TypeAlias = Literal["error", "warning", "note"]
+
+
+class ExecutionKeywords(TypedDict, total=False):
+    """
+    How a program is read and run; what is not given is as polarcheck.toml says, else as the machine has it.
+
+    machine: name of a built-in lathe, or the path of a TOML file.
+    changes: other values of the machine by table and key, {"limits.c_feed": 3600}.
+    limits: the same for its limits alone, {"c_feed": 3600}; see docs/adding_a_machine.md.
+    tools: R of the tool offsets by number, {8: 6.35}, or Tool(radius=6.35, nose=0); by tool and edge, {"MILL_8/1": 4}.
+    offsets: file with the offset table of the control.
+    units: "mm" or "inch", of the lengths in these keywords; else they are in the units of the job file, else in those
+        of each program.
+    program_units: "mm" or "inch", of programs with neither G20 nor G21.
+    stock: the bar, Stock(diameter=40.0) or {"hexagon": 27.0}.
+    work_offsets: where X0 of each work offset lies, {"G54": 0.0}.
+    block_skip: "on", "off" or "both", of blocks with /.
+    subprograms: folders in which called programs lie, before those of the job file.
+    variables: values of #-variables, {500: 1.5}.
+    max_blocks, max_statements, max_seconds: where a run is given up.
+    radius_from_comments: take unknown radii from comments.
+    encoding: of the programs; else it is found out.
+    config: a job file in place of the nearest polarcheck.toml.
+    use_config: False to read no job file.
+    """
+
+    machine: PathName
+    changes: Values
+    limits: Mapping[str, float | bool]
+    tools: Mapping[int | str, float | Tool | Values]
+    offsets: PathName
+    units: Literal["mm", "inch"]
+    program_units: Literal["mm", "inch"]
+    stock: Stock | Values
+    work_offsets: Mapping[str, float | WorkOffset | Values]
+    block_skip: Literal["on", "off", "both"]
+    subprograms: PathName | Iterable[PathName]
+    variables: Mapping[int | str, float]
+    max_blocks: int
+    max_statements: int
+    max_seconds: float
+    radius_from_comments: bool
+    encoding: str
+    config: PathName
+    use_config: bool
+
+
+class PartKeywords(ExecutionKeywords, total=False):
+    """
+    What programs should make.
+
+    part: shapes and drawings in place of those of the job file, [Part(shape="hexagon", across_flats=27.0)].
+    drawings: DXF files in place of them.
+    drawing_layers: of each of these only what lies on these layers.
+    tolerance: how far a part may differ that has no tolerance itself.
+    """
+
+    part: Part | Values | Iterable[Part | Values]
+    drawings: PathName | Iterable[PathName]
+    drawing_layers: str | Iterable[str]
+    tolerance: float
+
+
+class CheckKeywords(PartKeywords, total=False):
+    """
+    Which rules run, and what fails.
+
+    select: only these rules, groups or alarms; over what the job file selects and ignores.
+    ignore: all but these.
+    severities: error, warning, note or off by rule, group or alarm.
+    fail_on: "error", "warning", "note" or "never".
+    strict: an unverified file fails, too.
+    inline: False to ignore the allow comments of programs.
+    """
+
+    select: str | Iterable[str]
+    ignore: str | Iterable[str]
+    severities: Mapping[str, Severity | Literal["off"]]
+    fail_on: Severity | Literal["never"]
+    strict: bool
+    inline: bool
+
+
+#: Keywords that are no keys of a job file.
+_OF_OPTIONS = ("changes", "config", "drawing_layers", "drawings", "ignore", "select", "subprograms", "tolerance")
+#: Keywords that a single value may be given to.
+_LISTS = ("drawing_layers", "drawings", "ignore", "select", "subprograms")
+_LARGEST_TOLERANCE = 100.0
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+
+def takes(kind: type) -> Callable[[Function], Function]:
+    """Show the keywords of a TypedDict in the signature of a function and in its help."""
+
+    def shown_in(function: Function) -> Function:
+        signature = inspect.signature(function)
+        parameters = [
+            parameter.replace(annotation=_Written(parameter.annotation))
+            for parameter in signature.parameters.values()
+            if parameter.kind is not inspect.Parameter.VAR_KEYWORD
+        ]
+        for name, annotation in kind.__annotations__.items():
+            written = _Written(getattr(annotation, "__forward_arg__", annotation))
+            parameters.append(
+                inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=_Written("..."), annotation=written)
+            )
+        returned = _Written(signature.return_annotation)
+        function.__signature__ = signature.replace(  # type: ignore[attr-defined]
+            parameters=parameters, return_annotation=returned
+        )
+        described = [inspect.getdoc(function), *(inspect.getdoc(base) for base in _described_by(kind))]
+        function.__doc__ = "\n\n".join(str(text) for text in described)
+        return function
+
+    return shown_in
+
+
+class _Written(str):
+    """A type or a default as it is written in the source; help shows it without quotes."""
+
+    __slots__ = ()
+
+    def __repr__(self) -> str:
+        return str(self)
+
+
+def _described_by(kind: type) -> list[type]:
+    """Return the TypedDicts whose keywords a TypedDict has, the most basic last."""
+    order: list[type] = [CheckKeywords, PartKeywords, ExecutionKeywords]
+    return order[order.index(kind) :]
+
+
+def options(function: str, kind: type, given: Mapping[str, Any], **more: Any) -> Options:
+    """
+    Return the options of keywords.
+
+    function: its name, for messages.
+    kind: the TypedDict of the keywords that it takes.
+    more: further fields of the options.
+
+    Raises UsageError, which names the function and the keyword at fault.
+    """
+    known = kind.__annotations__
+    for name in given:
+        if name not in known:
+            raise UsageError(f"{function}: unknown keyword {name}{suggestion(name, known)}")
+    table = {name: _plain(value) for name, value in given.items() if value is not None}
+    for name in _LISTS:
+        if name in table:
+            table[name] = _names(function, name, table[name])
+    for name in ("config", "machine", "offsets", "encoding"):
+        if not isinstance(table.get(name, ""), str):
+            raise UsageError(f"{function}: {name}: expected a name or a path, found {_short(given[name])}")
+    use_config = table.pop("use_config", True)
+    if "encoding" in table and not _is_encoding(table["encoding"]):
+        raise UsageError(
+            f"{function}: encoding: unknown encoding {_short(given['encoding'])}; for example utf-8, cp1252"
+        )
+    if not isinstance(use_config, bool):
+        raise UsageError(f"{function}: use_config: expected True or False, found {_short(use_config)}")
+    of_options = {name: table.pop(name) for name in _OF_OPTIONS if name in table}
+    _check(function, of_options)
+    job = _job(function, table)
+    levels = keywords(function, job, of_options.pop("changes", {}))
+    severities = [f"{name}={level}" for name, level in job.pop("severities", {}).items()]
+    paths = {name: Path(value) for name, value in of_options.items() if name == "config"}
+    if "drawings" in of_options:
+        paths["drawings"] = [Path(path) for path in of_options["drawings"]]  # type: ignore[assignment]
+    return Options(**{**of_options, **paths, **more}, severities=severities, use_config=use_config, keywords=levels)
+
+
+def _is_encoding(name: str) -> bool:
+    from polarcheck.reading.source import is_encoding  # late: it loads NumPy
+
+    return is_encoding(name)
+
+
+def _plain(value: Any) -> Any:
+    """Return a value as a TOML file would give it: tables, lists, numbers and texts."""
+    if isinstance(value, msgspec.Struct):
+        fields = {field.name: (getattr(value, field.name), field.default) for field in msgspec.structs.fields(value)}
+        return {name: _plain(inner) for name, (inner, default) in fields.items() if not _is(inner, default)}
+    if isinstance(value, Mapping):
+        return {_key(key): _plain(inner) for key, inner in value.items() if inner is not None}
+    if isinstance(value, os.PathLike):
+        return os.fspath(value)
+    if isinstance(value, bool | str | bytes):
+        return value
+    if isinstance(value, numbers.Integral):
+        return int(value)
+    if isinstance(value, numbers.Real):
+        return float(value)
+    return [_plain(inner) for inner in value] if isinstance(value, Iterable) else value
+
+
+def _is(value: Any, default: Any) -> bool:
+    """Return True for the default of a field; NaN is unknown."""
+    return value is None or value is default or (isinstance(value, float) and (math.isnan(value) or value == default))
+
+
+def _key(key: Any) -> Any:
+    return str(int(key)) if isinstance(key, numbers.Integral) else key
+
+
+def _job(function: str, table: dict[str, Any]) -> dict[str, Any]:
+    """Return keywords as the tables of a job file. Raises UsageError for a tool that is neither R nor a table."""
+    of_run = {name: table.pop(name) for name in Running.__struct_fields__ if name in table}
+    if of_run:
+        table["run"] = of_run
+    for name, key in (("tools", "radius"), ("work_offsets", "x")):
+        entries = table.get(name, {})
+        if not isinstance(entries, dict):
+            raise UsageError(f"{function}: {name}: expected {key} by {_KEYED[name]}, found {_short(entries)}")
+        for of, entry in entries.items():
+            if not isinstance(entry, dict) and not _is_number(entry):
+                raise UsageError(
+                    f"{function}: {name}.{of}: expected {key} as a number, or a table, found {_short(entry)}"
+                )
+        if entries:
+            table[name] = {of: {key: entry} if _is_number(entry) else entry for of, entry in entries.items()}
+    if isinstance(table.get("part"), dict):
+        table["part"] = [table["part"]]
+    return table
+
+
+_KEYED = {"tools": "tool offset as {8: 6.35}", "work_offsets": 'code as {"G54": 0.0}'}
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+def _names(function: str, name: str, value: Any) -> list[str]:
+    names = [value] if isinstance(value, str) else value
+    if not isinstance(names, list) or not all(isinstance(element, str) for element in names):
+        raise UsageError(f"{function}: {name}: expected names, found {_short(value)}")
+    return names
+
+
+def _check(function: str, given: Mapping[str, Any]) -> None:
+    """Raise UsageError for values of keywords that no job file has."""
+    if not isinstance(given.get("changes", {}), dict):
+        raise UsageError(f"{function}: changes: expected keys with values, found {_short(given['changes'])}")
+    for folder in given.get("subprograms", ()):
+        if not os.path.isdir(folder):  # noqa: PTH112  Path.is_dir raises for some names
+            raise UsageError(f"{function}: subprograms: there is no folder {shown(folder)}")
+    tolerance = given.get("tolerance", 1.0)
+    if not _is_number(tolerance) or not 0 < tolerance <= _LARGEST_TOLERANCE:
+        raise UsageError(
+            f"{function}: tolerance: expected a length above 0 and up to {_LARGEST_TOLERANCE:g}, found "
+            f"{_short(tolerance)}"
+        )
+
+
+def _short(value: Any) -> str:
+    text = repr(value)
+    return text if len(text) <= _LONGEST else f"{text[:_LONGEST]}..."
+
+
+_LONGEST = 60
+
+
+def paths_of(function: str, paths: PathName | Iterable[PathName]) -> list[str]:
+    """
+    Return paths as texts; a file with the name `-` is a file.
+
+    Raises UsageError for what is no path.
+    """
+    listed: Sequence[Any] = [paths] if isinstance(paths, str | os.PathLike) else list(_iterated(function, paths))
+    found = []
+    for path in listed:
+        name = os.fspath(path) if isinstance(path, str | os.PathLike) else None
+        if not isinstance(name, str) or not name:
+            raise UsageError(f"{function}: expected the path of a program or folder, found {_short(path)}")
+        found.append(os.path.join(os.curdir, name) if name == "-" else name)  # noqa: PTH118
+    return found
+
+
+def _iterated(function: str, paths: Any) -> Iterable[Any]:
+    if isinstance(paths, bytes) or not isinstance(paths, Iterable):
+        raise UsageError(f"{function}: expected the path of a program or folder, found {_short(paths)}")
+    return paths

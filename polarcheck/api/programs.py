@@ -1,0 +1,89 @@
+"""One program, from a file or a text, with the settings that apply to it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from typing import Any, NamedTuple
+
+import msgspec
+
+from polarcheck.api.keywords import PathName, options, paths_of
+from polarcheck.checking import check
+from polarcheck.checking.settings import Settings
+from polarcheck.checking.tables import Tables
+from polarcheck.errors import UsageError
+from polarcheck.reading import files
+from polarcheck.settings.of_programs import OfPrograms
+from polarcheck.time_limit import seconds_for, time_limit
+
+#: The name of a text that has none.
+NAMELESS = "text"
+
+
+class Program(NamedTuple):
+    """
+    A program.
+
+    path: as it is reported.
+    data: its bytes.
+    settings: what applies to it.
+    """
+
+    path: str
+    data: bytes
+    settings: Settings
+
+    @contextmanager
+    def runs(self) -> Iterator[Sequence[tuple[str, Tables]]]:
+        """Yield its runs as check.read returns them. Their columns are computed inside: its time is limited."""
+        settings = self.settings
+        with time_limit(seconds_for(len(self.data), settings.job.run.max_seconds)):
+            yield check.read(self.data, settings.machine, settings.job, self.path, settings.encoding)
+
+
+class Call(NamedTuple):
+    """
+    A call of a function for Python.
+
+    function: its name, for messages.
+    kind: the TypedDict of the keywords that it takes.
+    given: the keywords.
+    more: further fields of the options.
+    """
+
+    function: str
+    kind: type
+    given: Mapping[str, Any]
+    more: Mapping[str, Any] = {}
+
+    def of_path(self, path: PathName, max_size: int) -> Program:
+        """Return the program of a file. Raises SourceError, UsageError, JobError and MachineError in one line."""
+        (name,) = paths_of(self.function, [path])
+        settings = OfPrograms(options(self.function, self.kind, self.given, **self.more))(name)
+        return Program(files.shown(name), files.read_program(name, max_size), settings)
+
+    def of_text(self, text: str | bytes, name: str) -> Program:
+        """
+        Return the program of a text. Raises as of_path does.
+
+        A job file applies to it only if `config` names one, or if `use_config` asks for the nearest to the name.
+        """
+        if not isinstance(text, str | bytes):
+            raise UsageError(f"{self.function}: expected a program as str or bytes, found {type(text).__name__}")
+        (path,) = paths_of(self.function, [name])
+        given = self.given if "config" in self.given else {"use_config": False, **self.given}
+        settings = OfPrograms(options(self.function, self.kind, given, **self.more))(path)
+        if isinstance(text, str):
+            text, settings = (
+                text.encode("utf-8", "backslashreplace"),
+                msgspec.structs.replace(settings, encoding="utf-8"),
+            )
+        return Program(files.shown(path), text, settings)
+
+    def with_one_state(self) -> Call:
+        """Return the call of a function that runs a program once: block skip is off unless a keyword sets it."""
+        skip = self.given.get("block_skip") or "off"
+        if skip == "both":
+            raise UsageError(f"{self.function}: block_skip: expected on or off, found both")
+        return self._replace(given={**self.given, "block_skip": skip})

@@ -1,0 +1,26 @@
+"""Reports as text in the formats of the command line."""
+
+from __future__ import annotations
+
+from polarcheck import reports
+from polarcheck.batch import tasks as batch
+from polarcheck.checking import rule
+from polarcheck.errors import UsageError
+from polarcheck.finding import FileReport, Report
+
+
+def render(report: Report | FileReport, form: str = "text") -> str:
+    """
+    Return a report as text, as the command line writes it with --format.
+
+    form: text, short, concise, json, jsonl, sarif, junit, gitlab, github or checkstyle. Text for people is not in
+        color, and shows no lines of the programs, which a report does not hold.
+
+    Raises UsageError for another format.
+    """
+    known = [name for name in reports.formats() if name not in reports.PER_FILE]
+    if form not in known:
+        raise UsageError(f"polarcheck.render(): form: expected one of {', '.join(known)}, found {form!r}")
+    if isinstance(report, FileReport):
+        report = batch.report([report], report.machine)
+    return reports.render(form, report, reports.Background(rules=rule.load_all()))

@@ -1,0 +1,187 @@
+"""The moves of a program as NumPy columns."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Literal, TypeAlias, Unpack
+
+import numpy as np
+from numpy.typing import NDArray
+
+from polarcheck.api.keywords import ExecutionKeywords, PathName, takes
+from polarcheck.api.programs import NAMELESS, Call, Program
+from polarcheck.arrays import Floats, Points, Rows, Table
+from polarcheck.errors import UsageError
+from polarcheck.geometry.segments import Curves, segments
+from polarcheck.machines.modal import Motion
+from polarcheck.reading.files import LARGEST
+from polarcheck.table.executed_moves import KINDS, PROGRAMMED, TOOL, executed_moves
+
+Texts: TypeAlias = NDArray[np.str_]
+Which: TypeAlias = Literal["tool", "programmed"]
+
+_STATES = {kind: motion for motion, kind in KINDS.items()}
+#: `segments` keeps a quarter of its tolerance between a chord and its arc.
+_SAGITTA = 4
+
+
+class Trace(Table, frozen=True, eq=False):
+    """
+    The moves of a program inside its polar sections, in order: a column for each name of the JSON lines of the trace.
+
+    len(trace) is the number of moves; trace[mask], trace[rows] and trace[5:9] are traces of these moves alone. Unknown
+    numbers are NaN. Plane points are complex, x + 1j*c, X as a radius. The columns of n moves are:
+
+    line: int64[n], the line of the block; in a program called from another file, that of the call.
+    section: int64[n], the number of the polar section, from 0 in each channel.
+    kind: str[n], line, cw or ccw.
+    start, end: complex128[n], from and to [mm].
+    center: complex128[n], of an arc [mm]; NaN for lines.
+    z: float64[n, 2], Z before and after [mm].
+    path: str[n], tool where the tool center runs there; programmed in offset mode where R or the position is unknown.
+    radius: float64[n], R of the offset in force [mm].
+    feed: float64[n], F in force [mm/min].
+    x_axis: float64[n, 2], X of the machine as a radius, from and to, never negative [mm].
+    c_axis: float64[n, 2], C of the machine, from and to, continuous along a section [deg].
+    nearest: float64[n], the smallest distance of the tool center to the center of C [mm].
+    c_feed: float64[n], the highest rate of C [deg/min].
+    x_feed: float64[n], the highest rate of X [mm/min].
+    c_acceleration: float64[n], the highest acceleration of C [deg/s2].
+    x_acceleration: float64[n], the highest acceleration of X [mm/s2].
+    time: float64[n], of the move [s].
+    channel: str[n], as $2; empty unless the file has several channels.
+
+    And for all moves together:
+
+    file: the path of the program, as it is reported.
+    machine: the name of the machine, or the path of its file.
+    missing: in one line, why moves of the tool path are shown as programmed, and what to give; empty if none is.
+    """
+
+    _shared = ("file", "machine", "missing")
+
+    line: Rows
+    section: Rows
+    kind: Texts
+    start: Points
+    end: Points
+    center: Points
+    z: Floats
+    path: Texts
+    radius: Floats
+    feed: Floats
+    x_axis: Floats
+    c_axis: Floats
+    nearest: Floats
+    c_feed: Floats
+    x_feed: Floats
+    c_acceleration: Floats
+    x_acceleration: Floats
+    time: Floats
+    channel: Texts
+    file: str
+    machine: str
+    missing: str
+
+    def polyline(self, tolerance: float = 0.01) -> Points:
+        """
+        Return the path as points to draw, complex128[m] [mm]; NaN stands where it is interrupted.
+
+        tolerance: the largest distance of a chord from its arc [mm]. Moves with unknown points are left out.
+
+        Raises UsageError for a tolerance that is not above 0, TooHardError for more than a million chords.
+        """
+        if not tolerance > 0:
+            raise UsageError(f"polyline: expected a tolerance above 0, found {tolerance!r}")
+        states = np.array([_STATES.get(kind, Motion.LINE) for kind in self.kind.tolist()], np.int16)
+        first = np.zeros(len(self), np.int64)
+        parts = segments(Curves(self.start, self.end, self.center, states, first, first), _SAGITTA * tolerance)
+        if not len(parts):
+            return np.zeros(0, complex)
+        apart = np.append(True, np.abs(parts.start[1:] - parts.end[:-1]) > _TOUCH)
+        points = np.stack([np.where(apart, np.nan, parts.start), parts.start, parts.end], axis=1)
+        wanted = np.stack([apart, apart, np.ones(len(parts), bool)], axis=1)
+        return np.asarray(points[wanted][1:])
+
+    def __repr__(self) -> str:
+        sections = len({*zip(self.channel.tolist(), self.section.tolist(), strict=True)})
+        return f"<Trace of {self.file}: {len(self)} moves in {sections} sections on {self.machine}>"
+
+
+#: Ends of moves that are nearer than this are one point [mm].
+_TOUCH = 1e-6
+
+
+@takes(ExecutionKeywords)
+def trace(
+    path: PathName, *, which: Which = "tool", max_size: int = LARGEST, **keywords: Unpack[ExecutionKeywords]
+) -> Trace:
+    """
+    Return the moves of a program inside its polar sections.
+
+    which: "tool" for the path of the tool center, "programmed" for the path as it is written.
+    max_size: a larger file is not read [bytes].
+
+    Raises SourceError if the file cannot be read, UsageError, JobError or MachineError for a wrong setting,
+    TooHardError if the program takes too long.
+    """
+    call = Call("polarcheck.trace()", ExecutionKeywords, keywords).with_one_state()
+    return _trace(call.of_path(path, max_size), which)
+
+
+@takes(ExecutionKeywords)
+def trace_text(
+    text: str | bytes, *, name: str = NAMELESS, which: Which = "tool", **keywords: Unpack[ExecutionKeywords]
+) -> Trace:
+    """
+    Return the moves of a text, as `trace` does of a file.
+
+    name: the path that it is reported as, and by which entries of a job file apply to it. No job file is read unless
+        `config` names one, or use_config=True asks for the one nearest to this path.
+
+    Raises as `trace` does.
+    """
+    call = Call("polarcheck.trace_text()", ExecutionKeywords, keywords).with_one_state()
+    return _trace(call.of_text(text, name), which)
+
+
+def _trace(program: Program, which: str) -> Trace:
+    from polarcheck.reports.pages.executed import without_radius
+
+    if which not in (TOOL, PROGRAMMED):
+        raise UsageError(f"polarcheck.trace(): which: expected tool or programmed, found {which!r}")
+    with program.runs() as runs:
+        tables = [run for _, run in runs]
+        parts = [executed_moves(run["trace"], run["tool_center"], which) for run in tables]
+        missing = [without_radius(run["trace"], run["tool_center"]) for run in tables if which == TOOL]
+        channels = [str(run["trace"].text.source.channel) for run in tables]
+    counts = [len(part) for part in parts]
+    moves = parts[0].concatenated(parts)
+    return Trace(
+        line=moves.line,
+        section=moves.section,
+        kind=_texts([KINDS.get(Motion(kind), "line") for kind in moves.kind.tolist()]),
+        start=moves.start,
+        end=moves.end,
+        center=moves.center,
+        z=np.stack([moves.z_from, moves.z_to], axis=1),
+        path=np.where(moves.is_of_tool, which, PROGRAMMED),
+        radius=moves.radius,
+        feed=moves.feed,
+        x_axis=np.stack([moves.x_from, moves.x_to], axis=1),
+        c_axis=np.stack([moves.c_from, moves.c_to], axis=1),
+        nearest=moves.nearest,
+        c_feed=moves.c_feed,
+        x_feed=moves.x_feed,
+        c_acceleration=moves.c_acceleration,
+        x_acceleration=moves.x_acceleration,
+        time=moves.time,
+        channel=np.repeat(_texts(channels), counts),
+        file=program.path,
+        machine=program.settings.name,
+        missing="; ".join(text for text in missing if text),
+    )
+
+
+def _texts(texts: Sequence[str]) -> Texts:
+    return np.array(texts, np.str_)
