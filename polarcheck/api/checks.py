@@ -67,7 +67,7 @@ def check(
         raise SourceError(failures[0])
     with closing(_outcomes(tasks, processes, max_size)) as outcomes:
         reports = [_report(outcome) for outcome in outcomes]
-    return batch.report(reports, tasks[0].settings.name if tasks else profiles.DEFAULT, skipped=skipped)
+    return batch.report(reports, tasks[0].settings.machine_id if tasks else profiles.DEFAULT, skipped=skipped)
 
 
 def _outcomes(tasks: Sequence[Task], processes: int, most: int) -> Generator[Outcome, None, None]:

@@ -62,11 +62,11 @@ def feeds(path: str, form: str, diff: bool, no_config: bool, max_size: int, **ar
                 warn(unknown)
         if diff:
             return _show_diff(title, data, runs, applied.encoding)
-        _show_table(title, runs, form)
+        _show_table(title, applied.machine_id, runs, form)
     return CLEAN
 
 
-def _show_table(title: str, runs: list[Tables], form: str) -> None:
+def _show_table(title: str, machine: str, runs: list[Tables], form: str) -> None:
     import msgspec
 
     from polarcheck.feed_table.table import FeedReport, feed_table
@@ -77,7 +77,6 @@ def _show_table(title: str, runs: list[Tables], form: str) -> None:
             if not show(line.encode()):
                 break
         return
-    machine = runs[0]["machine"].title
     report = FeedReport(schema=1, path=title, machine=machine, tables=[feed_table(tables) for tables in runs])
     encoded = msgspec.json.format(msgspec.json.encode(report), indent=2) + b"\n"
     show(encoded if form == "json" else pages.text(report).encode())
