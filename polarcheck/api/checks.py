@@ -7,6 +7,8 @@ from collections.abc import Generator, Iterable, Sequence
 from contextlib import closing
 from typing import Unpack
 
+import msgspec
+
 from polarcheck.api.keywords import CheckKeywords, PathName, options, paths_of, takes
 from polarcheck.api.programs import NAMELESS, Call
 from polarcheck.batch import tasks as batch
@@ -26,6 +28,7 @@ def check(
     paths: PathName | Iterable[PathName],
     *,
     extensions: Iterable[str] = (),
+    exclude: Iterable[str] = (),
     processes: int = 1,
     max_size: int = files.LARGEST,
     **keywords: Unpack[CheckKeywords],
@@ -38,12 +41,13 @@ def check(
 
     paths: one path or several; a program that several of them lead to is checked once.
     extensions: endings of the programs in folders, in place of .nc, .tap and others.
+    exclude: patterns of files and folders that walks pass over, beside those of job files; see docs/configuration.md.
     processes: how many check; 1 for this one alone. More need a main module that can be imported (multiprocessing).
     max_size: a larger file is not read [bytes].
 
     Raises UsageError, JobError or MachineError for a wrong setting before any file is checked.
     """
-    settings_of = OfPrograms(options(_FUNCTION, CheckKeywords, keywords))
+    settings_of = OfPrograms(msgspec.structs.replace(options(_FUNCTION, CheckKeywords, keywords), exclude=[*exclude]))
     named, failures, doubts = paths_of(_FUNCTION, paths), list[str](), list[str]()
     skipped: list[Skipped] = []
     tasks = batch.plan(

@@ -219,8 +219,13 @@ def _plain(value: Any) -> Any:
 
 
 def _is(value: Any, default: Any) -> bool:
-    """Return True for the default of a field; NaN is unknown."""
-    return value is None or value is default or (isinstance(value, float) and (math.isnan(value) or value == default))
+    """Return True for the default of a field; NaN is unknown, and lists are empty."""
+    return (
+        value is None
+        or value is default
+        or value == []
+        or (isinstance(value, float) and (math.isnan(value) or value == default))
+    )
 
 
 def _key(key: Any) -> Any:

@@ -237,7 +237,8 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
         OfPrograms(applies),
         arguments.extensions,
         faults,
-        force_exclude=arguments.force_exclude,
+        # A hook may find that nothing is left.
+        force_exclude=arguments.force_exclude or arguments.changed is not None,
         named=standard_input.judged_as(arguments.paths, arguments.stdin_filename),
         skipped=skipped,
     )
