@@ -67,6 +67,10 @@ class BaselineError(PolarcheckError):
     """A file of known findings that cannot be used, or must not be written."""
 
 
+class CertificateError(PolarcheckError):
+    """A manifest or a golden trace that cannot be used, or must not be written."""
+
+
 class ClusterError(PolarcheckError):
     """A cluster that cannot be reached, has no workers, or does not answer any more."""
 

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import enum
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Mapping, Sequence
 
 import msgspec
 from msgspec import UNSET, UnsetType
+
+#: Number of the JSON contract.
+SCHEMA = 2
 
 
 class Severity(enum.IntEnum):
@@ -22,6 +24,9 @@ NOTE, WARNING, ERROR = Severity.NOTE, Severity.WARNING, Severity.ERROR
 
 #: Severities by their names in reports and configuration.
 SEVERITIES = {severity.name.lower(): severity for severity in Severity}
+
+#: What a check says of a file; unreadable is one that could not be read or checked.
+VERDICTS = PASS, FAIL, UNVERIFIED, UNREADABLE = "pass", "fail", "unverified", "unreadable"
 
 
 class Edit(msgspec.Struct, frozen=True, kw_only=True):
@@ -58,7 +63,7 @@ class Finding(msgspec.Struct, frozen=True, kw_only=True):
     program: number or name of its program, as O0001.
     section_line: line of the G12.1 that begins its polar section.
     alarm: the alarm that this control shows; null if none is known.
-    values: the numbers of the message by fixed names, in fixed units.
+    values: its numbers by fixed names in fixed units, and the codes, words and names at fault (docs/values.md).
     count: how many executed blocks or words it stands for.
     source: page of the manual.
     fingerprint: recognises the finding after other blocks have changed.
@@ -78,7 +83,7 @@ class Finding(msgspec.Struct, frozen=True, kw_only=True):
     program: str | None = None
     section_line: int | None = None
     alarm: str | None = None
-    values: dict[str, Any] = {}
+    values: dict[str, int | float | str] = {}
     count: int = 1
     source: str = ""
     fingerprint: str = ""
@@ -304,6 +309,65 @@ class KnownStock(msgspec.Struct, frozen=True, kw_only=True):
     face_end_line: int | None
 
 
+class Decided(msgspec.Struct, frozen=True, kw_only=True):
+    """
+    The settings that decided a verdict and the exit code, as the user has written them.
+
+    machine: name or file of the lathe.
+    changes: values of it that the command line changes, as `limits.c_feed=3600`.
+    select, ignore: rules, groups and alarms; an empty `select` is all.
+    severities: error, warning, note or off by rule, group or alarm.
+    inline: allow comments of programs are respected.
+    fail_on: the lowest severity with which the check ends with 1, or never.
+    max_warnings: with more warnings than this the check ends with 1; null for no such limit.
+    strict: with an unverified file the check ends with 1.
+    baseline: the file of known findings; null without one.
+    configuration: the files of settings that were read, the nearest first, and those of the lathe.
+    sources: by the name of a value that is not the default, where it is from: an option, a variable of the environment,
+        or file and line.
+    """
+
+    machine: str | None = None
+    changes: Sequence[str] | None = []
+    select: Sequence[str] | None = []
+    ignore: Sequence[str] | None = []
+    severities: Mapping[str, str] | None = {}
+    inline: bool | None = True
+    fail_on: str | None = "warning"
+    max_warnings: int | None = None
+    strict: bool | None = False
+    baseline: str | None = None
+    configuration: Sequence[str] | None = []
+    sources: Mapping[str, str] | None = {}
+
+
+class RunSettings(Decided, frozen=True, kw_only=True):
+    """
+    The settings that all files of a run share; null is a value in which they differ, and each file has its `settings`.
+
+    version: of this program.
+    diff_base: the commit since which a file must have changed to be checked; null where all are.
+    """
+
+    version: str = ""
+    diff_base: str | None = None
+
+
+class Interrupted(msgspec.Struct, frozen=True, kw_only=True):
+    """
+    A run that did not reach its end.
+
+    reason: why.
+    checked, planned: how many files were reported, and how many there were to check.
+    next_path: the first file that was not.
+    """
+
+    reason: str
+    checked: int
+    planned: int
+    next_path: str | None = None
+
+
 class FileReport(msgspec.Struct, frozen=True, kw_only=True):
     """
     The report of one file.
@@ -311,7 +375,11 @@ class FileReport(msgspec.Struct, frozen=True, kw_only=True):
     machine: its name, as given by the user.
     programs: numbers or names of its programs.
     blocks, sections: executed blocks and polar sections.
-    verdict: pass, fail or unverified.
+    verdict: pass, fail, unverified or unreadable.
+    reason: why a file is unreadable: it could not be read, or not be checked to its end.
+    sha256: of the bytes of the file; null if they could not be read.
+    profile_sha256: of the machine with all that inherits and changes it: two files with the same were judged alike.
+    settings: what decided for this file, where the files of the run have different settings.
     polar_sections: what the verdict rests on.
     findings: the reported faults, sorted by line.
     not_evaluated: rules without a result.
@@ -329,6 +397,10 @@ class FileReport(msgspec.Struct, frozen=True, kw_only=True):
     blocks: int
     sections: int
     verdict: str
+    reason: str | UnsetType = UNSET
+    sha256: str | None = None
+    profile_sha256: str = ""
+    settings: Decided | UnsetType = UNSET
     polar_sections: list[PolarSection] = []
     findings: list[Finding]
     not_evaluated: list[NotEvaluated]
@@ -358,6 +430,7 @@ class Summary(msgspec.Struct, frozen=True, kw_only=True):
     passed: int = msgspec.field(name="pass")
     unverified: int
     fail: int
+    unreadable: int
 
 
 class Report(msgspec.Struct, frozen=True, kw_only=True):
@@ -367,10 +440,14 @@ class Report(msgspec.Struct, frozen=True, kw_only=True):
     schema: number of the JSON contract.
     tool: what wrote the report.
     machine: of all files; null if they differ.
+    settings: what decided the verdicts and the exit code.
+    interrupted: why the run ended before its last file; absent where it did not.
     """
 
     schema: int
     tool: Producer
     machine: str | None
+    settings: RunSettings = RunSettings()
+    interrupted: Interrupted | UnsetType = UNSET
     files: Sequence[FileReport]
     summary: Summary

@@ -46,6 +46,7 @@ def by_command(*arguments: str) -> Any:
 # ---- the command and the function agree ----
 
 
+@pytest.mark.filterwarnings("ignore::polarcheck.errors.PolarcheckWarning")
 def test_check_gives_the_report_of_the_command(samples: None) -> None:
     assert json.loads(polarcheck.render(polarcheck.check("."), "json")) == by_command("check", ".", "--format", "json")
 
@@ -295,8 +296,11 @@ def test_a_wrong_argument_is_named_in_one_line(call: Any, text: str) -> None:
 
 
 def test_a_file_that_cannot_be_read(tmp_path: Path) -> None:
+    report = polarcheck.check([tmp_path / "none.nc", ROOT / "sample_programs" / "hexagon.nc"])
+    assert [file.verdict for file in report.files] == ["unreadable", "pass"]
+    assert report.files[0].reason == "No such file or directory"
     with pytest.raises(SourceError, match="No such file"):
-        polarcheck.check(tmp_path / "none.nc")
+        polarcheck.part(tmp_path / "none.nc")
 
 
 def test_a_file_may_be_called_as_standard_input_is(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

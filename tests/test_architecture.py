@@ -19,6 +19,7 @@ ORDER = (
     ("__main__",),
     ("commands",),
     ("server",),
+    ("certification",),
     ("api",),
     ("reports",),
     ("pictures",),

@@ -62,6 +62,10 @@ def silenced(**changes: Any) -> Silenced:
     return Silenced(**{**plain, "by": "allow", "reason": "proven on the lathe", **changes})
 
 
+def unread(reason: str, path: str = "gone.nc") -> FileReport:
+    return file(path=path, programs=[], blocks=0, sections=0, verdict="unreadable", reason=reason)
+
+
 def background(**changes: Any) -> Background:
     return Background(rules=load_all(), **changes)
 
@@ -114,8 +118,8 @@ def outcomes(root: ElementTree.Element) -> dict[tuple[str, str], str]:
 
 @pytest.mark.parametrize("form", CI_FORMATS)
 def test_nasty_text_is_no_fault_and_all_is_the_same_twice(form: str) -> None:
-    text = shown(form, nasty(), file(path="b.nc"), failures=[NASTY])
-    assert text == shown(form, nasty(), file(path="b.nc"), failures=[NASTY])
+    text = shown(form, nasty(), file(path="b.nc"), unread(NASTY, path="n.nc"))
+    assert text == shown(form, nasty(), file(path="b.nc"), unread(NASTY, path="n.nc"))
     assert text.encode().decode("utf-8") == text
     assert text.endswith("\n")
 
@@ -199,7 +203,7 @@ def test_a_folder_of_a_repository_is_not_its_root(monkeypatch: pytest.MonkeyPatc
 
 
 def test_sarif_fits_its_schema_and_the_schema_can_refuse() -> None:
-    run = sarif(nasty(), file(path="b.nc"), failures=[NASTY])
+    run = sarif(nasty(), file(path="b.nc"), unread(NASTY, path="n.nc"))
     assert [result["ruleId"] for result in run["results"]] == [visible(NASTY), *["rapid-in-polar"] * 2]
     log = json.loads(shown("sarif", nasty()))
     (result, *_) = log["runs"][0]["results"]
@@ -304,7 +308,7 @@ def test_many_files_are_written_as_few_are(form: str) -> None:
 
 def test_sarif_says_what_went_wrong_and_what_was_not_looked_at() -> None:
     gaps = [missing(), missing("overcut"), msgspec.structs.replace(missing("x", "no weight"), matters=False)]
-    (invocation,) = sarif(file(not_evaluated=gaps), failures=["gone.nc: No such file"])["invocations"]
+    (invocation,) = sarif(unread("No such file", path="gone.nc"), file(not_evaluated=gaps))["invocations"]
     assert not invocation["executionSuccessful"]
     assert [(one["level"], one["message"]["text"]) for one in invocation["toolExecutionNotifications"]] == [
         ("error", "gone.nc: No such file"),
@@ -432,7 +436,7 @@ def test_what_is_silenced_has_no_line_of_its_own_in_a_summary() -> None:
 
 def test_nothing_in_a_summary_means_anything_to_markdown() -> None:
     bad = "[a](http://localhost) ![i](x) <script>x</script> **b** `c` |d| ~~e~~ @name #1 www.example.com\n# f"
-    text = step_summary(report(file(finding(message=bad), path="*a*|b.nc")), background(failures=[bad]))
+    text = step_summary(report(file(finding(message=bad), path="*a*|b.nc"), unread(bad)), background())
     reader = markdown_it.MarkdownIt().enable("table")
     html = reader.render(text)
     assert not re.search(r"<(?!/?(?:h3|p|table|thead|tbody|tr|th|td)\b)", html), html
@@ -472,7 +476,7 @@ def test_gitlab_fingerprints_differ_and_stay() -> None:
 
 
 def test_junit_fits_its_schema_and_the_schema_can_refuse() -> None:
-    root = junit(nasty(), file(path="b.nc"), file(path="c.nc", sections=0), failures=[NASTY])
+    root = junit(nasty(), file(path="b.nc"), file(path="c.nc", sections=0), unread(NASTY, path="n.nc"))
     failure = next(root.iter("failure"))
     assert failure.attrib == {"type": "error", "message": visible(NASTY)}
     assert f"{without_commands(visible(NASTY))} [rapid-in-polar]" in str(failure.text)
@@ -560,7 +564,7 @@ def test_json_lines_say_what_json_says() -> None:
         }
     assert lines[-1] == {
         "type": "summary",
-        **{key: whole[key] for key in ("schema", "tool", "machine")},
+        **{key: whole[key] for key in ("schema", "tool", "machine", "settings")},
         **whole["summary"],
     }
     assert shown("jsonl").count("\n") == 1

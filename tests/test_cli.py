@@ -104,7 +104,9 @@ def test_the_least_severity_that_fails_can_be_chosen(severity: str, fail_on: str
     make(a__nc=RAPID)
     result = check("a.nc", *RAPID_ONLY, "--severity", f"rapid-in-polar={severity}", "--fail-on", fail_on)
     assert result.exit_code == code
-    assert re.search(rf"^{'fail' if code else 'pass'}  ", result.stdout, re.MULTILINE)
+    # The verdict is about the file, and does not change with what fails the check.
+    verdict = "fail" if severity in ("error", "warning") else "unverified|pass"
+    assert re.search(rf"^(?:{verdict})  ", result.stdout, re.MULTILINE)
 
 
 def test_what_is_not_evaluated_fails_only_where_that_is_asked_for() -> None:
@@ -134,7 +136,10 @@ def test_an_unreadable_file_does_not_stop_the_others() -> None:
     result = check("a.nc", "gone\x1b[2J.nc", "b.nc", *RAPID_ONLY, "--format", "json")
     assert result.exit_code == 2
     assert result.stderr == "polarcheck: gone\\x1b[2J.nc: No such file or directory\n"
-    assert [file["path"] for file in json.loads(result.stdout)["files"]] == ["a.nc", "b.nc"]
+    shown = json.loads(result.stdout)
+    assert [(file["path"], file["verdict"]) for file in shown["files"]][1] == ("gone\x1b[2J.nc", "unreadable")
+    assert shown["files"][1]["reason"] == "No such file or directory"
+    assert (shown["summary"]["files"], shown["summary"]["unreadable"]) == (3, 1)
 
 
 def test_bytes_that_are_not_of_the_encoding_asked_for_are_told() -> None:
@@ -151,7 +156,7 @@ def test_a_bug_is_no_finding(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(load_all(), "rapid-in-polar", broken)
     result = check("a.nc")
     assert result.exit_code == 3
-    assert result.stdout == ""
+    assert result.stdout.startswith("unreadable  a.nc: a fault of polarcheck: ZeroDivisionError: division by zero\n")
     assert result.stderr == (
         "polarcheck: internal error: ZeroDivisionError: division by zero, while checking a.nc; "
         "run with --debug for the traceback\n"
@@ -398,6 +403,7 @@ def test_folders_files_and_standard_input_are_checked_in_order_and_once() -> Non
         "pass": 2,
         "unverified": 0,
         "fail": 2,
+        "unreadable": 0,
     }
 
 
@@ -505,7 +511,7 @@ def test_each_file_has_its_machine_where_the_jobs_name_several() -> None:
     told = check(*machines, *RAPID_ONLY).stdout
     assert "pass  one/a.nc: no findings, 1 polar section, 6 blocks, for fanuc-16i\n" in told
     assert told.endswith("\n2 files checked for 2 machines: 2 pass; no findings\n")
-    # One that cannot be read is no file of the report.
+    # One that could not be read was judged for no machine.
     assert json.loads(check("one", "gone.nc", *RAPID_ONLY, "--format", "json").stdout)["machine"] == "fanuc-16i"
     asked = check(*machines, *RAPID_ONLY, "--machine", "mitsubishi-m700")
     assert asked.stdout.endswith("\n2 files checked for mitsubishi-m700: 2 pass; no findings\n")
@@ -812,7 +818,7 @@ def test_schemas_are_valid_and_say_what_they_are(name: str) -> None:
     shown = json.loads(call("schema", name).stdout, parse_constant=pytest.fail)
     jsonschema.Draft202012Validator.check_schema(shown)
     assert shown["$schema"] == "https://json-schema.org/draft/2020-12/schema"
-    assert shown["$id"] == f"urn:polarcheck:{name}:1"
+    assert shown["$id"] == f"urn:polarcheck:{name}:{2 if name == 'report' else 1}"
 
 
 def test_built_in_machines_fit_their_schema_and_wrong_ones_do_not() -> None:

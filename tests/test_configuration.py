@@ -260,6 +260,19 @@ def test_what_is_excluded_is_found_by_no_walk_and_checked_where_it_is_named() ->
     assert call("check", "x").stderr == "polarcheck: warning: x: all NC programs in this folder are excluded\n"
 
 
+@pytest.mark.parametrize(
+    ("text", "key"),
+    [
+        ("[[programs]]\nstrict = true\nfiles = []\n", "programs.1.files"),
+        ("[[part]]\nshape = 'circle'\nfiles = []\ndiameter = 20\n", "part.1.files"),
+    ],
+)
+def test_an_entry_for_no_file_at_all_is_told(text: str, key: str) -> None:
+    make("a.nc")
+    job(text)
+    assert refused("check", "a.nc") == f"polarcheck.toml:3: {key}: expected a list of texts, at least one, found []"
+
+
 @pytest.mark.parametrize("path", ["old/b.nc", "old", "old/"])
 def test_where_all_is_excluded_nothing_is_checked_and_that_is_said(path: str) -> None:
     make("old/b.nc")
@@ -320,7 +333,7 @@ def test_a_file_stands_over_the_one_that_it_extends() -> None:
         ),
         (
             {"polarcheck.toml": "\nextend = 'b.toml'", "b.toml": "extend = 'polarcheck.toml'"},
-            "b.toml:1: extend: polarcheck.toml extends itself",
+            "b.toml:1: extend: polarcheck.toml extends itself, by way of b.toml",
         ),
         (
             {"polarcheck.toml": "strict = true\nextend = 'gone.toml'"},
@@ -341,6 +354,72 @@ def test_what_cannot_be_extended_is_told(files: dict[str, str], told: str) -> No
     for name, text in files.items():
         job(f"{text}\n", name)
     assert refused("check", "a.nc") == told
+
+
+@pytest.mark.parametrize("written", ["..", "../", "../..", "../polarcheck.toml"])
+def test_a_folder_can_be_extended_which_means_the_nearest_file_in_it_or_above(written: str) -> None:
+    make("shop/lathe7/jobs/a.nc")
+    job("strict = true\nexclude = ['old']\n", "shop/polarcheck.toml")
+    where = "shop/lathe7" if written == "../polarcheck.toml" else "shop/lathe7/jobs"
+    job(f"extend = '{written}'\nmachine = 'fanuc-30i'\n", f"{where}/polarcheck.toml")
+    values = shown("shop/lathe7/jobs/a.nc")
+    assert values["strict"] == (True, "file", str(Path("shop", "polarcheck.toml:1")))
+    assert values["exclude"] == (["old"], "file", str(Path("shop", "polarcheck.toml:2")))
+    assert values["machine"] == ("fanuc-30i", "file", str(Path(where, "polarcheck.toml:2")))
+
+
+def test_a_folder_without_a_job_file_cannot_be_extended() -> None:
+    make("sub/a.nc")
+    job("extend = '..'\n", "sub/polarcheck.toml")
+    told = "extend: '..': there is no polarcheck.toml in this folder or above it"
+    assert refused("check", "sub/a.nc") == f"{Path('sub', 'polarcheck.toml')}:1: {told}"
+
+
+# ---- a file below another ----
+
+
+@pytest.mark.parametrize(
+    ("outer", "inner", "left"),
+    [
+        ("machine = 'fanuc-30i'\nstrict = true\nexclude = ['old']\n", "units = 'mm'\n", "machine, strict, exclude"),
+        ("strict = true\nmachine = 'fanuc-30i'\n", "machine = 'fanuc'\n", "strict"),
+        ("[tools.8]\nradius = 4\n[severities]\npolar = 'note'\n", "strict = true\n", "tools, severities"),
+        ("select = ['polar']\n", "[[programs]]\nfiles = ['a*']\nselect = ['feed']\n", "select"),
+        ("strict = true\n", "extend = '..'\n", ""),
+        ("strict = true\n", "root = true\n", ""),
+        ("strict = true\n", "strict = false\n", ""),
+        ("units = 'mm'\n[[programs]]\nfiles = ['sub/**']\nstrict = true\n", "", ""),
+        ("strict = maybe\n", "machine = 'fanuc'\n", ""),
+    ],
+)
+def test_what_a_nearer_file_leaves_behind_of_the_one_above_is_said_once(outer: str, inner: str, left: str) -> None:
+    make("sub/a.nc", "sub/b.nc", "sub/deep/c.nc", text="O1\nM30\n")
+    job(outer)
+    job(inner, "sub/polarcheck.toml")
+    result = call("check", "sub")
+    document = json.loads(call("config", "show", "sub/a.nc", "--format", "json").stdout)
+    text = call("config", "show", "sub/deep/c.nc").stdout
+    if not left:
+        assert (result.stderr, document["not_taken_over"]) == ("", None)
+        assert "not taken over" not in text
+        return
+    names = left.split(", ")
+    assert result.stderr.count("\n") == 1
+    assert all(f" {name}" in result.stderr for name in names)
+    assert 'polarcheck.toml do not apply here; extend = ".." takes' in result.stderr.replace("does", "do")
+    assert document["not_taken_over"] == {"file": "polarcheck.toml", "keys": names}
+    assert f'# not taken over from polarcheck.toml: {left}; extend = ".." would\n' in text
+
+
+def test_several_files_that_leave_the_same_behind_share_a_line() -> None:
+    make(*(f"l{number}/a.nc" for number in range(5)), text="O1\nM30\n")
+    job("strict = true\n")
+    for number in range(5):
+        job("machine = 'fanuc'\n", f"l{number}/polarcheck.toml")
+    stderr = call("check", ".").stderr
+    assert stderr.count("\n") == 1
+    assert " and 2 more: strict of polarcheck.toml does not apply here" in stderr
+    assert call("check", "l0/a.nc", "--config", "l0/polarcheck.toml").stderr == ""
 
 
 def test_paths_with_backslashes_are_found_wherever_there_are_slashes() -> None:

@@ -207,23 +207,23 @@ def test_words_at_fault_by_mask_and_by_name() -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "expected", "values"),
+    ("text", "expected", "values", "data"),
     [
-        ("F {feedrate.feed:feed}", ["F 4 inch/min", "F 100 mm/min"], [{"feed": 101.6}, {"feed": 100.0}]),
-        ("{path.x:diameter}", ["1 inch", "40 mm"], [{"x": 12.7}, {"x": 20.0}]),
-        ("{X} {F}", ["X1. F4", "X40. F100"], [{"X": "X1.", "F": "F4"}, {"X": "X40.", "F": "F100"}]),
-        ("{machine.title}", ["FANUC lathe control"] * 2, [{}, {}]),
-        ("{depth:length}", ["0.0394 inch", "1 mm"], [{"depth": 1.0}] * 2),
-        ("{since}", ["4", "12"], [{"since": 4}, {"since": 12}]),
+        ("F {feedrate.feed:feed}", ["F 4 inch/min", "F 100 mm/min"], {"feed": "feedrate.feed"}, [101.6, 100.0]),
+        ("{path.x:diameter}", ["1 inch", "40 mm"], {"x": "path.x"}, [12.7, 20.0]),
+        ("{X} {F}", ["X1. F4", "X40. F100"], {"word": "X"}, ["X1.", "X40."]),
+        ("{machine.title}", ["FANUC lathe control"] * 2, {"limit": "machine.macro.loop_numbers"}, [3, 3]),
+        ("{depth:length}", ["0.0394 inch", "1 mm"], {"depth": "depth"}, [1.0, 1.0]),
+        ("{since}", ["4", "12"], {"other_line": "since"}, [4, 12]),
     ],
 )
-def test_names_in_a_message(text: str, expected: list[str], values: list[dict[str, Any]]) -> None:
+def test_names_in_a_message(text: str, expected: list[str], values: dict[str, str], data: list[Any]) -> None:
     def first_cut(trace: Any) -> Any:
         return Hits(trace.mode.first_in_section(trace.path.cuts), values={"depth": 1.0})
 
-    found = findings(tables_of(PROGRAM), first_cut, message=text)
+    found = findings(tables_of(PROGRAM), first_cut, message=text, values=values)
     assert [one.message for one in found] == expected
-    assert [one.values for one in found] == values
+    assert [one.values for one in found] == [{next(iter(values)): value} for value in data]
 
 
 def test_a_name_that_stands_for_nothing_is_a_fault_of_the_rule() -> None:

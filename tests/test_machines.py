@@ -227,6 +227,9 @@ def test_tables_of_another_control_can_be_left_behind() -> None:
     [
         ("inherits = 'fanuk'", "own.toml: inherits: unknown machine 'fanuk'; did you mean fanuc?"),
         ("inherits = 'own.toml'", "own.toml: inherits from itself"),
+        ("", 'own.toml: the file is empty; write inherits = "fanuc" or another machine'),
+        ("# of the lathe by the door\n", "own.toml: the file is empty; write inherits"),
+        ("title = 'lathe 7'", 'own.toml: control is missing; inherits = "fanuc" or another machine would give it'),
         ("inherits = 3", "own.toml: inherits: expected the name of a machine"),
         ("inherits = 'gone.toml'", "own.toml: inherits: machine gone.toml: no such file"),
         ("title = 'x'", "own.toml: control is missing"),
@@ -343,6 +346,23 @@ def test_values_that_make_no_sense_are_refused(values: str, said: str) -> None:
 )
 def test_values_that_make_sense_are_taken(values: str) -> None:
     load(f"inherits = 'fanuc'\n{values}\n")
+
+
+@pytest.mark.parametrize(
+    ("base", "said"),
+    [
+        ("", 'base.toml: the file is empty; write inherits = "fanuc" or another machine; shop.toml inherits from it'),
+        (
+            "title = 'x'\n",
+            'base.toml: limits.c_feed_harmless is missing; inherits = "fanuc" or another machine would give it',
+        ),
+        ("inherits = 'own.toml'\n", "own.toml: inherits from itself, by way of shop.toml, base.toml"),
+    ],
+)
+def test_a_fault_of_a_file_that_others_inherit_is_told_of_that_file(base: str, said: str) -> None:
+    Path("base.toml").write_text(base, "utf-8")
+    Path("shop.toml").write_text("inherits = 'base.toml'\n[limits]\nc_feed = 3600\n", "utf-8")
+    assert complaint("inherits = 'shop.toml'\n") == said
 
 
 def test_a_profile_can_say_that_it_does_not_know() -> None:

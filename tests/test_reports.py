@@ -349,10 +349,10 @@ def test_short_has_nothing_to_add_where_all_pass_and_nothing_to_run_for_standard
 
 def test_json_is_the_contract() -> None:
     shown = json.loads(render("json", report(file(finding(), not_evaluated=[missing()])), Background()))
-    assert list(shown) == ["schema", "tool", "machine", "files", "summary"]
+    assert list(shown) == ["schema", "tool", "machine", "settings", "files", "summary"]
     assert list(shown["tool"]) == ["name", "version"]
     assert list(shown["summary"]) == [
-        *("files", "errors", "warnings", "notes", "silenced", "pass", "unverified", "fail")
+        *("files", "errors", "warnings", "notes", "silenced", "pass", "unverified", "fail", "unreadable")
     ]
     (checked,) = shown["files"]
     keys = [
@@ -362,6 +362,8 @@ def test_json_is_the_contract() -> None:
         "blocks",
         "sections",
         "verdict",
+        "sha256",
+        "profile_sha256",
         "polar_sections",
         "findings",
         "not_evaluated",
@@ -387,6 +389,7 @@ def test_verdicts_are_counted() -> None:
         "pass": 1,
         "unverified": 1,
         "fail": 2,
+        "unreadable": 0,
     }
 
 
@@ -406,10 +409,16 @@ def test_json_fits_its_schema_and_the_schema_can_refuse() -> None:
     fix = Fix(title="write G1", safe=True, edits=[Edit(line=1, column=1, end_line=1, end_column=3, text="G1")])
     shown = json.loads(
         render(
-            "json", report(file(finding(fix=fix, values={"radius": math.nan}), not_evaluated=[missing()])), Background()
+            "json",
+            report(file(finding(fix=fix, values={"radius": 9.525, "offset": "MILL_8/1"}), not_evaluated=[missing()])),
+            Background(),
         )
     )
     check = jsonschema.Draft202012Validator(schema.schema("report"))
     check.validate(shown)
-    for change in ({"schema": 2}, {"files": [{**shown["files"][0], "verdict": "good"}]}, {"machine": 3}):
+    for change in ({"schema": 1}, {"files": [{**shown["files"][0], "verdict": "good"}]}, {"machine": 3}):
         assert not check.is_valid({**shown, **change})
+    (checked,) = shown["files"]
+    for values in ({"radius": "9.525"}, {"radius": None}, {"offset": 1.5}, {"other_line": "8"}, {"rpm": 3}):
+        changed = {**checked, "findings": [{**checked["findings"][0], "values": values}]}
+        assert not check.is_valid({**shown, "files": [changed]}), values

@@ -32,22 +32,26 @@ def check(
     """
     Check programs: files, and folders with all programs in them. The report holds one entry for each program.
 
-    A finding is never an exception; a file that cannot be read is one, a SourceError. A folder without programs and a
-    pattern that matches none are told by a PolarcheckWarning.
+    Neither a finding nor a file that cannot be read is an exception: such a file has the verdict unreadable. A folder
+    without programs, a pattern that matches none and a job file that leaves another behind are told by a
+    PolarcheckWarning.
 
     paths: one path or several; a program that several of them lead to is checked once.
     extensions: endings of the programs in folders, in place of .nc, .tap and others.
     processes: how many check; 1 for this one alone. More need a main module that can be imported (multiprocessing).
     max_size: a larger file is not read [bytes].
 
-    Raises UsageError, JobError or MachineError for a wrong setting before any file is checked.
+    Raises UsageError, JobError or MachineError for a wrong setting and SourceError for a folder that cannot be read,
+    before any file is checked.
     """
+    if isinstance(processes, bool) or not isinstance(processes, int) or processes < 1:
+        raise UsageError(f"{_FUNCTION}: processes: expected a whole number from 1, found {processes!r}")
     settings_of = OfPrograms(options(_FUNCTION, CheckKeywords, keywords))
     named, failures, doubts = paths_of(_FUNCTION, paths), list[str](), list[str]()
     tasks = batch.plan(
         named, settings_of, [*extensions], failures.append, doubts.append, excluded_in=settings_of.excluded_in
     )
-    for doubt in (*doubts, *settings_of.unmatched(named)):
+    for doubt in (*doubts, *settings_of.unmatched(named), *settings_of.left_behind()):
         warnings.warn(doubt, PolarcheckWarning, stacklevel=2)
     if failures:
         raise SourceError(failures[0])
@@ -57,8 +61,6 @@ def check(
 
 
 def _outcomes(tasks: Sequence[Task], processes: int, most: int) -> Generator[Outcome, None, None]:
-    if isinstance(processes, bool) or not isinstance(processes, int) or processes < 1:
-        raise UsageError(f"{_FUNCTION}: processes: expected a whole number from 1, found {processes!r}")
     if processes == 1 or len(tasks) < 2:
         return batch.one_by_one(tasks, most)
     from polarcheck.batch import executors
@@ -69,8 +71,7 @@ def _outcomes(tasks: Sequence[Task], processes: int, most: int) -> Generator[Out
 def _report(outcome: Outcome) -> FileReport:
     if outcome.bug is not None:
         raise outcome.bug
-    if outcome.report is None:
-        raise SourceError(outcome.failure)
+    assert outcome.report is not None  # a file that cannot be read has one, too
     return outcome.report
 
 
@@ -82,7 +83,9 @@ def check_text(text: str | bytes, *, name: str = NAMELESS, **keywords: Unpack[Ch
     name: the path that it is reported as, and by which entries of a job file apply to it. No job file is read unless
         `config` names one, or use_config=True asks for the one nearest to this path.
 
-    Raises UsageError, JobError or MachineError for a wrong setting, TooHardError for a text that takes too long.
+    A text whose check takes too long has the verdict unreadable.
+
+    Raises UsageError, JobError or MachineError for a wrong setting.
     """
     path, data, settings = Call("polarcheck.check_text()", CheckKeywords, keywords).of_text(text, name)
     return _report(batch.outcome(Task(path, settings), data=data))

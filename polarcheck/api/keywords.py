@@ -219,8 +219,10 @@ def _plain(value: Any) -> Any:
 
 
 def _is(value: Any, default: Any) -> bool:
-    """Return True for the default of a field; NaN is unknown."""
-    return value is None or value is default or (isinstance(value, float) and (math.isnan(value) or value == default))
+    """Return True for the default of a field; NaN is unknown, and empty lists and tables are defaults."""
+    if isinstance(value, float):
+        return math.isnan(value) or value == default
+    return value is None or value is default or value in ([], {})
 
 
 def _key(key: Any) -> Any:

@@ -160,7 +160,7 @@ class Baseline:
         ]
         return min(likely, key=lambda file: (_name(file) != _name(path), -common[file], file), default="")
 
-    def without_known(self, report: FileReport, evaluated: Collection[str], fail_on: str = "warning") -> FileReport:
+    def without_known(self, report: FileReport, evaluated: Collection[str]) -> FileReport:
         """
         The report with the known findings suppressed, and the verdict of the others.
 
@@ -198,7 +198,7 @@ class Baseline:
             findings=reported,
             not_evaluated=not_evaluated,
             silenced=in_order([*report.silenced, *suppressed]),
-            verdict=verdict(reported, not_evaluated, fail_on),
+            verdict=verdict(reported, not_evaluated),
         )
 
     def updated(self, reports: Iterable[tuple[FileReport, Collection[str]]], reason: str) -> Updated:

@@ -30,7 +30,7 @@ import msgspec
 
 from polarcheck import __version__
 from polarcheck.batch.executors import Sent, packed
-from polarcheck.batch.tasks import Outcome, Task, forget, outcome
+from polarcheck.batch.tasks import Outcome, Task, forget, outcome, unreadable
 from polarcheck.checking.settings import Settings
 from polarcheck.errors import ClusterError, SourceError
 from polarcheck.execution import library
@@ -216,7 +216,7 @@ class Cluster:
             try:
                 data = files.read_program(task.path, self._most)
             except SourceError as error:
-                self._unreadable[number] = Outcome(failure=str(error))
+                self._unreadable[number] = unreadable(task, str(error))
                 continue
             if id(task.settings) not in self._packed:
                 content = pack(task.settings)

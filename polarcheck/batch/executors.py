@@ -26,7 +26,7 @@ from typing import Any, Protocol
 
 import msgspec
 
-from polarcheck.batch.tasks import Outcome, Task, forget, outcome
+from polarcheck.batch.tasks import Outcome, Task, forget, outcome, unreadable
 from polarcheck.checking import tables
 from polarcheck.errors import ClusterError
 from polarcheck.memory import keep_within_memory
@@ -248,7 +248,8 @@ class _Schedule:
                 self._outcomes[number] = result or self._lost(number)
 
     def _lost(self, number: int) -> Outcome:
-        return Outcome(failure=f"{self._tasks[number].title}: could not be checked: its process ended")
+        task = self._tasks[number]
+        return unreadable(task, f"{task.title}: could not be checked: its process ended")
 
 
 def _is_read_here(path: str) -> bool:

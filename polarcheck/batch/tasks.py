@@ -6,6 +6,7 @@ import gc
 import os
 from collections import Counter
 from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
+from typing import Any
 
 import msgspec
 
@@ -15,13 +16,11 @@ from polarcheck.checking import check
 from polarcheck.checking.settings import Settings
 from polarcheck.checking.tables import Tables
 from polarcheck.errors import ClusterError, SourceError, TooHardError
-from polarcheck.finding import FileReport, Producer, Report, Summary
+from polarcheck.finding import SCHEMA, UNREADABLE, FileReport, Interrupted, Producer, Report, RunSettings, Summary
 from polarcheck.reading import files
 from polarcheck.reading.source import Source
 from polarcheck.reading.words import Text
 from polarcheck.time_limit import seconds_for, time_limit
-
-SCHEMA = 1
 
 Tell = Callable[[str], None]
 
@@ -50,11 +49,11 @@ class Task(msgspec.Struct, frozen=True):
 
 class Outcome(msgspec.Struct, frozen=True):
     """
-    What came of one file: its report with the lines that findings stand in, or why there is none.
+    What came of one file: its report with the lines that findings stand in.
 
     called: keys of the offsets that it calls, where it has a job with tools. failed: whether it fails, by its own
-    settings. failure: in one line, why it could not be checked. bug: what polarcheck itself did wrong.
-    short_of_memory: where that is why; with more it may be checked.
+    settings. failure: in one line, why it could not be checked; its report says so, too. bug: what polarcheck itself
+    did wrong. short_of_memory: where that is why; with more it may be checked.
     """
 
     report: FileReport | None = None
@@ -73,7 +72,7 @@ class Checked(msgspec.Struct, frozen=True):
     Many reports are no list in memory, but can be gone through as often as one likes. called: keys of the offsets that
     any of the programs calls, where it has a job with tools. stopped: by what the check was interrupted; the files that
     were finished before that are here. failed: whether any of them fails, by the severity that its own settings name
-    and, where these are strict, by being unverified.
+    and, where these are strict, by being unverified. broken_off: in one line, why the workers could not go on.
     """
 
     files: Sequence[FileReport]
@@ -81,6 +80,7 @@ class Checked(msgspec.Struct, frozen=True):
     called: set[str]
     stopped: KeyboardInterrupt | None = None
     failed: bool = False
+    broken_off: str = ""
 
 
 def plan(
@@ -167,7 +167,7 @@ def gather(
     tell is told of failures in one line, bug of what polarcheck itself did wrong. show gets each report, with the lines
     of its findings, as soon as it is its turn.
     """
-    spool, called, failed, stopped = Spool(), set[str](), False, None
+    spool, called, failed, stopped, broken_off = Spool(), set[str](), False, None, ""
     try:
         for found in outcomes:
             if found.failure:
@@ -183,26 +183,59 @@ def gather(
     except KeyboardInterrupt as stop:
         stopped = stop
     except ClusterError as error:
-        tell(str(error))
-    return Checked(spool.files, spool.lines, called, stopped, failed)
+        broken_off = str(error)
+        tell(broken_off)
+    return Checked(spool.files, spool.lines, called, stopped, failed, broken_off)
 
 
 def outcome(task: Task, most: int = files.LARGEST, data: bytes | None = None) -> Outcome:
     """Return the outcome of the check of a file, or of its bytes if they were read before; raises nothing."""
     try:
-        found, source, called = _check(task, files.read_program(task.path, most) if data is None else data)
+        data = files.read_program(task.path, most) if data is None else data
+        found, source, called = _check(task, data)
     except (SourceError, TooHardError) as error:
-        return Outcome(failure=str(error))
+        return unreadable(task, str(error), data)
     except MemoryError:
-        told = f"{task.title}: there is not enough memory to check it"
-        return Outcome(failure=told, short_of_memory=True)
+        failed = unreadable(task, f"{task.title}: there is not enough memory to check it", data)
+        return msgspec.structs.replace(failed, short_of_memory=True)
     except Exception as error:
         error.add_note(f"while checking {task.title}")
-        return Outcome(bug=error)
-    verdict = check.verdict(found.findings, found.not_evaluated, task.settings.fail_on)
-    report = msgspec.structs.replace(found, machine=task.settings.name, verdict=verdict)
+        failed = unreadable(task, f"a fault of polarcheck: {type(error).__name__}: {error}", data)
+        return msgspec.structs.replace(failed, failure="", bug=error)
+    report = msgspec.structs.replace(found, **_of_task(task, data))
     lines = _lines(source, found) if found.findings else {}
     return Outcome(report, lines, frozenset(called), fails(report, task.settings))
+
+
+def unreadable(task: Task, failure: str, data: bytes | None = None) -> Outcome:
+    """
+    Return the outcome of a file that could not be read or checked.
+
+    failure: in one line, why; data: its bytes, where they could be read.
+    """
+    report = FileReport(
+        path=task.title,
+        programs=[],
+        blocks=0,
+        sections=0,
+        verdict=UNREADABLE,
+        reason=failure.removeprefix(f"{task.title}: "),
+        findings=[],
+        not_evaluated=[],
+        **_of_task(task, data),
+    )
+    return Outcome(report, failure=failure)
+
+
+def _of_task(task: Task, data: bytes | None) -> dict[str, Any]:
+    """Return the values of a report that hang on the bytes of a file and its settings, by their names."""
+    import hashlib  # late: no other command needs it
+
+    return {
+        "machine": task.settings.name,
+        "profile_sha256": task.settings.profile_sha256,
+        "sha256": None if data is None else hashlib.sha256(data).hexdigest(),
+    }
 
 
 def fails(report: FileReport, settings: Settings) -> bool:
@@ -236,13 +269,30 @@ def _lines(text: Source, found: FileReport) -> dict[int, str]:
     return {line: text.line_text(line) for line in sorted(numbers) if line <= len(text.line_starts)}
 
 
-def report(reports: Sequence[FileReport], machine: str) -> Report:
-    """The report over all files; machine: what a report without files is for."""
+def interrupted(reason: str, reports: Sequence[FileReport], tasks: Sequence[Task]) -> Interrupted:
+    """Return what a report says of a run that ended before its last file."""
+    reported = {file.path for file in reports}
+    next_path = next((task.title for task in tasks if task.title not in reported), None)
+    return Interrupted(reason=reason, checked=len(reports), planned=len(tasks), next_path=next_path)
+
+
+def report(
+    reports: Sequence[FileReport],
+    machine: str,
+    settings: RunSettings | None = None,
+    interrupted: Interrupted | None = None,
+) -> Report:
+    """
+    Return the report over all files.
+
+    machine: what a report without files is for. settings: what decided. interrupted: why files are missing.
+    """
     severities, verdicts, machines, silenced = Counter[str](), Counter[str](), set[str](), 0
     for file in reports:  # once: it may not lie in memory
         severities.update(finding.severity for finding in file.findings)
         verdicts[file.verdict] += 1
-        machines.add(file.machine)
+        if file.verdict != UNREADABLE:
+            machines.add(file.machine)
         silenced += len(file.silenced)
     machines = machines or {machine}
     summary = Summary(
@@ -254,11 +304,14 @@ def report(reports: Sequence[FileReport], machine: str) -> Report:
         passed=verdicts["pass"],
         unverified=verdicts["unverified"],
         fail=verdicts["fail"],
+        unreadable=verdicts[UNREADABLE],
     )
     return Report(
         schema=SCHEMA,
         tool=Producer("polarcheck", __version__),
         machine=machines.pop() if len(machines) == 1 else None,
+        settings=settings or RunSettings(version=__version__),
+        interrupted=interrupted or msgspec.UNSET,
         files=reports,
         summary=summary,
     )

@@ -22,7 +22,18 @@ from polarcheck.checking.rule import Hits, Rule, load_all
 from polarcheck.checking.tables import Tables
 from polarcheck.execution.run import is_code
 from polarcheck.execution.runs import runs
-from polarcheck.finding import ERROR, SEVERITIES, FileReport, Finding, NotEvaluated, PolarSection, Undecided
+from polarcheck.finding import (
+    ERROR,
+    FAIL,
+    PASS,
+    SEVERITIES,
+    UNVERIFIED,
+    FileReport,
+    Finding,
+    NotEvaluated,
+    PolarSection,
+    Undecided,
+)
 from polarcheck.machines.job import Job
 from polarcheck.machines.machine import Machine
 from polarcheck.reading import source
@@ -317,19 +328,23 @@ def _all(findings: Sequence[Finding]) -> Iterator[Finding]:
         yield from finding.follows
 
 
-def verdict(findings: Sequence[Finding], not_evaluated: Sequence[NotEvaluated], fail_on: str = "warning") -> str:
+#: A finding of this severity or worse fails its file; what fails a run is `fail_on`, which does not change verdicts.
+FAILING = "warning"
+
+
+def verdict(findings: Sequence[Finding], not_evaluated: Sequence[NotEvaluated]) -> str:
     """
     Return pass, fail or unverified.
 
-    A file is unverified if something that matters was not evaluated, or if a finding may be intended. fail_on does not
-    change that: a program that was not executed to its end is never verified.
+    A file fails with a warning or an error, whatever the exit code will be. It is unverified if something that matters
+    was not evaluated, or if a finding may be intended.
     """
-    if any(reaches(finding, fail_on) and not isinstance(finding, Undecided) for finding in findings):
-        return "fail"
+    if any(reaches(finding, FAILING) and not isinstance(finding, Undecided) for finding in findings):
+        return FAIL
     is_open = any(isinstance(finding, Undecided) for finding in findings) or any(
         entry.matters for entry in not_evaluated
     )
-    return "unverified" if is_open else "pass"
+    return UNVERIFIED if is_open else PASS
 
 
 def reaches(finding: Finding, fail_on: str) -> bool:

@@ -6,8 +6,10 @@ The form of a name in braces says what it is:
 - `{X}`: the last word of that address in the row, as it is written;
 - any other: a value that the rule hands over (Hits.values), else a phrase, a function of that name in
   phrases/<group of the rule>.py or phrases/common.py.
-A phrase takes by their names the tables that it needs, and `place`, `row`, `index` (see Place), `at`, the executed
-words at fault, or `count`, how many elements the finding stands for.
+The values of the finding stand beside it: a rule names them, and where each comes from, in the same forms. What is a
+number there and no column is a measure, a function in measures/<group of the rule>.py.
+A phrase or a measure takes by their names the tables that it needs, and `place`, `row`, `index` (see Place), `at`, the
+executed words at fault, or `count`, how many elements the finding stands for.
 
 The format behind the colon is one of quantity.Quantity; `{feedrate.feed:feed/limit}` has as many digits as it takes to
 tell the feed from the limit, another name of the message.
@@ -24,27 +26,40 @@ import numpy as np
 
 from polarcheck.checking.phrases.common import written
 from polarcheck.checking.places import Place
-from polarcheck.checking.quantity import Quantity, in_row
+from polarcheck.checking.quantity import Quantity, in_row, rounded
 from polarcheck.checking.rule import Hits, Rule
 from polarcheck.checking.tables import Tables, parameters
+from polarcheck.checking.vocabulary import Kind, kinds
 from polarcheck.errors import RuleError
 
-_PHRASES = "polarcheck.checking.phrases"
-#: Tables of single values, which are told as they are and are no data of a finding.
+_PHRASES, _MEASURES = "polarcheck.checking.phrases", "polarcheck.checking.measures"
+#: Tables of single values, which messages show as they are.
 _SETTINGS = ("machine", "job")
 
 
 def fill(
     rule: Rule, hits: Hits, tables: Tables, place: Place, at: list[int], count: int = 1
-) -> tuple[str, dict[str, Any]]:
+) -> tuple[str, dict[str, int | float | str]]:
     """
-    The message at one place, and the values in it as data (mm, deg, min), by the last part of their names.
+    The message at one place, and the values of the finding by name, those that are known (checking/vocabulary.py).
 
     at: the executed words at fault. count: how many elements the finding stands for. Raises RuleError for a name that
     stands for nothing.
     """
     template = _Template(rule, hits, tables, place, at, count)
-    return template.vformat(rule.message, (), {}), template.used
+    found = {
+        name: as_data(template.source(rule.values[name]), kind) for name, kind in kinds(rule.values, rule.name).items()
+    }
+    return template.vformat(rule.message, (), {}), {name: value for name, value in found.items() if value is not None}
+
+
+def as_data(value: Any, kind: Kind) -> int | float | str | None:
+    """A value as a report holds it, in its unit; None where it is not known or does not apply."""
+    if isinstance(value, str) or value is None:
+        return value or None
+    if not np.isfinite(value):
+        return None
+    return int(value) if kind.is_whole else rounded(value)
 
 
 class _Template(string.Formatter):
@@ -52,15 +67,19 @@ class _Template(string.Formatter):
         self.rule, self.hits, self.tables = rule, hits, tables
         self.place = place
         self.given: dict[str, Any] = {"place": place, "row": place.row, "index": place.index, "at": at, "count": count}
-        self.used: dict[str, Any] = {}
+
+    def source(self, path: str) -> Any:
+        """The value that a path stands for: a name of a message, or a measure, and an attribute of it."""
+        name, _, attribute = path.partition(".")
+        measured = measure(name, self.rule.group)
+        if measured is None:
+            return self._value(path)
+        value = called(measured, self.tables, self.given)
+        return getattr(value, attribute) if attribute else value
 
     def get_field(self, field_name: str, args: Any, kwargs: Any) -> tuple[Any, str]:
-        table = field_name.partition(".")[0]
         value = self._value(field_name)
-        if table not in _SETTINGS:
-            value = self._shown(value)
-            self.used[field_name.rpartition(".")[2]] = value.data if isinstance(value, Quantity) else value
-        return value, field_name
+        return value if field_name.partition(".")[0] in _SETTINGS else self._shown(value), field_name
 
     def format_field(self, value: Any, format_spec: str) -> str:
         form, is_compared, other = format_spec.partition("/")
@@ -103,12 +122,23 @@ def phrase(name: str, group: str) -> Callable[..., Any]:
 
     Raises RuleError where there is none.
     """
-    for module in (group, "common"):
-        try:
-            found = getattr(importlib.import_module(f"{_PHRASES}.{module}"), name, None)
-        except ModuleNotFoundError:
-            continue
-        if found is not None:
-            function: Callable[..., Any] = found
-            return function
-    raise RuleError(f"{name} in a message of the group {group}: no value is handed over and there is no such phrase")
+    function = _function(f"{_PHRASES}.{group}", name) or _function(f"{_PHRASES}.common", name)
+    if function is None:
+        raise RuleError(
+            f"{name} in a message of the group {group}: no value is handed over and there is no such phrase"
+        )
+    return function
+
+
+def measure(name: str, group: str) -> Callable[..., Any] | None:
+    """The measure of this name for the rules of a group; None where there is none."""
+    return _function(f"{_MEASURES}.{group}", name)
+
+
+def _function(module: str, name: str) -> Callable[..., Any] | None:
+    """A function of a module; None where the module or the function is missing."""
+    try:
+        function: Callable[..., Any] | None = getattr(importlib.import_module(module), name, None)
+    except ModuleNotFoundError:
+        return None
+    return function

@@ -63,6 +63,11 @@ class Quantity:
         texts = ((self.shown(form, more), other.shown(form, more)) for more in range(_MOST_DIGITS))
         return next((text for text, of_other in texts if text != of_other), self.shown(form))
 
+    def highest_feed(self, form: str) -> float:
+        """The feed that the forms `highest` and `below` show [mm/min]."""
+        feed = self.as_feed
+        return float(_rounded_down(feed.length(self.value), form == "below")) * (MM_PER_INCH if feed.inch else 1)
+
     @property
     def as_feed(self) -> Quantity:
         """The same in the unit that F counts."""
@@ -77,24 +82,10 @@ class Quantity:
         """mm or inch."""
         return "inch" if self.inch else "mm"
 
-    @property
-    def data(self) -> Any:
-        """The value as JSON can hold it, inside units (mm, deg, min)."""
-        value = self.value
-        if isinstance(value, complex):
-            return [_finite(value.real), _finite(value.imag)]
-        if isinstance(value, float):
-            return _finite(value)
-        return value
-
 
 def rounded(value: float) -> float | None:
     """A number of a contract as JSON can hold it, without the dust of the last bits; None where it is not known."""
     return round(float(value), _CONTRACT_DIGITS) + 0.0 if np.isfinite(value) else None
-
-
-def _finite(value: float) -> float | None:
-    return round(value, 9) if np.isfinite(value) else None
 
 
 def _short(value: float, digits: int) -> str:

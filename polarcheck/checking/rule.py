@@ -184,6 +184,7 @@ class Rule(Documented, frozen=True):
     doubts: the quantities that a finding makes doubtful, each with its span. Findings that rest on them are listed
     under this one.
     follows: by span, the rules that report the same fault first. This finding is then listed under theirs.
+    values: the values of a finding, by the names of checking/vocabulary.py, and where each comes from, as in a message.
     worst: the column whose highest value selects the hit to report, where one finding covers several.
     is_advice: the rule is off unless the machine or the user names a severity for it.
     parameters: the names of the tables that the function compares.
@@ -200,6 +201,7 @@ class Rule(Documented, frozen=True):
     subject: str
     doubts: tuple[Doubt, ...]
     follows: Mapping[str, tuple[str, ...]]
+    values: Mapping[str, str]
     worst: str
     is_advice: bool
     parameters: tuple[str, ...]
@@ -259,6 +261,7 @@ def rule(
     subject: str | None = None,
     doubts: tuple[Doubt, ...] = (),
     follows: Mapping[str, tuple[str, ...]] = MappingProxyType({}),
+    values: Mapping[str, str] = MappingProxyType({}),
     worst: str = "",
     is_advice: bool = False,
 ) -> Callable[[Callable[..., Any]], Rule]:
@@ -292,6 +295,7 @@ def rule(
             judged,
             doubts,
             follows,
+            values,
             worst,
             is_advice,
             parameters,

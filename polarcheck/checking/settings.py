@@ -9,7 +9,7 @@ import msgspec
 
 from polarcheck.checking.rule import Rule
 from polarcheck.checking.tables import Tables
-from polarcheck.finding import FileReport
+from polarcheck.finding import Decided, FileReport
 from polarcheck.machines.job import Job
 from polarcheck.machines.machine import Machine
 
@@ -30,6 +30,8 @@ class Settings(msgspec.Struct, frozen=True):
     strict: an unverified file fails, too.
     encoding: of the program; None to detect it.
     inline: allow comments of the program are respected.
+    decided: what of this the user has written, for reports.
+    profile_sha256: of the machine.
     extras: module-level functions, since other processes import them by name; called in this order.
     """
 
@@ -43,4 +45,6 @@ class Settings(msgspec.Struct, frozen=True):
     strict: bool = False
     encoding: str | None = None
     inline: bool = True
+    decided: Decided = Decided()
+    profile_sha256: str = ""
     extras: Sequence[Extra] = ()

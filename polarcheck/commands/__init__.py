@@ -33,6 +33,7 @@ from polarcheck.memory import keep_room_for_numpy
 
 NAMES = (
     "baseline",
+    "certify",
     "check",
     "completion",
     "config",

@@ -214,7 +214,6 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
     form = arguments.form or ("text" if len(tasks) <= _LONG or arguments.shown_too else "short")
     if not arguments.quiet:
         tasks = reporting.with_makes(tasks, (form, *(other for other, _ in arguments.outputs)))
-    failures: list[str] = []
     plain = reporting.background(
         reports.Background(
             rules=rule.load_all(),
@@ -229,7 +228,6 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
             drawn=pictures.drawn,
         ),
         tasks,
-        failures,
     )
     bar = progress.Bar(len(tasks), not arguments.quiet)
     shown = plain._replace(columns=columns(), color=is_colored)
@@ -240,14 +238,18 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
     pictures.begin(plain)
     checked = runner.check(tasks, bar, faults, baseline, live_report.file, pictures.split)
     pictures.end()
-    report = batch.report(checked.files, applies.machine or (tasks[0].settings.name if tasks else profiles.DEFAULT))
     status = max(int(checked.failed), fixed.status, faults.report())
-    failures += [*faults.failures, *faults.bugs]
+    reason = checked.broken_off
     if checked.stopped is not None:
         status, how = signals.exit_status(checked.stopped)
-        failures.append(f"{how} after {len(checked.files)} of {len(tasks)} files; these are reported")
-        say(failures[-1])
-    elif arguments.diff_base is None:
+        reason = f"{how} after {len(checked.files)} of {len(tasks)} files; these are reported"
+        say(reason)
+    report = batch.report(
+        checked.files,
+        applies.machine or (tasks[0].settings.name if tasks else profiles.DEFAULT),
+        interrupted=batch.interrupted(reason, checked.files, tasks) if reason else None,
+    )
+    if checked.stopped is None and arguments.diff_base is None:
         running.warn_unused(applies.tools, checked.called)
         running.warn_without_part(applies.tolerance, tasks)
     for error in reporting.written(outputs, form, report, plain._replace(lines=checked.lines)):

@@ -73,9 +73,13 @@ def _shown(
         if layer.entry
     ]
     excluded = settings_of.is_within_excluded(path)
+    behind = settings_of.behind(applied.file)
     if form == "json":
-        return page.as_json(files.shown(path), names, entries, excluded, rows)
+        left = {"file": str(behind.outer), "keys": behind.keys} if behind else None
+        return page.as_json(files.shown(path), names, entries, excluded, rows, left)
     heads = [f"job file: {' extends '.join(names) or 'none'}", *(f"[[programs]]: {entry}" for entry in entries)]
+    if behind:
+        heads.append(f'not taken over from {behind.outer}: {", ".join(behind.keys)}; extend = ".." would')
     if excluded:
         heads.append("excluded: no walk through a folder finds it")
     heads.append(f"the other values of the machine: polarcheck machines {applied.settings.name}")

@@ -14,6 +14,7 @@ from polarcheck.reading.files import shown, write
 if TYPE_CHECKING:
     from polarcheck.batch.tasks import Outcome, Task
     from polarcheck.checking.settings import Extra
+    from polarcheck.finding import FileReport
     from polarcheck.pictures.picture import Drawn
     from polarcheck.reports import Background
 
@@ -55,10 +56,12 @@ class Pictures:
 
     def split(self, outcomes: Iterable[Outcome]) -> Iterator[Outcome]:
         """Yield the outcomes without their pictures, which are stored."""
-        from polarcheck.finding import FileReport
+        from polarcheck.finding import UNREADABLE, FileReport
 
         for outcome in outcomes:
             if outcome.report is None or type(outcome.report) is FileReport:
+                if outcome.report is not None and outcome.report.verdict == UNREADABLE:
+                    self.miss(outcome.report)
                 yield outcome
                 continue
             import msgspec
@@ -75,6 +78,9 @@ class Pictures:
         """Store the drawing of a program."""
         assert outcome.report is not None
         self.drawn[outcome.report.path] = drawn
+
+    def miss(self, report: FileReport) -> None:
+        """Note a program without a drawing, since it could not be read or checked."""
 
     def begin(self, background: Background) -> None:
         """Prepare for the first program."""
@@ -134,6 +140,12 @@ class Folder(Pictures):
         pictured = picture(report, self._background._replace(drawn={report.path: drawn}))
         write(self._folder / name, page([pictured], beside=FILE_NAME))
         self._entries.append(entry(report, name))
+
+    def miss(self, report: FileReport) -> None:
+        """List a program that has no page."""
+        from polarcheck.reports.pages.picture_index import entry
+
+        self._entries.append(entry(report, ""))
 
     def end(self) -> None:
         """Write the index page."""

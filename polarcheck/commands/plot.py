@@ -52,6 +52,7 @@ def plot(
     from polarcheck.checking import rule
     from polarcheck.commands import overwriting, progress, reporting, running, signals
     from polarcheck.commands.output import say, show
+    from polarcheck.finding import UNREADABLE
     from polarcheck.machines import profiles
     from polarcheck.memory import keep_within_memory
     from polarcheck.reading import files
@@ -65,7 +66,7 @@ def plot(
     pictures, pages, written = picturing.of_outputs(outputs, output is None, tasks, "-o ")
     overwriting.refuse(written, tasks)
     plain = reports.Background(rules=rule.load_all(), drawn=pictures.drawn)
-    background = reporting.background(plain, tasks, [])
+    background = reporting.background(plain, tasks)
     pictures.begin(background)
     bar = progress.Bar(len(tasks), True)
     checked = running.Runner(max_size, workers, None).check(tasks, bar, faults, take=pictures.split)
@@ -74,8 +75,9 @@ def plot(
         status, how = signals.exit_status(checked.stopped)
         say(f"{how} after {len(checked.files)} of {len(tasks)} files")
     pictures.end()
-    if len(checked.files) and (pages or output is None):
-        report = batch.report(checked.files, applies.machine or profiles.DEFAULT)
+    readable = [file for file in checked.files if file.verdict != UNREADABLE] if pages or output is None else []
+    if readable:
+        report = batch.report(readable, applies.machine or profiles.DEFAULT)
         page = reports.render(picturing.FORMAT, report, background)
         for _, path in pages:
             files.write(path, page)

@@ -68,14 +68,13 @@ def with_makes(tasks: Sequence[Task], forms: Iterable[str]) -> list[Task]:
     return [msgspec.structs.replace(task, settings=of_settings[id(task.settings)]) for task in tasks]
 
 
-def background(plain: Background, tasks: Iterable[Task], failures: Sequence[str]) -> Background:
-    """Add the settings of each file, the folders that paths are relative to, and the failures to a background."""
+def background(plain: Background, tasks: Iterable[Task]) -> Background:
+    """Add the settings of each file, and the folders that paths are relative to, to a background."""
     folder = ""
     with contextlib.suppress(OSError):  # the working folder may be gone
         folder = os.getcwd()  # noqa: PTH109
     return plain._replace(
         settings=silencing.settings_of(tasks),
-        failures=failures,
         root=_root(folder).replace(os.sep, "/"),
         folder=folder.replace(os.sep, "/"),
     )

@@ -80,8 +80,8 @@ def planned(
         excluded_in=settings_of.excluded_in,
         **(named or {}),
     )
-    for unmatched in settings_of.unmatched(paths):
-        warn(unmatched)
+    for line in (*settings_of.unmatched(paths), *settings_of.left_behind()):
+        warn(line)
     return tasks
 
 

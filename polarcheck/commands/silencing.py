@@ -61,11 +61,12 @@ def without_known(outcomes: Iterable[Outcome], tasks: Sequence[Task], baseline: 
     import msgspec
 
     from polarcheck.batch.tasks import fails
+    from polarcheck.finding import UNREADABLE
 
     known, settings = _baseline(tasks, baseline), settings_of(tasks)
     suppress = _suppressor(known, settings)
     for outcome in outcomes:
-        if outcome.report is None:
+        if outcome.report is None or outcome.report.verdict == UNREADABLE:
             yield outcome
         else:
             report = suppress(outcome.report)
@@ -80,8 +81,7 @@ def suppressor(tasks: Sequence[Task], baseline: Known | None) -> Callable[[FileR
 
 def _suppressor(known: Baseline, settings: Mapping[str, Settings]) -> Callable[[FileReport], FileReport]:
     def suppress(report: FileReport) -> FileReport:
-        of_file = settings[report.path]
-        return known.without_known(report, evaluated(report, of_file), of_file.fail_on)
+        return known.without_known(report, evaluated(report, settings[report.path]))
 
     return suppress
 
@@ -101,8 +101,10 @@ def settings_of(tasks: Iterable[Task]) -> dict[str, Settings]:
 
 def evaluated(report: FileReport, settings: Settings) -> Collection[str]:
     """Return the rules that were evaluated for a file: only their known findings may have disappeared."""
+    from polarcheck.finding import UNREADABLE
+
     missing = {gap.rule for gap in report.not_evaluated if gap.matters}
-    if "all" in missing:
+    if "all" in missing or report.verdict == UNREADABLE:
         return ()
     levels = {**settings.machine.severities, **settings.severities}
     return {rule.name for rule in settings.rules if rule.level(levels) != "off"} - missing

@@ -173,7 +173,8 @@ class Programs(OfPrograms, frozen=True):
     files: Annotated[
         list[str],
         msgspec.Meta(
-            description="patterns of names (O12*.nc) or paths (lathe7/**), relative to this file; capitals are ignored"
+            min_length=1,
+            description="patterns of names (O12*.nc) or paths (lathe7/**), relative to this file; capitals are ignored",
         ),
     ]
 
@@ -188,8 +189,13 @@ class Job(OfPrograms, frozen=True):
         list[str], msgspec.Meta(description="patterns of files and folders that no walk through a folder finds")
     ] = []
     extend: (
-        Annotated[str, msgspec.Meta(description="another job file, whose values apply where this one has none")] | None
+        Annotated[
+            str,
+            msgspec.Meta(description="another job file, or the folder of one, whose values apply where this has none"),
+        ]
+        | None
     ) = None
+    root: Annotated[bool, msgspec.Meta(description="no job file of a folder above is meant for these programs")] = False
     part: Annotated[
         list[Part],
         msgspec.Meta(description="what programs should make; of entries for one section and Z the last one counts"),

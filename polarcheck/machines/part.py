@@ -110,7 +110,9 @@ class Part(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     ) = None
     files: Annotated[
         list[str],
-        msgspec.Meta(description="of which programs: patterns of names or paths as under [[programs]]; else all"),
+        msgspec.Meta(
+            min_length=1, description="of which programs: patterns of names or paths as under [[programs]]; else all"
+        ),
     ] = []
 
     def __post_init__(self) -> None:

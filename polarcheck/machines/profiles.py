@@ -98,7 +98,7 @@ def load(
             raise MachineError(f"{tables[-1][0]}: inherits: {error}") if tables else error from None
         # By the file itself: links and `..` give one file names without end.
         if (real := os.path.realpath(path)) in seen:
-            raise MachineError(f"{title}: inherits from itself")
+            raise MachineError(f"{title}: inherits from itself{_by_way_of([name for name, _ in tables[1:]])}")
         if len(seen) == _LONGEST_CHAIN:
             raise MachineError(
                 f"{tables[0][0]}: inherits from more than {_LONGEST_CHAIN - 1} files, one behind the other"
@@ -109,6 +109,9 @@ def load(
             ours.add(title)
         else:
             table = _read_file(path, title) if contents is None or tables else contents
+            if not table:
+                heir = f"; {tables[-1][0]} inherits from it" if tables else ""
+                raise MachineError(f'{title}: the file is empty; write inherits = "{DEFAULT}" or another machine{heir}')
         tables.append((title, table))
         folder = path.parent
         checks_codes |= folder != FOLDER
@@ -156,6 +159,11 @@ def load(
     if chain[0] not in ours:
         machine = OwnMachine(file=chain[0], **msgspec.structs.asdict(machine))
     return Profile(name, machine, written, chain, origins, tables[len(over)][1], inherited)
+
+
+def _by_way_of(between: Sequence[str]) -> str:
+    """Return the other files of a circle."""
+    return f", by way of {', '.join(between)}" if between else ""
 
 
 def is_meant(path: Path, name: str) -> bool:
@@ -325,6 +333,9 @@ def _objection(misfit: MisfitError, origins: Mapping[str, Origin], titles: Seque
         key for key in origins if key.startswith(f"{misfit.key}.") and key.partition(".")[2] in text.split()
     ]
     of_fault = sorted((origins[key] for key in at_fault), key=lambda origin: titles.index(origin.profile))
+    if not of_fault and text.endswith("is missing"):
+        # The fault of the file that inherits from none.
+        return f'{titles[-1]}: {text}; inherits = "{DEFAULT}" or another machine would give it'
     title = of_fault[0].profile if of_fault else titles[0]
     given = [f"parameters.{origin.parameter}" for origin in of_fault if origin.parameter and origin.profile == title]
     if given:

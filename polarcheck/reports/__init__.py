@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import importlib
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from types import MappingProxyType, ModuleType
 from typing import TYPE_CHECKING, NamedTuple
@@ -27,6 +27,7 @@ _STYLES = {
     "silenced": "1;35",
     "fail": "1;31",
     "unverified": "1;35",
+    "unreadable": "1;31",
     "pass": "1;32",
     "message": "1",
     "aside": "2",
@@ -47,7 +48,6 @@ class Background(NamedTuple):
     silenced: show silenced findings, too.
     dots: draw paths with Braille and block characters, else ASCII.
     settings: the settings of each file, by path.
-    failures: a line for each file that could not be read, or whose check failed.
     root: the absolute path of the repository, with slashes; empty if unknown.
     folder: the absolute path of the folder that paths are relative to, with slashes; empty if unknown.
     fixed: the number of fixes written into the files before this check.
@@ -65,7 +65,6 @@ class Background(NamedTuple):
     silenced: bool = False
     dots: bool = False
     settings: Mapping[str, Settings] = MappingProxyType({})
-    failures: Sequence[str] = ()
     root: str = ""
     folder: str = ""
     fixed: int = 0

@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import chain
 from typing import TYPE_CHECKING
 
+from msgspec import UNSET
+
+from polarcheck.finding import UNREADABLE
 from polarcheck.reports.ci import xml
 from polarcheck.reports.ci.paths import from_root
 
@@ -23,11 +27,26 @@ def checkstyle(report: Report, background: Background) -> str:
 def checkstyle_pieces(report: Report, background: Background) -> Iterator[str]:
     """Yield the same text file by file."""
     yield xml.HEAD
-    files = (line for file in report.files for line in _file(file, background))
+    files = chain((line for file in report.files for line in _file(file, background)), _interrupted(report, background))
     yield from xml.element("checkstyle", {"version": "4.3"}, files)
 
 
+def _interrupted(report: Report, background: Background) -> Iterator[str]:
+    if report.interrupted is not UNSET:
+        path = from_root(report.interrupted.next_path or ".", background)
+        yield from xml.element("file", {"name": path}, _failure("interrupted", report.interrupted.reason), depth=1)
+
+
+def _failure(name: str, reason: str) -> Iterator[str]:
+    """Yield the element of a file that was not checked; without it the file would look clean."""
+    attributes: dict[str, str | int] = {"line": 1, "column": 1, "severity": "error", "message": reason}
+    return xml.element("error", {**attributes, "source": f"polarcheck.{name}"}, depth=2)
+
+
 def _file(file: FileReport, background: Background) -> Iterator[str]:
+    path: dict[str, str | int] = {"name": from_root(file.path, background)}
+    if file.verdict == UNREADABLE:
+        return xml.element("file", path, _failure(UNREADABLE, file.reason or ""), depth=1)
     errors = (
         line
         for finding in file.findings
@@ -43,4 +62,4 @@ def _file(file: FileReport, background: Background) -> Iterator[str]:
             depth=2,
         )
     )
-    return xml.element("file", {"name": from_root(file.path, background)}, errors, depth=1)
+    return xml.element("file", path, errors, depth=1)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from polarcheck.finding import UNREADABLE
 from polarcheck.reading.excerpt import visible, without_commands
 from polarcheck.reports import Background, Parts, of_each, painted
 
@@ -33,9 +34,17 @@ def concise_parts(background: Background) -> Parts:
 
 
 def lines(file: FileReport, silenced: bool, color: bool = False) -> Iterator[str]:
-    """Yield the lines of the findings of a file; silenced: those of silenced findings, too."""
+    """Yield the lines of the findings of a file, or why it is unreadable; silenced: those of silenced findings, too."""
+    if file.verdict == UNREADABLE:
+        yield unreadable_line(file, color)
     yield from (line(file, finding, color) for finding in file.findings)
     yield from (silenced_line(file, finding) for finding in file.silenced if silenced)
+
+
+def unreadable_line(file: FileReport, color: bool = False) -> str:
+    """Return the line of a file that could not be read or checked."""
+    severity = painted("error", "error") if color else "error"
+    return without_commands(f"{_path(file.path)}:1:1: {severity}: {visible(f'{file.reason} [{UNREADABLE}]')}")
 
 
 def silenced_line(file: FileReport, finding: Silenced) -> str:
@@ -58,6 +67,10 @@ def line(file: FileReport, finding: Finding, color: bool = False) -> str:
 
 
 def _place(path: str, finding: Finding | Silenced) -> str:
-    """Return the position of a finding; a path that a CI log would take for a command is prefixed with `./`."""
-    shown = f"./{path}" if path.lstrip().startswith("::") else path
-    return visible(f"{shown}:{finding.line}:{finding.column}")
+    """Return the position of a finding."""
+    return f"{_path(path)}:{finding.line}:{finding.column}"
+
+
+def _path(path: str) -> str:
+    """Return a path; one that a CI log would take for a command is prefixed with `./`."""
+    return visible(f"./{path}" if path.lstrip().startswith("::") else path)

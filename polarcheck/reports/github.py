@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
+from msgspec import UNSET
+
+from polarcheck.finding import UNREADABLE
 from polarcheck.reading.excerpt import visible
 from polarcheck.reading.files import STANDARD_INPUT
 from polarcheck.reports import SEVERITIES, counted
 from polarcheck.reports.ci.paths import from_root
-from polarcheck.reports.concise import line
+from polarcheck.reports.concise import line, unreadable_line
 from polarcheck.reports.text import summary, verdict
 
 if TYPE_CHECKING:
@@ -38,8 +41,14 @@ def _lines(report: Report, background: Background) -> Iterator[str]:
         shown[_level(finding)] += 1
         if shown[_level(finding)] <= MOST:
             yield _annotation(file, finding, background)
+    for name, reason, path in _not_checked(report):
+        shown["error"] += 1
+        if shown["error"] <= MOST:
+            place = {"title": name, **({"file": from_root(path, background)} if path else {})}
+            yield _command("error", place, reason)
     for file in report.files:
-        texts = [line(file, finding) for finding in file.findings]
+        texts = [unreadable_line(file)] if file.verdict == UNREADABLE else []
+        texts += [line(file, finding) for finding in file.findings]
         texts += dict.fromkeys(visible(f"not evaluated: {gap.reason}") for gap in file.not_evaluated if gap.matters)
         if texts and not background.quiet:
             yield f"::group::{_data(visible(f'{file.path}: {verdict(file)}'))}"
@@ -54,6 +63,15 @@ def _lines(report: Report, background: Background) -> Iterator[str]:
         yield f"polarcheck: {kinds} more without an annotation, of which GitHub shows {MOST} of a kind; {where}"
 
 
+def _not_checked(report: Report) -> Iterator[tuple[str, str, str]]:
+    """Yield name, reason and path of what was not checked: unreadable files, and the rest of an interrupted run."""
+    for file in report.files:
+        if file.verdict == UNREADABLE:
+            yield UNREADABLE, f"{file.path}: {file.reason}", "" if file.path == STANDARD_INPUT else file.path
+    if report.interrupted is not UNSET:
+        yield "interrupted", report.interrupted.reason, ""
+
+
 def _level(finding: Finding) -> str:
     return _LEVELS.get(finding.severity, "notice")
 
@@ -66,8 +84,12 @@ def _annotation(file: FileReport, finding: Finding, background: Background) -> s
     if finding.line == finding.end_line:
         # GitHub counts the last column in; a finding ends at the column after it.
         place |= {"col": finding.column, "endColumn": max(finding.end_column - 1, finding.column)}
+    return _command(_level(finding), place, finding.full_message)
+
+
+def _command(level: str, place: Mapping[str, str | int], message: str) -> str:
     written = ",".join(f"{key}={_property(visible(str(value)))}" for key, value in place.items())
-    return f"::{_level(finding)} {written}::{_data(visible(finding.full_message))}"
+    return f"::{level} {written}::{_data(visible(message))}"
 
 
 def _plain(text: str) -> str:

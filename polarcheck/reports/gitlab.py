@@ -7,6 +7,9 @@ from collections import Counter
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
+from msgspec import UNSET
+
+from polarcheck.finding import UNREADABLE
 from polarcheck.reading.excerpt import visible
 from polarcheck.reports.ci.paths import from_root
 from polarcheck.reports.json import encoded
@@ -19,7 +22,7 @@ _SEVERITIES = {"error": "major", "warning": "minor", "note": "info"}
 
 
 def gitlab(report: Report, background: Background) -> str:
-    """Return an array with an entry for each finding that is not silenced."""
+    """Return an array with an entry for each finding that is not silenced, and for each file that was not checked."""
     return encoded(list(_entries(report, background)), indent=2) + "\n"
 
 
@@ -27,6 +30,8 @@ def _entries(report: Report, background: Background) -> Iterator[dict[str, Any]]
     occurrences = Counter[str]()
     for file in report.files:
         path = from_root(file.path, background)
+        if file.verdict == UNREADABLE:
+            yield _failure(UNREADABLE, file.reason or "", path)
         for finding in file.findings:
             # GitLab merges entries with the same fingerprint, so a second occurrence of a mistake needs another one.
             # The line number would not do: a block inserted above would make the finding new.
@@ -39,3 +44,17 @@ def _entries(report: Report, background: Background) -> Iterator[dict[str, Any]]
                 "severity": _SEVERITIES.get(finding.severity, "info"),
                 "location": {"path": path, "lines": {"begin": finding.line, "end": finding.end_line}},
             }
+    if report.interrupted is not UNSET:
+        path = from_root(report.interrupted.next_path or ".", background)
+        yield _failure("interrupted", report.interrupted.reason, path)
+
+
+def _failure(name: str, reason: str, path: str) -> dict[str, Any]:
+    """Return the entry of a file that was not checked; without it the file would look mended."""
+    return {
+        "description": visible(reason),
+        "check_name": name,
+        "fingerprint": hashlib.sha256(f"{path}\0{name}".encode()).hexdigest(),
+        "severity": "blocker",
+        "location": {"path": path, "lines": {"begin": 1, "end": 1}},
+    }

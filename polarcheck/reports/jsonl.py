@@ -38,7 +38,9 @@ def jsonl_parts(background: Background) -> Parts:
         return "".join(encoded(line) + "\n" for line in lines(file))
 
     def end(report: Report) -> str:
-        about = {"schema": report.schema, "tool": report.tool, "machine": report.machine}
+        about = {"schema": report.schema, "tool": report.tool, "machine": report.machine, "settings": report.settings}
+        if report.interrupted is not msgspec.UNSET:
+            about["interrupted"] = report.interrupted
         return encoded({"type": "summary", **about, **msgspec.to_builtins(report.summary)}) + "\n"
 
     return Parts(of_file, end)

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
+from itertools import chain
 from typing import TYPE_CHECKING, NamedTuple
 
-from polarcheck.checking.check import reaches
-from polarcheck.finding import Undecided
+from msgspec import UNSET
+
+from polarcheck.checking.check import FAILING, reaches
+from polarcheck.finding import FAIL, UNREADABLE, Undecided
 from polarcheck.reports.ci import xml
 from polarcheck.reports.ci.paths import from_root
 from polarcheck.reports.concise import line
@@ -27,8 +30,8 @@ class _Case(NamedTuple):
     A test.
 
     group: the group of rules.
-    failing: the findings that fail.
-    others: the findings that do not fail.
+    failing: the findings that fail the file, or the check.
+    others: the other findings.
     missing: reasons why something could not be judged.
     is_strict: `missing` is a failure, too.
     """
@@ -70,8 +73,8 @@ def junit(report: Report, background: Background) -> str:
     """
     Return a suite for each file, with a test for each group of rules that ran.
 
-    A test passes, fails by findings of the severity that fails, or is skipped if something that matters could not be
-    judged. A file that could not be read is an error.
+    A test fails by warnings and errors, and by notes if the check ends with 1 for them; it is skipped if something that
+    matters could not be judged, and passes else. A file that could not be read is an error.
     """
     return "".join(junit_pieces(report, background))
 
@@ -80,33 +83,32 @@ def junit_pieces(report: Report, background: Background) -> Iterator[str]:
     """Yield the same text file by file, in two passes over the files, since the head holds the counts."""
     ran = _Groups(background)
     outcomes = Counter(case.outcome for file in report.files for case in _cases(file, background, ran))
+    errors = report.summary.unreadable + (report.interrupted is not UNSET)
     counts: dict[str, str | int] = {
         "name": "polarcheck",
-        "tests": outcomes.total() + len(background.failures),
+        "tests": outcomes.total() + errors,
         "failures": outcomes["failure"],
-        "errors": len(background.failures),
+        "errors": errors,
     }
     yield xml.HEAD
     inside = (part for file in report.files for part in _suite(file, background, ran))
-    yield from xml.element("testsuites", counts, _all(inside, background))
+    interrupted = report.interrupted
+    end = () if interrupted is UNSET else _not_checked("interrupted", "interrupted", interrupted.reason)
+    yield from xml.element("testsuites", counts, chain(inside, end))
 
 
-def _all(suites: Iterator[str], background: Background) -> Iterator[str]:
-    yield from suites
-    failures = background.failures
-    if failures:
-        counts: dict[str, str | int] = {"name": _UNREAD, "tests": len(failures), "failures": 0, "errors": len(failures)}
-        yield from xml.element(
-            "testsuite", counts, (part for failure in failures for part in _unread(failure)), depth=1
-        )
-
-
-def _unread(failure: str) -> Iterator[str]:
-    inside = xml.of_text("error", {"type": "error", "message": failure}, [failure], depth=3)
-    return xml.element("testcase", {"classname": f"polarcheck.{_UNREAD}", "name": failure}, [inside], depth=2)
+def _not_checked(path: str, kind: str, reason: str) -> Iterator[str]:
+    """Yield a suite with one test that is an error: of a file that was not checked, or of the rest of the run."""
+    counts: dict[str, str | int] = {"name": path, "tests": 1, "failures": 0, "errors": 1, "skipped": 0}
+    inside = xml.of_text("error", {"type": kind, "message": reason}, [reason], depth=3)
+    test = xml.element("testcase", {"classname": f"polarcheck.{_UNREAD}", "name": path}, [inside], depth=2)
+    return xml.element("testsuite", counts, test, depth=1)
 
 
 def _cases(file: FileReport, background: Background, ran: _Groups) -> Iterator[_Case]:
+    """Yield the tests of a file; none for an unreadable one, which is an error."""
+    if file.verdict == UNREADABLE:
+        return
     settings = background.settings.get(file.path)
     fail_on, is_strict = (settings.fail_on, settings.strict) if settings else ("warning", False)
     findings: dict[str, list[Finding]] = {}
@@ -118,7 +120,9 @@ def _cases(file: FileReport, background: Background, ran: _Groups) -> Iterator[_
             missing.setdefault(_group(gap.rule, background), []).append(gap)
     groups = ran.over(file) if file.sections else [_NOTHING]
     for group in dict.fromkeys((*groups, *sorted({*findings, *missing}))):
-        reaching = [finding for finding in findings.get(group, ()) if reaches(finding, fail_on)]
+        reaching = [
+            finding for finding in findings.get(group, ()) if reaches(finding, FAILING) or reaches(finding, fail_on)
+        ]
         failing = [finding for finding in reaching if not isinstance(finding, Undecided)]
         reasons = [finding.message for finding in reaching if isinstance(finding, Undecided)]
         reasons += [gap.reason for gap in missing.get(group, ())]
@@ -132,6 +136,8 @@ def _group(rule: str, background: Background) -> str:
 
 def _suite(file: FileReport, background: Background, ran: _Groups) -> Iterator[str]:
     path = from_root(file.path, background)
+    if file.verdict == UNREADABLE:
+        return _not_checked(path, UNREADABLE, file.reason or "")
     cases = list(_cases(file, background, ran))
     outcomes = [case.outcome for case in cases]
     counts: dict[str, str | int] = {
@@ -142,7 +148,7 @@ def _suite(file: FileReport, background: Background, ran: _Groups) -> Iterator[s
         "skipped": outcomes.count("skipped"),
     }
     inside = [part for case in cases for part in _test(case, path, file)]
-    rests_on = list(resting(file)) if file.verdict != "fail" else []
+    rests_on = list(resting(file)) if file.verdict != FAIL else []
     if rests_on:
         inside.append(xml.of_text("system-out", {}, rests_on, depth=2))
     return xml.element("testsuite", counts, inside, depth=1)

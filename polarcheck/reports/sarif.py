@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
-from polarcheck.finding import ALLOW, BASELINE, Silenced
+from msgspec import UNSET
+
+from polarcheck.finding import ALLOW, BASELINE, UNREADABLE, Silenced
 from polarcheck.reading.excerpt import visible
 from polarcheck.reports.ci import rule_help
 from polarcheck.reports.ci.paths import uri
@@ -32,7 +34,8 @@ def sarif(report: Report, background: Background) -> str:
     findings = {finding.rule: finding for file in report.files for finding in file.findings}
     names = sorted({*silenced, *findings})
     indices = {name: index for index, name in enumerate(names)}
-    notifications = [*_failures(background.failures), *_not_evaluated(report, background)]
+    failures = list(_failures(report, background))
+    notifications = [*failures, *_not_evaluated(report, background)]
     run = {
         "tool": {
             "driver": {
@@ -45,7 +48,7 @@ def sarif(report: Report, background: Background) -> str:
         "automationDetails": {"id": f"{report.tool.name}/"},
         "columnKind": "unicodeCodePoints",
         "originalUriBaseIds": {_ROOT: {"description": {"text": "The root of the repository."}}},
-        "invocations": [{"executionSuccessful": not background.failures, "toolExecutionNotifications": notifications}],
+        "invocations": [{"executionSuccessful": not failures, "toolExecutionNotifications": notifications}],
         "results": [
             _result(finding, file, indices, background, bool(silenced))
             for file in report.files
@@ -148,9 +151,15 @@ def _fix(fix: Fix, artifact: Mapping[str, str]) -> dict[str, Any]:
     return {"description": {"text": visible(fix.title)}, "artifactChanges": changes}
 
 
-def _failures(failures: Sequence[str]) -> Iterator[dict[str, Any]]:
-    for failure in failures:
-        yield {"level": "error", "message": {"text": visible(failure)}}
+def _failures(report: Report, background: Background) -> Iterator[dict[str, Any]]:
+    """Yield a notification for each file that was not checked, and for an interrupted run."""
+    for file in report.files:
+        if file.verdict == UNREADABLE:
+            place = {"artifactLocation": {"uri": uri(file.path, background), "uriBaseId": _ROOT}}
+            about = {"text": visible(f"{file.path}: {file.reason}")}
+            yield {"level": "error", "message": about, "locations": [{"physicalLocation": place}]}
+    if report.interrupted is not UNSET:
+        yield {"level": "error", "message": {"text": visible(report.interrupted.reason)}}
 
 
 def _not_evaluated(report: Report, background: Background) -> Iterator[dict[str, Any]]:

@@ -41,7 +41,8 @@ def _end(report: Report, background: Background) -> Iterator[str]:
     if background.quiet or not report.files:
         return
     total = report.summary
-    if total.errors or total.warnings or total.notes or (background.silenced and total.silenced):
+    counts = total.errors, total.warnings, total.notes, total.unreadable, background.silenced and total.silenced
+    if any(counts):
         yield ""
     yield summary(report, background.fixed)
     for verdict, label in _FULL.items():

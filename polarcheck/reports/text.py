@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from msgspec import UNSET
 
+from polarcheck.finding import FAIL, PASS, UNREADABLE, UNVERIFIED
 from polarcheck.reading.excerpt import excerpt, visible, without_commands
 from polarcheck.reports import SEVERITIES, Background, Parts, counted, of_each, painted
 from polarcheck.reports.pages.resting import resting
@@ -259,7 +260,7 @@ def _not_evaluated(files: Iterable[FileReport], page: _Page) -> Iterator[str]:
 
 
 def _is_listed(file: FileReport, report: Report) -> bool:
-    return file.verdict != "pass" or len(report.files) <= _LISTED
+    return file.verdict != PASS or len(report.files) <= _LISTED
 
 
 def _verdicts(report: Report, page: _Page) -> Iterator[str]:
@@ -270,8 +271,12 @@ def _verdicts(report: Report, page: _Page) -> Iterator[str]:
         if not _is_listed(file, report):
             continue
         word = verdict(file)
+        if file.verdict == UNREADABLE:
+            space = " " * (width - len(word))
+            yield f"{page.paint(word, word)}{space}  {visible(f'{file.path}: {file.reason}')}"
+            continue
         facts = [severities(Counter(finding.severity for finding in file.findings))]
-        if file.sections or file.verdict != "pass":
+        if file.sections or file.verdict != PASS:
             facts.append(counted(file.sections, "polar section") if file.sections else "no polar section")
         facts.append(counted(file.blocks, "block"))
         machine = f", for {visible(file.machine)}" if report.machine is None else ""
@@ -279,14 +284,14 @@ def _verdicts(report: Report, page: _Page) -> Iterator[str]:
         yield f"{page.paint(file.verdict, word)}{space}  {visible(file.path)}: {', '.join(facts)}{machine}"
         if file.makes and file.part is UNSET and len(widths) <= _RESTING:
             yield from page.indented(f"makes: {file.makes}")
-        if file.verdict != "fail" and len(widths) <= _RESTING:
+        if file.verdict != FAIL and len(widths) <= _RESTING:
             for line in resting(file):
                 yield from page.indented(line)
 
 
 def verdict(file: FileReport) -> str:
     """Return the verdict in words, with remarks: no polar section, silenced findings."""
-    remarks = ["no polar section"] if file.verdict == "pass" and not file.sections else []
+    remarks = ["no polar section"] if file.verdict == PASS and not file.sections else []
     remarks += [f"{len(file.silenced)} silenced"] if file.silenced else []
     return f"{file.verdict} ({', '.join(remarks)})" if remarks else file.verdict
 
@@ -294,23 +299,27 @@ def verdict(file: FileReport) -> str:
 def summary(report: Report, fixed: int = 0) -> str:
     """Return one line on all files. fixed: the number of fixes written into them before."""
     total, verdicts = report.summary, ""
-    if len(report.files) > 1:
-        empty = sum(file.verdict == "pass" and not file.sections for file in report.files)
-        silent = sum(file.verdict == "pass" and bool(file.silenced) for file in report.files)
+    if len(report.files) > 1 or total.unreadable:
+        empty = sum(file.verdict == PASS and not file.sections for file in report.files)
+        silent = sum(file.verdict == PASS and bool(file.silenced) for file in report.files)
         remarks = [
             f"{count} with {what}" if count < total.passed else what
             for count, what in ((empty, "no polar section"), (silent, "findings silenced"))
             if count
         ]
         of_pass = f"{total.passed} pass" + (f" ({', '.join(remarks)})" if remarks else "")
-        counts = {f"{total.fail} fail": total.fail, f"{total.unverified} unverified": total.unverified}
-        verdicts = ": " + ", ".join([text for text, count in counts.items() if count] + [of_pass] * bool(total.passed))
-    machines = len({file.machine for file in report.files})
+        counts = {FAIL: total.fail, UNREADABLE: total.unreadable, UNVERIFIED: total.unverified}
+        texts = [f"{count} {word}" for word, count in counts.items() if count] + [of_pass] * bool(total.passed)
+        verdicts = f": {', '.join(texts)}"
+    machines = len({file.machine for file in report.files if file.verdict != UNREADABLE})
     machine = f"{machines} machines" if report.machine is None else visible(report.machine)
     facts = [severities({"error": total.errors, "warning": total.warnings, "note": total.notes})]
     facts += [f"{total.silenced} silenced"] if total.silenced else []
     facts += [f"{fixed} fixed"] if fixed else []
-    return f"{counted(len(report.files), 'file')} checked for {machine}{verdicts}; {', '.join(facts)}"
+    planned = len(report.files) if report.interrupted is UNSET else report.interrupted.planned
+    checked = len(report.files) - total.unreadable
+    files = f"{checked} of {planned} files" if checked < planned else counted(planned, "file")
+    return f"{files} checked for {machine}{verdicts}; {', '.join(facts)}"
 
 
 def severities(number: Mapping[str, int]) -> str:

@@ -93,7 +93,7 @@ class JobFile(msgspec.Struct, frozen=True):
 
         over: layers that lie over those of the file; with a [[part]] among them, those of the file do not count.
         """
-        found = [self._layer(number, entry) for number, entry in layers]
+        found = [self.layer(number, entry) for number, entry in layers]
         if any(isinstance(layer, PartLayer) for layer in over):
             found = [layer for layer in found if not isinstance(layer, PartLayer)]
         return job_layers.merged([*found, *over])
@@ -107,7 +107,7 @@ class JobFile(msgspec.Struct, frozen=True):
         """Return the patterns of an entry."""
         return [pattern for part in self.parts for entry, pattern in part.patterns if entry is layer]
 
-    def _layer(self, number: int, entry: int) -> Layer:
+    def layer(self, number: int, entry: int) -> Layer:
         part = self.parts[number]
         if entry < 0:
             return part.parts[-entry - 1][0]
@@ -154,6 +154,15 @@ class Nearest:
         except (OSError, RuntimeError, ValueError):
             return None  # the folder cannot be entered; reading the program reports that
         return _relative(nearest) if nearest is not None else None
+
+    def above(self, path: Path) -> Path | None:
+        """Return the job file that would apply in the folder of another one, were that not there."""
+        try:
+            folder = self.real.folder(str(path.parent))
+            nearest = self._from(os.path.dirname(folder))  # noqa: PTH120  pathlib is slow
+        except (OSError, RuntimeError, ValueError):
+            return None
+        return _relative(nearest) if nearest is not None and nearest.parent != Path(folder) else None
 
     def _from(self, folder: str) -> Path | None:
         passed: list[str] = []
@@ -209,21 +218,34 @@ def load(path: Path, *, pipes: bool = False) -> JobFile:
     pipes: the path may be a pipe, such as `<(...)` of a shell. Raises JobError with file, line and key.
     """
     parts: list[_Part] = []
-    real: set[str] = set()
+    real: dict[str, Path] = {}
     named_by = ""
     while True:
         identity = os.path.realpath(path)
         if identity in real:
-            raise JobError(f"{named_by}: extend: {path} extends itself")
+            between = list(real.values())[list(real).index(identity) + 1 :]
+            way = f", by way of {', '.join(map(str, between))}" if between else ""
+            raise JobError(f"{named_by}: extend: {path} extends itself{way}")
         if len(real) == _LONGEST_CHAIN:
             raise JobError(f"{named_by}: extend: more than {_LONGEST_CHAIN} job files, one behind the other")
-        real.add(identity)
+        real[identity] = path
         part, extended = _part(path, named_by, pipes=pipes and not parts)
         parts.append(part)
         if extended is None:
             return JobFile(parts[0].values.written.path, tuple(reversed(parts)))
         named_by = part.values.at("extend")
-        path = _relative(Path(os.path.normpath(job_layers.beside(path.parent, extended))))
+        path = _extended(path, extended, named_by)
+
+
+def _extended(path: Path, written: str, named_by: str) -> Path:
+    """Return the file that `extend` of a job file means; of a folder, the nearest one in it or above it."""
+    meant = Path(os.path.normpath(job_layers.beside(path.parent, written)))
+    if not meant.is_dir():
+        return _relative(meant)
+    nearest = Nearest().of(meant)
+    if nearest is None:
+        raise JobError(f"{named_by}: extend: {shown(written)}: there is no {FILE_NAME} in this folder or above it")
+    return nearest
 
 
 def _part(path: Path, named_by: str, *, pipes: bool) -> tuple[_Part, str | None]:

@@ -22,7 +22,9 @@ from polarcheck.machines.offset_keys import canonical
 from polarcheck.machines.part import LENGTHS, Part
 
 #: Keys that select files, and are no settings of a program.
-_OF_FILES = ("extend", "exclude", "programs", "files", "part")
+_OF_FILES = ("extend", "exclude", "programs", "files", "part", "root")
+#: Keys that mean nothing to the files below: how this one is read, and entries with patterns of their own.
+_OF_THE_FILE_ITSELF = ("extend", "root", "units", "programs", "part")
 #: Decimals of a converted length; further ones are rounding errors.
 _DECIMALS = 9
 #: Keys of lengths, which are in the units of their file, by table.
@@ -70,6 +72,16 @@ class Layer:
     def title(self) -> str:
         """Return a name for this layer, without a line."""
         return f"{self.written.path}: [[programs]] {self.entry}" if self.entry else str(self.written.path)
+
+    @property
+    def is_root(self) -> bool:
+        """Return True if no job file above this one is meant."""
+        return bool(self._table.get("root", False))
+
+    @property
+    def keys(self) -> list[str]:
+        """Return the keys that decide about programs, in the order in which they are written."""
+        return [key for key in self._table if key not in _OF_THE_FILE_ITSELF]
 
     @property
     def excluded(self) -> list[str]:

@@ -25,6 +25,7 @@ from polarcheck.settings.job_layers import Merged
 from polarcheck.settings.selection import Rules
 
 if TYPE_CHECKING:
+    from polarcheck.settings.jobs_above import LeftBehind
     from polarcheck.settings.keywords import Keywords
 
 
@@ -85,7 +86,7 @@ class OfPrograms:
         self._plain: dict[str, Settings] = {}
         self._settings: dict[tuple[Path | None, Layers], Settings] = {}
         self._matched: dict[Path, list[tuple[str, str]]] = {}
-        self._maker = _SettingsMaker(options)
+        self._maker = SettingsMaker(options)
 
     def __call__(self, path: str) -> Settings:
         folder, name = os.path.split(path)
@@ -132,6 +133,21 @@ class OfPrograms:
         if not left:
             warn("all that is named is excluded: nothing is checked")
         return left
+
+    def left_behind(self) -> list[str]:
+        """Return a line for each job file, of those loaded so far, that leaves values of one above it behind."""
+        loaded = [file for file in self._loaded.values() if file.path not in (None, self._options.config)]
+        if not loaded:
+            return []
+        from polarcheck.settings import jobs_above
+
+        return jobs_above.warnings(loaded, self._nearest)
+
+    def behind(self, file: JobFile) -> LeftBehind | None:
+        """Return what a job file leaves behind of the next one above it; nothing of one that an option names."""
+        from polarcheck.settings import jobs_above
+
+        return None if file.path == self._options.config else jobs_above.left_behind(file, self._nearest)
 
     def unmatched(self, paths: Iterable[str]) -> list[str]:
         """
@@ -185,7 +201,7 @@ class Applied(msgspec.Struct, frozen=True):
     file: JobFile
 
 
-class _SettingsMaker:
+class SettingsMaker:
     """Makes settings; settings with the same machine and rules share these."""
 
     def __init__(self, options: Options) -> None:
@@ -197,6 +213,7 @@ class _SettingsMaker:
         self._changes = options.keywords.changes if options.keywords else changes(options.changes)
         self._profiles: dict[str, profiles.Profile] = {}
         self._rules: dict[str, tuple[list[Rule], dict[str, str]]] = {}
+        self._hashes: dict[int, str] = {}
 
     def settings(self, file: JobFile, layers: Layers) -> Settings:
         return self.applied(file, layers).settings
@@ -223,6 +240,7 @@ class _SettingsMaker:
             strict=job.strict,
             encoding=job.encoding,
             inline=job.inline,
+            profile_sha256=self._hash(machine),
             extras=options.extras,
         )
         return Applied(settings, merged, profile, file)
@@ -243,6 +261,15 @@ class _SettingsMaker:
             except MachineError as error:
                 raise MachineError(_with_line(str(error), merged)) from None
         return self._profiles[key]
+
+    def _hash(self, machine: Machine) -> str:
+        """Return the SHA-256 of all values of a machine."""
+        if id(machine) not in self._hashes:
+            import hashlib
+
+            values = msgspec.json.encode(machine, order="deterministic")
+            self._hashes[id(machine)] = hashlib.sha256(values).hexdigest()
+        return self._hashes[id(machine)]
 
     def _chosen(self, job: Job, merged: Merged, profile: profiles.Profile) -> tuple[list[Rule], dict[str, str]]:
         """Return the rules to run, and the severities that differ from the machine's."""

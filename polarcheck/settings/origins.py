@@ -32,7 +32,7 @@ class Value(NamedTuple):
 
 
 #: Keys of a job that are not shown as settings.
-_OF_FILES = ("programs", "extend", "exclude", "extensions", "limits")
+_OF_FILES = ("programs", "extend", "root", "exclude", "extensions", "limits")
 _DEFAULT = ("default", "built-in default")
 #: The option that sets each key of a job; other options set several keys, or have the name of their key.
 _OPTIONS = {

@@ -135,12 +135,17 @@ def other_sense(axes: PlaneAxes, machine: Machine, row: int) -> str:
 
 
 def corner_of_sense(senses: Senses, passes: Passes, row: int) -> str:
+    """The turn at the ends of an arc [deg], in whole degrees."""
+    return f"{corner_of_arc(senses, passes, row):.0f}"
+
+
+def corner_of_arc(senses: Senses, passes: Passes, row: int) -> float:
     """The turn at the ends of an arc [deg], the smaller one where both are known."""
     corner = float(senses.corner[row])
     if np.isnan(corner):
         at = int(np.flatnonzero(passes.row == row)[0])
         corner = float(np.degrees(np.nanmax(np.abs([turn[at] for turn in passes.turns]))))
-    return f"{corner:.0f}"
+    return corner
 
 
 def fit_of_sense(senses: Senses, row: int) -> str:
@@ -222,22 +227,33 @@ def ramp_at_rest(trace: Trace, row: int) -> str:
 
 def why(trace: Trace, row: int) -> str:
     """What keeps the control from knowing the move behind the one that ends perpendicular in time."""
-    blocks, path, machine = trace.blocks, trace.path, trace.machine
-    move = _move(path, row)
-    following = move + 1
-    while following < len(blocks) and trace.mode.in_polar[following] and not path.length[following] > 0:
-        following += 1
-    stops = blocks.codes(*machine.m_codes.stops_reading_ahead)
-    for at in range(move, following):
-        if stops[at]:
-            return f"line {blocks.line[at]} stops reading ahead"
+    move, following, stop = _until_next_move(trace, row)
+    if stop >= 0:
+        return f"line {trace.blocks.line[stop]} stops reading ahead"
     count = following - move - 1
-    least = machine.compensation.read_ahead - 2
+    least = trace.machine.compensation.read_ahead - 2
     if move != row:
         rest = f", and {count} blocks behind that move make none on the plane" if count > 1 else ""
         return f"this block moves nowhere, its point is that of the block before{rest}: delete it or correct its words"
     many = f"{count} blocks" if count > 1 else "a block"
     return f"{many} without a move on the plane follow{'' if count > 1 else 's'}, this control reads past {least}"
+
+
+def blocks_without_move(trace: Trace, row: int) -> int | None:
+    """How many blocks without a move on the plane follow the last move; None where one of them stops reading ahead."""
+    move, following, stop = _until_next_move(trace, row)
+    return following - move - 1 if stop < 0 else None
+
+
+def _until_next_move(trace: Trace, row: int) -> tuple[int, int, int]:
+    """The last row with a move up to a row, the next one, and the first between that stops reading ahead, or -1."""
+    blocks, path = trace.blocks, trace.path
+    move = _move(path, row)
+    following = move + 1
+    while following < len(blocks) and trace.mode.in_polar[following] and not path.length[following] > 0:
+        following += 1
+    stops = np.flatnonzero(blocks.codes(*trace.machine.m_codes.stops_reading_ahead)[move:following])
+    return move, following, move + int(stops[0]) if len(stops) else -1
 
 
 def move_before(trace: Trace, row: int) -> str:

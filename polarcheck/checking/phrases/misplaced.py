@@ -31,7 +31,12 @@ def cancel(machine: Machine) -> str:
 
 def early_cancel(trace: Trace, row: int) -> str:
     """The offset cancel that follows a start-up at once, with its line."""
-    return f"{cancel(trace.machine)} of line {int(trace.blocks.line[_next(trace.compensation.cancels, row)])}"
+    return f"{cancel(trace.machine)} of line {int(trace.blocks.line[next_cancel(trace, row)])}"
+
+
+def next_cancel(trace: Trace, row: int) -> int:
+    """The row of the next offset cancel."""
+    return _next(trace.compensation.cancels, row)
 
 
 def where_ramps_belong(trace: Trace, row: int) -> str:

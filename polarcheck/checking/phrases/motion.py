@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from polarcheck.checking.other_machine import OtherMachine
@@ -137,8 +139,17 @@ def _others(unpointed: Unpointed, index: int) -> str:
     return f"; {more} more coordinates of this section have none" if more > 0 else ""
 
 
-def travel(lengths: Lengths, machine: Machine, travel: Travel, row: int) -> str:
-    """Where a row goes beyond the travel, and where that ends."""
+class BeyondTravel(NamedTuple):
+    """An axis that leaves its travel: its form in messages, where it goes and where it may go [mm, X as a radius]."""
+
+    axis: str
+    form: str
+    value: float
+    limit: float
+
+
+def beyond_travel(machine: Machine, travel: Travel, row: int) -> BeyondTravel | None:
+    """The first axis that leaves its travel in a row."""
     limits = machine.limits
     ends = (
         ("X", "diameter", float(travel.most_x[row]), limits.x_maximum, 1),
@@ -148,9 +159,19 @@ def travel(lengths: Lengths, machine: Machine, travel: Travel, row: int) -> str:
     )
     for axis, form, value, limit, sign in ends:
         if np.isfinite(value) and sign * value > sign * limit + ROUNDING:
-            goes, ends_at = (in_row(length, lengths, row) for length in (value, limit))
-            return f"{axis} would go to {goes.beside(ends_at, form)}, its travel ends at {ends_at.beside(goes, form)}"
-    return ""
+            return BeyondTravel(axis, form, value, limit)
+    return None
+
+
+def travel(lengths: Lengths, machine: Machine, travel: Travel, row: int) -> str:
+    """Where a row goes beyond the travel, and where that ends."""
+    found = beyond_travel(machine, travel, row)
+    if found is None:
+        return ""
+    goes, ends = (in_row(length, lengths, row) for length in (found.value, found.limit))
+    return (
+        f"{found.axis} would go to {goes.beside(ends, found.form)}, its travel ends at {ends.beside(goes, found.form)}"
+    )
 
 
 def more_arcs(count: int) -> str:

@@ -101,13 +101,22 @@ def which_radius(tools: CalledTools, lengths: Lengths, machine: Machine, entry: 
 
 def x_changed_by(blocks: ExecutedBlocks, tools: CalledTools, lengths: Lengths, run: Run, row: int) -> str:
     """The word or the variable that sets X of a tool offset; else the wear of the job's table."""
+    word = x_word(blocks, run, row)
+    return word or f"the wear in X of the offset table, {in_row(x_wear(tools, lengths, row), lengths, row):length},"
+
+
+def x_word(blocks: ExecutedBlocks, run: Run, row: int) -> str:
+    """The word or the variable that sets X of a tool offset; empty for the wear of the job's table."""
     if row in run.assigned:
         return run.assigned[row].name
     address = next((address for address in "XU" if blocks.has(address)[row]), "")
-    if blocks.listed("data_input")[row] and address:
-        return written(blocks, run, row, address)
-    wear = tools.of_job[int(tools.offset_number[row])].x_wear * np.broadcast_to(lengths.job_scale, len(blocks))[row]
-    return f"the wear in X of the offset table, {in_row(float(wear), lengths, row):length},"
+    return written(blocks, run, row, address) if blocks.listed("data_input")[row] and address else ""
+
+
+def x_wear(tools: CalledTools, lengths: Lengths, row: int) -> float:
+    """The wear in X of the job's table [mm]."""
+    of_job = tools.of_job[int(tools.offset_number[row])]
+    return float(of_job.x_wear * np.broadcast_to(lengths.job_scale, len(tools.tool))[row])
 
 
 def offset_of_block(tools: CalledTools, offsets: ToolOffsets, row: int) -> int | str:

@@ -5,6 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from msgspec import UNSET
+
+from polarcheck.finding import UNREADABLE
 from polarcheck.reading.excerpt import visible
 from polarcheck.reports import SEVERITIES, counted
 from polarcheck.reports.ci.paths import from_root
@@ -65,9 +68,11 @@ def _lines(report: Report, background: Background) -> Iterator[str]:
     if gaps:
         yield "\n| not evaluated | where |\n|---|---|\n"
     yield from (f"| {_cell(reason)} | {_cell(path)} |\n" for reason, path in gaps)
-    if background.failures:
+    failures = [f"{file.path}: {file.reason}" for file in report.files if file.verdict == UNREADABLE]
+    failures += [report.interrupted.reason] if report.interrupted is not UNSET else []
+    if failures:
         yield "\n| not checked |\n|---|\n"
-    yield from (f"| {_cell(failure)} |\n" for failure in background.failures)
+    yield from (f"| {_cell(failure)} |\n" for failure in failures)
 
 
 def _cell(text: str) -> str:

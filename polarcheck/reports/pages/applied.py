@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import msgspec
@@ -38,13 +38,21 @@ def text(path: str, heads: Sequence[str], rows: Iterable[Row]) -> str:
     return "".join(f"{visible(line)}\n" for line in [f"# {path}", *(f"# {head}" for head in heads), "", *shown])
 
 
-def as_json(path: str, files: Sequence[str], entries: Sequence[str], excluded: bool, rows: Iterable[Row]) -> str:
-    """Return the same as JSON; null is unknown."""
+def as_json(
+    path: str,
+    files: Sequence[str],
+    entries: Sequence[str],
+    excluded: bool,
+    rows: Iterable[Row],
+    left_behind: Mapping[str, Any] | None = None,
+) -> str:
+    """Return the same as JSON; null is unknown. left_behind: a job file above that does not apply, with its keys."""
     document = {
         "path": path,
         "files": list(files),
         "programs": list(entries),
         "excluded": excluded,
+        "not_taken_over": left_behind,
         "values": [{**row._asdict(), "value": None if _is_unknown(row.value) else row.value} for row in rows],
     }
     return msgspec.json.format(msgspec.json.encode(document), indent=2).decode() + "\n"

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import msgspec
 
+from polarcheck.checking.vocabulary import kinds
 from polarcheck.machines import profiles
 from polarcheck.machines.machine import Machine
 from polarcheck.machines.own_language import shown
@@ -93,6 +94,7 @@ def catalogue_json(rules: Mapping[str, Rule]) -> str:
             "severity": rule.severity.name.lower(),
             "title": rule.title,
             "source": rule.source,
+            "values": {name: kind.value for name, kind in kinds(rule.values).items()},
         }
         for rule in rules.values()
     ]

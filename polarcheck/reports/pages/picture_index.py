@@ -7,6 +7,7 @@ from collections.abc import Iterable, Sequence
 from html import escape
 from typing import TYPE_CHECKING, NamedTuple
 
+from polarcheck.finding import UNREADABLE
 from polarcheck.pictures.library import FILE_NAME
 from polarcheck.reading.excerpt import visible
 from polarcheck.reports import SEVERITIES, counted
@@ -25,7 +26,7 @@ _HEADS = ("Program", "Verdict", "Findings", "Polar sections")
 _STYLE = (
     "body{font:15px/1.45 system-ui,sans-serif;margin:2em auto;max-width:70em;padding:0 1em}"
     "table{border-collapse:collapse;width:100%}th,td{border-bottom:1px solid #bbb;padding:.3em .6em;text-align:left}"
-    "tr{break-inside:avoid}.fail{font-weight:bold}.unverified{font-style:italic}"
+    "tr{break-inside:avoid}.fail,.unreadable{font-weight:bold}.unverified{font-style:italic}"
 )
 
 
@@ -33,11 +34,11 @@ class Entry(NamedTuple):
     """
     A program in the table.
 
-    page: the name of its page.
+    page: the name of its page; empty if it has none.
     path: the path of the program.
-    kind: the verdict: pass, fail, unverified.
+    kind: the verdict: pass, fail, unverified, unreadable.
     verdict: the verdict in words.
-    findings: the numbers of findings, in words.
+    findings: the numbers of findings, in words; of an unreadable file the reason.
     sections: the number of polar sections.
     """
 
@@ -51,6 +52,8 @@ class Entry(NamedTuple):
 
 def entry(file: FileReport, page: str) -> Entry:
     """Return the entry of a file."""
+    if file.verdict == UNREADABLE:
+        return Entry(page, file.path, file.verdict, verdict(file), visible(file.reason or ""), 0)
     severities = [finding.severity for finding in file.findings]
     facts = [counted(severities.count(severity), severity) for severity in SEVERITIES if severity in severities]
     return Entry(page, file.path, file.verdict, verdict(file), ", ".join(facts) or "none", file.sections)
@@ -92,8 +95,10 @@ def index(entries: Sequence[Entry]) -> str:
 
 
 def _row(entry: Entry) -> str:
+    name = escape(visible(entry.path))
+    name = f'<a href="{entry.page}">{name}</a>' if entry.page else name
     return (
-        f'<tr><td><a href="{entry.page}">{escape(visible(entry.path))}</a></td>'
+        f"<tr><td>{name}</td>"
         f'<td class="{escape(entry.kind)}">{escape(entry.verdict)}</td>'
-        f"<td>{entry.findings}</td><td>{entry.sections}</td></tr>"
+        f"<td>{escape(entry.findings)}</td><td>{entry.sections}</td></tr>"
     )

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from itertools import chain
 from typing import TYPE_CHECKING
 
+from polarcheck.finding import UNREADABLE
 from polarcheck.pictures.picture import Drawn, FindingPicture, Picture, SectionPicture
 from polarcheck.reports import SEVERITIES, counted
 from polarcheck.reports.pages.resting import resting
@@ -37,6 +38,8 @@ def picture(file: FileReport, background: Background) -> Picture:
 
 
 def _summary(file: FileReport) -> str:
+    if file.verdict == UNREADABLE:
+        return file.reason or ""
     severities = [finding.severity for finding in file.findings]
     facts = [counted(severities.count(severity), severity) for severity in SEVERITIES if severity in severities] or [
         "no findings"

@@ -7,20 +7,30 @@ from typing import Any
 
 import msgspec
 
-from polarcheck.finding import SILENCED_BY, Report, Severity
+from polarcheck.checking.vocabulary import VOCABULARY, Kind
+from polarcheck.finding import SCHEMA, SILENCED_BY, VERDICTS, Report, Severity
 from polarcheck.machines.job import Job
 from polarcheck.machines.machine import Machine, meanings
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
-VERDICTS = ("pass", "fail", "unverified")
 
 Schema = dict[str, Any]
+
+#: The JSON types of the values that have no unit.
+_TYPES: dict[Kind | None, str | list[str]] = {
+    Kind.COUNT: "integer",
+    Kind.LINE: "integer",
+    Kind.NUMBER: "integer",
+    Kind.OFFSET: ["integer", "string"],
+    Kind.TEXT: "string",
+}
 
 
 def schema(name: str) -> Schema:
     """Return the schema of `report`, `job`, `machine` or `feeds`."""
     content = {"report": _report, "job": _job, "machine": _machine, "feeds": _feeds}[name]()
-    return {"$schema": DIALECT, "$id": f"urn:polarcheck:{name}:1", **content}
+    number = SCHEMA if name == "report" else 1
+    return {"$schema": DIALECT, "$id": f"urn:polarcheck:{name}:{number}", **content}
 
 
 def text(name: str) -> str:
@@ -32,12 +42,23 @@ def _report() -> Schema:
     content: Schema = _without_nan(msgspec.json.schema(Report))
     definitions = content["$defs"]
     for kind in ("Finding", "Silenced"):
+        definitions[kind]["properties"]["values"] = _values()
         definitions[kind]["properties"]["severity"] = {"enum": [level.name.lower() for level in reversed(Severity)]}
     definitions["Silenced"]["properties"]["by"] = {"enum": list(SILENCED_BY)}
     definitions["FileReport"]["properties"]["verdict"] = {"enum": list(VERDICTS)}
     del definitions["FileReport"]["properties"]["makes"]
-    definitions["Report"]["properties"]["schema"] = {"const": 1}
+    definitions["Report"]["properties"]["schema"] = {"const": SCHEMA}
     return content
+
+
+def _values() -> Schema:
+    """Return the schema of the values of a finding: each name with its type and unit."""
+    properties: Schema = {}
+    for name, (kind, meaning) in VOCABULARY.items():
+        types = _TYPES.get(kind)
+        unit = f" [{kind.value}]" if kind and types is None else ""
+        properties[name] = {"type": types or "number", "description": f"{meaning}{unit}"}
+    return {"type": "object", "properties": properties, "additionalProperties": False, "default": {}}
 
 
 def _feeds() -> Schema:

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from polarcheck.checking.rule import load_all
 from polarcheck.reading import files
-from polarcheck.reports.pages import controls, machine_pages, rule_pages
+from polarcheck.reports.pages import controls, machine_pages, rule_pages, values
 
 #: Folders below docs/ that hold nothing else.
 FOLDERS = ("rules", "machines")
@@ -20,7 +20,13 @@ FOLDERS = ("rules", "machines")
 
 def pages() -> dict[str, str]:
     """Return the text of every page by its path below docs/."""
-    return {"controls.md": controls.text(), **dict(rule_pages.pages(load_all())), **dict(machine_pages.pages())}
+    rules = load_all()
+    return {
+        "controls.md": controls.text(),
+        "values.md": values.text(rules),
+        **dict(rule_pages.pages(rules)),
+        **dict(machine_pages.pages()),
+    }
 
 
 def write(folder: Path) -> None:

@@ -15,6 +15,7 @@ from polarcheck.checking.rule import (
 @rule(
     ERROR,
     "offset cancel {fault}",
+    values={"length": "ramp_length", "radius": "cutter_radius", "length_needed": "cutter_radius"},
     at=("compensation_off",),
     needs=("compensation.radius", "path.length"),
     where="ramps.cancel_judged_by_radius",

@@ -7,6 +7,12 @@ from polarcheck.checking.rule import WARNING, Coverage, Mask, rule
     WARNING,
     "the contour ends at {contour_end}, {coverage.gap:length} before it is closed: write {contour_start} here, or "
     "{contour_end} in line {line_of_start}, where it begins",
+    values={
+        "gap": "coverage.gap",
+        "plane_x": "path.end.real",
+        "plane_c": "path.end.imag",
+        "other_line": "line_of_start",
+    },
     once="loop",
     worst="coverage.gap",
     subject="compensation",

@@ -6,6 +6,7 @@ from polarcheck.checking.rule import ERROR, CalledTools, Entry, Mask, ModalState
 @rule(
     ERROR,
     "{D} calls no radius on a lathe: R comes with the tool offset; delete it, and call the offset with T, as in T0808",
+    values={"word": "D"},
     at=("D",),
 )
 def d_word_on_lathe(modal: ModalStates, tools: CalledTools, mode: PolarMode, entry: Entry) -> Mask:

@@ -7,6 +7,7 @@ from polarcheck.checking.rule import ERROR, CutterCompensation, Mask, ToolCenter
     ERROR,
     "arc of {ramps.arc_radius:length/compensation.radius} with the tool on its inner side; "
     "R {compensation.radius:length/ramps.arc_radius} must be smaller",
+    values={"arc_radius": "ramps.arc_radius", "radius": "cutter_radius"},
     at=("arc_clockwise", "arc_counterclockwise", "R", "I", "J"),
     needs=("compensation.radius",),
     where="ramps.compensated",

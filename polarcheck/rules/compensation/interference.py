@@ -6,6 +6,7 @@ from polarcheck.checking.rule import ERROR, Mask, Ramps, ToolCenter, rule
 @rule(
     ERROR,
     "tool center would run backwards here: {misfit}",
+    values={"radius": "cutter_radius"},
     needs=("compensation.radius",),
     where="ramps.compensated",
     once="mesh",

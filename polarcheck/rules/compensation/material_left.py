@@ -3,7 +3,18 @@ from __future__ import annotations
 from polarcheck.checking.rule import WARNING, Coverage, Mask, rule
 
 
-@rule(WARNING, "{left}", once="loop", worst="coverage.height")
+@rule(
+    WARNING,
+    "{left}",
+    values={
+        "height": "height_left",
+        "radius": "radius_of_tool",
+        "plane_x": "place_left.real",
+        "plane_c": "place_left.imag",
+    },
+    once="loop",
+    worst="coverage.height",
+)
 def material_left(coverage: Coverage) -> Mask:
     """
     Material that no tool takes off, though the contour asks for it.

@@ -6,6 +6,7 @@ from polarcheck.checking.rule import ERROR, Mask, Ramps, ToolCenter, rule
 @rule(
     ERROR,
     "paths of the tool center in this block and the next do not meet with R {compensation.radius:length}",
+    values={"radius": "cutter_radius"},
     needs=("compensation.radius",),
     where="ramps.compensated",
     doubts=(("metal", "narrow loop"),),

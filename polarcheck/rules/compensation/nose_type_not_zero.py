@@ -6,6 +6,7 @@ from polarcheck.checking.rule import ERROR, CutterCompensation, Mask, ToolOffset
 @rule(
     ERROR,
     "offset {offset} {has_nose} nose type T{offsets.nose:.0f}; for a mill it must be {allowed}",
+    values={"offset": "offset", "nose": "offsets.nose"},
     at=("compensation_left", "compensation_right"),
     once="tool call",
     needs=("offsets.nose",),

@@ -12,7 +12,12 @@ from polarcheck.checking.rule import (
 )
 
 
-@rule(ERROR, "tool offset changed in the polar mode by {changed_by}; write it {outside}", at=("T", "D", "data_input"))
+@rule(
+    ERROR,
+    "tool offset changed in the polar mode by {changed_by}; write it {outside}",
+    values={"changed_by": "changed_by"},
+    at=("T", "D", "data_input"),
+)
 def offset_changed_in_polar(
     blocks: ExecutedBlocks, mode: PolarMode, compensation: CutterCompensation, mode_words: ModeWords, machine: Machine
 ) -> Mask:

@@ -6,6 +6,14 @@ from polarcheck.checking.rule import ERROR, Mask, Overcuts, rule
 @rule(
     ERROR,
     "the cutter goes {overcuts.depth:length} deep into {place}{way_out}",
+    values={
+        "depth": "overcuts.depth",
+        "radius": "cutter_radius",
+        "highest_radius": "radius_of_room",
+        "plane_x": "place_of_overcut.real",
+        "plane_c": "place_of_overcut.imag",
+        "other_line": "line_of_overcut",
+    },
     needs=("compensation.radius",),
     where="compensation.offset_mode",
     worst="overcuts.depth",

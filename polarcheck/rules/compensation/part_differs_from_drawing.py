@@ -8,6 +8,13 @@ from polarcheck.checking.rule import ERROR, Deviations, Mask, rule
     ERROR,
     "the part differs from {drawing} by {deviations.largest:length/deviations.tolerance}, "
     "{deviations.tolerance:length} is allowed: {deviation}",
+    values={
+        "drawing": "drawing",
+        "largest": "deviations.largest",
+        "tolerance": "deviations.tolerance",
+        "too_much": "too_much",
+        "cut_away": "cut_away",
+    },
     needs=("compensation.radius",),
     where="deviations.where",
     follows={"file": (*FAULTS_OF_CONTOUR, *FAULTS_OF_METAL)},

@@ -7,6 +7,7 @@ from polarcheck.checking.rule import WARNING, CutterCompensation, Mask, Ramps, r
 @rule(
     WARNING,
     "{side} while {before} is in force; write G40 with a move between them",
+    values={"code": "side", "other_code": "before"},
     at=("compensation_left", "compensation_right"),
     subject="",
     doubts=(("compensation", UNIT),),

@@ -7,6 +7,7 @@ from polarcheck.checking.rule import WARNING, Mask, Mirrored, rule
     WARNING,
     "{side_in_force} has the cutter on the wrong side: both ramps come through the part, on the other side the whole "
     "contour is free; {remedy}{or_other_sense}",
+    values={"code": "side", "radius": "cutter_radius"},
     at=("compensation_left", "compensation_right"),
     doubts=(("compensation", "compensation"),),
 )

@@ -7,6 +7,14 @@ from polarcheck.checking.rule import ERROR, Mask, Slots, rule
     ERROR,
     "{room} for a cutter of {slots.diameter:length}: it goes {slots.depth:length} deep into {opposite}; "
     "take {smaller}, or write the walls farther apart",
+    values={
+        "diameter": "slots.diameter",
+        "depth": "slots.depth",
+        "width": "width_of_slot",
+        "plane_x": "place_of_slot.real",
+        "plane_c": "place_of_slot.imag",
+        "other_line": "line_of_slot",
+    },
     needs=("compensation.radius",),
     where="slots.compared",
     worst="slots.depth",

@@ -6,6 +6,7 @@ from polarcheck.checking.rule import ERROR, CutterCompensation, Mask, Programmed
 @rule(
     ERROR,
     "{side} begins on an arc; begin it in a G1 block before the arc",
+    values={"code": "side"},
     at=("compensation_left", "compensation_right", "arc_clockwise", "arc_counterclockwise"),
     subject="move",
     doubts=(("metal", "block"),),

@@ -6,6 +6,13 @@ from polarcheck.checking.rule import ERROR, Hits, Slots, rule
 @rule(
     ERROR,
     "the ramp goes {depth:length} deep into {swept}{ramp_at_rest}",
+    values={
+        "depth": "depth",
+        "radius": "cutter_radius",
+        "plane_x": "place_swept.real",
+        "plane_c": "place_swept.imag",
+        "other_line": "line_swept",
+    },
     at=("compensation_off", "compensation_left", "compensation_right"),
     once="loop",
     worst="slots.ramp_depth",

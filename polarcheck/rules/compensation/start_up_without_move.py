@@ -6,6 +6,7 @@ from polarcheck.checking.rule import NOTE, Mask, Ramps, rule
 @rule(
     NOTE,
     "{side} without a move on the plane: the offset begins with that of line {start_up}; write {side} there",
+    values={"code": "side", "other_line": "start_up"},
     at=("compensation_left", "compensation_right"),
     is_advice=True,
     subject="",

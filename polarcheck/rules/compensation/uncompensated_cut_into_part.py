@@ -6,6 +6,13 @@ from polarcheck.checking.rule import ERROR, Hits, UncompensatedCuts, graded, rul
 @rule(
     ERROR,
     "{bare}{from_point} {goes} {cut_part}; {way_round}",
+    values={
+        "depth": "uncompensated_cuts.depth",
+        "plane_x": "place_of_cut.real",
+        "plane_c": "place_of_cut.imag",
+        "z": "path.z",
+        "other_line": "line_of_cut",
+    },
     worst="uncompensated_cuts.graveness",
     once="loop",
     follows={

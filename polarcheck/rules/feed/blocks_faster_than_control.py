@@ -9,6 +9,7 @@ from polarcheck.geometry.tolerances import SHARE
     "a block takes {feeds.time_of_series:.3g} s here, ten in a row, and {machine.title} needs "
     "{machine.limits.block_time:g} s for one: F falls to {feeds.feed_of_series:highest}, and the tool may halt between "
     "blocks",
+    values={"time": "feeds.time_of_series", "limit": "machine.limits.block_time", "highest_feed": "feed_of_series"},
     once="section",
     worst="feeds.blocks_too_fast",
     follows={"section": ("feed-implausible",)},

@@ -8,6 +8,13 @@ from polarcheck.checking.rule import WARNING, Center, Feedrate, Feeds, Mask, rul
     "{rotary} axis would need {tool_center.c_acceleration:whole/machine.limits.c_acceleration} deg/s2, {machine.title} "
     "has {machine.limits.c_acceleration:whole/tool_center.c_acceleration}; "
     "nearest distance {tool_center.nearest:length}, highest F here: {feeds.allowed_by_acceleration:highest}",
+    values={
+        "c_acceleration": "tool_center.c_acceleration",
+        "limit": "machine.limits.c_acceleration",
+        "feed": "feedrate.feed",
+        "nearest": "tool_center.nearest",
+        "highest_feed": "feed_by_c_acceleration",
+    },
     at=("F",),
     needs=("tool_center.c_acceleration",),
     where="feeds.is_limited_in_acceleration",

@@ -7,6 +7,14 @@ from polarcheck.checking.rule import ERROR, WARNING, Center, Hits, Machine, Tool
     ERROR,
     "{rotary} axis would turn at {tool_center.c_feed:whole/tool_center.c_feed_limit} deg/min with {feed_word}, "
     "{verdict}; nearest distance {tool_center.nearest:length}; {advice}",
+    values={
+        "c_feed": "tool_center.c_feed",
+        "limit": "machine.limits.c_feed",
+        "feed": "feedrate.feed",
+        "nearest": "tool_center.nearest",
+        "highest_feed": "feed_by_c_feed",
+        "slowed_feed": "feed_by_override",
+    },
     at=("F",),
     needs=("tool_center.c_feed",),
     where="path.cuts",

@@ -3,7 +3,12 @@ from __future__ import annotations
 from polarcheck.checking.rule import NOTE, WARNING, Feedrate, Feeds, Hits, Machine, rule
 
 
-@rule(WARNING, "F is {feed:feed/limit}, {machine.title} {clamps} {limit:feed/feed} in the polar mode", at=("F",))
+@rule(
+    WARNING,
+    "F is {feed:feed/limit}, {machine.title} {clamps} {limit:feed/feed} in the polar mode",
+    values={"feed": "feed", "limit": "limit"},
+    at=("F",),
+)
 def feed_above_polar_limit(feedrate: Feedrate, feeds: Feeds, machine: Machine) -> Hits:
     """
     F above the highest feed of the polar mode.

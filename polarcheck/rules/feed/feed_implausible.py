@@ -6,6 +6,7 @@ from polarcheck.checking.rule import WARNING, Feeds, Mask, rule
 @rule(
     WARNING,
     "{slow_feed} here{of_f_word}: this block alone takes {long_time}; {instead}",
+    values={"feed": "feedrate.feed_number", "time": "feeds.block_time"},
     at=("F", "feed_per_minute", "line", "arc_clockwise", "arc_counterclockwise"),
     once="program",
     worst="feeds.block_time",

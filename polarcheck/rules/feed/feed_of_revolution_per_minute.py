@@ -6,6 +6,7 @@ from polarcheck.checking.rule import WARNING, Feeds, Mask, ProgrammedPath, rule
 @rule(
     WARNING,
     "{feedrate.feed:feed} here: {left_over}; write an F per minute",
+    values={"feed": "feedrate.feed"},
     at=("F", "feed_per_minute", "line", "arc_clockwise", "arc_counterclockwise"),
     once="feed",
 )

@@ -7,6 +7,7 @@ from polarcheck.checking.rule import NOTE, FeedRanges, Feeds, Mask, rule
     NOTE,
     "{feed_word} is {feedrate.programmed_feed:feed/feed_ranges.nearest_limit}, {against_ranges}; recommended in the "
     "polar mode: {recommended}",
+    values={"feed": "feedrate.programmed_feed", "limit": "feed_ranges.nearest_limit"},
     at=("F",),
     follows={"feed": ("c-feed-above-limit", "feed-of-revolution-per-minute")},
 )

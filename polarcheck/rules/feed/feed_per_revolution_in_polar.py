@@ -7,6 +7,7 @@ from polarcheck.machines.modal import FeedMode
 @rule(
     NOTE,
     "{of_turns} of a spindle that turns as the {rotary} axis now; {to_per_minute}",
+    values={"feed_per_revolution": "feedrate.feed_number"},
     at=("feed_per_revolution", "line", "arc_clockwise", "arc_counterclockwise"),
     follows={"block": ("feed-missing-in-polar",)},
 )

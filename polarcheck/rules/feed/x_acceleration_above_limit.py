@@ -8,6 +8,13 @@ from polarcheck.checking.rule import WARNING, Center, Feedrate, Feeds, Mask, rul
     "{linear} axis would need {tool_center.x_acceleration:whole/machine.limits.x_acceleration} mm/s2, {machine.title} "
     "has {machine.limits.x_acceleration:whole/tool_center.x_acceleration}; "
     "nearest distance {tool_center.nearest:length}, highest F here: {feeds.allowed_by_x_acceleration:highest}",
+    values={
+        "x_acceleration": "tool_center.x_acceleration",
+        "limit": "machine.limits.x_acceleration",
+        "feed": "feedrate.feed",
+        "nearest": "tool_center.nearest",
+        "highest_feed": "feed_by_x_acceleration",
+    },
     at=("F",),
     needs=("tool_center.x_acceleration",),
     where="feeds.is_limited_in_x_acceleration",

@@ -7,6 +7,7 @@ from polarcheck.checking.rule import NOTE, Faults, Mask, rule
     NOTE,
     "{expression} mixes {shown} with other operators: this control takes AND with * and /, OR and XOR with +"
     " and -, others take them last; write the brackets",
+    values={"expression": "expression"},
     over="faults",
 )
 def ambiguous_precedence(faults: Faults) -> Mask:

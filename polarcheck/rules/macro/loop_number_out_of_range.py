@@ -6,6 +6,7 @@ from polarcheck.checking.rule import ERROR, Faults, Mask, rule
 @rule(
     ERROR,
     "{shown}: DO and END take the numbers 1 to {machine.macro.loop_numbers}; the control stops here",
+    values={"limit": "machine.macro.loop_numbers"},
     over="faults",
 )
 def loop_number_out_of_range(faults: Faults) -> Mask:

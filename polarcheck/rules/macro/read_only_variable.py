@@ -3,7 +3,12 @@ from __future__ import annotations
 from polarcheck.checking.rule import ERROR, Faults, Mask, rule
 
 
-@rule(ERROR, "{variable} cannot be assigned: {who_writes}; the control stops here", over="faults")
+@rule(
+    ERROR,
+    "{variable} cannot be assigned: {who_writes}; the control stops here",
+    values={"variable": "variable"},
+    over="faults",
+)
 def read_only_variable(faults: Faults) -> Mask:
     """
     Assignment to a variable that only the control writes.

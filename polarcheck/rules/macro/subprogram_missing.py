@@ -3,7 +3,13 @@ from __future__ import annotations
 from polarcheck.checking.rule import WARNING, Faults, Mask, rule
 
 
-@rule(WARNING, "{shown} {reason}", over="faults", follows={"block": ("too-many-digits",)})
+@rule(
+    WARNING,
+    "{shown} {reason}",
+    values={"program": "missing_program"},
+    over="faults",
+    follows={"block": ("too-many-digits",)},
+)
 def subprogram_missing(faults: Faults) -> Mask:
     """
     Called program that is not found.

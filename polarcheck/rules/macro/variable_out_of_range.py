@@ -3,7 +3,7 @@ from __future__ import annotations
 from polarcheck.checking.rule import ERROR, Faults, Mask, rule
 
 
-@rule(ERROR, "{variable} does not exist; this control has {ranges}", over="faults")
+@rule(ERROR, "{variable} does not exist; this control has {ranges}", values={"variable": "variable"}, over="faults")
 def variable_out_of_range(faults: Faults) -> Mask:
     """
     Variable that does not exist.

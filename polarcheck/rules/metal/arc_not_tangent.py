@@ -6,6 +6,13 @@ from polarcheck.checking.rule import WARNING, Arcs, Mask, Tangency, rule
 @rule(
     WARNING,
     "{written_arc} turns a corner of {tangency.corner:whole} deg at an end of the arc; {needed_arc} would {fit_of_arc}",
+    values={
+        "corner": "tangency.corner",
+        "arc_radius": "radius_of_arc",
+        "arc_radius_needed": "radius_needed",
+        "word": "written_arc",
+        "word_needed": "needed_arc",
+    },
     at=("R", "I", "J"),
     once="misfit",
     subject="side",

@@ -7,6 +7,7 @@ from polarcheck.checking.rule import WARNING, EntryAngles, Mask, rule
     WARNING,
     "{rotary} stands where the section before has left it, {turned} from its {switch}: nobody has positioned it, and "
     "this section comes out turned by as much; {to_position}",
+    values={"turned": "turned_by", "c_angle": "angle_at_entry"},
     over="sections",
     at=("on",),
     once="program",

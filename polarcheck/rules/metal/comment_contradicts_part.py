@@ -3,7 +3,12 @@ from __future__ import annotations
 from polarcheck.checking.rule import WARNING, Hits, PartComments, rule
 
 
-@rule(WARNING, "{comment_on_part} states {stated:length}; {what_is_made}", subject="metal")
+@rule(
+    WARNING,
+    "{comment_on_part} states {stated:length}; {what_is_made}",
+    values={"stated": "stated", "made": "size_made"},
+    subject="metal",
+)
 def comment_contradicts_part(part_comments: PartComments) -> Hits:
     """
     Another shape, size or depth than the comment of this section or tool states, or a bar smaller than the part.

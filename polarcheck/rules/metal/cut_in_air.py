@@ -7,6 +7,7 @@ from polarcheck.checking.rule import WARNING, AirCuts, Hits, rule
 @rule(
     WARNING,
     "{in_air}",
+    values={"z": "path.z"},
     once="section",
     subject="",
     follows={

@@ -7,6 +7,7 @@ from polarcheck.checking.rule import WARNING, Increments, Mask, rule
 @rule(
     WARNING,
     "the increments of this contour do not add up: it ends {increments.gap:length} beside its start, {drift}",
+    values={"gap": "increments.gap", "plane_x": "increments.begins.real", "plane_c": "increments.begins.imag"},
     once="loop",
     worst="increments.gap",
     subject="side",

@@ -6,6 +6,7 @@ from polarcheck.checking.rule import WARNING, Hits, Regularity, rule
 @rule(
     WARNING,
     "{misfit}: {remedy} it would be {as_meant}",
+    values={"word": "word_of_correction", "word_needed": "corrected_words"},
     subject="",
     doubts=(("position", "loop"),),
     follows={

@@ -6,6 +6,7 @@ from polarcheck.checking.rule import WARNING, Mask, PassEnds, rule
 @rule(
     WARNING,
     "the pass begins outside the bar ({bar}) and ends inside it, at {end_of_pass}: metal stays beyond its end",
+    values={"stock": "bar.known.smallest", "plane_x": "path.end.real", "plane_c": "path.end.imag"},
     subject="metal",
     once="section",
     follows={"compensation": ("start-up-sweeps-contour", "nearly-regular-contour", "passes-differ")},

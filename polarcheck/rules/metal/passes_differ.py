@@ -7,6 +7,7 @@ from polarcheck.checking.rule import WARNING, Mask, PassDifferences, rule
 @rule(
     WARNING,
     "{pass_difference}; all else in this pass is as in {other_pass}",
+    values={"difference": "distance_of_passes", "other_line": "line_of_other_pass"},
     subject="side",
     follows={"twin": FAULTS_OF_CONTOUR},
 )

@@ -7,6 +7,7 @@ from polarcheck.checking.rule import WARNING, Hits, Machine, PolarMode, RapidCon
     WARNING,
     "rapid traverse along the contour at Z{tip}{more}: the cutter goes through what it should mill; write {line_code} "
     "with an F",
+    values={"z": "path.z"},
     once="section",
     subject="",
     follows={"section": ("rapid-in-polar", "degrees-in-polar")},

@@ -7,6 +7,12 @@ from polarcheck.checking.rule import WARNING, Mask, MisplacedRamps, rule
     WARNING,
     "the start-up ends at {ramp_end}, and the contour at {contour_end_there}: with {x_meant} here, or {x_of_ramp} in "
     "line {line_of_end}, the contour would be closed; as it stands the ramp {leads_where}",
+    values={
+        "plane_x": "path.end.real",
+        "plane_c": "path.end.imag",
+        "x_needed": "x_of_contour",
+        "other_line": "line_of_end",
+    },
     at=("X", "U"),
     once="loop",
     subject="",

@@ -3,7 +3,12 @@ from __future__ import annotations
 from polarcheck.checking.rule import WARNING, Hits, ToolComments, rule
 
 
-@rule(WARNING, "{T} calls tool {tools.tool:whole}, the comment beside it names T{named}: {quoted}", at=("T",))
+@rule(
+    WARNING,
+    "{T} calls tool {tools.tool:whole}, the comment beside it names T{named}: {quoted}",
+    values={"tool": "tools.tool", "tool_named": "named", "comment": "quoted"},
+    at=("T",),
+)
 def tool_contradicts_comment(tool_comments: ToolComments) -> Hits:
     """
     Another tool is called than the comment names.

@@ -9,6 +9,12 @@ from polarcheck.checking.rule import ERROR, Arcs, Hits, Machine, rule
     "the arc starts {arcs.start_radius:length/arcs.end_radius} from its center and "
     "ends {arcs.end_radius:length/arcs.start_radius} from it; "
     "{tolerance:length} of difference is allowed",
+    values={
+        "difference": "difference_of_radii",
+        "start_radius": "arcs.start_radius",
+        "end_radius": "arcs.end_radius",
+        "tolerance": "tolerance",
+    },
     at=("X", "U", "C", "H", "I", "J"),
     needs=("arcs.end_radius",),
     where="arcs.by_center",

@@ -7,6 +7,7 @@ from polarcheck.checking.rule import ERROR, Arcs, Hits, PlaneAxes, ProgrammedPat
 @rule(
     ERROR,
     "{word} is not of the polar plane; the center is {center}",
+    values={"word": "word"},
     subject="",
     doubts=NO_SUCH_ARC,
     follows={"block": ("arc-off-polar-plane",), "section": ("linear-axis-never-programmed",)},

@@ -4,7 +4,14 @@ from polarcheck.checking.rule import ERROR, Machine, Mask, ProgrammedPath, Trave
 from polarcheck.geometry.tolerances import ROUNDING
 
 
-@rule(ERROR, "{travel}", at=("X", "U", "C", "H", "Z", "W"), needs=("travel.most_x",), where="travel.is_limited_in_x")
+@rule(
+    ERROR,
+    "{travel}",
+    values={"axis": "axis_of_travel", "position": "position", "limit": "end_of_travel"},
+    at=("X", "U", "C", "H", "Z", "W"),
+    needs=("travel.most_x",),
+    where="travel.is_limited_in_x",
+)
 def travel_limit(path: ProgrammedPath, travel: Travel, machine: Machine) -> Mask:
     """
     Move beyond the travel of X or Z.

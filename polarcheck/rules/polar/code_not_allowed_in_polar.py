@@ -6,6 +6,7 @@ from polarcheck.checking.rule import ERROR, Hits, Machine, ModeWords, graded, ru
 @rule(
     ERROR,
     "{codes} cannot be used in the polar mode; write it {where}",
+    values={"code": "codes"},
     follows={"block": ("incremental-word-of-other-code-system", "polar-switch-unknown")},
 )
 def code_not_allowed_in_polar(mode_words: ModeWords, machine: Machine) -> Hits:

@@ -6,6 +6,7 @@ from polarcheck.checking.rule import ERROR, Infeed, Mask, rule
 @rule(
     ERROR,
     "{E} asks for passes around the contour, which ends {infeed.gap:length} from where it begins: it must be closed",
+    values={"gap": "infeed.gap", "word": "E"},
     at=("E",),
     subject="side",
 )

@@ -7,6 +7,7 @@ from polarcheck.checking.rule import WARNING, Mask, Procedure, rule
     WARNING,
     "contour with X and {rotary} outside the polar mode: {rotary} is an angle here, and X a place of the machine "
     "axis; write {switch_on} before it",
+    values={"code_needed": "switch_on"},
     once="tool call",
     follows={
         "tool call": ("polar-never-entered", "arc-outside-polar-mode"),

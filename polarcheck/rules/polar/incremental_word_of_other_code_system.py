@@ -3,7 +3,12 @@ from __future__ import annotations
 from polarcheck.checking.rule import ERROR, Hits, Machine, ModalStates, ModeWords, PlaneAxes, PolarMode, rule
 
 
-@rule(ERROR, "{meaning}; if the lathe runs another system, set control.g_code_system", once="program")
+@rule(
+    ERROR,
+    "{meaning}; if the lathe runs another system, set control.g_code_system",
+    values={"word": "word"},
+    once="program",
+)
 def incremental_word_of_other_code_system(
     modal: ModalStates, axes: PlaneAxes, mode: PolarMode, mode_words: ModeWords, machine: Machine
 ) -> Hits:

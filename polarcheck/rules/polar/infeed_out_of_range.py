@@ -3,7 +3,13 @@ from __future__ import annotations
 from polarcheck.checking.rule import ERROR, Hits, SwitchWords, graded, rule
 
 
-@rule(ERROR, "{E} beside {switch} {infeed_fault}", at=("E",), follows={"block": ("too-many-digits",)})
+@rule(
+    ERROR,
+    "{E} beside {switch} {infeed_fault}",
+    values={"word": "E", "infeed": "infeed_taken"},
+    at=("E",),
+    follows={"block": ("too-many-digits",)},
+)
 def infeed_out_of_range(switch_words: SwitchWords) -> Hits:
     """
     Infeed that its word cannot hold.

@@ -6,6 +6,13 @@ from polarcheck.checking.rule import WARNING, Infeed, Mask, rule
 @rule(
     WARNING,
     "{infeed.unfit} of {infeed.passes} passes do not fit into the contour: {misfit_of_pass}",
+    values={
+        "unfit": "infeed.unfit",
+        "passes": "infeed.passes",
+        "allowance": "allowance_of_pass",
+        "radius": "radius_on_pass",
+        "other_line": "line_of_misfit",
+    },
     at=("E",),
     needs=("compensation.radius",),
     where="infeed.judged_by_radius",

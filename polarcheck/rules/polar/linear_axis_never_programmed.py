@@ -17,6 +17,7 @@ from polarcheck.checking.rule import (
     ERROR,
     "no {first_axis} word in this section, whose linear axis is {first_axis}: X moves beside the polar plane, not on "
     "it; write {first_axis}, or make X the linear axis",
+    values={"axis": "first_axis"},
     over="sections",
     at=("on",),
     doubts=SECTION_READ_OTHERWISE,

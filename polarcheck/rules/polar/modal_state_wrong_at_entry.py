@@ -6,6 +6,7 @@ from polarcheck.checking.rule import ERROR, Hits, ModalStates, PolarMode, graded
 @rule(
     ERROR,
     "{in_force} still in force at {switch}; write {ends} before it",
+    values={"code": "in_force", "code_needed": "ends"},
     at=("on",),
     once="modal state",
     follows={"modal state": ("code-not-allowed-in-polar",)},

@@ -7,6 +7,7 @@ from polarcheck.checking.rule import ERROR, ExecutedBlocks, Machine, Mask, ModeW
     ERROR,
     "{shifted_by} changes the coordinate system in the polar mode; its origin must stay the center of the spindle, "
     "so write {shifted_by} {outside}",
+    values={"code": "shifted_by"},
     at=(
         "data_input",
         "coordinate_setting",

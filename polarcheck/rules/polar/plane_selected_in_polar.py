@@ -6,6 +6,7 @@ from polarcheck.checking.rule import ERROR, Machine, Mask, ModeWords, rule
 @rule(
     ERROR,
     "{plane} in the polar mode: its plane is always that of {linear} and {virtual}; delete it or write it {outside}",
+    values={"code": "plane"},
     at=("plane_xy", "plane_zx", "plane_yz"),
 )
 def plane_selected_in_polar(mode_words: ModeWords, machine: Machine) -> Mask:

@@ -6,6 +6,7 @@ from polarcheck.checking.rule import ERROR, Entry, Mask, PolarMode, rule
 @rule(
     ERROR,
     "{plane} is in force at {switch}; {wanted} must be, write it before or right behind",
+    values={"code": "plane", "code_needed": "wanted"},
     at=("on",),
     once="plane",
 )

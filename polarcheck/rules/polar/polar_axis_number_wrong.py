@@ -3,7 +3,7 @@ from __future__ import annotations
 from polarcheck.checking.rule import ERROR, ExecutedBlocks, Hits, SwitchWords, rule
 
 
-@rule(ERROR, "{others} beside {switch}: {axis_fault}")
+@rule(ERROR, "{others} beside {switch}: {axis_fault}", values={"word": "others"})
 def polar_axis_number_wrong(blocks: ExecutedBlocks, switch_words: SwitchWords) -> Hits:
     """
     P or Q of G12.1 that gives no pair of axes.

@@ -6,6 +6,7 @@ from polarcheck.checking.rule import ERROR, Hits, OtherMode, graded, rule
 @rule(
     ERROR,
     "{begun_by} begins no polar mode on {machine.title}, where {on_of_this} does; {instead}{else_a_macro}",
+    values={"code": "begun_by"},
     once="program",
 )
 def polar_code_of_another_control(other_mode: OtherMode) -> Hits:

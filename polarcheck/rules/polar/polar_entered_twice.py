@@ -6,6 +6,7 @@ from polarcheck.checking.rule import WARNING, Mask, PlaneAxes, PolarMode, rule
 @rule(
     WARNING,
     "{switch} again: the polar mode is on since line {since}",
+    values={"code": "switch", "other_line": "since"},
     at=("on",),
     follows={"block": ("polar-switched-in-offset-mode",), "section": ("polar-never-left",)},
 )

@@ -7,6 +7,7 @@ from polarcheck.checking.rule import ERROR, Hits, PlaneAxes, Procedure, SwitchSl
     ERROR,
     "{switch} ends a polar mode that was never entered: {turned} as outside the mode, not on the contour; "
     "write {switch_on} before it",
+    values={"code": "switch", "other_line": "first_line_of_contour"},
     at=("off",),
     follows={"program": ("polar-switch-unknown",)},
 )

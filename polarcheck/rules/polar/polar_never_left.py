@@ -6,6 +6,7 @@ from polarcheck.checking.rule import ERROR, Mask, Sections, rule
 @rule(
     ERROR,
     "polar mode is never left: {missing_before}",
+    values={"other_line": "line_of_missing_end"},
     over="sections",
     at=("on",),
     follows={"program": ("endless-loop", "nesting-too-deep"), "section": ("polar-switch-unknown",)},

@@ -6,6 +6,7 @@ from polarcheck.checking.rule import ERROR, ExecutedBlocks, Hits, SwitchWords, r
 @rule(
     ERROR,
     "{others} beside {switch} is incremental: the shift of the center is taken in absolute words only, {absolute}",
+    values={"word": "others"},
 )
 def polar_shift_incremental(blocks: ExecutedBlocks, switch_words: SwitchWords) -> Hits:
     """

@@ -6,6 +6,7 @@ from polarcheck.checking.rule import ERROR, Hits, ModeWords, SwitchWords, rule
 @rule(
     ERROR,
     "{switch} shares its block with {others}; it must stand in a block of its own",
+    values={"code": "switch", "word": "others"},
     doubts=(("metal", "section"),),
 )
 def polar_switch_not_alone(mode_words: ModeWords, switch_words: SwitchWords) -> Hits:

@@ -3,7 +3,7 @@ from __future__ import annotations
 from polarcheck.checking.rule import WARNING, Hits, SwitchSlips, graded, rule
 
 
-@rule(WARNING, "{slip}")
+@rule(WARNING, "{slip}", values={"code_needed": "switch_meant"})
 def polar_switch_unknown(switch_slips: SwitchSlips) -> Hits:
     """
     Code that is meant to switch the polar mode and does not.

@@ -7,6 +7,7 @@ from polarcheck.machines.modal import Side
 @rule(
     ERROR,
     "{switch} while {side} is in force; G40 must be in force here",
+    values={"code": "side"},
     at=("on", "off"),
     once="section",
     doubts=(("compensation", "section"),),

@@ -21,6 +21,7 @@ _SEVERAL = 2
     ERROR,
     "no {virtual} word in this section: the tool moves along X alone, {what}; "
     "write {virtual} in every block that moves it",
+    values={"axis": "virtual"},
     over="sections",
     at=("on",),
     subject="",

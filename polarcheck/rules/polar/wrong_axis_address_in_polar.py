@@ -6,6 +6,7 @@ from polarcheck.checking.rule import ERROR, Hits, ModeWords, PolarMode, rule
 @rule(
     ERROR,
     "{word} is no coordinate of the polar plane: its second axis is {virtual} here{taken_by}",
+    values={"word": "word"},
     once="section",
     doubts=(("position", "loop"),),
     follows={"block": ("polar-entered-twice",)},

@@ -18,6 +18,7 @@ from polarcheck.machines.modal import Motion
 @rule(
     WARNING,
     "{others} in one block in the polar mode: {what_z_does}; write Z in a block of its own",
+    values={"word": "others"},
     at=("X", "U", "C", "H", "Y", "V", "Z", "W"),
 )
 def z_with_plane_axis(

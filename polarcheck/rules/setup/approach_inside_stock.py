@@ -7,6 +7,13 @@ from polarcheck.geometry.tolerances import ROUNDING
 @rule(
     ERROR,
     "X stands at {path.x:diameter/needed} at {switch}{since_x}; {to_clear} {needed:diameter/path.x} or more",
+    values={
+        "x": "path.x",
+        "x_needed": "needed",
+        "stock": "entry.stock_diameter",
+        "diameter": "offsets.cutter_diameter",
+        "clearance": "entry.clearance",
+    },
     at=("on",),
     needs=("offsets.cutter_diameter",),
     where="entry.approaches_stock",

@@ -3,7 +3,12 @@ from __future__ import annotations
 from polarcheck.checking.rule import WARNING, Mask, Spindles, rule
 
 
-@rule(WARNING, "the C axis is clamped here; write {release} before {switch}", once="section")
+@rule(
+    WARNING,
+    "the C axis is clamped here; write {release} before {switch}",
+    values={"code_needed": "release"},
+    once="section",
+)
 def c_axis_clamped_in_polar(spindles: Spindles) -> Mask:
     """
     Contour with the C axis clamped.

@@ -6,6 +6,7 @@ from polarcheck.checking.rule import WARNING, Entry, Hits, Machine, PlaneAxes, P
 @rule(
     WARNING,
     "the {rotary} axis is not engaged; {codes} is missing before {switch}{or_engaged_by}",
+    values={"code_needed": "codes"},
     at=("on",),
     once="c axis code",
 )

@@ -6,6 +6,7 @@ from polarcheck.checking.rule import WARNING, Entry, ExecutedBlocks, Machine, Ma
 @rule(
     WARNING,
     "{rotary} has not gone to its reference point since it was engaged; write {to_reference} before {switch}",
+    values={"code_needed": "to_reference"},
     at=("on",),
     once="c axis code",
 )

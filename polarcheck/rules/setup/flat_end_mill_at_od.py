@@ -3,7 +3,13 @@ from __future__ import annotations
 from polarcheck.checking.rule import ERROR, Entry, Mask, PolarMode, rule
 
 
-@rule(ERROR, "offset {offset} is a flat end mill that points at the outer diameter", at=("on",), once="tool call")
+@rule(
+    ERROR,
+    "offset {offset} is a flat end mill that points at the outer diameter",
+    values={"offset": "offset"},
+    at=("on",),
+    once="tool call",
+)
 def flat_end_mill_at_od(mode: PolarMode, entry: Entry) -> Mask:
     """
     Flat end mill that points at the outer diameter of the part.

@@ -6,6 +6,7 @@ from polarcheck.checking.rule import WARNING, ExecutedBlocks, Hits, Machine, Pro
 @rule(
     WARNING,
     "the live tool still runs at {word}: {started} was not stopped after the polar mode; {to_stop}",
+    values={"word": "word", "other_line": "line_of_start"},
 )
 def live_tool_never_stopped(blocks: ExecutedBlocks, procedure: Procedure, machine: Machine) -> Hits:
     """

@@ -6,6 +6,7 @@ from polarcheck.checking.rule import ERROR, Entry, Hits, Machine, ModalStates, P
 @rule(
     ERROR,
     "the live tool is not running in this cutting move; {codes} is missing{or_started_by}",
+    values={"code_needed": "codes"},
     at=("line", "arc_clockwise", "arc_counterclockwise"),
     once="live tool code",
     follows={"section": ("main-spindle-running-at-entry",)},

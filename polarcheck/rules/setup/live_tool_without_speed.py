@@ -7,6 +7,7 @@ from polarcheck.checking.rule import WARNING, ExecutedBlocks, Hits, Machine, Pro
     WARNING,
     "{word} starts the live tool, and no S above 0 that was given for it is in force: it turns at another speed, or "
     "not at all; write S before it",
+    values={"code": "word"},
     once="program",
     is_advice=True,
     follows={"block": ("vacant-variable",)},

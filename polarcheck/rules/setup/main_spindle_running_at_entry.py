@@ -3,7 +3,13 @@ from __future__ import annotations
 from polarcheck.checking.rule import ERROR, Hits, Machine, PolarMode, Spindles, graded, rule
 
 
-@rule(ERROR, "{spindle_codes} is in force at {switch}{spindle_remedy}", at=("on",), once="spindle code")
+@rule(
+    ERROR,
+    "{spindle_codes} is in force at {switch}{spindle_remedy}",
+    values={"code": "spindle_codes"},
+    at=("on",),
+    once="spindle code",
+)
 def main_spindle_running_at_entry(mode: PolarMode, spindles: Spindles, machine: Machine) -> Hits:
     """
     Main spindle not stopped before the polar mode.

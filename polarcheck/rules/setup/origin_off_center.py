@@ -7,6 +7,7 @@ from polarcheck.geometry.tolerances import ROUNDING
 @rule(
     ERROR,
     "{name} puts X0 {shift:length} off the spindle axis{as_diameter} at {switch}",
+    values={"shift": "shift"},
     at=("on",),
     once="origin",
     needs=("entry.origin_shift",),

@@ -9,6 +9,7 @@ _WEAR = 0.25
 @rule(
     WARNING,
     "R {given:length} {is_given}, the comment tells {told:length}: {comment}; {which_radius}",
+    values={"offset": "offset", "radius": "given", "radius_stated": "told", "comment": "comment"},
     at=("T",),
     doubts=(("compensation", "tool call"),),
 )

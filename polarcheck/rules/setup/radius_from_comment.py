@@ -3,7 +3,7 @@ from __future__ import annotations
 from polarcheck.checking.rule import NOTE, CalledTools, Mask, ToolOffsets, rule
 
 
-@rule(NOTE, "R {taken:length} is taken {origin}", at=("T",))
+@rule(NOTE, "R {taken:length} is taken {origin}", values={"offset": "offset", "radius": "taken"}, at=("T",))
 def radius_from_comment(tools: CalledTools, offsets: ToolOffsets) -> Mask:
     """
     Cutter radius taken from a comment.

@@ -6,6 +6,7 @@ from polarcheck.checking.rule import NOTE, Mask, ToolOffsets, rule
 @rule(
     NOTE,
     "{x_changed_by} changes X of offset {offset_of_block}, which shifts the shape and leaves its size: change R",
+    values={"changed_by": "word_of_change", "x_wear": "wear_in_x", "offset": "offset_of_block"},
     at=("X", "U", "T"),
     is_advice=True,
 )

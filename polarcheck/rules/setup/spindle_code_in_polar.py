@@ -16,6 +16,7 @@ from polarcheck.checking.rule import (
 @rule(
     WARNING,
     "{codes} in the polar mode; the spindle is the {rotary} axis here",
+    values={"code": "codes"},
     follows={"section": ("polar-never-left",)},
 )
 def spindle_code_in_polar(

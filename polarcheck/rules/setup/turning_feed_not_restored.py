@@ -7,6 +7,7 @@ from polarcheck.checking.rule import WARNING, Mask, Procedure, rule
     WARNING,
     "{feed_word} is {feedrate.feed_number:length} a minute in this move: {carried_mode} is still in force from "
     "the polar mode; write {per_revolution} after it",
+    values={"feed": "feedrate.feed_number"},
     at=("F",),
     once="feed mode",
     is_advice=True,

@@ -7,6 +7,7 @@ from polarcheck.geometry.tolerances import ROUNDING
 @rule(
     WARNING,
     "{linear} stands at {path.x:diameter} at {switch}; enter the polar mode above 0",
+    values={"x": "path.x"},
     at=("on",),
     doubts=(("position", "way"),),
 )

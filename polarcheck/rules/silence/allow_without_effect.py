@@ -3,7 +3,12 @@ from __future__ import annotations
 from polarcheck.checking.rule import NOTE, Hits, UnusedAllows, rule
 
 
-@rule(NOTE, "{names}: there is nothing to silence here; take it out of the allow comment", over="allows")
+@rule(
+    NOTE,
+    "{names}: there is nothing to silence here; take it out of the allow comment",
+    values={"names": "names"},
+    over="allows",
+)
 def allow_without_effect(unused_allows: UnusedAllows) -> Hits:
     """
     Allow comment that silences nothing.

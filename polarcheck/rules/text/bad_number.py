@@ -6,6 +6,7 @@ from polarcheck.checking.rule import ERROR, Hits, OtherMode, Written, rule
 @rule(
     ERROR,
     "{text}: {number_fault}{count:blocks}",
+    values={"word": "text", "count": "count"},
     over="words",
     once="name",
     follows={

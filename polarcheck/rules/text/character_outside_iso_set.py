@@ -3,7 +3,12 @@ from __future__ import annotations
 from polarcheck.checking.rule import NOTE, Hits, Written, rule
 
 
-@rule(NOTE, "{characters} not in the ISO set of controls{count:blocks}", over="foreign")
+@rule(
+    NOTE,
+    "{characters} not in the ISO set of controls{count:blocks}",
+    values={"characters": "characters_counted", "count": "count"},
+    over="foreign",
+)
 def character_outside_iso_set(written: Written) -> Hits:
     """
     Character that controls have no code for.

@@ -6,6 +6,7 @@ from polarcheck.checking.rule import WARNING, Hits, Written, rule
 @rule(
     WARNING,
     "a parenthesis opens inside this comment; the control closes the comment at the first ){count:blocks}",
+    values={"count": "count"},
     over="comments",
 )
 def comment_nested(written: Written) -> Hits:

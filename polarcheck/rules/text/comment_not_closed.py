@@ -3,7 +3,7 @@ from __future__ import annotations
 from polarcheck.checking.rule import ERROR, Hits, Written, rule
 
 
-@rule(ERROR, "this comment is not closed on its line{count:blocks}", over="comments")
+@rule(ERROR, "this comment is not closed on its line{count:blocks}", values={"count": "count"}, over="comments")
 def comment_not_closed(written: Written) -> Hits:
     """
     Comment without its closing parenthesis.

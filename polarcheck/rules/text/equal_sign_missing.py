@@ -6,6 +6,7 @@ from polarcheck.checking.rule import ERROR, Mask, Written, rule
 @rule(
     ERROR,
     "{text} lacks its =: R is an arithmetic parameter here (R1=5), and the radius of an arc CR=; the control stops",
+    values={"word": "text"},
     over="words",
 )
 def equal_sign_missing(written: Written) -> Mask:

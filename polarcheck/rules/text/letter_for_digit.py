@@ -3,7 +3,12 @@ from __future__ import annotations
 from polarcheck.checking.rule import ERROR, Hits, Written, rule
 
 
-@rule(ERROR, "{text}: letter {letter}; write {meant}{count:blocks}", over="words")
+@rule(
+    ERROR,
+    "{text}: letter {letter}; write {meant}{count:blocks}",
+    values={"word": "text", "word_needed": "meant", "count": "count"},
+    over="words",
+)
 def letter_for_digit(written: Written) -> Hits:
     """
     Letter O or I where a digit is meant.

@@ -6,6 +6,7 @@ from polarcheck.checking.rule import ERROR, Hits, OtherMode, Written, rule
 @rule(
     ERROR,
     "{stray}{count:blocks}",
+    values={"count": "count"},
     over="strays",
     follows={
         "file": ("polar-code-of-another-control",),

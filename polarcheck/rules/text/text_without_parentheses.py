@@ -6,6 +6,7 @@ from polarcheck.checking.rule import ERROR, Hits, Written, rule
 @rule(
     ERROR,
     "{prose}",
+    values={"count": "count"},
     over="prose",
     follows={"block": ("comment-nested", "comment-not-closed")},
 )

@@ -3,7 +3,12 @@ from __future__ import annotations
 from polarcheck.checking.rule import ERROR, Hits, Machine, Written, rule
 
 
-@rule(ERROR, "{text} has more than {limit} digits", over="words")
+@rule(
+    ERROR,
+    "{text} has more than {limit} digits",
+    values={"word": "text", "digits": "digits_written", "limit": "limit"},
+    over="words",
+)
 def too_many_digits(written: Written, machine: Machine) -> Hits:
     """
     Number with too many digits.

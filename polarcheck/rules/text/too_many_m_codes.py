@@ -3,7 +3,12 @@ from __future__ import annotations
 from polarcheck.checking.rule import WARNING, Hits, Machine, Words, Written, rule
 
 
-@rule(WARNING, "{count} M codes in a block; this control takes {limit}", over="words")
+@rule(
+    WARNING,
+    "{count} M codes in a block; this control takes {limit}",
+    values={"count": "count", "limit": "limit"},
+    over="words",
+)
 def too_many_m_codes(words: Words, written: Written, machine: Machine) -> Hits:
     """
     More M codes in a block than the control takes.

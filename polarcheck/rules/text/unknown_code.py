@@ -9,6 +9,7 @@ OWN_CODES_END = 100
 @rule(
     ERROR,
     "{code} is no code of this control{times}{or_known}",
+    values={"code": "code", "count": "code_count"},
     over="words",
     follows={"file": ("polar-code-of-another-control", "polar-switch-unknown")},
 )

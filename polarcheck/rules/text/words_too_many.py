@@ -3,7 +3,12 @@ from __future__ import annotations
 from polarcheck.checking.rule import WARNING, Hits, Machine, Words, Written, rule
 
 
-@rule(WARNING, "{count} words in a block; this control takes {limit}", over="words")
+@rule(
+    WARNING,
+    "{count} words in a block; this control takes {limit}",
+    values={"count": "count", "limit": "limit"},
+    over="words",
+)
 def words_too_many(words: Words, written: Written, machine: Machine) -> Hits:
     """
     More words in a block than the control takes.

@@ -3,7 +3,12 @@ from __future__ import annotations
 from polarcheck.checking.rule import ERROR, Hits, Written, rule
 
 
-@rule(ERROR, "{text} is written with a dash of print; write a minus sign{count:blocks}", over="words")
+@rule(
+    ERROR,
+    "{text} is written with a dash of print; write a minus sign{count:blocks}",
+    values={"word": "text", "count": "count"},
+    over="words",
+)
 def wrong_dash(written: Written) -> Hits:
     """
     Dash where a minus sign is meant.

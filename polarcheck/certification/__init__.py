@@ -1,0 +1,1 @@
+"""Certifies a post: its programs for each control, beside what each of them must say and do."""

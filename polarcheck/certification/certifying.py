@@ -1,0 +1,204 @@
+"""Runs the cases of a manifest, and makes the certificate of them."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Generator, Iterable, Mapping
+
+import msgspec
+
+from polarcheck import __version__
+from polarcheck.batch.tasks import forget
+from polarcheck.certification import expectations, golden, paths, results
+from polarcheck.certification.case_runs import CaseRun, run
+from polarcheck.certification.conditions import ConditionsOfCases
+from polarcheck.certification.loading import Loaded
+from polarcheck.certification.manifest import Case
+from polarcheck.certification.results import FAIL, MISSING, NOT_OFFERED, NOT_RUN, PASS, CaseResult, Cell, Certificate
+from polarcheck.certification.tool_path import ToolPath, tool_path
+from polarcheck.checking.settings import Settings
+from polarcheck.errors import CertificateError
+from polarcheck.finding import Producer
+from polarcheck.reading import files
+
+SCHEMA = 1
+
+
+class Certified(msgspec.Struct, frozen=True):
+    """
+    A case that was run.
+
+    case: the case. result: what came of it. run: its program.
+    """
+
+    case: Case
+    result: CaseResult
+    run: CaseRun
+
+
+def conditions(loaded: Loaded, names: Collection[str]) -> dict[str, Settings]:
+    """
+    Return the settings of the named cases.
+
+    Raises a PolarcheckError for those that cannot be used, before anything is run.
+    """
+    of_case = ConditionsOfCases(loaded)
+    return {name: of_case(loaded.cases[name]) for name in names}
+
+
+def needed(loaded: Loaded, names: Iterable[str]) -> list[str]:
+    """Return the names of cases and of those that their paths are compared with, in the order of the manifest."""
+    wanted: set[str] = set()
+    for name in names:
+        reference: str | None = name
+        while reference is not None and reference not in wanted:
+            wanted.add(reference)
+            reference = loaded.cases[reference].same_path_as
+    return [name for name in loaded.cases if name in wanted]
+
+
+def runs(loaded: Loaded, settings: Mapping[str, Settings], most: int) -> Generator[tuple[str, CaseRun], None, None]:
+    """Yield the name and the run of each case that has settings. most: the largest size of a program [bytes]."""
+    paths_of: dict[str, set[str]] = {name: set() for name in settings}
+    for name in settings:
+        case = loaded.cases[name]
+        if case.golden is not None:
+            paths_of[name].add(loaded.path_of(case))
+        if case.same_path_as is not None:
+            for each in (name, case.same_path_as):
+                paths_of[each] |= {"programmed", loaded.path_of(case)}
+    for name, of_case in settings.items():
+        yield name, run(str(loaded.beside(loaded.cases[name].program)), of_case, most, sorted(paths_of[name]))
+        forget()
+
+
+def judged(loaded: Loaded, settings: Mapping[str, Settings], case_runs: Mapping[str, CaseRun]) -> dict[str, Certified]:
+    """Return the cases that were run, each with its result, by name."""
+    return {
+        name: Certified(
+            loaded.cases[name], _result(loaded, loaded.cases[name], settings[name], case_runs), case_runs[name]
+        )
+        for name in case_runs
+    }
+
+
+def _result(loaded: Loaded, case: Case, settings: Settings, case_runs: Mapping[str, CaseRun]) -> CaseResult:
+    """Return what came of a case."""
+    of_case = case_runs[case.title]
+    report = of_case.report
+    program = files.shown(str(loaded.beside(case.program)))
+    reasons: list[str] = []
+    remarks = [loaded.remarks[case.title]] if case.title in loaded.remarks else []
+    comparisons: dict[str, results.PathComparison | None] = {"golden": None, "same_path": None}
+    if report is None:
+        reasons.append(of_case.failure)
+    else:
+        reasons += expectations.differences(case, report)
+        found = {"golden": _golden(loaded, case, of_case), "same_path": _other(loaded, case, case_runs)}
+        for kind, (comparison, compared) in found.items():
+            comparisons[kind] = comparison
+            reasons += compared.reasons
+            remarks += compared.remarks
+    return CaseResult(
+        name=case.title,
+        feature=case.feature,
+        control=case.control,
+        program=program,
+        machine=settings.name,
+        state=NOT_RUN if report is None else FAIL if reasons else PASS,
+        expected=case.expected,
+        verdict=None if report is None else report.verdict,
+        reasons=reasons,
+        remarks=remarks,
+        **comparisons,
+    )
+
+
+_NOTHING = paths.Comparison(None, [], [])
+_Compared = tuple[results.PathComparison | None, paths.Comparison]
+
+
+def _golden(loaded: Loaded, case: Case, of_case: CaseRun) -> _Compared:
+    """Compare the path of a case with its golden trace."""
+    if case.golden is None:
+        return None, _NOTHING
+    file, tolerance = loaded.beside(case.golden), loaded.tolerance(case)
+    title = files.shown(case.golden)
+    if not file.exists():
+        compared = paths.Comparison(None, [f"there is no golden trace {title} yet; --update writes it"], [])
+    else:
+        try:
+            before = tool_path(golden.read(file), of_case.sense)
+        except CertificateError as error:
+            compared = paths.Comparison(None, [str(error)], [])
+        else:
+            ours = path_of_run(of_case, loaded.path_of(case))
+            compared = paths.with_golden(ours, before, tolerance, title)
+    return _comparison(title, compared, tolerance), compared
+
+
+def path_of_run(of_case: CaseRun, name: str) -> ToolPath:
+    """Return the path of a program by its name, tool or programmed."""
+    return tool_path(of_case.moves[name], of_case.sense)
+
+
+def _other(loaded: Loaded, case: Case, case_runs: Mapping[str, CaseRun]) -> _Compared:
+    """Compare the path of a case with that of another one."""
+    if case.same_path_as is None:
+        return None, _NOTHING
+    title, which, tolerance = case.same_path_as, loaded.path_of(case), loaded.tolerance(case)
+    of_case, other = case_runs[case.title], case_runs[title]
+    if other.report is None:
+        compared = paths.Comparison(None, [f"the path is not compared: {title} was not run"], [])
+    elif not of_case.moves[which] and not other.moves[which]:
+        compared = paths.Comparison(None, [f"the path is not compared: neither this program nor {title} has any"], [])
+    else:
+        ours, theirs = path_of_run(of_case, which), path_of_run(other, which)
+        compared = paths.with_other(ours, theirs, tolerance, title)
+        if which == "tool" and compared.deviation is not None and compared.reasons:
+            programmed = path_of_run(of_case, "programmed"), path_of_run(other, "programmed")
+            if not paths.with_other(*programmed, tolerance, title).reasons:
+                compared.reasons.append(
+                    f"the programmed path is that of {title}: controls lead the tool round corners in different ways; "
+                    'path = "programmed" compares what is programmed'
+                )
+    return _comparison(title, compared, tolerance), compared
+
+
+def _comparison(reference: str, compared: paths.Comparison, tolerance: float) -> results.PathComparison:
+    deviation = compared.deviation
+    is_number = deviation is not None and deviation < float("inf")
+    return results.PathComparison(
+        reference=reference,
+        agrees=not compared.reasons,
+        deviation=round(deviation, 6) if deviation is not None and is_number else None,
+        tolerance=tolerance,
+    )
+
+
+def certificate(loaded: Loaded, certified: Mapping[str, Certified]) -> Certificate:
+    """Return the certificate of the cases that were run; others have no part in it."""
+    manifest = loaded.manifest
+    cells = [
+        _cell(loaded, feature, control, certified) for feature in manifest.features for control in manifest.controls
+    ]
+    cases = [certified[name].result for name in loaded.cases if name in certified]
+    return Certificate(
+        schema=SCHEMA,
+        tool=Producer("polarcheck", __version__),
+        title=manifest.title,
+        manifest=files.shown(str(loaded.path)),
+        features=manifest.features,
+        controls=[*manifest.controls],
+        cells=cells,
+        cases=cases,
+        summary=results.summary(cases, cells),
+    )
+
+
+def _cell(loaded: Loaded, feature: str, control: str, certified: Mapping[str, Certified]) -> Cell:
+    not_offered = loaded.manifest.controls[control].not_offered
+    if feature in not_offered:
+        return Cell(feature=feature, control=control, state=NOT_OFFERED, reason=not_offered[feature])
+    names = [name for name, case in loaded.cases.items() if (case.feature, case.control) == (feature, control)]
+    states = [certified[name].result.state if name in certified else NOT_RUN for name in names]
+    return Cell(feature=feature, control=control, state=results.worst(states) if names else MISSING, cases=names)

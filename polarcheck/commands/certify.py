@@ -1,0 +1,195 @@
+"""`polarcheck certify`: checks the programs that a post makes for each control against a manifest."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from polarcheck.commands import options
+from polarcheck.commands.exit_codes import BUG, CLEAN, COULD_NOT_RUN, FINDINGS
+from polarcheck.commands.options import narrower, option
+from polarcheck.errors import UsageError
+
+if TYPE_CHECKING:
+    from polarcheck.certification.certifying import Certified
+    from polarcheck.certification.loading import Loaded
+    from polarcheck.certification.results import Certificate
+
+_INIT = "init"
+_FORMATS = ("text", "json", "html")
+
+
+@click.command(short_help="Check the programs of a post for each control against a manifest.")
+@click.argument("manifest", metavar="MANIFEST|init")
+@click.argument("folder", required=False, metavar="[DIR]", type=click.Path(file_okay=False, path_type=Path))
+@narrower("--format", "form", type=click.Choice(_FORMATS), default="text", show_default=True)
+@click.option("-o", "--output", type=click.Path(dir_okay=False, path_type=Path), help="A file for the report.")
+@option("--strict/--no-strict", default=False, help="Fail where a feature has no case on a control, too.")
+@click.option("--update", is_flag=True, help="Write the golden traces of cases that pass otherwise.")
+@click.option("--case", "names", multiple=True, metavar="NAME", help="Only this case; may be repeated.")
+@click.option(
+    "--machine",
+    "machines",
+    multiple=True,
+    metavar="NAME|FILE",
+    help="With init: a control of the post; may be repeated.",
+)
+@option("--color", type=click.Choice(["auto", "always", "never"]), default="auto", show_default=True)
+@options.max_size
+@options.debug
+@click.pass_context
+def certify(
+    ctx: click.Context,
+    /,
+    manifest: str,
+    folder: Path | None,
+    form: str,
+    output: Path | None,
+    strict: bool,
+    update: bool,
+    names: tuple[str, ...],
+    machines: tuple[str, ...],
+    color: str,
+    max_size: int,
+) -> None:
+    """
+    Check the programs of a post against MANIFEST, which says for each feature and control what a program must do.
+
+    \b
+    polarcheck certify post.toml
+    polarcheck certify post.toml --format html -o certificate.html
+    polarcheck certify post.toml --update
+    polarcheck certify init suite --machine fanuc-30i --machine siemens-transmit
+
+    Shown is a matrix, features down and controls across: pass, fail, not run, missing (no case), not offered. A case
+    passes if its program has the expected verdict and findings, makes the expected part, and runs the path of its
+    golden trace or of another case.
+
+    --update writes the golden traces anew and says what changes; of a case that fails otherwise it keeps the old one.
+    init writes a folder with small jobs to post, as drawings in words and DXF, and a manifest for them.
+
+    Ends with 0 if all cases pass; 1 if one fails, or with --strict a feature is missing; 2 if a program could not be
+    read, or the manifest cannot be used; 3 for a bug.
+    """
+    if manifest == _INIT and folder is not None:
+        ctx.exit(_init(folder, machines))
+    if folder is not None:
+        raise UsageError(f"{folder}: expected one manifest; `certify init DIR` writes a new folder")
+    if machines:
+        raise UsageError("--machine: is for `certify init DIR`; the manifest names the machine of each control")
+    if manifest == _INIT and not Path(manifest).exists():
+        raise UsageError("init: give a folder: polarcheck certify init DIR")
+    ctx.exit(_certify(Path(manifest), form, output, strict, update, names, color, max_size, options.DEBUG in ctx.meta))
+
+
+def _certify(
+    path: Path,
+    form: str,
+    output: Path | None,
+    strict: bool,
+    update: bool,
+    names: tuple[str, ...],
+    color: str,
+    most: int,
+    debug: bool,
+) -> int:
+    from polarcheck.certification import certifying, loading
+    from polarcheck.certification.results import NOT_RUN
+    from polarcheck.commands.output import bug_lines, say_lines, show, warn
+    from polarcheck.commands.progress import Bar
+    from polarcheck.memory import keep_within_memory
+    from polarcheck.reading import files
+
+    keep_within_memory()
+    loaded = loading.load(path)
+    chosen = _chosen(loaded, names)
+    settings = certifying.conditions(loaded, certifying.needed(loaded, chosen))
+    if not settings:
+        warn(f"{files.shown(str(path))}: no cases; a feature of a control is a [[case]], or a file of its `programs`")
+    _refuse(output, loaded, certifying.needed(loaded, loaded.cases))
+    bar = Bar(len(settings), True)
+    case_runs = dict(bar.watched(certifying.runs(loaded, settings, most)))
+    bugs = [run.bug for run in case_runs.values() if run.bug is not None]
+    for bug in bugs:
+        say_lines(bug_lines(bug, debug))
+    certified = certifying.judged(loaded, settings, case_runs)
+    status = CLEAN
+    if update:
+        status = _update(loaded, certified, frozenset(chosen))
+        certified = certifying.judged(loaded, settings, case_runs)
+    certificate = certifying.certificate(loaded, {name: certified[name] for name in certified if name in chosen})
+    report = _report(certificate, form, color, output is None)
+    if output is None:
+        show(report)
+    else:
+        files.write(output, report)
+    counts = certificate.summary
+    if counts.fail or (strict and counts.missing):
+        status = max(status, FINDINGS)
+    if any(case.state == NOT_RUN for case in certificate.cases):
+        status = max(status, COULD_NOT_RUN)
+    return BUG if bugs else status
+
+
+def _chosen(loaded: Loaded, names: tuple[str, ...]) -> list[str]:
+    """Return the names of the cases to run."""
+    from polarcheck.errors import suggestion
+
+    for name in names:
+        if name not in loaded.cases:
+            raise UsageError(f"--case {name}: the manifest has no case of this name{suggestion(name, loaded.cases)}")
+    return list(dict.fromkeys(names)) or [*loaded.cases]
+
+
+def _refuse(output: Path | None, loaded: Loaded, names: list[str]) -> None:
+    """Raise OutputError for a report that would overwrite a file of the certification."""
+    from polarcheck.errors import OutputError
+    from polarcheck.reading import files
+
+    if output is None:
+        return
+    read = [loaded.path]
+    for name in names:
+        case = loaded.cases[name]
+        read += [loaded.beside(file) for file in (case.program, case.golden) if file is not None]
+    if output.resolve() in {path.resolve() for path in read} or output.suffix == ".toml":
+        raise OutputError(f"-o {files.shown(str(output))}: is read by this run; name another file")
+
+
+def _update(loaded: Loaded, certified: dict[str, Certified], chosen: frozenset[str]) -> int:
+    """Write the golden traces; say what changes."""
+    from polarcheck.certification.updating import updates
+    from polarcheck.commands.output import say_lines, warn
+
+    any_golden = False
+    for line, _ in updates(loaded, certified, chosen):
+        any_golden = True
+        say_lines([line])
+    if not any_golden:
+        warn("--update: no case has a golden trace; `golden = FILE` names one")
+    return CLEAN
+
+
+def _report(certificate: Certificate, form: str, color: str, is_shown: bool) -> bytes:
+    """Return the report in a format."""
+    if form == "html":
+        from polarcheck.certification.html import html
+
+        return html(certificate).encode()
+    if form == "json":
+        from polarcheck.reports.json import encoded
+
+        return f"{encoded(certificate, indent=2)}\n".encode()
+    from polarcheck.certification.text import text
+    from polarcheck.commands.output import COLUMNS, columns, in_color
+    from polarcheck.pictures.painting import plain
+    from polarcheck.reports import painted
+
+    is_colored = in_color(color) and (is_shown or color == "always")
+    return text(certificate, columns() if is_shown else COLUMNS, painted if is_colored else plain).encode()
+
+
+def _init(folder: Path, machines: tuple[str, ...]) -> int:
+    raise NotImplementedError

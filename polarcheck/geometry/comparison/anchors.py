@@ -1,0 +1,79 @@
+"""Corners that two polylines have in common, in the order of both: between them each part is compared by itself."""
+
+from __future__ import annotations
+
+from bisect import bisect_left
+
+import numpy as np
+
+from polarcheck.arrays import Floats, Points, Rows
+from polarcheck.time_limit import keep_time
+
+_MIX = np.uint64(0x9E3779B97F4A7C15)
+
+
+def anchors(old: tuple[Points, Floats], new: tuple[Points, Floats], cell: float) -> tuple[Rows, Rows]:
+    """
+    Return the corners that are paired: their numbers in the old and in the new line, both strictly rising.
+
+    old, new: plane points and Z of the corners [mm]. cell: corners are paired if they lie in one cell of a grid of this
+    width [mm], each with the one that comes to that cell for the same time.
+    """
+    pairs = np.concatenate([_pairs(old, new, cell, shift) for shift in (0.0, 0.5)], axis=1)
+    order = np.lexsort((-pairs[1], pairs[0]))
+    chosen = _longest_rise(pairs[1][order])
+    return pairs[0][order][chosen], pairs[1][order][chosen]
+
+
+def _pairs(old: tuple[Points, Floats], new: tuple[Points, Floats], cell: float, shift: float) -> Rows:
+    keys = np.concatenate([_cells(*old, cell, shift), _cells(*new, cell, shift)])
+    count = len(old[0])
+    _, group = np.unique(keys, return_inverse=True)
+    visits = np.concatenate([_visit(group[:count]), _visit(group[count:])])
+    # A cell and how often it was visited before are one number.
+    name = group.astype(np.int64) * (len(keys) + 1) + visits
+    _, first, second = np.intersect1d(name[:count], name[count:], assume_unique=True, return_indices=True)
+    return np.stack([first, second]).astype(np.int64)
+
+
+def _cells(point: Points, z: Floats, cell: float, shift: float) -> np.ndarray[tuple[int], np.dtype[np.uint64]]:
+    """A number per corner: equal in one cell, and in different ones but for a chance of 2 ** -64 different."""
+    key = np.zeros(len(point), np.uint64)
+    for part in (point.real, point.imag, z):
+        key = (key + np.floor(part / cell + shift).astype(np.int64).view(np.uint64)) * _MIX
+        key ^= key >> np.uint64(29)
+    return key
+
+
+def _visit(group: Rows) -> Rows:
+    """How often each group has come before."""
+    order = np.argsort(group, kind="stable")
+    begins = np.append(True, np.diff(group[order]) != 0)[: len(group)]
+    first = np.maximum.accumulate(np.where(begins, np.arange(len(group)), 0))
+    visits = np.empty(len(group), np.int64)
+    visits[order] = np.arange(len(group)) - first
+    return visits
+
+
+def _longest_rise(values: Rows) -> Rows:
+    """The places of a longest strictly rising selection."""
+    if not len(values) or (np.diff(values) > 0).all():
+        return np.arange(len(values))
+    keep_time()
+    tops: list[int] = []
+    at: list[int] = []
+    behind: list[int] = []
+    for index, value in enumerate(values.tolist()):
+        place = bisect_left(tops, value)
+        behind.append(at[place - 1] if place else -1)
+        if place == len(tops):
+            tops.append(value)
+            at.append(index)
+        else:
+            tops[place], at[place] = value, index
+    chosen = []
+    index = at[-1]
+    while index >= 0:
+        chosen.append(index)
+        index = behind[index]
+    return np.array(chosen[::-1], np.int64)

@@ -1,0 +1,231 @@
+"""
+The largest deviation of two paths that a tool runs, with lines and arcs on the polar plane, and Z.
+
+It is the Fréchet distance: how far apart two points must come that run along the paths, neither of them backwards. So
+it hangs on the order of the path and on nothing else: not on how blocks divide it. A path run backwards, or a loop run
+twice, differs.
+
+Corners that both paths have pair them piece by piece. Two points that run along a pair of pieces at their own even
+speeds give a bound, for all pieces at once; the pieces with the largest bounds are then measured exactly.
+"""
+
+from __future__ import annotations
+
+import heapq
+
+import msgspec
+import numpy as np
+
+from polarcheck.arrays import Floats, Rows
+from polarcheck.geometry.comparison.anchors import anchors
+from polarcheck.geometry.comparison.free_space import Budget, Corner, Meeting, OverBudgetError, frechet, is_within
+from polarcheck.geometry.comparison.polyline import Polyline, SpacePath, polyline
+from polarcheck.time_limit import keep_time
+
+#: Grids by which corners are paired, as a multiple of the tolerance, the finest first.
+_CELLS = (2.0, 16.0, 128.0, 1024.0)
+#: Chords leave their arcs by this share of the tolerance; results are exact up to it.
+_SHARE = 0.02
+#: The search for a deviation ends within this share of it.
+_PRECISION = 1e-6
+#: Pairs of segments that may be looked at: to measure pieces, to measure the whole, to prove that it differs.
+_CELLS_OF_PIECES, _CELLS_OF_WHOLE, _CELLS_OF_PROOF = 1_000_000, 300_000, 3_000_000
+
+
+class Place(msgspec.Struct, frozen=True):
+    """
+    Where two paths are farthest apart.
+
+    old, new: plane points on both [mm, X as radius]. old_z, new_z: [mm]. old_move, new_move: the moves, from 0.
+    """
+
+    old: complex
+    new: complex
+    old_z: float
+    new_z: float
+    old_move: int
+    new_move: int
+
+
+class PathDeviation(msgspec.Struct, frozen=True):
+    """
+    How far apart two paths are.
+
+    largest: the largest deviation [mm]. is_exact: it is so up to `rounding`; else it is no more than that, and may be
+    less: up to the tolerance, and for long paths, which are measured piece by piece. is_within: no more than the
+    tolerance. rounding: what chords in the place of arcs and the end of the search add or take away at most [mm].
+    place: where; None where a path is empty.
+    """
+
+    largest: float
+    is_exact: bool
+    is_within: bool
+    rounding: float
+    place: Place | None
+
+
+def path_deviation(old: SpacePath, new: SpacePath, tolerance: float) -> PathDeviation:
+    """
+    Return the largest deviation of two paths, measured along both in order.
+
+    tolerance: what is the same [mm], above 0.
+    Every move must be known (`SpacePath.is_known`): ValueError if not. An empty path against another one deviates by
+    inf. Raises TooHardError.
+    """
+    if not (old.is_known.all() and new.is_known.all()):
+        raise ValueError("a move is not known")
+    if not len(old) or not len(new):
+        apart = 0.0 if len(old) == len(new) else np.inf
+        return PathDeviation(apart, True, not apart, 0.0, None)
+    (first, of_old), (second, of_new) = (polyline(path, tolerance * _SHARE) for path in (old, new))
+    rounding = of_old + of_new
+    pieces = _best_pieces(first, second, tolerance)
+    largest, place = _measured(pieces, tolerance)
+    is_exact = False
+    if largest > tolerance:
+        largest, place, is_exact = _proven(pieces, largest, place, tolerance)
+    return PathDeviation(largest, is_exact, largest <= tolerance, rounding + tolerance * _SHARE, place)
+
+
+class _Pieces(msgspec.Struct, frozen=True):
+    """
+    Pieces of two polylines between paired corners, k of them.
+
+    old_at, new_at: int[k + 1], the paired corners.
+    bound: float64[k], no piece deviates by more [mm].
+    share: float64[k], where two points at even speeds are farthest apart, from 0 to 1 of the piece.
+    """
+
+    old: Polyline
+    new: Polyline
+    old_at: Rows
+    new_at: Rows
+    bound: Floats
+    share: Floats
+
+    @property
+    def largest(self) -> float:
+        return float(self.bound.max())
+
+
+def _best_pieces(old: Polyline, new: Polyline, tolerance: float) -> _Pieces:
+    """The pieces with the least bound: corners paired one by one, where both have as many, or by where they lie."""
+    corners = [np.flatnonzero(line.ends_move) for line in (old, new)]
+    best = _pieces(old, new, corners[0], corners[1]) if len(corners[0]) == len(corners[1]) else None
+    for cell in _CELLS:
+        if best is not None and best.largest <= tolerance:
+            break
+        keep_time()
+        places = [(line.point[at], line.z[at]) for line, at in zip((old, new), corners, strict=True)]
+        paired = anchors(places[0], places[1], tolerance * cell)
+        by_place = _pieces(old, new, corners[0][paired[0]], corners[1][paired[1]])
+        best = by_place if best is None or by_place.largest < best.largest else best
+    assert best is not None
+    return best
+
+
+def _pieces(old: Polyline, new: Polyline, old_at: Rows, new_at: Rows) -> _Pieces:
+    """Pieces between paired corners; the ends of the lines are paired."""
+    ends = len(old) - 1, len(new) - 1
+    inner = (old_at > 0) & (new_at > 0) & (old_at < ends[0]) & (new_at < ends[1])
+    old_at, new_at = (np.concatenate(([0], at[inner], [end])) for at, end in zip((old_at, new_at), ends, strict=True))
+    along = [_along(line, at) for line, at in zip((old, new), (old_at, new_at), strict=True)]
+    moment = np.concatenate(along)
+    distance = _distance(old, along[0], new, along[1], moment)
+    piece = np.minimum(moment.astype(np.int64), len(old_at) - 2)
+    # A paired corner ends one piece and begins the next, and is as far apart in both.
+    order = np.lexsort((distance, piece))
+    last = np.flatnonzero(np.append(np.diff(piece[order]) != 0, True))
+    bound, share = np.zeros(len(old_at) - 1), np.zeros(len(old_at) - 1)
+    bound[piece[order][last]] = distance[order][last]
+    share[piece[order][last]] = (moment - piece)[order][last]
+    at_corner = _distance(old, along[0], new, along[1], np.arange(1.0, len(old_at)))
+    share = np.where(at_corner > bound, 1.0, share)
+    return _Pieces(old, new, old_at, new_at, np.maximum(bound, at_corner), share)
+
+
+def _along(line: Polyline, at: Rows) -> Floats:
+    """When a point comes to each corner: at k to the paired corner k, at an even speed between two of them."""
+    way = line.length
+    if len(line) == 1:
+        return np.zeros(1)
+    rising = np.append(np.diff(way[at]) > 0, True)
+    moments = np.arange(float(len(at)))
+    return np.asarray(np.interp(way, way[at][rising], moments[rising]))
+
+
+def _distance(old: Polyline, old_along: Floats, new: Polyline, new_along: Floats, moment: Floats) -> Floats:
+    """How far apart two points are at moments [mm]."""
+    (a, a_z), (b, b_z) = (_at(line, along, moment) for line, along in ((old, old_along), (new, new_along)))
+    return np.hypot(np.abs(a - b), a_z - b_z)
+
+
+def _at(
+    line: Polyline, along: Floats, moment: Floats
+) -> tuple[np.ndarray[tuple[int], np.dtype[np.complex128]], Floats]:
+    x, c, z = (np.interp(moment, along, part) for part in (line.point.real, line.point.imag, line.z))
+    return x + 1j * c, z
+
+
+def _measured(pieces: _Pieces, tolerance: float) -> tuple[float, Place]:
+    """The largest deviation of all pieces, and where it is: the piece with the largest bound is measured first."""
+    budget = Budget(_CELLS_OF_PIECES)
+    waiting = [(-bound, number) for number, bound in enumerate(pieces.bound.tolist())]
+    heapq.heapify(waiting)
+    known: dict[int, Place] = {}
+    while True:
+        keep_time()
+        bound, number = -waiting[0][0], waiting[0][1]
+        if number in known or bound <= tolerance:
+            return bound, known.get(number) or _place_of_bound(pieces, number)
+        old, new = (_corners(pieces.old, pieces.old_at, number), _corners(pieces.new, pieces.new_at, number))
+        precision = max(tolerance * _SHARE, bound * _PRECISION)
+        try:
+            exact, meeting = frechet(old, new, bound, precision, budget)
+        except OverBudgetError:
+            return bound, _place_of_bound(pieces, number)
+        known[number] = _place(pieces, number, meeting)
+        heapq.heapreplace(waiting, (-exact, number))
+
+
+def _corners(line: Polyline, at: Rows, piece: int) -> list[Corner]:
+    part = line[int(at[piece]) : int(at[piece + 1]) + 1]
+    return list(zip(part.point.real.tolist(), part.point.imag.tolist(), part.z.tolist(), strict=True))
+
+
+def _place(pieces: _Pieces, piece: int, meeting: Meeting) -> Place:
+    numbers = (pieces.old_at[piece] + meeting.in_old + 1, pieces.new_at[piece] + meeting.in_new + 1)
+    old_move, new_move = (
+        int(line.move[min(int(number), len(line) - 1)])
+        for line, number in zip((pieces.old, pieces.new), numbers, strict=True)
+    )
+    (x, c, z), (new_x, new_c, new_z) = meeting.old, meeting.new
+    return Place(complex(x, c), complex(new_x, new_c), z, new_z, old_move, new_move)
+
+
+def _place_of_bound(pieces: _Pieces, piece: int) -> Place:
+    """Where two points at even speeds are farthest apart."""
+    moment = np.array([piece + pieces.share[piece]])
+    sides = []
+    for line, at in ((pieces.old, pieces.old_at), (pieces.new, pieces.new_at)):
+        along = _along(line, at)
+        point, z = _at(line, along, moment)
+        corner = min(int(np.searchsorted(along, moment[0])), len(line) - 1)
+        sides.append((complex(point[0]), float(z[0]), int(line.move[corner])))
+    (old, old_z, old_move), (new, new_z, new_move) = sides
+    return Place(old, new, old_z, new_z, old_move, new_move)
+
+
+def _proven(pieces: _Pieces, largest: float, place: Place, tolerance: float) -> tuple[float, Place, bool]:
+    """The deviation however corners are paired, its place, and whether it is known: long paths take too many cells."""
+    ends = [np.array([0, len(line) - 1]) for line in (pieces.old, pieces.new)]
+    corners = [_corners(line, at, 0) for line, at in zip((pieces.old, pieces.new), ends, strict=True)]
+    whole = msgspec.structs.replace(pieces, old_at=ends[0], new_at=ends[1])
+    precision = max(tolerance * _SHARE, largest * _PRECISION)
+    try:
+        if is_within(corners[0], corners[1], tolerance, Budget(_CELLS_OF_PROOF)):
+            return tolerance, place, False
+        exact, meeting = frechet(corners[0], corners[1], largest, precision, Budget(_CELLS_OF_WHOLE))
+    except OverBudgetError:
+        return largest, place, False
+    return exact, _place(whole, 0, meeting), True

@@ -1,0 +1,150 @@
+"""The values of findings are a contract: names, units, and numbers that are numbers."""
+
+from __future__ import annotations
+
+import functools
+import math
+import string
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import pytest
+from programs import report_of, report_of_example
+
+from polarcheck.checking import message
+from polarcheck.checking.examples import examples
+from polarcheck.checking.message import as_data
+from polarcheck.checking.rule import Rule, load_all
+from polarcheck.checking.tables import MAKERS, PARTS
+from polarcheck.checking.vocabulary import VOCABULARY, Kind, kinds
+from polarcheck.errors import RuleError
+from polarcheck.finding import Finding
+
+RULES = load_all()
+TYPES: dict[Kind, tuple[type, ...]] = {
+    Kind.TEXT: (str,),
+    Kind.OFFSET: (int, str),
+    Kind.COUNT: (int,),
+    Kind.LINE: (int,),
+    Kind.NUMBER: (int,),
+}
+
+
+def with_following(findings: list[Finding]) -> Iterator[Finding]:
+    for finding in findings:
+        yield finding
+        yield from with_following(finding.follows)
+
+
+@functools.cache
+def values_in_examples(name: str) -> list[dict[str, Any]]:
+    """The values of what a rule finds in its Bad examples."""
+    bad = [example for example in examples(RULES[name].page) if not example.good]
+    found = [one for example in bad for one in with_following(report_of_example(example).findings)]
+    return [one.values for one in found if one.rule == name]
+
+
+@pytest.mark.parametrize("rule", RULES.values(), ids=list(RULES))
+def test_each_value_of_a_rule_is_of_its_kind_and_seen_in_its_examples(rule: Rule) -> None:
+    declared, shown = kinds(rule.values, rule.name), values_in_examples(rule.name)
+    assert {name for one in shown for name in one} == declared.keys()
+    for name, value in (pair for one in shown for pair in one.items()):
+        assert type(value) in TYPES.get(declared[name], (float,)), (name, value)
+        assert value not in ("", math.inf)
+
+
+def test_each_name_is_of_a_rule_and_its_text_is_plain() -> None:
+    assert {name for rule in RULES.values() for name in rule.values} == VOCABULARY.keys()
+    assert len({meaning.text for meaning in VOCABULARY.values()}) == len(VOCABULARY)
+
+
+def test_a_column_that_a_message_shows_is_a_value() -> None:
+    """Numbers of a column never stand in the message alone; only where they are words of it, as in `{X}`, they do."""
+    for rule in RULES.values():
+        fields = {field for _, field, _, _ in string.Formatter().parse(rule.message) if field and "." in field}
+        numbers = {field for field in fields if not field.endswith(("title", "radius_word", "direction_word"))}
+        missing = numbers - set(rule.values.values())
+        assert not missing or (missing <= _BY_MEASURE.get(rule.name, set())), (rule.name, missing)
+
+
+#: Columns that a measure gives without their sign, or rounded down as the message has them.
+_BY_MEASURE = {
+    "inside-arc-smaller-than-radius": {"compensation.radius"},
+    "no-offset-intersection": {"compensation.radius"},
+    "blocks-faster-than-control": {"feeds.feed_of_series"},
+    "c-acceleration-above-limit": {"feeds.allowed_by_acceleration"},
+    "x-acceleration-above-limit": {"feeds.allowed_by_x_acceleration"},
+}
+
+
+def test_no_measure_has_the_name_of_a_table_a_phrase_or_a_value_that_a_rule_hands_over() -> None:
+    for rule in RULES.values():
+        for path in rule.values.values():
+            name = path.partition(".")[0]
+            if message.measure(name, rule.group) is None:
+                continue
+            assert name not in {*MAKERS, *PARTS}
+            with pytest.raises(RuleError):
+                message.phrase(name, rule.group)
+
+
+def test_a_limit_has_the_kind_of_the_number_before_it() -> None:
+    assert kinds(["c_feed", "code", "limit"])["limit"] is Kind.RATE
+    assert kinds(["word", "limit"])["limit"] is Kind.COUNT
+    with pytest.raises(RuleError, match="rule rapid-in-polar: speeds is no name"):
+        kinds(["speeds"], "rapid-in-polar")
+
+
+@pytest.mark.parametrize(
+    ("value", "kind", "data"),
+    [
+        (np.float64(1 / 3), Kind.LENGTH, 0.333333),
+        (-0.0, Kind.LENGTH, 0.0),
+        (np.int64(8), Kind.OFFSET, 8),
+        ("MILL_8/1", Kind.OFFSET, "MILL_8/1"),
+        (2.0, Kind.COUNT, 2),
+        (math.nan, Kind.COUNT, None),
+        (math.inf, Kind.LENGTH, None),
+        (None, Kind.LINE, None),
+        ("", Kind.TEXT, None),
+    ],
+)
+def test_what_is_not_known_is_left_out(value: Any, kind: Kind, data: object) -> None:
+    found = as_data(value, kind)
+    assert (found, type(found)) == (data, type(data))
+
+
+FAST = """G98 G0 X60. C0
+G12.1
+G1 X4. C5. F100
+C-5. F500
+G13.1
+"""
+INCH = """G20 G98 G0 X2.4 C0
+G12.1
+G1 X.16 C.2 F4.
+C-.2 F20.
+G13.1
+"""
+
+
+@pytest.mark.parametrize(("program", "feed", "nearest"), [(FAST, 500.0, 2.0), (INCH, 508.0, 2.032)])
+def test_c_feed_limit_and_highest_feed_are_numbers_in_mm_and_deg(program: str, feed: float, nearest: float) -> None:
+    (found,) = report_of(program, changes={"limits": {"c_feed": 3600}}, only=["c-feed-above-limit"]).findings
+    values = found.values
+    assert values["c_feed"] == pytest.approx(math.degrees(feed / nearest))
+    assert (values["limit"], values["feed"], values["nearest"]) == (3600.0, feed, nearest)
+    allowed = 3600 * math.radians(nearest)
+    assert 0.98 * allowed < values["highest_feed"] < allowed
+
+
+def test_the_highest_feed_is_one_that_the_rule_takes() -> None:
+    limits = {"limits": {"c_feed": 3600}}
+    (found,) = report_of(FAST, changes=limits, only=["c-feed-above-limit"]).findings
+    assert not report_of(FAST.replace("F500", f"F{found.values['highest_feed']}"), changes=limits).findings
+
+
+def test_without_a_limit_there_is_none_in_the_values() -> None:
+    (found,) = report_of(FAST.replace("F500", "F50000"), only=["c-feed-above-limit"]).findings
+    assert found.values.keys() == {"c_feed", "feed", "nearest"}
