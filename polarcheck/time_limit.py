@@ -67,7 +67,7 @@ _LIMIT: ContextVar[Limit | None] = ContextVar("limit", default=None)
 
 
 @contextmanager
-def time_limit(seconds: float, is_stopped: Callable[[], bool] | None = None) -> Iterator[None]:
+def time_limit(seconds: float, is_stopped: Callable[[], bool] | None = None) -> Iterator[Limit]:
     """
     Limit the time of the code inside [s]; without it, as in most tests, there is no limit.
 
@@ -79,7 +79,7 @@ def time_limit(seconds: float, is_stopped: Callable[[], bool] | None = None) -> 
         limit.end = min(limit.end, around.end)
     token = _LIMIT.set(limit)
     try:
-        yield
+        yield limit
     finally:
         _LIMIT.reset(token)
         limit.close()

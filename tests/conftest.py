@@ -32,6 +32,10 @@ settings.register_profile(
 # The commands that tests start write their bytecode: hundreds of processes would each compile the package.
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 
+#: Tests replace functions, which no cache knows of; test_cache.py tries the cache.
+NO_CACHE = ("POLARCHECK_NO_CACHE", "1")
+os.environ.update([NO_CACHE])
+
 #: Characters of one value in the name of a test.
 LONGEST = 50
 
@@ -93,6 +97,7 @@ def own_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for name in list(os.environ):
         if name.startswith("POLARCHECK_") or name in ("NO_COLOR", "FORCE_COLOR"):
             monkeypatch.delenv(name)
+    monkeypatch.setenv(*NO_CACHE)
 
 
 def pytest_make_parametrize_id(val: Any) -> str:

@@ -27,7 +27,7 @@ ORDER = (
     ("settings",),
     ("fixes",),
     ("rules",),
-    ("parts", "feed_table"),
+    ("parts", "feed_table", "revisions"),
     ("checking",),
     ("silence",),
     ("inspection",),

@@ -578,7 +578,7 @@ def test_options_come_from_the_environment_too() -> None:
     assert re.fullmatch(r"a\.nc:4:1: error: .* \[rapid-in-polar\]\n", result.stdout)
     assert call("rules", POLARCHECK_FORMAT="concise").exit_code == 0
     # POLARCHECK_PART is the flag of check; that of init names programs.
-    without = ("fix", "unsafe_fixes", "parts")
+    without = ("fix", "unsafe_fixes", "parts", "update")
     for command in main.commands.values():
         for option in command.params:
             if isinstance(option, click.Option) and option.name not in without:
@@ -769,8 +769,8 @@ def test_rules_lists_all_of_them_by_group() -> None:
     assert [line.split()[1] for line in lines if line.startswith("  ")] == list(known)
     shown = json.loads(call("rules", "--format", "json").stdout)
     assert [entry["name"] for entry in shown] == list(known)
-    keys = ["name", "group", "severity", "title", "source"]
-    assert all(list(entry) == keys and all(entry.values()) for entry in shown)
+    keys = ["name", "group", "severity", "title", "source", "values"]
+    assert all(list(entry) == keys and all(entry[key] for key in keys[:-1]) for entry in shown)
 
 
 def test_machines_lists_all_of_them() -> None:

@@ -91,7 +91,7 @@ def test_how_many_are_left_is_told() -> None:
     assert result.stderr == (
         "polarcheck: --diff-base HEAD: 1 of 3 programs to check: changed, or calling or judged by what has\n"
     )
-    assert narrowed([], None, 1, True) == []
+    assert narrowed([], None, None, 1, True) == []
 
 
 def test_findings_of_what_has_not_changed_fail_nothing() -> None:

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Generator, Iterable, Sequence
-from contextlib import closing
+from collections.abc import Iterable
 from typing import Unpack
 
+from polarcheck.api import runs
 from polarcheck.api.keywords import CheckKeywords, PathName, options, paths_of, takes
 from polarcheck.api.programs import NAMELESS, Call
 from polarcheck.batch import tasks as batch
@@ -47,25 +47,14 @@ def check(
     if isinstance(processes, bool) or not isinstance(processes, int) or processes < 1:
         raise UsageError(f"{_FUNCTION}: processes: expected a whole number from 1, found {processes!r}")
     settings_of = OfPrograms(options(_FUNCTION, CheckKeywords, keywords))
-    named, failures, doubts = paths_of(_FUNCTION, paths), list[str](), list[str]()
-    tasks = batch.plan(
-        named, settings_of, [*extensions], failures.append, doubts.append, excluded_in=settings_of.excluded_in
-    )
-    for doubt in (*doubts, *settings_of.unmatched(named), *settings_of.left_behind()):
+    tasks, failures, doubts = runs.planned(paths_of(_FUNCTION, paths), settings_of, [*extensions])
+    for doubt in doubts:
         warnings.warn(doubt, PolarcheckWarning, stacklevel=2)
     if failures:
         raise SourceError(failures[0])
-    with closing(_outcomes(tasks, processes, max_size)) as outcomes:
+    with runs.outcomes(tasks, max_size, processes) as outcomes:
         reports = [_report(outcome) for outcome in outcomes]
     return batch.report(reports, tasks[0].settings.name if tasks else profiles.DEFAULT)
-
-
-def _outcomes(tasks: Sequence[Task], processes: int, most: int) -> Generator[Outcome, None, None]:
-    if processes == 1 or len(tasks) < 2:
-        return batch.one_by_one(tasks, most)
-    from polarcheck.batch import executors
-
-    return executors.by_processes(tasks, most, processes)
 
 
 def _report(outcome: Outcome) -> FileReport:

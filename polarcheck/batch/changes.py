@@ -1,9 +1,9 @@
-"""The programs of a run whose report may have changed since a commit (--diff-base)."""
+"""The programs of a run whose report may have changed: since a commit (--diff-base), or by files (--with-callers)."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Sequence
 
 from polarcheck.batch.tasks import Task
 from polarcheck.checking.settings import Settings
@@ -15,24 +15,12 @@ from polarcheck.time_limit import seconds_for, time_limit
 
 
 class Changes:
-    """
-    The paths that have changed since a commit, in the repositories of some programs.
+    """The programs that changed files concern: these themselves, and those that call them or are judged by them."""
 
-    Raises UsageError for a program outside of any repository, and if git fails.
-    """
-
-    def __init__(self, tasks: Iterable[Task], ref: str) -> None:
-        self._real = files.RealPaths()
-        repositories = git.Repositories(self._real)
-        roots: dict[str, None] = {}
-        for task in tasks:
-            if task.path == files.STANDARD_INPUT:
-                continue
-            root = repositories.root(os.path.dirname(task.path))  # noqa: PTH120
-            if root is None:
-                raise UsageError(f"--diff-base {ref}: {files.shown(task.path)} lies in no git repository")
-            roots[root] = None
-        self._paths = {path for root in roots for path in git.changed(root, ref)}
+    def __init__(self, paths: Collection[str], real: files.RealPaths) -> None:
+        """paths: the changed files, as real.of names them; they need not be there."""
+        self._real = real
+        self._paths = frozenset(paths)
         self._names: dict[str, set[str]] = {}
         for path in self._paths:
             folder, name = os.path.split(path)
@@ -102,7 +90,43 @@ def since(ref: str, tasks: Sequence[Task], most: int = files.LARGEST) -> list[Ta
     """
     The tasks whose report may have changed since a commit, in their order.
 
+    Raises UsageError for a program outside of any repository, and if git fails.
+    """
+    real = files.RealPaths()
+    repositories = git.Repositories(real)
+    roots: dict[str, None] = {}
+    for task in tasks:
+        if task.path == files.STANDARD_INPUT:
+            continue
+        root = repositories.root(os.path.dirname(task.path))  # noqa: PTH120
+        if root is None:
+            raise UsageError(f"--diff-base {ref}: {files.shown(task.path)} lies in no git repository")
+        roots[root] = None
+    changes = Changes({path for root in roots for path in git.changed(root, ref)}, real)
+    return [task for task in tasks if changes.concern(task, most)]
+
+
+def by_files(
+    names: Sequence[str], tasks: Sequence[Task], option: str, before: str, most: int = files.LARGEST
+) -> list[Task]:
+    """
+    The tasks whose report a change of these files may change, in their order.
+
+    In a git repository, files of the commit `before` that are gone have changed, too, and programs that the next commit
+    does not hold are left out. option: for messages.
+
     Raises UsageError if git fails.
     """
-    changes = Changes(tasks, ref)
-    return [task for task in tasks if changes.concern(task, most)]
+    real = files.RealPaths()
+    named = {real.of(name) for name in names}
+    root = git.Repositories(real).root(os.curdir)
+    kept: set[str] | None = None
+    changed = named
+    if root is not None:
+        ref = git.Reference(f"{option}:", before)
+        changed = named | git.gone(root, ref)
+        kept = git.tracked(root, ref) | named
+    if not changed:
+        return []
+    changes = Changes(changed, real)
+    return [task for task in tasks if (kept is None or real.of(task.path) in kept) and changes.concern(task, most)]

@@ -16,6 +16,7 @@ from polarcheck.checking import check
 from polarcheck.checking.settings import Settings
 from polarcheck.checking.tables import Tables
 from polarcheck.errors import ClusterError, SourceError, TooHardError
+from polarcheck.execution.look_ups import LookUp, digest, noted
 from polarcheck.finding import SCHEMA, UNREADABLE, FileReport, Interrupted, Producer, Report, RunSettings, Summary
 from polarcheck.reading import files
 from polarcheck.reading.source import Source
@@ -47,13 +48,26 @@ class Task(msgspec.Struct, frozen=True):
         return files.shown(self.place)
 
 
+class Basis(msgspec.Struct, frozen=True):
+    """
+    What an outcome rests on beside the settings, so that it can be used again while that is the same.
+
+    content: digest of the file (look_ups.digest). look_ups: the called programs that were looked for in the folders of
+    the job.
+    """
+
+    content: bytes
+    look_ups: tuple[LookUp, ...] = ()
+
+
 class Outcome(msgspec.Struct, frozen=True):
     """
     What came of one file: its report with the lines that findings stand in.
 
     called: keys of the offsets that it calls, where it has a job with tools. failed: whether it fails, by its own
     settings. failure: in one line, why it could not be checked; its report says so, too. bug: what polarcheck itself
-    did wrong. short_of_memory: where that is why; with more it may be checked.
+    did wrong. short_of_memory: where that is why; with more it may be checked. basis: what it rests on; None for what
+    another run may find otherwise, as what has ended by its time.
     """
 
     report: FileReport | None = None
@@ -63,6 +77,7 @@ class Outcome(msgspec.Struct, frozen=True):
     failure: str = ""
     bug: Exception | None = None
     short_of_memory: bool = False
+    basis: Basis | None = None
 
 
 class Checked(msgspec.Struct, frozen=True):
@@ -192,7 +207,7 @@ def outcome(task: Task, most: int = files.LARGEST, data: bytes | None = None) ->
     """Return the outcome of the check of a file, or of its bytes if they were read before; raises nothing."""
     try:
         data = files.read_program(task.path, most) if data is None else data
-        found, source, called = _check(task, data)
+        found, source, called, basis = _check(task, data)
     except (SourceError, TooHardError) as error:
         return unreadable(task, str(error), data)
     except MemoryError:
@@ -204,7 +219,7 @@ def outcome(task: Task, most: int = files.LARGEST, data: bytes | None = None) ->
         return msgspec.structs.replace(failed, failure="", bug=error)
     report = msgspec.structs.replace(found, **_of_task(task, data))
     lines = _lines(source, found) if found.findings else {}
-    return Outcome(report, lines, frozenset(called), fails(report, task.settings))
+    return Outcome(report, lines, frozenset(called), fails(report, task.settings), basis=basis)
 
 
 def unreadable(task: Task, failure: str, data: bytes | None = None) -> Outcome:
@@ -244,16 +259,19 @@ def fails(report: FileReport, settings: Settings) -> bool:
     return told or (settings.strict and report.verdict == "unverified")
 
 
-def _check(task: Task, data: bytes) -> tuple[FileReport, Source, set[str]]:
-    """The report, the text, and the keys of the offsets that are called, where the job has any."""
+def _check(task: Task, data: bytes) -> tuple[FileReport, Source, set[str], Basis | None]:
+    """The report, the text, the keys of the offsets that are called, where the job has any, and what this rests on."""
     settings = task.settings
-    with time_limit(seconds_for(len(data), settings.job.run.max_seconds)):
+    with time_limit(seconds_for(len(data), settings.job.run.max_seconds)) as limit, noted() as look_ups:
         found = check.read(data, settings.machine, settings.job, task.title, settings.encoding)
         text: Text = found[0][1]["text"]
         report = check.check_runs(found, settings.rules, settings.severities, settings.inline)
         for extra in settings.extras:
             report = extra(report, found)
-        return report, text.source, _offsets(found) if settings.job.tools else set()
+        offsets = _offsets(found) if settings.job.tools else set()
+        # Whoever has left something out because the time was over has done so before this moment.
+        basis = None if limit.is_over() else Basis(digest(data), tuple(look_ups))
+        return report, text.source, offsets, basis
 
 
 def _offsets(found: Sequence[tuple[str, Tables]]) -> set[str]:

@@ -44,6 +44,18 @@ class Loaded(msgspec.Struct, frozen=True):
         """Return the path of a file that the manifest names; backslashes count as slashes, too."""
         return _beside(self.path, written)
 
+    def without_programs(self) -> Iterator[str]:
+        """Yield a line for each control whose `programs` finds no file at all, as one with a slip in it."""
+        for name, control in self.manifest.controls.items():
+            of_control = [case for title, case in self.cases.items() if title not in self.numbers]
+            if control.programs is not None and not any(case.control == name for case in of_control):
+                key = f"controls.{name}.programs"
+                yield f"{_place(self.path, self.text, key)}: {key}: there is no file {control.programs}"
+
+    def has_golden(self, case: Case) -> bool:
+        """Return True if the golden trace of a case is there."""
+        return case.golden is not None and self.beside(case.golden).exists()
+
     def tolerance(self, case: Case) -> float:
         """Return the tolerance of paths of a case [mm]."""
         given = (of.tolerance for of in self._nearest(case))
@@ -73,10 +85,14 @@ def load(path: Path) -> Loaded:
                 cases.setdefault(case.title, case)
         cases, remarks = _with_references(manifest, cases, numbers)
     except MisfitError as misfit:
-        line = toml_lines.line_of(misfit.key, toml_lines.of_keys(text))
-        where = f"{files.shown(str(path))}:{line}" if line else files.shown(str(path))
-        raise CertificateError(f"{where}: {misfit}") from None
+        raise CertificateError(f"{_place(path, text, misfit.key)}: {misfit}") from None
     return Loaded(path, text, table, manifest, cases, numbers, remarks)
+
+
+def _place(path: Path, text: str, key: str) -> str:
+    """Return the file and the line of a key: post.toml:12."""
+    line = toml_lines.line_of(key, toml_lines.of_keys(text))
+    return f"{files.shown(str(path))}:{line}" if line else files.shown(str(path))
 
 
 def _beside(path: Path, written: str) -> Path:

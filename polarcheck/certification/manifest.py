@@ -109,9 +109,9 @@ class Control(Conditions, frozen=True, kw_only=True):
     not_offered: features that the post does not offer here, each with the reason.
     """
 
-    programs: Annotated[str, msgspec.Meta(description="of each feature: fanuc/{feature}.nc")] | None = None
+    programs: Annotated[str, msgspec.Meta(description="of each feature: lathe-7/{feature}.nc")] | None = None
     golden: (
-        Annotated[str, msgspec.Meta(description="golden trace of each feature: golden/fanuc/{feature}.jsonl")] | None
+        Annotated[str, msgspec.Meta(description="golden trace of each feature: golden/lathe-7/{feature}.jsonl")] | None
     ) = None
     same_path_as: Annotated[str, msgspec.Meta(description="control that makes the same paths")] | None = None
     not_offered: Annotated[dict[str, str], msgspec.Meta(description="reason, by feature")] = msgspec.field(

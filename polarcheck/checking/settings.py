@@ -26,6 +26,7 @@ class Settings(msgspec.Struct, frozen=True):
     rules: the selected rules.
     severities: error, warning, note or off by rule, where they differ from the machine's.
     read: the files from which the settings were read.
+    job_file: the nearest job file; None without one.
     fail_on: the lowest severity that fails a file, or never.
     strict: an unverified file fails, too.
     encoding: of the program; None to detect it.
@@ -41,6 +42,7 @@ class Settings(msgspec.Struct, frozen=True):
     rules: Sequence[Rule]
     severities: Mapping[str, str]
     read: Sequence[Path] = ()
+    job_file: Path | None = None
     fail_on: str = "warning"
     strict: bool = False
     encoding: str | None = None

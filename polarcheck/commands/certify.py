@@ -6,11 +6,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
+from click.core import ParameterSource
 
 from polarcheck.commands import options
 from polarcheck.commands.exit_codes import BUG, CLEAN, COULD_NOT_RUN, FINDINGS
 from polarcheck.commands.options import narrower, option
-from polarcheck.errors import UsageError
+from polarcheck.commands.output import COLUMNS
+from polarcheck.errors import CertificateError, UsageError
 
 if TYPE_CHECKING:
     from polarcheck.certification.certifying import Certified
@@ -21,21 +23,33 @@ _INIT = "init"
 _FORMATS = ("text", "json", "html")
 
 
+def _outputs(ctx: click.Context, parameter: click.Parameter, values: tuple[str, ...]) -> list[tuple[str, Path]]:
+    outputs = []
+    for value in values:
+        form, _, path = value.partition(":")
+        if form not in _FORMATS or path in ("", "-"):
+            raise click.BadParameter(f"{value!r}: expected FORMAT:FILE, the format one of {', '.join(_FORMATS)}")
+        outputs.append((form, Path(path)))
+    return outputs
+
+
 @click.command(short_help="Check the programs of a post for each control against a manifest.")
 @click.argument("manifest", metavar="MANIFEST|init")
 @click.argument("folder", required=False, metavar="[DIR]", type=click.Path(file_okay=False, path_type=Path))
 @narrower("--format", "form", type=click.Choice(_FORMATS), default="text", show_default=True)
-@click.option("-o", "--output", type=click.Path(dir_okay=False, path_type=Path), help="A file for the report.")
+@option(
+    "-o",
+    "--output",
+    "outputs",
+    multiple=True,
+    callback=_outputs,
+    metavar="FORMAT:FILE",
+    help="A report in a file, too.",
+)
 @option("--strict/--no-strict", default=False, help="Fail where a feature has no case on a control, too.")
 @click.option("--update", is_flag=True, help="Write the golden traces of cases that pass otherwise.")
-@click.option("--case", "names", multiple=True, metavar="NAME", help="Only this case; may be repeated.")
-@click.option(
-    "--machine",
-    "machines",
-    multiple=True,
-    metavar="NAME|FILE",
-    help="With init: a control of the post; may be repeated.",
-)
+@option("--case", "names", multiple=True, metavar="NAME", help="Only this case; may be repeated.")
+@option("--machine", "machines", multiple=True, metavar="NAME|FILE", help="With init: a control; may be repeated.")
 @option("--color", type=click.Choice(["auto", "always", "never"]), default="auto", show_default=True)
 @options.max_size
 @options.debug
@@ -46,7 +60,7 @@ def certify(
     manifest: str,
     folder: Path | None,
     form: str,
-    output: Path | None,
+    outputs: list[tuple[str, Path]],
     strict: bool,
     update: bool,
     names: tuple[str, ...],
@@ -59,7 +73,7 @@ def certify(
 
     \b
     polarcheck certify post.toml
-    polarcheck certify post.toml --format html -o certificate.html
+    polarcheck certify post.toml -o html:certificate.html
     polarcheck certify post.toml --update
     polarcheck certify init suite --machine fanuc-30i --machine siemens-transmit
 
@@ -77,17 +91,17 @@ def certify(
         ctx.exit(_init(folder, machines))
     if folder is not None:
         raise UsageError(f"{folder}: expected one manifest; `certify init DIR` writes a new folder")
-    if machines:
+    if ctx.get_parameter_source("machines") is ParameterSource.COMMANDLINE:
         raise UsageError("--machine: is for `certify init DIR`; the manifest names the machine of each control")
     if manifest == _INIT and not Path(manifest).exists():
         raise UsageError("init: give a folder: polarcheck certify init DIR")
-    ctx.exit(_certify(Path(manifest), form, output, strict, update, names, color, max_size, options.DEBUG in ctx.meta))
+    ctx.exit(_certify(Path(manifest), form, outputs, strict, update, names, color, max_size, options.DEBUG in ctx.meta))
 
 
 def _certify(
     path: Path,
     form: str,
-    output: Path | None,
+    outputs: list[tuple[str, Path]],
     strict: bool,
     update: bool,
     names: tuple[str, ...],
@@ -97,7 +111,7 @@ def _certify(
 ) -> int:
     from polarcheck.certification import certifying, loading
     from polarcheck.certification.results import NOT_RUN
-    from polarcheck.commands.output import bug_lines, say_lines, show, warn
+    from polarcheck.commands.output import bug_lines, columns, in_color, say_lines, show, warn
     from polarcheck.commands.progress import Bar
     from polarcheck.memory import keep_within_memory
     from polarcheck.reading import files
@@ -106,9 +120,13 @@ def _certify(
     loaded = loading.load(path)
     chosen = _chosen(loaded, names)
     settings = certifying.conditions(loaded, certifying.needed(loaded, chosen))
+    for line in loaded.without_programs():
+        warn(line)
     if not settings:
-        warn(f"{files.shown(str(path))}: no cases; a feature of a control is a [[case]], or a file of its `programs`")
-    _refuse(output, loaded, certifying.needed(loaded, loaded.cases))
+        raise CertificateError(
+            f"{files.shown(str(path))}: no cases: give a [[case]], or a file for a feature in `programs` of a control"
+        )
+    _refuse(outputs, loaded)
     bar = Bar(len(settings), True)
     case_runs = dict(bar.watched(certifying.runs(loaded, settings, most)))
     bugs = [run.bug for run in case_runs.values() if run.bug is not None]
@@ -120,11 +138,9 @@ def _certify(
         status = _update(loaded, certified, frozenset(chosen))
         certified = certifying.judged(loaded, settings, case_runs)
     certificate = certifying.certificate(loaded, {name: certified[name] for name in certified if name in chosen})
-    report = _report(certificate, form, color, output is None)
-    if output is None:
-        show(report)
-    else:
-        files.write(output, report)
+    for other, output in outputs:
+        files.write(output, _report(certificate, other))
+    show(_report(certificate, form, columns(), in_color(color)))
     counts = certificate.summary
     if counts.fail or (strict and counts.missing):
         status = max(status, FINDINGS)
@@ -143,19 +159,21 @@ def _chosen(loaded: Loaded, names: tuple[str, ...]) -> list[str]:
     return list(dict.fromkeys(names)) or [*loaded.cases]
 
 
-def _refuse(output: Path | None, loaded: Loaded, names: list[str]) -> None:
-    """Raise OutputError for a report that would overwrite a file of the certification."""
+def _refuse(outputs: list[tuple[str, Path]], loaded: Loaded) -> None:
+    """Raise OutputError for a report that would overwrite a file of the certification, or another report."""
     from polarcheck.errors import OutputError
     from polarcheck.reading import files
 
-    if output is None:
-        return
-    read = [loaded.path]
-    for name in names:
-        case = loaded.cases[name]
-        read += [loaded.beside(file) for file in (case.program, case.golden) if file is not None]
-    if output.resolve() in {path.resolve() for path in read} or output.suffix == ".toml":
-        raise OutputError(f"-o {files.shown(str(output))}: is read by this run; name another file")
+    read = {loaded.path.resolve()}
+    for case in loaded.cases.values():
+        read |= {loaded.beside(file).resolve() for file in (case.program, case.golden) if file is not None}
+    for _, output in outputs:
+        name = files.shown(str(output))
+        if output.resolve() in read:
+            raise OutputError(f"-o {name}: is read by this run, or written by another; name another file")
+        if files.has_name_of_program(str(output), files.EXTENSIONS) or output.suffix == ".toml":
+            raise OutputError(f"-o {name}: this is the name of a program or of a manifest; give the report another")
+        read.add(output.resolve())
 
 
 def _update(loaded: Loaded, certified: dict[str, Certified], chosen: frozenset[str]) -> int:
@@ -172,7 +190,7 @@ def _update(loaded: Loaded, certified: dict[str, Certified], chosen: frozenset[s
     return CLEAN
 
 
-def _report(certificate: Certificate, form: str, color: str, is_shown: bool) -> bytes:
+def _report(certificate: Certificate, form: str, columns: int = COLUMNS, is_colored: bool = False) -> bytes:
     """Return the report in a format."""
     if form == "html":
         from polarcheck.certification.html import html
@@ -183,13 +201,23 @@ def _report(certificate: Certificate, form: str, color: str, is_shown: bool) -> 
 
         return f"{encoded(certificate, indent=2)}\n".encode()
     from polarcheck.certification.text import text
-    from polarcheck.commands.output import COLUMNS, columns, in_color
     from polarcheck.pictures.painting import plain
     from polarcheck.reports import painted
 
-    is_colored = in_color(color) and (is_shown or color == "always")
-    return text(certificate, columns() if is_shown else COLUMNS, painted if is_colored else plain).encode()
+    return text(certificate, columns, painted if is_colored else plain).encode()
 
 
 def _init(folder: Path, machines: tuple[str, ...]) -> int:
-    raise NotImplementedError
+    from polarcheck.certification import suite
+    from polarcheck.commands.output import show
+    from polarcheck.reading.excerpt import visible
+
+    written = suite.write(folder, machines)
+    manifest, words, *drawings = map(visible, written)
+    show(
+        f"{manifest}: the manifest; fill in the title, and the file names of the programs\n"
+        f"{words}: the jobs in words, to be programmed once and posted for each control\n"
+        f"{len(drawings)} drawings beside it\n"
+        f"then: polarcheck certify {manifest}\n"
+    )
+    return CLEAN

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -18,7 +20,7 @@ from polarcheck.commands import (
     standard_input,
     watching,
 )
-from polarcheck.commands.diff_base import diff_base, narrowed
+from polarcheck.commands.diff_base import changed_files, diff_base, narrowed, with_callers
 from polarcheck.commands.exit_codes import COULD_NOT_RUN
 from polarcheck.commands.options import option
 from polarcheck.commands.output import COLUMNS, columns, draws_dots, in_color, say, warn
@@ -29,7 +31,7 @@ _LONG = 3
 #: Options that change the look or the destination of a report, the workers or the set of files, but no finding.
 _OF_OUTPUT = (
     *("stdin_filename", "form", "outputs", "color", "quiet", "following", "silenced", "statistics", "shown_too"),
-    *("diff_base", "workers", "cluster", "watch", *fixing.NAMES),
+    *("diff_base", "with_callers", "workers", "cluster", "watch", "cache_dir", "no_cache", *fixing.NAMES),
 )
 _FORMATS = formats()
 
@@ -47,7 +49,7 @@ def _outputs(ctx: click.Context, parameter: click.Parameter, values: tuple[str, 
 
 
 @click.command
-@click.argument("paths", nargs=-1, required=True, metavar="PATH...")
+@click.argument("paths", nargs=-1, metavar="PATH...")
 @options.executing("programs")
 @options.judging
 @options.comparing
@@ -70,12 +72,15 @@ def _outputs(ctx: click.Context, parameter: click.Parameter, values: tuple[str, 
 @silencing.baseline
 @reporting.statistics
 @diff_base
+@with_callers
 @options.force_exclude
 @options.extensions
 @options.max_size
 @standard_input.filename
 @options.jobs
 @options.cluster
+@options.cache_dir
+@options.no_cache
 @watching.watch
 @option("--color", type=click.Choice(["auto", "always", "never"]), default="auto", show_default=True)
 @option("--show-following", "following", is_flag=True, help="In text, what follows from a finding, too.")
@@ -86,7 +91,7 @@ def _outputs(ctx: click.Context, parameter: click.Parameter, values: tuple[str, 
 @fixing.wanted
 @options.debug
 @click.pass_context
-def check(ctx: click.Context, /, paths: tuple[str, ...], watch: bool, **arguments: Any) -> None:
+def check(ctx: click.Context, /, paths: tuple[str, ...], watch: bool, with_callers: bool, **arguments: Any) -> None:
     """
     Check NC programs: files, folders, or - for standard input.
 
@@ -102,8 +107,16 @@ def check(ctx: click.Context, /, paths: tuple[str, ...], watch: bool, **argument
     understood or written, 3 for a bug; 130 or 143 where it was interrupted or terminated: what was finished until then
     is reported.
     """
+    changed = None
+    if with_callers:
+        changed = changed_files(paths, {"--diff-base": arguments["diff_base"], "--watch": watch})
+        paths = (os.curdir,)
+    elif not paths:
+        raise click.MissingParameter(ctx=ctx, param=next(one for one in ctx.command.params if one.name == "paths"))
     fields = {name: arguments.pop(name) for name in _Arguments._fields if name in arguments}
-    chosen = _Arguments(**fields, paths=paths, command=_command(ctx), debug=options.DEBUG in ctx.meta, more=arguments)
+    chosen = _Arguments(
+        **fields, paths=paths, changed=changed, command=_command(ctx), debug=options.DEBUG in ctx.meta, more=arguments
+    )
     run = partial(_check, chosen)
     if watch:
         watching.refuse(
@@ -116,6 +129,7 @@ class _Arguments(NamedTuple):
     """
     The arguments of the command line.
 
+    changed: the files of --with-callers; None without it.
     command: the command line that checks one of the files with the same options.
     more: the options that apply to programs, for Options.
 
@@ -123,6 +137,7 @@ class _Arguments(NamedTuple):
     """
 
     paths: tuple[str, ...]
+    changed: Sequence[str] | None
     command: str
     debug: bool
     more: dict[str, Any]
@@ -135,6 +150,8 @@ class _Arguments(NamedTuple):
     stdin_filename: str | None
     workers: int
     cluster: str | None
+    cache_dir: str | None
+    no_cache: bool
     color: str
     quiet: bool
     following: bool
@@ -204,7 +221,7 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
         arguments.outputs, arguments.form == picturing.FORMAT, tasks, "-o html:"
     )
     overwriting.refuse(written, tasks)
-    tasks = narrowed(tasks, arguments.diff_base, arguments.max_size, not arguments.quiet)
+    tasks = narrowed(tasks, arguments.diff_base, arguments.changed, arguments.max_size, not arguments.quiet)
     is_colored = in_color(arguments.color)
     shown_in = fixing.Shown(arguments.quiet, is_colored, arguments.debug, bool(arguments.outputs))
     baseline = None if applies.baseline is None else silencing.Known(applies.baseline, arguments.paths)
@@ -234,7 +251,8 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
     live_report = live.Live(
         form, shown, len(tasks), bar.hide, in_place_of_findings=arguments.statistics, to_error=fixed.has_output
     )
-    runner = running.Runner(arguments.max_size, arguments.workers, arguments.cluster, seen)
+    cache = None if arguments.no_cache else running.cache(arguments.max_size, arguments.cache_dir)
+    runner = running.Runner(arguments.max_size, arguments.workers, arguments.cluster, seen, cache)
     pictures.begin(plain)
     checked = runner.check(tasks, bar, faults, baseline, live_report.file, pictures.split)
     pictures.end()
@@ -249,7 +267,7 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
         applies.machine or (tasks[0].settings.name if tasks else profiles.DEFAULT),
         interrupted=batch.interrupted(reason, checked.files, tasks) if reason else None,
     )
-    if checked.stopped is None and arguments.diff_base is None:
+    if checked.stopped is None and arguments.diff_base is None and arguments.changed is None:
         running.warn_unused(applies.tools, checked.called)
         running.warn_without_part(applies.tolerance, tasks)
     for error in reporting.written(outputs, form, report, plain._replace(lines=checked.lines)):

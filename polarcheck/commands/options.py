@@ -92,6 +92,11 @@ jobs = option(
     "-j", "--jobs", "workers", callback=_number_of_processes, default="auto", show_default="all cores where it pays",
     metavar="N", help="Processes that check; 1 for this one alone.",
 )  # fmt: skip
+cache_dir = option(
+    "--cache-dir", metavar="FOLDER", type=click.Path(file_okay=False),
+    help="Where results are kept for the next run, instead of .polarcheck_cache beside polarcheck.toml.",
+)  # fmt: skip
+no_cache = option("--no-cache", is_flag=True, help="Keep no results, and use none of earlier runs.")
 cluster = option("--cluster", metavar="tcp://HOST:PORT", help="Let a cluster of dask.distributed check.")
 max_size = option(
     "--max-size", callback=_in_bytes, default="64MB", show_default=True, metavar="SIZE",

@@ -55,21 +55,17 @@ def trace(
     --path tool is the path of the tool center. What is run with G41 or G42 while the radius is not known is shown as
     programmed: those moves have "programmed" under path, and a line on standard error says what to give.
     """
-    from polarcheck.checking import check
+    from polarcheck.api import programs
     from polarcheck.memory import keep_within_memory
-    from polarcheck.reading import files
     from polarcheck.reports.pages import executed
-    from polarcheck.settings.of_programs import OfPrograms, Options
-    from polarcheck.time_limit import seconds_for, time_limit
+    from polarcheck.settings.of_programs import Options
 
     keep_within_memory()
     if shown_too and form not in (None, "table"):
         raise UsageError(f"--show {shown_too}: expected --format table, found {form}")
-    applied = OfPrograms(Options(use_config=not no_config, **arguments))(path)
-    data = files.read_program(path, max_size)
-    with time_limit(seconds_for(len(data), applied.job.run.max_seconds)):
-        # One run for each channel, since --block-skip has a single state in this command.
-        runs = check.read(data, applied.machine, applied.job, files.shown(path), applied.encoding)
+    program = programs.of_file(path, Options(use_config=not no_config, **arguments), max_size)
+    # One run for each channel, since --block-skip has a single state in this command.
+    with program.runs() as runs:
         paths = [(tables["trace"], tables["tool_center"]) for _, tables in runs]
         for of_path in paths if which == "tool" or shown_too else ():
             unknown = executed.without_radius(*of_path)

@@ -15,6 +15,7 @@ from pathlib import Path
 import msgspec
 
 from polarcheck import bounded
+from polarcheck.execution import look_ups
 from polarcheck.execution.listing import Listing
 from polarcheck.execution.programs import ProgramName, Programs, find_programs, read_text
 from polarcheck.execution.run import Beside
@@ -83,6 +84,11 @@ class Library:
 
     def place(self, called: ProgramName) -> tuple[Path, bytes] | None:
         """The file of such a program, and its bytes."""
+        found = self._place(called)
+        look_ups.note(called, *((found[0].name, found[1]) if found else ()))
+        return found
+
+    def _place(self, called: ProgramName) -> tuple[Path, bytes] | None:
         wanted = names_of(called)
         if wanted is None:
             return None

@@ -7,7 +7,7 @@ import os
 import signal
 import sys
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from polarcheck.errors import UsageError, suggestion
 from polarcheck.reading.files import RealPaths, shown
@@ -89,7 +89,22 @@ class Repositories:
         return text
 
 
-def changed(root: str, ref: str) -> set[str]:
+class Reference(NamedTuple):
+    """
+    A commit that an option names.
+
+    option: the option.
+    name: of the commit, a branch or a tag.
+    """
+
+    option: str
+    name: str
+
+    def __str__(self) -> str:
+        return f"{self.option} {self.name}"
+
+
+def changed(root: str, name: str) -> set[str]:
     """
     The files of a repository that differ from the point where its branch left a commit, by absolute path: committed
     since, staged or not, renamed (both names), deleted, and all whose changes git does not follow.
@@ -97,6 +112,7 @@ def changed(root: str, ref: str) -> set[str]:
     Runs no program that the repository names, opens no connection, and writes nothing. Raises UsageError, which names
     the option, where git is missing, cannot answer, or has no such commit.
     """
+    ref = Reference("--diff-base", name)
     _require_top_level(root, ref)
     base = _base(root, ref)
     filters = _without_filters(root, ref)
@@ -108,6 +124,30 @@ def changed(root: str, ref: str) -> set[str]:
     listed = _output(root, ref, "ls-files", "-z", "-v", "--cached", "--others")
     names = _parts(staged) + [entry[3:] for entry in _parts(unstaged)] + _unfollowed(root, _parts(listed))
     return {os.path.normcase(os.path.join(root, *name.split("/"))) for name in names}  # noqa: PTH118
+
+
+def gone(root: str, ref: Reference) -> set[str]:
+    """
+    The files of a commit that are not there, by absolute path; none where there is no such commit yet.
+
+    Raises UsageError, which names the option, where git is missing or cannot answer.
+    """
+    if not ref.name.strip() or ref.name.startswith("-"):
+        return set()
+    status, _, _ = _git(root, ref, "rev-parse", "--verify", "--quiet", f"{ref.name}^{{commit}}")
+    if status:
+        return set()
+    names = _absolute(root, _output(root, ref, "ls-tree", "-r", "-z", "--full-tree", "--name-only", ref.name))
+    return {os.path.normcase(name) for name in names if not os.path.lexists(name)}
+
+
+def tracked(root: str, ref: Reference) -> set[str]:
+    """The files that the next commit holds, by absolute path. Raises UsageError as `gone` does."""
+    return {os.path.normcase(name) for name in _absolute(root, _output(root, ref, "ls-files", "-z", "--cached"))}
+
+
+def _absolute(root: str, output: bytes) -> list[str]:
+    return [os.path.join(root, *name.split("/")) for name in _parts(output)]  # noqa: PTH118
 
 
 def _parts(output: bytes) -> list[str]:
@@ -128,7 +168,7 @@ def _unfollowed(root: str, entries: Iterable[str]) -> list[str]:
     return names
 
 
-def _require_top_level(root: str, ref: str) -> None:
+def _require_top_level(root: str, ref: Reference) -> None:
     """Raise UsageError where git takes another folder for the top of the work tree: names would mean other files."""
     top = os.fsdecode(_output(root, ref, "rev-parse", "--show-toplevel")).rstrip("\r\n")
     try:
@@ -136,10 +176,10 @@ def _require_top_level(root: str, ref: str) -> None:
     except OSError:
         is_same = False
     if not is_same:
-        raise UsageError(f"--diff-base {ref}: {shown(root)}: its .git belongs to the work tree {shown(top)}")
+        raise UsageError(f"{ref}: {shown(root)}: its .git belongs to the work tree {shown(top)}")
 
 
-def _without_filters(root: str, ref: str) -> list[str]:
+def _without_filters(root: str, ref: Reference) -> list[str]:
     """
     Options that empty every filter of the configuration, since `git status` runs the clean filter of a changed file.
 
@@ -151,37 +191,35 @@ def _without_filters(root: str, ref: str) -> list[str]:
     options: list[str] = []
     for name in dict.fromkeys(key.rpartition(".")[0] for key in _parts(output)):
         if "=" in name:  # git -c would take what stands before it for the key
-            raise UsageError(
-                f"--diff-base {ref}: {shown(root)}: rename {name} in the configuration of git: = in a name"
-            )
+            raise UsageError(f"{ref}: {shown(root)}: rename {name} in the configuration of git: = in a name")
         for setting in ("clean=", "smudge=", "process=", "required=false"):
             options += ("-c", f"{name}.{setting}")
     return options
 
 
-def _base(root: str, ref: str) -> str:
+def _base(root: str, ref: Reference) -> str:
     """The commit where the branch left REF, so that what others have changed there since does not count."""
-    if not ref.strip() or ref.startswith("-"):
-        raise UsageError(f"--diff-base {ref!r}: expected a commit, a branch or a tag, such as main")
-    status, output, said = _git(root, ref, "rev-parse", "--verify", "--quiet", f"{ref}^{{commit}}")
+    if not ref.name.strip() or ref.name.startswith("-"):
+        raise UsageError(f"{ref.option} {ref.name!r}: expected a commit, a branch or a tag, such as main")
+    status, output, said = _git(root, ref, "rev-parse", "--verify", "--quiet", f"{ref.name}^{{commit}}")
     if status:
         if _is_not_fetched(said):
             raise _refusal(ref, "rev-parse", said)
-        raise UsageError(f"--diff-base {ref}: {_missing(root, ref)}")
+        raise UsageError(f"{ref}: {_missing(root, ref)}")
     commit = output.decode("ascii").strip()
     status, output, said = _git(root, ref, "merge-base", commit, "HEAD")
     # Without a common one, as in a shallow clone, all differences to the commit itself count: more, and none too few.
     return commit if status else output.decode("ascii").strip()
 
 
-def _missing(root: str, ref: str) -> str:
+def _missing(root: str, ref: Reference) -> str:
     if _output(root, ref, "rev-parse", "--is-shallow-repository").strip() == b"true":
         return "the clone is shallow and has no such commit: fetch it (git fetch --unshallow; CI: depth 0)"
     names = _output(root, ref, "for-each-ref", "--format=%(refname:short)").decode("utf-8", "replace").split("\n")
-    return f"git knows no such commit in {shown(root)}{suggestion(ref, filter(None, names))}"
+    return f"git knows no such commit in {shown(root)}{suggestion(ref.name, filter(None, names))}"
 
 
-def _output(root: str, ref: str, *words: str, options: Sequence[str] = ()) -> bytes:
+def _output(root: str, ref: Reference, *words: str, options: Sequence[str] = ()) -> bytes:
     """Return the output of a git command. Raises UsageError with its first message if it fails."""
     status, output, said = _git(root, ref, *words, options=options)
     if status:
@@ -189,25 +227,25 @@ def _output(root: str, ref: str, *words: str, options: Sequence[str] = ()) -> by
     return output
 
 
-def _refusal(ref: str, command: str, said: bytes) -> UsageError:
+def _refusal(ref: Reference, command: str, said: bytes) -> UsageError:
     if _is_not_fetched(said):
         lacks = "the clone is partial and lacks objects, which are not fetched here"
-        return UsageError(f"--diff-base {ref}: git {command}: {lacks}: if you trust it, run git diff {ref} first")
+        return UsageError(f"{ref}: git {command}: {lacks}: if you trust it, run git diff {ref.name} first")
     lines = said.decode("utf-8", "replace").strip().split("\n")
-    return UsageError(f"--diff-base {ref}: git {command}: {lines[0].removeprefix('fatal: ')[:_LONGEST]}")
+    return UsageError(f"{ref}: git {command}: {lines[0].removeprefix('fatal: ')[:_LONGEST]}")
 
 
 def _is_not_fetched(said: bytes) -> bool:
     return any(words in said.decode("utf-8", "replace") for words in _NOT_FETCHED)
 
 
-def _git(root: str, ref: str, *words: str, options: Sequence[str] = ()) -> tuple[int, bytes, bytes]:
+def _git(root: str, ref: Reference, *words: str, options: Sequence[str] = ()) -> tuple[int, bytes, bytes]:
     """Status, output and messages of a command of git."""
     import subprocess
 
     program = _program(os.get_exec_path())
     if program is None:
-        raise UsageError(f"--diff-base {ref}: git is not installed, or not on the PATH")
+        raise UsageError(f"{ref}: git is not installed, or not on the PATH")
     environment = {key: value for key, value in os.environ.items() if key not in _OF_A_HOOK} | _ENVIRONMENT
     try:
         process = subprocess.Popen(  # noqa: S603  a list of words, none of which git can take for an option
@@ -219,13 +257,13 @@ def _git(root: str, ref: str, *words: str, options: Sequence[str] = ()) -> tuple
             start_new_session=True,  # a group of its own, which is killed as a whole
         )
     except OSError as error:
-        raise UsageError(f"--diff-base {ref}: git: {error.strerror or error}") from None
+        raise UsageError(f"{ref}: git: {error.strerror or error}") from None
     with process:
         try:
             output, said = process.communicate(timeout=TIME_LIMIT)
         except subprocess.TimeoutExpired:
             _kill(process)
-            raise UsageError(f"--diff-base {ref}: git {words[0]}: no answer within {TIME_LIMIT:g} s") from None
+            raise UsageError(f"{ref}: git {words[0]}: no answer within {TIME_LIMIT:g} s") from None
         except BaseException:
             _kill(process)
             raise

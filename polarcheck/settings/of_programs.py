@@ -236,6 +236,7 @@ class SettingsMaker:
             rules=rules,
             severities=levels,
             read=_files_read(options, job, profile, file),
+            job_file=file.path,
             fail_on=job.fail_on,
             strict=job.strict,
             encoding=job.encoding,

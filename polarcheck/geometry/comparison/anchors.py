@@ -21,7 +21,7 @@ def anchors(old: tuple[Points, Floats], new: tuple[Points, Floats], cell: float)
     """
     pairs = np.concatenate([_pairs(old, new, cell, shift) for shift in (0.0, 0.5)], axis=1)
     order = np.lexsort((-pairs[1], pairs[0]))
-    chosen = _longest_rise(pairs[1][order])
+    chosen = longest_rise(pairs[1][order])
     return pairs[0][order][chosen], pairs[1][order][chosen]
 
 
@@ -55,8 +55,8 @@ def _visit(group: Rows) -> Rows:
     return visits
 
 
-def _longest_rise(values: Rows) -> Rows:
-    """The places of a longest strictly rising selection."""
+def longest_rise(values: Rows) -> Rows:
+    """Return the places of a longest strictly rising selection of values."""
     if not len(values) or (np.diff(values) > 0).all():
         return np.arange(len(values))
     keep_time()

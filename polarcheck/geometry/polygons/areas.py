@@ -35,6 +35,8 @@ def _bounded(function: Callable[..., Any], points: int, *arguments: Any, **how: 
             return function(*arguments, **how)
     except GEOSException as error:
         keep_time()  # raises where the time is over: then the step was interrupted
+        if "bad_alloc" in str(error):
+            raise MemoryError from error
         raise NoAnswerError("the areas of its contours cannot be computed: points of them all but meet") from error
 
 

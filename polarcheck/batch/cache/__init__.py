@@ -1,0 +1,1 @@
+"""Outcomes of earlier runs, in files beside the programs."""

@@ -1,0 +1,188 @@
+"""What a program orders beside its moves: tools, speeds, M codes, cycles, dwells, in the order in which they run."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from polarcheck.arrays import Floats, Mask, Rows
+from polarcheck.columns.filling import before, fill_down
+from polarcheck.columns.trace import Trace
+from polarcheck.machines.axes import FIRST_NAMED
+from polarcheck.machines.codes import code_set
+from polarcheck.machines.modal import MM_PER_INCH, Units
+
+#: Words that plain moves are written with, and those that only name blocks.
+_OF_MOVES = ("X", "Z", "U", "W", "I", "J", "K", "R", "F", "N", "O")
+#: Words that hold lengths in a cycle.
+_LENGTHS = ("X", "Y", "Z", "U", "V", "W", "I", "J", "K", "R")
+#: Lists of G codes whose states are compared as moves, feeds and entries, not as orders.
+_OF_STATES = (
+    *("rapid", "line", "arc_clockwise", "arc_counterclockwise", "plane_xy", "plane_zx", "plane_yz"),
+    *("compensation_off", "compensation_left", "compensation_right", "inch", "mm"),
+    *("feed_inverse_time", "feed_per_minute", "feed_per_revolution", "absolute", "incremental"),
+)
+#: M codes that mean the same on every lathe.
+_EVERYWHERE = ("M0", "M1", "M2", "M3", "M4", "M5", "M8", "M9", "M30")
+#: Keys of [m_codes] that say the same on two lathes.
+_SWITCHES = (
+    *("live_tool_on", "live_tool_off", "spindle_on", "spindle_off", "c_axis_on", "c_axis_off"),
+    *("c_axis_clamp", "c_axis_unclamp", "optional_stop", "program_end"),
+)
+
+
+class Step(NamedTuple):
+    """
+    An order beside the moves.
+
+    row: of the trace. tokens: its codes, and the addresses of its values. values: the numbers of these, lengths in mm
+    and radii. text: as it is shown.
+    """
+
+    row: int
+    tokens: tuple[str, ...]
+    values: tuple[float, ...]
+    text: str
+
+
+def speed_in_force(trace: Trace) -> Floats:
+    """The last S of each row as written, without the limit beside G50; NaN before the first."""
+    written = trace.blocks.has("S") & ~trace.modal.sets_coordinates
+    return fill_down(np.where(written, trace.blocks.word("S"), np.nan), written | trace.blocks.starts, np.nan)
+
+
+def special_rows(trace: Trace) -> Mask:
+    """Rows whose axis words are no end of a plain move: cycles, references, shifts, dwells, blocks not executed."""
+    modal = trace.modal
+    others = trace.blocks.listed("machine_coordinates", "repetitive_cycle") | modal.sets_coordinates
+    return np.asarray(~modal.uses_axes | modal.in_cycle | others)
+
+
+def steps(trace: Trace, *, is_same_machine: bool) -> list[Step]:
+    """
+    Return the orders of a program in the order in which they run.
+
+    is_same_machine: the other revision is for the same machine. Else M codes count that mean the same on every lathe or
+    that the profile names, and no G codes, tools and words of other addresses.
+    """
+    return list(filter(None, map(_Reader(trace, is_same_machine).step, _rows(trace, is_same_machine).tolist())))
+
+
+def not_comparable(trace: Trace) -> list[str]:
+    """The M codes of a program of which nobody knows what another lathe has in their place."""
+    known = {*_names_of_m_codes(trace), *_EVERYWHERE}
+    written = dict.fromkeys(f"M{value:g}" for value in trace.run.words.value[trace.blocks.m_words].tolist())
+    calls = {*trace.machine.macro.subprogram_calls, *trace.machine.macro.program_returns}
+    return [word for word in written if word not in known and word not in calls]
+
+
+def _rows(trace: Trace, is_same_machine: bool) -> Rows:
+    """Rows that may order something beside their moves."""
+    blocks, row = trace.blocks, trace.run.row
+    turns_side = _turns_side(trace)
+    if not is_same_machine:
+        words = np.concatenate([blocks.m_words, blocks.word_indices("S")])
+        return np.unique(np.concatenate([row[words], np.flatnonzero(turns_side)]))
+    usual = [trace.machine.address_number(name) for name in (*_words_of_moves(trace), "G") if name]
+    unusual = ~np.isin(trace.run.words.address, usual)
+    unusual[blocks.g_words[~_sets_state(trace)]] = True
+    return np.unique(np.concatenate([row[unusual], np.flatnonzero(special_rows(trace) | turns_side)]))
+
+
+def _words_of_moves(trace: Trace) -> set[str]:
+    polar = trace.machine.polar
+    return {*_OF_MOVES, *polar.axis_addresses, *polar.rotary_words}
+
+
+def _sets_state(trace: Trace) -> Mask:
+    """Per G word: it is of a list whose state is compared otherwise."""
+    words = [word for key in _OF_STATES for word in trace.machine.codes(key)]
+    words += [*trace.machine.polar.on, *trace.machine.polar.off]
+    return code_set([word for word in words if word.startswith("G") and " " not in word])[trace.blocks.g_codes]
+
+
+def _names_of_m_codes(trace: Trace) -> dict[str, str]:
+    """What the profile says that an M code does, by the code."""
+    codes = trace.machine.m_codes
+    return {word: key for key in _SWITCHES for word in getattr(codes, key) if " " not in word}
+
+
+def _turns_side(trace: Trace) -> Mask:
+    """Rows that begin or end compensation where the path does not show it: outside of sections, and without R."""
+    side = trace.compensation.side
+    is_hidden = (trace.mode.section < 0) | np.isnan(trace.compensation.radius_of_move)
+    return np.asarray((side != before(side, trace.blocks.starts, 40)) & is_hidden)
+
+
+class _Reader:
+    """Reads the orders of rows one after the other."""
+
+    def __init__(self, trace: Trace, is_same_machine: bool) -> None:
+        macro = trace.machine.macro
+        calls = (macro.subprogram_calls, macro.local_calls, macro.macro_calls, macro.program_returns)
+        self._trace = trace
+        self._is_same_machine = is_same_machine
+        self._of_moves = _words_of_moves(trace)
+        # What is called stands in the place of the call.
+        self._calls = trace.blocks.codes(*(word for words in calls for word in words))
+        self._special = special_rows(trace)
+        self._turns_side = _turns_side(trace)
+        self._names = _names_of_m_codes(trace)
+        self._plain = np.zeros(len(trace.run.words), bool)
+        self._plain[trace.blocks.g_words[_sets_state(trace)]] = True
+        self._in_force: dict[str, float] = {}
+
+    def step(self, row: int) -> Step | None:
+        """The step of a row; None where it orders nothing that was not in force."""
+        if self._calls[row]:
+            return None
+        low, high = np.searchsorted(self._trace.run.row, (row, row + 1)).tolist()
+        parts = [part for index in range(low, high) if (part := self._part(row, index)) is not None]
+        if self._turns_side[row]:
+            side = f"G{int(self._trace.compensation.side[row])}"
+            parts.insert(0, (side, None, side))
+        if not parts:
+            return None
+        tokens, values, shown = zip(*parts, strict=True)
+        return Step(row, tokens, tuple(value for value in values if value is not None), " ".join(shown))
+
+    def _part(self, row: int, index: int) -> tuple[str, float | None, str] | None:
+        """Token, value and text of a word; None for one that is compared elsewhere."""
+        words, is_special = self._trace.run.words, bool(self._special[row])
+        name, value = self._address(int(words.address[index])), float(words.value[index])
+        text = f"{name}{value:g}"
+        if name == "M":
+            token = text if self._is_same_machine else self._names.get(text, text if text in _EVERYWHERE else "")
+            return (token, None, token.replace("_", " ")) if token else None
+        if name in ("S", "T"):
+            if name == "T" and not self._is_same_machine:
+                return None
+            if not is_special:
+                if self._in_force.get(name) == value:
+                    return None
+                self._in_force[name] = value
+            return name, value, text
+        if not self._is_same_machine or name in ("N", "O") or self._plain[index]:
+            return None
+        if name == "G":
+            return text, None, text
+        return (name, self._length(name, row, value), text) if is_special or name not in self._of_moves else None
+
+    def _length(self, name: str, row: int, value: float) -> float:
+        """A word of a cycle as a length [mm, X as a radius], where it may be one."""
+        trace = self._trace
+        if name not in _LENGTHS:
+            return value
+        length = float(trace.lengths.length_of(name)[row])
+        if np.isnan(length):
+            length = value * (MM_PER_INCH if trace.lengths.units[row] == Units.INCH else 1.0)
+        return length * float(trace.lengths.x_factor[row]) if name in ("X", "U") else length
+
+    def _address(self, number: int) -> str:
+        """A letter, a letter behind a comma as `,R`, or the name of an axis."""
+        if number < FIRST_NAMED:
+            return f",{chr(number).upper()}" if chr(number).islower() else chr(number)
+        control = self._trace.machine.control
+        named = [*control.named_axes, *control.spindle_words]
+        return named[number - FIRST_NAMED] if number - FIRST_NAMED < len(named) else "?"
