@@ -309,6 +309,21 @@ class KnownStock(msgspec.Struct, frozen=True, kw_only=True):
     face_end_line: int | None
 
 
+class Outline(msgspec.Struct, frozen=True):
+    """
+    The blocks of a file in short, by which a baseline finds its places again.
+
+    hashes: one per block that says something, in their order; renumbered and respaced blocks have the same.
+    of: only hashes that are a multiple of this are listed, 1 for all.
+    place_of_line: for lines of findings, and of the sections that they stand in, the index of the hash of the block
+    there, or of the last one that is listed before it, -1 for none. Lines without a block, as of a comment, are absent.
+    """
+
+    hashes: list[int]
+    of: int
+    place_of_line: dict[int, int]
+
+
 class Decided(msgspec.Struct, frozen=True, kw_only=True):
     """
     The settings that decided a verdict and the exit code, as the user has written them.
@@ -387,6 +402,7 @@ class FileReport(msgspec.Struct, frozen=True, kw_only=True):
     silenced: suppressed findings.
     stock: the bar before milling, if anything is known of it.
     makes: in one line what the only section makes, for text; not part of the JSON contract.
+    outline: its blocks in short, for a baseline; not part of the JSON contract.
     part: what the program makes, if requested.
     compared: its contours compared with those asked for, if requested.
     """
@@ -408,6 +424,7 @@ class FileReport(msgspec.Struct, frozen=True, kw_only=True):
     silenced: list[Silenced] = []
     stock: KnownStock | None = None
     makes: str | UnsetType = UNSET
+    outline: Outline | UnsetType = UNSET
     part: list[MadeShape] | UnsetType = UNSET
     compared: list[PartComparison] | UnsetType = UNSET
 
@@ -419,8 +436,27 @@ class Producer(msgspec.Struct, frozen=True):
     version: str
 
 
+class NotRead(msgspec.Struct, frozen=True):
+    """
+    Files of walked folders that may be NC programs by their look, and were not read.
+
+    ending: with its point, in lower case; empty for files without ending.
+    files: their number.
+    first: the path of the first of them.
+    """
+
+    ending: str
+    files: int
+    first: str
+
+
 class Summary(msgspec.Struct, frozen=True, kw_only=True):
-    """Counts over all files."""
+    """
+    Counts over all files.
+
+    not_read: of the folders that were walked, by ending.
+    excluded: programs that patterns exclude; in folders of more than 50,000 entries there may be more.
+    """
 
     files: int
     errors: int
@@ -431,6 +467,8 @@ class Summary(msgspec.Struct, frozen=True, kw_only=True):
     unverified: int
     fail: int
     unreadable: int
+    not_read: list[NotRead] = []
+    excluded: int = 0
 
 
 class Report(msgspec.Struct, frozen=True, kw_only=True):

@@ -409,7 +409,7 @@ def test_every_option_of_a_job_is_a_keyword() -> None:
     other = {"severities": "severities", "units": "program_units"}
     known = {*keywords.CheckKeywords.__annotations__}
     left = {other.get(name, name) for name in Options.__struct_fields__} - known
-    assert left == {"baseline", "extras", "keywords"}
+    assert left == {"baseline", "use_baseline", "exclude", "extras", "keywords"}
 
 
 def test_warnings_are_no_errors_of_a_clean_folder(samples: None) -> None:

@@ -10,12 +10,13 @@ import sys
 from pathlib import Path
 from typing import Any
 
+import msgspec
 import pytest
 from click.testing import CliRunner, Result
 from programs import ROOT, report_of
 
 import polarcheck
-from polarcheck.batch.baseline_file import Entry, read, text_of
+from polarcheck.batch.baseline_file import Contents, Entry, Place, program_of, read, text_of
 from polarcheck.checking.fingerprints import normal
 from polarcheck.commands import baseline as baseline_command
 from polarcheck.commands import main
@@ -52,7 +53,7 @@ def baseline(*arguments: Any) -> Result:
 
 
 def entries() -> list[tuple[str, str, int]]:
-    return [(entry.file, entry.block, entry.count) for entry in read(Path(FILE))]
+    return [(entry.file, entry.block, entry.count) for entry in read(Path(FILE)).entries]
 
 
 def silenced(result: Result) -> dict[str, int]:
@@ -87,7 +88,7 @@ def test_the_file_is_for_people_and_for_tools_that_compare_lines() -> None:
     assert baseline("create", "b.nc", "a.nc").exit_code == 0
     first = Path(FILE).read_bytes()
     assert b"\r" not in first
-    assert first.count(b"\n") == 7
+    assert first.count(b"\n") == 11
     assert entries() == [("a.nc", "G0 C5.", 1), ("b.nc", "G0 C5.", 2)]
     assert baseline("create", "a.nc", "b.nc", "-o", "again.json").exit_code == 0
     assert Path("again.json").read_bytes() == first
@@ -226,7 +227,7 @@ def test_one_less_is_said_and_can_be_dropped() -> None:
     )
     make(c__nc=RAPID)
     assert baseline("prune", ".").stdout == f"{FILE}: 1 finding of 1 file known; 2 gone\n"
-    assert [(entry.file, entry.count, entry.reason) for entry in read(Path(FILE))] == [("a.nc", 1, "OLD")]
+    assert [(entry.file, entry.count, entry.reason) for entry in read(Path(FILE)).entries] == [("a.nc", 1, "OLD")]
     assert check(".", "--format", "concise").exit_code == 1
     assert check("a.nc").stderr == ""
 
@@ -237,7 +238,10 @@ def test_an_update_takes_what_is_new_and_keeps_reasons() -> None:
     make(a__nc=RAPID.replace("G1 C-5.", "G0 C-5."), b__nc=GOOD)
     result = baseline("update", ".", "--reason", "NEW")
     assert result.stdout == f"{FILE}: 2 findings of 1 file known; 1 new, 1 gone\n"
-    assert [(entry.block, entry.reason) for entry in read(Path(FILE))] == [("G0 C-5.", "NEW"), ("G0 C5.", "OLD")]
+    assert [(entry.block, entry.reason) for entry in read(Path(FILE)).entries] == [
+        ("G0 C-5.", "NEW"),
+        ("G0 C5.", "OLD"),
+    ]
 
 
 def test_files_and_rules_that_are_not_asked_keep_what_is_known_of_them() -> None:
@@ -258,7 +262,7 @@ def test_what_could_not_be_evaluated_is_not_gone() -> None:
     rule = "start-up-shorter-than-radius"
     tool = ("--tool", "1:radius=30")
     call("baseline", "create", "a.nc", "--select", rule, *tool)
-    assert [entry.rule for entry in read(Path(FILE))] == [rule]
+    assert [entry.rule for entry in read(Path(FILE)).entries] == [rule]
     before = Path(FILE).read_bytes()
     assert call("check", "a.nc", "--select", rule, "--baseline", FILE).stderr == ""
     call("baseline", "prune", "a.nc", "--select", rule)
@@ -286,7 +290,7 @@ def test_what_follows_goes_with_its_cause_and_what_follows_newly_is_told() -> No
     tool = ("--tool", "1:radius=4")
     both = ("--select", "side-of-compensation-mirrored", "--select", "start-up-sweeps-contour")
     call("baseline", "create", "a.nc", *tool, *both)
-    (entry,) = read(Path(FILE))
+    (entry,) = read(Path(FILE)).entries
     assert (entry.rule, entry.follows) == ("side-of-compensation-mirrored", ["start-up-sweeps-contour"])
     result = call("check", "a.nc", "--baseline", FILE, "--format", "json", *tool, *both)
     assert result.exit_code == 0
@@ -312,7 +316,10 @@ def test_a_file_that_has_moved_is_known_by_what_is_found_in_it() -> None:
         "update` takes the new paths\n"
     )
     assert baseline("update", ".").exit_code == 0
-    assert [(entry.file, entry.reason) for entry in read(Path(FILE))] == [("new/a.nc", "OLD"), ("new/c.nc", "OLD")]
+    assert [(entry.file, entry.reason) for entry in read(Path(FILE)).entries] == [
+        ("new/a.nc", "OLD"),
+        ("new/c.nc", "OLD"),
+    ]
     assert check(".").stderr == ""
 
 
@@ -329,7 +336,7 @@ def test_a_file_that_has_moved_where_the_run_was_not_keeps_what_is_known_of_it(c
     assert check(".").exit_code == 0
     Path("sub/c.nc").unlink()
     assert baseline(command, "a.nc", "sub").exit_code == 0
-    assert [entry.file for entry in read(Path(FILE))] == ["a.nc"]
+    assert [entry.file for entry in read(Path(FILE)).entries] == ["a.nc"]
 
 
 def test_a_copy_is_new() -> None:
@@ -372,7 +379,7 @@ def test_paths_are_counted_from_the_folder_of_the_file(monkeypatch: pytest.Monke
     make(shop_of_a__nc=RAPID)
     Path("known").mkdir()
     assert baseline("create", "shop", "-o", "known/b.json").exit_code == 0
-    assert [entry.file for entry in read(Path("known/b.json"))] == ["../shop/a.nc"]
+    assert [entry.file for entry in read(Path("known/b.json")).entries] == ["../shop/a.nc"]
     monkeypatch.chdir("shop")
     result = call("check", "a.nc", "--baseline", "../known/b.json", *ONLY)
     assert (result.exit_code, result.stderr) == (0, "")
@@ -426,7 +433,7 @@ ENTRY = '{"file": "a.nc", "rule": "rapid-in-polar", "fingerprint": "0", "severit
         ("[]", "Expected `object`, got `array`; expected a file that `polarcheck baseline create` has written"),
         ('{"schema": 1}', "missing required field `findings`"),
         ('{"schema": 1,\n"findings": [\n}', "in line 3"),
-        ('{"schema": 2, "findings": []}', "schema: expected 1, found 2"),
+        ('{"schema": 3, "findings": []}', "schema: expected 1 or 2, found 3"),
         ("\x1b[2J", "is no JSON"),
         (b"\xff\xfe\x00", "polarcheck-baseline.json: "),
     ],
@@ -463,7 +470,7 @@ def test_editors_and_shells_of_windows_may_have_written_it(encoding: str) -> Non
     baseline("create", "a.nc", "--reason", "geprüft")
     Path(FILE).write_bytes(Path(FILE).read_text("utf-8").replace("\n", "\r\n").encode(encoding))
     assert check("a.nc").exit_code == 0
-    assert [entry.reason for entry in read(Path(FILE))] == ["geprüft"]
+    assert [entry.reason for entry in read(Path(FILE)).entries] == ["geprüft"]
 
 
 def test_what_cannot_be_read_keeps_what_is_known_of_it_and_is_told() -> None:
@@ -478,11 +485,17 @@ def test_what_cannot_be_read_keeps_what_is_known_of_it_and_is_told() -> None:
 
 
 def test_text_of_a_file_comes_back_as_it_was() -> None:
-    found = [Entry(file='a"\n\x1b.nc', rule="x", fingerprint="1", severity="note", count=3, follows=["y"], reason="ü")]
-    Path(FILE).write_text(text_of(found), "utf-8")
-    assert read(Path(FILE)) == found
-    Path(FILE).write_text(text_of([]), "utf-8")
-    assert read(Path(FILE)) == []
+    entries = [
+        Entry(file='a"\n\x1b.nc', rule="x", fingerprint="1", severity="note", count=3, follows=["y"], reason="ü")
+    ]
+    entries.append(msgspec.structs.replace(entries[0], rule="y", count=1, places=[Place(at=3, values={"depth": 0.5})]))
+    programs = [program_of('a"\n\x1b.nc', [0, 1, 2**24 - 1], 2)]
+    Path(FILE).write_text(text_of(Contents(entries, programs)), "utf-8")
+    contents = read(Path(FILE))
+    assert (contents.entries, contents.programs, contents.lines) == (entries, programs, [7, 8])
+    assert contents.programs[0].hashes == [0, 1, 2**24 - 1]
+    Path(FILE).write_text(text_of(Contents()), "utf-8")
+    assert read(Path(FILE)) == Contents([], [], [])
 
 
 def test_nothing_acts_on_a_terminal() -> None:
@@ -532,9 +545,14 @@ def test_a_verdict_says_what_it_does_not_rest_on() -> None:
 
 
 def test_it_takes_all_options_that_decide_what_is_found() -> None:
-    assert set(Options.__struct_fields__) - {"use_config", "baseline", "strict", "fail_on", "extras"} <= set(
-        baseline_command.DECIDING
-    )
+    assert set(Options.__struct_fields__) - {
+        "use_config",
+        "baseline",
+        "use_baseline",
+        "strict",
+        "fail_on",
+        "extras",
+    } <= set(baseline_command.DECIDING)
     for command in ("create", "update", "prune"):
         parameters = {one.name for one in baseline_command.baseline.commands[command].params}
         assert {*baseline_command.DECIDING, "output"} <= parameters

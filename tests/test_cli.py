@@ -404,6 +404,8 @@ def test_folders_files_and_standard_input_are_checked_in_order_and_once() -> Non
         "unverified": 0,
         "fail": 2,
         "unreadable": 0,
+        "not_read": [],
+        "excluded": 0,
     }
 
 

@@ -257,7 +257,9 @@ def test_what_is_excluded_is_found_by_no_walk_and_checked_where_it_is_named() ->
     assert list(checked(".")) == ["a.nc", "y/e.nc"]
     assert list(checked("old/b.nc", "d.bak.nc", "y/z")) == ["old/b.nc", "d.bak.nc", "y/z/f.nc"]
     assert list(checked("a.nc", "old/b.nc", "d.bak.nc", "y/z/f.nc", "y/z", "--force-exclude")) == ["a.nc"]
-    assert call("check", "x").stderr == "polarcheck: warning: x: all NC programs in this folder are excluded\n"
+    result = call("check", "x")
+    assert result.stderr == "polarcheck: nothing to check: x: all NC programs in this folder are excluded\n"
+    assert (result.exit_code, result.stdout) == (2, "")
 
 
 @pytest.mark.parametrize(
@@ -282,20 +284,100 @@ def test_where_all_is_excluded_nothing_is_checked_and_that_is_said(path: str) ->
     assert result.stderr == "polarcheck: warning: all that is named is excluded: nothing is checked\n"
 
 
+@pytest.mark.parametrize(
+    ("text", "options", "read", "count"),
+    [
+        ("", ["--exclude", "old"], ["a.nc", "sub/b.nc", "sub/c.nc"], 2),
+        ("", ["--exclude", "OLD", "--exclude", "sub/B*"], ["a.nc", "sub/c.nc"], 3),
+        ("exclude = ['old']\n", ["--exclude", "sub"], ["a.nc"], 4),
+        ("exclude = ['old']\n", ["--exclude", "a.nc"], ["sub/b.nc", "sub/c.nc"], 3),
+    ],
+)
+def test_patterns_of_the_command_line_are_added_to_those_of_the_file(
+    text: str, options: list[str], read: list[str], count: int
+) -> None:
+    make("a.nc", "old/x.nc", "old/y/z.nc", "sub/b.nc", "sub/c.nc", text="O1\nM30\n")
+    job(text)
+    result = call("check", ".", "--format", "json", *options)
+    document = json.loads(result.stdout)
+    assert ([file["path"] for file in document["files"]], document["summary"]["excluded"]) == (read, count)
+    assert result.stderr == ""
+    assert call("check", ".", *options).stdout.endswith(f"; no findings; excluded: {count}\n")
+    # They begin at the working folder, and a file that is named is read all the same.
+    assert list(checked("old/x.nc", *options)) == ["old/x.nc"]
+    assert call("check", "old/x.nc", "--force-exclude", "--exclude", "old").stdout == ""
+    assert shown("sub/c.nc", *options)["exclude"][0] == [*(["old"] if text else []), *options[1::2]]
+
+
+def test_an_option_that_is_no_pattern_is_told() -> None:
+    make("a.nc")
+    told = "--exclude: expected a pattern such as O12*.nc or lathe7/**, found '!a'"
+    assert refused("check", ".", "--exclude", "!a") == told
+
+
+@pytest.mark.parametrize(
+    ("text", "options", "told"),
+    [
+        ("exclude = ['sub', 'gone', '*.bak']\n", [], "polarcheck.toml:1: exclude: {} excludes nothing|'gone'|'*.bak'"),
+        (
+            "extensions = ['nc', '.tpa']\n",
+            [],
+            "polarcheck.toml:1: extensions: no file of this folder ends in {}|'.tpa'",
+        ),
+        ("", ["--exclude", "old/**"], "--exclude {} excludes nothing|'old/**'"),
+        ("extensions = ['tap']\n", ["--extensions", "nc,sub"], "--extensions: no file ends in {}|'sub'"),
+    ],
+)
+def test_a_pattern_of_a_walk_without_effect_is_told_once(text: str, options: list[str], told: str) -> None:
+    make("a.nc", "sub/b.nc", "sub/c.nc", text="O1\nM30\n")
+    job(text)
+    form, *names = told.split("|")
+    lines = [f"polarcheck: warning: {form.format(name)}\n" for name in names]
+    assert call("check", ".", *options).stderr == "".join(lines)
+    # Not where only some of the programs are looked at.
+    if not options:
+        assert call("check", "sub", "a.nc").stderr == ""
+
+
+def test_endings_of_a_folder_are_those_of_its_own_job_file() -> None:
+    make("a.nc", "l7/b.nc", "l7/P.SUB", "l8/c.nc", "l8/P.SUB", text="O1\nM30\n")
+    job("extensions = ['nc', 'sub']\n", "l7/polarcheck.toml")
+    assert list(checked(".")) == ["a.nc", "l7/P.SUB", "l7/b.nc", "l8/c.nc"]
+
+
+@pytest.mark.parametrize(
+    ("names", "said"),
+    [
+        (["old/a.nc", "old/b.nc"], "all NC programs in this folder are excluded"),
+        (["P.SUB", "Q.SUB", "old/a.nc"], "no NC programs in this folder, but 2 .sub; --extensions names other endings"),
+        (["old/a.B", "a.B"], "no NC programs in this folder, but 1 .b; --extensions names other endings"),
+    ],
+)
+def test_where_nothing_is_left_to_check_that_is_no_success(names: list[str], said: str) -> None:
+    make(*names, text="O1234\nG0 X1.\nM30\n")
+    job("exclude = ['old']\n")
+    assert refused("check", ".") == f"nothing to check: .: {said}"
+    # A hook names what git names: that all of it is excluded is as it should be.
+    result = call("check", ".", "--force-exclude")
+    assert (result.exit_code, result.stderr) == (0, f"polarcheck: warning: .: {said}\n")
+    make("now.nc", text="O1\nM30\n")
+    assert call("check", ".").exit_code == 0
+
+
 @pytest.mark.skipif(sys.platform == "win32", reason="rights are others there")
 def test_a_folder_that_is_excluded_is_not_entered() -> None:
     make("a.nc", "old/b.nc")
     job("exclude = ['old']\n")
     told: list[str] = []
-    from polarcheck.reading import files
+    from polarcheck.reading import walking
 
     entered: list[str] = []
 
     def excluded_in(folder: str) -> Any:
         entered.append(folder)
-        return lambda name, is_folder: is_folder and name == "old"
+        return lambda name, is_folder: "old" if is_folder and name == "old" else ""
 
-    assert list(files.walk(".", files.EXTENSIONS, told.append, excluded_in)) == ["a.nc"]
+    assert list(walking.walk(".", walking.EXTENSIONS, told.append, excluded_in)) == ["a.nc"]
     assert entered == ["."]
 
 
@@ -385,6 +467,8 @@ def test_a_folder_without_a_job_file_cannot_be_extended() -> None:
         ("strict = true\nmachine = 'fanuc-30i'\n", "machine = 'fanuc'\n", "strict"),
         ("[tools.8]\nradius = 4\n[severities]\npolar = 'note'\n", "strict = true\n", "tools, severities"),
         ("select = ['polar']\n", "[[programs]]\nfiles = ['a*']\nselect = ['feed']\n", "select"),
+        ("machine = 'fanuc-30i'\n[limits]\nc_feed = 9000\n", "machine = 'fanuc-30i'\n", "limits"),
+        ("machine = 'fanuc-30i'\n[tools.8]\nradius = 4\n[limits]\nc_feed = 9000\n", "machine = 'fanuc-16i'\n", ""),
         ("strict = true\n", "extend = '..'\n", ""),
         ("strict = true\n", "root = true\n", ""),
         ("strict = true\n", "strict = false\n", ""),

@@ -22,7 +22,7 @@ from polarcheck import bounded
 from polarcheck.batch import tasks as batch
 from polarcheck.commands import main
 from polarcheck.errors import SourceError
-from polarcheck.reading import files
+from polarcheck.reading import files, walking
 from polarcheck.reading.excerpt import visible
 from polarcheck.settings import job_files
 from polarcheck.settings.of_programs import OfPrograms, Options
@@ -223,7 +223,7 @@ def test_a_file_that_is_gone_when_its_turn_comes() -> None:
 def test_a_folder_that_is_gone_when_its_turn_comes() -> None:
     make("f/a.nc", "f/sub/b.nc", "f/z.nc")
     told: list[str] = []
-    walk = files.walk("f", files.EXTENSIONS, told.append)
+    walk = walking.walk("f", walking.EXTENSIONS, told.append)
     assert Path(next(walk)).name == "a.nc"
     shutil.rmtree("f/sub")
     assert [Path(path).name for path in walk] == ["z.nc"]
@@ -241,7 +241,7 @@ def test_a_file_that_has_become_a_pipe_is_not_waited_for(monkeypatch: pytest.Mon
         return opened(*arguments)
 
     monkeypatch.setattr(os, "open", exchanged)
-    assert not files.is_program("a", files.EXTENSIONS)
+    assert not walking.is_program("a", walking.EXTENSIONS)
 
 
 def in_pieces(monkeypatch: pytest.MonkeyPatch, meanwhile: Any) -> None:

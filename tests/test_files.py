@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from polarcheck.errors import PolarcheckError, SourceError
-from polarcheck.reading import files
+from polarcheck.reading import files, walking
 
 HOOKS = Path(__file__).parent.parent / ".pre-commit-hooks.yaml"
 BLOCKS = "G98 G0 X60. C0\nG12.1\nG1 X40. F200\nG13.1\n"
@@ -35,9 +35,9 @@ def make(folder: Path, names: dict[str, str]) -> None:
         path.write_text(text, "utf-8")
 
 
-def walked(folder: Path, wanted: tuple[str, ...] = files.EXTENSIONS) -> list[str]:
+def walked(folder: Path, wanted: tuple[str, ...] = walking.EXTENSIONS) -> list[str]:
     failures: list[str] = []
-    found = [Path(path).relative_to(folder).as_posix() for path in files.walk(str(folder), wanted, failures.append)]
+    found = [Path(path).relative_to(folder).as_posix() for path in walking.walk(str(folder), wanted, failures.append)]
     assert not failures
     return found
 
@@ -55,7 +55,7 @@ def test_hidden_and_installed_folders_are_passed_over(tmp_path: Path) -> None:
 
 def test_other_extensions_replace_the_usual_ones(tmp_path: Path) -> None:
     make(tmp_path, dict.fromkeys(["a.nc", "b.LST", "c.P-3", "O1234"], ""))
-    assert walked(tmp_path, tuple(files.extensions(["lst", ".p-3 ", ""]))) == ["O1234", "b.LST", "c.P-3"]
+    assert walked(tmp_path, tuple(walking.extensions(["lst", ".p-3 ", ""]))) == ["O1234", "b.LST", "c.P-3"]
 
 
 @pytest.mark.parametrize(
@@ -82,6 +82,82 @@ def test_texts_that_read_as_programs_are_programs(tmp_path: Path, text: str) -> 
 def test_other_texts_are_not(tmp_path: Path, text: str) -> None:
     make(tmp_path, {"LICENSE": text, "setup.txt": text})
     assert walked(tmp_path) == []
+
+
+COMMENTS = "".join(f"(COMMENT {number})\n" for number in range(12))
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        COMMENTS + BLOCKS,
+        COMMENTS * 40 + BLOCKS,
+        "; MADE BY A POST\n" * 15 + "N10 G0 X1.\nN20 G1 Z1.\n",
+        "(A) (B);\n" * 11 + BLOCKS,
+        "$O1234.MIN%\nX\n",
+    ],
+)
+def test_comments_do_not_hide_a_program_without_ending(tmp_path: Path, text: str) -> None:
+    make(tmp_path, {"flats": text, "flats.txt": text})
+    assert walked(tmp_path) == ["flats", "flats.txt"]
+
+
+README = "Programs of lathe 7\n\n(see the binder)\n(G12.1 needs M35)\nG12.1 is on.\n"
+
+
+@pytest.mark.parametrize(
+    "text", [README, f"({README})", COMMENTS, "; key = 1\n" * 20 + "a = 2\nb = 3\n", "(a)\n" * 20000]
+)
+def test_comments_alone_make_no_program(tmp_path: Path, text: str) -> None:
+    make(tmp_path, {"README": text, "LICENSE.txt": text})
+    assert passed_over(tmp_path) == []
+
+
+def passed_over(folder: Path) -> list[tuple[str, str]]:
+    """What a walk does not read, each with the reason; of what it reads the reason is empty."""
+    skipped: list[walking.Skipped] = []
+    read = list(walking.walk(str(folder), walking.EXTENSIONS, pytest.fail, None, skipped.append))
+    found = [(Path(path).relative_to(folder).as_posix(), "") for path in read]
+    return sorted([*found, *((Path(one.path).relative_to(folder).as_posix(), one.reason) for one in skipped)])
+
+
+@pytest.mark.parametrize(
+    "name", ["P.SUB", "x.ssb", "a.LIB", "1234.001", "O1234-REV.B", "mill.tpx", "a.NC.bak", "4711.2", "O12-A.5"]
+)
+def test_a_program_with_another_ending_is_named(tmp_path: Path, name: str) -> None:
+    make(tmp_path, {name: BLOCKS, f"sub/{name}": "%\nO1234(X)\nM99\n%\n"})
+    assert passed_over(tmp_path) == sorted([(name, "ending"), (f"sub/{name}", "ending")])
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("a.md", BLOCKS),
+        ("a.html", BLOCKS),
+        ("polarcheck.toml", "strict = true\n"),
+        ("a.pdf", "%PDF-1.7\n"),
+        ("a.xyz", "A1\nB2\nC3\n"),
+        ("a.tex2", "% a comment\nx1\n"),
+        ("a.dat", "1 2 3\n4 5 6\n"),
+        ("a.lib", "!<arch>\n\0\1\2"),
+        ("a.out", "\x7fELF\2\1\1"),
+        ("a.py", "#1 = 2\nG1 = 2\n"),
+        ("a.hex", ":10010000214601360121470136007EFE09D2190140\n"),
+        ("O1234.orig", BLOCKS),
+        ("a.nc~", BLOCKS),
+        ("P.SUB", "Sub AutoOpen()\nEnd Sub\n"),
+        ("2026", "minutes of the meeting\n"),
+        (".x.nc.swp", BLOCKS),
+    ],
+)
+def test_what_is_no_program_by_its_look_needs_no_word(tmp_path: Path, name: str, text: str) -> None:
+    make(tmp_path, {name: text})
+    assert passed_over(tmp_path) == []
+
+
+def test_folders_that_are_not_entered_are_named(tmp_path: Path) -> None:
+    make(tmp_path, {".git/a.nc": BLOCKS, "node_modules/x/a.nc": BLOCKS, "b.nc": ""})
+    assert passed_over(tmp_path) == [(".git", "folder"), ("b.nc", ""), ("node_modules", "folder")]
 
 
 def test_sniffing_ends_soon_whatever_the_line(tmp_path: Path) -> None:
@@ -113,14 +189,14 @@ def test_pipes_in_folders_are_not_waited_for(tmp_path: Path) -> None:
 
 def test_a_folder_that_cannot_be_read_is_told(tmp_path: Path) -> None:
     failures: list[str] = []
-    assert list(files.walk(str(tmp_path / "gone"), files.EXTENSIONS, failures.append)) == []
+    assert list(walking.walk(str(tmp_path / "gone"), walking.EXTENSIONS, failures.append)) == []
     assert failures == [f"{tmp_path / 'gone'}: No such file or directory"]
 
 
 def test_the_working_folder_gives_plain_names(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     make(tmp_path, {"a.nc": "", "sub/b.nc": ""})
     monkeypatch.chdir(tmp_path)
-    assert list(files.walk(".", files.EXTENSIONS, pytest.fail)) == ["a.nc", str(Path("sub/b.nc"))]
+    assert list(walking.walk(".", walking.EXTENSIONS, pytest.fail)) == ["a.nc", str(Path("sub/b.nc"))]
 
 
 def test_paths_that_are_no_text_are_spelled_out() -> None:
@@ -176,7 +252,7 @@ def hook(key: str) -> str:
     return found[1].strip("'")
 
 
-@pytest.mark.parametrize("name", [*PROGRAMS, "sub/O1234", *(f"sub/A{end.upper()}" for end in files.EXTENSIONS)])
+@pytest.mark.parametrize("name", [*PROGRAMS, "sub/O1234", *(f"sub/A{end.upper()}" for end in walking.EXTENSIONS)])
 def test_the_hook_takes_programs(name: str) -> None:
     assert re.search(hook("files"), name)
 

@@ -106,14 +106,44 @@ def test_a_commit_that_changes_the_lathe_checks_all_programs(tmp_path: Path, mon
     Path("cell", "lathe.toml").write_text("inherits = 'fanuc-30i'\n[limits]\nc_feed = 36000\n")
     Path("cell", "a.nc").write_text("G98 G0 X60. C0\nG12.1\nG1 X4. C5. F100\nC-5. F500\nG13.1\nM30\n")
     assert commit(tmp_path) == (True, {"polarcheck": "Passed", "polarcheck-config": "Passed"})
-    Path("cell", "lathe.toml").write_text("inherits = 'fanuc-30i'\n[limits]\nc_feed = 3600\n")
-    assert commit(tmp_path) == (False, {"polarcheck": "Skipped", "polarcheck-config": "Failed"})
-    Path("cell", "lathe.toml").write_text("inherits = 'fanuc-30i'\n[limits]\nc_fed = 3600\n")
-    assert commit(tmp_path) == (False, {"polarcheck": "Skipped", "polarcheck-config": "Failed"})
+    for limits in ("c_feed = 3600", "c_fed = 3600"):
+        Path("cell", "lathe.toml").write_text(f"inherits = 'fanuc-30i'\n[limits]\n{limits}\n")
+        assert commit(tmp_path) == (False, {"polarcheck": "Failed", "polarcheck-config": "Failed"})
+
+
+def test_a_commit_that_changes_a_subprogram_or_an_offset_table(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    with_hooks(tmp_path)
+    job = "select = ['rapid-in-polar', 'subprogram-missing', 'start-up-shorter-than-radius']\nextensions = ['sub']\n"
+    Path("polarcheck.toml").write_text(job + "offsets = 'TABLE.DAT'\n[run]\nsubprograms = ['subs']\n")
+    Path("subs").mkdir()
+    texts = {
+        "TABLE.DAT": "%\nG10 L10 P1 R4.\n%\n",
+        "CALLS.SUB": "O0001\nG98 G0 X60. C0\nG12.1\nG1 X40. F200\nM98 P9001\nG13.1\nM30\n",
+        "TOOL": "O0002\nT0101\nG98 G0 X60. C0\nG12.1\nG1 G41 X40. F200\nC-10.\nG40 X60.\nG13.1\nM30\n",
+        "subs/README": "Called programs.",
+        "subs/O9001": "O9001\nG1 C5.\nM99\n",
+    }
+    for name, text in texts.items():
+        Path(name).write_text(text)
+    skipped = "Skipped"
+    assert commit(tmp_path)[0]
+    Path("subs/O9001").write_text("O9001\nG0 C5.\nM99\n")
+    assert commit(tmp_path) == (False, {"polarcheck": "Failed", "polarcheck-config": skipped})
+    Path("subs/O9001").unlink()
+    assert commit(tmp_path) == (False, {"polarcheck": "Failed", "polarcheck-config": skipped})
+    git("reset", "-q", "--hard")
+    Path("TABLE.DAT").write_text("%\nG10 L10 P1 R44.\n%\n")
+    assert commit(tmp_path) == (False, {"polarcheck": "Failed", "polarcheck-config": skipped})
+    git("reset", "-q", "--hard")
+    # What stays out of the commit is no matter of it.
+    Path("TABLE.DAT").write_text("%\nG10 L10 P1 R44.\n%\n")
+    Path("new.md").write_text("x")
+    assert commit(tmp_path, "new.md") == (True, {"polarcheck": "Passed", "polarcheck-config": skipped})
 
 
 def test_with_diff_base_only_programs_that_it_concerns(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The arguments that docs/ci.md gives for folders of many programs."""
+    """Arguments of the hook of settings for folders of many programs."""
     monkeypatch.chdir(tmp_path)
     with_hooks(tmp_path, **{"polarcheck-config": {"args": ["--diff-base", "HEAD"]}})
     for cell in ("one", "two"):
@@ -124,9 +154,9 @@ def test_with_diff_base_only_programs_that_it_concerns(tmp_path: Path, monkeypat
     Path("one", "polarcheck.toml").write_text("select = ['overcut']\n")
     assert commit(tmp_path)[0]
     Path("two", "polarcheck.toml").write_text(FAULTS_ONLY + "strict = true\n")
-    assert commit(tmp_path) == (True, {"polarcheck": "Skipped", "polarcheck-config": "Passed"})
+    assert commit(tmp_path) == (True, {"polarcheck": "Passed", "polarcheck-config": "Passed"})
     Path("one", "polarcheck.toml").write_text(FAULTS_ONLY)
-    assert commit(tmp_path) == (False, {"polarcheck": "Skipped", "polarcheck-config": "Failed"})
+    assert commit(tmp_path) == (False, {"polarcheck": "Failed", "polarcheck-config": "Failed"})
 
 
 @pytest.mark.parametrize("name", ["polarcheck.toml", "a/polarcheck.toml", "lathe 3.toml", "pyproject.toml"])

@@ -352,7 +352,8 @@ def test_json_is_the_contract() -> None:
     assert list(shown) == ["schema", "tool", "machine", "settings", "files", "summary"]
     assert list(shown["tool"]) == ["name", "version"]
     assert list(shown["summary"]) == [
-        *("files", "errors", "warnings", "notes", "silenced", "pass", "unverified", "fail", "unreadable")
+        *("files", "errors", "warnings", "notes", "silenced", "pass", "unverified", "fail", "unreadable"),
+        *("not_read", "excluded"),
     ]
     (checked,) = shown["files"]
     keys = [
@@ -390,6 +391,8 @@ def test_verdicts_are_counted() -> None:
         "unverified": 1,
         "fail": 2,
         "unreadable": 0,
+        "not_read": [],
+        "excluded": 0,
     }
 
 

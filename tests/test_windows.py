@@ -18,7 +18,7 @@ from test_cli import IMPORTED_FROM, RAPID, call, check, make
 from polarcheck import bounded, memory
 from polarcheck.commands import main, output, overwriting, signals, wildcards
 from polarcheck.errors import OutputError
-from polarcheck.reading import files
+from polarcheck.reading import files, walking
 
 pytestmark = pytest.mark.usefixtures("own_folder")
 
@@ -191,7 +191,7 @@ def test_every_folder_of_such_a_drive_is_walked() -> None:
     for name in ("a/b", "c"):
         Path(name).mkdir(parents=True)
     make(**{"a/b/one__nc": "M30", "c/two__nc": "M30"})
-    assert [files.shown(path) for path in files.walk(".", files.EXTENSIONS, print)] == ["a/b/one.nc", "c/two.nc"]
+    assert [files.shown(path) for path in walking.walk(".", walking.EXTENSIONS, print)] == ["a/b/one.nc", "c/two.nc"]
 
 
 @pytest.mark.usefixtures("unnumbered")

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 if TYPE_CHECKING:
     from polarcheck.batch.tasks import Outcome, Task
+    from polarcheck.reading.walking import Skipped
     from polarcheck.settings.of_programs import OfPrograms
 
 #: Processes are started once they save more time than this [s]. A fork, as on Linux, costs little; a spawned process
@@ -25,7 +26,7 @@ class Planned(NamedTuple):
     The programs of a run.
 
     tasks: the programs, with the settings of each.
-    failures: a line for each folder that cannot be read.
+    failures: a line for each folder that cannot be read, or that nothing is left of.
     doubts: a line for each path or setting that may not say what was meant.
     """
 
@@ -41,30 +42,41 @@ def planned(
     *,
     force_exclude: bool = False,
     named: Mapping[str, Any] | None = None,
+    skipped: list[Skipped] | None = None,
 ) -> Planned:
     """
     Return the programs of files and folders.
 
+    Where all programs of the folders are excluded or have other endings, that is a failure: nothing was checked.
+
     extensions: endings of the programs in folders; empty for those that the job files name, else the usual ones.
-    force_exclude: skip excluded files even if they are named.
+    force_exclude: skip excluded files even if they are named; nothing need be left.
     named: the file that standard input is judged as, as an argument of tasks.plan.
+    skipped: takes what the walks did not read.
 
     Raises a PolarcheckError for settings that cannot be used.
     """
     from polarcheck.batch import tasks as batch
 
-    failures, doubts = list[str](), list[str]()
+    failures, doubts, empty = list[str](), list[str](), list[str]()
     paths = settings_of.left(paths, doubts.append) if force_exclude else paths
+    skipped = [] if skipped is None else skipped
     tasks = batch.plan(
         paths,
         settings_of,
         extensions,
         failures.append,
-        doubts.append,
+        empty.append,
         excluded_in=settings_of.excluded_in,
+        extensions_in=settings_of.extensions_in,
+        skipped=skipped,
         **(named or {}),
     )
-    doubts += [*settings_of.unmatched(paths), *settings_of.left_behind()]
+    if not tasks and not force_exclude and any(entry.programs for entry in skipped):
+        failures += [f"nothing to check: {line}" for line in empty]
+    else:
+        doubts += [*empty, *settings_of.unmatched(paths, [task.place for task in tasks], extensions)]
+        doubts += settings_of.left_behind()
     return Planned(tasks, failures, doubts)
 
 

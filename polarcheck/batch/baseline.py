@@ -1,8 +1,8 @@
 """
 A baseline: known findings, so that only new ones are reported.
 
-A finding is matched by file, rule and fingerprint; equal ones are counted. A moved file is recognised by its findings,
-once its old path no longer exists.
+A finding is matched by file, rule, fingerprint and the place of its block in the program. A moved file is recognised by
+its blocks, once its old path no longer exists.
 """
 
 from __future__ import annotations
@@ -10,17 +10,20 @@ from __future__ import annotations
 import os
 import re
 from collections import Counter
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
 import msgspec
 
-from polarcheck.batch.baseline_file import Entry, Key
+from polarcheck.batch.baseline_file import SCHEMA, Contents, Entry, Key, Place, Program, program_of
+from polarcheck.batch.known_places import Versions, key_of, matches, place_of, versions
+from polarcheck.batch.moved import Similar
 from polarcheck.checking.check import verdict
 from polarcheck.checking.engine import in_order
 from polarcheck.checking.not_evaluated import bound_silenced
-from polarcheck.finding import BASELINE, SEVERITIES, FileReport, Finding, NotEvaluated, Silenced
+from polarcheck.checking.rule import load_all
+from polarcheck.finding import BASELINE, SEVERITIES, FileReport, Finding, NotEvaluated, Outline, Silenced
 from polarcheck.reading.excerpt import shortened
 from polarcheck.reading.files import STANDARD_INPUT, shown
 from polarcheck.silence.suppression import silenced
@@ -34,11 +37,13 @@ class Leftover(NamedTuple):
     An entry whose findings no longer occur.
 
     missing: how many of its findings.
+    matched: the numbers of its places that still have a finding.
     is_gone: the whole file no longer exists.
     """
 
     entry: Entry
     missing: int
+    matched: Collection[int]
     is_gone: bool
 
 
@@ -46,11 +51,11 @@ class Updated(NamedTuple):
     """
     The baseline after an update.
 
-    entries: of all findings that are known now.
+    contents: with all findings that are known now.
     new: how many of the findings are new.
     """
 
-    entries: list[Entry]
+    contents: Contents
     new: int
 
 
@@ -58,7 +63,7 @@ class Baseline:
     """
     The known findings of the files of a run.
 
-    entries: of the baseline file.
+    contents: what the baseline file says.
     folder: that of the baseline file; paths in entries are relative to it.
     paths: the files of the run.
     walked: files and folders that the run was started with, None for all; entries of files that are missing elsewhere
@@ -70,15 +75,17 @@ class Baseline:
     """
 
     def __init__(
-        self, entries: Iterable[Entry], folder: Path, paths: Iterable[str], walked: Iterable[str] | None = None
+        self, contents: Contents, folder: Path, paths: Iterable[str], walked: Iterable[str] | None = None
     ) -> None:
+        self.schema = contents.schema
         self.folder = os.path.realpath(folder)
         self.of_file: dict[str, list[Entry]] = {}
-        for entry in entries:
+        for entry in _added_up(contents.entries):
             self.of_file.setdefault(os.path.normcase(entry.file), []).append(entry)
+        self._programs = {os.path.normcase(program.file): program for program in contents.programs}
         self.path_of = {shown(path): self._relative(path) for path in paths}
         self.moved: dict[str, str] = {}
-        self._matched: dict[str, Counter[Key]] = {}
+        self._matched: dict[str, dict[Key, set[int]]] = {}
         self._evaluated: dict[str, Collection[str]] = {}
         self._gone = self._missing_files()
         self._walked = None if walked is None else [os.path.normcase(os.path.realpath(path)) for path in walked]
@@ -88,6 +95,7 @@ class Baseline:
         for file, counts in self._counts.items():
             for key in counts:
                 self._gone_files_with.setdefault(key, []).append(file)
+        self._similar = Similar(self._programs)
         # A missing file with the name of a new one is reserved for that, whichever new file is checked first.
         self._new_names = {_name(path) for path in self._new_files()}
 
@@ -132,65 +140,81 @@ class Baseline:
         if path in self.of_file:
             return self.of_file[path]
         if path not in self.moved:
-            self.moved[path] = self._origin(path, Counter(map(_key, report.findings)))
+            self.moved[path] = self._origin(path, report)
             self._origins.add(self.moved[path])
         return self.of_file.get(self.moved[path], [])
 
-    def _origin(self, path: str, present: Counter[Key]) -> str:
+    def _origin(self, path: str, report: FileReport) -> str:
         """
-        The former path of a moved file, empty if it was not moved.
+        Return the former path of a moved file, empty if it was not moved.
 
-        present: the findings of the file, counted.
-
-        The former file has the same name and a finding in common, or at least half of its known findings are present:
-        one common block does not make a new program a moved one.
+        Most of its blocks are those of the former file, and the name of that is the same, or at least half of its known
+        findings are present. In a baseline of the first schema the findings alone must do.
         """
+        present = Counter(map(key_of, report.findings))
         common: Counter[str] = Counter()
         for key, count in present.items():
             for file in self._gone_files_with.get(key, ()):
                 common[file] += min(count, self._counts[file][key])
+
+        def has_same_name(file: str) -> bool:
+            return _name(file) == _name(path)
+
         likely = [
             file
             for file in common
             if file not in self._origins
             and (
-                _name(file) == _name(path)
+                has_same_name(file)
                 or (_name(file) not in self._new_names and 2 * common[file] >= self._counts[file].total())
             )
         ]
-        return min(likely, key=lambda file: (_name(file) != _name(path), -common[file], file), default="")
+        shares: dict[str, float] = {}
+        if isinstance(report.outline, Outline):
+            with_blocks = [file for file in likely if file in self._programs]
+            shares = self._similar.among(with_blocks, report.outline, has_same_name)
+            likely = [file for file in likely if file in shares or file not in self._programs]
+        return min(
+            likely,
+            key=lambda file: (not has_same_name(file), -shares.get(file, 0.0), -common[file], file),
+            default="",
+        )
+
+    def _known(self, report: FileReport) -> tuple[list[Entry], Versions | None]:
+        """Return the entries for a file, and the blocks of its program in the baseline and now."""
+        entries = self.entries_for(report)
+        program = self._programs.get(os.path.normcase(entries[0].file)) if entries else None
+        return entries, versions(program, report.outline)
 
     def without_known(self, report: FileReport, evaluated: Collection[str]) -> FileReport:
         """
-        The report with the known findings suppressed, and the verdict of the others.
+        Return the report with the known findings suppressed, and the verdict of the others.
 
-        The findings that follow from a known one go with it. A finding that is more severe than it was, or from which
-        another rule follows, is not the known one and is reported.
+        The findings that follow from a known one go with it. A finding that is worse than it was, or from which another
+        rule follows, is reported, and its message says what is worse.
 
         evaluated: the rules that were selected and could be evaluated.
         """
-        known = {entry.key: entry for entry in _added_up(self.entries_for(report))}
-        unmatched = _counted(known.values())
+        entries, both = self._known(report)
+        path = os.path.normcase(self.path_of[report.path])
+        matched = self._matched.setdefault(path, {})
+        self._evaluated[path] = evaluated
         reported: list[Finding] = []
         suppressed: list[Silenced] = []
         bounds: list[NotEvaluated | None] = []
-        for finding in report.findings:
-            key = _key(finding)
-            if not unmatched[key]:
+        for finding, match in zip(report.findings, matches(entries, both, report), strict=True):
+            if match is None:
                 reported.append(finding)
                 continue
-            unmatched[key] -= 1
-            entry = known[key]
-            if SEVERITIES[finding.severity] > SEVERITIES[entry.severity] or not _rules(finding) <= {*entry.follows}:
-                reported.append(finding)
+            matched.setdefault(match.entry.key, set()).add(match.number)
+            if match.growth:
+                message = f"{finding.message}; worse than in the baseline: {', '.join(match.growth)}"
+                reported.append(msgspec.structs.replace(finding, message=message))
             else:
-                suppressed.append(silenced(finding, BASELINE, entry.reason))
+                suppressed.append(silenced(finding, BASELINE, match.entry.reason))
                 bounds.append(bound_silenced(finding))
-        path = os.path.normcase(self.path_of[report.path])
-        matched = _counted(known.values()) - unmatched
-        self._matched[path] = matched | self._matched.get(path, Counter())
-        self._evaluated[path] = evaluated
-        if not suppressed:
+        report = msgspec.structs.replace(report, outline=msgspec.UNSET)
+        if not matched:
             return report
         not_evaluated = [*report.not_evaluated, *filter(None, bounds)]
         return msgspec.structs.replace(
@@ -203,7 +227,7 @@ class Baseline:
 
     def updated(self, reports: Iterable[tuple[FileReport, Collection[str]]], reason: str) -> Updated:
         """
-        The entries for the present findings.
+        Return the baseline with the present findings.
 
         Entries of rules that could not be evaluated stay, and so do those of files outside of this run.
 
@@ -211,31 +235,46 @@ class Baseline:
         reason: that of new entries.
         """
         entries: list[Entry] = []
+        programs: dict[str, Program] = {}
         updated: set[str] = set()
         new = 0
         for report, evaluated in reports:
             file = self.path_of[report.path]
-            known = {entry.key: entry for entry in _added_up(self.entries_for(report))}
+            of_file, both = self._known(report)
+            known = {entry.key: entry for entry in of_file}
             reasons = {key: entry.reason for key, entry in known.items()}
-            now = _entries_of(report.findings, file, reasons, reason)
-            new += (_counted(now) - _counted(known.values())).total()
+            now = _entries_of(report, file, reasons, reason)
             counts = _counted(now)
-            unevaluated = [entry for key, entry in known.items() if not counts[key] and entry.rule not in evaluated]
-            entries += [*now, *(msgspec.structs.replace(entry, file=file) for entry in unevaluated)]
+            new += (counts - _counted(of_file)).total()
+            unevaluated = [entry for entry in of_file if not counts[entry.key] and self._may_be_there(entry, evaluated)]
+            entries += [*now, *(_brought_up(entry, file, both) for entry in unevaluated)]
+            if isinstance(report.outline, Outline):
+                programs[file] = program_of(file, report.outline.hashes, report.outline.of)
+            elif unevaluated and (program := self._programs.get(os.path.normcase(unevaluated[0].file))):
+                programs[file] = msgspec.structs.replace(program, file=file)
             updated.add(os.path.normcase(file))
         updated |= {*self._deleted_files()} | self._origins
         entries += [entry for file, of_file in self.of_file.items() if file not in updated for entry in of_file]
-        return Updated(_added_up(entries), new)
+        others = [program for file, program in self._programs.items() if file not in updated]
+        return Updated(_contents(_added_up(entries), [*programs.values(), *others]), new)
 
-    def pruned(self) -> list[Entry]:
-        """The entries without the findings that no longer occur."""
-        missing = {(leftover.entry.file, leftover.entry.key): leftover.missing for leftover in self.leftovers()}
+    @staticmethod
+    def _may_be_there(entry: Entry, evaluated: Collection[str]) -> bool:
+        """Return True for an entry without a finding that may have one: its rule was not evaluated."""
+        return entry.rule not in evaluated and entry.rule in load_all()
+
+    def pruned(self) -> Contents:
+        """Return the baseline without the findings that no longer occur."""
+        left = {(leftover.entry.file, leftover.entry.key): leftover for leftover in self.leftovers()}
         remaining = []
-        for entry in _added_up(entry for of_file in self.of_file.values() for entry in of_file):
-            count = entry.count - missing.get((entry.file, entry.key), 0)
-            if count:
-                remaining.append(msgspec.structs.replace(entry, count=count))
-        return remaining
+        for entry in (entry for of_file in self.of_file.values() for entry in of_file):
+            leftover = left.get((entry.file, entry.key))
+            if leftover is None:
+                remaining.append(entry)
+            elif leftover.missing < entry.count:
+                places = [place for at, place in enumerate(entry.places) if at in leftover.matched]
+                remaining.append(msgspec.structs.replace(entry, count=entry.count - leftover.missing, places=places))
+        return _contents(remaining, self._programs.values(), self.schema)
 
     @staticmethod
     def total(entries: Iterable[Entry]) -> int:
@@ -243,20 +282,41 @@ class Baseline:
         return sum(entry.count for entry in entries)
 
     def leftovers(self) -> Iterator[Leftover]:
-        """The entries whose findings no longer occur, in checked files and in files that were deleted."""
+        """Yield the entries whose findings no longer occur, in checked files and in files that were deleted."""
         for path, matched in self._matched.items():
             file = path if path in self.of_file else self.moved.get(path, "")
-            for entry in _added_up(self.of_file.get(file, ())):
-                missing = entry.count - matched[entry.key]
-                if missing > 0 and entry.rule in self._evaluated[path]:
-                    yield Leftover(entry, missing, is_gone=False)
+            for entry in self.of_file.get(file, ()):
+                there = matched.get(entry.key, set())
+                if len(there) < entry.count and not self._may_be_there(entry, self._evaluated[path]):
+                    yield Leftover(entry, entry.count - len(there), there, is_gone=False)
         for file in self._deleted_files():
-            yield from (Leftover(entry, entry.count, is_gone=True) for entry in _added_up(self.of_file[file]))
+            yield from (Leftover(entry, entry.count, (), is_gone=True) for entry in self.of_file[file])
 
 
-def _entries_of(findings: Iterable[Finding], file: str, reasons: Mapping[Key, str], reason: str) -> list[Entry]:
+def _contents(entries: Sequence[Entry], programs: Iterable[Program], schema: int = SCHEMA) -> Contents:
+    """Return the contents of a baseline, with the programs that have entries."""
+    files = {os.path.normcase(entry.file) for entry in entries}
+    return Contents(entries, [program for program in programs if os.path.normcase(program.file) in files], (), schema)
+
+
+def _brought_up(entry: Entry, file: str, both: Versions | None) -> Entry:
+    """Return an entry of a file with its places in the present version of the program."""
+    places = entry.places
+    if both is not None:
+        places = [
+            msgspec.structs.replace(
+                place,
+                at=None if place.at is None else both.now(place.at),
+                section=None if place.section is None else both.now(place.section),
+            )
+            for place in places
+        ]
+    return msgspec.structs.replace(entry, file=file, places=places)
+
+
+def _entries_of(report: FileReport, file: str, reasons: Mapping[Key, str], reason: str) -> list[Entry]:
     """
-    The entries for the findings of a file.
+    Return the entries for the findings of a file.
 
     reasons: those of known findings, by key.
     reason: that of all others.
@@ -268,10 +328,11 @@ def _entries_of(findings: Iterable[Finding], file: str, reasons: Mapping[Key, st
             fingerprint=finding.fingerprint,
             severity=finding.severity,
             block=shortened(_shown_block(finding.block), _BLOCK),
-            follows=sorted(_rules(finding)),
-            reason=reasons.get(_key(finding), reason),
+            follows=sorted({follower.rule for follower in finding.follows}),
+            reason=reasons.get(key_of(finding), reason),
+            places=[place_of(finding, report.outline)],
         )
-        for finding in findings
+        for finding in report.findings
     ]
     return _added_up(entries)
 
@@ -279,21 +340,26 @@ def _entries_of(findings: Iterable[Finding], file: str, reasons: Mapping[Key, st
 def _added_up(entries: Iterable[Entry]) -> list[Entry]:
     """Merge entries of the same file, rule and fingerprint: counts added, worst severity, all rules that follow."""
     merged: dict[tuple[str, Key], Entry] = {}
+    more: dict[tuple[str, Key], list[Entry]] = {}
     for entry in entries:
         key = entry.file, entry.key
-        first = merged.get(key)
-        merged[key] = (
-            entry
-            if first is None
-            else msgspec.structs.replace(
-                first,
-                count=first.count + entry.count,
-                severity=max(first.severity, entry.severity, key=SEVERITIES.__getitem__),
-                follows=sorted({*first.follows, *entry.follows}),
-                reason=first.reason or entry.reason,
-            )
-        )
-    return list(merged.values())
+        if merged.setdefault(key, entry) is not entry:
+            more.setdefault(key, [merged[key]]).append(entry)
+    return list({**merged, **{key: _merged(same) for key, same in more.items()}}.values())
+
+
+def _merged(same: Sequence[Entry]) -> Entry:
+    places: list[Place] = []
+    if any(entry.places for entry in same):
+        places = [place for entry in same for place in entry.places or [Place()] * entry.count]
+    return msgspec.structs.replace(
+        same[0],
+        count=sum(entry.count for entry in same),
+        severity=max((entry.severity for entry in same), key=SEVERITIES.__getitem__),
+        follows=sorted({rule for entry in same for rule in entry.follows}),
+        reason=next((entry.reason for entry in same if entry.reason), ""),
+        places=places,
+    )
 
 
 def _counted(entries: Iterable[Entry]) -> Counter[Key]:
@@ -306,15 +372,6 @@ def _counted(entries: Iterable[Entry]) -> Counter[Key]:
 def _shown_block(block: str) -> str:
     """The block as written, without its sequence number, which may change."""
     return re.sub(r"^(/?)N\d+\s*", r"\1", " ".join(block.upper().split()))
-
-
-def _key(finding: Finding) -> Key:
-    return finding.rule, finding.fingerprint
-
-
-def _rules(finding: Finding) -> set[str]:
-    """The rules of the findings that follow from this one."""
-    return {follower.rule for follower in finding.follows}
 
 
 def _name(path: str) -> str:

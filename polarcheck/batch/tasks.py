@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import functools
 import gc
 import os
 from collections import Counter
-from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
-from typing import Any
+from collections.abc import Callable, Collection, Generator, Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
 import msgspec
 
@@ -22,6 +23,9 @@ from polarcheck.reading import files
 from polarcheck.reading.source import Source
 from polarcheck.reading.words import Text
 from polarcheck.time_limit import seconds_for, time_limit
+
+if TYPE_CHECKING:
+    from polarcheck.reading.walking import ExcludedIn, Skipped
 
 Tell = Callable[[str], None]
 
@@ -105,7 +109,9 @@ def plan(
     tell: Tell,
     warn: Tell,
     standard_input: str = files.STANDARD_INPUT,
-    excluded_in: files.ExcludedIn | None = None,
+    excluded_in: ExcludedIn | None = None,
+    extensions_in: Callable[[str], Sequence[str]] | None = None,
+    skipped: list[Skipped] | None = None,
 ) -> list[Task]:
     """
     The programs of files, folders and standard input (`-`), each once, in the order asked for.
@@ -114,34 +120,30 @@ def plan(
     settings of their own, one for each of these. An offset table that a job names is no program of a folder, though it
     looks like one, unless its name is that of a program.
 
-    settings_of: what applies to a program; a path that ends in a separator is a folder, of which the extensions are
-    asked. standard_input: the file, which need not be there, that standard input is judged as. excluded_in: which
-    files and folders a walk passes over (files.walk). tell is told of folders that cannot be read, warn of those
-    without programs. Raises a PolarcheckError for settings that cannot be used, before any file is checked.
+    settings_of: what applies to a program. extensions: of the command line; where it has none, extensions_in returns
+    those that the job file of a folder names. standard_input: the file, which need not be there, that standard input is
+    judged as. excluded_in: which files and folders a walk passes over (walking.walk). skipped: takes what the walks did
+    not read. tell is told of folders that cannot be read, warn of those without programs. Raises a PolarcheckError for
+    settings that cannot be used, before any file is checked.
     """
     tasks: dict[tuple[str, int], Task] = {}
     by_look: set[tuple[str, int]] = set()
     real = files.RealPaths()
+    unread_files: list[Skipped] = []
+    wanted_in: Callable[[str], Collection[str]] | None = None
     for path in paths:
-        found, failures, wanted = [path], list[str](), None
-        if path != files.STANDARD_INPUT and os.path.isdir(path):  # noqa: PTH112  Path.is_dir raises for some names
-            own = settings_of(os.path.join(path, "")).job.extensions  # noqa: PTH118
-            wanted = files.extensions(extensions or own) or files.EXTENSIONS
-            found = list(files.walk(path, wanted, failures.append, excluded_in))
-            for failure in failures:
-                tell(failure)
-            if not found and not failures:
-                is_empty = next(files.walk(path, wanted, failures.append), None) is None
-                why = "no NC programs in this folder; --extensions names other endings"
-                warn(f"{files.shown(path)}: {why if is_empty else 'all NC programs in this folder are excluded'}")
+        found, is_folder = [path], path != files.STANDARD_INPUT and os.path.isdir(path)  # noqa: PTH112
+        if is_folder:
+            wanted_in = wanted_in or _wanted_in(extensions, extensions_in)
+            found = _walked(path, wanted_in, excluded_in, tell, warn, unread_files)
         for program in found:
             place = standard_input if program == files.STANDARD_INPUT else program
             settings = settings_of(place)
             named = place if place != program else ""
             key = real.of(place), id(settings)
-            if wanted is None:
+            if not is_folder:
                 by_look.discard(key)
-            elif key not in tasks and not files.has_name_of_program(program, wanted):
+            elif wanted_in and key not in tasks and _is_by_look(program, wanted_in):
                 by_look.add(key)
             tasks.setdefault(key, Task(program, settings, named))
     if by_look:
@@ -149,8 +151,60 @@ def plan(
         read = {real.of(str(path)) for settings in of_jobs.values() for path in settings.read}
         for key in by_look:
             if key[0] in read:
-                del tasks[key]
+                unread_files.append(_offset_table(tasks.pop(key).path))
+    if skipped is not None and unread_files:
+        from polarcheck.batch import unread
+
+        skipped += unread.once(unread_files, {path for path, _ in tasks}, real)
     return list(tasks.values())
+
+
+def _wanted_in(
+    extensions: Sequence[str], extensions_in: Callable[[str], Sequence[str]] | None
+) -> Callable[[str], Collection[str]]:
+    """Return a function for the extensions of the programs in a folder."""
+    from polarcheck.reading import walking
+
+    def wanted_in(folder: str) -> Collection[str]:
+        names = extensions or (extensions_in(folder) if extensions_in is not None else ())
+        return frozenset(walking.extensions(names) or walking.EXTENSIONS)
+
+    return functools.cache(wanted_in)
+
+
+def _is_by_look(program: str, wanted_in: Callable[[str], Collection[str]]) -> bool:
+    from polarcheck.reading import walking
+
+    return not walking.has_name_of_program(program, wanted_in(os.path.dirname(program)))  # noqa: PTH120
+
+
+def _offset_table(path: str) -> Skipped:
+    from polarcheck.reading.walking import Skipped
+
+    return Skipped(path, "offset table")
+
+
+def _walked(
+    folder: str,
+    wanted_in: Callable[[str], Collection[str]],
+    excluded_in: ExcludedIn | None,
+    tell: Tell,
+    warn: Tell,
+    skipped: list[Skipped],
+) -> list[str]:
+    """Return the programs of a folder; take what is not read, and tell of what cannot be."""
+    from polarcheck.batch import unread
+    from polarcheck.reading import walking
+
+    failures: list[str] = []
+    passed: list[Skipped] = []
+    found = list(walking.walk(folder, wanted_in, failures.append, excluded_in, passed.append))
+    for failure in failures:
+        tell(failure)
+    if not found and not failures:
+        warn(f"{files.shown(folder)}: {unread.none_in_folder(passed)}")
+    skipped += passed
+    return found
 
 
 def one_by_one(tasks: Iterable[Task], most: int = files.LARGEST) -> Generator[Outcome, None, None]:
@@ -268,6 +322,10 @@ def _check(task: Task, data: bytes) -> tuple[FileReport, Source, set[str], Basis
         report = check.check_runs(found, settings.rules, settings.severities, settings.inline)
         for extra in settings.extras:
             report = extra(report, found)
+        if settings.baseline is not None:
+            from polarcheck.checking.outline import with_outline
+
+            report = with_outline(report, found)
         offsets = _offsets(found) if settings.job.tools else set()
         # Whoever has left something out because the time was over has done so before this moment.
         basis = None if limit.is_over() else Basis(digest(data), tuple(look_ups))
@@ -299,11 +357,13 @@ def report(
     machine: str,
     settings: RunSettings | None = None,
     interrupted: Interrupted | None = None,
+    skipped: Sequence[Skipped] = (),
 ) -> Report:
     """
     Return the report over all files.
 
     machine: what a report without files is for. settings: what decided. interrupted: why files are missing.
+    skipped: what the walks did not read.
     """
     severities, verdicts, machines, silenced = Counter[str](), Counter[str](), set[str](), 0
     for file in reports:  # once: it may not lie in memory
@@ -324,6 +384,11 @@ def report(
         fail=verdicts["fail"],
         unreadable=verdicts[UNREADABLE],
     )
+    if skipped:
+        from polarcheck.batch import unread
+
+        not_read, excluded = unread.by_ending(skipped), unread.excluded(skipped)
+        summary = msgspec.structs.replace(summary, not_read=not_read, excluded=excluded)
     return Report(
         schema=SCHEMA,
         tool=Producer("polarcheck", __version__),

@@ -187,6 +187,8 @@ class Rule(Documented, frozen=True):
     values: the values of a finding, by the names of checking/vocabulary.py, and where each comes from, as in a message.
     worst: the column whose highest value selects the hit to report, where one finding covers several.
     is_advice: the rule is off unless the machine or the user names a severity for it.
+    worse: the values of the message that grow where the fault grows worse; behind a minus those of which less is worse,
+    and with a colon between them two whose distance counts (position:limit).
     parameters: the names of the tables that the function compares.
     """
 
@@ -204,6 +206,7 @@ class Rule(Documented, frozen=True):
     values: Mapping[str, str]
     worst: str
     is_advice: bool
+    worse: tuple[str, ...]
     parameters: tuple[str, ...]
 
     def __reduce__(self) -> tuple[Callable[[str], Rule], tuple[str]]:
@@ -264,6 +267,7 @@ def rule(
     values: Mapping[str, str] = MappingProxyType({}),
     worst: str = "",
     is_advice: bool = False,
+    worse: tuple[str, ...] = (),
 ) -> Callable[[Callable[..., Any]], Rule]:
     """Decorate a function as a rule; see Rule. Its parameters name the tables that it compares."""
 
@@ -298,6 +302,7 @@ def rule(
             values,
             worst,
             is_advice,
+            worse,
             parameters,
         )
 

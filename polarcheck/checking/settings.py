@@ -31,6 +31,8 @@ class Settings(msgspec.Struct, frozen=True):
     strict: an unverified file fails, too.
     encoding: of the program; None to detect it.
     inline: allow comments of the program are respected.
+    baseline: the file of known findings.
+    baseline_named_by: the place in the job file that names it; empty if an option does.
     decided: what of this the user has written, for reports.
     profile_sha256: of the machine.
     extras: module-level functions, since other processes import them by name; called in this order.
@@ -47,6 +49,8 @@ class Settings(msgspec.Struct, frozen=True):
     strict: bool = False
     encoding: str | None = None
     inline: bool = True
+    baseline: Path | None = None
+    baseline_named_by: str = ""
     decided: Decided = Decided()
     profile_sha256: str = ""
     extras: Sequence[Extra] = ()

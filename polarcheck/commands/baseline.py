@@ -15,7 +15,7 @@ from polarcheck.commands.output import say, show
 
 if TYPE_CHECKING:
     from polarcheck.batch.baseline import Baseline
-    from polarcheck.batch.baseline_file import Entry
+    from polarcheck.batch.baseline_file import Contents
     from polarcheck.batch.tasks import Checked, Task
 
 #: The argument and options of `check` that decide what is found.
@@ -23,12 +23,12 @@ DECIDING = (
     *("paths", "machine", "changes", "tools", "offsets", "units", "select", "ignore", "severities", "inline"),
     *("config", "no_config", "drawings", "drawing_layers", "tolerance", "block_skip", "subprograms"),
     *("max_blocks", "max_statements", "max_seconds"),
-    *("radius_from_comments", "extensions", "encoding", "max_size", "workers", "cluster"),
+    *("radius_from_comments", "extensions", "exclude", "encoding", "max_size", "workers", "cluster"),
 )
 _FILE = "polarcheck-baseline.json"
 
-#: The new entries of a baseline, and one line on them.
-_Result = tuple[list["Entry"], str]
+#: The new contents of a baseline, and one line on them.
+_Result = tuple["Contents", str]
 
 
 @click.group(invoke_without_command=True, short_help="Write down what is known, so that new findings alone are told.")
@@ -52,7 +52,8 @@ def baseline(ctx: click.Context) -> None:
 
 def _output(text: str) -> Callable[[Any], Any]:
     return click.option(
-        "-o", "--output", type=click.Path(dir_okay=False, path_type=Path), default=_FILE, show_default=True,
+        "-o", "--output", type=click.Path(dir_okay=False, path_type=Path),
+        show_default=f"the baseline of polarcheck.toml, else {_FILE}",
         envvar="POLARCHECK_BASELINE", metavar="FILE", help=text,
     )  # fmt: skip
 
@@ -66,57 +67,69 @@ def _deciding(command: click.Command) -> click.Command:
     return command
 
 
+_quiet = click.option("-q", "--quiet", is_flag=True, help="No line on what was written, and no progress.")
+
+
 @_deciding
 @baseline.command
 @_output("To write; it must not be there yet.")
 @_reason
+@_quiet
 @options.debug
 @click.pass_context
-def create(ctx: click.Context, /, paths: tuple[str, ...], output: Path, **arguments: Any) -> None:
+def create(ctx: click.Context, /, paths: tuple[str, ...], **arguments: Any) -> None:
     """
     Write down all findings of the programs.
 
     Nothing is overwritten: `polarcheck baseline update` takes a file that is there.
     """
-    from polarcheck.errors import BaselineError
-    from polarcheck.reading import files
-
-    if output.exists() or output.is_symlink():
-        name = files.shown(str(output))
-        raise BaselineError(f"-o {name}: is there already; `polarcheck baseline update` rewrites it, or name another")
-    ctx.exit(_run(paths, output, options.DEBUG in ctx.meta, [], _updated, **arguments))
+    ctx.exit(_run(paths, options.DEBUG in ctx.meta, _none_yet, _updated, **arguments))
 
 
 @_deciding
 @baseline.command
 @_output("To rewrite.")
 @_reason
+@_quiet
 @options.debug
 @click.pass_context
-def update(ctx: click.Context, /, paths: tuple[str, ...], output: Path, **arguments: Any) -> None:
+def update(ctx: click.Context, /, paths: tuple[str, ...], **arguments: Any) -> None:
     """
     Take what is found now: new findings come in, those that no longer occur go, reasons stay.
 
     Programs that are not among the paths keep what is known of them.
     """
-    ctx.exit(_run(paths, output, options.DEBUG in ctx.meta, _known(output), _updated, **arguments))
+    ctx.exit(_run(paths, options.DEBUG in ctx.meta, _known, _updated, **arguments))
 
 
 @_deciding
 @baseline.command
 @_output("To rewrite.")
+@_quiet
 @options.debug
 @click.pass_context
-def prune(ctx: click.Context, /, paths: tuple[str, ...], output: Path, **arguments: Any) -> None:
+def prune(ctx: click.Context, /, paths: tuple[str, ...], **arguments: Any) -> None:
     """
     Drop what no longer occurs; nothing new comes in.
 
     Kept is what could not be evaluated now, and what is known of programs that are not among the paths.
     """
-    ctx.exit(_run(paths, output, options.DEBUG in ctx.meta, _known(output), _pruned, **arguments))
+    ctx.exit(_run(paths, options.DEBUG in ctx.meta, _known, _pruned, **arguments))
 
 
-def _known(path: Path) -> list[Entry]:
+def _none_yet(path: Path) -> Contents:
+    """Return an empty baseline. Raises BaselineError for a file that is there."""
+    from polarcheck.batch.baseline_file import Contents
+    from polarcheck.errors import BaselineError
+    from polarcheck.reading import files
+
+    if path.exists() or path.is_symlink():
+        name = files.shown(str(path))
+        raise BaselineError(f"-o {name}: is there already; `polarcheck baseline update` rewrites it, or name another")
+    return Contents()
+
+
+def _known(path: Path) -> Contents:
     from polarcheck.batch import baseline_file
     from polarcheck.errors import BaselineError
     from polarcheck.reading import files
@@ -128,11 +141,12 @@ def _known(path: Path) -> list[Entry]:
 
 def _run(
     paths: tuple[str, ...],
-    output: Path,
     debug: bool,
-    entries: list[Entry],
-    make: Callable[[Baseline, list[Entry], Checked, list[Task], str], _Result],
+    read: Callable[[Path], Contents],
+    make: Callable[[Baseline, Contents, Checked, list[Task], str], _Result],
     *,
+    output: Path | None,
+    quiet: bool,
     no_config: bool,
     extensions: tuple[str, ...],
     max_size: int,
@@ -150,43 +164,79 @@ def _run(
     from polarcheck.settings.of_programs import OfPrograms, Options
 
     keep_within_memory()
+    if output is not None:
+        read(output)
     faults = running.Faults(debug)
     applies = Options(use_config=not no_config, **arguments)
     tasks = running.planned(paths, OfPrograms(applies), extensions, faults)
-    overwriting.refuse([output], tasks)
-    checked = running.Runner(max_size, workers, cluster).check(tasks, Bar(len(tasks), True), faults)
+    target = output or _of_jobs(tasks)
+    contents = read(target)
+    tasks = _with_baseline(tasks, target)
+    overwriting.refuse([target], tasks)
+    checked = running.Runner(max_size, workers, cluster).check(tasks, Bar(len(tasks), not quiet), faults)
     status = faults.report()
     if checked.stopped is not None:
         interrupted, how = signals.exit_status(checked.stopped)
         say(f"{how}; nothing is written")
         return interrupted
-    known = Baseline(entries, output.parent, (task.place for task in tasks), paths)
-    updated, summary = make(known, entries, checked, tasks, reason)
-    files.write(output, baseline_file.text_of(updated))
-    show(f"{files.shown(str(output))}: {summary}\n")
+    known = Baseline(contents, target.parent, (task.place for task in tasks), paths)
+    updated, summary = make(known, contents, checked, tasks, reason)
+    files.write(target, baseline_file.text_of(updated))
+    if not quiet:
+        show(f"{files.shown(str(target))}: {summary}\n")
     return status
 
 
-def _updated(known: Baseline, entries: list[Entry], checked: Checked, tasks: list[Task], reason: str) -> _Result:
-    from polarcheck.commands.silencing import evaluated, settings_of
-    from polarcheck.reports import counted
+def _of_jobs(tasks: list[Task]) -> Path:
+    """Return the baseline that the job files name. Raises UsageError if they name several."""
+    from polarcheck.errors import UsageError
+    from polarcheck.reading import files
+
+    named = {str(task.settings.baseline) for task in tasks if task.settings.baseline is not None}
+    if len(named) > 1:
+        shown = ", ".join(files.shown(path) for path in sorted(named))
+        raise UsageError(f"-o: these programs have several baselines, {shown}; update those of one at a time")
+    return Path(named.pop() if named else _FILE)
+
+
+def _with_baseline(tasks: list[Task], path: Path) -> list[Task]:
+    """Return the tasks with a baseline that is written, and not read."""
+    import msgspec
+
+    of_settings = {}
+    for task in tasks:
+        old = task.settings
+        if id(old) not in of_settings:
+            read = [file for file in old.read if file != old.baseline]
+            of_settings[id(old)] = msgspec.structs.replace(old, baseline=path, read=read)
+    return [msgspec.structs.replace(task, settings=of_settings[id(task.settings)]) for task in tasks]
+
+
+def _updated(known: Baseline, before: Contents, checked: Checked, tasks: list[Task], reason: str) -> _Result:
+    from polarcheck.batch.baselines import evaluated
+    from polarcheck.commands.silencing import settings_of
 
     settings = settings_of(tasks)
     updated = known.updated(((report, evaluated(report, settings[report.path])) for report in checked.files), reason)
-    before, now = known.total(entries), known.total(updated.entries)
-    files = len({entry.file for entry in updated.entries})
-    changed = f"; {updated.new} new, {before + updated.new - now} gone" if before else ""
-    return updated.entries, f"{counted(now, 'finding')} of {counted(files, 'file')} known{changed}"
+    was, now = known.total(before.entries), known.total(updated.contents.entries)
+    changed = f"; {updated.new} new, {was + updated.new - now} gone" if was else ""
+    return updated.contents, f"{_counts(updated.contents)} known{changed}"
 
 
-def _pruned(known: Baseline, entries: list[Entry], checked: Checked, tasks: list[Task], reason: str) -> _Result:
-    from polarcheck.commands.silencing import evaluated, settings_of
-    from polarcheck.reports import counted
+def _pruned(known: Baseline, before: Contents, checked: Checked, tasks: list[Task], reason: str) -> _Result:
+    from polarcheck.batch.baselines import evaluated
+    from polarcheck.commands.silencing import settings_of
 
     settings = settings_of(tasks)
     for report in checked.files:
         known.without_known(report, evaluated(report, settings[report.path]))
     left = known.pruned()
-    now = known.total(left)
-    files = len({entry.file for entry in left})
-    return left, f"{counted(now, 'finding')} of {counted(files, 'file')} known; {known.total(entries) - now} gone"
+    return left, f"{_counts(left)} known; {known.total(before.entries) - known.total(left.entries)} gone"
+
+
+def _counts(contents: Contents) -> str:
+    from polarcheck.batch.baseline import Baseline
+    from polarcheck.reports import counted
+
+    files = len({entry.file for entry in contents.entries})
+    return f"{counted(Baseline.total(contents.entries), 'finding')} of {counted(files, 'file')}"

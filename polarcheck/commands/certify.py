@@ -162,7 +162,7 @@ def _chosen(loaded: Loaded, names: tuple[str, ...]) -> list[str]:
 def _refuse(outputs: list[tuple[str, Path]], loaded: Loaded) -> None:
     """Raise OutputError for a report that would overwrite a file of the certification, or another report."""
     from polarcheck.errors import OutputError
-    from polarcheck.reading import files
+    from polarcheck.reading import files, walking
 
     read = {loaded.path.resolve()}
     for case in loaded.cases.values():
@@ -171,7 +171,7 @@ def _refuse(outputs: list[tuple[str, Path]], loaded: Loaded) -> None:
         name = files.shown(str(output))
         if output.resolve() in read:
             raise OutputError(f"-o {name}: is read by this run, or written by another; name another file")
-        if files.has_name_of_program(str(output), files.EXTENSIONS) or output.suffix == ".toml":
+        if walking.has_name_of_program(str(output), walking.EXTENSIONS) or output.suffix == ".toml":
             raise OutputError(f"-o {name}: this is the name of a program or of a manifest; give the report another")
         read.add(output.resolve())
 

@@ -6,7 +6,7 @@ import os
 from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
@@ -16,6 +16,7 @@ from polarcheck.commands import (
     picturing,
     reporting,
     running,
+    show_files,
     silencing,
     standard_input,
     watching,
@@ -23,17 +24,23 @@ from polarcheck.commands import (
 from polarcheck.commands.diff_base import changed_files, diff_base, narrowed, with_callers
 from polarcheck.commands.exit_codes import COULD_NOT_RUN
 from polarcheck.commands.options import option
-from polarcheck.commands.output import COLUMNS, columns, draws_dots, in_color, say, warn
+from polarcheck.commands.output import COLUMNS, columns, draws_dots, in_color, say, show, warn
 from polarcheck.reports import formats
+
+if TYPE_CHECKING:
+    from polarcheck.reading.walking import Skipped
 
 #: With more files than this the default format is short.
 _LONG = 3
 #: Options that change the look or the destination of a report, the workers or the set of files, but no finding.
 _OF_OUTPUT = (
     *("stdin_filename", "form", "outputs", "color", "quiet", "following", "silenced", "statistics", "shown_too"),
+    *("lists_files", "exclude"),
     *("diff_base", "with_callers", "workers", "cluster", "watch", "cache_dir", "no_cache", *fixing.NAMES),
 )
 _FORMATS = formats()
+#: The formats that count what the walks did not read; for others standard error does.
+_WITH_SUMMARY = ("text", "short", "github", "json", "jsonl")
 
 
 def _outputs(ctx: click.Context, parameter: click.Parameter, values: tuple[str, ...]) -> list[tuple[str, Path]]:
@@ -70,11 +77,14 @@ def _outputs(ctx: click.Context, parameter: click.Parameter, values: tuple[str, 
     help="A report in a file, too.",
 )
 @silencing.baseline
+@silencing.no_baseline
+@silencing.fail_on_stale
 @reporting.statistics
 @diff_base
 @with_callers
 @options.force_exclude
 @options.extensions
+@options.exclude
 @options.max_size
 @standard_input.filename
 @options.jobs
@@ -87,6 +97,7 @@ def _outputs(ctx: click.Context, parameter: click.Parameter, values: tuple[str, 
 @silencing.show_silenced
 @option("--part", "part", is_flag=True, help="In text, JSON and pages, what the program makes, too.")
 @reporting.paths
+@show_files.show_files
 @option("-q", "--quiet", is_flag=True, help="Findings only.")
 @fixing.wanted
 @options.debug
@@ -144,6 +155,8 @@ class _Arguments(NamedTuple):
     form: str | None
     outputs: list[tuple[str, Path]]
     no_config: bool
+    no_baseline: bool
+    fail_on_stale: bool
     force_exclude: bool
     extensions: tuple[str, ...]
     max_size: int
@@ -158,6 +171,7 @@ class _Arguments(NamedTuple):
     silenced: bool
     statistics: bool
     part: bool
+    lists_files: bool
     shown_too: str | None
     fixes: fixing.Wanted
     diff_base: str | None
@@ -199,6 +213,9 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
 
     keep_within_memory()
     reporting.refuse(arguments.form, arguments.statistics)
+    if arguments.lists_files:
+        needing = {"-o": arguments.outputs, "--fix": arguments.fixes.fix, "--diff": arguments.fixes.diff}
+        show_files.refuse(arguments.form, {**needing, "--watch": seen is not None})
     wants_pictures = picturing.FORMAT in (arguments.form, *(form for form, _ in arguments.outputs))
     extras = reporting.extras(arguments.shown_too, arguments.form, arguments.outputs)
     extras += picturing.extras() if wants_pictures else ()
@@ -207,8 +224,14 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
         from polarcheck.parts.part_report import part_of
 
         extras = (*extras, part_of, compared_in)
-    applies = Options(use_config=not arguments.no_config, extras=extras, **arguments.more)
+    applies = Options(
+        use_config=not arguments.no_config,
+        use_baseline=not arguments.no_baseline,
+        extras=extras,
+        **arguments.more,
+    )
     faults = running.Faults(arguments.debug)
+    skipped: list[Skipped] = []
     tasks = running.planned(
         arguments.paths,
         OfPrograms(applies),
@@ -216,16 +239,21 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
         faults,
         force_exclude=arguments.force_exclude,
         named=standard_input.judged_as(arguments.paths, arguments.stdin_filename),
+        skipped=skipped,
     )
     pictures, outputs, written = picturing.of_outputs(
         arguments.outputs, arguments.form == picturing.FORMAT, tasks, "-o html:"
     )
     overwriting.refuse(written, tasks)
     tasks = narrowed(tasks, arguments.diff_base, arguments.changed, arguments.max_size, not arguments.quiet)
+    if arguments.lists_files:
+        show(show_files.text(arguments.form or "text", tasks, skipped).encode())
+        return faults.report()
     is_colored = in_color(arguments.color)
     shown_in = fixing.Shown(arguments.quiet, is_colored, arguments.debug, bool(arguments.outputs))
-    baseline = None if applies.baseline is None else silencing.Known(applies.baseline, arguments.paths)
-    fixed = fixing.run(arguments.fixes, tasks, arguments.max_size, shown_in, silencing.suppressor(tasks, baseline))
+    baselines = silencing.of_run(tasks, arguments.paths)
+    suppress = None if baselines is None else baselines.copy().without_known
+    fixed = fixing.run(arguments.fixes, tasks, arguments.max_size, shown_in, suppress)
     if fixed.ends:
         return max(faults.report(), fixed.status)
     form = arguments.form or ("text" if len(tasks) <= _LONG or arguments.shown_too else "short")
@@ -241,7 +269,7 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
             silenced=arguments.silenced,
             fixed=fixed.fixed,
             dots=draws_dots(),
-            has_baseline=applies.baseline is not None,
+            has_baseline=baselines is not None,
             drawn=pictures.drawn,
         ),
         tasks,
@@ -254,9 +282,9 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
     cache = None if arguments.no_cache else running.cache(arguments.max_size, arguments.cache_dir)
     runner = running.Runner(arguments.max_size, arguments.workers, arguments.cluster, seen, cache)
     pictures.begin(plain)
-    checked = runner.check(tasks, bar, faults, baseline, live_report.file, pictures.split)
-    pictures.end()
-    status = max(int(checked.failed), fixed.status, faults.report())
+    checked = runner.check(tasks, bar, faults, baselines, live_report.file, pictures.split)
+    is_stale = arguments.fail_on_stale and silencing.stale(baselines)
+    status = max(int(checked.failed or is_stale), fixed.status, faults.report())
     reason = checked.broken_off
     if checked.stopped is not None:
         status, how = signals.exit_status(checked.stopped)
@@ -266,7 +294,9 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
         checked.files,
         applies.machine or (tasks[0].settings.name if tasks else profiles.DEFAULT),
         interrupted=batch.interrupted(reason, checked.files, tasks) if reason else None,
+        skipped=skipped,
     )
+    pictures.end(reporting.unread(report.summary))
     if checked.stopped is None and arguments.diff_base is None and arguments.changed is None:
         running.warn_unused(applies.tools, checked.called)
         running.warn_without_part(applies.tolerance, tasks)
@@ -274,6 +304,9 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
         say(str(error))
         status = max(status, COULD_NOT_RUN)
     live_report.end(report, checked.lines)
+    if form not in _WITH_SUMMARY and not arguments.quiet:
+        for line in reporting.unread(report.summary):
+            warn(line)
     if form == "concise" and not arguments.quiet and any(file.verdict == "unverified" for file in report.files):
         warn("some rules could not be evaluated; --format text says which, and what to give")
     return status

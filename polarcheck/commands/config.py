@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-from typing import Any
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -12,6 +13,9 @@ from polarcheck.commands.exit_codes import COULD_NOT_RUN
 from polarcheck.commands.options import narrower
 from polarcheck.commands.output import show as print_out
 from polarcheck.commands.output import warn
+
+if TYPE_CHECKING:
+    from polarcheck.reports.pages.applied import Row
 
 
 @click.group(invoke_without_command=True)
@@ -30,6 +34,7 @@ def config(ctx: click.Context) -> None:
 @options.judging
 @options.comparing
 @options.extensions
+@options.exclude
 @narrower("--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True)
 @options.debug
 @click.pass_context
@@ -53,12 +58,15 @@ def _shown(
     from polarcheck.settings import origins
     from polarcheck.settings.of_programs import OfPrograms, Options
 
+    exclude: tuple[str, ...] = arguments["exclude"]
     settings_of = OfPrograms(Options(use_config=not no_config, **arguments))
     applied = settings_of.applied(path)
     if path != files.STANDARD_INPUT and not os.path.lexists(path):
         warn(f"{files.shown(path)}: there is no such file; this is what would apply to it")
     of_command = dict(pair.split("=", 1) for pair in arguments["severities"])
     rows = [page.Row(*value) for value in origins.values(applied, _sources(ctx), of_command)]
+    if exclude:
+        rows = [_with_excluded(row, exclude) for row in rows]
     if extensions:
         rows = [
             row._replace(value=list(extensions), kind="command line", origin="command line --extensions")
@@ -84,6 +92,15 @@ def _shown(
         heads.append("excluded: no walk through a folder finds it")
     heads.append(f"the other values of the machine: polarcheck machines {applied.settings.name}")
     return page.text(files.shown(path), heads, rows)
+
+
+def _with_excluded(row: Row, patterns: Sequence[str]) -> Row:
+    """Return the row of `exclude` with the patterns of the command line added; any other row as it is."""
+    if row.key != "exclude":
+        return row
+    option = "command line --exclude"
+    origin = f"{row.origin} and {option}" if row.value else option
+    return row._replace(value=[*row.value, *patterns], kind="command line", origin=origin)
 
 
 def _sources(ctx: click.Context) -> dict[str, str]:

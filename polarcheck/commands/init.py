@@ -96,7 +96,7 @@ def _init(folder: str, machine: str | None, extensions: tuple[str, ...], schema:
     from polarcheck.checking import survey
     from polarcheck.commands.progress import Bar
     from polarcheck.machines.job import FILE_NAME
-    from polarcheck.reading import files
+    from polarcheck.reading import files, walking
     from polarcheck.reading.excerpt import visible
     from polarcheck.reports.pages import new_job
     from polarcheck.reports.pages import schema as schemas
@@ -110,8 +110,8 @@ def _init(folder: str, machine: str | None, extensions: tuple[str, ...], schema:
     profile = profile_of(machine) if machine else None
     nearest = job_files.Nearest().of(Path(folder))
     outer = Path(os.path.relpath(nearest, folder)).as_posix() if nearest else None
-    wanted = files.extensions(extensions) or files.EXTENSIONS
-    programs = [str(Path(program)) for program in files.walk(folder, wanted, warn)]
+    wanted = walking.extensions(extensions) or walking.EXTENSIONS
+    programs = [str(Path(program)) for program in walking.walk(folder, wanted, warn)]
     if not programs:
         warn(f"{files.shown(folder)}: no NC programs in this folder; --extensions names other endings")
     named = [os.path.relpath(program, folder) for program in programs]

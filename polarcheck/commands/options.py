@@ -175,6 +175,12 @@ force_exclude = option(
 extensions = many(
     "--extensions", metavar="EXT", help="Of the programs in a folder, instead of .nc, .tap, .eia and others."
 )
+exclude = option(
+    "--exclude",
+    multiple=True,
+    metavar="PATTERN",
+    help="Files or folders that a walk passes over, beside those of the job.",
+)
 inline = option("--inline/--no-inline", default=None, help="Whether the allow comments of programs are heeded.")
 
 

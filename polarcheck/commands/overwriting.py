@@ -19,6 +19,8 @@ def refuse(outputs: Sequence[Path], tasks: Sequence[Task]) -> None:
     """
     if not outputs:
         return
+    from polarcheck.reading import walking
+
     inputs: dict[str, str] = {}
     folders: dict[str, str] = {}
     for task in tasks:
@@ -38,7 +40,7 @@ def refuse(outputs: Sequence[Path], tasks: Sequence[Task]) -> None:
         folder = folders.get(str(Path(target).parent))
         if folder is not None and Path(target).exists():
             raise OutputError(f"-o {shown}: a file in {files.shown(folder)}, a folder of subprograms; name another one")
-        if files.has_name_of_program(target, files.EXTENSIONS) or target.endswith(".toml"):
+        if walking.has_name_of_program(target, walking.EXTENSIONS) or target.endswith(".toml"):
             raise OutputError(f"-o {shown}: this is the name of a program or of a job file; give the report another")
         if target in written:
             raise OutputError(f"-o {shown}: two reports would be written to this file")

@@ -16,6 +16,7 @@ from polarcheck.commands.options import narrower
 @options.comparing
 @narrower("--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True)
 @options.extensions
+@options.exclude
 @options.max_size
 @options.jobs
 @options.debug

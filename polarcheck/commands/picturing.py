@@ -85,8 +85,8 @@ class Pictures:
     def begin(self, background: Background) -> None:
         """Prepare for the first program."""
 
-    def end(self) -> None:
-        """Finish after the last program."""
+    def end(self, notes: Sequence[str] = ()) -> None:
+        """Finish after the last program. notes: what the walks did not read, in words."""
 
 
 class Folder(Pictures):
@@ -147,11 +147,11 @@ class Folder(Pictures):
 
         self._entries.append(entry(report, ""))
 
-    def end(self) -> None:
+    def end(self, notes: Sequence[str] = ()) -> None:
         """Write the index page."""
         from polarcheck.reports.pages.picture_index import INDEX, index
 
-        write(self._folder / INDEX, index(self._entries))
+        write(self._folder / INDEX, index(self._entries, notes))
 
 
 def of_outputs(

@@ -21,6 +21,7 @@ from polarcheck.commands.options import option
     help="The page; or a folder, for a page of each program and index.html.",
 )
 @options.extensions
+@options.exclude
 @options.max_size
 @options.jobs
 @options.debug

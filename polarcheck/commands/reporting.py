@@ -17,7 +17,7 @@ from polarcheck.errors import OutputError, UsageError
 if TYPE_CHECKING:
     from polarcheck.batch.tasks import Task
     from polarcheck.checking.settings import Extra, Settings
-    from polarcheck.finding import Report
+    from polarcheck.finding import Report, Summary
     from polarcheck.reports import Background
 
 #: The variable with the file of a step's summary in GitHub Actions, and the format for GitHub Actions.
@@ -66,6 +66,15 @@ def with_makes(tasks: Sequence[Task], forms: Iterable[str]) -> list[Task]:
         if id(settings) not in of_settings:
             of_settings[id(settings)] = msgspec.structs.replace(settings, extras=(*settings.extras, with_makes))
     return [msgspec.structs.replace(task, settings=of_settings[id(task.settings)]) for task in tasks]
+
+
+def unread(summary: Summary) -> list[str]:
+    """Return what the walks through folders did not read, in words."""
+    if not (summary.not_read or summary.excluded):
+        return []
+    from polarcheck.reports.pages import unread
+
+    return unread.unread(summary)
 
 
 def background(plain: Background, tasks: Iterable[Task]) -> Background:

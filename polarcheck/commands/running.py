@@ -12,11 +12,13 @@ from polarcheck.commands.exit_codes import BUG, CLEAN, COULD_NOT_RUN
 from polarcheck.commands.output import bug_lines, say, say_lines, warn
 
 if TYPE_CHECKING:
+    from polarcheck.batch.baselines import Baselines
     from polarcheck.batch.cache.outcomes import Cache
     from polarcheck.batch.tasks import Checked, Outcome, Task
     from polarcheck.commands.progress import Bar
     from polarcheck.commands.watching import Seen
     from polarcheck.finding import FileReport
+    from polarcheck.reading.walking import Skipped
     from polarcheck.settings.of_programs import OfPrograms
 
 
@@ -54,14 +56,18 @@ def planned(
     *,
     force_exclude: bool = False,
     named: Mapping[str, Any] | None = None,
+    skipped: list[Skipped] | None = None,
 ) -> list[Task]:
     """
     Return the programs of paths, with the settings of each.
 
-    force_exclude: skip excluded files even if they are named.
+    Where all programs of the folders are excluded or have other endings, that is a failure: nothing was checked.
+
+    force_exclude: skip excluded files even if they are named; nothing need be left.
     named: the file that standard input is judged as (standard_input.judged_as).
+    skipped: takes what the walks did not read.
     """
-    found = runs.planned(paths, settings_of, extensions, force_exclude=force_exclude, named=named)
+    found = runs.planned(paths, settings_of, extensions, force_exclude=force_exclude, named=named, skipped=skipped)
     faults.failures += found.failures
     for line in found.doubts:
         warn(line)
@@ -91,14 +97,14 @@ class Runner:
         tasks: Sequence[Task],
         bar: Bar,
         faults: Faults,
-        baseline: silencing.Known | None = None,
+        baselines: Baselines | None = None,
         show: Callable[[FileReport, Mapping[int, str]], None] | None = None,
         take: Callable[[Iterable[Outcome]], Iterator[Outcome]] | None = None,
     ) -> Checked:
         """
         Return the outcomes of the programs, up to an interrupt.
 
-        baseline: the file of known findings, which are silenced.
+        baselines: of known findings, which are silenced.
         show: takes each report in its turn.
         take: removes data from the reports that is not shown, such as pictures.
 
@@ -110,7 +116,7 @@ class Runner:
             self._outcomes(tasks) if self._before is None else self._before.outcomes(tasks, self._outcomes) as outcomes,
             contextlib.closing(bar.watched(outcomes)) as watched,
         ):
-            suppressed = silencing.without_known(watched, tasks, baseline)
+            suppressed = silencing.without_known(watched, tasks, baselines)
             reported = suppressed if take is None else take(suppressed)
             return batch.gather(reported, faults.failures.append, faults.bug, show)
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import os
 from collections import Counter
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import click
 
@@ -15,9 +15,9 @@ from polarcheck.commands.output import warn
 
 if TYPE_CHECKING:
     from polarcheck.batch.baseline import Baseline, Leftover
+    from polarcheck.batch.baselines import Baselines, OfFile
     from polarcheck.batch.tasks import Outcome, Task
     from polarcheck.checking.settings import Settings
-    from polarcheck.finding import FileReport
 
 #: The most entries in a line on findings that no longer occur, or on moved files.
 _NAMED = 5
@@ -36,26 +36,60 @@ baseline = option(
     "--baseline", type=click.Path(exists=True, dir_okay=False, path_type=Path), callback=_readable, metavar="FILE",
     help="Known findings, of `polarcheck baseline create`: only others are told.",
 )  # fmt: skip
+no_baseline = option("--no-baseline", is_flag=True, help="No known findings, though a polarcheck.toml names a file.")
+fail_on_stale = option(
+    "--fail-on-stale", is_flag=True, help="End with 1 where known findings of the baseline no longer occur, too."
+)
 show_silenced = option(
     "--show-silenced", "silenced", is_flag=True, help="In text, what is silenced, too, with by what and why."
 )
 
 
-class Known(NamedTuple):
+def of_run(tasks: Iterable[Task], walked: Sequence[str]) -> Baselines | None:
     """
-    The baseline of a run.
+    Return the baselines of the programs, None without any; warn of what in them can have no effect.
 
-    path: the file of known findings.
-    walked: the paths of the run; known findings of other files are left alone.
+    walked: the paths of the run. Raises BaselineError for a file that cannot be read.
     """
+    tasks = [task for task in tasks if task.settings.baseline is not None]
+    if not tasks:
+        return None
+    from polarcheck.batch.baselines import Baselines, Program
 
-    path: Path
-    walked: Sequence[str]
+    baselines = Baselines((Program(task.title, task.place, task.settings) for task in tasks), walked)
+    for file in baselines.files:
+        _warn_unknown(file)
+    return baselines
 
 
-def without_known(outcomes: Iterable[Outcome], tasks: Sequence[Task], baseline: Known | None) -> Iterator[Outcome]:
-    """Silence the findings of a baseline in outcomes; at the end warn of known findings that no longer occur."""
-    if baseline is None:
+def _warn_unknown(file: OfFile) -> None:
+    """Warn of entries of unknown rules, and of a baseline of the first schema."""
+    from polarcheck.checking.rule import load_all
+    from polarcheck.errors import suggestion
+    from polarcheck.reading import files
+    from polarcheck.reports import counted
+
+    name = files.shown(os.fspath(file.path))
+    unknown: dict[str, list[int]] = {}
+    for line, rule in file.unknown_rules:
+        unknown.setdefault(rule, []).append(line)
+    for rule, lines in [*unknown.items()][:_NAMED]:
+        more = f" and {len(lines) - 1} more" if len(lines) > 1 else ""
+        near = suggestion(rule, load_all()) or "; `polarcheck baseline prune` drops it"
+        warn(f"{name}: line {lines[0]}{more}: unknown rule {rule!r}, which silences nothing{near}")
+    if len(unknown) > _NAMED:
+        warn(f"{name}: {len(unknown) - _NAMED} more unknown rules; `polarcheck baseline prune` drops them")
+    if file.without_places:
+        it = "it" if file.without_places == 1 else "them"
+        warn(
+            f"{name}: {counted(file.without_places, 'line')} of an earlier version of polarcheck, where a finding that "
+            f"is worse now stays silent; `polarcheck baseline update` upgrades {it}"
+        )
+
+
+def without_known(outcomes: Iterable[Outcome], tasks: Sequence[Task], baselines: Baselines | None) -> Iterator[Outcome]:
+    """Silence the findings of baselines in outcomes; at the end warn of known findings that no longer occur."""
+    if baselines is None:
         yield from outcomes
         return
     import msgspec
@@ -63,35 +97,22 @@ def without_known(outcomes: Iterable[Outcome], tasks: Sequence[Task], baseline: 
     from polarcheck.batch.tasks import fails
     from polarcheck.finding import UNREADABLE
 
-    known, settings = _baseline(tasks, baseline), settings_of(tasks)
-    suppress = _suppressor(known, settings)
+    settings = settings_of(tasks)
     for outcome in outcomes:
         if outcome.report is None or outcome.report.verdict == UNREADABLE:
             yield outcome
         else:
-            report = suppress(outcome.report)
+            report = baselines.without_known(outcome.report)
             yield msgspec.structs.replace(outcome, report=report, failed=fails(report, settings[report.path]))
-    _warn_leftovers(known, baseline.path)
+    for file in baselines.files:
+        _warn_leftovers(file.baseline, file.path)
 
 
-def suppressor(tasks: Sequence[Task], baseline: Known | None) -> Callable[[FileReport], FileReport] | None:
-    """Return a function that silences the findings of a baseline in a report; None without a baseline."""
-    return None if baseline is None else _suppressor(_baseline(tasks, baseline), settings_of(tasks))
-
-
-def _suppressor(known: Baseline, settings: Mapping[str, Settings]) -> Callable[[FileReport], FileReport]:
-    def suppress(report: FileReport) -> FileReport:
-        return known.without_known(report, evaluated(report, settings[report.path]))
-
-    return suppress
-
-
-def _baseline(tasks: Iterable[Task], known: Known) -> Baseline:
-    from polarcheck.batch import baseline_file
-    from polarcheck.batch.baseline import Baseline
-
-    entries = baseline_file.read(known.path)
-    return Baseline(entries, known.path.parent, (task.place for task in tasks), known.walked)
+def stale(baselines: Baselines | None) -> bool:
+    """Return True if a baseline has entries whose findings no longer occur, or whose rule there is not."""
+    return baselines is not None and any(
+        any(file.unknown_rules) or any(file.baseline.leftovers()) for file in baselines.files
+    )
 
 
 def settings_of(tasks: Iterable[Task]) -> dict[str, Settings]:
@@ -99,19 +120,9 @@ def settings_of(tasks: Iterable[Task]) -> dict[str, Settings]:
     return {task.title: task.settings for task in tasks}
 
 
-def evaluated(report: FileReport, settings: Settings) -> Collection[str]:
-    """Return the rules that were evaluated for a file: only their known findings may have disappeared."""
-    from polarcheck.finding import UNREADABLE
-
-    missing = {gap.rule for gap in report.not_evaluated if gap.matters}
-    if "all" in missing or report.verdict == UNREADABLE:
-        return ()
-    levels = {**settings.machine.severities, **settings.severities}
-    return {rule.name for rule in settings.rules if rule.level(levels) != "off"} - missing
-
-
 def _warn_leftovers(known: Baseline, path: Path) -> None:
     """Warn of known findings that no longer occur, and of moved files, in a line each."""
+    from polarcheck.checking.rule import load_all
     from polarcheck.reading import files
     from polarcheck.reports import counted
 
@@ -120,7 +131,8 @@ def _warn_leftovers(known: Baseline, path: Path) -> None:
     if moved:
         named = _listed(f"{old} is {new}" for old, new in moved)
         warn(f"{name}: {_were(len(moved), 'file')} moved: {named}; `polarcheck baseline update` takes the new paths")
-    leftovers = list(known.leftovers())
+    # Unknown rules have a warning of their own.
+    leftovers = [leftover for leftover in known.leftovers() if leftover.entry.rule in load_all()]
     if leftovers:
         count = sum(leftover.missing for leftover in leftovers)
         occur = "occurs" if count == 1 else "occur"

@@ -55,6 +55,10 @@ def state_of(data: bytes, settings: Settings, path: str, encoding: str | None) -
         report = check_runs(runs, all_rules, settings.severities, settings.inline)
         is_chosen = len(settings.rules) < len(all_rules)
         selected = check_runs(runs, settings.rules, settings.severities, settings.inline) if is_chosen else report
+        if settings.baseline is not None:
+            from polarcheck.checking.outline import with_outline
+
+            selected = with_outline(selected, runs)
     # Each channel has its own view of the text; the edits are made in the file.
     return State(source.read_source(data, path, encoding), runs, report, selected)
 

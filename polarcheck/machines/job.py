@@ -155,6 +155,10 @@ class OfPrograms(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_field
         None
     )
     inline: Annotated[bool, msgspec.Meta(description="heed comments of programs that allow a finding")] = True
+    baseline: (
+        Annotated[str, msgspec.Meta(description="file of known findings, which `polarcheck baseline create` writes")]
+        | None
+    ) = None
 
     def __post_init__(self) -> None:
         tools: dict[str, Tool] = {}

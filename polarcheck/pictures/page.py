@@ -32,12 +32,13 @@ _IN_SCRIPT = str.maketrans({mark: f"\\u{ord(mark):04x}" for mark in "<>&\u2028\u
 _NO_SCRIPTS = "The pictures need a browser that runs scripts; all findings are in the table."
 
 
-def page(pictures: Sequence[Picture], library: str = "", beside: str = "") -> str:
+def page(pictures: Sequence[Picture], library: str = "", beside: str = "", notes: Iterable[str] = ()) -> str:
     """
     Return the page of one program, or of several one below the other.
 
     library: plotly's JavaScript, to be included in the page.
     beside: without `library`, the name of the file with it in the folder of the page.
+    notes: what the page says behind the programs, in a line each.
     """
     scripts = "\n".join(_part(f"{name}.js") for name in _SCRIPTS)
     script = f'\n(() => {{\n"use strict";\n{scripts}}})();\n'
@@ -48,7 +49,7 @@ def page(pictures: Sequence[Picture], library: str = "", beside: str = "") -> st
         policy=_POLICY.format(" ".join(allowed)),
         title=_text(", ".join(picture.path for picture in pictures)),
         style=_part("page.css"),
-        body="\n".join(_program(number, picture) for number, picture in enumerate(pictures)),
+        body="\n".join([*(_program(number, picture) for number, picture in enumerate(pictures)), *map(_note, notes)]),
         data=_data(pictures),
         library=loaded,
         script=script,
@@ -90,6 +91,10 @@ def _shown(value: Any) -> Any:
 def _text(text: str) -> str:
     """Escape text from any source for HTML."""
     return escape(visible(text.replace("\t", " ")))
+
+
+def _note(text: str) -> str:
+    return f'<p class="none">{_text(text)}</p>'
 
 
 def _program(number: int, picture: Picture) -> str:

@@ -1,4 +1,4 @@
-"""Which files are NC programs, and writing a file whole or not at all."""
+"""Reading a program, the names of files, and writing a file whole or not at all."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import os
 import re
 import stat
 import sys
-from collections.abc import Callable, Collection, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 
 from polarcheck import bounded
@@ -23,130 +23,6 @@ LARGEST = 64_000_000
 _NO_NAMES = ("", os.curdir, os.pardir)
 #: Linux follows as many links one behind the other.
 _MOST_LINKS = 40
-EXTENSIONS = (
-    *(".nc", ".ncc", ".cnc", ".tap", ".eia", ".min", ".mpf", ".spf", ".ngc", ".prg"),
-    *(".ptp", ".dnc", ".fnc", ".iso", ".din", ".pim", ".gcode", ".gco", ".g"),
-)
-_SKIPPED_FOLDERS = frozenset(("node_modules", "__pycache__"))
-#: O1234, O0001(SB12 RG FRONT), O1234.bak: as controls and transfer programs name what they punch out; but no pages.
-_O_NAME = r"(?i)O\d{2,8}(?:\([^)]*\))?(?:\.(?!orig$|html?$)[^.]*)?"
-_SNIFFED = frozenset(("", ".txt"))
-_SNIFFED_BYTES = 4096
-_HEAD = r"%(?!PDF|!|%)|[O:]\s?\d{1,8}\b"
-_BLOCK = r"(?i)/?\d?\s*(?:N\s?\d+\s*)?(?:[A-Z]\s?[-+]?(?:\d+(?:\.\d*)?|\.\d+)\s*)+(?:\([^)]*\)\s*)*;?"
-_BLOCKS_NEEDED, _LINES_LOOKED_AT = 2, 10
-
-
-#: Of a folder: whether a name in it, of a folder or not, is passed over; None where none is.
-ExcludedIn = Callable[[str], Callable[[str, bool], bool] | None]
-
-
-def extensions(names: Iterable[str]) -> list[str]:
-    """Extensions as they are compared: lower case, with the point."""
-    return [f".{name.strip().lower().lstrip('.')}" for name in names if name.strip(" .")]
-
-
-def walk(
-    folder: str,
-    wanted: Collection[str],
-    failed: Callable[[str], None],
-    excluded_in: ExcludedIn | None = None,
-) -> Iterator[str]:
-    """
-    The programs below a folder, in order of their names, as paths that begin with the folder as it is given.
-
-    Hidden files and folders are passed over; a folder that links lead to twice is entered once. failed is told, in one
-    line, of folders that cannot be read. excluded_in: says of a folder what of it is passed over; what
-    lies in a folder that is, is not asked for.
-    """
-    wanted = frozenset(wanted)
-    seen: set[tuple[int, int] | str] = set()
-    # Folders can be nested deeper than functions: the innermost one stands at the end.
-    left = [_entries(folder, seen, failed, excluded_in)]
-    while left:
-        entry = next(left[-1], None)
-        if entry is None:
-            left.pop()
-            continue
-        if entry.name.startswith(".") or entry.name in _SKIPPED_FOLDERS:
-            continue
-        path = entry.path if folder != "." else entry.path.removeprefix(f".{os.sep}")
-        if _is_folder(entry):
-            left.append(_entries(path, seen, failed, excluded_in))
-        elif is_program(path, wanted):
-            yield path if path != STANDARD_INPUT else entry.path
-
-
-def _entries(
-    folder: str, seen: set[tuple[int, int] | str], failed: Callable[[str], None], excluded_in: ExcludedIn | None
-) -> Iterator[os.DirEntry[str]]:
-    """Return the entries of a folder by name; none if it was visited before or cannot be read."""
-    try:
-        status = Path(folder).stat()
-        # Some network drives of Windows number nothing: there all folders would be one.
-        identity = (status.st_dev, status.st_ino) if status.st_ino else os.path.realpath(folder)
-        if identity in seen:
-            return iter(())
-        seen.add(identity)
-        with os.scandir(folder) as found:
-            entries = sorted(found, key=lambda entry: entry.name)
-    except OSError as error:
-        failed(f"{shown(folder)}: {error.strerror}")
-        return iter(())
-    is_excluded = excluded_in(folder) if excluded_in is not None else None
-    if is_excluded is None:
-        return iter(entries)
-    return (entry for entry in entries if not is_excluded(entry.name, _is_folder(entry)))
-
-
-def _is_folder(entry: os.DirEntry[str]) -> bool:
-    try:
-        return entry.is_dir()
-    except OSError:
-        return False
-
-
-def is_program(path: str, wanted: Collection[str]) -> bool:
-    """Return True if a file of a folder is an NC program, by its extension, its name, or its first lines."""
-    if has_name_of_program(path, wanted):
-        return not _is_special(path)
-    return _suffix(path) in _SNIFFED and not _is_special(path) and _looks_like_program(path)
-
-
-def has_name_of_program(path: str, wanted: Collection[str]) -> bool:
-    """Return True for the name of an NC program: one of these extensions, or an O-number."""
-    return _suffix(path) in wanted or re.fullmatch(_O_NAME, Path(path).name) is not None
-
-
-def _suffix(path: str) -> str:
-    return os.path.splitext(path)[1].lower()  # noqa: PTH122  Path.suffix differs for names that end in a point
-
-
-def _is_special(path: str) -> bool:
-    """A pipe or device, which would be read for ever. A broken link is not: that it cannot be read must be said."""
-    try:
-        return not stat.S_ISREG(Path(path).stat().st_mode)
-    except OSError:
-        return False
-
-
-def _looks_like_program(path: str) -> bool:
-    try:
-        with open(path, "rb", opener=_not_waiting) as file:
-            data = file.read(_SNIFFED_BYTES) or b""
-    except OSError:
-        return False
-    wide = data.startswith((b"\xff\xfe", b"\xfe\xff"))
-    text = data.decode("utf-16" if wide else "latin-1", "replace").lstrip("\ufeff\xef\xbb\xbf\0\x11\x12\x13\x14 \t\r\n")
-    if re.match(_HEAD, text):
-        return True
-    lines = [line.strip("\0\r \t") for line in text.split("\n")[:_LINES_LOOKED_AT]]
-    return sum(re.fullmatch(_BLOCK, line) is not None for line in lines) >= _BLOCKS_NEEDED
-
-
-def _not_waiting(path: str, flags: int) -> int:
-    """Open what may have become a pipe since it was looked at."""
-    return os.open(path, flags | getattr(os, "O_NONBLOCK", 0))
 
 
 def read_program(path: str, most: int = LARGEST) -> bytes:

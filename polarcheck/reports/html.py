@@ -14,6 +14,8 @@ def html(report: Report, background: Background) -> str:
     from polarcheck.pictures.library import library
     from polarcheck.pictures.page import page
     from polarcheck.reports.pages.pictured import picture
+    from polarcheck.reports.pages.unread import unread
 
     pictures = [picture(file, background) for file in report.files]
-    return page(pictures, library() if any(drawn.sections for drawn in pictures) else "")
+    drawn = library() if any(picture.sections for picture in pictures) else ""
+    return page(pictures, drawn, notes=unread(report.summary))

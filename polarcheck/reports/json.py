@@ -32,8 +32,10 @@ def json(report: Report, background: Background | None = None) -> str:
 
 
 def without_text(file: FileReport) -> FileReport:
-    """The report of a file without what is for reports in text only."""
-    return file if file.makes is msgspec.UNSET else msgspec.structs.replace(file, makes=msgspec.UNSET)
+    """The report of a file without what is no part of the contract."""
+    if file.makes is msgspec.UNSET and file.outline is msgspec.UNSET:
+        return file
+    return msgspec.structs.replace(file, makes=msgspec.UNSET, outline=msgspec.UNSET)
 
 
 def encoded(value: Any, indent: int = 0) -> str:

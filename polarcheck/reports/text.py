@@ -319,7 +319,12 @@ def summary(report: Report, fixed: int = 0) -> str:
     planned = len(report.files) if report.interrupted is UNSET else report.interrupted.planned
     checked = len(report.files) - total.unreadable
     files = f"{checked} of {planned} files" if checked < planned else counted(planned, "file")
-    return f"{files} checked for {machine}{verdicts}; {', '.join(facts)}"
+    parts = [f"{files} checked for {machine}{verdicts}", ", ".join(facts)]
+    if total.not_read or total.excluded:
+        from polarcheck.reports.pages.unread import unread
+
+        parts += unread(total)
+    return "; ".join(parts)
 
 
 def severities(number: Mapping[str, int]) -> str:

@@ -184,5 +184,5 @@ class _Reader:
         if number < FIRST_NAMED:
             return f",{chr(number).upper()}" if chr(number).islower() else chr(number)
         control = self._trace.machine.control
-        named = [*control.named_axes, *control.spindle_words]
+        named = [*sorted(control.named_axes), *sorted(control.spindle_words)]
         return named[number - FIRST_NAMED] if number - FIRST_NAMED < len(named) else "?"

@@ -76,6 +76,17 @@ class Judged(NamedTuple):
         return [*self.settings.read, *folders, *called]
 
 
+def _without_known(
+    report: FileReport, runs: Sequence[tuple[str, Tables]], path: Path, settings: Settings
+) -> FileReport:
+    """Return the report without the findings that the baseline of the program knows."""
+    from polarcheck.batch.baselines import Baselines, Program
+    from polarcheck.checking.outline import with_outline
+
+    known = Baselines([Program(report.path, str(path), settings)], [])
+    return known.without_known(with_outline(report, runs))
+
+
 def judge(
     text: OpenText,
     path: Path,
@@ -95,6 +106,8 @@ def judge(
             with time_limit(seconds_for(len(text.data), job.run.max_seconds), is_stopped):
                 runs = check.read(text.data, settings.machine, job, files.shown(str(path)))
                 report = check.check_runs(runs, settings.rules, settings.severities, settings.inline)
+                if settings.baseline is not None:
+                    report = _without_known(report, runs, path, settings)
     except StoppedError:
         raise
     except PolarcheckError as error:

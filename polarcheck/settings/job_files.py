@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 _LONGEST_CHAIN = 10
 
 
-class _Part(NamedTuple):
+class Part(NamedTuple):
     """
     One file of a chain.
 
@@ -55,7 +55,7 @@ class JobFile(msgspec.Struct, frozen=True):
     """
 
     path: Path | None = None
-    parts: tuple[_Part, ...] = ()
+    parts: tuple[Part, ...] = ()
 
     @property
     def paths(self) -> list[Path]:
@@ -102,6 +102,11 @@ class JobFile(msgspec.Struct, frozen=True):
     def excluding(self) -> Layer | None:
         """Return the layer that sets `exclude`."""
         return next((part.values for part in reversed(self.parts) if part.exclude is not None), None)
+
+    @property
+    def naming_extensions(self) -> Layer | None:
+        """Return the layer that sets `extensions`."""
+        return next((part.values for part in reversed(self.parts) if "extensions" in part.values.keys), None)
 
     def patterns(self, layer: Layer) -> list[str]:
         """Return the patterns of an entry."""
@@ -217,7 +222,7 @@ def load(path: Path, *, pipes: bool = False) -> JobFile:
 
     pipes: the path may be a pipe, such as `<(...)` of a shell. Raises JobError with file, line and key.
     """
-    parts: list[_Part] = []
+    parts: list[Part] = []
     real: dict[str, Path] = {}
     named_by = ""
     while True:
@@ -248,7 +253,7 @@ def _extended(path: Path, written: str, named_by: str) -> Path:
     return nearest
 
 
-def _part(path: Path, named_by: str, *, pipes: bool) -> tuple[_Part, str | None]:
+def _part(path: Path, named_by: str, *, pipes: bool) -> tuple[Part, str | None]:
     """Read one file; return it and the name of the file that it extends. named_by: the place that names this file."""
     before = f"{named_by}: extend: " if named_by else ""
     try:
@@ -290,7 +295,7 @@ def _part(path: Path, named_by: str, *, pipes: bool) -> tuple[_Part, str | None]
         parts.append((layer, of_part))
     if "exclude" in table:
         exclude = _globs(base, job.exclude, lambda _: values.at("exclude"), "exclude")
-    return _Part(values, tuple(entries), tuple(parts), files, tuple(owners), exclude), job.extend
+    return Part(values, tuple(entries), tuple(parts), files, tuple(owners), exclude), job.extend
 
 
 def _place_of(layer: PartLayer) -> Callable[[int], str]:

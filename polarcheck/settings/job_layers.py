@@ -74,6 +74,12 @@ class Layer:
         return f"{self.written.path}: [[programs]] {self.entry}" if self.entry else str(self.written.path)
 
     @property
+    def machine(self) -> str | None:
+        """Return the machine as written; None if this layer names none."""
+        machine = self._table.get("machine")
+        return None if machine is None else str(machine)
+
+    @property
     def is_root(self) -> bool:
         """Return True if no job file above this one is meant."""
         return bool(self._table.get("root", False))
@@ -87,6 +93,11 @@ class Layer:
     def excluded(self) -> list[str]:
         """Return the patterns of `exclude`."""
         return list(self._table.get("exclude", ()))
+
+    @property
+    def extensions(self) -> list[str]:
+        """Return the endings of `extensions`."""
+        return list(self._table.get("extensions", ()))
 
     def at(self, key: str) -> str:
         """Return the place of a key of this layer: `polarcheck.toml:12`."""
@@ -123,8 +134,9 @@ class Layer:
             values["work_offsets"] = {name.upper(): value for name, value in values["work_offsets"].items()}
         if "machine" in values:
             values["machine"] = _machine(values["machine"], folder)
-        if "offsets" in values:
-            values["offsets"] = str(beside(folder, values["offsets"]))
+        for key in ("offsets", "baseline"):
+            if key in values:
+                values[key] = str(beside(folder, values[key]))
         if "subprograms" in values.get("run", {}):
             folders = [self._folder(folder, written) for written in values["run"]["subprograms"]]
             values["run"] = {**values["run"], "subprograms": folders}

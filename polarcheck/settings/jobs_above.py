@@ -9,10 +9,14 @@ from typing import NamedTuple
 
 from polarcheck.errors import JobError
 from polarcheck.settings import job_files
-from polarcheck.settings.job_files import JobFile, Nearest
+from polarcheck.settings.job_files import JobFile, Nearest, Part
 
 #: The most files in a line on them.
 _NAMED = 3
+
+
+#: Keys that are of a lathe: what a job file says of another one is not meant for the programs of this one.
+_OF_A_LATHE = frozenset(("limits", "tools", "offsets", "work_offsets", "stock", "program_units"))
 
 
 class LeftBehind(NamedTuple):
@@ -39,8 +43,15 @@ def left_behind(file: JobFile, nearest: Nearest) -> LeftBehind | None:
     except JobError:  # where this file applies, its fault is reported
         return None
     here = {key for part in file.parts for key in part.values.keys}
+    if _machine(file.parts) not in (None, _machine(parts)):
+        here |= _OF_A_LATHE
     keys = [key for key in dict.fromkeys(key for part in parts for key in part.values.keys) if key not in here]
     return LeftBehind(outer, tuple(keys)) if keys else None
+
+
+def _machine(parts: Sequence[Part]) -> str | None:
+    """Return the lathe that a chain of files names, the nearest last."""
+    return next((part.values.machine for part in reversed(parts) if part.values.machine is not None), None)
 
 
 def warnings(files: Iterable[JobFile], nearest: Nearest) -> list[str]:

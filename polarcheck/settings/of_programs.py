@@ -6,6 +6,7 @@ import contextlib
 import os
 import re
 from collections.abc import Callable, Iterable, Sequence
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -27,12 +28,14 @@ from polarcheck.settings.selection import Rules
 if TYPE_CHECKING:
     from polarcheck.settings.jobs_above import LeftBehind
     from polarcheck.settings.keywords import Keywords
+    from polarcheck.settings.walk_patterns import WalkPatterns
 
 
 class Options(msgspec.Struct, frozen=True):
     """
     The options of the command line, as written; empty or None if not set.
 
+    use_baseline: False to ignore the baseline that a job file names.
     extras: functions that add data to the reports of files.
     keywords: those of a Python function, which lie over the job files.
     """
@@ -58,10 +61,12 @@ class Options(msgspec.Struct, frozen=True):
     encoding: str | None = None
     inline: bool | None = None
     baseline: Path | None = None
+    use_baseline: bool = True
     drawings: Sequence[Path] = ()
     drawing_layers: Sequence[str] = ()
     tolerance: float | None = None
     extras: Sequence[Extra] = ()
+    exclude: Sequence[str] = ()
     keywords: Keywords | None = None
 
     def spelled(self, option: str) -> str:
@@ -110,22 +115,25 @@ class OfPrograms:
         file, real = self._job_file(folder)
         return self._maker.applied(file, file.layers(real, name))
 
-    def excluded_in(self, folder: str) -> Callable[[str, bool], bool] | None:
-        """Return the function that says which files of a folder are excluded, for files.walk; None without any."""
-        file, real = self._job_file(folder)
-        exclude = file.exclude
-        return (lambda name, is_folder: bool(exclude.itself(real, name, is_folder=is_folder))) if exclude else None
+    def excluded_in(self, folder: str) -> Callable[[str, bool], str] | None:
+        """Return the function that says what excludes the entries of a folder, for walking.walk; None without any."""
+        return self._patterns.of_folder(*self._job_file(folder))
+
+    def extensions_in(self, folder: str) -> list[str]:
+        """Return the endings of programs that the job file of a folder lists; none for the usual ones."""
+        layer = self._job_file(folder)[0].naming_extensions
+        return layer.extensions if layer is not None else []
 
     def is_within_excluded(self, path: str) -> bool:
         """Return True if a walk from above would skip a file or folder, or a folder around it."""
         folder, name = os.path.split(path.rstrip(os.sep) or path)
         file, real = self._job_file(folder)
-        if not file.exclude or path == STANDARD_INPUT:
+        if path == STANDARD_INPUT or not (file.exclude or self._options.exclude):
             return False
         is_folder = os.path.isdir(path)  # noqa: PTH112  Path.is_dir raises for some names
         if name in ("", os.curdir, os.pardir):
-            return bool(file.exclude.of_folder(os.path.realpath(path)))
-        return bool(file.exclude.of_folder(real) or file.exclude.itself(real, name, is_folder=is_folder))
+            return self._patterns.is_within(file, os.path.realpath(path), "", is_folder=True)
+        return self._patterns.is_within(file, real, name, is_folder=is_folder)
 
     def left(self, paths: Sequence[str], warn: Callable[[str], None]) -> tuple[str, ...]:
         """Return the paths that are not excluded; call `warn` if none is left."""
@@ -149,23 +157,60 @@ class OfPrograms:
 
         return None if file.path == self._options.config else jobs_above.left_behind(file, self._nearest)
 
-    def unmatched(self, paths: Iterable[str]) -> list[str]:
+    def unmatched(self, paths: Iterable[str], programs: Sequence[str], extensions: Sequence[str] = ()) -> list[str]:
         """
-        Return a line for each pattern in a job file that has matched no program so far.
+        Return a line for each pattern that has had no effect so far: of programs, of `exclude` and of `extensions`.
 
-        Only job files whose whole folder was walked count.
+        Patterns in job files count only if the whole folder of the file was walked.
 
         paths: the files and folders that were walked.
+        programs: what the walks have read.
+        extensions: those of the command line, in place of those of the job files.
         """
-        if not self._matched:
-            return []
         walked = [self._nearest.real.folder(path) for path in paths if os.path.isdir(path)]  # noqa: PTH112
-        return [
+        if not walked:
+            return []
+        lines = [
             line
             for path, names in self._matched.items()
-            if any(Path(os.path.realpath(path.parent)).is_relative_to(folder) for folder in walked)
+            if _is_below(path, walked)
             for line in self._loaded[path].unmatched(names)
         ]
+        for file in self._loaded.values():
+            if file.excluding is not None and _is_below(file.excluding.written.path, walked):
+                lines += self._patterns.unused_in(file)
+        return [*dict.fromkeys(lines), *self._unmatched_extensions(walked, programs, extensions)]
+
+    def _unmatched_extensions(
+        self, walked: Sequence[str], programs: Sequence[str], extensions: Sequence[str]
+    ) -> list[str]:
+        lines = self._patterns.unused_options(extensions, programs)
+        layers = (
+            {}
+            if extensions
+            else {
+                layer.written.path: layer
+                for file in self._loaded.values()
+                if (layer := file.naming_extensions) is not None and _is_below(layer.written.path, walked)
+            }
+        )
+        if layers:
+            from polarcheck.settings import walk_patterns
+
+            of_layer: dict[Path, list[str]] = {path: [] for path in layers}
+            for program in programs:
+                layer = self._job_file(os.path.dirname(program))[0].naming_extensions  # noqa: PTH120
+                if layer is not None and layer.written.path in layers:
+                    of_layer[layer.written.path].append(program)
+            for path, names in of_layer.items():
+                lines += walk_patterns.unused_extensions(layers[path], names)
+        return lines
+
+    @cached_property
+    def _patterns(self) -> WalkPatterns:
+        from polarcheck.settings.walk_patterns import WalkPatterns
+
+        return WalkPatterns(self._options.exclude)
 
     def _job_file(self, folder: str) -> tuple[JobFile, str]:
         """Return the job file for a folder, and the real path of the folder."""
@@ -180,6 +225,11 @@ class OfPrograms:
                 return self._of_folder[folder]
             return self._loaded[nearest], folder
         return self._of_folder[folder]
+
+
+def _is_below(path: Path, folders: Iterable[str]) -> bool:
+    """Return True if the folder of a file, with all that is in it, lies in one of these folders."""
+    return any(Path(os.path.realpath(path.parent)).is_relative_to(folder) for folder in folders)
 
 
 Layers = tuple[tuple[int, int], ...]
@@ -229,18 +279,22 @@ class SettingsMaker:
         check_tools(job, options.tools, machine, merged.at)
         check_work_offsets(job, machine, merged.at)
         rules, levels = self._chosen(job, merged, profile)
+        named = options.baseline or (None if job.baseline is None else Path(job.baseline))
+        baseline = named if options.use_baseline else None
         settings = Settings(
             name=name,
             machine=machine,
             job=job,
             rules=rules,
             severities=levels,
-            read=_files_read(options, job, profile, file),
+            read=_files_read(options, job, profile, file, baseline),
             job_file=file.path,
             fail_on=job.fail_on,
             strict=job.strict,
             encoding=job.encoding,
             inline=job.inline,
+            baseline=baseline,
+            baseline_named_by="" if baseline in (None, options.baseline) else f"{merged.at('baseline')}: baseline",
             profile_sha256=self._hash(machine),
             extras=options.extras,
         )
@@ -332,10 +386,12 @@ def _parts(parts: Sequence[Part], options: Options) -> list[Part]:
 _OVER_JOB = ("machine", "radius_from_comments", "fail_on", "strict", "encoding", "inline")
 
 
-def _files_read(options: Options, job: Job, profile: profiles.Profile, file: JobFile) -> list[Path]:
+def _files_read(
+    options: Options, job: Job, profile: profiles.Profile, file: JobFile, baseline: Path | None
+) -> list[Path]:
     """Return the job files, offset tables, drawings, the baseline and the user's machine files."""
     machines = [Path(title) for title in profile.chain if title not in profiles.names()]
-    tables = [path for path in (options.offsets, options.baseline) if path]
+    tables = [path for path in (options.offsets, baseline) if path]
     tables += [Path(part.drawing) for part in job.part if part.drawing is not None]
     return [*machines, *tables, *file.paths, *([Path(job.offsets)] if job.offsets else [])]
 

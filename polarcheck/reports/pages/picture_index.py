@@ -80,17 +80,18 @@ def page_names(paths: Iterable[str]) -> list[str]:
     return names
 
 
-def index(entries: Sequence[Entry]) -> str:
-    """Return the page, in the order of the programs; it has no scripts."""
+def index(entries: Sequence[Entry], notes: Iterable[str] = ()) -> str:
+    """Return the page, in the order of the programs; it has no scripts. notes: lines behind the table."""
     heads = "".join(f'<th scope="col">{head}</th>' for head in _HEADS)
     rows = "\n".join(map(_row, entries))
+    below = "".join(f"<p>{escape(visible(note))}</p>\n" for note in notes)
     return (
         '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
         "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'\">\n"
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
         f"<title>polarcheck: {counted(len(entries), 'program')}</title>\n<style>{_STYLE}</style>\n</head>\n"
         f"<body>\n<h1>{counted(len(entries), 'program')}</h1>\n<table>\n<thead><tr>{heads}</tr></thead>\n"
-        f"<tbody>\n{rows}\n</tbody>\n</table>\n</body>\n</html>\n"
+        f"<tbody>\n{rows}\n</tbody>\n</table>\n{below}</body>\n</html>\n"
     )
 
 

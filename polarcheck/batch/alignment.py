@@ -1,0 +1,105 @@
+"""Aligns the blocks of two versions of a program: which block of the one is which of the other."""
+
+from __future__ import annotations
+
+from bisect import bisect_left
+from collections import Counter
+from collections.abc import Iterator, Sequence
+
+#: Where no block occurs once in both, stretches with more blocks taken away and added are not aligned.
+_MOST_EDITS = 256
+
+_Pair = tuple[int, int]
+
+
+def aligned(old: Sequence[int], new: Sequence[int]) -> dict[int, int]:
+    """
+    Return for the indices of equal blocks in `old` those in `new`, in increasing order of both.
+
+    Blocks that occur once in both are aligned first (patience diff), then the stretches between them.
+    """
+    pairs: dict[int, int] = {}
+    stretches = [(0, len(old), 0, len(new))]
+    while stretches:
+        start, end, new_start, new_end = stretches.pop()
+        while start < end and new_start < new_end and old[start] == new[new_start]:
+            pairs[start] = new_start
+            start, new_start = start + 1, new_start + 1
+        while start < end and new_start < new_end and old[end - 1] == new[new_end - 1]:
+            end, new_end = end - 1, new_end - 1
+            pairs[end] = new_end
+        if start == end or new_start == new_end:
+            continue
+        anchors = _anchors(old, new, (start, end, new_start, new_end))
+        if anchors:
+            for (at, new_at), (following, new_following) in zip(
+                [(start - 1, new_start - 1), *anchors], [*anchors, (end, new_end)], strict=True
+            ):
+                stretches.append((at + 1, following, new_at + 1, new_following))
+            pairs.update(anchors)
+        else:
+            found = _compared(old[start:end], new[new_start:new_end])
+            pairs.update((start + at, new_start + new_at) for at, new_at in found)
+    return dict(sorted(pairs.items()))
+
+
+def _anchors(old: Sequence[int], new: Sequence[int], stretch: tuple[int, int, int, int]) -> list[_Pair]:
+    """Return the longest chain of blocks that occur once in both stretches and have the same order in both."""
+    start, end, new_start, new_end = stretch
+    counts, new_counts = Counter(old[start:end]), Counter(new[new_start:new_end])
+    new_at = {value: at for at, value in enumerate(new[new_start:new_end], new_start) if new_counts[value] == 1}
+    once = [
+        (at, new_at[value]) for at, value in enumerate(old[start:end], start) if counts[value] == 1 and value in new_at
+    ]
+    # The longest increasing subsequence of the positions in `new`.
+    ends: list[int] = []
+    numbers: list[int] = []
+    before: list[int] = []
+    for number, (_, at) in enumerate(once):
+        length = bisect_left(ends, at)
+        before.append(numbers[length - 1] if length else -1)
+        ends[length : length + 1] = [at]
+        numbers[length : length + 1] = [number]
+    chain: list[_Pair] = []
+    number = numbers[-1] if numbers else -1
+    while number >= 0:
+        chain.append(once[number])
+        number = before[number]
+    return chain[::-1]
+
+
+def _compared(old: Sequence[int], new: Sequence[int]) -> Iterator[_Pair]:
+    """
+    Yield the pairs of a longest common subsequence, the last first (Myers, An O(ND) Difference Algorithm).
+
+    None where more than _MOST_EDITS blocks have been taken away and added.
+    """
+    furthest = {1: 0}
+    steps: list[dict[int, int]] = []
+    for edits in range(min(len(old) + len(new), _MOST_EDITS) + 1):
+        steps.append(furthest.copy())
+        for diagonal in range(-edits, edits + 1, 2):
+            at = _begin(furthest, diagonal, edits)
+            while at < len(old) and at - diagonal < len(new) and old[at] == new[at - diagonal]:
+                at += 1
+            furthest[diagonal] = at
+            if at >= len(old) and at - diagonal >= len(new):
+                yield from _traced(steps, len(old), len(new))
+                return
+
+
+def _begin(furthest: dict[int, int], diagonal: int, edits: int) -> int:
+    """Return where a path enters a diagonal, in `old`: from the neighbour that has come further."""
+    is_added = diagonal == -edits or (diagonal != edits and furthest[diagonal - 1] < furthest[diagonal + 1])
+    return furthest[diagonal + 1] if is_added else furthest[diagonal - 1] + 1
+
+
+def _traced(steps: Sequence[dict[int, int]], at: int, new_at: int) -> Iterator[_Pair]:
+    for edits, furthest in zip(range(len(steps) - 1, -1, -1), reversed(steps), strict=True):
+        diagonal = at - new_at
+        begin = _begin(furthest, diagonal, edits)
+        while at > begin and new_at > 0:
+            at, new_at = at - 1, new_at - 1
+            yield at, new_at
+        is_added = diagonal == -edits or (diagonal != edits and furthest[diagonal - 1] < furthest[diagonal + 1])
+        at, new_at = (begin, new_at - 1) if is_added else (begin - 1, new_at)

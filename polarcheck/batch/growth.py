@@ -1,0 +1,93 @@
+"""How bad a finding is: the numbers that can grow worse, and what is worse now than a baseline knows."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+
+from polarcheck.batch.baseline_file import Entry, Place
+from polarcheck.checking.rule import Rule, load_all
+from polarcheck.finding import SEVERITIES, Finding
+
+#: A number that has grown by no more is the same: neighbouring blocks change a distance by what a post rounds.
+_SHARE = 0.02
+#: The same of small numbers, the last digit that messages show of a length [mm, deg, deg/min].
+_ROUNDING = 0.001
+#: Before the name of a number of which less is worse, and between two names whose distance counts (Rule.worse).
+LESS, _FROM = "-", ":"
+
+
+def values_of(finding: Finding) -> dict[str, float]:
+    """Return the numbers of a finding that can grow worse; those of findings that follow behind their rule."""
+    return {name: value for name, value in _numbers(finding).items() if value is not None}
+
+
+def _numbers(finding: Finding) -> dict[str, float | None]:
+    rules = load_all()
+    values = dict(_of_rule(finding, rules))
+    for follower in finding.follows:
+        for name, value in _of_rule(follower, rules):
+            whole = f"{follower.rule}.{name}"
+            if whole not in values or _is_worse(_signed(whole, finding), values[whole], value, 0, 0):
+                values[whole] = value
+    return values
+
+
+def blocks_of(finding: Finding) -> int:
+    """Return how many blocks a finding stands for; 0 where its count is of repeats of one block."""
+    rule = load_all().get(finding.rule)
+    return finding.count if rule is not None and rule.once else 0
+
+
+def growth(known: Entry, place: Place, finding: Finding) -> list[str]:
+    """Return in words what of a known finding is worse now; empty if nothing is."""
+    return [*_of_kind(known, finding), *_of_numbers(place, finding)]
+
+
+def _of_kind(known: Entry, finding: Finding) -> Iterator[str]:
+    if SEVERITIES[finding.severity] > SEVERITIES[known.severity]:
+        yield f"known as {known.severity}, now {finding.severity}"
+    new = {follower.rule for follower in finding.follows} - {*known.follows}
+    if new:
+        yield f"now with {', '.join(sorted(new))}"
+
+
+def _of_numbers(place: Place, finding: Finding) -> Iterator[str]:
+    blocks = blocks_of(finding)
+    if place.blocks and blocks > place.blocks:
+        yield f"known in {place.blocks} block{'s' * (place.blocks > 1)}, now in {blocks}"
+    now = _numbers(finding)
+    for name, value in place.values.items():
+        if name in now and _is_worse(_signed(name, finding), value, now[name], _SHARE, _ROUNDING):
+            words = name.replace("_", " ").replace(_FROM, " off ")
+            yield f"known with {words}{' by' * (_FROM in name)} {_shown(value)}, now {_shown(now[name])}"
+
+
+def _of_rule(finding: Finding, rules: Mapping[str, Rule]) -> Iterator[tuple[str, float | None]]:
+    """Yield the numbers that the rule of a finding names as `worse`; without a value where it is not known."""
+    for signed in rules[finding.rule].worse if finding.rule in rules else ():
+        name = signed.removeprefix(LESS)
+        values = [finding.values.get(part) for part in name.split(_FROM)]
+        numbers = [value for value in values if isinstance(value, int | float)]
+        if len(numbers) < len(values):
+            yield name, None
+        else:
+            yield name, numbers[0] if len(numbers) == 1 else abs(numbers[0] - numbers[1])
+
+
+def _signed(name: str, finding: Finding) -> str:
+    """Return a name with the sign that its rule gives it."""
+    rule, _, last = name.rpartition(".")
+    signed: Iterable[str] = load_all()[rule or finding.rule].worse
+    return f"{LESS}{last}" if f"{LESS}{last}" in signed else last
+
+
+def _is_worse(signed: str, before: float | None, now: float | None, share: float, rounding: float) -> bool:
+    """Return True for a number that is worse by more than the tolerance; None is worse than any number."""
+    if before is None or now is None:
+        return before is not None
+    grown = before - now if signed.startswith(LESS) else now - before
+    return grown > share * abs(before) + rounding
+
+
+def _shown(value: float | None) -> str:
+    return "unknown" if value is None else f"{value:.3f}".rstrip("0").rstrip(".")

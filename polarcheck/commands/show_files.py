@@ -1,0 +1,100 @@
+"""`polarcheck check --show-files`: which files are read and which are not, with the reason, in place of a check."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Iterator, Sequence
+from typing import TYPE_CHECKING, NamedTuple
+
+from polarcheck.commands.options import option
+from polarcheck.errors import UsageError
+
+if TYPE_CHECKING:
+    from polarcheck.batch.tasks import Task
+    from polarcheck.reading.walking import Skipped
+
+#: The formats that can hold the list.
+_FORMATS = ("text", "json", "jsonl")
+
+show_files = option(
+    "--show-files",
+    "lists_files",
+    is_flag=True,
+    help="Which files are read and which are not, with the reason; no check.",
+)
+
+
+class Listed(NamedTuple):
+    """
+    A file or folder.
+
+    path: as in reports.
+    read: True for a program that is checked.
+    reason: why it is not read; empty for one that is.
+    programs: the number of programs in an excluded folder, else 1 for a file and 0 for a folder.
+    """
+
+    path: str
+    read: bool
+    reason: str
+    programs: int
+
+
+def refuse(form: str | None, others: dict[str, object]) -> None:
+    """Raise UsageError for a format that cannot hold the list, and for options (by name) that need a check."""
+    if form not in (None, *_FORMATS):
+        raise UsageError(f"--show-files: expected --format {', '.join(_FORMATS)}, found {form}")
+    for name, value in others.items():
+        if value:
+            raise UsageError(f"--show-files checks nothing: leave {name} out")
+
+
+def text(form: str, tasks: Sequence[Task], skipped: Sequence[Skipped]) -> str:
+    """Return the list in a format, those that are read first."""
+    from polarcheck.reading.excerpt import visible
+    from polarcheck.reports.json import encoded
+
+    entries = [*_read(tasks), *_not_read(skipped)]
+    if form == "json":
+        return encoded({"files": [entry._asdict() for entry in entries]}, indent=2) + "\n"
+    if form == "jsonl":
+        return "".join(encoded(entry._asdict()) + "\n" for entry in entries)
+    lines = [
+        f"read      {entry.path}" if entry.read else f"not read  {entry.path}: {entry.reason}" for entry in entries
+    ]
+    return "".join(f"{visible(line)}\n" for line in lines)
+
+
+def _read(tasks: Iterable[Task]) -> Iterator[Listed]:
+    for task in tasks:
+        yield Listed(task.title, True, "", 1)
+
+
+def _not_read(skipped: Iterable[Skipped]) -> Iterator[Listed]:
+    from polarcheck.reading.files import shown
+
+    for entry in skipped:
+        path = shown(entry.path) + ("/" if os.path.isdir(entry.path) else "")  # noqa: PTH112
+        yield Listed(path, False, _reason(entry), entry.programs)
+
+
+def _reason(entry: Skipped) -> str:
+    """Return why a file or folder is not read."""
+    if entry.reason == "excluded":
+        if os.path.isdir(entry.path):  # noqa: PTH112
+            least = "at least " if entry.is_least else ""
+            noun = "program" if entry.programs == 1 else "programs"
+            return f"excluded by {entry.by}, with {least}{entry.programs} {noun} in it"
+        return f"excluded by {entry.by}"
+    if entry.reason == "ending":
+        what = (
+            f"the ending {entry.ending} is"
+            if entry.ending
+            else "without ending, its first lines show no program, and it is"
+        )
+        return f"{what} none of the extensions"
+    return {
+        "folder": "hidden folders and those of packages are not entered",
+        "device": "a pipe or device",
+        "offset table": "an offset table of a job",
+    }[entry.reason]
