@@ -316,6 +316,19 @@ def test_an_empty_folder_is_told(tmp_path: Path) -> None:
     assert told[0].filename == __file__
 
 
+def test_a_walk_says_what_it_leaves_out(tmp_path: Path) -> None:
+    for name in ("a.nc", "b.nc", "P.SUB"):
+        (tmp_path / name).write_text(RAPID, "utf-8")
+    with pytest.warns(PolarcheckWarning, match=r"polarcheck.check\(\): exclude 'z\*' excludes nothing"):
+        report = polarcheck.check(tmp_path, exclude=[f"{tmp_path}/b.nc", "z*"], use_config=False)
+    assert [Path(file.path).name for file in report.files] == ["a.nc"]
+    assert polarcheck.check(tmp_path, extensions="SUB", use_config=False).summary.files == 1
+    with pytest.raises(SourceError, match="nothing to check: "):
+        polarcheck.check(tmp_path, exclude=f"{tmp_path}/*.nc", use_config=False)
+    with pytest.raises(UsageError, match=r"polarcheck.check\(\): exclude: expected a pattern such as O12"):
+        polarcheck.check(tmp_path, exclude="")
+
+
 def test_a_fault_of_polarcheck_is_raised(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("polarcheck.checking.check.check_runs", lambda *_: 1 / 0)
     with pytest.raises(ZeroDivisionError):
@@ -409,7 +422,8 @@ def test_every_option_of_a_job_is_a_keyword() -> None:
     other = {"severities": "severities", "units": "program_units"}
     known = {*keywords.CheckKeywords.__annotations__}
     left = {other.get(name, name) for name in Options.__struct_fields__} - known
-    assert left == {"baseline", "use_baseline", "exclude", "extras", "keywords"}
+    left -= {*inspect.signature(polarcheck.check).parameters}
+    assert left == {"baseline", "use_baseline", "extras", "keywords"}
 
 
 def test_warnings_are_no_errors_of_a_clean_folder(samples: None) -> None:

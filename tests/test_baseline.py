@@ -549,6 +549,7 @@ def test_it_takes_all_options_that_decide_what_is_found() -> None:
         "use_config",
         "baseline",
         "use_baseline",
+        "keywords",
         "strict",
         "fail_on",
         "extras",

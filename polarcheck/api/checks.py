@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from typing import Unpack
 
 from polarcheck.api import runs
-from polarcheck.api.keywords import CheckKeywords, PathName, options, paths_of, takes
+from polarcheck.api.keywords import CheckKeywords, PathName, names_of, options, paths_of, takes
 from polarcheck.api.programs import NAMELESS, Call
 from polarcheck.batch import tasks as batch
 from polarcheck.batch.tasks import Outcome, Task
@@ -15,6 +15,7 @@ from polarcheck.errors import PolarcheckWarning, SourceError, UsageError
 from polarcheck.finding import FileReport, Report
 from polarcheck.machines import profiles
 from polarcheck.reading import files
+from polarcheck.reading.walking import Skipped
 from polarcheck.settings.of_programs import OfPrograms
 
 _FUNCTION = "polarcheck.check()"
@@ -24,7 +25,9 @@ _FUNCTION = "polarcheck.check()"
 def check(
     paths: PathName | Iterable[PathName],
     *,
-    extensions: Iterable[str] = (),
+    extensions: str | Iterable[str] = (),
+    exclude: str | Iterable[str] = (),
+    force_exclude: bool = False,
     processes: int = 1,
     max_size: int = files.LARGEST,
     **keywords: Unpack[CheckKeywords],
@@ -38,6 +41,8 @@ def check(
 
     paths: one path or several; a program that several of them lead to is checked once.
     extensions: endings of the programs in folders, in place of .nc, .tap and others.
+    exclude: patterns of programs that no walk through a folder finds, beside those of job files.
+    force_exclude: what is excluded is left out even where it is named.
     processes: how many check; 1 for this one alone. More need a main module that can be imported (multiprocessing).
     max_size: a larger file is not read [bytes].
 
@@ -46,15 +51,18 @@ def check(
     """
     if isinstance(processes, bool) or not isinstance(processes, int) or processes < 1:
         raise UsageError(f"{_FUNCTION}: processes: expected a whole number from 1, found {processes!r}")
-    settings_of = OfPrograms(options(_FUNCTION, CheckKeywords, keywords))
-    tasks, failures, doubts = runs.planned(paths_of(_FUNCTION, paths), settings_of, [*extensions])
+    named, endings = paths_of(_FUNCTION, paths), names_of(_FUNCTION, "extensions", extensions)
+    patterns = names_of(_FUNCTION, "exclude", exclude)
+    settings_of = OfPrograms(options(_FUNCTION, CheckKeywords, keywords, exclude=patterns))
+    skipped: list[Skipped] = []
+    tasks, failures, doubts = runs.planned(named, settings_of, endings, force_exclude=force_exclude, skipped=skipped)
     for doubt in doubts:
         warnings.warn(doubt, PolarcheckWarning, stacklevel=2)
     if failures:
         raise SourceError(failures[0])
     with runs.outcomes(tasks, max_size, processes) as outcomes:
         reports = [_report(outcome) for outcome in outcomes]
-    return batch.report(reports, tasks[0].settings.name if tasks else profiles.DEFAULT)
+    return batch.report(reports, tasks[0].settings.name if tasks else profiles.DEFAULT, skipped=skipped)
 
 
 def _report(outcome: Outcome) -> FileReport:
