@@ -7,7 +7,6 @@ import click
 from polarcheck.commands import options
 from polarcheck.commands.output import show
 
-
 _NAMES = ("report", "job", "machine", "feeds", "trace", "comparison")
 
 
