@@ -46,6 +46,7 @@ def by_command(*arguments: str) -> Any:
 # ---- the command and the function agree ----
 
 
+@pytest.mark.filterwarnings("ignore::polarcheck.errors.PolarcheckWarning")
 def test_check_gives_the_report_of_the_command(samples: None) -> None:
     assert json.loads(polarcheck.render(polarcheck.check("."), "json")) == by_command("check", ".", "--format", "json")
 
@@ -295,8 +296,11 @@ def test_a_wrong_argument_is_named_in_one_line(call: Any, text: str) -> None:
 
 
 def test_a_file_that_cannot_be_read(tmp_path: Path) -> None:
+    report = polarcheck.check([tmp_path / "none.nc", ROOT / "sample_programs" / "hexagon.nc"])
+    assert [file.verdict for file in report.files] == ["unreadable", "pass"]
+    assert report.files[0].reason == "No such file or directory"
     with pytest.raises(SourceError, match="No such file"):
-        polarcheck.check(tmp_path / "none.nc")
+        polarcheck.part(tmp_path / "none.nc")
 
 
 def test_a_file_may_be_called_as_standard_input_is(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -310,6 +314,19 @@ def test_an_empty_folder_is_told(tmp_path: Path) -> None:
         report = polarcheck.check(tmp_path)
     assert not report.files
     assert told[0].filename == __file__
+
+
+def test_a_walk_says_what_it_leaves_out(tmp_path: Path) -> None:
+    for name in ("a.nc", "b.nc", "P.SUB"):
+        (tmp_path / name).write_text(RAPID, "utf-8")
+    with pytest.warns(PolarcheckWarning, match=r"polarcheck.check\(\): exclude 'z\*' excludes nothing"):
+        report = polarcheck.check(tmp_path, exclude=[f"{tmp_path}/b.nc", "z*"], use_config=False)
+    assert [Path(file.path).name for file in report.files] == ["a.nc"]
+    assert polarcheck.check(tmp_path, extensions="SUB", use_config=False).summary.files == 1
+    with pytest.raises(SourceError, match="nothing to check: "):
+        polarcheck.check(tmp_path, exclude=f"{tmp_path}/*.nc", use_config=False)
+    with pytest.raises(UsageError, match=r"polarcheck.check\(\): exclude: expected a pattern such as O12"):
+        polarcheck.check(tmp_path, exclude="")
 
 
 def test_a_fault_of_polarcheck_is_raised(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -405,7 +422,8 @@ def test_every_option_of_a_job_is_a_keyword() -> None:
     other = {"severities": "severities", "units": "program_units"}
     known = {*keywords.CheckKeywords.__annotations__}
     left = {other.get(name, name) for name in Options.__struct_fields__} - known
-    assert left == {"baseline", "extras", "keywords"}
+    left -= {*inspect.signature(polarcheck.check).parameters}
+    assert left == {"baseline", "use_baseline", "extras", "keywords"}
 
 
 def test_warnings_are_no_errors_of_a_clean_folder(samples: None) -> None:

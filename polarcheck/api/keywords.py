@@ -172,7 +172,7 @@ def options(function: str, kind: type, given: Mapping[str, Any], **more: Any) ->
     table = {name: _plain(value) for name, value in given.items() if value is not None}
     for name in _LISTS:
         if name in table:
-            table[name] = _names(function, name, table[name])
+            table[name] = names_of(function, name, table[name])
     for name in ("config", "machine", "offsets", "encoding"):
         if not isinstance(table.get(name, ""), str):
             raise UsageError(f"{function}: {name}: expected a name or a path, found {_short(given[name])}")
@@ -219,8 +219,10 @@ def _plain(value: Any) -> Any:
 
 
 def _is(value: Any, default: Any) -> bool:
-    """Return True for the default of a field; NaN is unknown."""
-    return value is None or value is default or (isinstance(value, float) and (math.isnan(value) or value == default))
+    """Return True for the default of a field; NaN is unknown, and empty lists and tables are defaults."""
+    if isinstance(value, float):
+        return math.isnan(value) or value == default
+    return value is None or value is default or value in ([], {})
 
 
 def _key(key: Any) -> Any:
@@ -255,10 +257,11 @@ def _is_number(value: Any) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool)
 
 
-def _names(function: str, name: str, value: Any) -> list[str]:
-    names = [value] if isinstance(value, str) else value
+def names_of(function: str, keyword: str, value: Any) -> list[str]:
+    """Return the names of a keyword that takes one or several. Raises UsageError for what is no name."""
+    names = [value] if isinstance(value, str) else _plain(value)
     if not isinstance(names, list) or not all(isinstance(element, str) for element in names):
-        raise UsageError(f"{function}: {name}: expected names, found {_short(value)}")
+        raise UsageError(f"{function}: {keyword}: expected names, found {_short(value)}")
     return names
 
 
