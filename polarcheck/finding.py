@@ -387,7 +387,8 @@ class FileReport(msgspec.Struct, frozen=True, kw_only=True):
     """
     The report of one file.
 
-    machine: its name, as given by the user.
+    machine: its id: the name of a built-in machine, or the file name of a machine file, without `.toml`.
+    machine_file: the path of the machine file, as given; absent for a built-in machine.
     programs: numbers or names of its programs.
     blocks, sections: executed blocks and polar sections.
     verdict: pass, fail, unverified or unreadable.
@@ -409,6 +410,7 @@ class FileReport(msgspec.Struct, frozen=True, kw_only=True):
 
     path: str
     machine: str = ""
+    machine_file: str | UnsetType = UNSET
     programs: list[str]
     blocks: int
     sections: int

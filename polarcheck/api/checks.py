@@ -62,7 +62,7 @@ def check(
         raise SourceError(failures[0])
     with runs.outcomes(tasks, max_size, processes) as outcomes:
         reports = [_report(outcome) for outcome in outcomes]
-    return batch.report(reports, tasks[0].settings.name if tasks else profiles.DEFAULT, skipped=skipped)
+    return batch.report(reports, tasks[0].settings.machine_id if tasks else profiles.DEFAULT, skipped=skipped)
 
 
 def _report(outcome: Outcome) -> FileReport:

@@ -24,7 +24,7 @@ class Feeds(msgspec.Struct, frozen=True, kw_only=True):
     The highest F of each block of a program.
 
     path: as it is reported.
-    machine: the name of the machine, or the path of its file.
+    machine: its id, the name of a built-in machine or that of a machine file without folder and ending.
     tables: one for each channel, with its rows, sections and limits.
     findings: why nothing of this can be believed, if the program is for another control.
     missing: in one line, which moves are computed as programmed for want of R, and what to give; else empty.
@@ -70,7 +70,7 @@ def _feeds(program: Program) -> Feeds:
         findings, missing = doubts(program, runs)
         return Feeds(
             path=program.path,
-            machine=program.settings.name,
+            machine=program.settings.machine_id,
             tables=[feed_table(tables) for _, tables in runs],
             findings=findings,
             missing="; ".join(missing),

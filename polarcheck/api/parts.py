@@ -26,7 +26,7 @@ class MadePart(msgspec.Struct, frozen=True, kw_only=True):
     What a program makes; an entry of `files` in `polarcheck part --format json`.
 
     path: as it is reported.
-    machine: the name of the machine, or the path of its file.
+    machine: its id, the name of a built-in machine or that of a machine file without folder and ending.
     part: the shapes, in the order of the program.
     compared: its contours beside those asked for.
     findings: where it differs from them, or why nothing of this can be believed.
@@ -77,7 +77,7 @@ def _part(program: Program) -> MadePart:
             report = extra(report, runs)
     return MadePart(
         path=report.path,
-        machine=settings.name,
+        machine=settings.machine_id,
         part=report.part or [],
         compared=report.compared or [],
         findings=report.findings,

@@ -292,7 +292,7 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
         say(reason)
     report = batch.report(
         checked.files,
-        applies.machine or (tasks[0].settings.name if tasks else profiles.DEFAULT),
+        tasks[0].settings.machine_id if tasks else profiles.machine_id(applies.machine or profiles.DEFAULT),
         interrupted=batch.interrupted(reason, checked.files, tasks) if reason else None,
         skipped=skipped,
     )

@@ -53,11 +53,11 @@ def feeds(path: str, form: str, diff: bool, no_config: bool, max_size: int, **ar
         runs = [tables for _, tables in found]
         if diff:
             return _show_diff(program.path, program.data, runs, program.settings.encoding)
-        _show_table(program.path, runs, form)
+        _show_table(program.path, program.settings.machine_id, runs, form)
     return CLEAN
 
 
-def _show_table(title: str, runs: list[Tables], form: str) -> None:
+def _show_table(title: str, machine: str, runs: list[Tables], form: str) -> None:
     import msgspec
 
     from polarcheck.feed_table.table import FeedReport, feed_table
@@ -68,7 +68,6 @@ def _show_table(title: str, runs: list[Tables], form: str) -> None:
             if not show(line.encode()):
                 break
         return
-    machine = runs[0]["machine"].title
     report = FeedReport(schema=1, path=title, machine=machine, tables=[feed_table(tables) for tables in runs])
     encoded = msgspec.json.format(msgspec.json.encode(report), indent=2) + b"\n"
     show(encoded if form == "json" else pages.text(report).encode())
