@@ -207,6 +207,11 @@ def _walked(
     return found
 
 
+def settings_of(tasks: Iterable[Task]) -> dict[str, Settings]:
+    """Return the settings of each file, by its path in reports."""
+    return {task.title: task.settings for task in tasks}
+
+
 def one_by_one(tasks: Iterable[Task], most: int = files.LARGEST) -> Generator[Outcome, None, None]:
     """Yield the outcome of each file, checked in this process."""
     for number, task in enumerate(tasks):

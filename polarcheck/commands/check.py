@@ -237,7 +237,8 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
         OfPrograms(applies),
         arguments.extensions,
         faults,
-        force_exclude=arguments.force_exclude,
+        # A hook may find that nothing is left.
+        force_exclude=arguments.force_exclude or arguments.changed is not None,
         named=standard_input.judged_as(arguments.paths, arguments.stdin_filename),
         skipped=skipped,
     )
@@ -283,7 +284,7 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
     runner = running.Runner(arguments.max_size, arguments.workers, arguments.cluster, seen, cache)
     pictures.begin(plain)
     checked = runner.check(tasks, bar, faults, baselines, live_report.file, pictures.split)
-    is_stale = arguments.fail_on_stale and silencing.stale(baselines)
+    is_stale = arguments.fail_on_stale and baselines is not None and baselines.is_stale
     status = max(int(checked.failed or is_stale), fixed.status, faults.report())
     reason = checked.broken_off
     if checked.stopped is not None:

@@ -116,7 +116,7 @@ class Runner:
             self._outcomes(tasks) if self._before is None else self._before.outcomes(tasks, self._outcomes) as outcomes,
             contextlib.closing(bar.watched(outcomes)) as watched,
         ):
-            suppressed = silencing.without_known(watched, tasks, baselines)
+            suppressed = silencing.without_known(watched, baselines)
             reported = suppressed if take is None else take(suppressed)
             return batch.gather(reported, faults.failures.append, faults.bug, show)
 
