@@ -498,8 +498,11 @@ def test_the_machine_of_a_job_lies_beside_it_and_the_report_names_it() -> None:
     Path("sub/polarcheck.toml").write_text("machine = 'mine.toml'\n", "utf-8")
     Path("sub/mine.toml").write_text("inherits = 'fanuc-30i'\n", "utf-8")
     only = (*RAPID_ONLY, "--format", "json")
-    named = [json.loads(check(path, *only).stdout)["machine"] for path in ("sub/a.nc", "sub")]
-    assert named == [str(Path("sub/mine.toml"))] * 2
+    for path in ("sub/a.nc", "sub"):
+        shown = json.loads(check(path, *only).stdout)
+        (file,) = shown["files"]
+        named = shown["machine"], file["machine"], file["machine_file"]
+        assert named == ("mine", "mine", str(Path("sub/mine.toml")))
     asked = check("sub", "--machine", "fanuc-16i", *only)
     assert json.loads(asked.stdout)["machine"] == "fanuc-16i"
 
@@ -775,8 +778,10 @@ def test_rules_lists_all_of_them_by_group() -> None:
     assert [line.split()[1] for line in lines if line.startswith("  ")] == list(known)
     shown = json.loads(call("rules", "--format", "json").stdout)
     assert [entry["name"] for entry in shown] == list(known)
-    keys = ["name", "group", "severity", "title", "source", "values"]
-    assert all(list(entry) == keys and all(entry[key] for key in keys[:-1]) for entry in shown)
+    keys = ["name", "group", "severity", "title", "source"]
+    assert all(list(entry) == [*keys, "values"] and all(entry[key] for key in keys) for entry in shown)
+    (rate,) = (entry["values"] for entry in shown if entry["name"] == "c-feed-above-limit")
+    assert [rate[name] for name in ("c_feed", "limit", "highest_feed")] == ["deg/min", "deg/min", "mm/min"]
 
 
 def test_machines_lists_all_of_them() -> None:
@@ -819,7 +824,7 @@ def test_the_version_is_shown() -> None:
 # ---- schemas ----
 
 
-@pytest.mark.parametrize("name", ["report", "job", "machine", "feeds"])
+@pytest.mark.parametrize("name", ["report", "job", "machine", "feeds", "trace", "comparison"])
 def test_schemas_are_valid_and_say_what_they_are(name: str) -> None:
     shown = json.loads(call("schema", name).stdout, parse_constant=pytest.fail)
     jsonschema.Draft202012Validator.check_schema(shown)

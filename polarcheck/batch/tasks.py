@@ -223,6 +223,11 @@ def _walked(
     return found
 
 
+def settings_of(tasks: Iterable[Task]) -> dict[str, Settings]:
+    """Return the settings of each file, by its path in reports."""
+    return {task.title: task.settings for task in tasks}
+
+
 def one_by_one(tasks: Iterable[Task], most: int = files.LARGEST) -> Generator[Outcome, None, None]:
     """Yield the outcome of each file, checked in this process."""
     for number, task in enumerate(tasks):
@@ -317,7 +322,8 @@ def _of_task(task: Task, data: bytes | None) -> dict[str, Any]:
     import hashlib  # late: no other command needs it
 
     return {
-        "machine": task.settings.name,
+        "machine": task.settings.machine_id,
+        "machine_file": task.settings.machine_file or msgspec.UNSET,
         "profile_sha256": task.settings.profile_sha256,
         "settings": task.settings.decided if task.settings.differs else msgspec.UNSET,
         "sha256": None if data is None else hashlib.sha256(data).hexdigest(),
@@ -389,14 +395,14 @@ def report(
     machine: what a report without files is for. settings: what decided. interrupted: why files are missing.
     skipped: what the walks did not read.
     """
-    severities, verdicts, machines, silenced = Counter[str](), Counter[str](), set[str](), 0
+    severities, verdicts, machines, silenced = Counter[str](), Counter[str](), set[tuple[str, str]](), 0
     for file in reports:  # once: it may not lie in memory
         severities.update(finding.severity for finding in file.findings)
         verdicts[file.verdict] += 1
         if file.verdict != UNREADABLE:
-            machines.add(file.machine)
+            machines.add((file.machine, file.machine_file or ""))
         silenced += len(file.silenced)
-    machines = machines or {machine}
+    machines = machines or {(machine, "")}
     summary = Summary(
         files=len(reports),
         errors=severities["error"],
@@ -416,7 +422,7 @@ def report(
     return Report(
         schema=SCHEMA,
         tool=Producer("polarcheck", __version__),
-        machine=machines.pop() if len(machines) == 1 else None,
+        machine=machines.pop()[0] if len(machines) == 1 else None,
         settings=settings or RunSettings(version=__version__),
         interrupted=interrupted or msgspec.UNSET,
         files=reports,

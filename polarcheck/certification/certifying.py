@@ -106,7 +106,7 @@ def _result(loaded: Loaded, case: Case, settings: Settings, case_runs: Mapping[s
         feature=case.feature,
         control=case.control,
         program=program,
-        machine=settings.name,
+        machine=settings.machine_id,
         state=NOT_RUN if report is None else FAIL if reasons else PASS,
         expected=case.expected,
         verdict=None if report is None else report.verdict,

@@ -10,6 +10,7 @@ import msgspec
 from polarcheck.checking.rule import Rule
 from polarcheck.checking.tables import Tables
 from polarcheck.finding import Decided, FileReport
+from polarcheck.machines import profiles
 from polarcheck.machines.job import Job
 from polarcheck.machines.machine import Machine
 
@@ -58,3 +59,13 @@ class Settings(msgspec.Struct, frozen=True):
     differs: bool = False
     profile_sha256: str = ""
     extras: Sequence[Extra] = ()
+
+    @property
+    def machine_id(self) -> str:
+        """The id of the machine: its name, or that of its file without folder and ending."""
+        return profiles.machine_id(self.name)
+
+    @property
+    def machine_file(self) -> str:
+        """The path of a machine file of the user's own, as given; empty for a built-in machine."""
+        return "" if self.name in profiles.names() else self.name

@@ -34,8 +34,8 @@ def _outputs(ctx: click.Context, parameter: click.Parameter, values: tuple[str, 
 
 
 @click.command(short_help="Check the programs of a post for each control against a manifest.")
-@click.argument("manifest", metavar="MANIFEST|init")
-@click.argument("folder", required=False, metavar="[DIR]", type=click.Path(file_okay=False, path_type=Path))
+@click.argument("manifest", metavar="FILE")
+@click.argument("folder", required=False, metavar="[FOLDER]", type=click.Path(file_okay=False, path_type=Path))
 @narrower("--format", "form", type=click.Choice(_FORMATS), default="text", show_default=True)
 @option(
     "-o",
@@ -48,7 +48,7 @@ def _outputs(ctx: click.Context, parameter: click.Parameter, values: tuple[str, 
 )
 @option("--strict/--no-strict", default=False, help="Fail where a feature has no case on a control, too.")
 @click.option("--update", is_flag=True, help="Write the golden traces of cases that pass otherwise.")
-@option("--case", "names", multiple=True, metavar="NAME", help="Only this case; may be repeated.")
+@option("--case", "names", multiple=True, metavar="TEXT", help="Only this case; may be repeated.")
 @option("--machine", "machines", multiple=True, metavar="NAME|FILE", help="With init: a control; may be repeated.")
 @option("--color", type=click.Choice(["auto", "always", "never"]), default="auto", show_default=True)
 @options.max_size
@@ -69,7 +69,7 @@ def certify(
     max_size: int,
 ) -> None:
     """
-    Check the programs of a post against MANIFEST, which says for each feature and control what a program must do.
+    Check the programs of a post against FILE, a manifest: it says what a program of each feature and control must do.
 
     \b
     polarcheck certify post.toml

@@ -239,7 +239,8 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
         OfPrograms(applies),
         arguments.extensions,
         faults,
-        force_exclude=arguments.force_exclude,
+        # A hook may find that nothing is left.
+        force_exclude=arguments.force_exclude or arguments.changed is not None,
         named=standard_input.judged_as(arguments.paths, arguments.stdin_filename),
         skipped=skipped,
     )
@@ -286,7 +287,7 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
     runner = running.Runner(arguments.max_size, arguments.workers, arguments.cluster, seen, cache)
     pictures.begin(plain)
     checked = runner.check(tasks, bar, faults, baselines, live_report.file, pictures.split)
-    is_stale = arguments.fail_on_stale and silencing.stale(baselines)
+    is_stale = arguments.fail_on_stale and baselines is not None and baselines.is_stale
     status = max(int(checked.failed or is_stale), fixed.status, faults.report())
     reason = checked.broken_off
     if checked.stopped is not None:
@@ -295,7 +296,7 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
         say(reason)
     report = batch.report(
         checked.files,
-        applies.machine or (tasks[0].settings.name if tasks else profiles.DEFAULT),
+        tasks[0].settings.machine_id if tasks else profiles.machine_id(applies.machine or profiles.DEFAULT),
         settings=run_settings,
         interrupted=batch.interrupted(reason, checked.files, tasks) if reason else None,
         skipped=skipped,

@@ -77,7 +77,7 @@ def plot(
     pictures.end()
     readable = checked.readable if pages or output is None else []
     if readable:
-        report = batch.report(readable, applies.machine or profiles.DEFAULT)
+        report = batch.report(readable, profiles.machine_id(applies.machine or profiles.DEFAULT))
         page = reports.render(picturing.FORMAT, report, background)
         for _, path in pages:
             files.write(path, page)

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 
 import click
 
-from polarcheck.commands import silencing
 from polarcheck.commands.options import option
 from polarcheck.errors import OutputError, UsageError
 
@@ -79,11 +78,13 @@ def unread(summary: Summary) -> list[str]:
 
 def background(plain: Background, tasks: Iterable[Task]) -> Background:
     """Add the settings of each file, and the folders that paths are relative to, to a background."""
+    from polarcheck.batch.tasks import settings_of
+
     folder = ""
     with contextlib.suppress(OSError):  # the working folder may be gone
         folder = os.getcwd()  # noqa: PTH109
     return plain._replace(
-        settings=silencing.settings_of(tasks),
+        settings=settings_of(tasks),
         root=_root(folder).replace(os.sep, "/"),
         folder=folder.replace(os.sep, "/"),
     )

@@ -48,6 +48,7 @@ def sarif(report: Report, background: Background) -> str:
             }
         },
         "automationDetails": {"id": f"{report.tool.name}/"},
+        "properties": {"machine": None if report.machine is None else visible(report.machine)},
         "columnKind": "unicodeCodePoints",
         "originalUriBaseIds": {_ROOT: {"description": {"text": "The root of the repository."}}},
         "invocations": [{"executionSuccessful": not failures, "toolExecutionNotifications": notifications}],
@@ -97,6 +98,7 @@ def _result(
         ],
         "partialFingerprints": {"polarcheck/v1": visible(finding.fingerprint)},
         "properties": {
+            "machine": visible(file.machine),
             "alarm": finding.alarm,
             "count": finding.count,
             "values": finding.values,

@@ -27,8 +27,9 @@ _TYPES: dict[Kind | None, str | list[str]] = {
 
 
 def schema(name: str) -> Schema:
-    """Return the schema of `report`, `job`, `machine` or `feeds`."""
-    content = {"report": _report, "job": _job, "machine": _machine, "feeds": _feeds}[name]()
+    """Return the schema of `report`, `job`, `machine`, `feeds`, `trace` or `comparison`."""
+    makers = {"report": _report, "job": _job, "machine": _machine, "feeds": _feeds, "trace": _trace}
+    content = {**makers, "comparison": _comparison}[name]()
     number = SCHEMA if name == "report" else 1
     return {"$schema": DIALECT, "$id": f"urn:polarcheck:{name}:{number}", **content}
 
@@ -46,7 +47,9 @@ def _report() -> Schema:
         definitions[kind]["properties"]["severity"] = {"enum": [level.name.lower() for level in reversed(Severity)]}
     definitions["Silenced"]["properties"]["by"] = {"enum": list(SILENCED_BY)}
     definitions["FileReport"]["properties"]["verdict"] = {"enum": list(VERDICTS)}
-    del definitions["FileReport"]["properties"]["makes"]
+    for name in ("makes", "outline"):  # no part of the contract
+        del definitions["FileReport"]["properties"][name]
+    del definitions["Outline"]
     definitions["Report"]["properties"]["schema"] = {"const": SCHEMA}
     return content
 
@@ -69,6 +72,41 @@ def _feeds() -> Schema:
     content["$defs"]["FeedReport"]["properties"]["schema"] = {"const": 1}
     content["$defs"]["FeedRow"]["properties"]["limited_by"] = {"enum": list(LIMITED_BY)}
     return content
+
+
+def _comparison() -> Schema:
+    from polarcheck.revisions.report import CHANGES, VERDICTS, ComparisonReport
+
+    content: Schema = msgspec.json.schema(ComparisonReport)
+    content["$defs"]["ComparisonReport"]["properties"]["schema"] = {"const": 1}
+    content["$defs"]["Comparison"]["properties"]["verdict"] = {"enum": list(VERDICTS)}
+    content["$defs"]["SectionPair"]["properties"]["change"] = {"enum": list(CHANGES)}
+    return content
+
+
+def _trace() -> Schema:
+    # Imports NumPy, which the other schemas do not need.
+    from polarcheck.reports.pages.trace_report import OF_LINES, SCHEMA, UNITS, TraceReport
+
+    content: Schema = msgspec.json.schema(TraceReport)
+    report, move = content["$defs"]["TraceReport"], content["$defs"]["Move"]
+    report["properties"]["schema"] = {"const": SCHEMA}
+    report["properties"]["units"] = {"const": UNITS}
+    report["properties"]["requested"] = {"enum": ["tool", "programmed"]}
+    move["properties"]["path"] = {"enum": ["tool", "programmed"]}
+    move["properties"]["kind"] = {"enum": ["line", "cw", "ccw"]}
+    for name in ("start", "end", "center", "z", "x_axis", "c_axis"):
+        _as_pair(move["properties"][name])
+    for name, unit in UNITS.items():
+        move["properties"][name]["description"] = unit
+    move["required"] = [name for name in move["required"] if name not in OF_LINES]
+    return content
+
+
+def _as_pair(value: Schema) -> None:
+    for one in (value, *value.get("anyOf", ())):
+        if one.get("type") == "array":
+            one |= {"minItems": 2, "maxItems": 2}
 
 
 def _job() -> Schema:
