@@ -212,19 +212,21 @@ def _comparison(reference: str, compared: paths.Comparison, tolerance: float) ->
 
 
 def certificate(loaded: Loaded, certified: Mapping[str, Certified]) -> Certificate:
-    """Return the certificate of the cases that were run; others have no part in it."""
+    """Return the certificate of the cases that were run; where only some were, that of their features and controls."""
     manifest = loaded.manifest
-    cells = [
-        _cell(loaded, feature, control, certified) for feature in manifest.features for control in manifest.controls
-    ]
+    is_whole = len(certified) == len(loaded.cases)
+    of_cases = [entry.case for entry in certified.values()]
+    features = [name for name in manifest.features if is_whole or any(case.feature == name for case in of_cases)]
+    controls = [name for name in manifest.controls if is_whole or any(case.control == name for case in of_cases)]
+    cells = [_cell(loaded, feature, control, certified) for feature in features for control in controls]
     cases = [certified[name].result for name in loaded.cases if name in certified]
     return Certificate(
         schema=results.SCHEMA,
         tool=Producer("polarcheck", __version__),
         title=manifest.title,
         manifest=files.shown(str(loaded.path)),
-        features=manifest.features,
-        controls=[*manifest.controls],
+        features=features,
+        controls=controls,
         cells=cells,
         cases=cases,
         summary=results.summary(cases, cells),
@@ -236,5 +238,6 @@ def _cell(loaded: Loaded, feature: str, control: str, certified: Mapping[str, Ce
     if feature in not_offered:
         return Cell(feature=feature, control=control, state=NOT_OFFERED, reason=not_offered[feature])
     names = [name for name, case in loaded.cases.items() if (case.feature, case.control) == (feature, control)]
-    states = [certified[name].result.state if name in certified else NOT_RUN for name in names]
-    return Cell(feature=feature, control=control, state=results.worst(states) if names else MISSING, cases=names)
+    states = [certified[name].result.state for name in names if name in certified]
+    state = results.worst(states) if states else NOT_RUN if names else MISSING
+    return Cell(feature=feature, control=control, state=state, cases=[name for name in names if name in certified])
