@@ -23,7 +23,15 @@ from programs import ROOT
 import polarcheck
 from polarcheck.api import keywords
 from polarcheck.commands import main
-from polarcheck.errors import JobError, MachineError, PolarcheckError, PolarcheckWarning, SourceError, UsageError
+from polarcheck.errors import (
+    BaselineError,
+    JobError,
+    MachineError,
+    PolarcheckError,
+    PolarcheckWarning,
+    SourceError,
+    UsageError,
+)
 
 SAMPLES = sorted(path.name for path in (ROOT / "sample_programs").glob("*.nc"))
 HEXAGON = (ROOT / "sample_programs" / "hexagon.nc").read_bytes()
@@ -46,6 +54,7 @@ def by_command(*arguments: str) -> Any:
 # ---- the command and the function agree ----
 
 
+@pytest.mark.filterwarnings("ignore::polarcheck.errors.PolarcheckWarning")
 def test_check_gives_the_report_of_the_command(samples: None) -> None:
     assert json.loads(polarcheck.render(polarcheck.check("."), "json")) == by_command("check", ".", "--format", "json")
 
@@ -295,8 +304,11 @@ def test_a_wrong_argument_is_named_in_one_line(call: Any, text: str) -> None:
 
 
 def test_a_file_that_cannot_be_read(tmp_path: Path) -> None:
+    report = polarcheck.check([tmp_path / "none.nc", ROOT / "sample_programs" / "hexagon.nc"])
+    assert [file.verdict for file in report.files] == ["unreadable", "pass"]
+    assert report.files[0].reason == "No such file or directory"
     with pytest.raises(SourceError, match="No such file"):
-        polarcheck.check(tmp_path / "none.nc")
+        polarcheck.part(tmp_path / "none.nc")
 
 
 def test_a_file_may_be_called_as_standard_input_is(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -310,6 +322,39 @@ def test_an_empty_folder_is_told(tmp_path: Path) -> None:
         report = polarcheck.check(tmp_path)
     assert not report.files
     assert told[0].filename == __file__
+
+
+def test_a_walk_says_what_it_leaves_out(tmp_path: Path) -> None:
+    for name in ("a.nc", "b.nc", "P.SUB"):
+        (tmp_path / name).write_text(RAPID, "utf-8")
+    with pytest.warns(PolarcheckWarning, match=r"polarcheck.check\(\): exclude 'z\*' excludes nothing"):
+        report = polarcheck.check(tmp_path, exclude=[f"{tmp_path}/b.nc", "z*"], use_config=False)
+    assert [Path(file.path).name for file in report.files] == ["a.nc"]
+    assert polarcheck.check(tmp_path, extensions="SUB", use_config=False).summary.files == 1
+    with pytest.raises(SourceError, match="nothing to check: "):
+        polarcheck.check(tmp_path, exclude=f"{tmp_path}/*.nc", use_config=False)
+    with pytest.raises(UsageError, match=r"polarcheck.check\(\): exclude: expected a pattern such as O12"):
+        polarcheck.check(tmp_path, exclude="")
+
+
+def test_known_findings_are_silenced_as_the_command_does(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "a.nc").write_text(RAPID, "utf-8")
+    (tmp_path / "b.nc").write_text(RAPID + RAPID, "utf-8")
+    assert CliRunner().invoke(main, ["baseline", "create", "a.nc", "-o", "known.json"]).exit_code == 0
+    command = by_command("check", ".", "--format", "json", "--baseline", "known.json")
+    report = polarcheck.check(".", baseline=Path("known.json"))
+    assert [(file["verdict"], len(file["silenced"])) for file in command["files"]] == [
+        (file.verdict, len(file.silenced)) for file in report.files
+    ]
+    assert [file.verdict for file in report.files] == ["pass", "fail"]
+    assert polarcheck.check_text(RAPID, name="a.nc", baseline="known.json").verdict == "pass"
+    assert polarcheck.check_text(RAPID, name="a.nc", baseline="known.json", use_baseline=False).verdict == "fail"
+    (tmp_path / "a.nc").write_text("M30\n", "utf-8")
+    with pytest.warns(PolarcheckWarning, match="known finding no longer occurs: rapid-in-polar in a.nc"):
+        polarcheck.check("a.nc", baseline="known.json")
+    with pytest.raises(BaselineError, match=r"none\.json"):
+        polarcheck.check("a.nc", baseline="none.json")
 
 
 def test_a_fault_of_polarcheck_is_raised(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -405,8 +450,8 @@ def test_every_option_of_a_job_is_a_keyword() -> None:
     other = {"severities": "severities", "units": "program_units"}
     known = {*keywords.CheckKeywords.__annotations__}
     left = {other.get(name, name) for name in Options.__struct_fields__} - known
-    # exclude is one of check alone, which walks through folders.
-    assert left == {"baseline", "use_baseline", "extras", "exclude", "keywords"}
+    left -= {*inspect.signature(polarcheck.check).parameters}
+    assert left == {"extras", "keywords"}
 
 
 def test_warnings_are_no_errors_of_a_clean_folder(samples: None) -> None:

@@ -17,6 +17,8 @@ from polarcheck.reading.files import LARGEST
 
 #: The rule that compares a part with its drawing. Rules whose findings make the part doubtful run beside it.
 RULES = ("part-differs-from-drawing", *READ_OTHERWISE)
+#: What adds the part, and its comparison, to a report.
+EXTRAS = part_of, compared_in
 
 
 class MadePart(msgspec.Struct, frozen=True, kw_only=True):
@@ -71,7 +73,8 @@ def _part(program: Program) -> MadePart:
     settings = program.settings
     with program.runs() as runs:
         report = check.check_runs(runs, settings.rules, settings.severities, settings.inline)
-        report = compared_in(part_of(report, runs), runs)
+        for extra in EXTRAS:
+            report = extra(report, runs)
     return MadePart(
         path=report.path,
         machine=settings.machine_id,

@@ -45,19 +45,15 @@ def _tolerance(ctx: click.Context, parameter: click.Parameter, value: float | No
 @options.executing("programs")
 @option("--old-machine", metavar="NAME|FILE", help="The lathe of OLD, in place of --machine.")
 @option("--new-machine", metavar="NAME|FILE", help="The lathe of NEW, in place of --machine.")
-@narrower(
-    "--tolerance", type=float, callback=_tolerance, metavar="LENGTH",
+@click.option(
+    "--tolerance", type=float, callback=_tolerance, metavar="LENGTH", envvar="POLARCHECK_COMPARE_TOLERANCE",
     show_default="the least increment of the control",
     help="Up to this, lengths are the same, in the units of OLD.",
 )  # fmt: skip
 @narrower("--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True)
 @option("--color", type=click.Choice(["auto", "always", "never"]), default="auto", show_default=True)
-@click.option(
-    "--settings-of", "named", metavar="FILE", help="Use the settings of this program for both, as a difftool does."
-)
-@click.option(
-    "--git", "is_git", is_flag=True, help="Take the seven arguments that git gives a diff driver; end with 0."
-)
+@option("--settings-of", "named", metavar="FILE", help="Use the settings of this program for both, as a difftool does.")
+@option("--git", "is_git", is_flag=True, help="Take the seven arguments that git gives a diff driver; end with 0.")
 @options.extensions
 @options.max_size
 @options.debug
@@ -102,6 +98,7 @@ def _compare(
     from polarcheck.commands.running import Faults
     from polarcheck.memory import keep_within_memory
     from polarcheck.pictures.painting import plain
+    from polarcheck.reading.excerpt import visible
     from polarcheck.reports import painted
     from polarcheck.reports.pages import comparison as page
     from polarcheck.revisions.report import DIFFERS, NOT_COMPARED
@@ -109,6 +106,16 @@ def _compare(
 
     keep_within_memory()
     pair = _arguments(paths, named or "", is_git)
+    if os.devnull in (pair.old, pair.new):
+        # git has a new or a deleted file.
+        side = "new" if pair.old == os.devnull else "old"
+        show(f"{visible(pair.named)}: only in the {side} revision\n".encode())
+        return CLEAN if is_git else FINDINGS
+    if os.devnull in (pair.old, pair.new):
+        # git has a new or a deleted file.
+        side = "new" if pair.old == os.devnull else "old"
+        show(f"{visible(pair.named)}: only in the {side} revision\n".encode())
+        return CLEAN if is_git else FINDINGS
     faults = Faults(bool(arguments.pop("debug", False)))
     settings = [
         OfPrograms(Options(machine=own or machine, use_config=not no_config, **arguments))
@@ -171,8 +178,6 @@ def _files(
 def _of_files(pair: _Pair, settings: Sequence[OfPrograms]) -> list[tuple[Task, Task]]:
     from polarcheck.batch.tasks import Task
 
-    if os.devnull in pair[:2]:
-        return []
     places = [pair.named or path for path in pair[:2]]
     if not pair.named:
         # A revision from elsewhere, as one that git has put in a folder of its own, has the settings of the other one.

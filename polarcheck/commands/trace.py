@@ -59,12 +59,10 @@ def trace(
     programmed: those moves have "programmed" under path, a line on standard error says what to give, and the exit code
     is 1. --format json always shows moves, without --path those of the tool center.
     """
-    from polarcheck.checking import check
+    from polarcheck.api import programs
     from polarcheck.memory import keep_within_memory
-    from polarcheck.reading import files
     from polarcheck.reports.pages import executed, trace_report
-    from polarcheck.settings.of_programs import OfPrograms, Options
-    from polarcheck.time_limit import seconds_for, time_limit
+    from polarcheck.settings.of_programs import Options
 
     keep_within_memory()
     if shown_too and (golden or form not in (None, "table")):
@@ -74,11 +72,9 @@ def trace(
     on_terminal = is_terminal(sys.stdout)
     form = form or ("table" if on_terminal and not golden else "csv")
     which = which or ("tool" if form == "json" or shown_too else None)
-    applied = OfPrograms(Options(use_config=not no_config, **arguments))(path)
-    data = files.read_program(path, max_size)
-    with time_limit(seconds_for(len(data), applied.job.run.max_seconds)):
-        # One run for each channel, since --block-skip has a single state in this command.
-        runs = check.read(data, applied.machine, applied.job, files.shown(path), applied.encoding)
+    program = programs.of_file(path, Options(use_config=not no_config, **arguments), max_size)
+    # One run for each channel, since --block-skip has a single state in this command.
+    with program.runs() as runs:
         paths = [(tables["trace"], tables["tool_center"]) for _, tables in runs]
         unknown = [executed.without_radius(*of_run) for of_run in paths if which == "tool" or shown_too]
         for line in filter(None, unknown):
@@ -95,8 +91,8 @@ def trace(
         )
         items = trace_report.without_lines(items) if golden else items
         if form == "json":
-            title, machine = files.shown(path), applied.machine_id
-            _show_all(trace_report.as_json(items, title, machine, which or "tool", golden))
+            machine = program.settings.machine_id
+            _show_all(trace_report.as_json(items, program.path, machine, which or "tool", golden))
         else:
             _show_all((executed.as_jsonl if form == "jsonl" else executed.as_csv)(items))
         return status

@@ -14,7 +14,7 @@ from polarcheck.machines.codes import code_set
 from polarcheck.machines.modal import MM_PER_INCH, Units
 
 #: Words that plain moves are written with, and those that only name blocks.
-_OF_MOVES = ("X", "Z", "U", "W", "I", "J", "K", "R", "F", "N", "O")
+_OF_MOVES = ("X", "Z", "U", "W", "I", "J", "K", "R", "F", "N", "O", "/")
 #: Words that hold lengths in a cycle.
 _LENGTHS = ("X", "Y", "Z", "U", "V", "W", "I", "J", "K", "R")
 #: Lists of G codes whose states are compared as moves, feeds and entries, not as orders.
@@ -151,7 +151,7 @@ class _Reader:
                     return None
                 self._in_force[name] = value
             return name, value, text
-        if name in ("N", "O") or self._plain[index]:
+        if name in ("N", "O", "/") or self._plain[index]:
             return None
         if name == "G":
             return text, None, text

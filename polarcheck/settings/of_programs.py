@@ -210,7 +210,7 @@ class OfPrograms:
     def _patterns(self) -> WalkPatterns:
         from polarcheck.settings.walk_patterns import WalkPatterns
 
-        return WalkPatterns(self._options.exclude)
+        return WalkPatterns(self._options.exclude, self._options.spelled)
 
     def _job_file(self, folder: str) -> tuple[JobFile, str]:
         """Return the job file for a folder, and the real path of the folder."""

@@ -52,7 +52,9 @@ def _report() -> Schema:
         definitions[kind]["properties"]["severity"] = {"enum": [level.name.lower() for level in reversed(Severity)]}
     definitions["Silenced"]["properties"]["by"] = {"enum": list(SILENCED_BY)}
     definitions["FileReport"]["properties"]["verdict"] = {"enum": list(VERDICTS)}
-    del definitions["FileReport"]["properties"]["makes"]
+    for name in ("makes", "outline"):  # no part of the contract
+        del definitions["FileReport"]["properties"][name]
+    del definitions["Outline"]
     definitions["Report"]["properties"]["schema"] = {"const": SCHEMA}
     return content
 
