@@ -142,6 +142,17 @@ def test_an_index_of_the_other_control_that_is_another(example: Path, turned: st
     assert reason.startswith(said)
 
 
+def test_a_fault_of_one_control_is_none_of_the_other_that_runs_its_golden_trace(example: Path) -> None:
+    edit("post.toml", 'same_path_as = "lathe-7"', 'same_path_as = "lathe-7"\ngolden = "golden/8-{feature}.jsonl"')
+    assert certify(example, "--update", "--case", "contour/lathe-8").exit_code == 0
+    edit(CONTOUR, "Z-3.000", "Z-3.100")
+    (case,) = certificate(example, "--case", "contour/lathe-8")["cases"]
+    assert case["state"] == "pass"
+    assert case["remarks"] == ["the path is not that of contour/lathe-7, which fails itself"]
+    Path("golden/8-contour.jsonl").unlink()
+    assert reasons("contour/lathe-8")[0].startswith("line 18: 0.100 mm from contour/lathe-7")
+
+
 def test_the_start_angle_of_the_whole_part_is_free(example: Path) -> None:
     manifest = example.read_text("utf-8").replace("turned = 0.0\n", "")
     example.write_text(manifest, "utf-8")
