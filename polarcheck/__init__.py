@@ -31,6 +31,8 @@ if TYPE_CHECKING:
     from polarcheck.api.traces import Trace as Trace
     from polarcheck.api.traces import trace as trace
     from polarcheck.api.traces import trace_text as trace_text
+    from polarcheck.certification.certifying import certify as certify
+    from polarcheck.certification.results import Certificate as Certificate
     from polarcheck.finding import FileReport as FileReport
     from polarcheck.finding import Finding as Finding
     from polarcheck.finding import Report as Report
@@ -45,6 +47,7 @@ __version__ = "0.1.0"
 
 #: What is public, and the module of each; the imports above tell type checkers the same.
 _MODULES = {
+    "certify": "certification.certifying",
     "check": "api.checks",
     "check_text": "api.checks",
     "compare": "api.comparisons",
@@ -60,6 +63,7 @@ _MODULES = {
     "trace_text": "api.traces",
     "Comparison": "revisions.report",
     "Feeds": "api.feed_tables",
+    "Certificate": "certification.results",
     "FileReport": "finding",
     "Finding": "finding",
     "Machine": "machines.machine",

@@ -30,7 +30,12 @@ VERDICTS = PASS, FAIL, UNVERIFIED, UNREADABLE = "pass", "fail", "unverified", "u
 
 
 class Edit(msgspec.Struct, frozen=True, kw_only=True):
-    """Replace the characters from start to end by text. Lines and columns count from 1; the end is exclusive."""
+    """
+    Replace the characters from start to end by text. Lines and columns count from 1; the end is exclusive.
+
+    line, column, end_line, end_column: the characters that are replaced.
+    text: what stands in their place.
+    """
 
     line: int
     column: int
@@ -173,7 +178,12 @@ class PolarSection(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class OddSide(msgspec.Struct, frozen=True, kw_only=True):
-    """A side of a part that differs from the others: line of its block, size [mm]."""
+    """
+    A side of a part that differs from the others.
+
+    line: of its block.
+    size: of the side [mm].
+    """
 
     line: int
     size: float
@@ -387,6 +397,7 @@ class FileReport(msgspec.Struct, frozen=True, kw_only=True):
     """
     The report of one file.
 
+    path: of the file, as it was named or found.
     machine: its id: the name of a built-in machine, or the file name of a machine file, without `.toml`.
     machine_file: the path of the machine file, as given; absent for a built-in machine.
     programs: numbers or names of its programs.
@@ -432,7 +443,12 @@ class FileReport(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Producer(msgspec.Struct, frozen=True):
-    """Name and version of this program."""
+    """
+    What wrote the report.
+
+    name: polarcheck.
+    version: of it.
+    """
 
     name: str
     version: str
@@ -456,6 +472,10 @@ class Summary(msgspec.Struct, frozen=True, kw_only=True):
     """
     Counts over all files.
 
+    files: that were reported.
+    errors, warnings, notes: findings, without those that follow from another one.
+    silenced: suppressed findings.
+    pass, unverified, fail, unreadable: files by verdict.
     not_read: of the folders that were walked, by ending.
     excluded: programs that patterns exclude; in folders of more than 50,000 entries there may be more.
     """
@@ -482,6 +502,8 @@ class Report(msgspec.Struct, frozen=True, kw_only=True):
     machine: of all files; null if they differ.
     settings: what decided the verdicts and the exit code.
     interrupted: why the run ended before its last file; absent where it did not.
+    files: the files, in the order in which they were named.
+    summary: counts over all files.
     """
 
     schema: int

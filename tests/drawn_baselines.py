@@ -252,7 +252,7 @@ def drawn(seed: int) -> Pair:
             new = later
             names.append(edit.__name__)
     text, begins = _text(new, draw, draw.random() < 0.6, 1000 + seed % 8000)
-    path = "a.nc" if draw.random() < 0.7 or "another_section" in names or len(old) < 4 else "sub/b.nc"
+    path = "a.nc" if draw.random() < 0.7 or {"another_section", "left_out"} & {*names} or len(old) < 4 else "sub/b.nc"
     return Pair(names, old_text, text, path, _expected(old, new, begins))
 
 

@@ -23,7 +23,15 @@ from programs import ROOT
 import polarcheck
 from polarcheck.api import keywords
 from polarcheck.commands import main
-from polarcheck.errors import JobError, MachineError, PolarcheckError, PolarcheckWarning, SourceError, UsageError
+from polarcheck.errors import (
+    BaselineError,
+    JobError,
+    MachineError,
+    PolarcheckError,
+    PolarcheckWarning,
+    SourceError,
+    UsageError,
+)
 
 SAMPLES = sorted(path.name for path in (ROOT / "sample_programs").glob("*.nc"))
 HEXAGON = (ROOT / "sample_programs" / "hexagon.nc").read_bytes()
@@ -329,6 +337,26 @@ def test_a_walk_says_what_it_leaves_out(tmp_path: Path) -> None:
         polarcheck.check(tmp_path, exclude="")
 
 
+def test_known_findings_are_silenced_as_the_command_does(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "a.nc").write_text(RAPID, "utf-8")
+    (tmp_path / "b.nc").write_text(RAPID + RAPID, "utf-8")
+    assert CliRunner().invoke(main, ["baseline", "create", "a.nc", "-o", "known.json"]).exit_code == 0
+    command = by_command("check", ".", "--format", "json", "--baseline", "known.json")
+    report = polarcheck.check(".", baseline=Path("known.json"))
+    assert [(file["verdict"], len(file["silenced"])) for file in command["files"]] == [
+        (file.verdict, len(file.silenced)) for file in report.files
+    ]
+    assert [file.verdict for file in report.files] == ["pass", "fail"]
+    assert polarcheck.check_text(RAPID, name="a.nc", baseline="known.json").verdict == "pass"
+    assert polarcheck.check_text(RAPID, name="a.nc", baseline="known.json", use_baseline=False).verdict == "fail"
+    (tmp_path / "a.nc").write_text("M30\n", "utf-8")
+    with pytest.warns(PolarcheckWarning, match="known finding no longer occurs: rapid-in-polar in a.nc"):
+        polarcheck.check("a.nc", baseline="known.json")
+    with pytest.raises(BaselineError, match=r"none\.json"):
+        polarcheck.check("a.nc", baseline="none.json")
+
+
 def test_a_fault_of_polarcheck_is_raised(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("polarcheck.checking.check.check_runs", lambda *_: 1 / 0)
     with pytest.raises(ZeroDivisionError):
@@ -423,7 +451,7 @@ def test_every_option_of_a_job_is_a_keyword() -> None:
     known = {*keywords.CheckKeywords.__annotations__}
     left = {other.get(name, name) for name in Options.__struct_fields__} - known
     left -= {*inspect.signature(polarcheck.check).parameters}
-    assert left == {"baseline", "use_baseline", "extras", "keywords"}
+    assert left == {"extras", "keywords"}
 
 
 def test_warnings_are_no_errors_of_a_clean_folder(samples: None) -> None:

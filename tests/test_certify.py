@@ -8,10 +8,13 @@ import shutil
 from pathlib import Path
 from typing import Any
 
+import jsonschema
+import msgspec
 import pytest
 from click.testing import CliRunner, Result
 from programs import ROOT
 
+import polarcheck
 from polarcheck.commands import main
 from polarcheck.machines.part import Part
 
@@ -352,6 +355,24 @@ def test_many_controls_stand_below_each_other(example: Path) -> None:
         "a-lathe-with-a-long-name-5",
     ]
     assert all(len(line) <= 100 for part in shown for line in part.splitlines())
+
+
+def test_the_certificate_and_the_manifest_fit_their_schemas(example: Path) -> None:
+    import tomllib
+
+    edit(ROUND, "G3 C-9.798", "G2 C-9.798")
+    Path(CONTOUR).unlink()
+    for name, value in (("certificate", certificate(example)), ("manifest", tomllib.loads(example.read_text("utf-8")))):
+        schema = json.loads(CliRunner().invoke(main, ["schema", name]).stdout)
+        jsonschema.Draft202012Validator.check_schema(schema)
+        jsonschema.validate(value, schema)
+
+
+def test_python_gives_the_certificate_of_the_command(example: Path) -> None:
+    found = polarcheck.certify("post.toml", cases=["contour/lathe-7"])
+    assert json.loads(msgspec.json.encode(found)) == certificate(example, "--case", "contour/lathe-7")
+    with pytest.raises(polarcheck.errors.UsageError, match="no case of this name; did you mean contour/lathe-7"):
+        polarcheck.certify(example, cases=["contour/lathe-"])
 
 
 # ---- certify init ----

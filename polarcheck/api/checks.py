@@ -10,6 +10,7 @@ from polarcheck.api import runs
 from polarcheck.api.keywords import CheckKeywords, PathName, names_of, options, paths_of, takes
 from polarcheck.api.programs import NAMELESS, Call
 from polarcheck.batch import tasks as batch
+from polarcheck.batch.baselines import Baselines
 from polarcheck.batch.tasks import Outcome, Task
 from polarcheck.errors import PolarcheckWarning, SourceError, UsageError
 from polarcheck.finding import FileReport, Report
@@ -46,8 +47,8 @@ def check(
     processes: how many check; 1 for this one alone. More need a main module that can be imported (multiprocessing).
     max_size: a larger file is not read [bytes].
 
-    Raises UsageError, JobError or MachineError for a wrong setting and SourceError for a folder that cannot be read,
-    before any file is checked.
+    Raises UsageError, JobError or MachineError for a wrong setting, BaselineError for a wrong baseline and SourceError
+    for a folder that cannot be read, or that all programs of are excluded, before any file is checked.
     """
     if isinstance(processes, bool) or not isinstance(processes, int) or processes < 1:
         raise UsageError(f"{_FUNCTION}: processes: expected a whole number from 1, found {processes!r}")
@@ -60,8 +61,11 @@ def check(
         warnings.warn(doubt, PolarcheckWarning, stacklevel=2)
     if failures:
         raise SourceError(failures[0])
+    baselines = Baselines(tasks, named) if any(task.settings.baseline for task in tasks) else None
     with runs.outcomes(tasks, max_size, processes) as outcomes:
-        reports = [_report(outcome) for outcome in outcomes]
+        reports = [_report(outcome) for outcome in (baselines.outcomes(outcomes) if baselines else outcomes)]
+    for doubt in (*baselines.faults, *baselines.leftovers) if baselines else ():
+        warnings.warn(doubt, PolarcheckWarning, stacklevel=2)
     return batch.report(reports, tasks[0].settings.machine_id if tasks else profiles.DEFAULT, skipped=skipped)
 
 
@@ -82,7 +86,10 @@ def check_text(text: str | bytes, *, name: str = NAMELESS, **keywords: Unpack[Ch
 
     A text whose check takes too long has the verdict unreadable.
 
-    Raises UsageError, JobError or MachineError for a wrong setting.
+    Raises UsageError, JobError or MachineError for a wrong setting, BaselineError for a wrong baseline.
     """
-    path, data, settings = Call("polarcheck.check_text()", CheckKeywords, keywords).of_text(text, name)
-    return _report(batch.outcome(Task(path, settings), data=data))
+    call = Call("polarcheck.check_text()", CheckKeywords, keywords)
+    _, data, settings = call.of_text(text, name)
+    task = Task(paths_of(call.function, [name])[0], settings)
+    report = _report(batch.outcome(task, data=data))
+    return report if settings.baseline is None else Baselines([task], []).without_known(report)

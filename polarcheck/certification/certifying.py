@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Generator, Iterable, Mapping
+from pathlib import Path
 
 import msgspec
 
@@ -11,16 +12,14 @@ from polarcheck.batch.tasks import forget
 from polarcheck.certification import expectations, golden, paths, results
 from polarcheck.certification.case_runs import CaseRun, run
 from polarcheck.certification.conditions import ConditionsOfCases
-from polarcheck.certification.loading import Loaded
+from polarcheck.certification.loading import Loaded, load
 from polarcheck.certification.manifest import Case
 from polarcheck.certification.results import FAIL, MISSING, NOT_OFFERED, NOT_RUN, PASS, CaseResult, Cell, Certificate
 from polarcheck.certification.tool_path import ToolPath, tool_path
 from polarcheck.checking.settings import Settings
-from polarcheck.errors import CertificateError
+from polarcheck.errors import CertificateError, UsageError, suggestion
 from polarcheck.finding import Producer
 from polarcheck.reading import files
-
-SCHEMA = 1
 
 
 class Certified(msgspec.Struct, frozen=True):
@@ -33,6 +32,40 @@ class Certified(msgspec.Struct, frozen=True):
     case: Case
     result: CaseResult
     run: CaseRun
+
+
+def certify(path: str | Path, *, cases: Iterable[str] = (), max_size: int = files.LARGEST) -> Certificate:
+    """
+    Return the certificate of a post: its programs beside what a manifest says of them. Golden traces are read only.
+
+    path: of the manifest. cases: names of the cases to run; all without any. max_size: of a program [bytes].
+
+    Raises CertificateError, JobError or MachineError for a manifest that cannot be used, UsageError for a case that
+    it does not have.
+    """
+    loaded = load(Path(path))
+    names = chosen(loaded, cases)
+    settings = conditions(loaded, needed(loaded, names))
+    case_runs = dict(runs(loaded, settings, max_size))
+    bug = next((run.bug for run in case_runs.values() if run.bug is not None), None)
+    if bug is not None:
+        raise bug
+    certified = judged(loaded, settings, case_runs)
+    return certificate(loaded, {name: certified[name] for name in names})
+
+
+def chosen(loaded: Loaded, names: Iterable[str]) -> list[str]:
+    """Return the names of the cases to run, all of them without any name. Raises UsageError for an unknown one."""
+    wanted = list(dict.fromkeys(names))
+    for name in wanted:
+        if name not in loaded.cases:
+            raise UsageError(f"--case {name}: the manifest has no case of this name{suggestion(name, loaded.cases)}")
+    if not loaded.cases:
+        title = files.shown(str(loaded.path))
+        raise CertificateError(
+            f"{title}: no cases: give a [[case]], or a file for a feature in `programs` of a control"
+        )
+    return wanted or [*loaded.cases]
 
 
 def conditions(loaded: Loaded, names: Collection[str]) -> dict[str, Settings]:
@@ -186,7 +219,7 @@ def certificate(loaded: Loaded, certified: Mapping[str, Certified]) -> Certifica
     ]
     cases = [certified[name].result for name in loaded.cases if name in certified]
     return Certificate(
-        schema=SCHEMA,
+        schema=results.SCHEMA,
         tool=Producer("polarcheck", __version__),
         title=manifest.title,
         manifest=files.shown(str(loaded.path)),

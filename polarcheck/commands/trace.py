@@ -91,8 +91,8 @@ def trace(
         )
         items = trace_report.without_lines(items) if golden else items
         if form == "json":
-            title, machine = program.path, program.settings.machine_id
-            _show_all(trace_report.as_json(items, title, machine, which or "tool", golden))
+            machine = program.settings.machine_id
+            _show_all(trace_report.as_json(items, program.path, machine, which or "tool", golden))
         else:
             _show_all((executed.as_jsonl if form == "jsonl" else executed.as_csv)(items))
         return status
