@@ -46,7 +46,7 @@ def _tolerance(ctx: click.Context, parameter: click.Parameter, value: float | No
 @option("--old-machine", metavar="NAME|FILE", help="The lathe of OLD, in place of --machine.")
 @option("--new-machine", metavar="NAME|FILE", help="The lathe of NEW, in place of --machine.")
 @click.option(
-    "--tolerance", "same_up_to", type=float, callback=_tolerance, metavar="LENGTH", ,
+    "--tolerance", "same_up_to", type=float, callback=_tolerance, metavar="LENGTH",
     show_default="the least increment of the control",
     help="Up to this, lengths are the same, in the units of OLD.",
 )  # fmt: skip
