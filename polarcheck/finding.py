@@ -449,6 +449,11 @@ class FileReport(msgspec.Struct, frozen=True, kw_only=True):
     part: list[MadeShape] | UnsetType = UNSET
     compared: list[PartComparison] | UnsetType = UNSET
 
+    @property
+    def passed(self) -> bool:
+        """True if the verdict is pass: all that matters was looked at, and nothing is wrong."""
+        return self.verdict == PASS
+
 
 class Producer(msgspec.Struct, frozen=True):
     """
@@ -521,3 +526,8 @@ class Report(msgspec.Struct, frozen=True, kw_only=True):
     interrupted: Interrupted | UnsetType = UNSET
     files: Sequence[FileReport]
     summary: Summary
+
+    @property
+    def passed(self) -> bool:
+        """True if all files have passed, and the run has reached its end; False if there is no file."""
+        return bool(self.files) and self.interrupted is UNSET and all(file.passed for file in self.files)

@@ -12,7 +12,7 @@ from polarcheck.commands import options
 from polarcheck.commands.exit_codes import BUG, CLEAN, COULD_NOT_RUN, FINDINGS
 from polarcheck.commands.options import narrower, option
 from polarcheck.commands.output import COLUMNS
-from polarcheck.errors import CertificateError, UsageError
+from polarcheck.errors import UsageError
 
 if TYPE_CHECKING:
     from polarcheck.certification.certifying import Certified
@@ -118,14 +118,10 @@ def _certify(
 
     keep_within_memory()
     loaded = loading.load(path)
-    chosen = _chosen(loaded, names)
-    settings = certifying.conditions(loaded, certifying.needed(loaded, chosen))
     for line in loaded.without_programs():
         warn(line)
-    if not settings:
-        raise CertificateError(
-            f"{files.shown(str(path))}: no cases: give a [[case]], or a file for a feature in `programs` of a control"
-        )
+    chosen = certifying.chosen(loaded, names)
+    settings = certifying.conditions(loaded, certifying.needed(loaded, chosen))
     _refuse(outputs, loaded)
     bar = Bar(len(settings), True)
     case_runs = dict(bar.watched(certifying.runs(loaded, settings, most)))
@@ -147,16 +143,6 @@ def _certify(
     if any(case.state == NOT_RUN for case in certificate.cases):
         status = max(status, COULD_NOT_RUN)
     return BUG if bugs else status
-
-
-def _chosen(loaded: Loaded, names: tuple[str, ...]) -> list[str]:
-    """Return the names of the cases to run."""
-    from polarcheck.errors import suggestion
-
-    for name in names:
-        if name not in loaded.cases:
-            raise UsageError(f"--case {name}: the manifest has no case of this name{suggestion(name, loaded.cases)}")
-    return list(dict.fromkeys(names)) or [*loaded.cases]
 
 
 def _refuse(outputs: list[tuple[str, Path]], loaded: Loaded) -> None:

@@ -7,14 +7,22 @@ import click
 from polarcheck.commands import options
 from polarcheck.commands.output import show
 
-_NAMES = ("report", "job", "machine", "feeds", "trace", "comparison")
+_NAMES = ("report", "job", "machine", "feeds", "trace", "comparison", "manifest", "certificate")
 
 
-@click.command(short_help="Show the JSON Schema of a report, the job, a machine, feed table, trace or comparison.")
+@click.command(short_help="Show the JSON Schema of a report, the job, a machine, feed table, trace, ...")
 @click.argument("name", type=click.Choice(_NAMES), default="report")
 @options.debug
 def schema(name: str) -> None:
-    """Show the JSON Schema of a report, polarcheck.toml (job), a machine profile, feed table, trace or comparison."""
+    """
+    Show a JSON Schema: of a report, polarcheck.toml (job), a machine profile, a feed table, a trace, a comparison, or
+    the manifest and the certificate of a post.
+    """
     from polarcheck.reports.pages import schema as schemas
 
-    show(schemas.text(name).encode())
+    if name in ("manifest", "certificate"):
+        from polarcheck.certification.schemas import schema as of_post
+
+        show(schemas.as_text(of_post(name)).encode())
+    else:
+        show(schemas.text(name).encode())

@@ -36,11 +36,16 @@ def schema(name: str) -> Schema:
 
 def text(name: str) -> str:
     """Return the schema as JSON."""
-    return msgspec.json.format(msgspec.json.encode(schema(name)), indent=2).decode() + "\n"
+    return as_text(schema(name))
+
+
+def as_text(content: Schema) -> str:
+    """Return any schema as JSON."""
+    return msgspec.json.format(msgspec.json.encode(content), indent=2).decode() + "\n"
 
 
 def _report() -> Schema:
-    content: Schema = _without_nan(msgspec.json.schema(Report))
+    content: Schema = without_nan(msgspec.json.schema(Report))
     definitions = content["$defs"]
     for kind in ("Finding", "Silenced"):
         definitions[kind]["properties"]["values"] = _values()
@@ -110,10 +115,10 @@ def _as_pair(value: Schema) -> None:
 
 
 def _job() -> Schema:
-    content: Schema = _without_nan(msgspec.json.schema(Job))
+    content: Schema = without_nan(msgspec.json.schema(Job))
     for kind in ("Job", "Programs"):
         content["$defs"][kind]["properties"]["limits"] = {"$ref": "#/$defs/Limits"}
-    limits = _without_nan(msgspec.json.schema(Machine))["$defs"]["Limits"]
+    limits = without_nan(msgspec.json.schema(Machine))["$defs"]["Limits"]
     content["$defs"]["Limits"] = {**limits, "required": []}
     return content
 
@@ -124,7 +129,7 @@ def _machine() -> Schema:
 
     It sets some values of the machine, each bare or with its source, and names the profile that it inherits from.
     """
-    content: Schema = _without_nan(msgspec.json.schema(Machine))
+    content: Schema = without_nan(msgspec.json.schema(Machine))
     machine = content["$defs"]["Machine"]["properties"]
     for kind in {field.type for field in msgspec.structs.fields(Machine) if "$ref" in machine[field.name]}:
         table, meaning = content["$defs"][kind.__name__], meanings(kind)
@@ -166,15 +171,13 @@ def _sourced(value: Schema) -> Schema:
     return {"anyOf": [{key: part for key, part in value.items() if key != "default"}, wrapped]}
 
 
-def _without_nan(value: Any) -> Any:
+def without_nan(value: Any) -> Any:
     """Remove defaults that are NaN (unknown), which JSON cannot hold."""
     if isinstance(value, list):
-        return [_without_nan(element) for element in value]
+        return [without_nan(element) for element in value]
     if not isinstance(value, dict):
         return value
-    return {
-        key: _without_nan(element) for key, element in value.items() if not (key == "default" and _has_nan(element))
-    }
+    return {key: without_nan(element) for key, element in value.items() if not (key == "default" and _has_nan(element))}
 
 
 def _has_nan(value: Any) -> bool:
