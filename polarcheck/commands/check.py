@@ -296,6 +296,7 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
         tasks[0].settings.machine_id if tasks else profiles.machine_id(applies.machine or profiles.DEFAULT),
         interrupted=batch.interrupted(reason, checked.files, tasks) if reason else None,
         skipped=skipped,
+        called_files=checked.called_files,
     )
     pictures.end(reporting.unread(report.summary))
     if checked.stopped is None and arguments.diff_base is None and arguments.changed is None:
