@@ -302,6 +302,7 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
         settings=run_settings,
         interrupted=batch.interrupted(reason, checked.files, tasks) if reason else None,
         skipped=skipped,
+        called_files=checked.called_files,
     )
     for excess in decisions.too_many_warnings(report.files, tasks):
         say(excess)
