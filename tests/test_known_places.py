@@ -21,7 +21,6 @@ pytestmark = pytest.mark.usefixtures("own_folder")
 
 FILE = "known.json"
 OPTIONS = ("--set", "limits.c_feed=3600", "--tool", "1:radius=3", "--ignore", "setup,silence")
-WITHOUT_TOOL = ("--ignore", "setup,silence")
 
 
 def call(command: str, *arguments: Any, options: tuple[str, ...] = OPTIONS) -> Result:
@@ -51,7 +50,7 @@ def near_center(feed: str, z: str = "") -> str:
 
 
 def arc(start: str) -> str:
-    return f"O1\nG98 G0 X60. C0\nG12.1\nG1 X{start} F200\nG3 X-40. C0 I-20. J0\nG1 X60.\nG13.1\nM30\n"
+    return f"O1\nT0101\nG98 G0 X60. C0\nG12.1\nG1 X{start} F200\nG3 X-40. C0 I-20. J0\nG1 C15.\nX60.\nG13.1\nM30\n"
 
 
 def open_ended(size: int, end: str = "", depth: str = "Z-2.") -> str:
@@ -104,12 +103,22 @@ def test_a_rounding_difference_is_no_growth(old: str, new: str, said: str) -> No
     assert all(f"worse than in the baseline: {said} [" in line for line in lines)
 
 
-def test_one_block_that_becomes_four_is_told() -> None:
-    per_revolution = "O1\nT0101\nG99 G0 X60. C0\nG12.1\nG1 X40. F.2\n{}G98 G1 X30. F200\nG13.1\nM30\n"
-    create(a=per_revolution.format(""))
-    write(a=per_revolution.format("C5.\nX20.\nC-5.\n"))
-    (line,) = told("--select", "feed-per-revolution-in-polar")
-    assert "worse than in the baseline: known in 1 block, now in 4" in line
+def test_more_blocks_of_a_fault_are_told() -> None:
+    create(a=near_center("400."))
+    write(a=near_center("400.", "C5.\nC-5.\n"))
+    (line,) = told()
+    assert "worse than in the baseline: known in 3 blocks, now in 5 [" in line
+    write(a=near_center("400.").replace("C-5.", "G4 U1.\nC-5."))
+    assert told() == []
+
+
+def test_one_fault_that_a_file_has_once_and_then_four_times_is_told() -> None:
+    text = program(open_ended(60, SOUND), open_ended(66, SOUND))
+    create(a=text.replace("C20.", "C20. ?"))
+    write(a=text.replace("C20.", "C20. ?").replace("C22.", "C22. ?").replace("X66.", "X66. ?"))
+    (line,) = told()
+    assert "; worse than in the baseline: known with count 1, now " in line
+    assert line.endswith("[stray-character]")
 
 
 def test_what_is_worse_is_neither_new_nor_gone_and_an_update_takes_it() -> None:
@@ -161,8 +170,8 @@ def test_a_section_that_is_mended_says_nothing_of_another_one_that_breaks(other:
 def test_a_program_does_not_inherit_the_silence_of_another(name: str) -> None:
     create(O1005=program(open_ended(60)))
     Path("O1005.nc").unlink()
-    other = "O7777\nT0303\nG97 S3000 M13\nG0 X90. C0\nG98\nG12.1\nG1 G42 X50. F100\nC8.\nX-50.\nC-8.\nX50.\nC2.\nG13.1\nM30\n"
-    write(**{name: other.replace("C0\n", "C0 (OTHER PART)\n")})
+    other = "O7777\nT0303\nG97 S3000 M13\nG0 X90. C0\nG98\nG12.1\nG1 G42 X50. F100\nC8.\nX-50.\nC-8.\nX50.\nC2.\n"
+    write(**{name: f"{other}G13.1\nM30\n"})
     assert [line[-31:] for line in told("--tool", "3:radius=3")] == ["[polar-switched-in-offset-mode]"]
 
 
