@@ -186,3 +186,73 @@ def test_a_link_put_in_its_place_while_it_is_opened_leads_nowhere(
     monkeypatch.setattr(library.bounded, "read_file", exchanging)
     assert of(folder) == MISSING
     assert exchanged
+
+
+# ---- several files for one call ----
+
+
+@pytest.fixture
+def more(tmp_path: Path) -> Path:
+    """A second folder of the job."""
+    found = tmp_path / "more"
+    found.mkdir()
+    return found
+
+
+def reasons(*folders: str | Path) -> list[str]:
+    report = report_of(MAIN, job={"run": {"subprograms": list(folders)}})
+    return [entry.reason for entry in report.not_evaluated if entry.matters]
+
+
+def test_a_program_in_two_folders_leaves_open_which_one_is_called(folder: Path, more: Path) -> None:
+    (folder / "O1234").write_text(SUB, "utf-8")
+    (more / "1234.NC").write_text("G0 X6.\nM99\n", "utf-8")
+    said_of = "which differ: which of them the control calls is not known, and {} is checked; keep one of them"
+    (reason,) = reasons(str(folder), str(more))
+    assert reason.startswith(f"O1234 is in {folder}/O1234 and {more}/1234.NC, {said_of.format(f'{folder}/O1234')}")
+    (reason,) = reasons(str(more), str(folder))
+    assert reason.startswith(f"O1234 is in {more}/1234.NC and {folder}/O1234, ")
+    (folder / "1234.nc").write_text("G0 X7.\nM99\n", "utf-8")
+    (reason,) = reasons(str(folder))
+    assert reason.startswith(f"O1234 is in {folder}/1234.nc and {folder}/O1234, ")
+
+
+@pytest.mark.parametrize("content", [SUB, SUB.replace("\n", "\r\n") + "\r\n"])
+def test_a_copy_is_the_same_program(folder: Path, more: Path, content: str) -> None:
+    (folder / "O1234").write_text(SUB, "utf-8")
+    (more / "O1234").write_text(content, "utf-8", newline="")
+    assert reasons(str(folder), str(more)) == []
+
+
+def test_a_backup_is_taken_last_and_never_beside_another(folder: Path) -> None:
+    (folder / "O1234.BAK").write_text("G0 X6.\nM99\n", "utf-8")
+    shelf = Library([str(folder)], load("fanuc").machine)
+    assert [place.path.name for place in shelf.places(ProgramName(1234, None))] == ["O1234.BAK"]
+    (folder / "O1234.NC").write_text(SUB, "utf-8")
+    shelf = Library([str(folder)], load("fanuc").machine)
+    assert [place.path.name for place in shelf.places(ProgramName(1234, None))] == ["O1234.NC"]
+    assert reasons(str(folder)) == []
+
+
+def test_many_candidates_are_not_all_read(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for number in range(20):
+        (folder / f"O1234.{chr(97 + number)}").write_text(SUB, "utf-8")
+    read = []
+    original = library._read_inside
+    monkeypatch.setattr(library, "_read_inside", lambda *where: (read.append(where), original(*where))[1])
+    assert len(Library([str(folder)], load("fanuc").machine).places(ProgramName(1234, None))) == 1
+    assert len(read) < 10
+
+
+def test_a_program_of_the_file_itself_has_no_rival(folder: Path, more: Path) -> None:
+    for number, where in enumerate((folder, more)):
+        (where / "O1234").write_text(f"G0 X{number}.\nM99\n", "utf-8")
+    job = {"run": {"subprograms": [str(folder), str(more)]}}
+    report = report_of(MAIN + "O1234\n" + SUB, job=job)
+    assert not [entry for entry in report.not_evaluated if entry.matters]
+    # A call whose number is computed, and a folder that was brought to another machine.
+    (reason,) = (entry.reason for entry in report_of("O1\n#1=1234\nM98 P#1\nM30\n", job=job).not_evaluated)
+    assert reason.startswith("O1234 is in ")
+    moved = [library.MovedFolder(str(folder), "subs"), library.MovedFolder(str(more), "more")]
+    places = Library(moved, load("fanuc").machine).places(ProgramName(1234, None))
+    assert [place.title for place in places] == ["subs/O1234", "more/O1234"]

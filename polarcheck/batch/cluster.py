@@ -344,7 +344,7 @@ def _unpacked(content: bytes) -> tuple[Settings, Path | None]:
         folder.mkdir()
         for name, data in contents.items():
             (folder / name).write_bytes(data)
-        paths.append(str(folder))
+        paths.append(library.MovedFolder(str(folder), settings.job.run.subprograms[number]))
     run = msgspec.structs.replace(settings.job.run, subprograms=paths)
     job = msgspec.structs.replace(settings.job, run=run)
     return msgspec.structs.replace(settings, job=job), made

@@ -149,6 +149,10 @@ _REMARKS: Final[Mapping[RemarkKind, str]] = {
         "the condition depends on a value that is not known, and is taken as not fulfilled{variables}"
     ),
     "program-unknown": "which program is called depends on a value that is not known{variables}",
+    "program-in-several-files": (
+        "{program} is in {files}, which differ: which of them the control calls is not known, and {first} is checked; "
+        "keep one of them in the folders of the job"
+    ),
     "not-simulated": "{name} is not simulated",
     "return-jumps": "{code} P in the main program jumps and is taken as the end: check what follows it yourself",
 }

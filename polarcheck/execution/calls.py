@@ -37,6 +37,11 @@ def execute_call(state: State, statement: Statement, block: int) -> int:
     if program is None:
         report_missing(state, statement, block, called.program)
         return block + 1
+    rivals = state.rivals.get(called.program)
+    if rivals and state.listing.found.get(called.program) == program.file:
+        first, *others = rivals
+        listed = f"{first} and {', '.join(others)}"
+        state.add_remark("program-in-several-files", block, program=str(called.program), files=listed, first=first)
     if called.begin is not None:
         program = part_from(state, statement, program, called.begin, block)
         if program is None:

@@ -35,6 +35,7 @@ def execute(shelf: Shelf, settings: Running, *, skip: bool, inch: bool) -> State
     while True:
         state = State(shelf.listing, settings, shelf.add, used, skip=skip, inch=inch)
         state.called_beside = shelf.beside.called
+        state.rivals = shelf.rivals
         try:
             _run_all(state)
         except Restart:

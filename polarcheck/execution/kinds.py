@@ -76,6 +76,7 @@ RemarkKind: TypeAlias = Literal[
     "stops-itself",  # an assignment to a variable that stops the program, as #3000 = 1
     "condition-unknown",
     "program-unknown",  # which program is called
+    "program-in-several-files",  # likewise
     "return-jumps",  # M99 P in the main program
     "not-simulated",  # a statement of the control's own language
 ]

@@ -11,6 +11,7 @@ import re
 from collections.abc import Sequence
 from functools import cached_property
 from pathlib import Path
+from typing import NamedTuple
 
 import msgspec
 
@@ -20,12 +21,17 @@ from polarcheck.execution.listing import Listing
 from polarcheck.execution.programs import ProgramName, Programs, find_programs, read_text
 from polarcheck.execution.run import Beside
 from polarcheck.machines.machine import Machine
+from polarcheck.reading.files import shown
 from polarcheck.reading.source import Source, read_source
 from polarcheck.reading.words import Text
 
 #: A called program is a program, not an archive [bytes].
 _LARGEST = 50_000_000
 _MOST_LOOKED_FOR = 100
+#: Files that are read for one call, where several can hold the program.
+_MOST_READ = 4
+#: Endings of copies that were put aside.
+_OF_BACKUPS = frozenset((".bak", ".old", ".orig", ".sav", ".tmp", ".new"))
 _NAME = re.compile(r"[A-Za-z0-9+_.-]{1,64}")
 #: In one line, and nothing of it read again: a file of blank lines is no reason to wait.
 _OWN_NAME = re.compile(
@@ -38,22 +44,57 @@ _TAPE_MARK = re.compile(r"[\s\0]*+(?:\$[^%\n]*+)?%[^\n]*+\n")
 _BARE_NAME = re.compile(r"O[A-Z][A-Z0-9]*+", re.IGNORECASE | re.ASCII)
 
 
+class MovedFolder(str):
+    """
+    The path of a folder whose programs were brought to this machine.
+
+    named: the path that the job names.
+    """
+
+    named: str
+
+    def __new__(cls, path: str, named: str) -> MovedFolder:
+        """Return the path, with the one that the job names."""
+        folder = super().__new__(cls, path)
+        folder.named = named
+        return folder
+
+
+class Place(NamedTuple):
+    """
+    A file that can hold a called program.
+
+    path: its path, with all links of the folder resolved.
+    title: its path as the job names the folder.
+    data: its bytes.
+    """
+
+    path: Path
+    title: str
+    data: bytes
+
+
 class Library:
-    """The other channels of a file, the folders of a job, and what has been looked for in them."""
+    """
+    The other channels of a file, the folders of a job, and what has been looked for in them.
+
+    rivals: titles of the files that can hold a program, where there are several that differ.
+    """
 
     def __init__(self, folders: Sequence[str], machine: Machine, channels: Sequence[Text] = ()) -> None:
         self._channels = list(channels)
-        self._folders = [Path(os.path.realpath(folder)) for folder in folders]
+        self._folders = [(Path(os.path.realpath(folder)), _title(folder)) for folder in folders]
         self._machine = machine
         self._texts: dict[ProgramName, Text | None] = {}
+        self.rivals: dict[ProgramName, list[str]] = {}
 
     @cached_property
-    def _paths(self) -> list[tuple[Path, list[Path]]]:
-        """Each folder that can be listed, and what lies in it, by name."""
+    def _paths(self) -> list[tuple[Path, str, list[Path]]]:
+        """Each folder that can be listed, its title, and what lies in it, by name; backups come last."""
         found = []
-        for folder in self._folders:
+        for folder, title in self._folders:
             with contextlib.suppress(OSError):
-                found.append((folder, sorted(folder.iterdir())))
+                found.append((folder, title, sorted(folder.iterdir(), key=lambda path: (_is_backup(path), path))))
         return found
 
     @cached_property
@@ -79,24 +120,47 @@ class Library:
 
         A file without an O number of its own is given that of the call.
         """
-        found = self.place(called)
-        return None if found is None else _with_head(found[1], found[0].name, called)
+        places = self.places(called)
+        if not places:
+            return None
+        if len(places) > 1:
+            self.rivals[called] = [place.title for place in places]
+        return _with_head(places[0].data, places[0].path.name, called)
 
-    def place(self, called: ProgramName) -> tuple[Path, bytes] | None:
-        """The file of such a program, and its bytes."""
-        found = self._place(called)
-        look_ups.note(called, *((found[0].name, found[1]) if found else ()))
-        return found
+    def places(self, called: ProgramName) -> list[Place]:
+        """
+        The files that can hold a program, in the order in which they are looked for.
 
-    def _place(self, called: ProgramName) -> tuple[Path, bytes] | None:
+        Copies of the first one, and backups beside it, are left out.
+        """
         wanted = names_of(called)
         if wanted is None:
-            return None
-        for folder, paths in self._paths:
+            return []
+        places: list[Place] = []
+        left = _MOST_READ
+        for folder, title, paths in self._paths:
             for path in paths:
-                if wanted.fullmatch(path.name) and (data := _read_inside(folder, path)) is not None:
-                    return path, data
-        return None
+                if not left or not wanted.fullmatch(path.name) or (places and _is_backup(path)):
+                    continue
+                data = _read_inside(folder, path)
+                left -= data is not None
+                if data is not None and (not places or _content(data) != _content(places[0].data)):
+                    places.append(Place(path, shown(os.path.join(title, path.name)), data))  # noqa: PTH118
+        look_ups.note(called, [(place.title, place.data) for place in places])
+        return places
+
+
+def _title(folder: str) -> str:
+    return folder.named if isinstance(folder, MovedFolder) else folder
+
+
+def _is_backup(path: Path) -> bool:
+    return path.suffix.lower() in _OF_BACKUPS
+
+
+def _content(data: bytes) -> bytes:
+    """Return what copies of a program have in common, whatever has sent them: not line ends, nor blanks at the ends."""
+    return data.replace(b"\r", b"").strip(b"\0 \n")
 
 
 def names_of(called: ProgramName) -> re.Pattern[str] | None:
@@ -161,6 +225,8 @@ class Shelf:
     def __init__(self, text: Text, machine: Machine, folders: Sequence[str], beside: Beside | None = None) -> None:
         self.beside = beside or Beside()
         self._library = Library(folders, machine, self.beside.texts)
+        #: Titles of the files that can hold a program, where there are several that differ.
+        self.rivals: dict[ProgramName, list[str]] = self._library.rivals
         self.listing = Listing([text], machine)
         self._add([called for called in self.listing.calls(0) if not self.listing.programs.named(called)])
 

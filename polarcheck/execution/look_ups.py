@@ -6,7 +6,7 @@ A result depends on those that are not there, too.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from hashlib import blake2b
@@ -21,14 +21,12 @@ class LookUp(NamedTuple):
     A called program that was looked for.
 
     number, name: how the call names it; one of them is None.
-    file: the name of the file that holds it; empty if there is none.
-    digest: of its content; empty if there is none.
+    files: path and digest of the files that can hold it; none if there is none.
     """
 
     number: int | None
     name: str | None
-    file: str
-    digest: bytes
+    files: tuple[tuple[str, bytes], ...]
 
 
 _NOTED: ContextVar[list[LookUp] | None] = ContextVar("look_ups", default=None)
@@ -45,16 +43,11 @@ def noted() -> Iterator[list[LookUp]]:
         _NOTED.reset(token)
 
 
-def note(called: tuple[int | None, str | None], file: str = "", data: bytes | None = None) -> None:
-    """Note a look-up for the code that asked for it. file, data: name and content of the file that was found."""
+def note(called: tuple[int | None, str | None], files: Sequence[tuple[str, bytes]]) -> None:
+    """Note a look-up for the code that asked for it. files: path and content of the files that can hold the program."""
     look_ups = _NOTED.get()
     if look_ups is not None:
-        look_ups.append(look_up(called, file, data))
-
-
-def look_up(called: tuple[int | None, str | None], file: str = "", data: bytes | None = None) -> LookUp:
-    """Return the look-up of a call; data: the content of the file that was found."""
-    return LookUp(*called, file, b"" if data is None else digest(data))
+        look_ups.append(LookUp(*called, tuple((file, digest(data)) for file, data in files)))
 
 
 def digest(data: bytes) -> bytes:

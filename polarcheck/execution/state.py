@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from typing import NoReturn, Protocol
 
 import msgspec
@@ -89,6 +89,7 @@ class State:
     used_files: indices of the files of which a program was called; shared by the executions of a file.
     unused_files: indices of files that hold a program of a called name, but were not used for that call.
     programs: the program of each call so far, None where there is none.
+    rivals: per program, the files that can hold it where there are several; which of them is called is not known.
     called_beside: numbers and names of programs that other channels call, so that they run there.
     rows: the executed rows.
     visited: per block, True where it was executed.
@@ -107,6 +108,7 @@ class State:
         self.used_files = used_files
         self.unused_files: set[int] = set()
         self.programs: dict[ProgramName, Program | None] = {}
+        self.rivals: Mapping[ProgramName, Sequence[str]] = {}
         self.called_beside: frozenset[int | str] = frozenset()
         self.rows = ExecutedRows(listing.text, listing.machine, skip=skip, inch_at_first=inch)
         self.visited = np.zeros(len(listing.text.blocks), bool)

@@ -61,8 +61,9 @@ def _of_program(called: ProgramName, listing: Listing, judged: Judged, uri: str)
     if programs:
         return [_at_block(judged.text, uri, listing.text, programs[0].first)]
     assert judged.settings is not None
-    place = Library(judged.settings.job.run.subprograms, judged.settings.machine).place(called)
-    return [_in_file(*place, called, judged.settings.machine, judged.text.units)] if place else []
+    places = Library(judged.settings.job.run.subprograms, judged.settings.machine).places(called)
+    machine, units = judged.settings.machine, judged.text.units
+    return [_in_file(place.path, place.data, called, machine, units) for place in places]
 
 
 def _in_file(path: Path, data: bytes, called: ProgramName, machine: Machine, units: str) -> types.Location:

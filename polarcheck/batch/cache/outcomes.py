@@ -175,8 +175,9 @@ class _Library:
 
         called = ProgramName(number, name)
         if called not in self._known:
-            found = self._library.place(called)
-            self._known[called] = look_ups.look_up(called, *((found[0].name, found[1]) if found else ()))
+            with look_ups.noted() as noted:
+                self._library.places(called)
+            self._known[called] = noted[0]
         return self._known[called]
 
 
