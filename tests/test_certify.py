@@ -292,6 +292,23 @@ def test_a_fault_of_a_case_is_one_line(more: str, said: str) -> None:
     test_a_fault_of_the_manifest_is_one_line(CASE + more, said)
 
 
+def test_a_job_file_applies_where_the_manifest_names_it(example: Path) -> None:
+    edit("post.toml", "[tools.1]\nradius = 4.0\n", 'config = "lathes/jobs.toml"\n')
+    Path("lathes").mkdir()
+    Path("polarcheck.toml").write_text("[tools.1]\nradius = 3.0\n", "utf-8")
+    Path("lathes/jobs.toml").write_text('units = "mm"\n[[programs]]\nfiles = ["*"]\n', "utf-8")
+    assert reasons("contour/lathe-7")[0].startswith("expected the verdict pass, found unverified: no radius")
+    Path("lathes/jobs.toml").write_text('units = "inch"\n[tools.1]\nradius = 0.157480315\n', "utf-8")
+    assert reasons("contour/lathe-7") == []
+    Path("lathes/jobs.toml").write_text("[tool.1]\n", "utf-8")
+    result = certify(example)
+    assert result.exit_code == 2
+    assert result.stderr.startswith("polarcheck: post.toml:5: config: lathes/jobs.toml:1: unknown key tool")
+    Path("lathes/jobs.toml").write_text("", "utf-8")
+    edit("post.toml", "c_feed = 14400", "c_fed = 14400")
+    assert "post.toml:16: controls.lathe-8: unknown key limits.c_fed; did you mean c_feed?" in certify(example).stderr
+
+
 # ---- golden traces ----
 
 
