@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import random
 import re
@@ -19,8 +20,10 @@ from setter_programs import drawn as program_of_setter
 from single_slips import SLIPS
 from twin_sections import CONTROLS, Control, drawn, written
 
+import polarcheck
 from polarcheck.checking import check
 from polarcheck.commands import main
+from polarcheck.errors import UsageError
 from polarcheck.pictures.painting import plain
 from polarcheck.reports.pages import comparison as page
 from polarcheck.reports.pages.schema import schema
@@ -281,6 +284,24 @@ def test_lists_are_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
     )
 
 
+# ---- in Python ----
+
+
+def test_in_python(tmp_path: Path) -> None:
+    new = changed(("Z-5.", "Z-5.5"))
+    paths = [tmp_path / "old.nc", tmp_path / "new.nc"]
+    for path, program in zip(paths, (HEXAGON, new), strict=True):
+        path.write_text(program)
+    for result in (
+        polarcheck.compare(*paths, tools={1: 4.0}),
+        polarcheck.compare_text(HEXAGON, new, tools={1: 4.0}, old_machine="fanuc"),
+    ):
+        assert (result.verdict, result.deviation) == (DIFFERS, pytest.approx(0.5, abs=1e-4))
+    assert polarcheck.compare_text(HEXAGON, new, tools={1: 4.0}, tolerance=0.6).verdict == SAME_METAL
+    with pytest.raises(UsageError, match=r"compare_text\(\): tolerance: expected a length above 0 \[mm\], found nan"):
+        polarcheck.compare_text(HEXAGON, new, tolerance=float("nan"))
+
+
 # ---- the command ----
 
 
@@ -330,6 +351,19 @@ def test_what_cannot_be_compared_ends_with_2(pair: Path, arguments: Sequence[str
     assert result.exit_code == 2
     assert message in result.output
     assert len(result.output.splitlines()) == 1
+
+
+def test_page_shows_what_is_printed(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """docs/compare.md: the report of a hexagon that has become deeper and faster."""
+    (tmp_path / "sample_programs").mkdir()
+    monkeypatch.chdir(tmp_path)
+    Path("sample_programs/hexagon.nc").write_text(HEXAGON)
+    Path("deeper.nc").write_text(changed(("Z-5. F300", "Z-5.5 F300"), ("F200", "F250")))
+    lines = (ROOT / "docs" / "compare.md").read_text("utf-8").splitlines()
+    begins = next(number for number, line in enumerate(lines) if line.startswith("    $ polarcheck compare "))
+    shown = [*itertools.takewhile(str.strip, lines[begins + 1 :])]
+    printed = run(*lines[begins].split()[3:]).stdout
+    assert "".join(f"{line.removeprefix('    ')}\n" for line in shown) == printed
 
 
 def test_json_is_as_its_schema_says(pair: Path) -> None:
@@ -401,6 +435,8 @@ def test_git_shows_metal(pair: Path) -> None:
     assert "new.nc: only in the old revision" in driver
     tool = git("difftool", "-y", "--extcmd", f"{command} compare", "--", "old.nc")
     assert "F200 mm/min has become F250 mm/min" in tool
-    shown = git("-c", f"diff.polarcheck.textconv={command} trace --format csv --path tool", "diff", "--", "old.nc")
-    assert re.search(r"(?m)^-12,.*200\.0,", shown)
-    assert re.search(r"(?m)^\+12,.*250\.0,", shown)
+    page_of_docs = (ROOT / "docs" / "compare.md").read_text("utf-8")
+    (textconv,) = re.findall(r"textconv '(.*)'", page_of_docs)
+    shown = git("-c", f"diff.polarcheck.textconv={textconv.replace('polarcheck', command, 1)}", "diff", "--", "old.nc")
+    assert re.search(r"(?m)^-0,line,.*,4\.0,200\.0,", shown)
+    assert re.search(r"(?m)^\+0,line,.*,4\.0,250\.0,", shown)

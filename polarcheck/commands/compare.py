@@ -46,7 +46,7 @@ def _tolerance(ctx: click.Context, parameter: click.Parameter, value: float | No
 @option("--old-machine", metavar="NAME|FILE", help="The lathe of OLD, in place of --machine.")
 @option("--new-machine", metavar="NAME|FILE", help="The lathe of NEW, in place of --machine.")
 @click.option(
-    "--tolerance", type=float, callback=_tolerance, metavar="LENGTH", envvar="POLARCHECK_COMPARE_TOLERANCE",
+    "--tolerance", "same_up_to", type=float, callback=_tolerance, metavar="LENGTH",
     show_default="the least increment of the control",
     help="Up to this, lengths are the same, in the units of OLD.",
 )  # fmt: skip
@@ -82,7 +82,7 @@ def _compare(
     *,
     old_machine: str | None,
     new_machine: str | None,
-    tolerance: float | None,
+    same_up_to: float | None,
     form: str,
     color: str,
     named: str | None,
@@ -125,7 +125,7 @@ def _compare(
     found = []
     for old, new in pairs:
         try:
-            found.append(_compared(old, new, tolerance, max_size))
+            found.append(_compared(old, new, same_up_to, max_size))
         except PolarcheckError as error:
             faults.failures.append(str(error))
     if form == "json":
