@@ -258,6 +258,10 @@ def test_a_certificate_of_nothing_is_none(example: Path) -> None:
         ("[controls.a]\nsame_path_as = 'b'", "post.toml:2: controls.a.same_path_as: no other control 'b'"),
         ("[controls.a]\nnot_offered = { pockets = '' }", "post.toml:2: controls.a.not_offered.pockets: no feature"),
         ("[controls.a]\n[feature.contuor]", "post.toml:2: feature.contuor: no feature 'contuor'; did you mean"),
+        (
+            "[controls.a]\n[[feature.contour.part]]\nshape = 'hexagon'\nacross_flats = 24\nfiles = ['a.nc']",
+            "post.toml:5: feature.contour.part.1.files: no key of a manifest: a part is for the cases of its table",
+        ),
         ("[controls.a]\ntolerance = 0", "post.toml:2: controls.a.tolerance: expected a number above 0, 100 at most"),
     ],
 )  # fmt: skip
@@ -441,6 +445,20 @@ def test_the_suite_is_a_manifest_with_drawings(tmp_path: Path) -> None:
         f"there is no golden trace golden/fanuc-30i/{name}.jsonl yet; --update writes it"
         for name in ("contour", "arc-above-180", "indexing")
     }
+
+
+def test_files_are_relative_to_the_manifest(example: Path) -> None:
+    certify("init", "suite")
+    part = 'shape = "hexagon"\nacross_flats = 24.0\nturned = 0.0\nz = -3.0\n'
+    edit("post.toml", part, 'drawing = "../suite/jobs/contour.dxf"\nz = -3.0\n')
+    Path("below").mkdir()
+    for name in ("post.toml", "fanuc", "golden"):
+        shutil.move(name, f"below/{name}")
+    assert certify("below/post.toml", "--case", "contour/lathe-7").exit_code == 0
+    edit("below/fanuc/contour.nc", "C6.928", "C6.828")
+    found = certificate("below/post.toml", "--case", "contour/lathe-7")["cases"][0]
+    assert found["program"] == "below/fanuc/contour.nc"
+    assert found["state"] == "fail"
 
 
 @pytest.mark.parametrize("name", ["contour", "arc-above-180"])
