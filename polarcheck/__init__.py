@@ -78,17 +78,19 @@ _MODULES = {
 __all__ = [*_MODULES, "errors", "__version__"]
 
 
-def __getattr__(name: str) -> Any:
-    """Import what is public when it is first used."""
-    import importlib
+if not TYPE_CHECKING:  # a name that is not public is an error for type checkers, too
 
-    if name == "errors":
-        return importlib.import_module("polarcheck.errors")
-    if name not in _MODULES:
-        raise AttributeError(f"module 'polarcheck' has no attribute {name!r}")
-    value = getattr(importlib.import_module(f"polarcheck.{_MODULES[name]}"), name)
-    globals()[name] = value
-    return value
+    def __getattr__(name: str) -> Any:
+        """Import what is public when it is first used."""
+        import importlib
+
+        if name == "errors":
+            return importlib.import_module("polarcheck.errors")
+        if name not in _MODULES:
+            raise AttributeError(f"module 'polarcheck' has no attribute {name!r}")
+        value = getattr(importlib.import_module(f"polarcheck.{_MODULES[name]}"), name)
+        globals()[name] = value
+        return value
 
 
 def __dir__() -> list[str]:

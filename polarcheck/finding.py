@@ -122,6 +122,10 @@ class Silenced(Finding, frozen=True, kw_only=True):
     reason: str = ""
 
 
+#: NotEvaluated.rule of the rules that a selection keeps from running.
+DESELECTED = "deselected"
+
+
 class NotEvaluated(msgspec.Struct, frozen=True, kw_only=True):
     """
     A rule that could not be evaluated.
@@ -348,8 +352,9 @@ class Decided(msgspec.Struct, frozen=True, kw_only=True):
     strict: with an unverified file the check ends with 1.
     baseline: the file of known findings; null without one.
     configuration: the files of settings that were read, the nearest first, and those of the lathe.
-    sources: by the name of a value that is not the default, where it is from: an option, a variable of the environment,
-        or file and line.
+    sources: by the name of a value that the user has set, where that is: an option, a variable of the environment, or a
+        file.
+    reasons: by the name of a value of a job file that switches rules off, its reason.
     """
 
     machine: str | None = None
@@ -364,17 +369,20 @@ class Decided(msgspec.Struct, frozen=True, kw_only=True):
     baseline: str | None = None
     configuration: Sequence[str] | None = []
     sources: Mapping[str, str] | None = {}
+    reasons: Mapping[str, str] | None = {}
 
 
 class RunSettings(Decided, frozen=True, kw_only=True):
     """
-    The settings that all files of a run share; null is a value in which they differ, and each file has its `settings`.
+    The settings that all files of a run share.
 
     version: of this program.
+    differing: values in which the files differ, which are null here; each file has its `settings` then.
     diff_base: the commit since which a file must have changed to be checked; null where all are.
     """
 
     version: str = ""
+    differing: list[str] = []
     diff_base: str | None = None
 
 
@@ -440,6 +448,11 @@ class FileReport(msgspec.Struct, frozen=True, kw_only=True):
     outline: Outline | UnsetType = UNSET
     part: list[MadeShape] | UnsetType = UNSET
     compared: list[PartComparison] | UnsetType = UNSET
+
+    @property
+    def passed(self) -> bool:
+        """True if the verdict is pass: all that matters was looked at, and nothing is wrong."""
+        return self.verdict == PASS
 
 
 class Producer(msgspec.Struct, frozen=True):
@@ -513,3 +526,8 @@ class Report(msgspec.Struct, frozen=True, kw_only=True):
     interrupted: Interrupted | UnsetType = UNSET
     files: Sequence[FileReport]
     summary: Summary
+
+    @property
+    def passed(self) -> bool:
+        """True if all files have passed, and the run has reached its end; False if there is no file."""
+        return bool(self.files) and self.interrupted is UNSET and all(file.passed for file in self.files)

@@ -59,6 +59,14 @@ def test_check_gives_the_report_of_the_command(samples: None) -> None:
     assert json.loads(polarcheck.render(polarcheck.check("."), "json")) == by_command("check", ".", "--format", "json")
 
 
+def test_formats_are_those_of_the_command(samples: None) -> None:
+    names = ["degrees.nc", "hexagon.nc", "../sample_programs/spiral.nc"]
+    report = polarcheck.check(names)
+    for form in ("jsonl", "sarif", "junit", "gitlab", "github", "checkstyle"):
+        result = CliRunner().invoke(main, ["check", *names, "--format", form, "--no-cache"])
+        assert polarcheck.render(report, form) == result.stdout, form
+
+
 def test_check_of_several_processes_is_the_same(samples: None) -> None:
     paths = [Path(name) for name in SAMPLES[:6]]
     assert polarcheck.check(paths, processes=2) == polarcheck.check(paths)
@@ -98,6 +106,13 @@ def test_feeds_gives_the_tables_of_the_command(samples: None) -> None:
     for name in SAMPLES[:8]:
         tables = by_command("feeds", name, "--format", "json")["tables"]
         assert json.loads(msgspec.json.encode(polarcheck.feeds(name).tables)) == tables
+
+
+def test_passed_is_what_all_verdicts_say() -> None:
+    good, bad = ROOT / "sample_programs" / "hexagon.nc", ROOT / "sample_programs" / "degrees.nc"
+    reports = [polarcheck.check(paths) for paths in ([good], [good, bad], [bad], [good, ROOT / "none.nc"], [])]
+    assert [report.passed for report in reports] == [True, False, False, False, False]
+    assert [file.passed for file in reports[1].files] == [True, False]
 
 
 # ---- a text ----
@@ -295,6 +310,7 @@ def test_a_wrong_keyword_is_named_in_one_line(kind: type[PolarcheckError], given
         (lambda: polarcheck.trace("none.nc"), "none.nc: No such file or directory"),
         (lambda: polarcheck.machine("none.toml"), "machine none.toml: no such file"),
         (lambda: polarcheck.render(polarcheck.check_text("M30"), "pdf"), "form: expected one of text, short,"),
+        (lambda: polarcheck.render(polarcheck.part_text("M30"), "json"), "expected a report of check, found MadePart"),
     ],
 )
 def test_a_wrong_argument_is_named_in_one_line(call: Any, text: str) -> None:
@@ -408,7 +424,7 @@ def test_import_loads_nothing() -> None:
 
 def test_type_checkers_and_python_see_the_same_names() -> None:
     tree = ast.parse(Path(polarcheck.__file__).read_text("utf-8"))
-    (guarded,) = (node for node in tree.body if isinstance(node, ast.If))
+    guarded = next(node for node in tree.body if isinstance(node, ast.If))
     imports = [node for node in guarded.body if isinstance(node, ast.ImportFrom)]
     seen = {str(alias.asname): f"{node.module}.{alias.name}" for node in imports for alias in node.names}
     assert {*seen, "__version__"} == set(polarcheck.__all__)
@@ -463,12 +479,13 @@ def test_warnings_are_no_errors_of_a_clean_folder(samples: None) -> None:
 # ---- the page and the notebook ----
 
 
-def test_examples_of_the_page_are_right(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize(("page", "least"), [("docs/api.md", 20), ("README.md", 4)])
+def test_examples_of_the_pages_are_right(page: str, least: int, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(ROOT)
     failed, run = doctest.testfile(
-        str(ROOT / "docs" / "api.md"), module_relative=False, optionflags=doctest.NORMALIZE_WHITESPACE, encoding="utf-8"
+        str(ROOT / page), module_relative=False, optionflags=doctest.NORMALIZE_WHITESPACE, encoding="utf-8"
     )
-    assert run >= 20
+    assert run >= least
     assert not failed
 
 

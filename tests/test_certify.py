@@ -128,12 +128,29 @@ def test_another_path_fails(example: Path, file: str, before: str, after: str, s
     assert any(said in reason for reason in found), found
 
 
-def test_the_other_control_fails_where_its_path_is_another(example: Path) -> None:
-    """Each control makes the part, but one of them indexes by 240 first."""
-    edit("sinumerik/indexing.mpf", "C240.0", "C0.0")
+@pytest.mark.parametrize(
+    ("turned", "said"),
+    [("C235.0", "section 2: it is turned by 5.000 deg against indexing/lathe-7"), ("C240.0", "line 25: 2.793 mm from")],
+)
+def test_an_index_of_the_other_control_that_is_another(example: Path, turned: str, said: str) -> None:
+    """No part is given. Where C of the approach is turned as well, the whole section is."""
+    text = example.read_text("utf-8")
+    example.write_text(text[: text.index("[[feature.indexing.part]]")] + text[text.index("[[case]]") :], "utf-8")
+    edit("sinumerik/indexing.mpf", "C240.0", turned)
     edit("sinumerik/indexing.mpf", "ROT RPL=120", "ROT RPL=125")
-    (line, *_) = reasons("indexing/lathe-8")
-    assert "the part differs" in line
+    (reason,) = reasons("indexing/lathe-8")
+    assert reason.startswith(said)
+
+
+def test_a_fault_of_one_control_is_none_of_the_other_that_runs_its_golden_trace(example: Path) -> None:
+    edit("post.toml", 'same_path_as = "lathe-7"', 'same_path_as = "lathe-7"\ngolden = "golden/8-{feature}.jsonl"')
+    assert certify(example, "--update", "--case", "contour/lathe-8").exit_code == 0
+    edit(CONTOUR, "Z-3.000", "Z-3.100")
+    (case,) = certificate(example, "--case", "contour/lathe-8")["cases"]
+    assert case["state"] == "pass"
+    assert case["remarks"] == ["the path is not that of contour/lathe-7, which fails itself"]
+    Path("golden/8-contour.jsonl").unlink()
+    assert reasons("contour/lathe-8")[0].startswith("line 18: 0.100 mm from contour/lathe-7")
 
 
 def test_the_start_angle_of_the_whole_part_is_free(example: Path) -> None:
@@ -348,7 +365,7 @@ def test_a_report_overwrites_no_file_of_the_run(example: Path, output: str) -> N
 def test_many_controls_stand_below_each_other(example: Path) -> None:
     controls = "".join(f"[controls.a-lathe-with-a-long-name-{number}]\n" for number in range(9))
     edit("post.toml", "[feature.contour]\n", f"{controls}\n[feature.contour]\n")
-    shown = certify(example, "--case", "contour/lathe-7").stdout.split("\n\n")
+    shown = certify(example).stdout.split("\n\n")
     assert [part.split()[0] for part in shown[1:4]] == [
         "lathe-7",
         "a-lathe-with-a-long-name-2",
@@ -366,6 +383,11 @@ def test_the_certificate_and_the_manifest_fit_their_schemas(example: Path) -> No
         schema = json.loads(CliRunner().invoke(main, ["schema", name]).stdout)
         jsonschema.Draft202012Validator.check_schema(schema)
         jsonschema.validate(value, schema)
+
+
+def test_the_matrix_of_some_cases_has_no_others(example: Path) -> None:
+    shown = certify(example, "--case", "contour/lathe-8").stdout
+    assert shown == "Example post 1.0\n\n         lathe-8\ncontour  pass\n\n1 case: 1 pass, 0 fail\n"
 
 
 def test_python_gives_the_certificate_of_the_command(example: Path) -> None:

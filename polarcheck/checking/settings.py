@@ -34,7 +34,9 @@ class Settings(msgspec.Struct, frozen=True):
     inline: allow comments of the program are respected.
     baseline: the file of known findings.
     baseline_named_by: the place in the job file that names it; empty if an option does.
+    deselected: lines on what keeps rules of weight from running.
     decided: what of this the user has written, for reports.
+    differs: the files of the run have different settings, so that its report says what decided for each.
     profile_sha256: of the machine.
     extras: module-level functions, since other processes import them by name; called in this order.
     """
@@ -52,7 +54,9 @@ class Settings(msgspec.Struct, frozen=True):
     inline: bool = True
     baseline: Path | None = None
     baseline_named_by: str = ""
+    deselected: Sequence[str] = ()
     decided: Decided = Decided()
+    differs: bool = False
     profile_sha256: str = ""
     extras: Sequence[Extra] = ()
 

@@ -55,7 +55,7 @@ def _part(
     from polarcheck.settings.of_programs import OfPrograms, Options
 
     keep_within_memory()
-    applies = Options(use_config=not no_config, select=RULES, extras=EXTRAS, **arguments)
+    applies = Options(use_config=not no_config, select=RULES, gives_verdicts=False, extras=EXTRAS, **arguments)
     faults = running.Faults(debug)
     tasks = running.planned(paths, OfPrograms(applies), extensions, faults)
     checked = running.Runner(max_size, workers, None).check(tasks, progress.Bar(len(tasks), True), faults)
@@ -67,8 +67,6 @@ def _part(
         running.warn_unused(applies.tools, checked.called)
         running.warn_without_part(applies.tolerance, tasks)
     show(
-        (
-            part_lines.json(list(checked.files)) if form == "json" else part_lines.text(list(checked.files), columns())
-        ).encode()
+        (part_lines.json(checked.readable) if form == "json" else part_lines.text(checked.readable, columns())).encode()
     )
     return status
