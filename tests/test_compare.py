@@ -234,12 +234,24 @@ def test_slips_of_setters_are_found(seed: int) -> None:
     assert missed == []
 
 
-TURNING = "O1\nG21 G99 G40\nT0101\nG0 X50. Z2.\nG83 Z-20. R2. Q5000 F0.1\nG80\nG0 Z3.\nM98 P2 L2\nM30\nO2\nG0 W1.\nM99\n"
+TURNING = """O1
+G21 G99 G40
+T0101
+G0 X50. Z2.
+G83 Z-20. R2. Q5000 F0.1
+G80
+G0 Z3.
+M98 P2 L2
+M30
+O2
+G0 W1.
+M99
+"""
 
 
 def test_programs_without_sections_are_compared() -> None:
     assert comparison(TURNING, changed(("X50.", "X50.000"), program=TURNING)).verdict == SAME_WORDS
-    unrolled = changed(("M98 P2 L2", "G0 W1.\nW1."), program=TURNING)
+    unrolled = changed(("M98 P2 L2", "G0 W1.\nW1."), ("O2\nG0 W1.\nM99\n", ""), program=TURNING)
     assert comparison(TURNING, unrolled).verdict == SAME_METAL
     for slip in (("Q5000", "Q500"), ("Z-20.", "Z-21."), ("L2", "L3"), ("X50.", "X51."), ("G99", "G98"), ("W1.", "U1.")):
         assert comparison(TURNING, changed(slip, program=TURNING)).verdict == DIFFERS, slip
