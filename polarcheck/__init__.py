@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from polarcheck import errors as errors
     from polarcheck.api.checks import check as check
     from polarcheck.api.checks import check_text as check_text
+    from polarcheck.api.comparisons import compare as compare
+    from polarcheck.api.comparisons import compare_text as compare_text
     from polarcheck.api.feed_tables import Feeds as Feeds
     from polarcheck.api.feed_tables import feeds as feeds
     from polarcheck.api.feed_tables import feeds_text as feeds_text
@@ -29,6 +31,8 @@ if TYPE_CHECKING:
     from polarcheck.api.traces import Trace as Trace
     from polarcheck.api.traces import trace as trace
     from polarcheck.api.traces import trace_text as trace_text
+    from polarcheck.certification.certifying import certify as certify
+    from polarcheck.certification.results import Certificate as Certificate
     from polarcheck.finding import FileReport as FileReport
     from polarcheck.finding import Finding as Finding
     from polarcheck.finding import Report as Report
@@ -37,13 +41,17 @@ if TYPE_CHECKING:
     from polarcheck.machines.job import WorkOffset as WorkOffset
     from polarcheck.machines.machine import Machine as Machine
     from polarcheck.machines.part import Part as Part
+    from polarcheck.revisions.report import Comparison as Comparison
 
 __version__ = "0.1.0"
 
 #: What is public, and the module of each; the imports above tell type checkers the same.
 _MODULES = {
+    "certify": "certification.certifying",
     "check": "api.checks",
     "check_text": "api.checks",
+    "compare": "api.comparisons",
+    "compare_text": "api.comparisons",
     "feeds": "api.feed_tables",
     "feeds_text": "api.feed_tables",
     "machine": "api.lathes",
@@ -53,7 +61,9 @@ _MODULES = {
     "render": "api.rendering",
     "trace": "api.traces",
     "trace_text": "api.traces",
+    "Comparison": "revisions.report",
     "Feeds": "api.feed_tables",
+    "Certificate": "certification.results",
     "FileReport": "finding",
     "Finding": "finding",
     "Machine": "machines.machine",
@@ -68,17 +78,19 @@ _MODULES = {
 __all__ = [*_MODULES, "errors", "__version__"]
 
 
-def __getattr__(name: str) -> Any:
-    """Import what is public when it is first used."""
-    import importlib
+if not TYPE_CHECKING:  # a name that is not public is an error for type checkers, too
 
-    if name == "errors":
-        return importlib.import_module("polarcheck.errors")
-    if name not in _MODULES:
-        raise AttributeError(f"module 'polarcheck' has no attribute {name!r}")
-    value = getattr(importlib.import_module(f"polarcheck.{_MODULES[name]}"), name)
-    globals()[name] = value
-    return value
+    def __getattr__(name: str) -> Any:
+        """Import what is public when it is first used."""
+        import importlib
+
+        if name == "errors":
+            return importlib.import_module("polarcheck.errors")
+        if name not in _MODULES:
+            raise AttributeError(f"module 'polarcheck' has no attribute {name!r}")
+        value = getattr(importlib.import_module(f"polarcheck.{_MODULES[name]}"), name)
+        globals()[name] = value
+        return value
 
 
 def __dir__() -> list[str]:

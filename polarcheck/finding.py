@@ -30,7 +30,12 @@ VERDICTS = PASS, FAIL, UNVERIFIED, UNREADABLE = "pass", "fail", "unverified", "u
 
 
 class Edit(msgspec.Struct, frozen=True, kw_only=True):
-    """Replace the characters from start to end by text. Lines and columns count from 1; the end is exclusive."""
+    """
+    Replace the characters from start to end by text. Lines and columns count from 1; the end is exclusive.
+
+    line, column, end_line, end_column: the characters that are replaced.
+    text: what stands in their place.
+    """
 
     line: int
     column: int
@@ -117,6 +122,10 @@ class Silenced(Finding, frozen=True, kw_only=True):
     reason: str = ""
 
 
+#: NotEvaluated.rule of the rules that a selection keeps from running.
+DESELECTED = "deselected"
+
+
 class NotEvaluated(msgspec.Struct, frozen=True, kw_only=True):
     """
     A rule that could not be evaluated.
@@ -173,7 +182,12 @@ class PolarSection(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class OddSide(msgspec.Struct, frozen=True, kw_only=True):
-    """A side of a part that differs from the others: line of its block, size [mm]."""
+    """
+    A side of a part that differs from the others.
+
+    line: of its block.
+    size: of the side [mm].
+    """
 
     line: int
     size: float
@@ -338,8 +352,9 @@ class Decided(msgspec.Struct, frozen=True, kw_only=True):
     strict: with an unverified file the check ends with 1.
     baseline: the file of known findings; null without one.
     configuration: the files of settings that were read, the nearest first, and those of the lathe.
-    sources: by the name of a value that is not the default, where it is from: an option, a variable of the environment,
-        or file and line.
+    sources: by the name of a value that the user has set, where that is: an option, a variable of the environment, or a
+        file.
+    reasons: by the name of a value of a job file that switches rules off, its reason.
     """
 
     machine: str | None = None
@@ -354,17 +369,20 @@ class Decided(msgspec.Struct, frozen=True, kw_only=True):
     baseline: str | None = None
     configuration: Sequence[str] | None = []
     sources: Mapping[str, str] | None = {}
+    reasons: Mapping[str, str] | None = {}
 
 
 class RunSettings(Decided, frozen=True, kw_only=True):
     """
-    The settings that all files of a run share; null is a value in which they differ, and each file has its `settings`.
+    The settings that all files of a run share.
 
     version: of this program.
+    differing: values in which the files differ, which are null here; each file has its `settings` then.
     diff_base: the commit since which a file must have changed to be checked; null where all are.
     """
 
     version: str = ""
+    differing: list[str] = []
     diff_base: str | None = None
 
 
@@ -387,7 +405,9 @@ class FileReport(msgspec.Struct, frozen=True, kw_only=True):
     """
     The report of one file.
 
-    machine: its name, as given by the user.
+    path: of the file, as it was named or found.
+    machine: its id: the name of a built-in machine, or the file name of a machine file, without `.toml`.
+    machine_file: the path of the machine file, as given; absent for a built-in machine.
     programs: numbers or names of its programs.
     blocks, sections: executed blocks and polar sections.
     verdict: pass, fail, unverified or unreadable.
@@ -409,6 +429,7 @@ class FileReport(msgspec.Struct, frozen=True, kw_only=True):
 
     path: str
     machine: str = ""
+    machine_file: str | UnsetType = UNSET
     programs: list[str]
     blocks: int
     sections: int
@@ -428,9 +449,19 @@ class FileReport(msgspec.Struct, frozen=True, kw_only=True):
     part: list[MadeShape] | UnsetType = UNSET
     compared: list[PartComparison] | UnsetType = UNSET
 
+    @property
+    def passed(self) -> bool:
+        """True if the verdict is pass: all that matters was looked at, and nothing is wrong."""
+        return self.verdict == PASS
+
 
 class Producer(msgspec.Struct, frozen=True):
-    """Name and version of this program."""
+    """
+    What wrote the report.
+
+    name: polarcheck.
+    version: of it.
+    """
 
     name: str
     version: str
@@ -454,6 +485,10 @@ class Summary(msgspec.Struct, frozen=True, kw_only=True):
     """
     Counts over all files.
 
+    files: that were reported.
+    errors, warnings, notes: findings, without those that follow from another one.
+    silenced: suppressed findings.
+    pass, unverified, fail, unreadable: files by verdict.
     not_read: of the folders that were walked, by ending.
     excluded: programs that patterns exclude; in folders of more than 50,000 entries there may be more.
     """
@@ -480,6 +515,8 @@ class Report(msgspec.Struct, frozen=True, kw_only=True):
     machine: of all files; null if they differ.
     settings: what decided the verdicts and the exit code.
     interrupted: why the run ended before its last file; absent where it did not.
+    files: the files, in the order in which they were named.
+    summary: counts over all files.
     """
 
     schema: int
@@ -489,3 +526,8 @@ class Report(msgspec.Struct, frozen=True, kw_only=True):
     interrupted: Interrupted | UnsetType = UNSET
     files: Sequence[FileReport]
     summary: Summary
+
+    @property
+    def passed(self) -> bool:
+        """True if all files have passed, and the run has reached its end; False if there is no file."""
+        return bool(self.files) and self.interrupted is UNSET and all(file.passed for file in self.files)

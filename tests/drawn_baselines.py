@@ -41,6 +41,7 @@ class Section(NamedTuple):
     size: of its contour [mm].
     depth: Z [mm].
     blocks: how often the fault is repeated.
+    dwell: before the contour [s], 0 for none.
     """
 
     name: int
@@ -49,6 +50,7 @@ class Section(NamedTuple):
     size: int
     depth: float
     blocks: int = 1
+    dwell: float = 0
 
     @property
     def lines(self) -> list[str]:
@@ -68,7 +70,8 @@ class Section(NamedTuple):
             start = x + 2 * self.amount
             inside = [f"G1 X{start:g} F200", f"G3 X-{x}. C0 I-{self.size}. J0", f"G1 C{c}.", f"X{x}.", "C0"]
         inside = [re.sub(r"(X-?\d+)(?![\d.])", r"\1.", line) for line in inside]
-        return [*head, "G12.1", *inside, "G13.1", "G0 Z50.", f"G0 X{x + 60}."]
+        pause = [f"G4 U{self.dwell:g}"] if self.dwell else []
+        return [*head, "G12.1", *pause, *inside, "G13.1", "G0 Z50.", f"G0 X{x + 60}."]
 
 
 Program = list[Section]
@@ -154,9 +157,33 @@ def less(program: Program, draw: Draw) -> Program | None:
 
 
 def another_section(program: Program, draw: Draw) -> Program:
-    """Put a sound section somewhere."""
+    """Put a sound section somewhere. With the blocks of another one nobody could say which of the two is new."""
     at = draw.randrange(len(program) + 1)
-    return [*program[:at], _section(draw, len(program) + 20, False), *program[at:]]
+    section = _section(draw, 20 + len(program), False)
+    return [*program[:at], section._replace(size=70 + section.name), *program[at:]]
+
+
+def moved(program: Program, draw: Draw) -> Program | None:
+    """Cut a section before another one; one whose blocks no other has."""
+    at, to = draw.randrange(len(program)), draw.randrange(len(program))
+    sizes = [section.size for section in program]
+    if sizes.count(sizes[at]) > 1:
+        return None
+    others = [*program[:at], *program[at + 1 :]]
+    return [*others[:to], program[at], *others[to:]]
+
+
+def left_out(program: Program, draw: Draw) -> Program | None:
+    """Leave a section out, if more than half of the program stays."""
+    if len(program) < 3 or len({section.size for section in program}) < len(program):
+        return None
+    at = draw.randrange(len(program))
+    return [*program[:at], *program[at + 1 :]]
+
+
+def beside(program: Program, draw: Draw) -> Program:
+    """Change the depth of a section, and put a block before its contour."""
+    return _with(program, draw.randrange(len(program)), depth=draw.randrange(1, 9) + 0.25, dwell=0.5)
 
 
 def grown(program: Program, draw: Draw) -> Program | None:
@@ -193,7 +220,7 @@ def repeated(program: Program, draw: Draw) -> Program | None:
     return _with(program, at, blocks=4)
 
 
-HARMLESS: tuple[Edit, ...] = (nothing, mended, less, another_section)
+HARMLESS: tuple[Edit, ...] = (nothing, mended, less, another_section, moved, left_out, beside)
 WORSE: tuple[Edit, ...] = (grown, broken, mended_and_broken, repeated)
 
 
@@ -225,7 +252,7 @@ def drawn(seed: int) -> Pair:
             new = later
             names.append(edit.__name__)
     text, begins = _text(new, draw, draw.random() < 0.6, 1000 + seed % 8000)
-    path = "a.nc" if draw.random() < 0.7 or "another_section" in names or len(old) < 4 else "sub/b.nc"
+    path = "a.nc" if draw.random() < 0.7 or {"another_section", "left_out"} & {*names} or len(old) < 4 else "sub/b.nc"
     return Pair(names, old_text, text, path, _expected(old, new, begins))
 
 

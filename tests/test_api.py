@@ -23,7 +23,15 @@ from programs import ROOT
 import polarcheck
 from polarcheck.api import keywords
 from polarcheck.commands import main
-from polarcheck.errors import JobError, MachineError, PolarcheckError, PolarcheckWarning, SourceError, UsageError
+from polarcheck.errors import (
+    BaselineError,
+    JobError,
+    MachineError,
+    PolarcheckError,
+    PolarcheckWarning,
+    SourceError,
+    UsageError,
+)
 
 SAMPLES = sorted(path.name for path in (ROOT / "sample_programs").glob("*.nc"))
 HEXAGON = (ROOT / "sample_programs" / "hexagon.nc").read_bytes()
@@ -46,8 +54,17 @@ def by_command(*arguments: str) -> Any:
 # ---- the command and the function agree ----
 
 
+@pytest.mark.filterwarnings("ignore::polarcheck.errors.PolarcheckWarning")
 def test_check_gives_the_report_of_the_command(samples: None) -> None:
     assert json.loads(polarcheck.render(polarcheck.check("."), "json")) == by_command("check", ".", "--format", "json")
+
+
+def test_formats_are_those_of_the_command(samples: None) -> None:
+    names = ["degrees.nc", "hexagon.nc", "../sample_programs/spiral.nc"]
+    report = polarcheck.check(names)
+    for form in ("jsonl", "sarif", "junit", "gitlab", "github", "checkstyle"):
+        result = CliRunner().invoke(main, ["check", *names, "--format", form, "--no-cache"])
+        assert polarcheck.render(report, form) == result.stdout, form
 
 
 def test_check_of_several_processes_is_the_same(samples: None) -> None:
@@ -89,6 +106,13 @@ def test_feeds_gives_the_tables_of_the_command(samples: None) -> None:
     for name in SAMPLES[:8]:
         tables = by_command("feeds", name, "--format", "json")["tables"]
         assert json.loads(msgspec.json.encode(polarcheck.feeds(name).tables)) == tables
+
+
+def test_passed_is_what_all_verdicts_say() -> None:
+    good, bad = ROOT / "sample_programs" / "hexagon.nc", ROOT / "sample_programs" / "degrees.nc"
+    reports = [polarcheck.check(paths) for paths in ([good], [good, bad], [bad], [good, ROOT / "none.nc"], [])]
+    assert [report.passed for report in reports] == [True, False, False, False, False]
+    assert [file.passed for file in reports[1].files] == [True, False]
 
 
 # ---- a text ----
@@ -286,6 +310,7 @@ def test_a_wrong_keyword_is_named_in_one_line(kind: type[PolarcheckError], given
         (lambda: polarcheck.trace("none.nc"), "none.nc: No such file or directory"),
         (lambda: polarcheck.machine("none.toml"), "machine none.toml: no such file"),
         (lambda: polarcheck.render(polarcheck.check_text("M30"), "pdf"), "form: expected one of text, short,"),
+        (lambda: polarcheck.render(polarcheck.part_text("M30"), "json"), "expected a report of check, found MadePart"),
     ],
 )
 def test_a_wrong_argument_is_named_in_one_line(call: Any, text: str) -> None:
@@ -295,8 +320,11 @@ def test_a_wrong_argument_is_named_in_one_line(call: Any, text: str) -> None:
 
 
 def test_a_file_that_cannot_be_read(tmp_path: Path) -> None:
+    report = polarcheck.check([tmp_path / "none.nc", ROOT / "sample_programs" / "hexagon.nc"])
+    assert [file.verdict for file in report.files] == ["unreadable", "pass"]
+    assert report.files[0].reason == "No such file or directory"
     with pytest.raises(SourceError, match="No such file"):
-        polarcheck.check(tmp_path / "none.nc")
+        polarcheck.part(tmp_path / "none.nc")
 
 
 def test_a_file_may_be_called_as_standard_input_is(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -310,6 +338,39 @@ def test_an_empty_folder_is_told(tmp_path: Path) -> None:
         report = polarcheck.check(tmp_path)
     assert not report.files
     assert told[0].filename == __file__
+
+
+def test_a_walk_says_what_it_leaves_out(tmp_path: Path) -> None:
+    for name in ("a.nc", "b.nc", "P.SUB"):
+        (tmp_path / name).write_text(RAPID, "utf-8")
+    with pytest.warns(PolarcheckWarning, match=r"polarcheck.check\(\): exclude 'z\*' excludes nothing"):
+        report = polarcheck.check(tmp_path, exclude=[f"{tmp_path}/b.nc", "z*"], use_config=False)
+    assert [Path(file.path).name for file in report.files] == ["a.nc"]
+    assert polarcheck.check(tmp_path, extensions="SUB", use_config=False).summary.files == 1
+    with pytest.raises(SourceError, match="nothing to check: "):
+        polarcheck.check(tmp_path, exclude=f"{tmp_path}/*.nc", use_config=False)
+    with pytest.raises(UsageError, match=r"polarcheck.check\(\): exclude: expected a pattern such as O12"):
+        polarcheck.check(tmp_path, exclude="")
+
+
+def test_known_findings_are_silenced_as_the_command_does(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "a.nc").write_text(RAPID, "utf-8")
+    (tmp_path / "b.nc").write_text(RAPID + RAPID, "utf-8")
+    assert CliRunner().invoke(main, ["baseline", "create", "a.nc", "-o", "known.json"]).exit_code == 0
+    command = by_command("check", ".", "--format", "json", "--baseline", "known.json")
+    report = polarcheck.check(".", baseline=Path("known.json"))
+    assert [(file["verdict"], len(file["silenced"])) for file in command["files"]] == [
+        (file.verdict, len(file.silenced)) for file in report.files
+    ]
+    assert [file.verdict for file in report.files] == ["pass", "fail"]
+    assert polarcheck.check_text(RAPID, name="a.nc", baseline="known.json").verdict == "pass"
+    assert polarcheck.check_text(RAPID, name="a.nc", baseline="known.json", use_baseline=False).verdict == "fail"
+    (tmp_path / "a.nc").write_text("M30\n", "utf-8")
+    with pytest.warns(PolarcheckWarning, match="known finding no longer occurs: rapid-in-polar in a.nc"):
+        polarcheck.check("a.nc", baseline="known.json")
+    with pytest.raises(BaselineError, match=r"none\.json"):
+        polarcheck.check("a.nc", baseline="none.json")
 
 
 def test_a_fault_of_polarcheck_is_raised(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -363,7 +424,7 @@ def test_import_loads_nothing() -> None:
 
 def test_type_checkers_and_python_see_the_same_names() -> None:
     tree = ast.parse(Path(polarcheck.__file__).read_text("utf-8"))
-    (guarded,) = (node for node in tree.body if isinstance(node, ast.If))
+    guarded = next(node for node in tree.body if isinstance(node, ast.If))
     imports = [node for node in guarded.body if isinstance(node, ast.ImportFrom)]
     seen = {str(alias.asname): f"{node.module}.{alias.name}" for node in imports for alias in node.names}
     assert {*seen, "__version__"} == set(polarcheck.__all__)
@@ -405,7 +466,8 @@ def test_every_option_of_a_job_is_a_keyword() -> None:
     other = {"severities": "severities", "units": "program_units"}
     known = {*keywords.CheckKeywords.__annotations__}
     left = {other.get(name, name) for name in Options.__struct_fields__} - known
-    assert left == {"baseline", "extras", "keywords"}
+    left -= {*inspect.signature(polarcheck.check).parameters}
+    assert left == {"extras", "keywords"}
 
 
 def test_warnings_are_no_errors_of_a_clean_folder(samples: None) -> None:
@@ -417,12 +479,13 @@ def test_warnings_are_no_errors_of_a_clean_folder(samples: None) -> None:
 # ---- the page and the notebook ----
 
 
-def test_examples_of_the_page_are_right(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize(("page", "least"), [("docs/api.md", 20), ("README.md", 4)])
+def test_examples_of_the_pages_are_right(page: str, least: int, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(ROOT)
     failed, run = doctest.testfile(
-        str(ROOT / "docs" / "api.md"), module_relative=False, optionflags=doctest.NORMALIZE_WHITESPACE, encoding="utf-8"
+        str(ROOT / page), module_relative=False, optionflags=doctest.NORMALIZE_WHITESPACE, encoding="utf-8"
     )
-    assert run >= 20
+    assert run >= least
     assert not failed
 
 

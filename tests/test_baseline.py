@@ -71,8 +71,12 @@ def test_what_is_known_is_silent_and_what_is_new_is_told() -> None:
     assert entries() == [("a.nc", "G0 C5.", 1), ("sub/b.nc", "G0 C7.", 1)]
     result = check(".")
     assert (result.exit_code, result.stderr) == (0, "")
-    assert "pass (1 silenced)  a.nc: no findings, 1 polar section" in result.stdout
-    assert "2 pass (findings silenced); no findings, 2 silenced" in result.stdout
+    assert "unverified (1 silenced)  a.nc: no findings, 1 polar section" in result.stdout
+    assert "2 unverified; no findings, 2 silenced" in result.stdout
+    make(polarcheck__toml="select = { rules = ['rapid-in-polar'], reason = 'THE OTHERS RUN ELSEWHERE' }\n")
+    whole = call("check", "--baseline", FILE, "a.nc")
+    Path("polarcheck.toml").unlink()
+    assert "pass (1 silenced)  a.nc: no findings, 1 polar section" in whole.stdout
     make(a__nc=RAPID.replace("G1 C-5.", "G0 C-5."))
     result = check(".", "--format", "json")
     assert result.exit_code == 1
@@ -527,7 +531,10 @@ def test_what_is_silenced_is_listed_on_demand() -> None:
     make(b__nc=other, c__nc=GOOD)
     shown = check("b.nc", "c.nc", "--show-silenced").stdout
     assert "(by allow: PROVEN)" in " ".join(shown.split())
-    assert "2 pass (1 with findings silenced); no findings, 1 silenced" in shown
+    assert "2 unverified; no findings, 1 silenced" in shown
+    make(polarcheck__toml="select = { rules = ['rapid-in-polar'], reason = 'THE OTHERS RUN ELSEWHERE' }\n")
+    assert "2 pass (1 with findings silenced); no findings, 1 silenced" in call("check", "b.nc", "c.nc").stdout
+    Path("polarcheck.toml").unlink()
     assert check("b.nc", "--no-inline").exit_code == 1
 
 
@@ -537,7 +544,7 @@ def test_a_verdict_says_what_it_does_not_rest_on() -> None:
     assert "fail (1 silenced)  a.nc: 1 error, 1 polar section" in result.stdout
     empty = "O1\nG0 X1. X2. (POLARCHECK ALLOW WORD-REPEATED PROVEN)\nM30\n"
     make(b__nc=empty)
-    result = call("check", "b.nc", "--select", "word-repeated")
+    result = call("check", "b.nc")
     assert "pass (no polar section, 1 silenced)  b.nc: no findings" in result.stdout
 
 
@@ -545,15 +552,9 @@ def test_a_verdict_says_what_it_does_not_rest_on() -> None:
 
 
 def test_it_takes_all_options_that_decide_what_is_found() -> None:
-    assert set(Options.__struct_fields__) - {
-        "use_config",
-        "baseline",
-        "use_baseline",
-        "keywords",
-        "strict",
-        "fail_on",
-        "extras",
-    } <= set(baseline_command.DECIDING)
+    of_exit_code = {"strict", "fail_on", "max_warnings"}
+    others = {"use_config", "baseline", "use_baseline", "extras", "named", "gives_verdicts", "keywords"}
+    assert set(Options.__struct_fields__) - of_exit_code - others <= set(baseline_command.DECIDING)
     for command in ("create", "update", "prune"):
         parameters = {one.name for one in baseline_command.baseline.commands[command].params}
         assert {*baseline_command.DECIDING, "output"} <= parameters
@@ -574,7 +575,7 @@ def test_the_process() -> None:
     assert run("baseline", "create", "a.nc") == (0, f"{FILE}: 1 finding of 1 file known\n", "")
     status, shown, told = run("check", "a.nc", "--baseline", FILE)
     assert (status, told) == (0, "")
-    assert "pass (1 silenced)" in shown
+    assert "unverified (1 silenced)" in shown
     assert run("baseline", "create", "a.nc")[0] == 2
 
 

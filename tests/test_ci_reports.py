@@ -502,7 +502,11 @@ def test_what_could_not_be_judged_is_skipped_and_with_strict_it_fails() -> None:
         result = check("c.nc", "--select", "overcut,rapid-in-polar", "--format", "junit", *options)
         junit_schema().validate(result.stdout)
         root = ElementTree.fromstring(result.stdout)  # noqa: S314
-        assert outcomes(root) == {("c.nc", "compensation"): outcome, ("c.nc", "polar"): "passed"}
+        assert outcomes(root) == {
+            ("c.nc", "compensation"): outcome,
+            ("c.nc", "polar"): "passed",
+            ("c.nc", "deselected"): outcome,
+        }
         assert next(root.iter(outcome)).attrib["message"].startswith("no radius for T0101")
         assert result.exit_code == code
     undecided = Undecided(**msgspec.structs.asdict(finding()))
@@ -516,9 +520,10 @@ def test_only_rules_that_ran_are_tests_and_only_what_fails_is_a_failure() -> Non
     for severity, fail_on, outcome in (("note", "warning", "passed"), ("note", "note", "failure")):
         options = ("--severity", f"rapid-in-polar={severity}", "--fail-on", fail_on)
         root = ElementTree.fromstring(check("a.nc", *select, *options).stdout)  # noqa: S314
-        assert outcomes(root) == {("a.nc", "polar"): outcome}
-    (told,) = ElementTree.fromstring(check("a.nc", *select, "--fail-on", "never").stdout).iter("testcase")  # noqa: S314
-    assert "G0 cannot be used" in str(told[0].text)
+        assert outcomes(root) == {("a.nc", "polar"): outcome, ("a.nc", "deselected"): "skipped"}
+    # What fails the file fails its test, whatever the exit code is.
+    told, _ = ElementTree.fromstring(check("a.nc", *select, "--fail-on", "never").stdout).iter("testcase")  # noqa: S314
+    assert (told[0].tag, "G0 cannot be used" in str(told[0].text)) == ("failure", True)
 
 
 def test_a_suite_says_what_its_pass_rests_on() -> None:
@@ -582,7 +587,7 @@ def test_statistics_stand_in_place_of_the_findings() -> None:
 findings  files  fixable  severity  rule
        3      2        0  error     rapid-in-polar
 
-3 files checked for fanuc: 2 fail, 1 pass; 3 errors
+3 files checked for fanuc: 2 fail, 1 unverified; 3 errors
 """
     )
     quiet = check("a.nc", "b.nc", "c.nc", *RAPID_ONLY, "--statistics", "-q").stdout

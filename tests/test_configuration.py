@@ -99,7 +99,7 @@ def test_an_entry_says_all_that_decides_about_a_program() -> None:
     found = checked("a.nc", "b.nc")
     assert {path: (file["machine"], file["verdict"]) for path, file in found.items()} == {
         "a.nc": ("fanuc", "fail"),
-        "b.nc": ("fanuc-30i", "pass"),
+        "b.nc": ("fanuc-30i", "unverified"),
     }
     assert {one["rule"] for one in found["b.nc"]["findings"]} <= {"rapid-in-polar"}
     values = shown("b.nc")
@@ -362,6 +362,106 @@ def test_where_nothing_is_left_to_check_that_is_no_success(names: list[str], sai
     assert (result.exit_code, result.stderr) == (0, f"polarcheck: warning: .: {said}\n")
     make("now.nc", text="O1\nM30\n")
     assert call("check", ".").exit_code == 0
+
+
+def show_files(*arguments: str) -> dict[str, str]:
+    """What --show-files says of each path: nothing of what is read, else the reason."""
+    result = call("check", *arguments, "--show-files", "--format", "json")
+    assert (result.exit_code, result.stderr) == (0, "")
+    return {entry["path"]: "" if entry["read"] else entry["reason"] for entry in json.loads(result.stdout)["files"]}
+
+
+def archive() -> None:
+    """A folder with a program, and some of each kind that a walk does not read."""
+    make("a.nc", "P.SUB", "Q.SUB", "x.lib", "1.001", "O1234-REV.B", "old/b.nc", "old/deep/c.nc", "d.bak", ".git/x.nc")
+    make("tools.txt", text="G10 P1 X0 Z0 R4. Q0\nG10 P2 X0 Z0 R5. Q0\n")
+    job("offsets = 'tools.txt'\nexclude = ['old', '*.bak']\n")
+
+
+OF_ARCHIVE = ["not read: 2 .SUB, 1 .001, 1 .B (O1234-REV.B), 1 .lib", "excluded: 3"]
+
+
+def test_the_files_of_a_folder_are_listed_with_the_reason() -> None:
+    archive()
+    ending = "the ending {} is none of the extensions"
+    assert show_files(".") == {
+        "a.nc": "",
+        ".git/": "hidden folders and those of packages are not entered",
+        "1.001": ending.format(".001"),
+        "O1234-REV.B": ending.format(".B"),
+        "P.SUB": ending.format(".SUB"),
+        "Q.SUB": ending.format(".SUB"),
+        "d.bak": "excluded by polarcheck.toml:2: '*.bak'",
+        "old/": "excluded by polarcheck.toml:2: 'old', with 2 programs in it",
+        "x.lib": ending.format(".lib"),
+        "tools.txt": "an offset table of a job",
+    }
+    # What is named is read, and each is listed once.
+    listed = show_files(".", "P.SUB", "old", "tools.txt", ".")
+    assert {path for path, reason in listed.items() if not reason} == {
+        *("a.nc", "P.SUB", "old/b.nc", "old/deep/c.nc", "tools.txt")
+    }
+    assert show_files(".", "--exclude", "a*", "--extensions", "sub")["a.nc"] == "excluded by --exclude 'a*'"
+    lines = call("check", ".", "--show-files").stdout.splitlines()
+    assert lines[:2] == ["read      a.nc", "not read  .git/: hidden folders and those of packages are not entered"]
+    assert len(call("check", ".", "--show-files", "--format", "jsonl").stdout.splitlines()) == len(lines) == 10
+
+
+@pytest.mark.parametrize(
+    ("option", "told"),
+    [
+        (["--format", "sarif"], "--show-files: expected --format text, json, jsonl, found sarif"),
+        (["--fix"], "--show-files checks nothing: leave --fix out"),
+        (["-o", "json:x.json"], "--show-files checks nothing: leave -o out"),
+    ],
+)
+def test_a_list_of_files_is_no_check(option: list[str], told: str) -> None:
+    make("a.nc")
+    assert refused("check", ".", "--show-files", *option) == told
+    assert not Path("x.json").exists()
+
+
+@pytest.mark.parametrize(
+    "form", ["text", "short", "github", "json", "jsonl", "html", "concise", "sarif", "gitlab", "junit"]
+)
+def test_each_format_says_what_was_not_read_or_standard_error_does(form: str) -> None:
+    archive()
+    result = call("check", ".", "--format", form)
+    if form in ("text", "short", "github"):
+        assert "; ".join(OF_ARCHIVE) in result.stdout
+    elif form in ("json", "jsonl"):
+        document = json.loads(result.stdout.splitlines()[-1] if form == "jsonl" else result.stdout)
+        summary = document if form == "jsonl" else document["summary"]
+        assert summary["excluded"] == 3
+        assert summary["not_read"][:2] == [
+            {"ending": ".sub", "files": 2, "first": "P.SUB"},
+            {"ending": ".001", "files": 1, "first": "1.001"},
+        ]
+    elif form == "html":
+        assert all(f'<p class="none">{line}</p>' in result.stdout for line in OF_ARCHIVE)
+    lines = "".join(f"polarcheck: warning: {line}\n" for line in OF_ARCHIVE)
+    assert result.stderr.startswith(lines) == (form not in ("text", "short", "github", "json", "jsonl"))
+    assert result.stderr.count("not read") <= 1
+    assert call("check", ".", "--format", form, "-q").stderr == ""
+
+
+def test_pages_in_a_folder_say_what_was_not_read() -> None:
+    archive()
+    call("check", ".", "-o", "html:pages", "-q")
+    index = Path("pages/index.html").read_text("utf-8")
+    assert all(f"<p>{line}</p>" in index for line in OF_ARCHIVE)
+
+
+def test_names_of_files_act_on_no_terminal_and_no_page() -> None:
+    name = "O1-\x1b[31m<b>.B<i>"
+    make(name, "a.nc")
+    assert "\x1b" not in call("check", ".").stdout + call("check", ".", "--show-files").stdout
+    assert "<b>" not in call("check", ".", "--format", "html").stdout
+
+
+def test_endings_beyond_the_first_ones_are_counted_together() -> None:
+    make("a.nc", *(f"P.x{number}" for number in range(12)))
+    assert ", 1 .x4 (P.x4), 1 .x5 (P.x5), 4 of other endings\n" in call("check", ".", "--format", "short").stdout
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="rights are others there")
@@ -791,7 +891,7 @@ def test_init_takes_the_machine_that_is_named_from_where_the_file_lies() -> None
     make("l.toml", text="inherits = 'fanuc-30i'\n")
     assert call("init", "jobs", "--machine", "l.toml").exit_code == 0
     assert written("jobs/polarcheck.toml")["machine"] == "../l.toml"
-    assert checked("jobs")["jobs/O1.nc"]["machine"].endswith("l.toml")
+    assert checked("jobs")["jobs/O1.nc"]["machine"] == "l"
     assert refused("init", "--machine", "fanuk").startswith("unknown machine 'fanuk'; did you mean fanuc?")
 
 

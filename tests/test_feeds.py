@@ -258,7 +258,7 @@ def feeds(*arguments: Any) -> Any:
 def test_the_table_as_text() -> None:
     make(a__nc=FLAT)
     lines = feeds().stdout.split("\n")
-    assert lines[0] == "a.nc on FANUC lathe control: C 3600 deg/min"
+    assert lines[0] == "a.nc on fanuc: C 3600 deg/min"
     assert re.split(r" {2,}", lines[1]) == [*HEADS]
     assert lines[3].split() == ["6", "C-20.", "500", "188", "C", "188.496", "9549", "4.80", "12.77"]
     assert "with no more than F188" in feeds().stdout

@@ -23,11 +23,12 @@ from programs import ROOT
 
 import polarcheck
 from polarcheck import reports
+from polarcheck.api import runs
 from polarcheck.batch import executors
 from polarcheck.batch import tasks as batch
 from polarcheck.checking.rule import load_all
 from polarcheck.columns.trace import Trace
-from polarcheck.commands import progress, running
+from polarcheck.commands import progress
 from polarcheck.errors import ClusterError
 from polarcheck.settings.of_programs import OfPrograms, Options
 
@@ -494,11 +495,11 @@ def forms_of(tasks: list[batch.Task], seconds: float, monkeypatch: pytest.Monkey
         elsewhere.extend(tasks)
         yield from (batch.Outcome() for _ in tasks)
 
-    monkeypatch.setattr(running.time, "monotonic", lambda: clock[0])
-    monkeypatch.setattr(running, "cores", lambda: 2)
+    monkeypatch.setattr(runs.time, "monotonic", lambda: clock[0])
+    monkeypatch.setattr(runs, "cores", lambda: 2)
     monkeypatch.setattr(batch, "outcome", checked)
-    monkeypatch.setattr(running, "_by_processes", by_others)
-    with running.Runner(1000, 0, None)._outcomes(tasks) as found:
+    monkeypatch.setattr(runs, "_by_processes", by_others)
+    with runs.outcomes(tasks, 1000, 0) as found:
         assert len(list(found)) == len(tasks)
     return len(here), len(elsewhere)
 

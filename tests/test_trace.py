@@ -8,11 +8,14 @@ import json
 from pathlib import Path
 from typing import Any
 
+import jsonschema
 import numpy as np
 import pytest
 from click.testing import CliRunner, Result
 
+from polarcheck import __version__
 from polarcheck.commands import main
+from polarcheck.reports.pages import schema
 
 SAMPLES = Path(__file__).parent.parent / "sample_programs"
 KEYS = [
@@ -21,9 +24,9 @@ KEYS = [
 ]
 
 
-def call(*arguments: str, **environment: str) -> Result:
+def call(*arguments: str, code: int = 0, **environment: str) -> Result:
     result = CliRunner().invoke(main, ["trace", *arguments], env=environment)
-    assert result.exit_code == 0, result.output
+    assert result.exit_code == code, result.output
     return result
 
 
@@ -122,7 +125,7 @@ def test_without_the_radius_moves_in_offset_mode_are_the_programmed_ones_and_say
 ) -> None:
     name = written(folder, FACES[machine])
     options = ("--machine", machine, "--format", "jsonl", name)
-    result = call("--path", "tool", *options)
+    result = call("--path", "tool", *options, code=1)
     table = [json.loads(line) for line in result.stdout.splitlines()]
     shown = [move["line"] for move in table if move["path"] == "programmed"]
     assert shown == OFFSET_LINES[machine]
@@ -160,7 +163,8 @@ def test_a_radius_that_is_0_is_known(folder: Path) -> None:
 def test_all_that_is_missing_is_told_in_one_line(folder: Path) -> None:
     one, tail = FACES["fanuc"].split("T0101\n")
     two = tail.replace("M30\n", "")
-    result = call("--path", "tool", written(folder, f"{one}T0101\n{two}T0303\n{two}T0300\n{two}M30\n"))
+    text = f"{one}T0101\n{two}T0303\n{two}T0300\n{two}M30\n"
+    result = call("--path", "tool", written(folder, text), code=1)
     assert result.stderr == (
         "polarcheck: warning: no radius for T0101, T0303, no tool offset is in force at line 32: what is run with G41 "
         "or G42 is shown as programmed, not as the tool runs; give --tool 1:radius=... --tool 3:radius=... "
@@ -192,7 +196,7 @@ def test_z_goes_from_where_the_block_before_has_left_it(folder: Path) -> None:
 
 def test_z_that_is_not_known_is_null(folder: Path) -> None:
     text = FACES["fanuc"].replace("X50. Z2. C0", "X50. C0")
-    assert moves("--path", "tool", written(folder, text))[0]["z"] == [None, None]
+    assert moves("--tool", "1:radius=4", "--path", "tool", written(folder, text))[0]["z"] == [None, None]
 
 
 def test_z_of_a_block_that_is_several_moves_goes_as_the_way_does(folder: Path) -> None:
@@ -236,3 +240,82 @@ def test_what_the_environment_says_to_check_does_not_disturb(folder: Path) -> No
     assert run(name, **said) == run(name)
     assert run(name, POLARCHECK_FORMAT="jsonl") == run(name, "--format", "jsonl")
     assert run(name, "--format", "csv", POLARCHECK_FORMAT="jsonl") == run(name)
+
+
+# ---- one document, and golden files ----
+
+#: The same program, renumbered and commented.
+RENUMBERED = "".join(
+    f"N{10 * number} {line}\n({number})\n\n" if line[0] not in "O" else f"{line}\n(MADE ANEW)\n"
+    for number, line in enumerate(FACES["fanuc"].splitlines())
+)
+WITH_R = ("--tool", "1:radius=4")
+
+
+def document(*arguments: str, code: int = 0) -> dict[str, Any]:
+    made: dict[str, Any] = json.loads(call("--format", "json", *arguments, code=code).stdout)
+    return made
+
+
+def test_json_is_one_document_with_the_moves_of_json_lines(folder: Path) -> None:
+    name = written(folder, FACES["fanuc"])
+    made = document(*WITH_R, name)
+    head = {key: made[key] for key in made if key not in ("units", "moves")}
+    assert head == {"schema": 1, "version": __version__, "path": name, "machine": "fanuc", "requested": "tool"}
+    assert made["moves"] == moves(*WITH_R, "--path", "tool", name)
+    assert set(made["units"]) <= set(KEYS)
+    assert (made["units"]["start"], made["units"]["c_feed"]) == ("mm", "deg/min")
+    assert document("--path", "programmed", name)["requested"] == "programmed"
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [(), ("--golden",), ("--path", "programmed", "--golden")],
+    ids=["tool", "golden", "programmed"],
+)
+def test_the_document_fits_its_schema(folder: Path, arguments: tuple[str, ...]) -> None:
+    check = jsonschema.Draft202012Validator(schema.schema("trace"))
+    made = document(*WITH_R, *arguments, written(folder, FACES["fanuc"]))
+    check.validate(made)
+    changed = [{"units": {}}, {"schema": 2}, {"requested": "both"}, {"moves": [{"line": 1}]}]
+    changed += [{"moves": [{**made["moves"][0], **move}]} for move in ({"kind": "arc"}, {"start": [1.0]})]
+    assert not any(check.is_valid({**made, **change}) for change in changed)
+
+
+def test_a_program_without_moves_gives_a_document_without_moves(folder: Path) -> None:
+    assert document(written(folder, "O1\nM30\n"))["moves"] == []
+
+
+@pytest.mark.parametrize(
+    "path", [(), ("--path", "tool"), ("--path", "programmed")], ids=["blocks", "tool", "programmed"]
+)
+@pytest.mark.parametrize("form", ["json", "jsonl", "csv"])
+def test_a_golden_file_survives_renumbering_and_comments(folder: Path, form: str, path: tuple[str, ...]) -> None:
+    options = (*WITH_R, *path, "--format", form)
+    names = [written(folder, FACES["fanuc"], "a.nc"), written(folder, RENUMBERED, "b.nc")]
+    plain, golden = ([run(*options, *more, name) for name in names] for more in ((), ("--golden",)))
+    assert plain[0] != plain[1]
+    assert golden[0] == golden[1]
+    assert 'line":' not in golden[0].replace('"kind":"line"', "")
+    assert run(*options, "--golden", written(folder, FACES["fanuc"].replace("C20.", "C21."))) != golden[0]
+
+
+def test_a_golden_file_is_never_a_table_for_people(folder: Path) -> None:
+    name = written(folder, FACES["fanuc"])
+    for options in (("--format", "table"), ("--show", "path")):
+        assert "--golden" in call(*options, "--golden", name, code=2).stderr
+
+
+@pytest.mark.parametrize("form", [("--path", "tool"), ("--path", "tool", "--format", "table"), ("--format", "json")])
+def test_the_exit_code_says_that_the_radius_is_not_known(folder: Path, form: tuple[str, ...]) -> None:
+    name = written(folder, FACES["fanuc"])
+    assert "no radius for T0101" in call(*form, name, code=1).stderr
+    assert call(*form, *WITH_R, name).stderr == ""
+    assert call("--path", "programmed", name).stderr == ""
+
+
+def test_the_machine_is_its_id(folder: Path) -> None:
+    (folder / "lathes").mkdir()
+    machine = written(folder / "lathes", "inherits = 'fanuc-30i'\n", "nl2000.toml")
+    name = written(folder, FACES["fanuc"])
+    assert document(*WITH_R, "--machine", machine, name)["machine"] == "nl2000"

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import functools
+import json
 import math
 import string
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 from programs import report_of, report_of_example
 
 from polarcheck.checking import message
@@ -18,6 +21,7 @@ from polarcheck.checking.message import as_data
 from polarcheck.checking.rule import Rule, load_all
 from polarcheck.checking.tables import MAKERS, PARTS
 from polarcheck.checking.vocabulary import VOCABULARY, Kind, kinds
+from polarcheck.commands import main
 from polarcheck.errors import RuleError
 from polarcheck.finding import Finding
 
@@ -148,3 +152,46 @@ def test_the_highest_feed_is_one_that_the_rule_takes() -> None:
 def test_without_a_limit_there_is_none_in_the_values() -> None:
     (found,) = report_of(FAST.replace("F500", "F50000"), only=["c-feed-above-limit"]).findings
     assert found.values.keys() == {"c_feed", "feed", "nearest"}
+
+
+# ---- the machine is its id, its file stands beside it ----
+
+
+def shown(*arguments: str) -> Any:
+    return json.loads(CliRunner().invoke(main, arguments, catch_exceptions=False).stdout)
+
+
+@pytest.mark.parametrize(
+    ("machine", "named"), [("fanuc-30i", ("fanuc-30i", None)), ("lathes/nl2000.toml", ("nl2000", "lathes/nl2000.toml"))]
+)
+def test_the_machine_is_its_id_in_every_report(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, machine: str, named: tuple[str, str | None]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("lathes").mkdir()
+    Path("lathes/nl2000.toml").write_text("inherits = 'fanuc-30i'\ntitle = 'Our NL 2000'\n", "utf-8")
+    Path("a.nc").write_text(FAST.replace("C-5. F500", "G0 C-5."), "utf-8")
+    options = ("a.nc", "--no-config", "--machine", machine, "--format")
+    report, part = shown("check", *options, "json"), shown("part", *options, "json")
+    for file in (*report["files"], *part["files"]):
+        assert (file["machine"], file.get("machine_file")) == named
+    (run,) = shown("check", *options, "sarif")["runs"]
+    assert {one["properties"]["machine"] for one in (run, *run["results"])} == {named[0]}
+    in_others = (
+        report["machine"],
+        shown("feeds", *options, "json")["machine"],
+        shown("trace", *options, "json")["machine"],
+    )
+    assert in_others == (named[0],) * 3
+
+
+def test_two_machine_files_of_one_name_are_two_machines(tmp_path: Path) -> None:
+    for folder in ("a", "b"):
+        (tmp_path / folder).mkdir()
+        (tmp_path / folder / "lathe.toml").write_text("inherits = 'fanuc'\n", "utf-8")
+        (tmp_path / folder / "polarcheck.toml").write_text("machine = 'lathe.toml'\n", "utf-8")
+        (tmp_path / folder / "o.nc").write_text(FAST, "utf-8")
+    report = shown("check", str(tmp_path), "--format", "json")
+    assert report["machine"] is None
+    assert [file["machine"] for file in report["files"]] == ["lathe", "lathe"]
+    assert len({file["machine_file"] for file in report["files"]}) == 2

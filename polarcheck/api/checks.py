@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Generator, Iterable, Sequence
-from contextlib import closing
+from collections.abc import Iterable
 from typing import Unpack
 
-from polarcheck.api.keywords import CheckKeywords, PathName, options, paths_of, takes
+from polarcheck.api import runs
+from polarcheck.api.keywords import CheckKeywords, PathName, names_of, options, paths_of, takes
 from polarcheck.api.programs import NAMELESS, Call
 from polarcheck.batch import tasks as batch
+from polarcheck.batch.baselines import Baselines
 from polarcheck.batch.tasks import Outcome, Task
 from polarcheck.errors import PolarcheckWarning, SourceError, UsageError
 from polarcheck.finding import FileReport, Report
@@ -25,7 +26,9 @@ _FUNCTION = "polarcheck.check()"
 def check(
     paths: PathName | Iterable[PathName],
     *,
-    extensions: Iterable[str] = (),
+    extensions: str | Iterable[str] = (),
+    exclude: str | Iterable[str] = (),
+    force_exclude: bool = False,
     processes: int = 1,
     max_size: int = files.LARGEST,
     **keywords: Unpack[CheckKeywords],
@@ -33,54 +36,43 @@ def check(
     """
     Check programs: files, and folders with all programs in them. The report holds one entry for each program.
 
-    A finding is never an exception; a file that cannot be read is one, a SourceError. A folder without programs and a
-    pattern that matches none are told by a PolarcheckWarning.
+    Neither a finding nor a file that cannot be read is an exception: such a file has the verdict unreadable. A folder
+    without programs, a pattern that matches none and a job file that leaves another behind are told by a
+    PolarcheckWarning.
 
     paths: one path or several; a program that several of them lead to is checked once.
     extensions: endings of the programs in folders, in place of .nc, .tap and others.
+    exclude: patterns of programs that no walk through a folder finds, beside those of job files.
+    force_exclude: what is excluded is left out even where it is named.
     processes: how many check; 1 for this one alone. More need a main module that can be imported (multiprocessing).
     max_size: a larger file is not read [bytes].
 
-    Raises UsageError, JobError or MachineError for a wrong setting before any file is checked.
+    Raises UsageError, JobError or MachineError for a wrong setting, BaselineError for a wrong baseline and SourceError
+    for a folder that cannot be read, or that all programs of are excluded, before any file is checked.
     """
-    settings_of = OfPrograms(options(_FUNCTION, CheckKeywords, keywords))
-    named, failures, doubts = paths_of(_FUNCTION, paths), list[str](), list[str]()
+    if isinstance(processes, bool) or not isinstance(processes, int) or processes < 1:
+        raise UsageError(f"{_FUNCTION}: processes: expected a whole number from 1, found {processes!r}")
+    named, endings = paths_of(_FUNCTION, paths), names_of(_FUNCTION, "extensions", extensions)
+    patterns = names_of(_FUNCTION, "exclude", exclude)
+    settings_of = OfPrograms(options(_FUNCTION, CheckKeywords, keywords, exclude=patterns))
     skipped: list[Skipped] = []
-    tasks = batch.plan(
-        named,
-        settings_of,
-        [*extensions],
-        failures.append,
-        doubts.append,
-        excluded_in=settings_of.excluded_in,
-        extensions_in=settings_of.extensions_in,
-        skipped=skipped,
-    )
-    doubts += settings_of.unmatched(named, [task.place for task in tasks], [*extensions])
-    for doubt in (*doubts, *settings_of.left_behind()):
+    tasks, failures, doubts = runs.planned(named, settings_of, endings, force_exclude=force_exclude, skipped=skipped)
+    for doubt in doubts:
         warnings.warn(doubt, PolarcheckWarning, stacklevel=2)
     if failures:
         raise SourceError(failures[0])
-    with closing(_outcomes(tasks, processes, max_size)) as outcomes:
-        reports = [_report(outcome) for outcome in outcomes]
-    return batch.report(reports, tasks[0].settings.name if tasks else profiles.DEFAULT, skipped=skipped)
-
-
-def _outcomes(tasks: Sequence[Task], processes: int, most: int) -> Generator[Outcome, None, None]:
-    if isinstance(processes, bool) or not isinstance(processes, int) or processes < 1:
-        raise UsageError(f"{_FUNCTION}: processes: expected a whole number from 1, found {processes!r}")
-    if processes == 1 or len(tasks) < 2:
-        return batch.one_by_one(tasks, most)
-    from polarcheck.batch import executors
-
-    return executors.by_processes(tasks, most, processes)
+    baselines = Baselines(tasks, named) if any(task.settings.baseline for task in tasks) else None
+    with runs.outcomes(tasks, max_size, processes) as outcomes:
+        reports = [_report(outcome) for outcome in (baselines.outcomes(outcomes) if baselines else outcomes)]
+    for doubt in (*baselines.faults, *baselines.leftovers) if baselines else ():
+        warnings.warn(doubt, PolarcheckWarning, stacklevel=2)
+    return batch.report(reports, tasks[0].settings.machine_id if tasks else profiles.DEFAULT, skipped=skipped)
 
 
 def _report(outcome: Outcome) -> FileReport:
     if outcome.bug is not None:
         raise outcome.bug
-    if outcome.report is None:
-        raise SourceError(outcome.failure)
+    assert outcome.report is not None  # a file that cannot be read has one, too
     return outcome.report
 
 
@@ -92,7 +84,12 @@ def check_text(text: str | bytes, *, name: str = NAMELESS, **keywords: Unpack[Ch
     name: the path that it is reported as, and by which entries of a job file apply to it. No job file is read unless
         `config` names one, or use_config=True asks for the one nearest to this path.
 
-    Raises UsageError, JobError or MachineError for a wrong setting, TooHardError for a text that takes too long.
+    A text whose check takes too long has the verdict unreadable.
+
+    Raises UsageError, JobError or MachineError for a wrong setting, BaselineError for a wrong baseline.
     """
-    path, data, settings = Call("polarcheck.check_text()", CheckKeywords, keywords).of_text(text, name)
-    return _report(batch.outcome(Task(path, settings), data=data))
+    call = Call("polarcheck.check_text()", CheckKeywords, keywords)
+    _, data, settings = call.of_text(text, name)
+    task = Task(paths_of(call.function, [name])[0], settings)
+    report = _report(batch.outcome(task, data=data))
+    return report if settings.baseline is None else Baselines([task], []).without_known(report)

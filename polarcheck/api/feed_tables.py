@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Unpack
 
 import msgspec
@@ -11,9 +12,11 @@ from polarcheck.api.programs import NAMELESS, Call, Program
 from polarcheck.checking import check
 from polarcheck.checking.causes import READ_OTHERWISE
 from polarcheck.checking.rule import load_all
+from polarcheck.checking.tables import Tables
 from polarcheck.feed_table.table import FeedTable, feed_table
 from polarcheck.finding import Finding
 from polarcheck.reading.files import LARGEST
+from polarcheck.reports.pages.executed import without_radius
 
 
 class Feeds(msgspec.Struct, frozen=True, kw_only=True):
@@ -21,7 +24,7 @@ class Feeds(msgspec.Struct, frozen=True, kw_only=True):
     The highest F of each block of a program.
 
     path: as it is reported.
-    machine: the name of the machine, or the path of its file.
+    machine: its id, the name of a built-in machine or that of a machine file without folder and ending.
     tables: one for each channel, with its rows, sections and limits.
     findings: why nothing of this can be believed, if the program is for another control.
     missing: in one line, which moves are computed as programmed for want of R, and what to give; else empty.
@@ -63,15 +66,23 @@ def feeds_text(text: str | bytes, *, name: str = NAMELESS, **keywords: Unpack[Ex
 
 
 def _feeds(program: Program) -> Feeds:
-    from polarcheck.reports.pages.executed import without_radius
-
-    rules = [rule for name, rule in load_all().items() if name in READ_OTHERWISE]
     with program.runs() as runs:
-        missing = [without_radius(run["trace"], run["tool_center"]) for _, run in runs]
+        findings, missing = doubts(program, runs)
         return Feeds(
             path=program.path,
-            machine=program.settings.name,
-            tables=[feed_table(run) for _, run in runs],
-            findings=check.check_runs(runs, rules, program.settings.severities).findings,
-            missing="; ".join(text for text in missing if text),
+            machine=program.settings.machine_id,
+            tables=[feed_table(tables) for _, tables in runs],
+            findings=findings,
+            missing="; ".join(missing),
         )
+
+
+def doubts(program: Program, runs: Sequence[tuple[str, Tables]]) -> tuple[list[Finding], list[str]]:
+    """
+    Return what makes the feeds of a program doubtful.
+
+    These are findings that it is for another control, and a line for each channel with moves whose R is not known.
+    """
+    rules = [rule for name, rule in load_all().items() if name in READ_OTHERWISE]
+    missing = [without_radius(tables["trace"], tables["tool_center"]) for _, tables in runs]
+    return check.check_runs(runs, rules, program.settings.severities).findings, [line for line in missing if line]

@@ -95,6 +95,8 @@ class CheckKeywords(PartKeywords, total=False):
     fail_on: "error", "warning", "note" or "never".
     strict: an unverified file fails, too.
     inline: False to ignore the allow comments of programs.
+    baseline: a file of known findings, which are silenced.
+    use_baseline: False to ignore the baseline that a job file names.
     """
 
     select: str | Iterable[str]
@@ -103,10 +105,15 @@ class CheckKeywords(PartKeywords, total=False):
     fail_on: Severity | Literal["never"]
     strict: bool
     inline: bool
+    baseline: PathName
+    use_baseline: bool
 
 
 #: Keywords that are no keys of a job file.
-_OF_OPTIONS = ("changes", "config", "drawing_layers", "drawings", "ignore", "select", "subprograms", "tolerance")
+_OF_OPTIONS = (
+    *("changes", "config", "drawing_layers", "drawings", "ignore", "select", "subprograms", "tolerance"),
+    *("baseline", "use_baseline", "use_config"),
+)
 #: Keywords that a single value may be given to.
 _LISTS = ("drawing_layers", "drawings", "ignore", "select", "subprograms")
 _LARGEST_TOLERANCE = 100.0
@@ -172,26 +179,26 @@ def options(function: str, kind: type, given: Mapping[str, Any], **more: Any) ->
     table = {name: _plain(value) for name, value in given.items() if value is not None}
     for name in _LISTS:
         if name in table:
-            table[name] = _names(function, name, table[name])
-    for name in ("config", "machine", "offsets", "encoding"):
+            table[name] = names_of(function, name, table[name])
+    for name in ("baseline", "config", "machine", "offsets", "encoding"):
         if not isinstance(table.get(name, ""), str):
             raise UsageError(f"{function}: {name}: expected a name or a path, found {_short(given[name])}")
-    use_config = table.pop("use_config", True)
     if "encoding" in table and not _is_encoding(table["encoding"]):
         raise UsageError(
             f"{function}: encoding: unknown encoding {_short(given['encoding'])}; for example utf-8, cp1252"
         )
-    if not isinstance(use_config, bool):
-        raise UsageError(f"{function}: use_config: expected True or False, found {_short(use_config)}")
+    for name in ("use_baseline", "use_config"):
+        if not isinstance(table.get(name, True), bool):
+            raise UsageError(f"{function}: {name}: expected True or False, found {_short(given[name])}")
     of_options = {name: table.pop(name) for name in _OF_OPTIONS if name in table}
     _check(function, of_options)
     job = _job(function, table)
     levels = keywords(function, job, of_options.pop("changes", {}))
     severities = [f"{name}={level}" for name, level in job.pop("severities", {}).items()]
-    paths = {name: Path(value) for name, value in of_options.items() if name == "config"}
+    paths: dict[str, Any] = {name: Path(of_options[name]) for name in ("baseline", "config") if name in of_options}
     if "drawings" in of_options:
-        paths["drawings"] = [Path(path) for path in of_options["drawings"]]  # type: ignore[assignment]
-    return Options(**{**of_options, **paths, **more}, severities=severities, use_config=use_config, keywords=levels)
+        paths["drawings"] = [Path(path) for path in of_options["drawings"]]
+    return Options(**{**of_options, **paths, **more}, severities=severities, keywords=levels)
 
 
 def _is_encoding(name: str) -> bool:
@@ -219,8 +226,10 @@ def _plain(value: Any) -> Any:
 
 
 def _is(value: Any, default: Any) -> bool:
-    """Return True for the default of a field; NaN is unknown."""
-    return value is None or value is default or (isinstance(value, float) and (math.isnan(value) or value == default))
+    """Return True for the default of a field; NaN is unknown, and empty lists and tables are defaults."""
+    if isinstance(value, float):
+        return math.isnan(value) or value == default
+    return value is None or value is default or value in ([], {})
 
 
 def _key(key: Any) -> Any:
@@ -255,10 +264,11 @@ def _is_number(value: Any) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool)
 
 
-def _names(function: str, name: str, value: Any) -> list[str]:
-    names = [value] if isinstance(value, str) else value
+def names_of(function: str, keyword: str, value: Any) -> list[str]:
+    """Return the names of a keyword that takes one or several. Raises UsageError for what is no name."""
+    names = [value] if isinstance(value, str) else _plain(value)
     if not isinstance(names, list) or not all(isinstance(element, str) for element in names):
-        raise UsageError(f"{function}: {name}: expected names, found {_short(value)}")
+        raise UsageError(f"{function}: {keyword}: expected names, found {_short(value)}")
     return names
 
 

@@ -17,6 +17,8 @@ from polarcheck.reading.files import LARGEST
 
 #: The rule that compares a part with its drawing. Rules whose findings make the part doubtful run beside it.
 RULES = ("part-differs-from-drawing", *READ_OTHERWISE)
+#: What adds the part, and its comparison, to a report.
+EXTRAS = part_of, compared_in
 
 
 class MadePart(msgspec.Struct, frozen=True, kw_only=True):
@@ -24,7 +26,7 @@ class MadePart(msgspec.Struct, frozen=True, kw_only=True):
     What a program makes; an entry of `files` in `polarcheck part --format json`.
 
     path: as it is reported.
-    machine: the name of the machine, or the path of its file.
+    machine: its id, the name of a built-in machine or that of a machine file without folder and ending.
     part: the shapes, in the order of the program.
     compared: its contours beside those asked for.
     findings: where it differs from them, or why nothing of this can be believed.
@@ -71,10 +73,11 @@ def _part(program: Program) -> MadePart:
     settings = program.settings
     with program.runs() as runs:
         report = check.check_runs(runs, settings.rules, settings.severities, settings.inline)
-        report = compared_in(part_of(report, runs), runs)
+        for extra in EXTRAS:
+            report = extra(report, runs)
     return MadePart(
         path=report.path,
-        machine=settings.name,
+        machine=settings.machine_id,
         part=report.part or [],
         compared=report.compared or [],
         findings=report.findings,

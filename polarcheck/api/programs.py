@@ -14,7 +14,7 @@ from polarcheck.checking.settings import Settings
 from polarcheck.checking.tables import Tables
 from polarcheck.errors import UsageError
 from polarcheck.reading import files
-from polarcheck.settings.of_programs import OfPrograms
+from polarcheck.settings.of_programs import OfPrograms, Options
 from polarcheck.time_limit import seconds_for, time_limit
 
 #: The name of a text that has none.
@@ -42,6 +42,16 @@ class Program(NamedTuple):
             yield check.read(self.data, settings.machine, settings.job, self.path, settings.encoding)
 
 
+def of_file(path: str, options: Options, max_size: int) -> Program:
+    """
+    Return the program of a file, or of standard input (`-`).
+
+    Raises SourceError, UsageError, JobError or MachineError in one line.
+    """
+    settings = OfPrograms(options)(path)
+    return Program(files.shown(path), files.read_program(path, max_size), settings)
+
+
 class Call(NamedTuple):
     """
     A call of a function for Python.
@@ -60,8 +70,7 @@ class Call(NamedTuple):
     def of_path(self, path: PathName, max_size: int) -> Program:
         """Return the program of a file. Raises SourceError, UsageError, JobError and MachineError in one line."""
         (name,) = paths_of(self.function, [path])
-        settings = OfPrograms(options(self.function, self.kind, self.given, **self.more))(name)
-        return Program(files.shown(name), files.read_program(name, max_size), settings)
+        return of_file(name, options(self.function, self.kind, self.given, **self.more), max_size)
 
     def of_text(self, text: str | bytes, name: str) -> Program:
         """

@@ -2,19 +2,25 @@
 
 from __future__ import annotations
 
+import contextlib
+import os
+
 from polarcheck import reports
 from polarcheck.batch import tasks as batch
 from polarcheck.checking import rule
 from polarcheck.errors import UsageError
 from polarcheck.finding import FileReport, Report
+from polarcheck.reports import Background
 
 
 def render(report: Report | FileReport, form: str = "text") -> str:
     """
     Return a report as text, as the command line writes it with --format.
 
+    report: of `check` or `check_text`.
     form: text, short, concise, json, jsonl, sarif, junit, gitlab, github or checkstyle. Text for people is not in
-        color, and shows no lines of the programs, which a report does not hold.
+        color, and shows no lines of the programs, which a report does not hold. Formats of CI name files from the root
+        of the repository around the working folder.
 
     Raises UsageError for another format.
     """
@@ -23,4 +29,22 @@ def render(report: Report | FileReport, form: str = "text") -> str:
         raise UsageError(f"polarcheck.render(): form: expected one of {', '.join(known)}, found {form!r}")
     if isinstance(report, FileReport):
         report = batch.report([report], report.machine)
-    return reports.render(form, report, reports.Background(rules=rule.load_all()))
+    if not isinstance(report, Report):
+        raise UsageError(f"polarcheck.render(): expected a report of check, found {type(report).__name__}")
+    return reports.render(form, report, placed(Background(rules=rule.load_all())))
+
+
+def placed(background: Background) -> Background:
+    """Add the folders that paths are relative to."""
+    folder = ""
+    with contextlib.suppress(OSError):  # the working folder may be gone
+        folder = os.getcwd()  # noqa: PTH109
+    return background._replace(root=_root(folder).replace(os.sep, "/"), folder=folder.replace(os.sep, "/"))
+
+
+def _root(folder: str) -> str:
+    """Return the folder of the repository, else the working folder."""
+    from polarcheck.reading.files import RealPaths
+    from polarcheck.reading.git import Repositories
+
+    return (Repositories(RealPaths()).root_above(folder) if folder else None) or folder

@@ -54,7 +54,7 @@ class Trace(Table, frozen=True, eq=False):
     And for all moves together:
 
     file: the path of the program, as it is reported.
-    machine: the name of the machine, or the path of its file.
+    machine: its id, the name of a built-in machine or that of a machine file without folder and ending.
     missing: in one line, why moves of the tool path are shown as programmed, and what to give; empty if none is.
     """
 
@@ -178,7 +178,7 @@ def _trace(program: Program, which: str) -> Trace:
         time=moves.time,
         channel=np.repeat(_texts(channels), counts),
         file=program.path,
-        machine=program.settings.name,
+        machine=program.settings.machine_id,
         missing="; ".join(text for text in missing if text),
     )
 

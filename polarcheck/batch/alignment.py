@@ -6,7 +6,7 @@ from bisect import bisect_left
 from collections import Counter
 from collections.abc import Iterator, Sequence
 
-#: Where no block occurs once in both, stretches with more blocks taken away and added are not aligned.
+#: Stretches with more blocks taken away and added are parted at blocks that occur once in both.
 _MOST_EDITS = 256
 
 _Pair = tuple[int, int]
@@ -16,7 +16,8 @@ def aligned(old: Sequence[int], new: Sequence[int]) -> dict[int, int]:
     """
     Return for the indices of equal blocks in `old` those in `new`, in increasing order of both.
 
-    Blocks that occur once in both are aligned first (patience diff), then the stretches between them.
+    Few changes are found exactly: as many blocks as possible are aligned. Else blocks that occur once in both are
+    aligned first (patience diff), then the stretches between them.
     """
     pairs: dict[int, int] = {}
     stretches = [(0, len(old), 0, len(new))]
@@ -30,16 +31,15 @@ def aligned(old: Sequence[int], new: Sequence[int]) -> dict[int, int]:
             pairs[end] = new_end
         if start == end or new_start == new_end:
             continue
-        anchors = _anchors(old, new, (start, end, new_start, new_end))
+        found = [*_compared(old[start:end], new[new_start:new_end])]
+        pairs.update((start + at, new_start + new_at) for at, new_at in found)
+        anchors = [] if found else _anchors(old, new, (start, end, new_start, new_end))
         if anchors:
             for (at, new_at), (following, new_following) in zip(
                 [(start - 1, new_start - 1), *anchors], [*anchors, (end, new_end)], strict=True
             ):
                 stretches.append((at + 1, following, new_at + 1, new_following))
             pairs.update(anchors)
-        else:
-            found = _compared(old[start:end], new[new_start:new_end])
-            pairs.update((start + at, new_start + new_at) for at, new_at in found)
     return dict(sorted(pairs.items()))
 
 

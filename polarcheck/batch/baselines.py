@@ -7,27 +7,16 @@ from collections.abc import Collection, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
+import msgspec
+
 from polarcheck.batch import baseline_file
+from polarcheck.batch import baseline_warnings as warnings
 from polarcheck.batch.baseline import Baseline
 from polarcheck.batch.baseline_file import Contents
-from polarcheck.checking.rule import load_all
+from polarcheck.batch.tasks import Outcome, Task, fails
 from polarcheck.checking.settings import Settings
 from polarcheck.errors import BaselineError
 from polarcheck.finding import UNREADABLE, FileReport
-
-
-class Program(NamedTuple):
-    """
-    A program of a run.
-
-    title: its path in reports.
-    path: of the file.
-    settings: those that apply to it.
-    """
-
-    title: str
-    path: str
-    settings: Settings
 
 
 class OfFile(NamedTuple):
@@ -43,19 +32,6 @@ class OfFile(NamedTuple):
     contents: Contents
     baseline: Baseline
 
-    @property
-    def unknown_rules(self) -> Iterator[tuple[int, str]]:
-        """Yield the line and the rule of each entry whose rule there is not."""
-        rules = load_all()
-        for line, entry in zip(self.contents.lines, self.contents.entries, strict=False):
-            if entry.rule not in rules:
-                yield line, entry.rule
-
-    @property
-    def without_places(self) -> int:
-        """The number of entries of the first schema."""
-        return sum(not entry.places for entry in self.contents.entries)
-
 
 class Baselines:
     """
@@ -64,38 +40,34 @@ class Baselines:
     files: each baseline file with its known findings.
     """
 
-    def __init__(self, programs: Iterable[Program], walked: Sequence[str] | None) -> None:
+    def __init__(self, tasks: Iterable[Task], walked: Sequence[str] | None) -> None:
         """
         walked: the files and folders that the run was started with; known findings of other files are left alone.
 
         Raises BaselineError for a file that cannot be read, and names the key of the job file that names it.
         """
-        of_path: dict[Path, list[Program]] = {}
-        for program in programs:
-            if program.settings.baseline is not None:
-                of_path.setdefault(program.settings.baseline, []).append(program)
+        of_path: dict[Path, list[Task]] = {}
+        for task in tasks:
+            if task.settings.baseline is not None:
+                of_path.setdefault(task.settings.baseline, []).append(task)
         self._walked = walked
-        self._programs = of_path
+        self._tasks = of_path
         contents = {path: _read(path, its[0].settings.baseline_named_by) for path, its in of_path.items()}
         self.files = [self._of_file(path, contents[path]) for path in of_path]
-        self._of_program = self._by_program()
+        self._of_program = self._by_title()
 
     def _of_file(self, path: Path, contents: Contents) -> OfFile:
-        places = [program.path for program in self._programs[path]]
+        places = [task.place for task in self._tasks[path]]
         return OfFile(path, contents, Baseline(contents, path.parent, places, self._walked))
 
-    def _by_program(self) -> dict[str, tuple[Baseline, Settings]]:
-        return {
-            program.title: (file.baseline, program.settings)
-            for file in self.files
-            for program in self._programs[file.path]
-        }
+    def _by_title(self) -> dict[str, tuple[Baseline, Settings]]:
+        return {task.title: (file.baseline, task.settings) for file in self.files for task in self._tasks[file.path]}
 
     def copy(self) -> Baselines:
         """Return the same baselines as if no file had been checked."""
         copied = copy.copy(self)
         copied.files = [self._of_file(file.path, file.contents) for file in self.files]
-        copied._of_program = copied._by_program()
+        copied._of_program = copied._by_title()
         return copied
 
     def without_known(self, report: FileReport) -> FileReport:
@@ -104,6 +76,34 @@ class Baselines:
             return report
         baseline, settings = self._of_program[report.path]
         return baseline.without_known(report, evaluated(report, settings))
+
+    def outcomes(self, outcomes: Iterable[Outcome]) -> Iterator[Outcome]:
+        """Yield outcomes without the findings that the baselines know."""
+        for outcome in outcomes:
+            title = "" if outcome.report is None else outcome.report.path
+            if outcome.report is None or outcome.report.verdict == UNREADABLE or title not in self._of_program:
+                yield outcome
+                continue
+            report = self.without_known(outcome.report)
+            _, settings = self._of_program[title]
+            yield msgspec.structs.replace(outcome, report=report, failed=fails(report, settings))
+
+    @property
+    def faults(self) -> Iterator[str]:
+        """Lines on what in the files can have no effect, or too much of it."""
+        for file in self.files:
+            yield from warnings.of_contents(file.path, file.contents)
+
+    @property
+    def leftovers(self) -> Iterator[str]:
+        """Lines on known findings that no longer occur, and on moved files, once all programs have been checked."""
+        for file in self.files:
+            yield from warnings.of_leftovers(file.path, file.baseline)
+
+    @property
+    def is_stale(self) -> bool:
+        """True if known findings no longer occur, or an entry is of a rule that there is not."""
+        return any(any(warnings.unknown_rules(file.contents)) or any(file.baseline.leftovers()) for file in self.files)
 
 
 def _read(path: Path, named_by: str) -> Contents:

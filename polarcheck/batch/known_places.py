@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from bisect import bisect_right
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from itertools import islice
 from typing import NamedTuple
@@ -17,8 +18,9 @@ from polarcheck.finding import FileReport, Finding, Outline
 
 #: A finding that has moved within its file has most of these blocks before it and after it.
 _AROUND = 4
-#: A file is still the program that it was if this share of its blocks is.
-SAME = 0.5
+#: A file is still the program that it was if this share of its blocks is left, or this share of the blocks of now was
+#: in it.
+SAME, SAME_AS_PART = 0.5, 0.75
 #: The most places of an entry that are tried for a finding, and the most pairs of both where these may have moved.
 _TRIED, _MOST_PAIRS = 8, 20_000
 #: The span of rules with one finding for all blocks of a polar section.
@@ -47,7 +49,8 @@ class Versions:
     """
     The blocks of a program in the baseline and now.
 
-    is_same: most blocks of the former are in the latter.
+    is_same: most blocks of one of the two are in the other, in any order.
+    share: of the blocks of the longer version, those that are in the other one.
     """
 
     def __init__(self, program: Program, outline: Outline) -> None:
@@ -56,9 +59,9 @@ class Versions:
         self._new_kept, self._new = _thinned(outline.hashes, of)
         self._is_whole = of == 1
         pairs = aligned(self._old, self._new)
-        self.is_same = len(pairs) >= SAME * len(self._old)
-        #: The share of the blocks of the longer version that are in the other one.
-        self.share = len(pairs) / max(len(self._old), len(self._new), 1)
+        common = (Counter(self._old) & Counter(self._new)).total()
+        self.is_same = common >= SAME * len(self._old) or common >= SAME_AS_PART * len(self._new)
+        self.share = common / max(len(self._old), len(self._new), 1)
         self._pairs = {**pairs, -1: -1, len(self._old): len(self._new)}
         self._aligned = {*pairs.values()}
         self._outline = outline
@@ -89,15 +92,20 @@ class Versions:
         return None if at is None else bisect_right(self._new_kept, at) - 1
 
     def has_moved(self, at: int, line: int) -> bool:
-        """Return True if a block has gone from its place, and the line is new with most of the blocks around it."""
+        """
+        Return True if a block has gone from its place with most of those around it, and these are new around the line.
+
+        Where the blocks around it are still at the former place, it is another block with the same surroundings.
+        """
         old, new = self._in_old(at), self.target(line)
         if new is None or old in self._pairs or new in self._aligned:
             return False
         around = [step for step in range(-_AROUND, _AROUND + 1) if step and 0 <= old + step < len(self._old)]
-        same = sum(
-            0 <= new + step < len(self._new) and self._old[old + step] == self._new[new + step] for step in around
-        )
-        return 2 * same > len(around)
+        return 2 * sum(self._have_moved(old + step, new + step) for step in around) > len(around)
+
+    def _have_moved(self, old: int, new: int) -> bool:
+        is_same = 0 <= new < len(self._new) and self._old[old] == self._new[new]
+        return is_same and self._pairs.get(old, new) == new and (new not in self._aligned or old in self._pairs)
 
     def _in_old(self, at: int) -> int:
         return bisect_right(self._kept, at) - 1

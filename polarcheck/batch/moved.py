@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 
 from polarcheck.batch.baseline_file import Program
-from polarcheck.batch.known_places import SAME, Versions
+from polarcheck.batch.known_places import SAME, SAME_AS_PART, Versions
 from polarcheck.finding import Outline
 
 #: The share of the blocks of the longer version that must be the same under another name; under the same one SAME.
-_SAME_UNDER_OTHER_NAME = 0.75
+_SAME_UNDER_OTHER_NAME = SAME_AS_PART
 #: Files are compared by so many of their smallest hashes first.
 _SMALLEST = 64
 #: The most files that are compared block by block with a new one.

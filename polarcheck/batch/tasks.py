@@ -18,7 +18,18 @@ from polarcheck.checking.settings import Settings
 from polarcheck.checking.tables import Tables
 from polarcheck.errors import ClusterError, SourceError, TooHardError
 from polarcheck.execution.look_ups import LookUp, digest, noted
-from polarcheck.finding import SCHEMA, UNREADABLE, FileReport, Interrupted, Producer, Report, RunSettings, Summary
+from polarcheck.finding import (
+    ERROR,
+    SCHEMA,
+    SEVERITIES,
+    UNREADABLE,
+    FileReport,
+    Interrupted,
+    Producer,
+    Report,
+    RunSettings,
+    Summary,
+)
 from polarcheck.reading import files
 from polarcheck.reading.source import Source
 from polarcheck.reading.words import Text
@@ -100,6 +111,11 @@ class Checked(msgspec.Struct, frozen=True):
     stopped: KeyboardInterrupt | None = None
     failed: bool = False
     broken_off: str = ""
+
+    @property
+    def readable(self) -> list[FileReport]:
+        """The reports of the files that could be read and checked."""
+        return [file for file in self.files if file.verdict != UNREADABLE]
 
 
 def plan(
@@ -207,6 +223,11 @@ def _walked(
     return found
 
 
+def settings_of(tasks: Iterable[Task]) -> dict[str, Settings]:
+    """Return the settings of each file, by its path in reports."""
+    return {task.title: task.settings for task in tasks}
+
+
 def one_by_one(tasks: Iterable[Task], most: int = files.LARGEST) -> Generator[Outcome, None, None]:
     """Yield the outcome of each file, checked in this process."""
     for number, task in enumerate(tasks):
@@ -301,15 +322,24 @@ def _of_task(task: Task, data: bytes | None) -> dict[str, Any]:
     import hashlib  # late: no other command needs it
 
     return {
-        "machine": task.settings.name,
+        "machine": task.settings.machine_id,
+        "machine_file": task.settings.machine_file or msgspec.UNSET,
         "profile_sha256": task.settings.profile_sha256,
+        "settings": task.settings.decided if task.settings.differs else msgspec.UNSET,
         "sha256": None if data is None else hashlib.sha256(data).hexdigest(),
     }
 
 
 def fails(report: FileReport, settings: Settings) -> bool:
-    """Return True if a file has a finding at or above fail_on, or is unverified and the settings are strict."""
-    told = any(check.reaches(found, settings.fail_on) for found in report.findings)
+    """
+    Return True if a file has a finding at or above fail_on, or is unverified and the settings are strict.
+
+    With max_warnings, warnings are counted over the run instead (decisions.too_many_warnings).
+    """
+    severities = {finding.severity for finding in report.findings}
+    if settings.decided.max_warnings is not None:
+        severities.discard("warning")
+    told = any(SEVERITIES[severity] >= SEVERITIES.get(settings.fail_on, ERROR + 1) for severity in severities)
     return told or (settings.strict and report.verdict == "unverified")
 
 
@@ -319,7 +349,7 @@ def _check(task: Task, data: bytes) -> tuple[FileReport, Source, set[str], Basis
     with time_limit(seconds_for(len(data), settings.job.run.max_seconds)) as limit, noted() as look_ups:
         found = check.read(data, settings.machine, settings.job, task.title, settings.encoding)
         text: Text = found[0][1]["text"]
-        report = check.check_runs(found, settings.rules, settings.severities, settings.inline)
+        report = check.check_runs(found, settings.rules, settings.severities, settings.inline, settings.deselected)
         for extra in settings.extras:
             report = extra(report, found)
         if settings.baseline is not None:
@@ -365,14 +395,14 @@ def report(
     machine: what a report without files is for. settings: what decided. interrupted: why files are missing.
     skipped: what the walks did not read.
     """
-    severities, verdicts, machines, silenced = Counter[str](), Counter[str](), set[str](), 0
+    severities, verdicts, machines, silenced = Counter[str](), Counter[str](), set[tuple[str, str]](), 0
     for file in reports:  # once: it may not lie in memory
         severities.update(finding.severity for finding in file.findings)
         verdicts[file.verdict] += 1
         if file.verdict != UNREADABLE:
-            machines.add(file.machine)
+            machines.add((file.machine, file.machine_file or ""))
         silenced += len(file.silenced)
-    machines = machines or {machine}
+    machines = machines or {(machine, "")}
     summary = Summary(
         files=len(reports),
         errors=severities["error"],
@@ -392,7 +422,7 @@ def report(
     return Report(
         schema=SCHEMA,
         tool=Producer("polarcheck", __version__),
-        machine=machines.pop() if len(machines) == 1 else None,
+        machine=machines.pop()[0] if len(machines) == 1 else None,
         settings=settings or RunSettings(version=__version__),
         interrupted=interrupted or msgspec.UNSET,
         files=reports,

@@ -10,7 +10,7 @@ from polarcheck.batch.tasks import Task, outcome
 from polarcheck.checking import check
 from polarcheck.checking.settings import Settings
 from polarcheck.errors import PolarcheckError, SourceError
-from polarcheck.finding import FileReport
+from polarcheck.finding import UNREADABLE, FileReport
 from polarcheck.reading import files
 from polarcheck.reports.pages import executed
 from polarcheck.reports.pages.executed import Move
@@ -47,7 +47,7 @@ def run(path: str, settings: Settings, most: int, paths: Collection[str]) -> Cas
     except SourceError as error:
         return CaseRun(failure=str(error))
     checked = outcome(Task(path, settings), most, data)
-    if checked.report is None:
+    if checked.report is None or checked.report.verdict == UNREADABLE:
         return CaseRun(failure=checked.failure or f"{files.shown(path)}: an internal error", bug=checked.bug)
     if not paths:
         return CaseRun(checked.report)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Generator, Iterable, Mapping
+from pathlib import Path
 
 import msgspec
 
@@ -11,16 +12,14 @@ from polarcheck.batch.tasks import forget
 from polarcheck.certification import expectations, golden, paths, results
 from polarcheck.certification.case_runs import CaseRun, run
 from polarcheck.certification.conditions import ConditionsOfCases
-from polarcheck.certification.loading import Loaded
+from polarcheck.certification.loading import Loaded, load
 from polarcheck.certification.manifest import Case
 from polarcheck.certification.results import FAIL, MISSING, NOT_OFFERED, NOT_RUN, PASS, CaseResult, Cell, Certificate
 from polarcheck.certification.tool_path import ToolPath, tool_path
 from polarcheck.checking.settings import Settings
-from polarcheck.errors import CertificateError
+from polarcheck.errors import CertificateError, UsageError, suggestion
 from polarcheck.finding import Producer
 from polarcheck.reading import files
-
-SCHEMA = 1
 
 
 class Certified(msgspec.Struct, frozen=True):
@@ -33,6 +32,40 @@ class Certified(msgspec.Struct, frozen=True):
     case: Case
     result: CaseResult
     run: CaseRun
+
+
+def certify(path: str | Path, *, cases: Iterable[str] = (), max_size: int = files.LARGEST) -> Certificate:
+    """
+    Return the certificate of a post: its programs beside what a manifest says of them. Golden traces are read only.
+
+    path: of the manifest. cases: names of the cases to run; all without any. max_size: of a program [bytes].
+
+    Raises CertificateError, JobError or MachineError for a manifest that cannot be used, UsageError for a case that
+    it does not have.
+    """
+    loaded = load(Path(path))
+    names = chosen(loaded, cases)
+    settings = conditions(loaded, needed(loaded, names))
+    case_runs = dict(runs(loaded, settings, max_size))
+    bug = next((run.bug for run in case_runs.values() if run.bug is not None), None)
+    if bug is not None:
+        raise bug
+    certified = judged(loaded, settings, case_runs)
+    return certificate(loaded, {name: certified[name] for name in names})
+
+
+def chosen(loaded: Loaded, names: Iterable[str]) -> list[str]:
+    """Return the names of the cases to run, all of them without any name. Raises UsageError for an unknown one."""
+    wanted = list(dict.fromkeys(names))
+    for name in wanted:
+        if name not in loaded.cases:
+            raise UsageError(f"--case {name}: the manifest has no case of this name{suggestion(name, loaded.cases)}")
+    if not loaded.cases:
+        title = files.shown(str(loaded.path))
+        raise CertificateError(
+            f"{title}: no cases: give a [[case]], or a file for a feature in `programs` of a control"
+        )
+    return wanted or [*loaded.cases]
 
 
 def conditions(loaded: Loaded, names: Collection[str]) -> dict[str, Settings]:
@@ -71,48 +104,75 @@ def runs(loaded: Loaded, settings: Mapping[str, Settings], most: int) -> Generat
         forget()
 
 
+class _Alone(msgspec.Struct, frozen=True):
+    """
+    What came of a case without other cases.
+
+    reasons: why its findings and its verdict are not the expected ones, or why it was not run.
+    golden: its path beside its golden trace. path: the same in detail.
+    """
+
+    reasons: list[str]
+    golden: results.PathComparison | None
+    path: paths.Comparison
+
+    def fails(self, is_golden_there: bool) -> bool:
+        """Return True if its program is wrong; a golden trace that is not there yet proves nothing."""
+        return bool(self.reasons or (is_golden_there and self.path.reasons))
+
+
 def judged(loaded: Loaded, settings: Mapping[str, Settings], case_runs: Mapping[str, CaseRun]) -> dict[str, Certified]:
     """Return the cases that were run, each with its result, by name."""
+    alone = {name: _alone(loaded, loaded.cases[name], run) for name, run in case_runs.items()}
     return {
         name: Certified(
-            loaded.cases[name], _result(loaded, loaded.cases[name], settings[name], case_runs), case_runs[name]
+            loaded.cases[name], _result(loaded, loaded.cases[name], settings[name], case_runs, alone), case_runs[name]
         )
         for name in case_runs
     }
 
 
-def _result(loaded: Loaded, case: Case, settings: Settings, case_runs: Mapping[str, CaseRun]) -> CaseResult:
+def _alone(loaded: Loaded, case: Case, of_case: CaseRun) -> _Alone:
+    if of_case.report is None:
+        return _Alone([of_case.failure], None, _NOTHING)
+    return _Alone([*expectations.differences(case, of_case.report)], *_golden(loaded, case, of_case))
+
+
+def _result(
+    loaded: Loaded,
+    case: Case,
+    settings: Settings,
+    case_runs: Mapping[str, CaseRun],
+    alone: Mapping[str, _Alone],
+) -> CaseResult:
     """Return what came of a case."""
-    of_case = case_runs[case.title]
-    report = of_case.report
-    program = files.shown(str(loaded.beside(case.program)))
-    reasons: list[str] = []
+    report, own = case_runs[case.title].report, alone[case.title]
+    reasons = list(own.reasons)
     remarks = [loaded.remarks[case.title]] if case.title in loaded.remarks else []
-    comparisons: dict[str, results.PathComparison | None] = {"golden": None, "same_path": None}
-    if report is None:
-        reasons.append(of_case.failure)
-    else:
-        reasons += expectations.differences(case, report)
-        found = {"golden": _golden(loaded, case, of_case), "same_path": _other(loaded, case, case_runs)}
-        is_first = not reasons and not found["same_path"][1].reasons
-        for kind, (comparison, compared) in found.items():
-            comparisons[kind] = comparison
-            remarks += compared.remarks
-            # A golden trace that is not there yet is no news of a case that fails anyway.
-            if is_first or kind != "golden" or loaded.has_golden(case):
-                reasons += compared.reasons
+    same_path, compared = (None, _NOTHING) if report is None else _other(loaded, case, case_runs)
+    is_golden_there = loaded.has_golden(case)
+    # A golden trace that is not there yet is no news of a case that fails anyway.
+    if is_golden_there or not (reasons or compared.reasons):
+        reasons += own.path.reasons
+    if compared.reasons and case.same_path_as is not None:
+        reference = loaded.cases[case.same_path_as]
+        if is_golden_there and not own.fails(True) and alone[reference.title].fails(loaded.has_golden(reference)):
+            remarks.append(f"the path is not that of {reference.title}, which fails itself")
+        else:
+            reasons += compared.reasons
     return CaseResult(
         name=case.title,
         feature=case.feature,
         control=case.control,
-        program=program,
-        machine=settings.name,
+        program=files.shown(str(loaded.beside(case.program))),
+        machine=settings.machine_id,
         state=NOT_RUN if report is None else FAIL if reasons else PASS,
         expected=case.expected,
         verdict=None if report is None else report.verdict,
         reasons=reasons,
-        remarks=remarks,
-        **comparisons,
+        remarks=[*remarks, *own.path.remarks, *compared.remarks],
+        golden=own.golden,
+        same_path=same_path,
     )
 
 
@@ -179,19 +239,21 @@ def _comparison(reference: str, compared: paths.Comparison, tolerance: float) ->
 
 
 def certificate(loaded: Loaded, certified: Mapping[str, Certified]) -> Certificate:
-    """Return the certificate of the cases that were run; others have no part in it."""
+    """Return the certificate of the cases that were run; where only some were, that of their features and controls."""
     manifest = loaded.manifest
-    cells = [
-        _cell(loaded, feature, control, certified) for feature in manifest.features for control in manifest.controls
-    ]
+    is_whole = len(certified) == len(loaded.cases)
+    of_cases = [entry.case for entry in certified.values()]
+    features = [name for name in manifest.features if is_whole or any(case.feature == name for case in of_cases)]
+    controls = [name for name in manifest.controls if is_whole or any(case.control == name for case in of_cases)]
+    cells = [_cell(loaded, feature, control, certified) for feature in features for control in controls]
     cases = [certified[name].result for name in loaded.cases if name in certified]
     return Certificate(
-        schema=SCHEMA,
+        schema=results.SCHEMA,
         tool=Producer("polarcheck", __version__),
         title=manifest.title,
         manifest=files.shown(str(loaded.path)),
-        features=manifest.features,
-        controls=[*manifest.controls],
+        features=features,
+        controls=controls,
         cells=cells,
         cases=cases,
         summary=results.summary(cases, cells),
@@ -203,5 +265,6 @@ def _cell(loaded: Loaded, feature: str, control: str, certified: Mapping[str, Ce
     if feature in not_offered:
         return Cell(feature=feature, control=control, state=NOT_OFFERED, reason=not_offered[feature])
     names = [name for name, case in loaded.cases.items() if (case.feature, case.control) == (feature, control)]
-    states = [certified[name].result.state if name in certified else NOT_RUN for name in names]
-    return Cell(feature=feature, control=control, state=results.worst(states) if names else MISSING, cases=names)
+    states = [certified[name].result.state for name in names if name in certified]
+    state = results.worst(states) if states else NOT_RUN if names else MISSING
+    return Cell(feature=feature, control=control, state=state, cases=[name for name in names if name in certified])

@@ -1,4 +1,4 @@
-"""Golden traces: the moves of the tool center as `trace --path tool --format jsonl` writes them, without lines."""
+"""Golden traces: the moves of the tool center as `trace --path tool --format jsonl --golden` writes them."""
 
 from __future__ import annotations
 
@@ -10,7 +10,9 @@ import msgspec
 from polarcheck import bounded
 from polarcheck.errors import CertificateError
 from polarcheck.reading import files
+from polarcheck.reports.pages import executed
 from polarcheck.reports.pages.executed import Move
+from polarcheck.reports.pages.trace_report import without_lines
 
 #: Of a golden trace [bytes]: 200,000 moves take 90 MB.
 _LARGEST = 100_000_000
@@ -34,11 +36,7 @@ class GoldenMove(msgspec.Struct, frozen=True):
 
 def lines(moves: Iterable[Move]) -> Iterator[str]:
     """Yield a line for each move, without the line of its block, which renumbering and comments change."""
-    encoder = msgspec.json.Encoder()
-    for move in moves:
-        fields = msgspec.to_builtins(move)
-        del fields["line"]
-        yield encoder.encode(fields).decode() + "\n"
+    return executed.as_jsonl(without_lines(iter(moves)))
 
 
 def read(path: Path) -> list[GoldenMove]:

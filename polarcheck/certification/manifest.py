@@ -16,7 +16,7 @@ FEATURES = (
     *("compensation-right", "several-depths", "indexing", "inch", "incremental", "canned-end"),
 )
 #: Keys of a job that a case has in another way, with that way.
-_DECIDED = {
+DECIDED = {
     "fail_on": "verdict says what is expected of a case",
     "strict": "verdict says what is expected of a case; --strict concerns the matrix",
     "select": "all rules run; findings says which of them are expected",
@@ -80,7 +80,7 @@ class Conditions(OfPrograms, frozen=True, kw_only=True):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        for key, reason in _DECIDED.items():
+        for key, reason in DECIDED.items():
             if getattr(self, key) != _DEFAULTS[key]:
                 raise KeyedError(key, f"no key of a manifest: {reason}")
 

@@ -16,6 +16,8 @@ from polarcheck.geometry.polar import length
 
 #: F differs if it does so by more than this share: digits that a trace rounds away are no change.
 _SAME_FEED = 1e-6
+#: Angles that differ by less [deg] are the same.
+_SAME_ANGLE = 1e-6
 
 
 class Comparison(NamedTuple):
@@ -130,7 +132,10 @@ def _compared(
         largest = max(largest, deviation.largest)
         if why:
             reasons.append(f"{section}: {why}")
-        if not deviation.is_within:
+        other_turn = None if deviation.is_within or why else _turn_that_fits(mine, theirs, turn, tolerance)
+        if other_turn is not None:
+            reasons.append(f"{section}: it is turned by {_wrapped(other_turn - turn):.3f} deg against {title}")
+        elif not deviation.is_within:
             reasons.append(_farthest_apart(deviation, mine, tolerance, title, section))
     return Comparison(largest, reasons, remarks)
 
@@ -159,14 +164,26 @@ def _deviation(mine: ToolPath, theirs: ToolPath, turned: float, tolerance: float
         return np.inf
 
 
+def _turn_that_fits(mine: ToolPath, theirs: ToolPath, turned: float, tolerance: float) -> float | None:
+    """Return the angle by which the other path lies turned as a whole [deg]; None where it is another path."""
+    begins = _turn_of_starts(mine, theirs)
+    if abs(_wrapped(begins - turned)) < _SAME_ANGLE or _deviation(mine, theirs, begins, tolerance) > tolerance:
+        return None
+    return begins
+
+
+def _turn_of_starts(mine: ToolPath, theirs: ToolPath) -> float:
+    """Return the angle from the first point of the other path to ours [deg]."""
+    return float(np.degrees(np.angle(mine.start[0] * theirs.start[0].conj())))
+
+
 def _turns(mine: ToolPath, theirs: ToolPath, number: int) -> Iterator[float]:
     """Yield the angles by which the other path may lie turned [deg]: not at all, as on the part, as its beginning."""
     yield 0.0
     on_part = _wrapped(float(theirs.turned[number] - mine.turned[number]))
     if not np.isnan(on_part):
         yield on_part
-    if len(mine.start) and len(theirs.start):
-        yield float(np.degrees(np.angle(mine.start[0] * theirs.start[0].conj())))
+    yield _turn_of_starts(mine, theirs)
 
 
 def _wrapped(angle: float) -> float:

@@ -9,6 +9,8 @@ import msgspec
 
 from polarcheck.finding import Producer
 
+#: Number of the JSON contract.
+SCHEMA = 1
 #: States of a cell; of several cases in a cell the worst one counts.
 PASS, MISSING, NOT_OFFERED, NOT_RUN, FAIL = STATES = ("pass", "missing", "not offered", "not run", "fail")
 

@@ -23,6 +23,7 @@ from polarcheck.checking.tables import Tables
 from polarcheck.execution.run import is_code
 from polarcheck.execution.runs import runs
 from polarcheck.finding import (
+    DESELECTED,
     ERROR,
     FAIL,
     PASS,
@@ -80,18 +81,26 @@ def check_runs(
     rules: Sequence[Rule],
     severities: Mapping[str, str] | None = None,
     inline: bool = True,
+    deselected: Sequence[str] = (),
 ) -> FileReport:
-    """Check the runs of all channels of one file with these rules."""
+    """
+    Check the runs of all channels of one file with these rules.
+
+    deselected: lines on what keeps rules of weight from running; with any of them no file passes.
+    """
     channels = [list(channel) for _, channel in groupby(found, lambda run: _source(run[1]).channel)]
     checked = [_check_channel(channel, rules, severities, inline) for channel in channels]
     # An allow comment is unused only if no run of any channel used it.
     used = set[Used]().union(*(engine.used for _, engines in checked for engine in engines))
     reports = [(_source(engine.tables), _with_unused(report, engine, rules, used)) for report, (engine, *_) in checked]
-    if len(reports) == 1:
+    if len(reports) == 1 and not deselected:
         return reports[0][1]
-    report = united(reports)
+    report = united(reports) if len(reports) > 1 else reports[0][1]
     findings = in_order(report.findings)
-    return msgspec.structs.replace(report, findings=findings, verdict=verdict(findings, report.not_evaluated))
+    missing = [NotEvaluated(rule=DESELECTED, reason=line, blocks=report.blocks) for line in deselected]
+    not_evaluated = [*report.not_evaluated, *missing]
+    given = {"findings": findings, "not_evaluated": not_evaluated, "verdict": verdict(findings, not_evaluated)}
+    return msgspec.structs.replace(report, **given)
 
 
 def _with_unused(report: FileReport, engine: Engine, rules: Sequence[Rule], used: Collection[Used]) -> FileReport:

@@ -10,6 +10,7 @@ import msgspec
 from polarcheck.checking.rule import Rule
 from polarcheck.checking.tables import Tables
 from polarcheck.finding import Decided, FileReport
+from polarcheck.machines import profiles
 from polarcheck.machines.job import Job
 from polarcheck.machines.machine import Machine
 
@@ -33,7 +34,9 @@ class Settings(msgspec.Struct, frozen=True):
     inline: allow comments of the program are respected.
     baseline: the file of known findings.
     baseline_named_by: the place in the job file that names it; empty if an option does.
+    deselected: lines on what keeps rules of weight from running.
     decided: what of this the user has written, for reports.
+    differs: the files of the run have different settings, so that its report says what decided for each.
     profile_sha256: of the machine.
     extras: module-level functions, since other processes import them by name; called in this order.
     """
@@ -51,6 +54,18 @@ class Settings(msgspec.Struct, frozen=True):
     inline: bool = True
     baseline: Path | None = None
     baseline_named_by: str = ""
+    deselected: Sequence[str] = ()
     decided: Decided = Decided()
+    differs: bool = False
     profile_sha256: str = ""
     extras: Sequence[Extra] = ()
+
+    @property
+    def machine_id(self) -> str:
+        """The id of the machine: its name, or that of its file without folder and ending."""
+        return profiles.machine_id(self.name)
+
+    @property
+    def machine_file(self) -> str:
+        """The path of a machine file of the user's own, as given; empty for a built-in machine."""
+        return "" if self.name in profiles.names() else self.name

@@ -35,6 +35,7 @@ NAMES = (
     "baseline",
     "certify",
     "check",
+    "compare",
     "completion",
     "config",
     "explain",

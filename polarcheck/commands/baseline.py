@@ -214,7 +214,7 @@ def _with_baseline(tasks: list[Task], path: Path) -> list[Task]:
 
 def _updated(known: Baseline, before: Contents, checked: Checked, tasks: list[Task], reason: str) -> _Result:
     from polarcheck.batch.baselines import evaluated
-    from polarcheck.commands.silencing import settings_of
+    from polarcheck.batch.tasks import settings_of
 
     settings = settings_of(tasks)
     updated = known.updated(((report, evaluated(report, settings[report.path])) for report in checked.files), reason)
@@ -225,7 +225,7 @@ def _updated(known: Baseline, before: Contents, checked: Checked, tasks: list[Ta
 
 def _pruned(known: Baseline, before: Contents, checked: Checked, tasks: list[Task], reason: str) -> _Result:
     from polarcheck.batch.baselines import evaluated
-    from polarcheck.commands.silencing import settings_of
+    from polarcheck.batch.tasks import settings_of
 
     settings = settings_of(tasks)
     for report in checked.files:

@@ -12,7 +12,7 @@ from polarcheck.commands import options
 from polarcheck.commands.exit_codes import BUG, CLEAN, COULD_NOT_RUN, FINDINGS
 from polarcheck.commands.options import narrower, option
 from polarcheck.commands.output import COLUMNS
-from polarcheck.errors import CertificateError, UsageError
+from polarcheck.errors import UsageError
 
 if TYPE_CHECKING:
     from polarcheck.certification.certifying import Certified
@@ -34,8 +34,8 @@ def _outputs(ctx: click.Context, parameter: click.Parameter, values: tuple[str, 
 
 
 @click.command(short_help="Check the programs of a post for each control against a manifest.")
-@click.argument("manifest", metavar="MANIFEST|init")
-@click.argument("folder", required=False, metavar="[DIR]", type=click.Path(file_okay=False, path_type=Path))
+@click.argument("manifest", metavar="FILE")
+@click.argument("folder", required=False, metavar="[FOLDER]", type=click.Path(file_okay=False, path_type=Path))
 @narrower("--format", "form", type=click.Choice(_FORMATS), default="text", show_default=True)
 @option(
     "-o",
@@ -48,7 +48,7 @@ def _outputs(ctx: click.Context, parameter: click.Parameter, values: tuple[str, 
 )
 @option("--strict/--no-strict", default=False, help="Fail where a feature has no case on a control, too.")
 @click.option("--update", is_flag=True, help="Write the golden traces of cases that pass otherwise.")
-@option("--case", "names", multiple=True, metavar="NAME", help="Only this case; may be repeated.")
+@option("--case", "names", multiple=True, metavar="TEXT", help="Only this case; may be repeated.")
 @option("--machine", "machines", multiple=True, metavar="NAME|FILE", help="With init: a control; may be repeated.")
 @option("--color", type=click.Choice(["auto", "always", "never"]), default="auto", show_default=True)
 @options.max_size
@@ -69,7 +69,7 @@ def certify(
     max_size: int,
 ) -> None:
     """
-    Check the programs of a post against MANIFEST, which says for each feature and control what a program must do.
+    Check the programs of a post against FILE, a manifest: it says what a program of each feature and control must do.
 
     \b
     polarcheck certify post.toml
@@ -118,14 +118,10 @@ def _certify(
 
     keep_within_memory()
     loaded = loading.load(path)
-    chosen = _chosen(loaded, names)
-    settings = certifying.conditions(loaded, certifying.needed(loaded, chosen))
     for line in loaded.without_programs():
         warn(line)
-    if not settings:
-        raise CertificateError(
-            f"{files.shown(str(path))}: no cases: give a [[case]], or a file for a feature in `programs` of a control"
-        )
+    chosen = certifying.chosen(loaded, names)
+    settings = certifying.conditions(loaded, certifying.needed(loaded, chosen))
     _refuse(outputs, loaded)
     bar = Bar(len(settings), True)
     case_runs = dict(bar.watched(certifying.runs(loaded, settings, most)))
@@ -147,16 +143,6 @@ def _certify(
     if any(case.state == NOT_RUN for case in certificate.cases):
         status = max(status, COULD_NOT_RUN)
     return BUG if bugs else status
-
-
-def _chosen(loaded: Loaded, names: tuple[str, ...]) -> list[str]:
-    """Return the names of the cases to run."""
-    from polarcheck.errors import suggestion
-
-    for name in names:
-        if name not in loaded.cases:
-            raise UsageError(f"--case {name}: the manifest has no case of this name{suggestion(name, loaded.cases)}")
-    return list(dict.fromkeys(names)) or [*loaded.cases]
 
 
 def _refuse(outputs: list[tuple[str, Path]], loaded: Loaded) -> None:

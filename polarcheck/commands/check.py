@@ -22,7 +22,7 @@ from polarcheck.commands import (
     watching,
 )
 from polarcheck.commands.diff_base import changed_files, diff_base, narrowed, with_callers
-from polarcheck.commands.exit_codes import COULD_NOT_RUN
+from polarcheck.commands.exit_codes import COULD_NOT_RUN, FINDINGS
 from polarcheck.commands.options import option
 from polarcheck.commands.output import COLUMNS, columns, draws_dots, in_color, say, show, warn
 from polarcheck.reports import formats
@@ -125,6 +125,7 @@ def check(ctx: click.Context, /, paths: tuple[str, ...], watch: bool, with_calle
     elif not paths:
         raise click.MissingParameter(ctx=ctx, param=next(one for one in ctx.command.params if one.name == "paths"))
     fields = {name: arguments.pop(name) for name in _Arguments._fields if name in arguments}
+    arguments["named"] = options.variables(ctx)
     chosen = _Arguments(
         **fields, paths=paths, changed=changed, command=_command(ctx), debug=options.DEBUG in ctx.meta, more=arguments
     )
@@ -204,6 +205,7 @@ def _quoted(value: object) -> str:
 
 def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
     from polarcheck import reports
+    from polarcheck.batch import decisions
     from polarcheck.batch import tasks as batch
     from polarcheck.checking import rule
     from polarcheck.commands import live, overwriting, progress, signals
@@ -237,7 +239,8 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
         OfPrograms(applies),
         arguments.extensions,
         faults,
-        force_exclude=arguments.force_exclude,
+        # A hook may find that nothing is left.
+        force_exclude=arguments.force_exclude or arguments.changed is not None,
         named=standard_input.judged_as(arguments.paths, arguments.stdin_filename),
         skipped=skipped,
     )
@@ -245,6 +248,7 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
         arguments.outputs, arguments.form == picturing.FORMAT, tasks, "-o html:"
     )
     overwriting.refuse(written, tasks)
+    run_settings, tasks = decisions.shared(tasks, arguments.diff_base)
     tasks = narrowed(tasks, arguments.diff_base, arguments.changed, arguments.max_size, not arguments.quiet)
     if arguments.lists_files:
         show(show_files.text(arguments.form or "text", tasks, skipped).encode())
@@ -283,7 +287,7 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
     runner = running.Runner(arguments.max_size, arguments.workers, arguments.cluster, seen, cache)
     pictures.begin(plain)
     checked = runner.check(tasks, bar, faults, baselines, live_report.file, pictures.split)
-    is_stale = arguments.fail_on_stale and silencing.stale(baselines)
+    is_stale = arguments.fail_on_stale and baselines is not None and baselines.is_stale
     status = max(int(checked.failed or is_stale), fixed.status, faults.report())
     reason = checked.broken_off
     if checked.stopped is not None:
@@ -292,10 +296,14 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
         say(reason)
     report = batch.report(
         checked.files,
-        applies.machine or (tasks[0].settings.name if tasks else profiles.DEFAULT),
+        tasks[0].settings.machine_id if tasks else profiles.machine_id(applies.machine or profiles.DEFAULT),
+        settings=run_settings,
         interrupted=batch.interrupted(reason, checked.files, tasks) if reason else None,
         skipped=skipped,
     )
+    for excess in decisions.too_many_warnings(report.files, tasks):
+        say(excess)
+        status = max(status, FINDINGS)
     pictures.end(reporting.unread(report.summary))
     if checked.stopped is None and arguments.diff_base is None and arguments.changed is None:
         running.warn_unused(applies.tools, checked.called)

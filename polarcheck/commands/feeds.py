@@ -36,37 +36,28 @@ def feeds(path: str, form: str, diff: bool, no_config: bool, max_size: int, **ar
     --diff shows the program with these F; it writes nothing. Where the program is for another control, so that nothing
     of the table can be believed, standard error says so.
     """
-    from polarcheck.checking import check
-    from polarcheck.checking.causes import READ_OTHERWISE
-    from polarcheck.checking.rule import load_all
+    from polarcheck.api import feed_tables, programs
     from polarcheck.memory import keep_within_memory
-    from polarcheck.reading import files
-    from polarcheck.reports.pages import executed
-    from polarcheck.settings.of_programs import OfPrograms, Options
-    from polarcheck.time_limit import seconds_for, time_limit
+    from polarcheck.settings.of_programs import Options
 
     keep_within_memory()
     if diff and form != "text":
         raise UsageError(f"--diff shows a diff: leave out --format {form}")
-    applied = OfPrograms(Options(use_config=not no_config, **arguments))(path)
-    data, title = files.read_program(path, max_size), files.shown(path)
-    with time_limit(seconds_for(len(data), applied.job.run.max_seconds)):
-        named_runs = check.read(data, applied.machine, applied.job, title, applied.encoding)
-        rules = [rule for name, rule in load_all().items() if name in READ_OTHERWISE]
-        for doubt in check.check_runs(named_runs, rules, applied.severities).findings:
-            warn(f"{title}:{doubt.line}: {doubt.full_message} [{doubt.rule}]")
-        runs = [tables for _, tables in named_runs]
-        for tables in runs:
-            unknown = executed.without_radius(tables["trace"], tables["tool_center"])
-            if unknown:
-                warn(unknown)
+    program = programs.of_file(path, Options(use_config=not no_config, **arguments), max_size)
+    with program.runs() as found:
+        doubts, missing = feed_tables.doubts(program, found)
+        for doubt in doubts:
+            warn(f"{program.path}:{doubt.line}: {doubt.full_message} [{doubt.rule}]")
+        for unknown in missing:
+            warn(unknown)
+        runs = [tables for _, tables in found]
         if diff:
-            return _show_diff(title, data, runs, applied.encoding)
-        _show_table(title, runs, form)
+            return _show_diff(program.path, program.data, runs, program.settings.encoding)
+        _show_table(program.path, program.settings.machine_id, runs, form)
     return CLEAN
 
 
-def _show_table(title: str, runs: list[Tables], form: str) -> None:
+def _show_table(title: str, machine: str, runs: list[Tables], form: str) -> None:
     import msgspec
 
     from polarcheck.feed_table.table import FeedReport, feed_table
@@ -77,7 +68,6 @@ def _show_table(title: str, runs: list[Tables], form: str) -> None:
             if not show(line.encode()):
                 break
         return
-    machine = runs[0]["machine"].title
     report = FeedReport(schema=1, path=title, machine=machine, tables=[feed_table(tables) for tables in runs])
     encoded = msgspec.json.format(msgspec.json.encode(report), indent=2) + b"\n"
     show(encoded if form == "json" else pages.text(report).encode())

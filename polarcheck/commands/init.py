@@ -82,12 +82,18 @@ def _parts(paths: tuple[str, ...], *, debug: bool, max_size: int, no_config: boo
     from polarcheck.settings.of_programs import OfPrograms, Options
 
     keep_within_memory()
-    applies = Options(use_config=not no_config, select=(*READ_OTHERWISE,), extras=(part_of,), **arguments)
+    applies = Options(
+        use_config=not no_config,
+        select=(*READ_OTHERWISE,),
+        gives_verdicts=False,
+        extras=(part_of,),
+        **arguments,
+    )
     faults = running.Faults(debug)
     tasks = running.planned(paths, OfPrograms(applies), (), faults)
     checked = running.Runner(max_size, 1, None).check(tasks, progress.Bar(len(tasks), True), faults)
     units = {task.title: task.settings.job.units for task in tasks}
-    show(new_parts.text(list(checked.files), units).encode())
+    show(new_parts.text(checked.readable, units).encode())
     running.warn_unused(applies.tools, checked.called)
     return faults.report()
 

@@ -104,6 +104,17 @@ max_size = option(
 )  # fmt: skip
 
 
+def variables(ctx: click.Context) -> dict[str, str]:
+    """Return the variables of the environment that have set options, as `POLARCHECK_SELECT=`, by the option's name."""
+    named = {}
+    for parameter in ctx.command.params:
+        name = parameter.name or ""
+        if ctx.get_parameter_source(name) is click.core.ParameterSource.ENVIRONMENT:
+            variable = parameter.envvar
+            named[name] = f"{variable if isinstance(variable, str) else name}="
+    return named
+
+
 def _set_debug(ctx: click.Context, parameter: click.Parameter, value: bool) -> None:
     if value:
         ctx.meta[DEBUG] = True
@@ -250,6 +261,10 @@ judging = _all(
     option(
         "--fail-on", type=click.Choice(["error", "warning", "note", "never"]), show_default="warning",
         help="The least severity that fails.",
+    ),
+    option(
+        "--max-warnings", type=click.IntRange(0), metavar="N",
+        help="More warnings than N, over all programs, fail; up to N do not.",
     ),
     option("--strict/--no-strict", default=None, help="Fail where a file is unverified, too."),
     inline,

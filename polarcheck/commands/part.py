@@ -9,9 +9,6 @@ import click
 from polarcheck.commands import options
 from polarcheck.commands.options import narrower
 
-#: The rule that compares a part with its drawing. Rules whose findings make the part doubtful run beside it.
-_RULE = "part-differs-from-drawing"
-
 
 @click.command(short_help="Tell what a program makes: hexagon, 27.000 across flats.")
 @click.argument("paths", nargs=-1, required=True, metavar="PATH...")
@@ -50,19 +47,15 @@ def _part(
     no_config: bool,
     **arguments: Any,
 ) -> int:
-    from polarcheck.checking.causes import READ_OTHERWISE
+    from polarcheck.api.parts import EXTRAS, RULES
     from polarcheck.commands import progress, running, signals
     from polarcheck.commands.output import columns, say, show
     from polarcheck.memory import keep_within_memory
-    from polarcheck.parts.comparison import compared_in
-    from polarcheck.parts.part_report import part_of
     from polarcheck.reports.pages import part_lines
     from polarcheck.settings.of_programs import OfPrograms, Options
 
     keep_within_memory()
-    applies = Options(
-        use_config=not no_config, select=(_RULE, *READ_OTHERWISE), extras=(part_of, compared_in), **arguments
-    )
+    applies = Options(use_config=not no_config, select=RULES, gives_verdicts=False, extras=EXTRAS, **arguments)
     faults = running.Faults(debug)
     tasks = running.planned(paths, OfPrograms(applies), extensions, faults)
     checked = running.Runner(max_size, workers, None).check(tasks, progress.Bar(len(tasks), True), faults)
@@ -74,8 +67,6 @@ def _part(
         running.warn_unused(applies.tools, checked.called)
         running.warn_without_part(applies.tolerance, tasks)
     show(
-        (
-            part_lines.json(list(checked.files)) if form == "json" else part_lines.text(list(checked.files), columns())
-        ).encode()
+        (part_lines.json(checked.readable) if form == "json" else part_lines.text(checked.readable, columns())).encode()
     )
     return status

@@ -53,7 +53,6 @@ def plot(
     from polarcheck.checking import rule
     from polarcheck.commands import overwriting, progress, reporting, running, signals
     from polarcheck.commands.output import say, show
-    from polarcheck.finding import UNREADABLE
     from polarcheck.machines import profiles
     from polarcheck.memory import keep_within_memory
     from polarcheck.reading import files
@@ -76,9 +75,9 @@ def plot(
         status, how = signals.exit_status(checked.stopped)
         say(f"{how} after {len(checked.files)} of {len(tasks)} files")
     pictures.end()
-    readable = [file for file in checked.files if file.verdict != UNREADABLE] if pages or output is None else []
+    readable = checked.readable if pages or output is None else []
     if readable:
-        report = batch.report(readable, applies.machine or profiles.DEFAULT)
+        report = batch.report(readable, profiles.machine_id(applies.machine or profiles.DEFAULT))
         page = reports.render(picturing.FORMAT, report, background)
         for _, path in pages:
             files.write(path, page)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import os
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
@@ -10,7 +9,6 @@ from typing import TYPE_CHECKING
 
 import click
 
-from polarcheck.commands import silencing
 from polarcheck.commands.options import option
 from polarcheck.errors import OutputError, UsageError
 
@@ -79,22 +77,10 @@ def unread(summary: Summary) -> list[str]:
 
 def background(plain: Background, tasks: Iterable[Task]) -> Background:
     """Add the settings of each file, and the folders that paths are relative to, to a background."""
-    folder = ""
-    with contextlib.suppress(OSError):  # the working folder may be gone
-        folder = os.getcwd()  # noqa: PTH109
-    return plain._replace(
-        settings=silencing.settings_of(tasks),
-        root=_root(folder).replace(os.sep, "/"),
-        folder=folder.replace(os.sep, "/"),
-    )
+    from polarcheck.api.rendering import placed
+    from polarcheck.batch.tasks import settings_of
 
-
-def _root(folder: str) -> str:
-    """Return the folder of the repository, else the working folder."""
-    from polarcheck.reading.files import RealPaths
-    from polarcheck.reading.git import Repositories
-
-    return (Repositories(RealPaths()).root_above(folder) if folder else None) or folder
+    return placed(plain._replace(settings=settings_of(tasks)))
 
 
 def written(outputs: Iterable[tuple[str, Path]], form: str, report: Report, plain: Background) -> Iterator[OutputError]:

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import contextlib
-import os
-import sys
-import time
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from polarcheck.api import runs
 from polarcheck.commands import silencing
 from polarcheck.commands.exit_codes import BUG, CLEAN, COULD_NOT_RUN
 from polarcheck.commands.output import bug_lines, say, say_lines, warn
@@ -22,12 +20,6 @@ if TYPE_CHECKING:
     from polarcheck.finding import FileReport
     from polarcheck.reading.walking import Skipped
     from polarcheck.settings.of_programs import OfPrograms
-
-#: Processes are started once they save more time than this [s]. A fork, as on Linux, costs little; a spawned process
-#: loads the libraries again.
-_COST = 0.1 if sys.platform == "linux" else 1.5
-#: If the next file has this size, they are started at once [bytes].
-_WORTH_PROCESSES = 200_000
 
 
 class Faults:
@@ -75,29 +67,11 @@ def planned(
     named: the file that standard input is judged as (standard_input.judged_as).
     skipped: takes what the walks did not read.
     """
-    from polarcheck.batch import tasks as batch
-
-    paths = settings_of.left(paths, warn) if force_exclude else paths
-    empty: list[str] = []
-    skipped = [] if skipped is None else skipped
-    tasks = batch.plan(
-        paths,
-        settings_of,
-        extensions,
-        faults.failures.append,
-        empty.append,
-        excluded_in=settings_of.excluded_in,
-        extensions_in=settings_of.extensions_in,
-        skipped=skipped,
-        **(named or {}),
-    )
-    if not tasks and not force_exclude and any(entry.programs for entry in skipped):
-        faults.failures += [f"nothing to check: {line}" for line in empty]
-    else:
-        empty += settings_of.unmatched(paths, [task.place for task in tasks], extensions)
-        for line in (*empty, *settings_of.left_behind()):
-            warn(line)
-    return tasks
+    found = runs.planned(paths, settings_of, extensions, force_exclude=force_exclude, named=named, skipped=skipped)
+    faults.failures += found.failures
+    for line in found.doubts:
+        warn(line)
+    return found.tasks
 
 
 class Runner:
@@ -142,28 +116,12 @@ class Runner:
             self._outcomes(tasks) if self._before is None else self._before.outcomes(tasks, self._outcomes) as outcomes,
             contextlib.closing(bar.watched(outcomes)) as watched,
         ):
-            suppressed = silencing.without_known(watched, tasks, baselines)
+            suppressed = silencing.without_known(watched, baselines)
             reported = suppressed if take is None else take(suppressed)
             return batch.gather(reported, faults.failures.append, faults.bug, show)
 
-    @contextlib.contextmanager
-    def _outcomes(self, tasks: Sequence[Task]) -> Iterator[Generator[Outcome, None, None]]:
-        """Yield a generator of the outcomes, in order of the tasks; no worker is left at the end of the block."""
-        from polarcheck.batch.tasks import one_by_one
-
-        with contextlib.ExitStack() as stack:
-            if self._cluster is not None and tasks:
-                from polarcheck.batch import cluster, executors
-
-                workers = stack.enter_context(cluster.workers(self._cluster, tasks, self._most))
-                outcomes = executors.outcomes(tasks, workers, self._most)
-            elif self._workers == 1 or len(tasks) <= 1:
-                outcomes = one_by_one(tasks, self._most)
-            elif self._workers:
-                outcomes = _by_processes(tasks, self._most, self._workers)
-            else:
-                outcomes = _as_it_pays(tasks, self._most, cores())
-            yield stack.enter_context(contextlib.closing(outcomes))
+    def _outcomes(self, tasks: Sequence[Task]) -> contextlib.AbstractContextManager[Generator[Outcome, None, None]]:
+        return runs.outcomes(tasks, self._most, self._workers, self._cluster)
 
 
 def cache(most: int, folder: str | None) -> Cache:
@@ -171,44 +129,6 @@ def cache(most: int, folder: str | None) -> Cache:
     from polarcheck.batch.cache.outcomes import Cache
 
     return Cache(most, folder)
-
-
-def cores() -> int:
-    """Return the number of processors that this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return max(1, len(os.sched_getaffinity(0)))
-    return os.cpu_count() or 1
-
-
-def _as_it_pays(tasks: Sequence[Task], most: int, count: int) -> Generator[Outcome, None, None]:
-    """Yield outcomes from this process, then from `count` worker processes once they save more than they cost."""
-    from polarcheck.batch.tasks import forget, outcome
-
-    begun = time.monotonic()
-    for number, task in enumerate(tasks):
-        if count > 1 and _pays(tasks[number:], number, time.monotonic() - begun, count):
-            yield from _by_processes(tasks[number:], most, count)
-            return
-        if number:
-            forget()
-        yield outcome(task, most)
-
-
-def _pays(left: Sequence[Task], done: int, seconds: float, count: int) -> bool:
-    """Return True if processes should be started; seconds: the time of the finished files."""
-    if len(left) == 1:
-        return False
-    from polarcheck.reading import files
-
-    # The first file counts twice, since forked processes inherit what it has loaded.
-    saved = seconds / (done + 1) * len(left) * (1 - 1 / min(count, len(left)))
-    return saved > _COST or files.size(left[0].path) >= _WORTH_PROCESSES
-
-
-def _by_processes(tasks: Sequence[Task], most: int, count: int) -> Generator[Outcome, None, None]:
-    from polarcheck.batch import executors
-
-    return executors.by_processes(tasks, most, count)
 
 
 def warn_without_part(tolerance: float | None, tasks: Sequence[Task]) -> None:

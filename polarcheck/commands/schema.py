@@ -1,4 +1,4 @@
-"""`polarcheck schema`: the JSON Schemas of reports, job files and machine files."""
+"""`polarcheck schema`: the JSON Schemas of reports, job files, machine files, feed tables and traces."""
 
 from __future__ import annotations
 
@@ -7,12 +7,22 @@ import click
 from polarcheck.commands import options
 from polarcheck.commands.output import show
 
+_NAMES = ("report", "job", "machine", "feeds", "trace", "comparison", "manifest", "certificate")
 
-@click.command(short_help="Show the JSON Schema of the report, the job, the machine or the feed table.")
-@click.argument("name", type=click.Choice(["report", "job", "machine", "feeds"]), default="report")
+
+@click.command(short_help="Show the JSON Schema of a report, the job, a machine, feed table, trace, ...")
+@click.argument("name", type=click.Choice(_NAMES), default="report")
 @options.debug
 def schema(name: str) -> None:
-    """Show the JSON Schema of the JSON report, of polarcheck.toml (job), of a machine profile or of a feed table."""
+    """
+    Show a JSON Schema: of a report, polarcheck.toml (job), a machine profile, a feed table, a trace, a comparison, or
+    the manifest and the certificate of a post.
+    """
     from polarcheck.reports.pages import schema as schemas
 
-    show(schemas.text(name).encode())
+    if name in ("manifest", "certificate"):
+        from polarcheck.certification.schemas import schema as of_post
+
+        show(schemas.as_text(of_post(name)).encode())
+    else:
+        show(schemas.text(name).encode())

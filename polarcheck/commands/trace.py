@@ -1,4 +1,4 @@
-"""`polarcheck trace`: shows the executed table, or the moves of a path, as a table, CSV or JSON lines."""
+"""`polarcheck trace`: shows the executed table, or the moves of a path, as a table, CSV, JSON lines or JSON."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from polarcheck.commands import options
+from polarcheck.commands.exit_codes import CLEAN, FINDINGS
 from polarcheck.commands.options import narrower, option
 from polarcheck.commands.output import COLUMNS, draws_dots, in_color, is_terminal, show, warn
 from polarcheck.errors import UsageError
@@ -28,10 +29,11 @@ if TYPE_CHECKING:
 @narrower(
     "--format",
     "form",
-    type=click.Choice(["table", "csv", "jsonl"]),
+    type=click.Choice(["table", "csv", "jsonl", "json"]),
     show_default="table on a terminal, else csv",
-    help="A table for people, or one for programs.",
+    help="A table for people, or one for programs; json is one document of moves.",
 )
+@option("--golden", is_flag=True, help="Leave out lines, as a file to compare with wants it: it survives renumbering.")
 @option("--show", "shown_too", type=click.Choice(["path"]), help="A picture of each section in place of the table.")
 @option("--color", type=click.Choice(["auto", "always", "never"]), default="auto", show_default=True)
 @options.max_size
@@ -40,12 +42,13 @@ def trace(
     path: str,
     which: str | None,
     form: str | None,
+    golden: bool,
     shown_too: str | None,
     color: str,
     no_config: bool,
     max_size: int,
     **arguments: Any,
-) -> None:
+) -> int:
     """
     Show what FILE does, block by block or, with --path, move by move inside polar sections.
 
@@ -53,43 +56,53 @@ def trace(
     each line names its own. A table leaves out what says nothing and, on a terminal, what there is no room for.
 
     --path tool is the path of the tool center. What is run with G41 or G42 while the radius is not known is shown as
-    programmed: those moves have "programmed" under path, and a line on standard error says what to give.
+    programmed: those moves have "programmed" under path, a line on standard error says what to give, and the exit code
+    is 1. --format json always shows moves, without --path those of the tool center.
     """
-    from polarcheck.checking import check
+    from polarcheck.api import programs
     from polarcheck.memory import keep_within_memory
-    from polarcheck.reading import files
-    from polarcheck.reports.pages import executed
-    from polarcheck.settings.of_programs import OfPrograms, Options
-    from polarcheck.time_limit import seconds_for, time_limit
+    from polarcheck.reports.pages import executed, trace_report
+    from polarcheck.settings.of_programs import Options
 
     keep_within_memory()
-    if shown_too and form not in (None, "table"):
-        raise UsageError(f"--show {shown_too}: expected --format table, found {form}")
-    applied = OfPrograms(Options(use_config=not no_config, **arguments))(path)
-    data = files.read_program(path, max_size)
-    with time_limit(seconds_for(len(data), applied.job.run.max_seconds)):
-        # One run for each channel, since --block-skip has a single state in this command.
-        runs = check.read(data, applied.machine, applied.job, files.shown(path), applied.encoding)
+    if shown_too and (golden or form not in (None, "table")):
+        raise UsageError(f"--show {shown_too}: expected --format table, found {'--golden' if golden else form}")
+    if golden and form == "table":
+        raise UsageError("--golden: expected --format csv, jsonl or json, found table")
+    on_terminal = is_terminal(sys.stdout)
+    form = form or ("table" if on_terminal and not golden else "csv")
+    which = which or ("tool" if form == "json" or shown_too else None)
+    program = programs.of_file(path, Options(use_config=not no_config, **arguments), max_size)
+    # One run for each channel, since --block-skip has a single state in this command.
+    with program.runs() as runs:
         paths = [(tables["trace"], tables["tool_center"]) for _, tables in runs]
-        for of_path in paths if which == "tool" or shown_too else ():
-            unknown = executed.without_radius(*of_path)
-            if unknown:
-                warn(unknown)
-        on_terminal = is_terminal(sys.stdout)
+        unknown = [executed.without_radius(*of_run) for of_run in paths if which == "tool" or shown_too]
+        for line in filter(None, unknown):
+            warn(line)
+        status = FINDINGS if any(unknown) else CLEAN
         if shown_too:
             _show_paths([tables for _, tables in runs], in_color(color))
-            return
-        if form == "table" or (form is None and on_terminal):
-            for text in _table(paths, which, on_terminal):
-                if not show(text):
-                    break
-            return
-        items = chain.from_iterable(
+            return status
+        if form == "table":
+            _show_all(_table(paths, which, on_terminal))
+            return status
+        items: Iterator[Any] = chain.from_iterable(
             executed.moves(*of_run, which) if which else executed.rows(*of_run) for of_run in paths
         )
-        for line in (executed.as_jsonl if form == "jsonl" else executed.as_csv)(items):
-            if not show(line.encode()):
-                break
+        items = trace_report.without_lines(items) if golden else items
+        if form == "json":
+            machine = program.settings.machine_id
+            _show_all(trace_report.as_json(items, program.path, machine, which or "tool", golden))
+        else:
+            _show_all((executed.as_jsonl if form == "jsonl" else executed.as_csv)(items))
+        return status
+
+
+def _show_all(pieces: Iterator[str]) -> None:
+    """Show text piece by piece, until nobody reads it any more."""
+    for piece in pieces:
+        if not show(piece):
+            return
 
 
 def _show_paths(channels: Sequence[Tables], is_colored: bool) -> None:

@@ -115,7 +115,7 @@ class FeedTable(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class FeedReport(msgspec.Struct, frozen=True, kw_only=True):
-    """`polarcheck feeds --format json`; a contract."""
+    """`polarcheck feeds --format json`; a contract. machine: its id, as in the report of a check."""
 
     schema: int
     path: str

@@ -92,7 +92,7 @@ def _is_finite(value: Any) -> bool:
 
 def _misfits(part: _Part) -> Iterator[MisfitError]:
     """The values that do not fit, the innermost first: a table fits only if its values do."""
-    kind = _bare(part.kind)
+    kind = _member(_bare(part.kind), part.value)
     if isinstance(part.value, Mapping):
         if isinstance(kind, type) and issubclass(kind, msgspec.Struct):
             yield from _of_struct(part, kind)
@@ -161,6 +161,17 @@ def _bare(kind: Any) -> Any:
     if get_origin(kind) in (Union, types.UnionType):
         left = [member for member in get_args(kind) if member is not type(None)]
         return _bare(left[0]) if len(left) == 1 else kind
+    return kind
+
+
+def _member(kind: Any, value: Any) -> Any:
+    """Return the member of a union that a table or list is meant as; any other type as it is."""
+    if get_origin(kind) not in (Union, types.UnionType):
+        return kind
+    for member in map(_bare, get_args(kind)):
+        is_table = get_origin(member) is dict or (isinstance(member, type) and issubclass(member, msgspec.Struct))
+        if is_table if isinstance(value, Mapping) else isinstance(value, list) and get_origin(member) is list:
+            return member
     return kind
 
 

@@ -10,7 +10,7 @@ from typing import Annotated, Any, ClassVar, Literal
 import msgspec
 
 from polarcheck.errors import JobError, UsageError, suggestion
-from polarcheck.machines.fitting import MisfitError, fitted
+from polarcheck.machines.fitting import EXPECTED, MOST, MisfitError, fitted
 from polarcheck.machines.machine import Machine
 from polarcheck.machines.offset_keys import OffsetKey, canonical, is_plain_number
 from polarcheck.machines.part import Part
@@ -24,6 +24,10 @@ _LARGEST_CUTTER, _LARGEST_LATHE = 1000, 20_000
 
 #: Blocks and statements that anybody waits for.
 _MOST = 10**12
+
+
+Level = Literal["error", "warning", "note", "off"]
+Reason = Annotated[str, msgspec.Meta(pattern=r"\S", description="why", extra={EXPECTED: "a text that says why"})]
 
 
 class Tool(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -111,6 +115,46 @@ class Running(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     variables: Annotated[dict[Variable, float], msgspec.Meta(description="values of #-variables, by number")] = {}
 
 
+class Reasoned(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A severity with its reason: a rule that is switched off or lowered with a reason leaves the verdict as it is."""
+
+    level: Level
+    reason: Reason
+
+
+class ReasonedRules(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Rules, groups or alarms that are selected or ignored, with the reason, which leaves the verdict as it is."""
+
+    rules: list[str]
+    reason: Reason
+
+
+#: What a job file may write for the severity of a rule, and for `select` and `ignore`.
+WrittenLevel = Annotated[
+    Level | Reasoned,
+    msgspec.Meta(extra={EXPECTED: 'error, warning, note or off, or { level = "off", reason = "..." }'}),
+]
+WrittenRules = Annotated[
+    list[str] | ReasonedRules,
+    msgspec.Meta(extra={EXPECTED: 'a list of names, or { rules = ["..."], reason = "..." }'}),
+]
+
+
+def level_of(written: Level | Reasoned) -> str:
+    """Return the severity, with or without a reason."""
+    return written.level if isinstance(written, Reasoned) else written
+
+
+def names_of(written: list[str] | ReasonedRules) -> list[str]:
+    """Return the names of `select` or `ignore`, with or without a reason."""
+    return written.rules if isinstance(written, ReasonedRules) else written
+
+
+def reason_of(written: object) -> str:
+    """Return the reason of a severity, of `select` or of `ignore`; empty without one."""
+    return written.reason if isinstance(written, Reasoned | ReasonedRules) else ""
+
+
 class OfPrograms(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """
     What a job file says of all its programs or, under [[programs]], of some of them. tools: by the keys of their
@@ -140,16 +184,19 @@ class OfPrograms(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_field
         Annotated[str, msgspec.Meta(description="file with the offset table of the control, punched out or copied")]
         | None
     ) = None
-    select: Annotated[list[str], msgspec.Meta(description="only these rules, groups or alarms")] = []
-    ignore: Annotated[list[str], msgspec.Meta(description="all rules but these, groups or alarms")] = []
+    select: Annotated[WrittenRules, msgspec.Meta(description="only these rules, groups or alarms")] = []
+    ignore: Annotated[WrittenRules, msgspec.Meta(description="all rules but these, groups or alarms")] = []
     severities: Annotated[
-        dict[str, Literal["error", "warning", "note", "off"]],
-        msgspec.Meta(description="severity by rule, group or alarm"),
+        dict[str, WrittenLevel],
+        msgspec.Meta(description="severity by rule, group or alarm; with a reason it leaves the verdict as it is"),
     ] = {}
     limits: Annotated[dict[str, float | bool], msgspec.Meta(description="[limits] of the lathe, over its own")] = {}
     fail_on: Annotated[
         Literal["error", "warning", "note", "never"], msgspec.Meta(description="the least severity that fails")
     ] = "warning"
+    max_warnings: (
+        Annotated[int, msgspec.Meta(ge=0, le=MOST, description="more warnings than this, over the run, fail it")] | None
+    ) = None
     strict: Annotated[bool, msgspec.Meta(description="fail where a file is unverified, too")] = False
     encoding: Annotated[str, msgspec.Meta(description="of the programs: cp1252, shift_jis; else found out")] | None = (
         None

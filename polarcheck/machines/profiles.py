@@ -187,6 +187,11 @@ def _find(name: str, folder: Path) -> tuple[Path, str]:
     raise UnknownMachineError(f"unknown machine {name!r}{suggestion(name, names())}; `polarcheck machines` lists them")
 
 
+def machine_id(name: str) -> str:
+    """The id of a machine: a built-in one is its name, a file of the user's own its file name without `.toml`."""
+    return Path(name).name.removesuffix(".toml")
+
+
 @functools.cache
 def _built_in(path: Path) -> dict[str, Any]:
     """Return the contents of a built-in file; most profiles inherit from the same ones."""

@@ -14,6 +14,7 @@ from polarcheck.reading.files import STANDARD_INPUT
 from polarcheck.reports import SEVERITIES, counted
 from polarcheck.reports.ci.paths import from_root
 from polarcheck.reports.concise import line, unreadable_line
+from polarcheck.reports.pages.settings_line import settings_lines
 from polarcheck.reports.text import summary, verdict
 
 if TYPE_CHECKING:
@@ -55,7 +56,7 @@ def _lines(report: Report, background: Background) -> Iterator[str]:
             yield from (_plain(f"- {text}") for text in texts)
             yield "::endgroup::"
     if report.files and not background.quiet:
-        yield _plain(f"polarcheck: {summary(report)}")
+        yield from (_plain(f"polarcheck: {text}") for text in (*settings_lines(report), summary(report)))
     left = {level: number - MOST for level, number in shown.items() if number > MOST}
     if left:
         kinds = ", ".join(counted(number, level) for level, number in left.items())

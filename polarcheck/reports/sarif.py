@@ -12,6 +12,7 @@ from polarcheck.reading.excerpt import visible
 from polarcheck.reports.ci import rule_help
 from polarcheck.reports.ci.paths import uri
 from polarcheck.reports.json import encoded
+from polarcheck.reports.pages.settings_line import settings_lines
 
 if TYPE_CHECKING:
     from polarcheck.checking.rule import Rule
@@ -35,7 +36,8 @@ def sarif(report: Report, background: Background) -> str:
     names = sorted({*silenced, *findings})
     indices = {name: index for index, name in enumerate(names)}
     failures = list(_failures(report, background))
-    notifications = [*failures, *_not_evaluated(report, background)]
+    settings = [{"level": "note", "message": {"text": line}} for line in settings_lines(report)]
+    notifications = [*failures, *_not_evaluated(report, background), *settings]
     run = {
         "tool": {
             "driver": {
@@ -46,6 +48,7 @@ def sarif(report: Report, background: Background) -> str:
             }
         },
         "automationDetails": {"id": f"{report.tool.name}/"},
+        "properties": {"machine": None if report.machine is None else visible(report.machine)},
         "columnKind": "unicodeCodePoints",
         "originalUriBaseIds": {_ROOT: {"description": {"text": "The root of the repository."}}},
         "invocations": [{"executionSuccessful": not failures, "toolExecutionNotifications": notifications}],
@@ -95,6 +98,7 @@ def _result(
         ],
         "partialFingerprints": {"polarcheck/v1": visible(finding.fingerprint)},
         "properties": {
+            "machine": visible(file.machine),
             "alarm": finding.alarm,
             "count": finding.count,
             "values": finding.values,

@@ -10,6 +10,7 @@ from polarcheck.reading.excerpt import visible
 from polarcheck.reading.files import STANDARD_INPUT
 from polarcheck.reports import Background, Parts, of_each, painted
 from polarcheck.reports.concise import lines
+from polarcheck.reports.pages.settings_line import settings_lines
 from polarcheck.reports.text import summary
 
 if TYPE_CHECKING:
@@ -44,6 +45,7 @@ def _end(report: Report, background: Background) -> Iterator[str]:
     counts = total.errors, total.warnings, total.notes, total.unreadable, background.silenced and total.silenced
     if any(counts):
         yield ""
+    yield from settings_lines(report)
     yield summary(report, background.fixed)
     for verdict, label in _FULL.items():
         of_verdict = (file.path for file in report.files if file.verdict == verdict and file.path != STANDARD_INPUT)

@@ -10,10 +10,11 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from msgspec import UNSET
 
-from polarcheck.finding import FAIL, PASS, UNREADABLE, UNVERIFIED
+from polarcheck.finding import DESELECTED, FAIL, PASS, UNREADABLE, UNVERIFIED
 from polarcheck.reading.excerpt import excerpt, visible, without_commands
 from polarcheck.reports import SEVERITIES, Background, Parts, counted, of_each, painted
 from polarcheck.reports.pages.resting import resting
+from polarcheck.reports.pages.settings_line import settings_lines
 
 if TYPE_CHECKING:
     from polarcheck.checking.rule import Rule
@@ -106,7 +107,7 @@ def _parts(background: Background, are_listed: bool) -> Parts:
         shown = list[str]()
         if not background.quiet and report.files:
             shown += [] if are_listed else _not_evaluated(report.files, page)
-            shown += [*_verdicts(report, page), "", summary(report, background.fixed)]
+            shown += [*_verdicts(report, page), "", *settings_lines(report), summary(report, background.fixed)]
             known = next((rule for rule in explained if rule in background.rules), None)
             shown += [page.paint("aside", f"More about a rule: polarcheck explain {known}")] if known else []
         return without_commands("".join(line + "\n" for line in shown))
@@ -255,6 +256,9 @@ def _not_evaluated(files: Iterable[FileReport], page: _Page) -> Iterator[str]:
             yield from page.labelled("at", f"{place}, {counted(blocks, 'block')}")
         if gap.more:
             yield from page.labelled("", f"and in {counted(gap.more, 'more file')}")
+        if not gap.rules.keys() - {DESELECTED}:
+            yield ""
+            continue
         yield from page.labelled("rule" if len(gap.rules) == 1 else "rules", ", ".join(gap.rules))
         yield ""
 

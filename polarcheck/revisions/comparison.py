@@ -151,11 +151,11 @@ class _Runs:
                 yield NotCompared(f"{name}: {entry.reason}", matters=entry.matters)
         if self._is_same_machine:
             return
-        yield NotCompared("tool numbers, planes and G codes of cycles: the machines differ", matters=False)
+        yield NotCompared("the machines differ: tool numbers, planes and G codes are not compared", matters=False)
         for name, trace in zip(("old", "new"), self._traces, strict=True):
             codes = not_comparable(trace)
             if codes:
-                reason = f"{name}: {', '.join(codes)}: the profile of its machine does not say what they do"
+                reason = f"{name}: {', '.join(codes)}: what another lathe needs in their place is not compared"
                 yield NotCompared(reason, matters=False)
 
     # ---- sections ----
@@ -187,7 +187,8 @@ class _Runs:
         self, number: int, partner: int, side: Side, other: Side, known: set[tuple[str, object, object]]
     ) -> SectionPair:
         old, new = Part(self._traces[0], self._old[number]), Part(self._traces[1], self._new[partner])
-        state = [
+        state = [*_left_open(old, new)]
+        state += [
             each
             for each in entry_differences(old, new, is_same_machine=self._is_same_machine, tolerance=self._tolerance)
             # What holds for all sections stands in the first.
@@ -252,7 +253,7 @@ class _Runs:
         ):
             keep_time()
             old = self._outside(0, low, high)
-            new = self._outside(1, new_low, new_high)
+            new = _turned_to(old, self._outside(1, new_low, new_high))
             why = next(
                 (f"{name}: {part.stretch.needs}" for name, part in (("old", old), ("new", new)) if part.stretch.needs),
                 "",
@@ -267,6 +268,28 @@ class _Runs:
     def _outside(self, side: int, first: int, until: int) -> Part:
         trace = self._traces[side]
         return Part(trace, outside(trace, self._tolerance, self._steps[side], first, until))
+
+
+def _left_open(old: Part, new: Part) -> Iterator[Difference]:
+    """A section that is no longer left, or is left now."""
+    is_left = [bool(part.trace.mode.sections.left[part.stretch.section]) for part in (old, new)]
+    if is_left[0] != is_left[1]:
+        lines = [part.line(int(part.trace.mode.sections.enter[part.stretch.section])) for part in (old, new)]
+        text = "the polar mode is left no more" if is_left[0] else "the polar mode is left now, and was not"
+        yield Difference(
+            "section", text, "left" if is_left[0] else "open", "left" if is_left[1] else "open", "", *lines
+        )
+
+
+def _turned_to(old: Part, new: Part) -> Part:
+    """The new part with C by full turns nearer to the old one: where C stands behind a section counts its turns."""
+    paths = old.stretch.path, new.stretch.path
+    if not len(paths[0]) or not len(paths[1]):
+        return new
+    turn = 360 * new.stretch.c_scale
+    by = turn * round(float(paths[0].z_start[0] - paths[1].z_start[0]) / turn)
+    path = msgspec.structs.replace(paths[1], z_start=paths[1].z_start + by, z_end=paths[1].z_end + by)
+    return Part(new.trace, msgspec.structs.replace(new.stretch, path=path))
 
 
 def _gaps(trace: Trace, sections: Rows) -> list[tuple[int, int]]:

@@ -81,6 +81,9 @@ def _of_path(old: Part, new: Part, deviation: PathDeviation) -> Difference:
     size = f"{'' if deviation.is_exact else 'up to '}{old.quantity(largest, old_row).shown('length', 1)}"
     if old.stretch.section < 0 and largest == 0:
         size = "C alone"
+    units = [part.quantity(0.0, row).unit for part, row in ((old, old_row), (new, new_row))]
+    if units[0] != units[1]:
+        at_old, at_new = f"{at_old} {units[0]}", f"{at_new} {units[1]}"
     text = f"the path differs by {size}: {at_old} | {at_new}"
     return Difference("path", text, 0.0, rounded(largest), "mm", old.line(old_row), new.line(new_row))
 
@@ -100,7 +103,7 @@ def length_of(part: Part, deviation: PathDeviation | None) -> float:
 
 
 def _place(part: Part, row: int, point: complex, third: float) -> str:
-    """`X60. C5. Z-2.` in the units of the program; outside of sections Z and X come as one point, and C as the third."""
+    """`X60 C5 Z-2` in the units of the program; outside of sections Z and X are the point, and C is the third."""
     trace, section = part.trace, part.stretch.section
     if section >= 0:
         point = point / turn_of(trace, section)
@@ -130,7 +133,9 @@ def _of_depth(old: Part, new: Part, tolerance: float) -> Iterator[Difference]:
     if old.stretch.section < 0 or before is None or after is None or abs(before - after) <= tolerance:
         return
     rows = [int(part.stretch.row[~part.stretch.rapid][0]) for part in (old, new)]
-    shown = [_number(part, row, z) for part, row, z in zip((old, new), rows, (before, after), strict=True)]
+    shown = [
+        part.quantity(z, row).shown("length") for part, row, z in zip((old, new), rows, (before, after), strict=True)
+    ]
     yield Difference("depth", f"the depth was Z{shown[0]} and is Z{shown[1]}", before, after, "mm")
 
 

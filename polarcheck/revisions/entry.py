@@ -71,8 +71,9 @@ def entry_differences(old: Part, new: Part, *, is_same_machine: bool, tolerance:
     """Yield what differs at the beginning of two sections; across machines what means the same on both."""
     before, after = (entry_of(part.trace, part.stretch.section) for part in (old, new))
     lines = [part.line(int(part.trace.mode.sections.enter[part.stretch.section])) for part in (old, new)]
+    own = {"tool", "plane", *_of_one_machine(old, new)}
     for what in Entry._fields:
-        if not is_same_machine and what in ("tool", "plane"):
+        if not is_same_machine and what in own:
             continue
         value, other = getattr(before, what), getattr(after, what)
         if isinstance(value, str):
@@ -86,6 +87,8 @@ def entry_differences(old: Part, new: Part, *, is_same_machine: bool, tolerance:
         least = {"c_angle": _SAME_ANGLE, "radius": tolerance}.get(what, 0.0)
         if (np.isnan(value) and np.isnan(other)) or apart <= least:
             continue
+        if what in ("radius", "c_angle") and np.isnan(apart):
+            continue  # one of them is not known: that is no difference, and the section says so
         shown = [_shown(part, what, number) for part, number in ((old, value), (new, other))]
         yield Difference(
             what,
@@ -95,6 +98,18 @@ def entry_differences(old: Part, new: Part, *, is_same_machine: bool, tolerance:
             _UNITS[what],
             *lines,
         )
+
+
+def _of_one_machine(old: Part, new: Part) -> Iterator[str]:
+    """States that one of two machines does not have, or whose codes its profile does not name."""
+    traces = old.trace, new.trace
+    for what, codes in (("live_tool", "live_tool_on"), ("spindle", "spindle_on")):
+        if not all(getattr(trace.machine.m_codes, codes) for trace in traces):
+            yield what
+    if any(trace.machine.polar.plane_is_fixed for trace in traces):
+        yield "c_angle"
+    if any(np.isnan(speed_in_force(trace)).all() for trace in traces):
+        yield "speed"
 
 
 def _shown(part: Part, what: str, value: float) -> str:

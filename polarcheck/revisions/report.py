@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import msgspec
 
-#: Verdicts, and the exit code of each: design.md 6.
-SAME_WORDS, SAME_METAL, DIFFERS, NOT_COMPARED = "same words", "same metal", "differs", "not compared"
+#: The same but for block numbers, spaces and comments; the same but for its words; not so; nobody knows.
+VERDICTS = SAME_WORDS, SAME_METAL, DIFFERS, NOT_COMPARED = "same words", "same metal", "differs", "not compared"
+#: What has become of a section.
+CHANGES = ("same", "changed", "moved", "missing", "added", "not compared")
 #: What is compared, in the words of the report.
 COMPARED = (
     "the path of the tool center in sections on the part, with Z",
@@ -27,7 +29,7 @@ class Difference(msgspec.Struct, frozen=True):
     what: path, depth, feed, order, place, section, or a state: tool, offset, radius, c_angle, spindle, live_tool,
     speed, plane.
     old, new: its values, null where there is none; unit: mm, mm/min, mm/rev, deg, rev/min, empty for words.
-    old_line, new_line: lines of the files, null where there is none. way: over this length [mm], null where it has none.
+    old_line, new_line: lines of the files, null where there is none. way: over this length [mm], null for none.
     """
 
     what: str
@@ -102,3 +104,18 @@ class Comparison(msgspec.Struct, frozen=True):
     not_compared: list[NotCompared]
     compared: tuple[str, ...] = COMPARED
     never_compared: tuple[str, ...] = NEVER_COMPARED
+
+
+class ComparisonReport(msgspec.Struct, frozen=True):
+    """
+    The JSON document of `polarcheck compare`.
+
+    schema: its version. files: a comparison for each pair of files. only_old, only_new: programs of two folders that
+    the other one does not have.
+    """
+
+    schema: int
+    tool: dict[str, str]
+    files: list[Comparison]
+    only_old: list[str] = []
+    only_new: list[str] = []

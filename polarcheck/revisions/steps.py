@@ -14,7 +14,7 @@ from polarcheck.machines.codes import code_set
 from polarcheck.machines.modal import MM_PER_INCH, Units
 
 #: Words that plain moves are written with, and those that only name blocks.
-_OF_MOVES = ("X", "Z", "U", "W", "I", "J", "K", "R", "F", "N", "O")
+_OF_MOVES = ("X", "Z", "U", "W", "I", "J", "K", "R", "F", "N", "O", "/")
 #: Words that hold lengths in a cycle.
 _LENGTHS = ("X", "Y", "Z", "U", "V", "W", "I", "J", "K", "R")
 #: Lists of G codes whose states are compared as moves, feeds and entries, not as orders.
@@ -23,13 +23,10 @@ _OF_STATES = (
     *("compensation_off", "compensation_left", "compensation_right", "inch", "mm"),
     *("feed_inverse_time", "feed_per_minute", "feed_per_revolution", "absolute", "incremental"),
 )
-#: M codes that mean the same on every lathe.
-_EVERYWHERE = ("M0", "M1", "M2", "M3", "M4", "M5", "M8", "M9", "M30")
-#: Keys of [m_codes] that say the same on two lathes.
-_SWITCHES = (
-    *("live_tool_on", "live_tool_off", "spindle_on", "spindle_off", "c_axis_on", "c_axis_off"),
-    *("c_axis_clamp", "c_axis_unclamp", "optional_stop", "program_end"),
-)
+#: M codes that mean the same on every lathe, and whose effect no table of states shows.
+_EVERYWHERE = ("M0", "M1", "M7", "M8", "M9")
+#: M codes that are compared across machines otherwise, or that end programs.
+_COMPARED_OTHERWISE = ("M2", "M3", "M4", "M5", "M30")
 
 
 class Step(NamedTuple):
@@ -63,18 +60,18 @@ def steps(trace: Trace, *, is_same_machine: bool) -> list[Step]:
     """
     Return the orders of a program in the order in which they run.
 
-    is_same_machine: the other revision is for the same machine. Else M codes count that mean the same on every lathe or
-    that the profile names, and no G codes, tools and words of other addresses.
+    is_same_machine: the other revision is for the same machine. Else only M codes count that mean the same on every
+    lathe, since which others a contour needs is a matter of the lathe.
     """
     return list(filter(None, map(_Reader(trace, is_same_machine).step, _rows(trace, is_same_machine).tolist())))
 
 
 def not_comparable(trace: Trace) -> list[str]:
-    """The M codes of a program of which nobody knows what another lathe has in their place."""
-    known = {*_names_of_m_codes(trace), *_EVERYWHERE}
+    """The M codes of a program that are not compared with those of another lathe."""
+    macro = trace.machine.macro
+    known = {*_EVERYWHERE, *_COMPARED_OTHERWISE, *macro.subprogram_calls, *macro.program_returns}
     written = dict.fromkeys(f"M{value:g}" for value in trace.run.words.value[trace.blocks.m_words].tolist())
-    calls = {*trace.machine.macro.subprogram_calls, *trace.machine.macro.program_returns}
-    return [word for word in written if word not in known and word not in calls]
+    return [word for word in written if word not in known]
 
 
 def _rows(trace: Trace, is_same_machine: bool) -> Rows:
@@ -82,8 +79,7 @@ def _rows(trace: Trace, is_same_machine: bool) -> Rows:
     blocks, row = trace.blocks, trace.run.row
     turns_side = _turns_side(trace)
     if not is_same_machine:
-        words = np.concatenate([blocks.m_words, blocks.word_indices("S")])
-        return np.unique(np.concatenate([row[words], np.flatnonzero(turns_side)]))
+        return np.unique(np.concatenate([row[blocks.m_words], np.flatnonzero(turns_side)]))
     usual = [trace.machine.address_number(name) for name in (*_words_of_moves(trace), "G") if name]
     unusual = ~np.isin(trace.run.words.address, usual)
     unusual[blocks.g_words[~_sets_state(trace)]] = True
@@ -100,12 +96,6 @@ def _sets_state(trace: Trace) -> Mask:
     words = [word for key in _OF_STATES for word in trace.machine.codes(key)]
     words += [*trace.machine.polar.on, *trace.machine.polar.off]
     return code_set([word for word in words if word.startswith("G") and " " not in word])[trace.blocks.g_codes]
-
-
-def _names_of_m_codes(trace: Trace) -> dict[str, str]:
-    """What the profile says that an M code does, by the code."""
-    codes = trace.machine.m_codes
-    return {word: key for key in _SWITCHES for word in getattr(codes, key) if " " not in word}
 
 
 def _turns_side(trace: Trace) -> Mask:
@@ -128,7 +118,6 @@ class _Reader:
         self._calls = trace.blocks.codes(*(word for words in calls for word in words))
         self._special = special_rows(trace)
         self._turns_side = _turns_side(trace)
-        self._names = _names_of_m_codes(trace)
         self._plain = np.zeros(len(trace.run.words), bool)
         self._plain[trace.blocks.g_words[_sets_state(trace)]] = True
         self._in_force: dict[str, float] = {}
@@ -153,17 +142,16 @@ class _Reader:
         name, value = self._address(int(words.address[index])), float(words.value[index])
         text = f"{name}{value:g}"
         if name == "M":
-            token = text if self._is_same_machine else self._names.get(text, text if text in _EVERYWHERE else "")
-            return (token, None, token.replace("_", " ")) if token else None
+            return (text, None, text) if self._is_same_machine or text in _EVERYWHERE else None
+        if not self._is_same_machine:
+            return None
         if name in ("S", "T"):
-            if name == "T" and not self._is_same_machine:
-                return None
             if not is_special:
                 if self._in_force.get(name) == value:
                     return None
                 self._in_force[name] = value
             return name, value, text
-        if not self._is_same_machine or name in ("N", "O") or self._plain[index]:
+        if name in ("N", "O", "/") or self._plain[index]:
             return None
         if name == "G":
             return text, None, text

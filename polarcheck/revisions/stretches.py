@@ -177,25 +177,25 @@ def outside(trace: Trace, tolerance: float, steps: Sequence[Step], first: int, u
     moving = at_work & trace.path.moves[rows] & ~trace.modal.in_cycle[rows] & trace.modal.uses_axes[rows]
     moving &= ~special_rows(trace)[rows]
     row = rows[moving]
-    sides = trace.blocks.starts
-    columns = [
-        (before(column, sides, np.nan)[row], column[row]) for column in (trace.path.x, trace.path.z, trace.path.c_angle)
-    ]
+    starts, path = trace.blocks.starts, trace.path
+    columns = [(before(column, starts, np.nan)[row], column[row]) for column in (path.x, path.z, path.c_angle)]
     needs = ""
     written = (("X", "U"), ("Z", "W"), trace.machine.polar.rotary_words)
     for (_, after), words in zip(columns, written, strict=True):
         lost = np.isnan(after) & trace.blocks.has(*words)[row]
         if lost.any() and not needs:
             needs = f"{words[0]} of line {int(trace.blocks.line_in_file[row[np.argmax(lost)]])} is not known"
-    (x_from, x_to), (z_from, z_to), (c_from, c_to) = (_without_unknown(*column) for column in columns)
-    scale = tolerance / ANGLE
+    (x_from, x_to), (z_from, z_to) = (_without_unknown(*column) for column in columns[:2])
+    c_from, c_to = _continuous(*_without_unknown(*columns[2]), path.c_turn[row])
+    # C counts in the sense of the plane, which is not that of C on each lathe.
+    scale = tolerance / ANGLE * trace.path.c_axis.sense
     start, end = z_from + 1j * x_from, z_to + 1j * x_to
     kind = trace.axes.motion[row].astype(np.int16)
     center = _centers(trace, row, start, end, kind)
     kind = np.where(np.isnan(center), Motion.LINE, kind).astype(np.int16)
-    path = SpacePath(start, end, center, kind, c_from * scale, c_to * scale)
+    of_stretch = SpacePath(start, end, center, kind, c_from * scale, c_to * scale)
     own = set(rows.tolist())
-    stretch = _stretch(trace, -1, rows, path, row, [step for step in steps if step.row in own], needs)
+    stretch = _stretch(trace, -1, rows, of_stretch, row, [step for step in steps if step.row in own], needs)
     return msgspec.structs.replace(stretch, c_scale=scale)
 
 
@@ -208,6 +208,14 @@ def _without_unknown(start: Floats, end: Floats) -> tuple[Floats, Floats]:
     following = known[np.minimum(np.searchsorted(known, np.arange(len(values))), len(known) - 1)]
     filled = values[following]
     return filled[::2], filled[1::2]
+
+
+def _continuous(start: Floats, end: Floats, turn: Floats) -> tuple[Floats, Floats]:
+    """C as it turns: where it rolls over, an angle is reached the shorter way, and 360 deg more are the same place."""
+    end = np.where(np.isnan(turn), end, start + turn)
+    jump = start - np.append(start[:1], end[:-1])
+    turns = 360 * np.cumsum(np.round(jump / 360))
+    return start - turns, end - turns
 
 
 def _centers(trace: Trace, row: Rows, start: Points, end: Points, kind: States) -> Points:

@@ -80,10 +80,11 @@ def _without_known(
     report: FileReport, runs: Sequence[tuple[str, Tables]], path: Path, settings: Settings
 ) -> FileReport:
     """Return the report without the findings that the baseline of the program knows."""
-    from polarcheck.batch.baselines import Baselines, Program
+    from polarcheck.batch.baselines import Baselines
+    from polarcheck.batch.tasks import Task
     from polarcheck.checking.outline import with_outline
 
-    known = Baselines([Program(report.path, str(path), settings)], [])
+    known = Baselines([Task(str(path), settings)], [])
     return known.without_known(with_outline(report, runs))
 
 

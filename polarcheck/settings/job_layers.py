@@ -264,13 +264,19 @@ def _drawn(part: Part, layer: Layer) -> Part:
     return drawing.part_of(Path(part.drawing), f"{layer.at('part.drawing')}: drawing: {part.drawing}", part)
 
 
-def _leaves(table: Mapping[str, Any]) -> Iterator[tuple[tuple[str, ...], Any]]:
+def _leaves(table: Mapping[str, Any], *outer: str) -> Iterator[tuple[tuple[str, ...], Any]]:
     """Yield keys and value of each value of a table, those of nested tables included."""
     for key, value in table.items():
-        if isinstance(value, Mapping):
-            yield from (((key, *parts), inner) for parts, inner in _leaves(value))
+        parts = *outer, key
+        if isinstance(value, Mapping) and not _is_whole(parts):
+            yield from _leaves(value, *parts)
         else:
-            yield (key,), value
+            yield parts, value
+
+
+def _is_whole(parts: tuple[str, ...]) -> bool:
+    """Return True for a key whose table is one value: a severity, or a list of rules, with its reason."""
+    return parts[0] in ("select", "ignore") or (parts[0] == "severities" and len(parts) > 1)
 
 
 def _put(table: dict[str, Any], parts: tuple[str, ...], value: Any) -> None:

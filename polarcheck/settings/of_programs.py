@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import os
 import re
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -15,12 +15,14 @@ import msgspec
 from polarcheck.checking.rule import Rule, load_all
 from polarcheck.checking.settings import Extra, Settings
 from polarcheck.errors import MachineError, UsageError
+from polarcheck.finding import Decided
 from polarcheck.machines import profiles, toml_text
 from polarcheck.machines.job import Job, PunchedTool, Running, check_tools, check_work_offsets, with_tool
 from polarcheck.machines.machine import Machine
 from polarcheck.machines.part import Part
 from polarcheck.reading.files import STANDARD_INPUT
-from polarcheck.settings import job_files, selection
+from polarcheck.settings import decisions, job_files, selection
+from polarcheck.settings.deselection import deselected
 from polarcheck.settings.job_files import JobFile
 from polarcheck.settings.job_layers import Merged
 from polarcheck.settings.selection import Rules
@@ -38,6 +40,8 @@ class Options(msgspec.Struct, frozen=True):
     use_baseline: False to ignore the baseline that a job file names.
     extras: functions that add data to the reports of files.
     keywords: those of a Python function, which lie over the job files.
+    gives_verdicts: False for a command that runs some rules for what it computes, and says nothing of the others.
+    named: what has set an option, where that is not the option: `POLARCHECK_SELECT=` by `select`.
     """
 
     machine: str | None = None
@@ -65,7 +69,10 @@ class Options(msgspec.Struct, frozen=True):
     drawings: Sequence[Path] = ()
     drawing_layers: Sequence[str] = ()
     tolerance: float | None = None
+    max_warnings: int | None = None
     extras: Sequence[Extra] = ()
+    gives_verdicts: bool = True
+    named: Mapping[str, str] = {}
     exclude: Sequence[str] = ()
     keywords: Keywords | None = None
 
@@ -210,7 +217,7 @@ class OfPrograms:
     def _patterns(self) -> WalkPatterns:
         from polarcheck.settings.walk_patterns import WalkPatterns
 
-        return WalkPatterns(self._options.exclude)
+        return WalkPatterns(self._options.exclude, self._options.spelled)
 
     def _job_file(self, folder: str) -> tuple[JobFile, str]:
         """Return the job file for a folder, and the real path of the folder."""
@@ -233,6 +240,7 @@ def _is_below(path: Path, folders: Iterable[str]) -> bool:
 
 
 Layers = tuple[tuple[int, int], ...]
+_Chosen = tuple[list[Rule], dict[str, str], list[str]]
 
 
 class Applied(msgspec.Struct, frozen=True):
@@ -262,7 +270,7 @@ class SettingsMaker:
         self._known = load_all()
         self._changes = options.keywords.changes if options.keywords else changes(options.changes)
         self._profiles: dict[str, profiles.Profile] = {}
-        self._rules: dict[str, tuple[list[Rule], dict[str, str]]] = {}
+        self._rules: dict[str, _Chosen] = {}
         self._hashes: dict[int, str] = {}
 
     def settings(self, file: JobFile, layers: Layers) -> Settings:
@@ -278,7 +286,7 @@ class SettingsMaker:
         machine = profile.machine
         check_tools(job, options.tools, machine, merged.at)
         check_work_offsets(job, machine, merged.at)
-        rules, levels = self._chosen(job, merged, profile)
+        rules, levels, deselected = self._chosen(job, merged, profile)
         named = options.baseline or (None if job.baseline is None else Path(job.baseline))
         baseline = named if options.use_baseline else None
         settings = Settings(
@@ -295,6 +303,8 @@ class SettingsMaker:
             inline=job.inline,
             baseline=baseline,
             baseline_named_by="" if baseline in (None, options.baseline) else f"{merged.at('baseline')}: baseline",
+            decided=self._decided(name, baseline, merged, profile, file),
+            deselected=deselected,
             profile_sha256=self._hash(machine),
             extras=options.extras,
         )
@@ -317,6 +327,14 @@ class SettingsMaker:
                 raise MachineError(_with_line(str(error), merged)) from None
         return self._profiles[key]
 
+    def _decided(
+        self, name: str, baseline: Path | None, merged: Merged, profile: profiles.Profile, file: JobFile
+    ) -> Decided:
+        """Return what the user has set, for reports."""
+        options = {key: getattr(self._options, key) for key in decisions.OPTIONS}
+        configuration = [str(path) for path in _configuration(profile, file)]
+        return decisions.decided(name, baseline, options, self._options.named, merged, configuration)
+
     def _hash(self, machine: Machine) -> str:
         """Return the SHA-256 of all values of a machine."""
         if id(machine) not in self._hashes:
@@ -326,15 +344,23 @@ class SettingsMaker:
             self._hashes[id(machine)] = hashlib.sha256(values).hexdigest()
         return self._hashes[id(machine)]
 
-    def _chosen(self, job: Job, merged: Merged, profile: profiles.Profile) -> tuple[list[Rule], dict[str, str]]:
-        """Return the rules to run, and the severities that differ from the machine's."""
+    def _chosen(self, job: Job, merged: Merged, profile: profiles.Profile) -> _Chosen:
+        """Return the rules to run, the severities that differ from the machine's, and what keeps others from it."""
         options, machine = self._options, profile.machine
-        key = repr((id(profile), job.select, job.ignore, list(job.severities.items())))
+        of_job = [job.select, job.ignore, *job.severities.items()]
+        # Lines on what a job file deselects name its places.
+        places = [layer.title for layer in merged.layers] if any(of_job) else []
+        key = repr((id(profile), of_job, places))
         if key not in self._rules:
             names = selection.Names(options.select, options.ignore, options.severities, options.spelled)
             levels = selection.severities(names, job, merged.at, self._known, machine)
             rules = selection.chosen(names, job, merged.at, self._known, machine)
-            self._rules[key] = rules, levels
+            lines = (
+                deselected(names, options.named, merged, profile, self._known, rules, levels)
+                if options.gives_verdicts
+                else []
+            )
+            self._rules[key] = rules, levels, lines
         return self._rules[key]
 
 
@@ -383,17 +409,21 @@ def _parts(parts: Sequence[Part], options: Options) -> list[Part]:
 
 
 #: Options with the name of the key of a job that they set.
-_OVER_JOB = ("machine", "radius_from_comments", "fail_on", "strict", "encoding", "inline")
+_OVER_JOB = ("machine", "radius_from_comments", "fail_on", "max_warnings", "strict", "encoding", "inline")
 
 
 def _files_read(
     options: Options, job: Job, profile: profiles.Profile, file: JobFile, baseline: Path | None
 ) -> list[Path]:
     """Return the job files, offset tables, drawings, the baseline and the user's machine files."""
-    machines = [Path(title) for title in profile.chain if title not in profiles.names()]
     tables = [path for path in (options.offsets, baseline) if path]
     tables += [Path(part.drawing) for part in job.part if part.drawing is not None]
-    return [*machines, *tables, *file.paths, *([Path(job.offsets)] if job.offsets else [])]
+    return [*_configuration(profile, file), *tables, *([Path(job.offsets)] if job.offsets else [])]
+
+
+def _configuration(profile: profiles.Profile, file: JobFile) -> list[Path]:
+    """Return the job files, the nearest first, and the user's machine files."""
+    return [*file.paths, *(Path(title) for title in profile.chain if title not in profiles.names())]
 
 
 def changes(options: Iterable[str]) -> dict[str, Any]:

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import msgspec
 
 from polarcheck.machines import profiles, toml_lines
-from polarcheck.machines.job import Job, PunchedTool
+from polarcheck.machines.job import Job, PunchedTool, ReasonedRules
 from polarcheck.machines.parameters import Origin
 from polarcheck.machines.part import Part
 from polarcheck.settings.job_layers import Layer, Merged, PartLayer
@@ -46,6 +46,7 @@ _OPTIONS = {
     "ignore": ("ignore", "--ignore"),
     "fail_on": ("fail_on", "--fail-on"),
     "strict": ("strict", "--strict"),
+    "max_warnings": ("max_warnings", "--max-warnings"),
     "machine": ("machine", "--machine"),
     "encoding": ("encoding", "--encoding"),
     "inline": ("inline", "--no-inline"),
@@ -94,7 +95,9 @@ def _flat(job: Job) -> dict[str, Any]:
             for number, part in enumerate(value, 1):
                 found |= _differing(f"part.{number}", part)
         elif field.name == "severities":
-            found |= {f"severities.{name}": level for name, level in value.items()}
+            found |= {f"severities.{name}": msgspec.to_builtins(level) for name, level in value.items()}
+        elif isinstance(value, ReasonedRules):
+            found[field.name] = msgspec.to_builtins(value)
         elif isinstance(value, msgspec.Struct):
             found |= {f"{field.name}.{key}": inner for key, inner in msgspec.structs.asdict(value).items()}
         else:

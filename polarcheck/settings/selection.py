@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 from polarcheck.checking import rule as all_rules
 from polarcheck.checking.rule import Rule
 from polarcheck.errors import MachineError, UsageError, suggestion
-from polarcheck.machines.job import Job
+from polarcheck.machines.job import Job, level_of, names_of
 from polarcheck.machines.machine import Machine
 from polarcheck.machines.profiles import Profile
 
@@ -89,9 +89,9 @@ def chosen(names: Names, job: Job, at: Place, known: Rules, machine: Machine) ->
     if names.selected:
         rules = _named(names.spelled("--select"), select, names.selected, known, machine)
     else:
-        if job.select:
-            rules = _named(lambda: f"{at('select')}: select", select, job.select, known, machine)
-        without = _named(lambda: f"{at('ignore')}: ignore", select, job.ignore, known, machine)
+        if names_of(job.select):
+            rules = _named(lambda: f"{at('select')}: select", select, names_of(job.select), known, machine)
+        without = _named(lambda: f"{at('ignore')}: ignore", select, names_of(job.ignore), known, machine)
     without = without | _named(names.spelled("--ignore"), select, names.ignored, known, machine)
     left = [rule for name, rule in rules.items() if name not in without]
     if not left:
@@ -108,8 +108,8 @@ def severities(names: Names, job: Job, at: Place, known: Rules, machine: Machine
     Raises UsageError, with the option or the key of the file.
     """
     of_job: dict[str, str] = {}
-    for name, level in job.severities.items():
-        of_job |= _named(partial(_of_severity, at, name), _levels, [(name, level)], known, machine)
+    for name, written in job.severities.items():
+        of_job |= _named(partial(_of_severity, at, name), _levels, [(name, level_of(written))], known, machine)
     of_command = _named(
         names.spelled("--severity"), _levels, [_pair(option) for option in names.levels], known, machine
     )

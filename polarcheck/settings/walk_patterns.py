@@ -19,13 +19,17 @@ class WalkPatterns:
     Says which pattern excludes an entry of a folder, and records it.
 
     excluded: the patterns of --exclude, which begin at the working folder.
+    spelled: returns an option as its user writes it, for messages.
     """
 
-    def __init__(self, excluded: Sequence[str]) -> None:
+    def __init__(self, excluded: Sequence[str], spelled: Callable[[str], str] = str) -> None:
         """Raises UsageError for a text that is no pattern."""
+        self._spelled = spelled
         for pattern in excluded:
             if not is_pattern(pattern):
-                raise UsageError(f"--exclude: expected a pattern such as O12*.nc or lathe7/**, found {shown(pattern)}")
+                raise UsageError(
+                    f"{spelled('--exclude')}: expected a pattern such as O12*.nc or lathe7/**, found {shown(pattern)}"
+                )
         self._excluded = list(excluded)
         self._globs = Globs(os.path.realpath(os.curdir), excluded) if excluded else None
         self._used: set[int] = set()
@@ -45,7 +49,7 @@ class WalkPatterns:
         def excluded_by(name: str, is_folder: bool) -> str:
             if self._globs is not None and (numbers := self._globs.itself(folder, name, is_folder=is_folder)):
                 self._used |= numbers
-                return f"--exclude {shown(self._excluded[min(numbers)])}"
+                return f"{self._spelled('--exclude')} {shown(self._excluded[min(numbers)])}"
             if globs and layer and (numbers := globs.itself(folder, name, is_folder=is_folder)):
                 used.update(numbers)
                 return f"{layer.at('exclude')}: {shown(layer.excluded[min(numbers)])}"
@@ -65,8 +69,8 @@ class WalkPatterns:
         unused = [pattern for number, pattern in enumerate(self._excluded) if number not in self._used]
         left = _unused_extensions(names, programs) if names else []
         return [
-            *(f"--exclude {shown(pattern)} excludes nothing" for pattern in unused),
-            *(f"--extensions: no file ends in {shown(name)}" for name in left),
+            *(f"{self._spelled('--exclude')} {shown(pattern)} excludes nothing" for pattern in unused),
+            *(f"{self._spelled('--extensions')}: no file ends in {shown(name)}" for name in left),
         ]
 
     def unused_in(self, file: JobFile) -> list[str]:

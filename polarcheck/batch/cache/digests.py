@@ -24,7 +24,7 @@ from polarcheck.checking.settings import Settings
 #: Bytes of a digest.
 SIZE = 16
 #: Fields of Settings that say where values come from; the values themselves stand in the other fields.
-_PLACES = ("read", "job_file")
+_PLACES = ("read", "job_file", "baseline_named_by")
 #: Libraries that compute results.
 _LIBRARIES = ("numpy", "shapely", "msgspec")
 _FOLDER = Path(polarcheck.__file__).parent

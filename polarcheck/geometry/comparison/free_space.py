@@ -99,7 +99,9 @@ def frechet(
             low = middle
     reached: Reached = {}
     is_within(old, new, high, budget, reached)
-    return high, max((farther, *_narrowest(old, new, reached)), key=lambda each: each.distance)
+    meetings = (at_start, *reversed(_narrowest(old, new, reached)), at_end)
+    farthest = max(each.distance for each in meetings)
+    return high, next(each for each in meetings if each.distance >= farthest - 2 * precision)
 
 
 def _narrowest(old: Sequence[Corner], new: Sequence[Corner], reached: Reached) -> Sequence[Meeting]:

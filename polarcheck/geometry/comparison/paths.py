@@ -26,10 +26,12 @@ from polarcheck.time_limit import keep_time
 _CELLS = (2.0, 16.0, 128.0, 1024.0)
 #: Chords leave their arcs by this share of the tolerance; results are exact up to it.
 _SHARE = 0.02
+#: The same as a share of a large deviation.
+_COARSE = 2e-4
 #: The search for a deviation ends within this share of it.
 _PRECISION = 1e-6
 #: Pairs of segments that may be looked at: to measure pieces, to measure the whole, to prove that it differs.
-_CELLS_OF_PIECES, _CELLS_OF_WHOLE, _CELLS_OF_PROOF = 1_000_000, 300_000, 3_000_000
+_CELLS_OF_PIECES, _CELLS_OF_WHOLE, _CELLS_OF_PROOF = 300_000, 200_000, 1_500_000
 
 
 class Place(msgspec.Struct, frozen=True):
@@ -77,14 +79,22 @@ def path_deviation(old: SpacePath, new: SpacePath, tolerance: float) -> PathDevi
     if not len(old) or not len(new):
         apart = 0.0 if len(old) == len(new) else np.inf
         return PathDeviation(apart, True, not apart, 0.0, None)
-    (first, of_old), (second, of_new) = (polyline(path, tolerance * _SHARE) for path in (old, new))
-    rounding = of_old + of_new
-    pieces = _best_pieces(first, second, tolerance)
+    rounding = tolerance * _SHARE
+    pieces, of_chords = _in_chords(old, new, tolerance, rounding)
+    if pieces.largest * _COARSE > rounding:
+        # Fewer chords tell a large deviation well enough.
+        pieces, of_chords = _in_chords(old, new, tolerance, pieces.largest * _COARSE)
     largest, place = _measured(pieces, tolerance)
     is_exact = False
     if largest > tolerance:
         largest, place, is_exact = _proven(pieces, largest, place, tolerance)
-    return PathDeviation(largest, is_exact, largest <= tolerance, rounding + tolerance * _SHARE, place)
+    return PathDeviation(largest, is_exact, largest <= tolerance, rounding + of_chords, place)
+
+
+def _in_chords(old: SpacePath, new: SpacePath, tolerance: float, sagitta: float) -> tuple[_Pieces, float]:
+    """The paths in pieces, and how far their chords may lie from their arcs [mm]."""
+    (first, of_old), (second, of_new) = (polyline(path, sagitta) for path in (old, new))
+    return _best_pieces(first, second, tolerance), of_old + of_new
 
 
 class _Pieces(msgspec.Struct, frozen=True):

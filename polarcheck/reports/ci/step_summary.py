@@ -11,6 +11,7 @@ from polarcheck.finding import UNREADABLE
 from polarcheck.reading.excerpt import visible
 from polarcheck.reports import SEVERITIES, counted
 from polarcheck.reports.ci.paths import from_root
+from polarcheck.reports.pages.settings_line import settings_lines
 from polarcheck.reports.pages.statistics import counts
 from polarcheck.reports.text import summary
 
@@ -43,6 +44,7 @@ def step_summary(report: Report, background: Background, room: int = LARGEST) ->
 
 def _lines(report: Report, background: Background) -> Iterator[str]:
     yield f"### polarcheck\n\n{_cell(summary(report))}\n" if report.files else "### polarcheck\n\nno files checked\n"
+    yield from (f"\n{_cell(line)}\n" for line in settings_lines(report))
     rows = [entry for entry in counts(report) if entry.findings]
     if rows:
         yield "\n| findings | files | severity | rule |\n|---:|---:|---|---|\n"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import msgspec
 
@@ -16,6 +16,7 @@ from polarcheck.revisions.report import (
     SAME_METAL,
     SAME_WORDS,
     Comparison,
+    ComparisonReport,
     Difference,
     SectionPair,
     Side,
@@ -23,22 +24,9 @@ from polarcheck.revisions.report import (
 
 #: Times and rates that differ by less than this share are shown as one.
 _SHOWN = 0.005
-_STYLES = {DIFFERS: "bold red", NOT_COMPARED: "bold yellow", SAME_METAL: "bold green", SAME_WORDS: "bold green"}
-
-
-class ComparisonReport(msgspec.Struct, frozen=True):
-    """
-    The JSON document of `polarcheck compare`.
-
-    schema: its version. files: a comparison for each pair of files. only_old, only_new: programs of two folders that
-    the other one does not have.
-    """
-
-    schema: int
-    tool: dict[str, str]
-    files: list[Comparison]
-    only_old: list[str] = []
-    only_new: list[str] = []
+#: Kinds of differences, in the order of the headline; all others are states.
+_KINDS = {"section": "sections", "path": "path", "depth": "depth", "feed": "feed", "order": "orders", "place": "orders"}
+_STYLES = {DIFFERS: "fail", NOT_COMPARED: "unverified", SAME_METAL: "pass", SAME_WORDS: "pass"}
 
 
 def json(comparisons: list[Comparison], only_old: list[str], only_new: list[str]) -> bytes:
@@ -55,7 +43,8 @@ def text(comparison: Comparison, *, inch: bool, paint: Paint) -> str:
 
 def _lines(comparison: Comparison, sizes: Sizes, paint: Paint) -> Iterator[str]:
     old, new = comparison.old, comparison.new
-    yield f"{visible(old.path)} | {visible(new.path)}: {paint(_headline(comparison, sizes), _STYLES[comparison.verdict])}"
+    headline = paint(_STYLES[comparison.verdict], _headline(comparison, sizes))
+    yield f"{visible(old.path)} | {visible(new.path)}: {headline}"
     if old.machine != new.machine:
         yield f"  machines: {visible(old.machine)} | {visible(new.machine)}"
     for section in comparison.sections:
@@ -75,13 +64,21 @@ def _headline(comparison: Comparison, sizes: Sizes) -> str:
         return "the same but for block numbers, spaces and comments"
     deviation = ""
     if comparison.deviation is not None:
-        most = "" if comparison.is_exact or comparison.deviation == 0 else "at most "
+        is_bound = not comparison.is_exact and comparison.deviation > comparison.tolerance
+        most = "at most " if is_bound else ""
         deviation = f"largest deviation {most}{_fine(comparison.deviation, sizes)} {unit}"
     if comparison.verdict == SAME_METAL:
         return f"the same metal{f': {deviation}' if deviation else ''}"
     if comparison.verdict == NOT_COMPARED:
-        return "not compared"
-    return f"differs{f': {deviation}' if deviation else ''}"
+        return f"not compared{f'; what was has a {deviation}' if deviation else ''}"
+    return f"differs in {', '.join(_kinds(comparison))}{f'; {deviation} of the path' if deviation else ''}"
+
+
+def _kinds(comparison: Comparison) -> list[str]:
+    """What differs, each kind once."""
+    differing = [*comparison.outside, *(each for section in comparison.sections for each in section.differences)]
+    kinds = {_KINDS.get(each.what, "state at entry") for each in differing}
+    return [kind for kind in dict.fromkeys((*_KINDS.values(), "state at entry")) if kind in kinds]
 
 
 def _fine(value: float, sizes: Sizes) -> str:
@@ -94,7 +91,7 @@ def _section(section: SectionPair, sizes: Sizes) -> Iterator[str]:
         return
     yield f"  section {_lines_of(section.old)} | {_lines_of(section.new)}: {section.change}"
     for difference in section.differences:
-        if difference.what != "section":
+        if section.change == "changed" or difference.what != "section":
             yield f"    {_difference(difference)}"
     if section.old is not None and section.new is not None:
         changes = [
@@ -127,3 +124,9 @@ def _difference(difference: Difference) -> str:
     lines = [None if line is None else f"line {line}" for line in (difference.old_line, difference.new_line)]
     where = "" if lines == [None, None] else f"{lines[0] or '-'} | {lines[1] or '-'}: "
     return visible(f"{where}{difference.text}")
+
+
+def single_files(only_old: Sequence[str], only_new: Sequence[str]) -> str:
+    """Return a line for each program of two folders that the other one does not have."""
+    lines = [f"{visible(name)}: only in the old folder\n" for name in only_old]
+    return "".join([*lines, *(f"{visible(name)}: only in the new folder\n" for name in only_new)])

@@ -176,18 +176,18 @@ def as_csv(items: Iterator[Any]) -> Iterator[str]:
     """Yield a header and one line per item; a point becomes two columns."""
     header: list[str] = []
     for item in items:
-        flat = item if isinstance(item, dict) else _flat(item)
+        flat = _flat(item if isinstance(item, dict) else msgspec.to_builtins(item))
         if not header:
             header = list(flat)
             yield _line(header)
         yield _line(["" if value is None else value for value in flat.values()])
 
 
-def _flat(move: Move) -> dict[str, Any]:
+def _flat(item: dict[str, Any]) -> dict[str, Any]:
+    if "start" not in item:
+        return item
     flat: dict[str, Any] = {}
-    for name, value in msgspec.structs.asdict(move).items():
-        if value is UNSET:
-            continue
+    for name, value in item.items():
         if name in _PAIRS:
             flat |= {f"{name}_{end}": part for end, part in zip(_PAIRS[name], value or (None, None), strict=True)}
         else:

@@ -34,7 +34,9 @@ def text(report: FeedReport) -> str:
     parts = []
     for table in report.tables:
         name = f"{visible(report.path)}{f' {table.channel}' if table.channel else ''}"
-        parts.append("\n".join([f"{name} on {report.machine}: {_limits(table)}", *_table(table), *_totals(table)]))
+        parts.append(
+            "\n".join([f"{name} on {visible(report.machine)}: {_limits(table)}", *_table(table), *_totals(table)])
+        )
     return without_commands("\n\n".join(parts) + "\n")
 
 

@@ -68,6 +68,7 @@ def json(files: Sequence[FileReport]) -> str:
         {
             "path": file.path,
             "machine": file.machine,
+            **({"machine_file": file.machine_file} if file.machine_file else {}),
             "part": _list(file.part),
             "compared": _list(file.compared),
             "findings": file.findings,

@@ -27,26 +27,34 @@ _TYPES: dict[Kind | None, str | list[str]] = {
 
 
 def schema(name: str) -> Schema:
-    """Return the schema of `report`, `job`, `machine` or `feeds`."""
-    content = {"report": _report, "job": _job, "machine": _machine, "feeds": _feeds}[name]()
+    """Return the schema of `report`, `job`, `machine`, `feeds`, `trace` or `comparison`."""
+    makers = {"report": _report, "job": _job, "machine": _machine, "feeds": _feeds, "trace": _trace}
+    content = {**makers, "comparison": _comparison}[name]()
     number = SCHEMA if name == "report" else 1
     return {"$schema": DIALECT, "$id": f"urn:polarcheck:{name}:{number}", **content}
 
 
 def text(name: str) -> str:
     """Return the schema as JSON."""
-    return msgspec.json.format(msgspec.json.encode(schema(name)), indent=2).decode() + "\n"
+    return as_text(schema(name))
+
+
+def as_text(content: Schema) -> str:
+    """Return any schema as JSON."""
+    return msgspec.json.format(msgspec.json.encode(content), indent=2).decode() + "\n"
 
 
 def _report() -> Schema:
-    content: Schema = _without_nan(msgspec.json.schema(Report))
+    content: Schema = without_nan(msgspec.json.schema(Report))
     definitions = content["$defs"]
     for kind in ("Finding", "Silenced"):
         definitions[kind]["properties"]["values"] = _values()
         definitions[kind]["properties"]["severity"] = {"enum": [level.name.lower() for level in reversed(Severity)]}
     definitions["Silenced"]["properties"]["by"] = {"enum": list(SILENCED_BY)}
     definitions["FileReport"]["properties"]["verdict"] = {"enum": list(VERDICTS)}
-    del definitions["FileReport"]["properties"]["makes"]
+    for name in ("makes", "outline"):  # no part of the contract
+        del definitions["FileReport"]["properties"][name]
+    del definitions["Outline"]
     definitions["Report"]["properties"]["schema"] = {"const": SCHEMA}
     return content
 
@@ -71,11 +79,46 @@ def _feeds() -> Schema:
     return content
 
 
+def _comparison() -> Schema:
+    from polarcheck.revisions.report import CHANGES, VERDICTS, ComparisonReport
+
+    content: Schema = msgspec.json.schema(ComparisonReport)
+    content["$defs"]["ComparisonReport"]["properties"]["schema"] = {"const": 1}
+    content["$defs"]["Comparison"]["properties"]["verdict"] = {"enum": list(VERDICTS)}
+    content["$defs"]["SectionPair"]["properties"]["change"] = {"enum": list(CHANGES)}
+    return content
+
+
+def _trace() -> Schema:
+    # Imports NumPy, which the other schemas do not need.
+    from polarcheck.reports.pages.trace_report import OF_LINES, SCHEMA, UNITS, TraceReport
+
+    content: Schema = msgspec.json.schema(TraceReport)
+    report, move = content["$defs"]["TraceReport"], content["$defs"]["Move"]
+    report["properties"]["schema"] = {"const": SCHEMA}
+    report["properties"]["units"] = {"const": UNITS}
+    report["properties"]["requested"] = {"enum": ["tool", "programmed"]}
+    move["properties"]["path"] = {"enum": ["tool", "programmed"]}
+    move["properties"]["kind"] = {"enum": ["line", "cw", "ccw"]}
+    for name in ("start", "end", "center", "z", "x_axis", "c_axis"):
+        _as_pair(move["properties"][name])
+    for name, unit in UNITS.items():
+        move["properties"][name]["description"] = unit
+    move["required"] = [name for name in move["required"] if name not in OF_LINES]
+    return content
+
+
+def _as_pair(value: Schema) -> None:
+    for one in (value, *value.get("anyOf", ())):
+        if one.get("type") == "array":
+            one |= {"minItems": 2, "maxItems": 2}
+
+
 def _job() -> Schema:
-    content: Schema = _without_nan(msgspec.json.schema(Job))
+    content: Schema = without_nan(msgspec.json.schema(Job))
     for kind in ("Job", "Programs"):
         content["$defs"][kind]["properties"]["limits"] = {"$ref": "#/$defs/Limits"}
-    limits = _without_nan(msgspec.json.schema(Machine))["$defs"]["Limits"]
+    limits = without_nan(msgspec.json.schema(Machine))["$defs"]["Limits"]
     content["$defs"]["Limits"] = {**limits, "required": []}
     return content
 
@@ -86,7 +129,7 @@ def _machine() -> Schema:
 
     It sets some values of the machine, each bare or with its source, and names the profile that it inherits from.
     """
-    content: Schema = _without_nan(msgspec.json.schema(Machine))
+    content: Schema = without_nan(msgspec.json.schema(Machine))
     machine = content["$defs"]["Machine"]["properties"]
     for kind in {field.type for field in msgspec.structs.fields(Machine) if "$ref" in machine[field.name]}:
         table, meaning = content["$defs"][kind.__name__], meanings(kind)
@@ -128,15 +171,13 @@ def _sourced(value: Schema) -> Schema:
     return {"anyOf": [{key: part for key, part in value.items() if key != "default"}, wrapped]}
 
 
-def _without_nan(value: Any) -> Any:
+def without_nan(value: Any) -> Any:
     """Remove defaults that are NaN (unknown), which JSON cannot hold."""
     if isinstance(value, list):
-        return [_without_nan(element) for element in value]
+        return [without_nan(element) for element in value]
     if not isinstance(value, dict):
         return value
-    return {
-        key: _without_nan(element) for key, element in value.items() if not (key == "default" and _has_nan(element))
-    }
+    return {key: without_nan(element) for key, element in value.items() if not (key == "default" and _has_nan(element))}
 
 
 def _has_nan(value: Any) -> bool:

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from polarcheck.checking.rule import load_all
 from polarcheck.reading import files
-from polarcheck.reports.pages import controls, machine_pages, rule_pages, values
+from polarcheck.reports.pages import controls, machine_pages, report_fields, rule_pages, values
 
 #: Folders below docs/ that hold nothing else.
 FOLDERS = ("rules", "machines")
@@ -24,6 +24,7 @@ def pages() -> dict[str, str]:
     return {
         "controls.md": controls.text(),
         "values.md": values.text(rules),
+        "report_fields.md": report_fields.text(),
         **dict(rule_pages.pages(rules)),
         **dict(machine_pages.pages()),
     }

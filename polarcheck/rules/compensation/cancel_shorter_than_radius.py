@@ -16,6 +16,7 @@ from polarcheck.checking.rule import (
     ERROR,
     "offset cancel {fault}",
     values={"length": "ramp_length", "radius": "cutter_radius", "length_needed": "cutter_radius"},
+    worse=("-length", "length_needed"),
     at=("compensation_off",),
     needs=("compensation.radius", "path.length"),
     where="ramps.cancel_judged_by_radius",

@@ -13,6 +13,7 @@ from polarcheck.checking.rule import WARNING, Coverage, Mask, rule
         "plane_c": "path.end.imag",
         "other_line": "line_of_start",
     },
+    worse=("gap",),
     once="loop",
     worst="coverage.gap",
     subject="compensation",

@@ -8,6 +8,7 @@ from polarcheck.checking.rule import ERROR, CutterCompensation, Mask, ToolCenter
     "arc of {ramps.arc_radius:length/compensation.radius} with the tool on its inner side; "
     "R {compensation.radius:length/ramps.arc_radius} must be smaller",
     values={"arc_radius": "ramps.arc_radius", "radius": "cutter_radius"},
+    worse=("-arc_radius", "radius"),
     at=("arc_clockwise", "arc_counterclockwise", "R", "I", "J"),
     needs=("compensation.radius",),
     where="ramps.compensated",

@@ -12,6 +12,7 @@ from polarcheck.checking.rule import WARNING, Coverage, Mask, rule
         "plane_x": "place_left.real",
         "plane_c": "place_left.imag",
     },
+    worse=("height",),
     once="loop",
     worst="coverage.height",
 )

@@ -8,6 +8,7 @@ from polarcheck.checking.rule import WARNING, Mask, ToolCenter, rule
     WARNING,
     "{why}; the tool center ends perpendicular to {move_before}, not where the next one needs it",
     values={"blocks": "idle_blocks", "limit": "idle_blocks_allowed"},
+    worse=("blocks",),
     needs=("compensation.radius",),
     where="ramps.compensated",
     doubts=(("metal", "pause"),),

@@ -14,6 +14,7 @@ from polarcheck.checking.rule import ERROR, Mask, Overcuts, rule
         "plane_c": "place_of_overcut.imag",
         "other_line": "line_of_overcut",
     },
+    worse=("depth",),
     needs=("compensation.radius",),
     where="compensation.offset_mode",
     worst="overcuts.depth",

@@ -15,6 +15,7 @@ from polarcheck.checking.rule import ERROR, Deviations, Mask, rule
         "too_much": "too_much",
         "cut_away": "cut_away",
     },
+    worse=("largest", "too_much", "cut_away"),
     needs=("compensation.radius",),
     where="deviations.where",
     follows={"file": (*FAULTS_OF_CONTOUR, *FAULTS_OF_METAL)},

@@ -15,6 +15,7 @@ from polarcheck.checking.rule import ERROR, Mask, Slots, rule
         "plane_c": "place_of_slot.imag",
         "other_line": "line_of_slot",
     },
+    worse=("depth", "-width"),
     needs=("compensation.radius",),
     where="slots.compared",
     worst="slots.depth",

@@ -13,6 +13,7 @@ from polarcheck.checking.rule import ERROR, Hits, Slots, rule
         "plane_c": "place_swept.imag",
         "other_line": "line_swept",
     },
+    worse=("depth",),
     at=("compensation_off", "compensation_left", "compensation_right"),
     once="loop",
     worst="slots.ramp_depth",

@@ -13,6 +13,7 @@ from polarcheck.checking.rule import ERROR, Hits, UncompensatedCuts, graded, rul
         "z": "path.z",
         "other_line": "line_of_cut",
     },
+    worse=("depth",),
     worst="uncompensated_cuts.graveness",
     once="loop",
     follows={

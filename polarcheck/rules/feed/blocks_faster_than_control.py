@@ -10,6 +10,7 @@ from polarcheck.geometry.tolerances import SHARE
     "{machine.limits.block_time:g} s for one: F falls to {feeds.feed_of_series:highest}, and the tool may halt between "
     "blocks",
     values={"time": "feeds.time_of_series", "limit": "machine.limits.block_time", "highest_feed": "feed_of_series"},
+    worse=("-time",),
     once="section",
     worst="feeds.blocks_too_fast",
     follows={"section": ("feed-implausible",)},

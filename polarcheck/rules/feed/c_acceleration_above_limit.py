@@ -15,6 +15,7 @@ from polarcheck.checking.rule import WARNING, Center, Feedrate, Feeds, Mask, rul
         "nearest": "tool_center.nearest",
         "highest_feed": "feed_by_c_acceleration",
     },
+    worse=("c_acceleration",),
     at=("F",),
     needs=("tool_center.c_acceleration",),
     where="feeds.is_limited_in_acceleration",

@@ -15,6 +15,7 @@ from polarcheck.checking.rule import ERROR, WARNING, Center, Hits, Machine, Tool
         "highest_feed": "feed_by_c_feed",
         "slowed_feed": "feed_by_override",
     },
+    worse=("c_feed",),
     at=("F",),
     needs=("tool_center.c_feed",),
     where="path.cuts",

@@ -7,6 +7,7 @@ from polarcheck.checking.rule import NOTE, WARNING, Feedrate, Feeds, Hits, Machi
     WARNING,
     "F is {feed:feed/limit}, {machine.title} {clamps} {limit:feed/feed} in the polar mode",
     values={"feed": "feed", "limit": "limit"},
+    worse=("feed",),
     at=("F",),
 )
 def feed_above_polar_limit(feedrate: Feedrate, feeds: Feeds, machine: Machine) -> Hits:

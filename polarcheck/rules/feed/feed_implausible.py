@@ -7,6 +7,7 @@ from polarcheck.checking.rule import WARNING, Feeds, Mask, rule
     WARNING,
     "{slow_feed} here{of_f_word}: this block alone takes {long_time}; {instead}",
     values={"feed": "feedrate.feed_number", "time": "feeds.block_time"},
+    worse=("time",),
     at=("F", "feed_per_minute", "line", "arc_clockwise", "arc_counterclockwise"),
     once="program",
     worst="feeds.block_time",

@@ -8,6 +8,7 @@ from polarcheck.checking.rule import NOTE, FeedRanges, Feeds, Mask, rule
     "{feed_word} is {feedrate.programmed_feed:feed/feed_ranges.nearest_limit}, {against_ranges}; recommended in the "
     "polar mode: {recommended}",
     values={"feed": "feedrate.programmed_feed", "limit": "feed_ranges.nearest_limit"},
+    worse=("feed:limit",),
     at=("F",),
     follows={"feed": ("c-feed-above-limit", "feed-of-revolution-per-minute")},
 )

@@ -8,6 +8,7 @@ from polarcheck.checking.rule import WARNING, Center, Hits, Machine, ToolCenter,
     "tool center comes within {tool_center.nearest:length/keep_out} of the center of the {rotary} axis; "
     "keep {keep_out:length/tool_center.nearest} away",
     values={"nearest": "tool_center.nearest", "limit": "keep_out"},
+    worse=("-nearest",),
     at=("X", "U", "C", "H"),
     worst="tool_center.c_feed",
     follows={"block": ("c-feed-above-limit", "start-up-sweeps-contour")},

@@ -15,6 +15,7 @@ from polarcheck.checking.rule import WARNING, Center, Feedrate, Feeds, Mask, rul
         "nearest": "tool_center.nearest",
         "highest_feed": "feed_by_x_acceleration",
     },
+    worse=("x_acceleration",),
     at=("F",),
     needs=("tool_center.x_acceleration",),
     where="feeds.is_limited_in_x_acceleration",

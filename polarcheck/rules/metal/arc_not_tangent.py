@@ -13,6 +13,7 @@ from polarcheck.checking.rule import WARNING, Arcs, Mask, Tangency, rule
         "word": "written_arc",
         "word_needed": "needed_arc",
     },
+    worse=("corner",),
     at=("R", "I", "J"),
     once="misfit",
     subject="side",

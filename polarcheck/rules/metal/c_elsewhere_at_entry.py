@@ -8,6 +8,7 @@ from polarcheck.checking.rule import WARNING, EntryAngles, Mask, rule
     "{rotary} stands where the section before has left it, {turned} from its {switch}: nobody has positioned it, and "
     "this section comes out turned by as much; {to_position}",
     values={"turned": "turned_by", "c_angle": "angle_at_entry"},
+    worse=("turned",),
     over="sections",
     at=("on",),
     once="program",

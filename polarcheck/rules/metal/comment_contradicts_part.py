@@ -7,6 +7,7 @@ from polarcheck.checking.rule import WARNING, Hits, PartComments, rule
     WARNING,
     "{comment_on_part} states {stated:length}; {what_is_made}",
     values={"stated": "stated", "made": "size_made"},
+    worse=("stated:made",),
     subject="metal",
 )
 def comment_contradicts_part(part_comments: PartComments) -> Hits:

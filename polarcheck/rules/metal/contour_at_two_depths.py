@@ -9,6 +9,7 @@ from polarcheck.checking.rule import WARNING, ContourDepths, Mask, rule
     "Z goes from {path.z_before:length} to {path.z:length} in the middle of the contour, which is closed only with "
     "both of its parts",
     values={"z": "path.z", "z_before": "path.z_before"},
+    worse=("z:z_before",),
     at=("Z", "W"),
     once="compensation",
     subject="side",

@@ -8,6 +8,7 @@ from polarcheck.checking.rule import WARNING, Increments, Mask, rule
     WARNING,
     "the increments of this contour do not add up: it ends {increments.gap:length} beside its start, {drift}",
     values={"gap": "increments.gap", "plane_x": "increments.begins.real", "plane_c": "increments.begins.imag"},
+    worse=("gap",),
     once="loop",
     worst="increments.gap",
     subject="side",

@@ -7,6 +7,7 @@ from polarcheck.checking.rule import WARNING, Mask, PassDepths, rule
     WARNING,
     "this pass is cut at Z{depth}, out of step with the others of its contour: Z{in_step} would fit",
     values={"z": "path.z", "z_needed": "pass_depths.expected"},
+    worse=("z:z_needed",),
     follows={"section": ("cut-in-air",)},
 )
 def pass_depth_differs(pass_depths: PassDepths) -> Mask:

@@ -8,6 +8,7 @@ from polarcheck.checking.rule import WARNING, Mask, PassDifferences, rule
     WARNING,
     "{pass_difference}; all else in this pass is as in {other_pass}",
     values={"difference": "distance_of_passes", "other_line": "line_of_other_pass"},
+    worse=("difference",),
     subject="side",
     follows={"twin": FAULTS_OF_CONTOUR},
 )

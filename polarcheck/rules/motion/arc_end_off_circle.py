@@ -15,6 +15,7 @@ from polarcheck.checking.rule import ERROR, Arcs, Hits, Machine, rule
         "end_radius": "arcs.end_radius",
         "tolerance": "tolerance",
     },
+    worse=("difference",),
     at=("X", "U", "C", "H", "I", "J"),
     needs=("arcs.end_radius",),
     where="arcs.by_center",

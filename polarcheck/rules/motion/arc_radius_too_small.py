@@ -9,6 +9,7 @@ from polarcheck.checking.rule import ERROR, Arcs, Machine, Mask, rule
     "a radius of {arcs.radius:length} does not reach: start and end are {arcs.chord:length} apart, "
     "least radius {least_radius}",
     values={"arc_radius": "arcs.radius", "arc_radius_needed": "half_chord", "chord": "arcs.chord"},
+    worse=("arc_radius:arc_radius_needed",),
     at=("X", "U", "C", "H", "R"),
     needs=("arcs.chord",),
     where="arcs.by_radius",

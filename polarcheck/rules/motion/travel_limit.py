@@ -8,6 +8,7 @@ from polarcheck.geometry.tolerances import ROUNDING
     ERROR,
     "{travel}",
     values={"axis": "axis_of_travel", "position": "position", "limit": "end_of_travel"},
+    worse=("position:limit",),
     at=("X", "U", "C", "H", "Z", "W"),
     needs=("travel.most_x",),
     where="travel.is_limited_in_x",

@@ -7,6 +7,7 @@ from polarcheck.checking.rule import ERROR, Infeed, Mask, rule
     ERROR,
     "{E} asks for passes around the contour, which ends {infeed.gap:length} from where it begins: it must be closed",
     values={"gap": "infeed.gap", "word": "E"},
+    worse=("gap",),
     at=("E",),
     subject="side",
 )

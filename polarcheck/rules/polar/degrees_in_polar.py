@@ -11,6 +11,7 @@ _FAR, _FAR_IN_RAPID = 2.0, 1.5
     "{word} {begins} a length of {angles.farthest:length} in the polar mode and looks like an angle: the rest of the "
     "section lies within {angles.reach:length} of the center; write the point of the contour",
     values={"word": "word", "farthest": "angles.farthest", "reach": "angles.reach"},
+    worse=("farthest",),
     once="section",
     doubts=(("position", "block"), ("position", "C before"), ("metal", "section")),
 )

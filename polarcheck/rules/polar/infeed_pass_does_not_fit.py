@@ -13,6 +13,7 @@ from polarcheck.checking.rule import WARNING, Infeed, Mask, rule
         "radius": "radius_on_pass",
         "other_line": "line_of_misfit",
     },
+    worse=("unfit",),
     at=("E",),
     needs=("compensation.radius",),
     where="infeed.judged_by_radius",

@@ -14,6 +14,7 @@ from polarcheck.geometry.tolerances import ROUNDING
         "diameter": "offsets.cutter_diameter",
         "clearance": "entry.clearance",
     },
+    worse=("x:x_needed",),
     at=("on",),
     needs=("offsets.cutter_diameter",),
     where="entry.approaches_stock",

@@ -8,6 +8,7 @@ from polarcheck.checking.rule import WARNING, Hits, Machine, Procedure, rule
     "{S} is above the highest speed of the live tool, {limit:whole}: the control holds it there or stops, and each "
     "tooth takes more of F than meant; write S{limit:whole}, and lower F with it",
     values={"speed": "speed_written", "limit": "limit"},
+    worse=("speed",),
     at=("S",),
 )
 def live_tool_above_highest_speed(procedure: Procedure, machine: Machine) -> Hits:

@@ -8,6 +8,7 @@ from polarcheck.geometry.tolerances import ROUNDING
     ERROR,
     "{name} puts X0 {shift:length} off the spindle axis{as_diameter} at {switch}",
     values={"shift": "shift"},
+    worse=("shift",),
     at=("on",),
     once="origin",
     needs=("entry.origin_shift",),

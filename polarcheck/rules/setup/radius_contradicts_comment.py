@@ -10,6 +10,7 @@ _WEAR = 0.25
     WARNING,
     "R {given:length} {is_given}, the comment tells {told:length}: {comment}; {which_radius}",
     values={"offset": "offset", "radius": "given", "radius_stated": "told", "comment": "comment"},
+    worse=("radius:radius_stated",),
     at=("T",),
     doubts=(("compensation", "tool call"),),
 )

@@ -8,6 +8,7 @@ from polarcheck.geometry.tolerances import ROUNDING
     WARNING,
     "{linear} stands at {path.x:diameter} at {switch}; enter the polar mode above 0",
     values={"x": "path.x"},
+    worse=("-x",),
     at=("on",),
     doubts=(("position", "way"),),
 )
