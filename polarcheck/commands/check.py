@@ -206,12 +206,12 @@ def _quoted(value: object) -> str:
 
 def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
     from polarcheck import reports
-    from polarcheck.batch import decisions
     from polarcheck.batch import tasks as batch
     from polarcheck.checking import rule
     from polarcheck.commands import live, overwriting, progress, signals
     from polarcheck.machines import profiles
     from polarcheck.memory import keep_within_memory
+    from polarcheck.settings import decisions
     from polarcheck.settings.of_programs import OfPrograms, Options
 
     keep_within_memory()
@@ -250,7 +250,11 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
         arguments.outputs, arguments.form == picturing.FORMAT, tasks, "-o html:"
     )
     overwriting.refuse(written, tasks)
-    run_settings, tasks = decisions.shared(tasks, arguments.diff_base)
+    run_settings = decisions.shared((task.settings for task in tasks), arguments.diff_base)
+    if run_settings.differing:
+        from polarcheck.batch.decisions import shared
+
+        _, tasks = shared(tasks)
     tasks = narrowed(tasks, arguments.diff_base, arguments.changed, arguments.max_size, not arguments.quiet)
     if arguments.lists_files:
         show(show_files.text(arguments.form or "text", tasks, skipped).encode())
@@ -304,9 +308,12 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
         skipped=skipped,
         called_files=checked.called_files,
     )
-    for excess in decisions.too_many_warnings(report.files, tasks):
-        say(excess)
-        status = max(status, FINDINGS)
+    if any(task.settings.decided.max_warnings is not None for task in tasks):
+        from polarcheck.batch.decisions import too_many_warnings
+
+        for excess in too_many_warnings(report.files, tasks):
+            say(excess)
+            status = max(status, FINDINGS)
     pictures.end(reporting.unread(report.summary))
     if checked.stopped is None and arguments.diff_base is None and arguments.changed is None:
         running.warn_unused(applies.tools, checked.called)
