@@ -322,6 +322,15 @@ def unreadable(task: Task, failure: str, data: bytes | None = None) -> Outcome:
     return Outcome(report, failure=failure)
 
 
+def unreadable_folder(failure: str) -> Outcome:
+    """Return the outcome of a folder that a walk could not read. failure: its path and why, as `plan` tells them."""
+    path, _, reason = failure.rpartition(": ")
+    report = FileReport(
+        path=path, programs=[], blocks=0, sections=0, verdict=UNREADABLE, reason=reason, findings=[], not_evaluated=[]
+    )
+    return Outcome(report)
+
+
 def _of_task(task: Task, data: bytes | None) -> dict[str, Any]:
     """Return the values of a report that hang on the bytes of a file and its settings, by their names."""
     import hashlib  # late: no other command needs it
