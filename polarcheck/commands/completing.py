@@ -189,6 +189,7 @@ OPTIONS: dict[str, Values] = {
     "RULE": _rules,
     "RULE=LEVEL": _levels,
     "SIZE": _nothing,
+    "PATTERN": _files,
     "TEXT": _nothing,
     "tcp://HOST:PORT": _nothing,
 }

@@ -150,7 +150,13 @@ class OfPrograms:
 
     def left_behind(self) -> list[str]:
         """Return a line for each job file, of those loaded so far, that leaves values of one above it behind."""
-        loaded = [file for file in self._loaded.values() if file.path not in (None, self._options.config)]
+        loaded = [
+            file
+            for file in self._loaded.values()
+            if file.path is not None
+            and file.path != self._options.config
+            and self._nearest.above(file.path) is not None
+        ]
         if not loaded:
             return []
         from polarcheck.settings import jobs_above
