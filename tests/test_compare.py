@@ -404,6 +404,14 @@ def test_page_shows_what_is_printed(monkeypatch: pytest.MonkeyPatch, tmp_path: P
     assert "".join(f"{line.removeprefix('    ')}\n" for line in shown) == printed
 
 
+def test_pair_that_takes_too_long_is_named(pair: Path) -> None:
+    Path("long.nc").write_text(changed(("M5", "M5\n#1=0\nWHILE[#1LT900000]DO1\n#1=#1+1\nEND1")))
+    result = run("long.nc", "old.nc", "--max-statements", "1000")
+    assert (result.exit_code, "not compared, because old: " in result.output) == (2, True)
+    result = run("long.nc", "old.nc", "--max-seconds", "0.0001")
+    assert result.exit_code == 2
+
+
 def test_json_is_as_its_schema_says(pair: Path) -> None:
     result = run("old.nc", "new.nc", "--format", "json")
     report = json.loads(result.stdout)
