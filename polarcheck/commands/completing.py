@@ -199,6 +199,7 @@ ARGUMENTS: dict[str, Values] = {
     "FOLDER": _folders,
     "LATHE": _profiles,
     "NAME": _machines_and_verbs,
+    "OLD NEW": _files,
     "PATH": _files,
     "RULE": _pages,
 }
