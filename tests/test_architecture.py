@@ -233,7 +233,7 @@ LATE = (
     *("polarcheck.execution.macro", "polarcheck.pictures", "polarcheck.fixes", "polarcheck.server"),
 )
 #: Modules of the package beside those of rules, of which each takes a third of a millisecond: 221 are what the path of
-#: a program with one compensated contour goes through, and a few more may come. Tests run without the cache, of four more.
+#: a program with one compensated contour goes through, and a few more may come. Tests run without the cache (4 more).
 MODULES_OF_A_SMALL_CHECK = 234
 
 
