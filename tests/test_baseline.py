@@ -361,7 +361,7 @@ def test_a_gone_file_stands_for_one_other_and_the_name_counts_first() -> None:
 
 
 def test_one_block_in_common_does_not_make_a_new_program_an_old_one() -> None:
-    make(a__nc=RAPID.replace("G1 C-5.\n", "G0 C-5.\nG0 C6.\n"))
+    make(a__nc=RAPID.replace("G1 C-5.\n", "G0 C-5.\nG0 C6.\nG1 C8.\n"))
     baseline("create", "a.nc")
     assert len(entries()) == 3
     Path("a.nc").unlink()
@@ -369,6 +369,43 @@ def test_one_block_in_common_does_not_make_a_new_program_an_old_one() -> None:
     result = check(".")
     assert result.exit_code == 1
     assert "3 known findings no longer occur: a.nc, which is gone (3)" in result.stderr
+
+
+def first_schema() -> None:
+    """Write the baseline as the first version did, without places."""
+    contents = read(Path(FILE))
+    old = [msgspec.structs.replace(entry, places=[]) for entry in contents.entries]
+    Path(FILE).write_text(text_of(Contents(old, schema=1)), "utf-8")
+
+
+def test_a_baseline_of_the_first_schema_is_read_and_upgraded() -> None:
+    make(a__nc=RAPID, b__nc=TWICE)
+    baseline("create", ".", "--reason", "OLD")
+    new = Path(FILE).read_bytes()
+    first_schema()
+    old = Path(FILE).read_bytes()
+    assert (b"programs" in old, b"places" in old) == (False, False)
+    # One file keeps all of its findings, the other one has moved with half of them.
+    Path("b.nc").unlink()
+    make(c__nc=RAPID)
+    result = check(".", "--format", "json")
+    assert (result.exit_code, silenced(result)) == (0, {"a.nc": 1, "c.nc": 1})
+    told = result.stderr.splitlines()
+    assert told[0] == (
+        f"polarcheck: warning: {FILE}: 2 lines of an earlier version of polarcheck, where a finding that is worse now "
+        "stays silent; `polarcheck baseline update` upgrades them"
+    )
+    assert "b.nc is c.nc" in told[1]
+    assert baseline("prune", "a.nc").exit_code == 0
+    assert Path(FILE).read_bytes() == old
+    make(b__nc=TWICE)
+    Path("c.nc").unlink()
+    assert baseline("update", ".").exit_code == 0
+    assert Path(FILE).read_bytes() == new
+    first_schema()
+    Path("a.nc").unlink()
+    make(d__nc=OTHER.replace("G1 C-5.", "G0 C5.\nG0 C4.\nG0 C3."))
+    assert check("d.nc").exit_code == 1
 
 
 def test_a_file_with_entries_of_its_own_takes_none_of_another() -> None:

@@ -234,6 +234,38 @@ def test_slips_of_setters_are_found(seed: int) -> None:
     assert missed == []
 
 
+TURNING = """O1
+G21 G99 G40
+T0101
+G0 X50. Z2.
+G83 Z-20. R2. Q5000 F0.1
+G80
+G0 Z3.
+M98 P2 L2
+M30
+O2
+G0 W1.
+M99
+"""
+
+
+def test_programs_without_sections_are_compared() -> None:
+    assert comparison(TURNING, changed(("X50.", "X50.000"), program=TURNING)).verdict == SAME_WORDS
+    unrolled = changed(("M98 P2 L2", "G0 W1.\nW1."), ("O2\nG0 W1.\nM99\n", ""), program=TURNING)
+    assert comparison(TURNING, unrolled).verdict == SAME_METAL
+    for slip in (("Q5000", "Q500"), ("Z-20.", "Z-21."), ("L2", "L3"), ("X50.", "X51."), ("G99", "G98"), ("W1.", "U1.")):
+        assert comparison(TURNING, changed(slip, program=TURNING)).verdict == DIFFERS, slip
+
+
+def test_arcs_outside_of_sections() -> None:
+    program = "O1\nG21 G99\nT0101\nG0 X50. Z2.\n{}\nM30\n"
+    by_radius, by_center = program.format("G3 X60. Z-3. R5. F0.1"), program.format("G3 X60. Z-3. I0 K-5. F0.1")
+    in_parts = program.format("G3 X57.0711 Z0.5355 R5. F0.1\nX60. Z-3. R5.")
+    assert comparison(by_radius, by_center).verdict == SAME_METAL
+    assert comparison(by_radius, in_parts).verdict == SAME_METAL
+    assert comparison(by_radius, program.format("G2 X60. Z-3. R5. F0.1")).verdict == DIFFERS
+
+
 # ---- what is not known ----
 
 
@@ -263,6 +295,13 @@ def test_unknown_angle_and_depth() -> None:
     no_angle = changed(("Z2. C0", "Z2."), program=known)
     assert comparison(known, no_angle).verdict == NOT_COMPARED
     assert comparison(no_angle, changed(("C8.660", "C8.6602"), program=no_angle)).verdict == SAME_METAL
+
+
+def test_words_that_nobody_can_read_are_no_verdict() -> None:
+    unreadable = changed(("X60. C0 F1500", "X6--0. C0 F1500"))
+    result = comparison(unreadable, unreadable)
+    assert result.verdict == NOT_COMPARED
+    assert "old: a word that the control cannot read" in text(result)
 
 
 def test_block_skip_is_compared_in_both_states() -> None:

@@ -106,13 +106,14 @@ def check(ctx: click.Context, /, paths: tuple[str, ...], watch: bool, with_calle
     """
     Check NC programs: files, folders, or - for standard input.
 
-    The verdict of each is one of these (polarcheck explain pass, unverified, fail):
+    The verdict of each is one of these (polarcheck explain pass, unverified, fail, unreadable):
 
     \b
     pass        all that matters was looked at, and nothing is wrong
     unverified  nothing wrong was found, but something that matters could
                 not be judged: the report says what to give
     fail        something is wrong, or probably not what was meant
+    unreadable  it could not be read, or not be checked to its end
 
     Ends with 0 if no file fails (nor is unverified, with --strict), 1 if one does, 2 if something could not be read,
     understood or written, 3 for a bug; 130 or 143 where it was interrupted or terminated: what was finished until then
@@ -244,6 +245,7 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
         named=standard_input.judged_as(arguments.paths, arguments.stdin_filename),
         skipped=skipped,
     )
+    folders = [batch.unreadable_folder(failure) for failure in faults.failures]
     pictures, outputs, written = picturing.of_outputs(
         arguments.outputs, arguments.form == picturing.FORMAT, tasks, "-o html:"
     )
@@ -286,7 +288,7 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
     cache = None if arguments.no_cache else running.cache(arguments.max_size, arguments.cache_dir)
     runner = running.Runner(arguments.max_size, arguments.workers, arguments.cluster, seen, cache)
     pictures.begin(plain)
-    checked = runner.check(tasks, bar, faults, baselines, live_report.file, pictures.split)
+    checked = runner.check(tasks, bar, faults, baselines, live_report.file, pictures.split, folders)
     is_stale = arguments.fail_on_stale and baselines is not None and baselines.is_stale
     status = max(int(checked.failed or is_stale), fixed.status, faults.report())
     reason = checked.broken_off
@@ -300,6 +302,7 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
         settings=run_settings,
         interrupted=batch.interrupted(reason, checked.files, tasks) if reason else None,
         skipped=skipped,
+        called_files=checked.called_files,
     )
     for excess in decisions.too_many_warnings(report.files, tasks):
         say(excess)

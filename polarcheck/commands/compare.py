@@ -212,4 +212,4 @@ def _revision(task: Task, data: bytes) -> Revision:
 
     settings = task.settings
     runs = check.read(data, settings.machine, settings.job, task.title, settings.encoding)
-    return Revision(task.title, settings.name, runs)
+    return Revision(task.title, settings.machine_id, runs)

@@ -87,7 +87,7 @@ def _rules(begun: str) -> Iterator[Item]:
 
 
 def _pages(begun: str) -> Iterator[Item]:
-    verdicts = dict.fromkeys(("pass", "unverified", "fail"), "what this verdict means")
+    verdicts = dict.fromkeys(("pass", "unverified", "fail", "unreadable"), "what this verdict means")
     for name, about in [*_names_of_rules(), *verdicts.items()]:
         if name.startswith(begun):
             yield _item(name, about)

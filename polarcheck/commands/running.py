@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import itertools
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -100,6 +101,7 @@ class Runner:
         baselines: Baselines | None = None,
         show: Callable[[FileReport, Mapping[int, str]], None] | None = None,
         take: Callable[[Iterable[Outcome]], Iterator[Outcome]] | None = None,
+        also: Iterable[Outcome] = (),
     ) -> Checked:
         """
         Return the outcomes of the programs, up to an interrupt.
@@ -107,6 +109,7 @@ class Runner:
         baselines: of known findings, which are silenced.
         show: takes each report in its turn.
         take: removes data from the reports that is not shown, such as pictures.
+        also: outcomes that stand behind those of the programs: folders that could not be read.
 
         Raises ClusterError if the cluster cannot be used.
         """
@@ -118,7 +121,7 @@ class Runner:
         ):
             suppressed = silencing.without_known(watched, baselines)
             reported = suppressed if take is None else take(suppressed)
-            return batch.gather(reported, faults.failures.append, faults.bug, show)
+            return batch.gather(itertools.chain(reported, also), faults.failures.append, faults.bug, show)
 
     def _outcomes(self, tasks: Sequence[Task]) -> contextlib.AbstractContextManager[Generator[Outcome, None, None]]:
         return runs.outcomes(tasks, self._most, self._workers, self._cluster)

@@ -112,6 +112,8 @@ _NO_PROGRAMS = frozenset(
     )
 )
 _SKIPPED_FOLDERS = frozenset(("node_modules", "__pycache__"))
+#: Folders of git and of polarcheck itself, which never hold programs.
+_NO_WORD = frozenset((".git", ".polarcheck_cache"))
 #: O1234, O0001(SB12 RG FRONT), O1234.bak: as controls and transfer programs name what they punch out; but no pages.
 _O_NAME = r"(?i)O\d{2,8}(?:\([^)]*\))?(?:\.(?!orig$|html?$)[^.]*)?"
 #: O1234-REV, O0001_version1, 4711: a number of a program with more behind it.
@@ -196,7 +198,7 @@ def walk(
         path = entry.path if folder != "." else entry.path.removeprefix(f".{os.sep}")
         is_folder = _is_folder(entry)
         if entry.name.startswith(".") or entry.name in _SKIPPED_FOLDERS:
-            if skipped is not None and is_folder:
+            if skipped is not None and is_folder and entry.name not in _NO_WORD:
                 skipped(Skipped(path, "folder", programs=0))
         elif by:
             if skipped is not None:

@@ -72,7 +72,9 @@ def compared(old: Revision, new: Revision, tolerance: float) -> Comparison:
     found = [_Runs(*pair, tolerance, is_same_machine) for pair in _pairs_of_runs(old, new)]
     sections = [section for run in found for section in run.sections()]
     between = [difference for run in found for difference in run.outside()]
-    missing = list(dict.fromkeys(reason for run in found for reason in run.not_compared))
+    missing = sorted(
+        dict.fromkeys(reason for run in found for reason in run.not_compared), key=lambda reason: not reason.matters
+    )
     same_words = is_same_machine and old.trace.job == new.trace.job and has_same_words(old.trace, new.trace)
     differs = bool(between) or any(section.change not in ("same", "not compared") for section in sections)
     verdict = SAME_METAL
@@ -149,6 +151,10 @@ class _Runs:
         for name, tables in zip(("old", "new"), self._tables, strict=True):
             for entry in unexecuted(tables):
                 yield NotCompared(f"{name}: {entry.reason}", matters=entry.matters)
+            unreadable = int(np.count_nonzero(tables["words"].is_unreadable))
+            if unreadable:
+                count = "a word" if unreadable == 1 else f"{unreadable} words"
+                yield NotCompared(f"{name}: {count} that the control cannot read: polarcheck check names them")
         if self._is_same_machine:
             return
         yield NotCompared("the machines differ: tool numbers, planes and G codes are not compared", matters=False)

@@ -177,6 +177,9 @@ class OfPrograms:
         walked = [self._nearest.real.folder(path) for path in paths if os.path.isdir(path)]  # noqa: PTH112
         if not walked:
             return []
+        if self._options.exclude:
+            # What lies in folders that these exclude is not known: patterns of job files may be for that.
+            return self._patterns.unused_options(extensions, programs)
         lines = [
             line
             for path, names in self._matched.items()

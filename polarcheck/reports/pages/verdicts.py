@@ -1,4 +1,4 @@
-"""The pages on the verdicts, which `polarcheck explain` shows: pass, unverified, fail."""
+"""The pages on the verdicts, which `polarcheck explain` shows: pass, unverified, fail, unreadable."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ PAGES = MappingProxyType(
         "pass": """\
 pass: all that matters was looked at, and nothing is wrong.
 
-The rules looked at the polar sections of the program and could judge what matters there. Nothing
-was found at or above --fail-on: no error and no warning, unless you said otherwise. Notes may stand
-in the report; they work, but are good to know.
+The rules looked at the polar sections of the program and could judge what matters there. They found
+no error and no warning, whatever --fail-on says. Notes may stand in the report; they work, but are
+good to know.
 
 A pass is as good as what you gave. It rests on the lathe, the units, the cutter radius of each
 section and where that came from, the nearest distance to the center, the highest rate of C with its
@@ -69,6 +69,11 @@ What to give:
                               yourself.
     another control's file    the lathe that it is for: --machine NAME. `polarcheck machines`
                               lists them.
+    rules were deselected     check without --select, --ignore, --severity and their variables
+                              (POLARCHECK_SELECT). A rule that is off for good has its reason in
+                              polarcheck.toml, and then the file can pass:
+                              rapid-in-polar = { level = "off", reason = "PARAMETER 5431 IS SET" }
+                              under [severities]; ignore = { rules = ["text"], reason = "..." }
 
 Lengths are in the units of the program, unless the job file says `units`.
 
@@ -87,11 +92,14 @@ The exit code is 0, and 1 with --strict or where a finding of --fail-on stands i
         "fail": """\
 fail: something is wrong, or probably not what was meant.
 
-At least one finding is as bad as --fail-on says, which is a warning if you do not say it:
+At least one finding is an error or a warning:
 
     error      the control stops with an alarm, or the part is scrap
     warning    probably not what was meant
-    note       works, but is good to know; it fails a file with --fail-on note only
+    note       works, but is good to know; it fails no file
+
+The verdict is about the file. --fail-on, --max-warnings and --strict change the exit code only: with
+--fail-on never the file fails all the same.
 
 Each finding names the block, what is wrong with it, the alarm that this control shows where one is
 known, and what to write instead. `polarcheck explain` with the name of its rule, or with the number
@@ -101,14 +109,25 @@ of the alarm, says why:
     polarcheck explain PS0146
 
 If your lathe differs, make a rule a note, or leave it out, for one check or in polarcheck.toml for
-all programs beside it:
+all programs beside it. By an option the file is unverified then; with a reason in polarcheck.toml it
+can pass:
 
-    --severity rapid-in-polar=note         [severities] and rapid-in-polar = "note"
-    --ignore rapid-in-polar                ignore = ["rapid-in-polar"]
+    --severity rapid-in-polar=note     [severities]
+                                       rapid-in-polar = { level = "note", reason = "..." }
+    --ignore rapid-in-polar            ignore = { rules = ["rapid-in-polar"], reason = "..." }
 
 A file that fails may have entries under "not evaluated", too: `polarcheck explain unverified`.
 
-The exit code is 1.
+The exit code is 1, or what --fail-on and --max-warnings make of it.
+""",
+        "unreadable": """\
+unreadable: the file could not be read, or not be checked to its end.
+
+It is a link to nowhere, a device, a folder that may not be entered, larger than --max-size, or not of
+its --encoding; or the check took too much time or memory, its process ended, or polarcheck has a
+fault. The report says which, beside the verdict and on standard error. Nothing is known of the file.
+
+The other files are checked all the same. The exit code is 2, and 3 for a fault of polarcheck.
 """,
     }
 )
