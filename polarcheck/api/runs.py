@@ -1,4 +1,4 @@
-"""A run over programs: which they are, with the settings of each, and who checks them."""
+"""A run over programs: which they are, with the settings of each, who checks them, and from where reports name them."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 if TYPE_CHECKING:
     from polarcheck.batch.tasks import Outcome, Task
     from polarcheck.reading.walking import Skipped
+    from polarcheck.reports import Background
     from polarcheck.settings.of_programs import OfPrograms
 
 #: Processes are started once they save more time than this [s]. A fork, as on Linux, costs little; a spawned process
@@ -148,3 +149,19 @@ def _by_processes(tasks: Sequence[Task], most: int, count: int) -> Generator[Out
     from polarcheck.batch import executors
 
     return executors.by_processes(tasks, most, count)
+
+
+def placed(background: Background) -> Background:
+    """Add the folders that paths are relative to."""
+    folder = ""
+    with contextlib.suppress(OSError):  # the working folder may be gone
+        folder = os.getcwd()  # noqa: PTH109
+    return background._replace(root=_root(folder).replace(os.sep, "/"), folder=folder.replace(os.sep, "/"))
+
+
+def _root(folder: str) -> str:
+    """Return the folder of the repository, else the working folder."""
+    from polarcheck.reading.files import RealPaths
+    from polarcheck.reading.git import Repositories
+
+    return (Repositories(RealPaths()).root_above(folder) if folder else None) or folder

@@ -85,7 +85,7 @@ def unread(summary: Summary) -> list[str]:
 
 def background(plain: Background, tasks: Iterable[Task]) -> Background:
     """Add the settings of each file, and the folders that paths are relative to, to a background."""
-    from polarcheck.api.rendering import placed
+    from polarcheck.api.runs import placed
     from polarcheck.batch.tasks import settings_of
 
     return placed(plain._replace(settings=settings_of(tasks)))
