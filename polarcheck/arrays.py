@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable, Sequence
-from typing import Any, ClassVar, Self, TypeAlias, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeAlias, TypeVar
 
 import msgspec
 import numpy as np
@@ -24,6 +25,24 @@ Points: TypeAlias = NDArray[np.complex128]
 Rows: TypeAlias = NDArray[np.int64]
 #: Small whole numbers: a state or a kind per row, such as Motion or Side.
 States: TypeAlias = NDArray[np.int16]
+
+if TYPE_CHECKING:
+    from functools import cached_property as cached_property
+else:
+
+    class cached_property(functools.cached_property):  # noqa: N801  used as the one of the library
+        """
+        That of the library as it is since Python 3.12, without its lock: a table belongs to one thread.
+
+        A small program has 500 of them, and the lock takes half of the time of each.
+        """
+
+        def __get__(self, instance, owner=None):
+            """Compute the value at the first access."""
+            if instance is None:
+                return self
+            value = instance.__dict__[self.attrname] = self.func(instance)
+            return value
 
 
 class Table(msgspec.Struct, frozen=True):
@@ -103,7 +122,8 @@ def is_among(values: NDArray[Any], wanted: Sequence[float | str]) -> Mask:
     if len(wanted) <= _FEW:
         matches = np.zeros(np.shape(values), bool)
         for value in wanted:
-            matches |= values == value
+            # Python 3.11 looks up six attributes of the class of an enum, each by a function, where NumPy meets one.
+            matches |= values == (int(value) if isinstance(value, int) else value)
         return matches
     if values.dtype == np.uint8:
         table = np.zeros(256, bool)

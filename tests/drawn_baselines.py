@@ -164,10 +164,9 @@ def another_section(program: Program, draw: Draw) -> Program:
 
 
 def moved(program: Program, draw: Draw) -> Program | None:
-    """Cut a section before another one; one whose blocks no other has."""
+    """Put a section before another one. Of two with the same blocks nobody could say which of them has moved."""
     at, to = draw.randrange(len(program)), draw.randrange(len(program))
-    sizes = [section.size for section in program]
-    if sizes.count(sizes[at]) > 1:
+    if len({section.size for section in program}) < len(program):
         return None
     others = [*program[:at], *program[at + 1 :]]
     return [*others[:to], program[at], *others[to:]]

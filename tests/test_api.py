@@ -217,6 +217,37 @@ def findings(report: polarcheck.FileReport) -> list[Any]:
     return [(finding.rule, finding.severity, finding.message) for finding in report.findings]
 
 
+REASON = "checked by the DNC"
+SELECTIONS: dict[str, tuple[dict[str, Any], str, str]] = {
+    "select": ({"select": "text"}, "unverified", "deselected by polarcheck.check_text(): select text"),
+    "ignore": ({"ignore": ["polar", "text"]}, "unverified", "deselected by polarcheck.check_text(): ignore polar,text"),
+    "severity": (
+        {"severities": {"overcut": "off"}},
+        "unverified",
+        "by polarcheck.check_text(): severities overcut=off",
+    ),
+    "ignore with a reason": ({"ignore": {"rules": ["polar"], "reason": REASON}}, "pass", ""),
+    "severity with a reason": ({"severities": {"overcut": {"level": "off", "reason": REASON}}}, "pass", ""),
+}
+
+
+@pytest.mark.parametrize(("given", "verdict", "why"), SELECTIONS.values(), ids=SELECTIONS)
+def test_rules_that_are_left_out_need_a_reason(given: dict[str, Any], verdict: str, why: str) -> None:
+    report = polarcheck.check_text(HEXAGON, tools={1: 4.0}, limits={"c_feed": 10800}, machine="fanuc-30i", **given)
+    assert report.verdict == verdict
+    assert why in "".join(missing.reason for missing in report.not_evaluated)
+
+
+def test_settings_of_a_report_name_the_keywords(samples: None) -> None:
+    settings = polarcheck.check("hexagon.nc", limits={"c_feed": 60}, changes={"limits.x_feed": 9}, strict=True).settings
+    assert (settings.changes, settings.strict, settings.max_warnings) == (("limits.x_feed=9",), True, None)
+    assert settings.sources == {
+        "changes": "polarcheck.check(): changes",
+        "machine": "polarcheck.toml",
+        "strict": "polarcheck.check()",
+    }
+
+
 def test_a_keyword_lies_over_the_job_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     (tmp_path / "a.nc").write_text(OFFSET, "utf-8")
@@ -467,7 +498,7 @@ def test_every_option_of_a_job_is_a_keyword() -> None:
     known = {*keywords.CheckKeywords.__annotations__}
     left = {other.get(name, name) for name in Options.__struct_fields__} - known
     left -= {*inspect.signature(polarcheck.check).parameters}
-    assert left == {"extras", "keywords"}
+    assert left == {"extras", "keywords", "named", "gives_verdicts"}
 
 
 def test_warnings_are_no_errors_of_a_clean_folder(samples: None) -> None:

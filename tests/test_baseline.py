@@ -361,7 +361,7 @@ def test_a_gone_file_stands_for_one_other_and_the_name_counts_first() -> None:
 
 
 def test_one_block_in_common_does_not_make_a_new_program_an_old_one() -> None:
-    make(a__nc=RAPID.replace("G1 C-5.\n", "G0 C-5.\nG0 C6.\n"))
+    make(a__nc=RAPID.replace("G1 C-5.\n", "G0 C-5.\nG0 C6.\nG1 C8.\n"))
     baseline("create", "a.nc")
     assert len(entries()) == 3
     Path("a.nc").unlink()
@@ -369,6 +369,43 @@ def test_one_block_in_common_does_not_make_a_new_program_an_old_one() -> None:
     result = check(".")
     assert result.exit_code == 1
     assert "3 known findings no longer occur: a.nc, which is gone (3)" in result.stderr
+
+
+def first_schema() -> None:
+    """Write the baseline as the first version did, without places."""
+    contents = read(Path(FILE))
+    old = [msgspec.structs.replace(entry, places=[]) for entry in contents.entries]
+    Path(FILE).write_text(text_of(Contents(old, schema=1)), "utf-8")
+
+
+def test_a_baseline_of_the_first_schema_is_read_and_upgraded() -> None:
+    make(a__nc=RAPID, b__nc=TWICE)
+    baseline("create", ".", "--reason", "OLD")
+    new = Path(FILE).read_bytes()
+    first_schema()
+    old = Path(FILE).read_bytes()
+    assert (b"programs" in old, b"places" in old) == (False, False)
+    # One file keeps all of its findings, the other one has moved with half of them.
+    Path("b.nc").unlink()
+    make(c__nc=RAPID)
+    result = check(".", "--format", "json")
+    assert (result.exit_code, silenced(result)) == (0, {"a.nc": 1, "c.nc": 1})
+    told = result.stderr.splitlines()
+    assert told[0] == (
+        f"polarcheck: warning: {FILE}: 2 lines of an earlier version of polarcheck, where a finding that is worse now "
+        "stays silent; `polarcheck baseline update` upgrades them"
+    )
+    assert "b.nc is c.nc" in told[1]
+    assert baseline("prune", "a.nc").exit_code == 0
+    assert Path(FILE).read_bytes() == old
+    make(b__nc=TWICE)
+    Path("c.nc").unlink()
+    assert baseline("update", ".").exit_code == 0
+    assert Path(FILE).read_bytes() == new
+    first_schema()
+    Path("a.nc").unlink()
+    make(d__nc=OTHER.replace("G1 C-5.", "G0 C5.\nG0 C4.\nG0 C3."))
+    assert check("d.nc").exit_code == 1
 
 
 def test_a_file_with_entries_of_its_own_takes_none_of_another() -> None:
@@ -456,6 +493,9 @@ def test_a_broken_file_is_one_line(text: str | bytes, told: str) -> None:
         (', "count": "2"', "Expected `int`, got `str` - at `$.count`"),
         (', "resaon": "x"', "unknown field `resaon`; did you mean reason?"),
         (', "follows": "x"', "`$.follows`"),
+        (', "places": [{}, {"at": 1}]', "places: expected 1, as many as count says, found 2"),
+        (', "places": [{"at": "x"}]', "`$.places[0].at`"),
+        (', "places": [{"values": {"depth": "x"}}]', "`$.places[0].values[...]`"),
     ],
 )
 def test_a_broken_entry_is_named_with_its_line(more: str, told: str) -> None:
@@ -466,6 +506,21 @@ def test_a_broken_entry_is_named_with_its_line(more: str, told: str) -> None:
     assert "severity: expected one of note, warning, error, found 'bad'" in broken(
         text.replace(more, "").replace("error", "bad")
     )
+
+
+@pytest.mark.parametrize(
+    ("more", "told"),
+    [
+        ('"blocks": "AAA"', "blocks: expected hashes in base 64, four characters each"),
+        ('"blocks": "AA=="', "blocks: expected hashes in base 64, four characters each"),
+        ('"blocks": "A\\u00fcAA"', "blocks: expected hashes in base 64, four characters each"),
+        ('"of": 0', "of: expected a number above 0, found 0"),
+        ('"block": ""', "unknown field `block`; did you mean blocks?"),
+    ],
+)
+def test_a_broken_line_of_a_program_is_named(more: str, told: str) -> None:
+    message = broken(f'{{"schema": 2, "programs": [\n{{"file": "a.nc", {more}}}], "findings": []}}')
+    assert message == f"polarcheck: {FILE}: line 2, program 1: {told}\n" or told in message
 
 
 @pytest.mark.parametrize("encoding", ["utf-8-sig", "utf-16"])

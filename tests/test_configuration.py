@@ -324,7 +324,7 @@ def test_an_option_that_is_no_pattern_is_told() -> None:
             [],
             "polarcheck.toml:1: extensions: no file of this folder ends in {}|'.tpa'",
         ),
-        ("", ["--exclude", "old/**"], "--exclude {} excludes nothing|'old/**'"),
+        ("exclude = ['gone']\n", ["--exclude", "old/**"], "--exclude {} excludes nothing|'old/**'"),
         ("extensions = ['tap']\n", ["--extensions", "nc,sub"], "--extensions: no file ends in {}|'sub'"),
     ],
 )
@@ -373,7 +373,19 @@ def show_files(*arguments: str) -> dict[str, str]:
 
 def archive() -> None:
     """A folder with a program, and some of each kind that a walk does not read."""
-    make("a.nc", "P.SUB", "Q.SUB", "x.lib", "1.001", "O1234-REV.B", "old/b.nc", "old/deep/c.nc", "d.bak", ".git/x.nc")
+    make(
+        "a.nc",
+        "P.SUB",
+        "Q.SUB",
+        "x.lib",
+        "1.001",
+        "O1234-REV.B",
+        "old/b.nc",
+        "old/deep/c.nc",
+        "d.bak",
+        ".cam/x.nc",
+        ".git/y.nc",
+    )
     make("tools.txt", text="G10 P1 X0 Z0 R4. Q0\nG10 P2 X0 Z0 R5. Q0\n")
     job("offsets = 'tools.txt'\nexclude = ['old', '*.bak']\n")
 
@@ -386,7 +398,7 @@ def test_the_files_of_a_folder_are_listed_with_the_reason() -> None:
     ending = "the ending {} is none of the extensions"
     assert show_files(".") == {
         "a.nc": "",
-        ".git/": "hidden folders and those of packages are not entered",
+        ".cam/": "hidden folders and those of packages are not entered",
         "1.001": ending.format(".001"),
         "O1234-REV.B": ending.format(".B"),
         "P.SUB": ending.format(".SUB"),
@@ -403,8 +415,20 @@ def test_the_files_of_a_folder_are_listed_with_the_reason() -> None:
     }
     assert show_files(".", "--exclude", "a*", "--extensions", "sub")["a.nc"] == "excluded by --exclude 'a*'"
     lines = call("check", ".", "--show-files").stdout.splitlines()
-    assert lines[:2] == ["read      a.nc", "not read  .git/: hidden folders and those of packages are not entered"]
+    assert lines[:2] == ["read      a.nc", "not read  .cam/: hidden folders and those of packages are not entered"]
     assert len(call("check", ".", "--show-files", "--format", "jsonl").stdout.splitlines()) == len(lines) == 10
+
+
+def test_a_subprogram_that_a_program_calls_was_read_there() -> None:
+    make("a.nc", text="O1\nM98 <PART>\nM98 P9001\nM30\n")
+    make("subs/PART.SUB", "subs/OTHER.SUB", "subs/9001.SUB", text="O9001\nG0 X1.\nM99\n")
+    job("machine = 'fanuc-30i'\n[run]\nsubprograms = ['subs']\n")
+    for _ in ("checked", "from the cache"):
+        document = json.loads(call("check", ".", "--format", "json").stdout)
+        counted = {"ending": ".sub", "files": 1, "first": "subs/OTHER.SUB"}
+        assert document["summary"]["not_read"] == [counted]
+    reason = "the ending .SUB is none of the extensions; programs that call it execute it"
+    assert show_files(".")["subs/OTHER.SUB"] == reason
 
 
 @pytest.mark.parametrize(

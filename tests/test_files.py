@@ -145,6 +145,7 @@ def test_a_program_with_another_ending_is_named(tmp_path: Path, name: str) -> No
         ("a.hex", ":10010000214601360121470136007EFE09D2190140\n"),
         ("O1234.orig", BLOCKS),
         ("a.nc~", BLOCKS),
+        ("O1234.NC~", BLOCKS),
         ("P.SUB", "Sub AutoOpen()\nEnd Sub\n"),
         ("2026", "minutes of the meeting\n"),
         (".x.nc.swp", BLOCKS),
@@ -156,8 +157,8 @@ def test_what_is_no_program_by_its_look_needs_no_word(tmp_path: Path, name: str,
 
 
 def test_folders_that_are_not_entered_are_named(tmp_path: Path) -> None:
-    make(tmp_path, {".git/a.nc": BLOCKS, "node_modules/x/a.nc": BLOCKS, "b.nc": ""})
-    assert passed_over(tmp_path) == [(".git", "folder"), ("b.nc", ""), ("node_modules", "folder")]
+    make(tmp_path, {".git/a.nc": BLOCKS, ".cam/a.nc": BLOCKS, "node_modules/x/a.nc": BLOCKS, "b.nc": ""})
+    assert passed_over(tmp_path) == [(".cam", "folder"), ("b.nc", ""), ("node_modules", "folder")]
 
 
 def test_sniffing_ends_soon_whatever_the_line(tmp_path: Path) -> None:

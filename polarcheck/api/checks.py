@@ -9,6 +9,7 @@ from typing import Unpack
 from polarcheck.api import runs
 from polarcheck.api.keywords import CheckKeywords, PathName, names_of, options, paths_of, takes
 from polarcheck.api.programs import NAMELESS, Call
+from polarcheck.batch import decisions
 from polarcheck.batch import tasks as batch
 from polarcheck.batch.baselines import Baselines
 from polarcheck.batch.tasks import Outcome, Task
@@ -56,17 +57,20 @@ def check(
     patterns = names_of(_FUNCTION, "exclude", exclude)
     settings_of = OfPrograms(options(_FUNCTION, CheckKeywords, keywords, exclude=patterns))
     skipped: list[Skipped] = []
-    tasks, failures, doubts = runs.planned(named, settings_of, endings, force_exclude=force_exclude, skipped=skipped)
-    for doubt in doubts:
+    planned = runs.planned(named, settings_of, endings, force_exclude=force_exclude, skipped=skipped)
+    tasks, failures = planned.tasks, [*planned.failures, *planned.nothing]
+    for doubt in planned.doubts:
         warnings.warn(doubt, PolarcheckWarning, stacklevel=2)
     if failures:
         raise SourceError(failures[0])
+    settings, tasks = decisions.shared(tasks)
     baselines = Baselines(tasks, named) if any(task.settings.baseline for task in tasks) else None
     with runs.outcomes(tasks, max_size, processes) as outcomes:
         reports = [_report(outcome) for outcome in (baselines.outcomes(outcomes) if baselines else outcomes)]
     for doubt in (*baselines.faults, *baselines.leftovers) if baselines else ():
         warnings.warn(doubt, PolarcheckWarning, stacklevel=2)
-    return batch.report(reports, tasks[0].settings.machine_id if tasks else profiles.DEFAULT, skipped=skipped)
+    machine = tasks[0].settings.machine_id if tasks else profiles.DEFAULT
+    return batch.report(reports, machine, settings, skipped=skipped)
 
 
 def _report(outcome: Outcome) -> FileReport:

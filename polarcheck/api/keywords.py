@@ -89,20 +89,21 @@ class CheckKeywords(PartKeywords, total=False):
     """
     Which rules run, and what fails.
 
-    select: only these rules, groups or alarms; over what the job file selects and ignores.
-    ignore: all but these.
-    severities: error, warning, note or off by rule, group or alarm.
-    fail_on: "error", "warning", "note" or "never".
-    strict: an unverified file fails, too.
+    select: only these rules, groups or alarms; over what the job file selects and ignores. Rules of weight that are
+        left out make a file unverified, unless there is a reason: {"rules": ["text"], "reason": "checked by the DNC"}.
+    ignore: all but these, with or without a reason.
+    severities: error, warning, note or off by rule, group or alarm; or {"level": "off", "reason": "..."}.
+    fail_on, max_warnings, strict: what the command ends with 1 for; no verdict hangs on it. Reports say it.
     inline: False to ignore the allow comments of programs.
     baseline: a file of known findings, which are silenced.
     use_baseline: False to ignore the baseline that a job file names.
     """
 
-    select: str | Iterable[str]
-    ignore: str | Iterable[str]
-    severities: Mapping[str, Severity | Literal["off"]]
+    select: str | Iterable[str] | Values
+    ignore: str | Iterable[str] | Values
+    severities: Mapping[str, Severity | Literal["off"] | Values]
     fail_on: Severity | Literal["never"]
+    max_warnings: int
     strict: bool
     inline: bool
     baseline: PathName
@@ -116,6 +117,8 @@ _OF_OPTIONS = (
 )
 #: Keywords that a single value may be given to.
 _LISTS = ("drawing_layers", "drawings", "ignore", "select", "subprograms")
+#: Those whose names may stand beside a reason, {"rules": [...], "reason": "..."}.
+_WITH_REASON = ("ignore", "select")
 _LARGEST_TOLERANCE = 100.0
 
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -178,7 +181,7 @@ def options(function: str, kind: type, given: Mapping[str, Any], **more: Any) ->
             raise UsageError(f"{function}: unknown keyword {name}{suggestion(name, known)}")
     table = {name: _plain(value) for name, value in given.items() if value is not None}
     for name in _LISTS:
-        if name in table:
+        if name in table and not (name in _WITH_REASON and isinstance(table[name], dict)):
             table[name] = names_of(function, name, table[name])
     for name in ("baseline", "config", "machine", "offsets", "encoding"):
         if not isinstance(table.get(name, ""), str):
@@ -190,15 +193,27 @@ def options(function: str, kind: type, given: Mapping[str, Any], **more: Any) ->
     for name in ("use_baseline", "use_config"):
         if not isinstance(table.get(name, True), bool):
             raise UsageError(f"{function}: {name}: expected True or False, found {_short(given[name])}")
-    of_options = {name: table.pop(name) for name in _OF_OPTIONS if name in table}
+    # What has a reason stays a value of the job, where reasons belong.
+    of_options = {
+        name: table.pop(name)
+        for name in _OF_OPTIONS
+        if name in table and not (name in _WITH_REASON and isinstance(table[name], dict))
+    }
     _check(function, of_options)
     job = _job(function, table)
-    levels = keywords(function, job, of_options.pop("changes", {}))
-    severities = [f"{name}={level}" for name, level in job.pop("severities", {}).items()]
+    changes = of_options.pop("changes", {})
+    given_keywords = keywords(function, job, changes)
+    levels = job.pop("severities", {})
+    reasoned = {name: level for name, level in levels.items() if not isinstance(level, str)}
+    if reasoned:
+        job["severities"] = reasoned
+    of_options["changes"] = tuple(f"{key}={value}" for key, value in changes.items())
+    of_options["severities"] = tuple(f"{name}={level}" for name, level in levels.items() if name not in reasoned)
+    named = {name: f"{function}: {name} " for name in ("changes", "select", "ignore", "severities", "baseline")}
     paths: dict[str, Any] = {name: Path(of_options[name]) for name in ("baseline", "config") if name in of_options}
     if "drawings" in of_options:
         paths["drawings"] = [Path(path) for path in of_options["drawings"]]
-    return Options(**{**of_options, **paths, **more}, severities=severities, keywords=levels)
+    return Options(**{**of_options, **paths, **more}, named=named, keywords=given_keywords)
 
 
 def _is_encoding(name: str) -> bool:

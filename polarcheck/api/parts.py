@@ -19,6 +19,7 @@ from polarcheck.reading.files import LARGEST
 RULES = ("part-differs-from-drawing", *READ_OTHERWISE)
 #: What adds the part, and its comparison, to a report.
 EXTRAS = part_of, compared_in
+_MORE = {"select": RULES, "gives_verdicts": False}
 
 
 class MadePart(msgspec.Struct, frozen=True, kw_only=True):
@@ -53,7 +54,7 @@ def part(path: PathName, *, max_size: int = LARGEST, **keywords: Unpack[PartKeyw
     Raises SourceError if the file cannot be read, UsageError, JobError or MachineError for a wrong setting,
     TooHardError if the program takes too long.
     """
-    return _part(Call("polarcheck.part()", PartKeywords, keywords, {"select": RULES}).of_path(path, max_size))
+    return _part(Call("polarcheck.part()", PartKeywords, keywords, _MORE).of_path(path, max_size))
 
 
 @takes(PartKeywords)
@@ -66,7 +67,7 @@ def part_text(text: str | bytes, *, name: str = NAMELESS, **keywords: Unpack[Par
 
     Raises as `part` does.
     """
-    return _part(Call("polarcheck.part_text()", PartKeywords, keywords, {"select": RULES}).of_text(text, name))
+    return _part(Call("polarcheck.part_text()", PartKeywords, keywords, _MORE).of_text(text, name))
 
 
 def _part(program: Program) -> MadePart:

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import contextlib
-import os
-
 from polarcheck import reports
+from polarcheck.api.runs import placed
 from polarcheck.batch import tasks as batch
 from polarcheck.checking import rule
 from polarcheck.errors import UsageError
@@ -32,19 +30,3 @@ def render(report: Report | FileReport, form: str = "text") -> str:
     if not isinstance(report, Report):
         raise UsageError(f"polarcheck.render(): expected a report of check, found {type(report).__name__}")
     return reports.render(form, report, placed(Background(rules=rule.load_all())))
-
-
-def placed(background: Background) -> Background:
-    """Add the folders that paths are relative to."""
-    folder = ""
-    with contextlib.suppress(OSError):  # the working folder may be gone
-        folder = os.getcwd()  # noqa: PTH109
-    return background._replace(root=_root(folder).replace(os.sep, "/"), folder=folder.replace(os.sep, "/"))
-
-
-def _root(folder: str) -> str:
-    """Return the folder of the repository, else the working folder."""
-    from polarcheck.reading.files import RealPaths
-    from polarcheck.reading.git import Repositories
-
-    return (Repositories(RealPaths()).root_above(folder) if folder else None) or folder

@@ -1,4 +1,4 @@
-"""A run over programs: which they are, with the settings of each, and who checks them."""
+"""A run over programs: which they are, with the settings of each, who checks them, and from where reports name them."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 if TYPE_CHECKING:
     from polarcheck.batch.tasks import Outcome, Task
     from polarcheck.reading.walking import Skipped
+    from polarcheck.reports import Background
     from polarcheck.settings.of_programs import OfPrograms
 
 #: Processes are started once they save more time than this [s]. A fork, as on Linux, costs little; a spawned process
@@ -26,13 +27,15 @@ class Planned(NamedTuple):
     The programs of a run.
 
     tasks: the programs, with the settings of each.
-    failures: a line for each folder that cannot be read, or that nothing is left of.
+    failures: a line for each folder that cannot be read.
     doubts: a line for each path or setting that may not say what was meant.
+    nothing: why nothing is checked, where folders have programs that are excluded or have other endings.
     """
 
     tasks: list[Task]
     failures: list[str]
     doubts: list[str]
+    nothing: Sequence[str] = ()
 
 
 def planned(
@@ -58,7 +61,7 @@ def planned(
     """
     from polarcheck.batch import tasks as batch
 
-    failures, doubts, empty = list[str](), list[str](), list[str]()
+    failures, doubts, empty, nothing = list[str](), list[str](), list[str](), list[str]()
     paths = settings_of.left(paths, doubts.append) if force_exclude else paths
     skipped = [] if skipped is None else skipped
     tasks = batch.plan(
@@ -73,11 +76,11 @@ def planned(
         **(named or {}),
     )
     if not tasks and not force_exclude and any(entry.programs for entry in skipped):
-        failures += [f"nothing to check: {line}" for line in empty]
+        nothing = [f"nothing to check: {line}" for line in empty]
     else:
         doubts += [*empty, *settings_of.unmatched(paths, [task.place for task in tasks], extensions)]
         doubts += settings_of.left_behind()
-    return Planned(tasks, failures, doubts)
+    return Planned(tasks, failures, doubts, nothing)
 
 
 @contextlib.contextmanager
@@ -146,3 +149,19 @@ def _by_processes(tasks: Sequence[Task], most: int, count: int) -> Generator[Out
     from polarcheck.batch import executors
 
     return executors.by_processes(tasks, most, count)
+
+
+def placed(background: Background) -> Background:
+    """Add the folders that paths are relative to."""
+    folder = ""
+    with contextlib.suppress(OSError):  # the working folder may be gone
+        folder = os.getcwd()  # noqa: PTH109
+    return background._replace(root=_root(folder).replace(os.sep, "/"), folder=folder.replace(os.sep, "/"))
+
+
+def _root(folder: str) -> str:
+    """Return the folder of the repository, else the working folder."""
+    from polarcheck.reading.files import RealPaths
+    from polarcheck.reading.git import Repositories
+
+    return (Repositories(RealPaths()).root_above(folder) if folder else None) or folder

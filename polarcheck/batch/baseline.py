@@ -148,8 +148,8 @@ class Baseline:
         """
         Return the former path of a moved file, empty if it was not moved.
 
-        Most of its blocks are those of the former file, and the name of that is the same, or at least half of its known
-        findings are present. In a baseline of the first schema the findings alone must do.
+        Most of its blocks are those of the former file. In a baseline of the first schema the findings must do: the
+        name is the same, or at least half of the known findings are present.
         """
         present = Counter(map(key_of, report.findings))
         common: Counter[str] = Counter()
@@ -166,7 +166,10 @@ class Baseline:
             if file not in self._origins
             and (
                 has_same_name(file)
-                or (_name(file) not in self._new_names and 2 * common[file] >= self._counts[file].total())
+                or (
+                    _name(file) not in self._new_names
+                    and (file in self._programs or 2 * common[file] >= self._counts[file].total())
+                )
             )
         ]
         shares: dict[str, float] = {}

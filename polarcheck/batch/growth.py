@@ -82,9 +82,11 @@ def _signed(name: str, finding: Finding) -> str:
 
 
 def _is_worse(signed: str, before: float | None, now: float | None, share: float, rounding: float) -> bool:
-    """Return True for a number that is worse by more than the tolerance; None is worse than any number."""
+    """Return True for a number that is worse by more than the tolerance, which counts do not have; None is worst."""
     if before is None or now is None:
         return before is not None
+    if isinstance(now, int):
+        share = 0
     grown = before - now if signed.startswith(LESS) else now - before
     return grown > share * abs(before) + rounding
 

@@ -59,11 +59,12 @@ class Versions:
         self._new_kept, self._new = _thinned(outline.hashes, of)
         self._is_whole = of == 1
         pairs = aligned(self._old, self._new)
-        common = (Counter(self._old) & Counter(self._new)).total()
+        self._counts = Counter(self._old)
+        common = (self._counts & Counter(self._new)).total()
         self.is_same = common >= SAME * len(self._old) or common >= SAME_AS_PART * len(self._new)
         self.share = common / max(len(self._old), len(self._new), 1)
         self._pairs = {**pairs, -1: -1, len(self._old): len(self._new)}
-        self._aligned = {*pairs.values()}
+        self._old_of = {new: old for old, new in pairs.items()}
         self._outline = outline
 
     def now(self, at: int) -> int | None:
@@ -91,21 +92,45 @@ class Versions:
         at = self._outline.place_of_line.get(line)
         return None if at is None else bisect_right(self._new_kept, at) - 1
 
+    def stays(self, at: int, line: int) -> bool:
+        """Return True if a block and most of those around it are aligned with a line and the blocks around that."""
+        old, new = self._in_old(at), self.target(line)
+        return (
+            new is not None
+            and self._pairs.get(old) == new
+            and self._most(old, lambda step: self._is_at(step, new - old))
+        )
+
     def has_moved(self, at: int, line: int) -> bool:
         """
         Return True if a block has gone from its place with most of those around it, and these are new around the line.
 
-        Where the blocks around it are still at the former place, it is another block with the same surroundings.
+        Where the blocks around it are still at the former place, it is another block with the same surroundings. The
+        ends of sections are often the same: there an alignment counts only if the blocks around agree with it.
         """
         old, new = self._in_old(at), self.target(line)
-        if new is None or old in self._pairs or new in self._aligned:
+        if new is None or not self._most(old, lambda step: self._have_moved(step, step + new - old)):
             return False
-        around = [step for step in range(-_AROUND, _AROUND + 1) if step and 0 <= old + step < len(self._old)]
-        return 2 * sum(self._have_moved(old + step, new + step) for step in around) > len(around)
+        former = self._old_of.get(new)
+        return not any(
+            self._most(block, lambda step, by=other - block: self._is_at(step, by))  # type: ignore[misc]
+            for block, other in ((old, self._pairs.get(old)), (former, new))
+            if block is not None and other is not None
+        )
+
+    def _most(self, old: int, holds: Callable[[int], bool]) -> bool:
+        """Return True if something holds for most blocks around one; those that the program has once say more."""
+        around = [at for at in range(old - _AROUND, old + _AROUND + 1) if at != old and 0 <= at < len(self._old)]
+        single = [at for at in around if self._counts[self._old[at]] == 1]
+        around = single if len(single) > 1 else around
+        return 2 * sum(map(holds, around)) > len(around)
+
+    def _is_at(self, old: int, by: int) -> bool:
+        return self._pairs.get(old) == old + by
 
     def _have_moved(self, old: int, new: int) -> bool:
         is_same = 0 <= new < len(self._new) and self._old[old] == self._new[new]
-        return is_same and self._pairs.get(old, new) == new and (new not in self._aligned or old in self._pairs)
+        return is_same and self._pairs.get(old, new) == new and self._old_of.get(new, old) == old
 
     def _in_old(self, at: int) -> int:
         return bisect_right(self._kept, at) - 1
@@ -162,10 +187,10 @@ def _ways(entry: Entry, both: Versions | None) -> Iterator[_Way]:
     if both is None or not entry.places:
         yield lambda places, findings: dict.fromkeys(findings, tuple(places))
         return
-    yield lambda places, findings: _by_index(
-        {at: {None} if place.at is None else both.targets(place.at) for at, place in places.items()},
-        {number: both.target(finding.line) for number, finding in findings.items()},
-    )
+    yield lambda places, findings: {
+        number: [at for at in fitting if (where := places[at].at) is None or both.stays(where, findings[number].line)]
+        for number, fitting in _aligned(both, places, findings).items()
+    }
     rule = load_all().get(entry.rule)
     if rule is not None and rule.once == _SECTION:
         # Where the first block with the fault has been mended, another one of the section stands for it.
@@ -174,6 +199,14 @@ def _ways(entry: Entry, both: Versions | None) -> Iterator[_Way]:
             {number: both.target(finding.section_line or 0) for number, finding in findings.items()},
         )
     yield lambda places, findings: _moved(both, places, findings)
+    yield lambda places, findings: _aligned(both, places, findings)
+
+
+def _aligned(both: Versions, places: Mapping[int, Place], findings: Mapping[int, Finding]) -> dict[int, list[int]]:
+    return _by_index(
+        {at: {None} if place.at is None else both.targets(place.at) for at, place in places.items()},
+        {number: both.target(finding.line) for number, finding in findings.items()},
+    )
 
 
 def _by_index(places: Mapping[int, Iterable[int | None]], findings: Mapping[int, int | None]) -> dict[int, list[int]]:

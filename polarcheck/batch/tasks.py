@@ -104,6 +104,7 @@ class Checked(msgspec.Struct, frozen=True):
     any of the programs calls, where it has a job with tools. stopped: by what the check was interrupted; the files that
     were finished before that are here. failed: whether any of them fails, by the severity that its own settings name
     and, where these are strict, by being unverified. broken_off: in one line, why the workers could not go on.
+    called_files: those in folders of subprograms that calls have led to.
     """
 
     files: Sequence[FileReport]
@@ -112,6 +113,7 @@ class Checked(msgspec.Struct, frozen=True):
     stopped: KeyboardInterrupt | None = None
     failed: bool = False
     broken_off: str = ""
+    called_files: set[str] = set()
 
     @property
     def readable(self) -> list[FileReport]:
@@ -259,6 +261,7 @@ def gather(
     of its findings, as soon as it is its turn.
     """
     spool, called, failed, stopped, broken_off = Spool(), set[str](), False, None, ""
+    called_files: set[str] = set()
     try:
         for found in outcomes:
             if found.failure:
@@ -268,6 +271,8 @@ def gather(
             if found.report is not None:
                 spool.add(found.report, found.lines)
                 called |= found.called
+                if found.basis is not None:
+                    called_files.update(path for look_up in found.basis.look_ups for path, _ in look_up.files)
                 failed = failed or found.failed
                 if show is not None:
                     show(found.report, found.lines)
@@ -276,7 +281,7 @@ def gather(
     except ClusterError as error:
         broken_off = str(error)
         tell(broken_off)
-    return Checked(spool.files, spool.lines, called, stopped, failed, broken_off)
+    return Checked(spool.files, spool.lines, called, stopped, failed, broken_off, called_files)
 
 
 def outcome(task: Task, most: int = files.LARGEST, data: bytes | None = None) -> Outcome:
@@ -400,12 +405,13 @@ def report(
     settings: RunSettings | None = None,
     interrupted: Interrupted | None = None,
     skipped: Sequence[Skipped] = (),
+    called_files: Collection[str] = (),
 ) -> Report:
     """
     Return the report over all files.
 
     machine: what a report without files is for. settings: what decided. interrupted: why files are missing.
-    skipped: what the walks did not read.
+    skipped: what the walks did not read. called_files: subprograms that were executed where programs call them.
     """
     severities, verdicts, machines, silenced = Counter[str](), Counter[str](), set[tuple[str, str]](), 0
     for file in reports:  # once: it may not lie in memory
@@ -429,6 +435,7 @@ def report(
     if skipped:
         from polarcheck.batch import unread
 
+        skipped = unread.never_called(skipped, called_files, files.RealPaths())
         not_read, excluded = unread.by_ending(skipped), unread.excluded(skipped)
         summary = msgspec.structs.replace(summary, not_read=not_read, excluded=excluded)
     return Report(

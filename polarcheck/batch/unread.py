@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterable, Sequence
+from collections.abc import Collection, Container, Iterable, Sequence
 
 from polarcheck.finding import NotRead
 from polarcheck.reading.files import RealPaths, shown
@@ -20,6 +20,12 @@ def once(skipped: Iterable[Skipped], read: Container[str], real: RealPaths) -> l
         if path not in read:
             found.setdefault(path, entry)
     return list(found.values())
+
+
+def never_called(skipped: Sequence[Skipped], called_files: Collection[str], real: RealPaths) -> list[Skipped]:
+    """Return the entries without the subprograms that a checked program calls: these were executed there."""
+    read = {real.of(path) for path in called_files} if skipped else set()
+    return [entry for entry in skipped if entry.reason != "ending" or real.of(entry.path) not in read]
 
 
 def by_ending(skipped: Iterable[Skipped]) -> list[NotRead]:

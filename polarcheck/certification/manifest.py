@@ -83,6 +83,14 @@ class Conditions(OfPrograms, frozen=True, kw_only=True):
         for key, reason in DECIDED.items():
             if getattr(self, key) != _DEFAULTS[key]:
                 raise KeyedError(key, f"no key of a manifest: {reason}")
+        _refuse_files(self.part)
+
+
+def _refuse_files(parts: list[Part]) -> None:
+    """Raise KeyedError for a part that names files: where it stands says which programs must make it."""
+    for number, part in enumerate(parts, 1):
+        if part.files:
+            raise KeyedError(f"part.{number}.files", "no key of a manifest: a part is for the cases of its table")
 
 
 class Feature(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -97,6 +105,9 @@ class Feature(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     part: Annotated[list[Part], msgspec.Meta(description="what the programs of all controls must make")] = (
         msgspec.field(default_factory=list)
     )
+
+    def __post_init__(self) -> None:
+        _refuse_files(self.part)
 
 
 class Control(Conditions, frozen=True, kw_only=True):

@@ -13,6 +13,7 @@ from polarcheck.certification.tool_path import ToolPath
 from polarcheck.errors import TooHardError
 from polarcheck.geometry.comparison.paths import PathDeviation, path_deviation
 from polarcheck.geometry.polar import length
+from polarcheck.reports import counted
 
 #: F differs if it does so by more than this share: digits that a trace rounds away are no change.
 _SAME_FEED = 1e-6
@@ -109,7 +110,11 @@ def _compared(
     """
     count, expected = len(ours.turned), len(other.turned)
     if count != expected:
-        return Comparison(None, [f"the path has {_sections(count)}, {title} has {_sections(expected)}"], [])
+        return Comparison(
+            None,
+            [f"the path has {counted(count, 'polar section')}, {title} has {counted(expected, 'polar section')}"],
+            [],
+        )
     if ours.is_programmed.any() != other.is_programmed.any():
         which = "this program" if ours.is_programmed.any() else title
         return Comparison(None, [f"R of a cutter is not known in {which}: its path is the programmed one"], [])
@@ -120,10 +125,16 @@ def _compared(
         if np.isnan(mine.z_to).all() and np.isnan(theirs.z_to).all():
             remarks.append(f"{section}: Z is not compared, it is not known")
             mine, theirs = _without_z(mine), _without_z(theirs)
-        unknown = [not path.space().is_known.all() for path in (mine, theirs)]
-        if any(unknown):
-            which = "this program" if unknown[0] else title
+        known = [path.space().is_known for path in (mine, theirs)]
+        unknown = [int(np.count_nonzero(~of_path)) for of_path in known]
+        if unknown[0] != unknown[1]:
+            which = "this program" if unknown[0] > unknown[1] else title
             return Comparison(None, [*reasons, f"{section}: a position is not known in {which}"], remarks)
+        if unknown[0]:
+            remarks.append(f"{section}: {counted(unknown[0], 'move')} not compared, a position is not known")
+            mine, theirs = mine[known[0]], theirs[known[1]]
+            if not len(mine) or not len(theirs):
+                continue
         turn, why = turned_by(number, mine, theirs)
         try:
             deviation = path_deviation(theirs.space(turn), mine.space(), tolerance)
@@ -191,10 +202,6 @@ def _wrapped(angle: float) -> float:
     return (angle + 180) % 360 - 180
 
 
-def _sections(count: int) -> str:
-    return f"{count} polar section{'' if count == 1 else 's'}"
-
-
 def _feed(value: float) -> str:
     return "not known" if np.isnan(value) else f"{value:g} mm/min"
 
@@ -221,5 +228,6 @@ def _feed_change(mine: ToolPath, theirs: ToolPath, tolerance: float) -> tuple[in
 
 
 def _lengths(path: ToolPath) -> Floats:
-    """Return the length of each move in space [mm]."""
-    return np.hypot(length(path.start, path.end, path.center, path.kind), np.nan_to_num(path.z_to - path.z_from))
+    """Return the length of each move in space [mm], 0 where it is not known."""
+    on_plane = length(path.start, path.end, path.center, path.kind)
+    return np.hypot(np.nan_to_num(on_plane), np.nan_to_num(path.z_to - path.z_from))

@@ -5,14 +5,13 @@ from __future__ import annotations
 import bisect
 import contextlib
 from collections.abc import Iterable, Mapping
-from functools import cached_property
 from itertools import islice
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import msgspec
 import numpy as np
 
-from polarcheck.arrays import Mask, Rows, is_uniform, repeated
+from polarcheck.arrays import Mask, Rows, cached_property, is_uniform, repeated
 from polarcheck.checking import places
 from polarcheck.checking.called_files import in_call
 from polarcheck.checking.places import PLACES, Place

@@ -8,13 +8,12 @@ from __future__ import annotations
 
 import bisect
 from collections.abc import Mapping, Sequence
-from functools import cached_property
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from polarcheck.arrays import Mask, is_among
+from polarcheck.arrays import Mask, cached_property, is_among
 from polarcheck.execution.kinds import FaultKind, RemarkKind
 from polarcheck.execution.programs import find_programs
 from polarcheck.execution.run import Remark, Run

@@ -75,7 +75,8 @@ def all_unevaluated(tables: Tables, rules: Iterable[Rule]) -> Iterator[NotEvalua
     """Report the blocks that were not executed, and the blocks that each rule could not evaluate."""
     yield from unexecuted(tables)
     for rule in rules:
-        yield from told(unevaluated(tables, rule), tables["machine"])
+        if rule.needs or rule.name in _EXTRA_REASONS:
+            yield from told(unevaluated(tables, rule), tables["machine"])
 
 
 def bounds_not_reported(tables: Tables, findings: Iterable[Finding]) -> Iterator[NotEvaluated]:

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from functools import cached_property
-
 import msgspec
 import numpy as np
 
-from polarcheck.arrays import Mask
+from polarcheck.arrays import Mask, cached_property
 from polarcheck.checking.remedies import is_chosen
 from polarcheck.checking.tables import Tables
 from polarcheck.columns.trace import Trace

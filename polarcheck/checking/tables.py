@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import importlib
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
 from polarcheck.errors import RuleError
@@ -134,40 +134,34 @@ OF_CAUSE = {"X before": "X", "C before": "C", "arc before": "row"}
 OF_TEXT = frozenset({"text", "words", "machine", "job", "written", "dialect"})
 
 
-class Tables(Mapping[str, Any]):
+class Tables(dict[str, Any]):
     """
-    The tables of one run on one machine for one job, by name.
+    The tables of one run on one machine for one job, by name; each is made when it is asked for.
 
     run, text, words, machine and job are given; what is made outside, once others are known, is given by `give`.
     """
 
     def __init__(self, run: Run, machine: Machine, job: Job) -> None:
-        self._made: dict[str, Any] = {
-            "run": run,
-            "text": run.text,
-            "words": run.text.words,
-            "machine": machine,
-            "job": job,
-        }
+        super().__init__(run=run, text=run.text, words=run.text.words, machine=machine, job=job)
 
-    def __getitem__(self, name: str) -> Any:
-        if name not in self._made:
-            self._made[name] = self.column(PARTS[name]) if name in PARTS else self._make(name)
-        return self._made[name]
+    def __missing__(self, name: str) -> Any:
+        table = self[name] = self.column(PARTS[name]) if name in PARTS else self._make(name)
+        return table
 
     def __iter__(self) -> Iterator[str]:
-        return iter(dict.fromkeys((*self._made, *MAKERS, *PARTS)))
+        """Iterate over the names of all tables, made or not."""
+        return iter(dict.fromkeys((*self.keys(), *MAKERS, *PARTS)))
 
     def __len__(self) -> int:
         return len(list(iter(self)))
 
     def give(self, name: str, table: Any) -> None:
         """Add a table that was made elsewhere."""
-        self._made[name] = table
+        self[name] = table
 
     def computed(self) -> Iterator[tuple[str, Any]]:
         """The tables computed so far, by name."""
-        return iter(self._made.items())
+        return iter(self.items())
 
     def _make(self, name: str) -> Any:
         if name not in MAKERS:

@@ -9,14 +9,24 @@ Y, D1 the rotary axis, and Q names the rotary axis by its number.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from functools import cached_property
 from itertools import zip_longest
 from typing import TypeVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
-from polarcheck.arrays import Columns, Floats, Mask, Rows, States, computed, different, is_among, repeated
+from polarcheck.arrays import (
+    Columns,
+    Floats,
+    Mask,
+    Rows,
+    States,
+    cached_property,
+    computed,
+    different,
+    is_among,
+    repeated,
+)
 from polarcheck.columns.blocks import ExecutedBlocks
 from polarcheck.columns.coordinates import Coordinates
 from polarcheck.columns.filling import fill_down, happened

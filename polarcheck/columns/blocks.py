@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Iterable
-from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
-from polarcheck.arrays import Floats, Mask, Rows, States, repeated
+from polarcheck.arrays import Floats, Mask, Rows, States, cached_property, repeated
 from polarcheck.columns.filling import fill_down
 from polarcheck.columns.lookups import Lookups
 from polarcheck.execution.programs import find_programs
@@ -187,21 +187,20 @@ class ExecutedBlocks(Lookups):
 
         `M3 P12` asks for the word beside the code, too. What the machine lists so is not the M code alone.
         """
-        parts = [np.zeros(0, np.int64)]
-        for letter, indices, numbers in (("G", self.g_words, self.g_codes), ("M", self.m_words, self.m_codes)):
-            alone = [word for word in words if word[0] == letter and " " not in word]
+        parts: list[Rows] = []
+        for letter, alone, with_others in _by_letter(words):
             if alone:
                 parts.append(self._of_codes(letter, code_set(alone)))
-            parts += [
-                indices[self._beside(word, indices, numbers)] for word in words if word[0] == letter and " " in word
-            ]
-        return np.concatenate(parts)
+            if with_others:
+                indices, numbers = (self.g_words, self.g_codes) if letter == "G" else (self.m_words, self.m_codes)
+                parts += [indices[self._beside(word, indices, numbers)] for word in with_others]
+        return parts[0] if len(parts) == 1 else np.concatenate((np.zeros(0, np.int64), *parts))
 
     def _of_codes(self, letter: str, codes: Mask) -> Rows:
         """The G or M words, in order, whose codes are asked for (codes.code_set), and listed without another word."""
         order, present, begins = self._by_code[letter]
         groups = [
-            order[begin:end] for begin, end in (begins[at : at + 2] for at in np.flatnonzero(codes[present]).tolist())
+            order[begin:end] for begin, end in (begins[at : at + 2] for at in codes[present].nonzero()[0].tolist())
         ]
         if not groups:
             return order[:0]
@@ -240,7 +239,10 @@ class ExecutedBlocks(Lookups):
 
     def listed(self, *keys: str) -> Mask:
         """Whether a row has a G code of any of these lists of the machine, as in `reference_return`."""
-        return self.codes(*(code for key in keys for code in self.machine.codes(key)))
+        machine = self.machine
+        return self.codes(
+            *machine.cached(" ".join(keys), lambda: tuple(code for key in keys for code in machine.codes(key)))
+        )
 
     @cached_property
     def switches_length_offset(self) -> Mask:
@@ -323,3 +325,15 @@ class ExecutedBlocks(Lookups):
         mask = np.zeros(len(self.run), bool)
         mask[rows[rows < len(self.run)]] = True
         return mask
+
+
+@functools.lru_cache(1000)
+def _by_letter(words: tuple[str, ...]) -> tuple[tuple[str, tuple[str, ...], tuple[str, ...]], ...]:
+    """By letter the codes that stand alone, and those with a word beside them, as `M3 P12`."""
+    split = []
+    for letter in "GM":
+        of_letter = [word for word in words if word[0] == letter]
+        if of_letter:
+            alone = tuple(word for word in of_letter if " " not in word)
+            split.append((letter, alone, tuple(word for word in of_letter if " " in word)))
+    return tuple(split)

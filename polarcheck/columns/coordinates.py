@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from functools import cached_property
-
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Rows, is_among
+from polarcheck.arrays import Floats, Mask, Rows, cached_property, is_among
 from polarcheck.columns.blocks import ExecutedBlocks
 from polarcheck.columns.filling import fill_down
 from polarcheck.columns.lookups import Lookups

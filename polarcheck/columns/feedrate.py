@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from functools import cached_property
-
 import numpy as np
 
-from polarcheck.arrays import Columns, Floats, Mask, Rows, States
+from polarcheck.arrays import Columns, Floats, Mask, Rows, States, cached_property
 from polarcheck.columns.blocks import ExecutedBlocks
 from polarcheck.columns.filling import fill_down
 from polarcheck.columns.lengths import Lengths

@@ -18,7 +18,7 @@ _SELDOM = 4
 def fill_down(values: NDArray[Scalar], written: Mask, before: object) -> NDArray[Scalar]:
     """What is in force in each row: the last written value at or above it, `before` where none is."""
     start = np.array([before], values.dtype)
-    at = np.flatnonzero(written)
+    at = written.nonzero()[0]
     if len(at) * _SELDOM < len(values):
         if len(at) and not at[0] and is_uniform(values[at]) and values.dtype != np.bool_:
             return repeated(values[0], len(values))

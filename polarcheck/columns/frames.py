@@ -7,13 +7,12 @@ changes: what is not programmed in the new one stays where it is (as on controls
 
 from __future__ import annotations
 
-from functools import cached_property
 from typing import NamedTuple
 
 import msgspec
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Points, is_among
+from polarcheck.arrays import Floats, Mask, Points, cached_property, is_among
 from polarcheck.columns.axes import PlaneAxes
 from polarcheck.columns.blocks import ExecutedBlocks
 from polarcheck.columns.filling import fill_down, positions

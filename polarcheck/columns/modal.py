@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from polarcheck.arrays import Mask, Rows, States, computed, is_among, repeated
+from polarcheck.arrays import Mask, Rows, States, cached_property, computed, is_among, repeated
 from polarcheck.columns.blocks import ExecutedBlocks
 from polarcheck.columns.filling import fill_down, happened
 from polarcheck.columns.lookups import Lookups

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from functools import cached_property
-
 import numpy as np
 
-from polarcheck.arrays import Columns, Mask, Rows, is_among
+from polarcheck.arrays import Columns, Mask, Rows, cached_property, is_among
 from polarcheck.columns.axes import PlaneAxes
 from polarcheck.columns.blocks import ExecutedBlocks
 from polarcheck.columns.filling import before, fill_down, happened

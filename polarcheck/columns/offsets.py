@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 
-from polarcheck.arrays import Columns, Floats, Mask, Rows, computed, is_uniform, repeated
+from polarcheck.arrays import Columns, Floats, Mask, Rows, cached_property, computed, is_uniform, repeated
 from polarcheck.columns.blocks import ExecutedBlocks
 from polarcheck.columns.lengths import Lengths
 from polarcheck.columns.modal import ModalStates

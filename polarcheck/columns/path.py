@@ -7,12 +7,11 @@ Inside everything is mm, deg and X as radius; points of the polar plane are comp
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from polarcheck.arrays import Columns, Floats, Mask, Points, Rows, States, is_among, repeated
+from polarcheck.arrays import Columns, Floats, Mask, Points, Rows, States, cached_property, is_among, repeated
 from polarcheck.columns.axes import PlaneAxes
 from polarcheck.columns.blocks import ExecutedBlocks
 from polarcheck.columns.coordinates import Coordinates

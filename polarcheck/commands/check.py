@@ -16,7 +16,6 @@ from polarcheck.commands import (
     picturing,
     reporting,
     running,
-    show_files,
     silencing,
     standard_input,
     watching,
@@ -97,7 +96,7 @@ def _outputs(ctx: click.Context, parameter: click.Parameter, values: tuple[str, 
 @silencing.show_silenced
 @option("--part", "part", is_flag=True, help="In text, JSON and pages, what the program makes, too.")
 @reporting.paths
-@show_files.show_files
+@reporting.show_files
 @option("-q", "--quiet", is_flag=True, help="Findings only.")
 @fixing.wanted
 @options.debug
@@ -217,6 +216,8 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
     keep_within_memory()
     reporting.refuse(arguments.form, arguments.statistics)
     if arguments.lists_files:
+        from polarcheck.commands import show_files
+
         needing = {"-o": arguments.outputs, "--fix": arguments.fixes.fix, "--diff": arguments.fixes.diff}
         show_files.refuse(arguments.form, {**needing, "--watch": seen is not None})
     wants_pictures = picturing.FORMAT in (arguments.form, *(form for form, _ in arguments.outputs))
@@ -306,6 +307,7 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
         settings=run_settings,
         interrupted=batch.interrupted(reason, checked.files, tasks) if reason else None,
         skipped=skipped,
+        called_files=checked.called_files,
     )
     if any(task.settings.decided.max_warnings is not None for task in tasks):
         from polarcheck.batch.decisions import too_many_warnings

@@ -6,7 +6,6 @@ import os
 from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
-from polarcheck.commands.options import option
 from polarcheck.errors import UsageError
 
 if TYPE_CHECKING:
@@ -15,13 +14,6 @@ if TYPE_CHECKING:
 
 #: The formats that can hold the list.
 _FORMATS = ("text", "json", "jsonl")
-
-show_files = option(
-    "--show-files",
-    "lists_files",
-    is_flag=True,
-    help="Which files are read and which are not, with the reason; no check.",
-)
 
 
 class Listed(NamedTuple):
@@ -54,7 +46,7 @@ def text(form: str, tasks: Sequence[Task], skipped: Sequence[Skipped]) -> str:
     from polarcheck.reading.excerpt import visible
     from polarcheck.reports.json import encoded
 
-    entries = [*_read(tasks), *_not_read(skipped)]
+    entries = [*_read(tasks), *_not_read(skipped, tasks)]
     if form == "json":
         return encoded({"files": [entry._asdict() for entry in entries]}, indent=2) + "\n"
     if form == "jsonl":
@@ -70,12 +62,17 @@ def _read(tasks: Iterable[Task]) -> Iterator[Listed]:
         yield Listed(task.title, True, "", 1)
 
 
-def _not_read(skipped: Iterable[Skipped]) -> Iterator[Listed]:
-    from polarcheck.reading.files import shown
+def _not_read(skipped: Iterable[Skipped], tasks: Iterable[Task]) -> Iterator[Listed]:
+    from polarcheck.reading.files import RealPaths, shown
 
+    real = RealPaths()
+    of_jobs = {id(task.settings): task.settings.job.run.subprograms for task in tasks}
+    folders = {real.folder(folder) for named in of_jobs.values() for folder in named}
     for entry in skipped:
         path = shown(entry.path) + ("/" if os.path.isdir(entry.path) else "")  # noqa: PTH112
-        yield Listed(path, False, _reason(entry), entry.programs)
+        is_called = entry.reason == "ending" and os.path.dirname(real.of(entry.path)) in folders  # noqa: PTH120
+        reason = _reason(entry) + ("; programs that call it execute it" if is_called else "")
+        yield Listed(path, False, reason, entry.programs)
 
 
 def _reason(entry: Skipped) -> str:

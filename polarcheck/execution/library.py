@@ -9,13 +9,13 @@ import contextlib
 import os
 import re
 from collections.abc import Sequence
-from functools import cached_property
 from pathlib import Path
 from typing import NamedTuple
 
 import msgspec
 
 from polarcheck import bounded
+from polarcheck.arrays import cached_property
 from polarcheck.execution import look_ups
 from polarcheck.execution.listing import Listing
 from polarcheck.execution.programs import ProgramName, Programs, find_programs, read_text

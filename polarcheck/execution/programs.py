@@ -10,13 +10,12 @@ import enum
 import itertools
 import re
 from collections.abc import Iterable, Sequence
-from functools import cached_property
 from typing import NamedTuple
 
 import msgspec
 import numpy as np
 
-from polarcheck.arrays import Mask, stretch
+from polarcheck.arrays import Mask, cached_property, stretch
 from polarcheck.execution.run import begins_program, is_code
 from polarcheck.machines.machine import Machine
 from polarcheck.reading.source import Source

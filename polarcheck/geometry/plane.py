@@ -9,6 +9,9 @@ from polarcheck.arrays import Floats, Mask, Points, Rows, States
 from polarcheck.geometry.tolerances import ZERO
 from polarcheck.machines.modal import Motion
 
+#: As plain numbers: NumPy compares a column with an enum slowly (arrays.is_among).
+_CW, _CCW = int(Motion.CW), int(Motion.CCW)
+
 #: What the arithmetic of one cross product may add, as a share of the coordinates.
 NOISE = 16 * np.finfo(np.float64).eps
 quiet = np.errstate(all="ignore")
@@ -39,7 +42,7 @@ def arc_sweep(start: Points, end: Points, center: Points, kind: States) -> Float
     sweep = np.where(np.isnan(start) | np.isnan(end), np.nan, 0.0)
     rows = rows_of_arcs(kind)
     start, end, center = start[rows], end[rows], center[rows]
-    sign = np.where(kind[rows] == Motion.CCW, 1.0, -1.0)
+    sign = np.where(kind[rows] == _CCW, 1.0, -1.0)
     turn = sign * angle_between(start - center, end - center)
     turn += 2 * np.pi * (turn < 0)
     full = (np.abs(end - start) <= ZERO) & ~np.isnan(center)
@@ -134,4 +137,4 @@ def passes_toward(spoke: Points, sweep: Floats, direction: Points) -> Mask:
 
 
 def rows_of_arcs(kind: States) -> Rows:
-    return np.flatnonzero((kind == Motion.CW) | (kind == Motion.CCW))
+    return np.asarray(((kind == _CW) | (kind == _CCW)).nonzero()[0])

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from polarcheck.arrays import Columns
+from polarcheck.arrays import Columns, cached_property
 from polarcheck.columns.trace import Trace
 from polarcheck.inspection.comparison import SAME_Z, Comparison
 from polarcheck.inspection.contour_comparisons import ContourComparisons

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from polarcheck.arrays import Columns
+from polarcheck.arrays import Columns, cached_property
 from polarcheck.columns.trace import Trace
 from polarcheck.inspection.comparison import SAME_Z, Comparison, Contour, Fit, Target
 from polarcheck.inspection.nominal_parts import NominalParts

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import cached_property
 
 import numpy as np
 
-from polarcheck.arrays import Columns, Floats, Mask
+from polarcheck.arrays import Columns, Floats, Mask, cached_property
 from polarcheck.columns.trace import Trace
 from polarcheck.inspection.area_comparisons import AreaComparisons
 from polarcheck.inspection.comparison import Comparison, Fit

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import math
-from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from polarcheck.arrays import Columns, Mask, Points, is_among
+from polarcheck.arrays import Columns, Mask, Points, cached_property, is_among
 from polarcheck.columns.trace import Trace
 from polarcheck.inspection.comparison import SAME_Z
 from polarcheck.inspection.contour_comparisons import ContourComparisons

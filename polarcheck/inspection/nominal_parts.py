@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import math
-from functools import cached_property
 
 import numpy as np
 
-from polarcheck.arrays import Columns, Mask, Points, is_among
+from polarcheck.arrays import Columns, Mask, Points, cached_property, is_among
 from polarcheck.columns.trace import Trace
 from polarcheck.inspection.comparison import SAME_Z, TOLERANCE
 from polarcheck.machines.job import Job

@@ -66,7 +66,11 @@ Lists = tuple[tuple[tuple[str, ...], ...], ...]
 
 def modal_tables(machine: Machine) -> tuple[tuple[str, ...], NDArray[np.uint8], States]:
     """The names of the modal groups, and for each code number its group (from 1, 0 for none) and its state."""
-    return _modal_tables(tuple(tuple(tuple(machine.codes(key)) for key in states) for states in STATES.values()))
+    return _modal_tables(machine.cached("modal", lambda: _lists(machine)))
+
+
+def _lists(machine: Machine) -> Lists:
+    return tuple(tuple(tuple(machine.codes(key)) for key in states) for states in STATES.values())
 
 
 @functools.cache

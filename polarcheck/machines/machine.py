@@ -6,7 +6,8 @@ What a key means stands in the docstring of its class and, in the same words, at
 
 import math
 import re
-from typing import Annotated, Literal, TypeAlias
+from collections.abc import Callable
+from typing import Annotated, Any, Literal, TypeAlias, TypeVar
 
 import msgspec
 
@@ -41,6 +42,9 @@ from polarcheck.machines.values import (
 def meanings(table: type) -> dict[str, str]:
     """What each key of a table of the profile means, in the words of its docstring."""
     return dict(re.findall(r"^ {4}(\w+): (.+)$", table.__doc__ or "", re.MULTILINE))
+
+
+Value = TypeVar("Value")
 
 
 class Control(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -252,7 +256,7 @@ class Feed(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
         ascend(self, ("cutting_minimum", "cutting_maximum"), ("positioning_minimum", "positioning_maximum"))
 
 
-class Machine(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+class Machine(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, dict=True):
     """
     A lathe: the merged profile.
 
@@ -376,7 +380,16 @@ class Machine(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
 
     def codes(self, key: str) -> list[str]:
         """The codes of a list, whichever table it is in, one by one. Raises RuleError for a list that there is not."""
-        return expanded(getattr(getattr(self, self.table_of(key)), key))
+        listed = self.cached(key, lambda: tuple(expanded(getattr(getattr(self, self.table_of(key)), key))))
+        return list(listed)
+
+    def cached(self, name: str, make: Callable[[], Value]) -> Value:
+        """Return what is computed from the keys, once for each machine: nobody changes these."""
+        known: dict[str, Any] = self.__dict__
+        if name not in known:
+            known[name] = make()
+        value: Value = known[name]
+        return value
 
 
 class OwnMachine(Machine, frozen=True, kw_only=True, forbid_unknown_fields=True):

@@ -406,18 +406,20 @@ def _only(words: Words, chosen: Mask) -> Words:
 def _begins_statement(words: Words) -> Mask:
     """True for letters that begin a macro statement such as GOTO 10."""
     begins = np.zeros(len(words), bool)
-    bare = np.flatnonzero((words.fault == NumberFault.NO_DIGITS) & _BEGINS_STATEMENT[words.address])
-    if len(bare):
-        is_head = np.append(True, words.block[1:] != words.block[:-1])
-        is_head[1:] |= is_among(words.address[:-1], list(b"N/"))
-        bare = bare[is_head[bare]]
+    has_no_digits = words.fault == int(NumberFault.NO_DIGITS)
+    bare = np.flatnonzero(has_no_digits & _BEGINS_STATEMENT[words.address])
+    if not len(bare):
+        return begins
+    is_head = np.append(True, words.block[1:] != words.block[:-1])
+    is_head[1:] |= is_among(words.address[:-1], list(b"N/"))
+    bare = bare[is_head[bare]]
     for letters, has_number in _STATEMENTS.items():
         last = bare + len(letters) - 1
         first, last = bare[last < len(words)], last[last < len(words)]
         spelled = (words.block[first] == words.block[last]) & ((words.digits[last] > 0) | (not has_number))
         for place, letter in enumerate(letters):
             at = first + place
-            spelled &= (words.address[at] == letter) & ((words.fault[at] == NumberFault.NO_DIGITS) | (at == last))
+            spelled &= (words.address[at] == letter) & (has_no_digits[at] | (at == last))
         begins[first[spelled]] = True
     return begins
 

@@ -55,7 +55,7 @@ def _features(sections: Sequence[Stretch]) -> Floats:
         cuts = points[1:][~section.rapid[section.path.is_known]] if not section.rapid.all() else points
         box = [cuts.real.min(), cuts.real.max(), cuts.imag.min(), cuts.imag.max()]
         rows.append([*box, points[0].real, points[0].imag, path.z_end.min(), np.abs(np.diff(points)).sum() / 4])
-    return np.array(rows)
+    return np.array(rows, np.float64).reshape(-1, 8)
 
 
 def _apart(first: Floats, second: Floats) -> Floats:

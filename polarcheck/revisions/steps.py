@@ -11,10 +11,13 @@ from polarcheck.columns.filling import before, fill_down
 from polarcheck.columns.trace import Trace
 from polarcheck.machines.axes import FIRST_NAMED
 from polarcheck.machines.codes import code_set
-from polarcheck.machines.modal import MM_PER_INCH, Units
+from polarcheck.machines.modal import MM_PER_INCH, FeedMode, Units
 
 #: Words that plain moves are written with, and those that only name blocks.
 _OF_MOVES = ("X", "Z", "U", "W", "I", "J", "K", "R", "F", "N", "O", "/")
+_FEED_MODES: dict[int, str] = {FeedMode.PER_MINUTE: " mm/min", FeedMode.PER_REVOLUTION: " mm/rev"}
+#: Words beside the code of a call: the program or block, how often, where from.
+_OF_CALLS = "PLQH"
 #: Words that hold lengths in a cycle.
 _LENGTHS = ("X", "Y", "Z", "U", "V", "W", "I", "J", "K", "R")
 #: Lists of G codes whose states are compared as moves, feeds and entries, not as orders.
@@ -105,29 +108,35 @@ def _turns_side(trace: Trace) -> Mask:
     return np.asarray((side != before(side, trace.blocks.starts, 40)) & is_hidden)
 
 
+def _of_calls(trace: Trace) -> Mask:
+    """Words that call and return: what they call stands in their place, with the arguments of macros in it."""
+    blocks, macro, row = trace.blocks, trace.machine.macro, trace.run.row
+    plain = (*macro.subprogram_calls, *macro.local_calls, *macro.program_returns)
+    of_macros = (*macro.macro_calls, *macro.modal_macro_calls, *macro.modal_macro_calls_each_block)
+    words = blocks.words_at(blocks.code_indices(*plain)) | blocks.codes(*of_macros)[row]
+    beside = np.isin(trace.run.words.address, [ord(name) for name in _OF_CALLS])
+    return np.asarray(words | (beside & blocks.codes(*plain)[row]))
+
+
 class _Reader:
     """Reads the orders of rows one after the other."""
 
     def __init__(self, trace: Trace, is_same_machine: bool) -> None:
-        macro = trace.machine.macro
-        calls = (macro.subprogram_calls, macro.local_calls, macro.macro_calls, macro.program_returns)
         self._trace = trace
         self._is_same_machine = is_same_machine
         self._of_moves = _words_of_moves(trace)
-        # What is called stands in the place of the call.
-        self._calls = trace.blocks.codes(*(word for words in calls for word in words))
         self._special = special_rows(trace)
         self._turns_side = _turns_side(trace)
-        self._plain = np.zeros(len(trace.run.words), bool)
-        self._plain[trace.blocks.g_words[_sets_state(trace)]] = True
+        self._is_left_out = trace.run.words.is_unreadable | _of_calls(trace)
+        self._is_left_out[trace.blocks.g_words[_sets_state(trace)]] = True
         self._in_force: dict[str, float] = {}
 
     def step(self, row: int) -> Step | None:
         """The step of a row; None where it orders nothing that was not in force."""
-        if self._calls[row]:
-            return None
         low, high = np.searchsorted(self._trace.run.row, (row, row + 1)).tolist()
         parts = [part for index in range(low, high) if (part := self._part(row, index)) is not None]
+        if parts and self._is_same_machine and self._trace.modal.in_cycle[row]:
+            parts.append(self._feed(row))
         if self._turns_side[row]:
             side = f"G{int(self._trace.compensation.side[row])}"
             parts.insert(0, (side, None, side))
@@ -140,7 +149,9 @@ class _Reader:
         """Token, value and text of a word; None for one that is compared elsewhere."""
         words, is_special = self._trace.run.words, bool(self._special[row])
         name, value = self._address(int(words.address[index])), float(words.value[index])
-        text = f"{name}{value:g}"
+        text = f"{name}{value:.10g}"
+        if self._is_left_out[index]:
+            return None
         if name == "M":
             return (text, None, text) if self._is_same_machine or text in _EVERYWHERE else None
         if not self._is_same_machine:
@@ -151,11 +162,18 @@ class _Reader:
                     return None
                 self._in_force[name] = value
             return name, value, text
-        if name in ("N", "O", "/") or self._plain[index]:
+        if name in ("N", "O", "/") or (name == "F" and self._trace.modal.in_cycle[row]):
             return None
         if name == "G":
             return text, None, text
         return (name, self._length(name, row, value), text) if is_special or name not in self._of_moves else None
+
+    def _feed(self, row: int) -> tuple[str, float | None, str]:
+        """F in force in a cycle, wherever it is written [mm per min or per revolution]."""
+        feedrate = self._trace.feedrate
+        feed = float(np.nan_to_num(feedrate.feed_number[row]))
+        mode = _FEED_MODES.get(int(feedrate.feed_mode[row]), "")
+        return f"F{mode}", feed, f"F{feed:.10g}{mode}"
 
     def _length(self, name: str, row: int, value: float) -> float:
         """A word of a cycle as a length [mm, X as a radius], where it may be one."""

@@ -150,7 +150,13 @@ class OfPrograms:
 
     def left_behind(self) -> list[str]:
         """Return a line for each job file, of those loaded so far, that leaves values of one above it behind."""
-        loaded = [file for file in self._loaded.values() if file.path not in (None, self._options.config)]
+        loaded = [
+            file
+            for file in self._loaded.values()
+            if file.path is not None
+            and file.path != self._options.config
+            and self._nearest.above(file.path) is not None
+        ]
         if not loaded:
             return []
         from polarcheck.settings import jobs_above
@@ -176,6 +182,9 @@ class OfPrograms:
         walked = [self._nearest.real.folder(path) for path in paths if os.path.isdir(path)]  # noqa: PTH112
         if not walked:
             return []
+        if self._options.exclude:
+            # What lies in folders that these exclude is not known: patterns of job files may be for that.
+            return self._patterns.unused_options(extensions, programs)
         lines = [
             line
             for path, names in self._matched.items()

@@ -7,11 +7,10 @@ Each reason needs a witness: the words of the section itself, the face, the bar,
 from __future__ import annotations
 
 from enum import IntEnum
-from functools import cached_property
 
 import numpy as np
 
-from polarcheck.arrays import Columns, Floats, Mask, Points, Rows, States
+from polarcheck.arrays import Columns, Floats, Mask, Points, Rows, States, cached_property
 from polarcheck.columns.trace import Trace
 from polarcheck.geometry import polar
 from polarcheck.geometry.tolerances import ROUNDING

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from functools import cached_property
-
 import numpy as np
 
-from polarcheck.arrays import Columns, Mask, Rows
+from polarcheck.arrays import Columns, Mask, Rows, cached_property
 from polarcheck.columns.trace import Trace
 from polarcheck.geometry.plane import angle_between
 from polarcheck.machines.codes import code_set

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from functools import cached_property
-
 import numpy as np
 
-from polarcheck.arrays import Columns, Floats, Mask, Points, Rows, is_among, repeated
+from polarcheck.arrays import Columns, Floats, Mask, Points, Rows, cached_property, is_among, repeated
 from polarcheck.columns.trace import Trace
 from polarcheck.geometry import plane
 from polarcheck.geometry.tolerances import ROUNDING

@@ -7,12 +7,11 @@ diameters as such.
 
 from __future__ import annotations
 
-from functools import cached_property
 from typing import Literal, NamedTuple
 
 import numpy as np
 
-from polarcheck.arrays import Columns, Floats, Mask, Rows, Table, different, is_among
+from polarcheck.arrays import Columns, Floats, Mask, Rows, Table, cached_property, different, is_among
 from polarcheck.columns.filling import before, fill_down
 from polarcheck.columns.trace import Trace
 from polarcheck.geometry.tolerances import ROUNDING

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from functools import cached_property
-
 import numpy as np
 
-from polarcheck.arrays import Columns, Mask
+from polarcheck.arrays import Columns, Mask, cached_property
 from polarcheck.columns.trace import Trace
 from polarcheck.machines.modal import Side
 from polarcheck.table.arcs import Arcs

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from functools import cached_property
 from itertools import islice
 from typing import NamedTuple
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Points
+from polarcheck.arrays import Floats, Points, cached_property
 from polarcheck.columns.trace import Trace
 from polarcheck.geometry.regularity.places import each_once, missing_places
 from polarcheck.geometry.regularity.symmetry import Symmetry

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 import msgspec
 import numpy as np
 
-from polarcheck.arrays import Columns, Floats, Mask, Points, Rows, computed, different, repeated
+from polarcheck.arrays import Columns, Floats, Mask, Points, Rows, cached_property, computed, different, repeated
 from polarcheck.columns.filling import before
 from polarcheck.columns.path import NOWHERE
 from polarcheck.columns.trace import Trace

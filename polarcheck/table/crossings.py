@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 
-from polarcheck.arrays import Columns, Floats, Mask, Points, Rows
+from polarcheck.arrays import Columns, Floats, Mask, Points, Rows, cached_property
 from polarcheck.columns.path import NOWHERE
 from polarcheck.columns.trace import Trace
 from polarcheck.geometry.plane import angle_between, arc_sweep

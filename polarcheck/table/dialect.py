@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from functools import cached_property
-
 import numpy as np
 
-from polarcheck.arrays import Columns, Mask
+from polarcheck.arrays import Columns, Mask, cached_property
 from polarcheck.machines.machine import Machine
 from polarcheck.reading.languages import Recognised, recognised
 from polarcheck.reading.words import Text

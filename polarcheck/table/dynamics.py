@@ -10,12 +10,10 @@ to slow down here: what the servo adds is not known. Neither are tool changes an
 
 from __future__ import annotations
 
-from functools import cached_property
-
 import msgspec
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Rows, is_among
+from polarcheck.arrays import Floats, Mask, Rows, cached_property, is_among
 from polarcheck.columns.filling import before
 from polarcheck.columns.trace import Trace
 from polarcheck.geometry import automatic_override, polar

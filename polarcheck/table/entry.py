@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import cached_property
 
 import numpy as np
 
-from polarcheck.arrays import Columns, Floats, Mask, is_among
+from polarcheck.arrays import Columns, Floats, Mask, cached_property, is_among
 from polarcheck.columns.filling import before, happened
 from polarcheck.columns.trace import Trace
 from polarcheck.geometry.tolerances import ROUNDING

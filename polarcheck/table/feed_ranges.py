@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from functools import cached_property
-
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Rows
+from polarcheck.arrays import Floats, Mask, Rows, cached_property
 from polarcheck.columns.trace import Trace
 from polarcheck.geometry.tolerances import ROUNDING, SHARE
 from polarcheck.machines.modal import Motion, Side

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from functools import cached_property
 
 import numpy as np
 
-from polarcheck.arrays import Columns, Floats, Mask, repeated
+from polarcheck.arrays import Columns, Floats, Mask, cached_property, repeated
 from polarcheck.columns.filling import fill_down, happened
 from polarcheck.columns.trace import Trace
 from polarcheck.geometry.tolerances import SHARE

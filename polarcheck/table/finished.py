@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import msgspec
 import numpy as np
 
-from polarcheck.arrays import Columns, Mask, Rows
+from polarcheck.arrays import Columns, Mask, Rows, cached_property
 from polarcheck.columns.trace import Trace
 from polarcheck.table.overcuts import Overcuts, level_of
 

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from functools import cached_property
-
 import numpy as np
 
-from polarcheck.arrays import Columns, Floats, Mask, States
+from polarcheck.arrays import Columns, Floats, Mask, States, cached_property
 from polarcheck.columns.trace import Trace
 from polarcheck.geometry import rates
 from polarcheck.geometry.tolerances import SHARE

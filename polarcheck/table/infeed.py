@@ -19,13 +19,12 @@ A pass that runs along arcs or corners into which R and its offset together do n
 
 from __future__ import annotations
 
-from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 from msgspec.structs import replace
 
-from polarcheck.arrays import Columns, Floats, Mask, Points, Rows, States, repeated
+from polarcheck.arrays import Columns, Floats, Mask, Points, Rows, States, cached_property, repeated
 from polarcheck.columns.trace import Trace
 from polarcheck.geometry import enclosed, polar
 from polarcheck.geometry.cutter_compensation.compensation import ToolPath

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from polarcheck.arrays import Columns, Floats, Mask, Rows, Table, is_among
+from polarcheck.arrays import Columns, Floats, Mask, Rows, Table, cached_property, is_among
 from polarcheck.columns.trace import Trace
 from polarcheck.geometry.segments import Curves
 from polarcheck.geometry.tolerances import ADJUSTMENT, ROUNDING

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from functools import cached_property
-
 import numpy as np
 
-from polarcheck.arrays import Columns, Mask, Rows
+from polarcheck.arrays import Columns, Mask, Rows, cached_property
 from polarcheck.columns.trace import Trace
 from polarcheck.table.overcuts import Overcuts
 from polarcheck.table.ramps import Ramps

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from functools import cached_property
-
 import msgspec
 import numpy as np
 
-from polarcheck.arrays import Columns, Floats, Mask, Points, Rows
+from polarcheck.arrays import Columns, Floats, Mask, Points, Rows, cached_property
 from polarcheck.columns.filling import last_row
 from polarcheck.columns.trace import Trace
 from polarcheck.geometry.tolerances import SHARE

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from functools import cached_property
-
 import numpy as np
 
-from polarcheck.arrays import Columns, Mask
+from polarcheck.arrays import Columns, Mask, cached_property
 from polarcheck.columns.filling import before
 from polarcheck.columns.trace import Trace
 from polarcheck.machines.code_lists import is_code, numbers

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import math
-from functools import cached_property
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Points, Rows, States, Table, is_among
+from polarcheck.arrays import Floats, Mask, Points, Rows, States, Table, cached_property, is_among
 from polarcheck.columns.filling import before
 from polarcheck.columns.trace import Trace
 from polarcheck.geometry import polar, rates

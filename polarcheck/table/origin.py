@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable
-from functools import cached_property
 
 import numpy as np
 
-from polarcheck.arrays import Columns, Floats, Mask, Rows, repeated
+from polarcheck.arrays import Columns, Floats, Mask, Rows, cached_property, repeated
 from polarcheck.columns.filling import fill_down, positions
 from polarcheck.columns.offset_settings import Settings, X, in_order, of_list
 from polarcheck.columns.trace import Trace

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Iterable
-from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 
-from polarcheck.arrays import Columns, Mask, Rows, is_among
+from polarcheck.arrays import Columns, Mask, Rows, cached_property, is_among
 from polarcheck.columns.filling import happened
 from polarcheck.columns.trace import Trace
 from polarcheck.machines import profiles

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from functools import cached_property
 from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Points, Rows, Table, different, repeated
+from polarcheck.arrays import Floats, Mask, Points, Rows, Table, cached_property, different, repeated
 from polarcheck.columns.filling import before
 from polarcheck.columns.trace import Trace
 from polarcheck.geometry.cutter_compensation.compensation import Phase

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from polarcheck.arrays import Columns, Floats, Mask, Rows, different, is_among
+from polarcheck.arrays import Columns, Floats, Mask, Rows, cached_property, different, is_among
 from polarcheck.columns.comment_lengths import comments_with
 from polarcheck.columns.filling import last_row
 from polarcheck.columns.tool_numbers import named_tool

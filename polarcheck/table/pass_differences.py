@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 
-from polarcheck.arrays import Columns, Mask, Points, Rows
+from polarcheck.arrays import Columns, Mask, Points, Rows, cached_property
 from polarcheck.columns.trace import Trace
 from polarcheck.table.passes import Passes, numbered
 from polarcheck.table.slips import plain_number, slip_of

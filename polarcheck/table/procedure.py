@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from functools import cached_property
-
 import numpy as np
 
-from polarcheck.arrays import Columns, Floats, Mask, Rows, is_among, repeated
+from polarcheck.arrays import Columns, Floats, Mask, Rows, cached_property, is_among, repeated
 from polarcheck.columns.filling import before, fill_down, happened, last_row
 from polarcheck.columns.trace import Trace
 from polarcheck.machines.code_lists import is_code

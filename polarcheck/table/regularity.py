@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from polarcheck.arrays import Columns, Mask
+from polarcheck.arrays import Columns, Mask, cached_property
 from polarcheck.columns.trace import Trace
 from polarcheck.geometry.regularity.symmetry import Symmetry
 from polarcheck.table.plane_loops import PlaneLoop, loops_of, smooth_share

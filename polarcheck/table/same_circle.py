@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 
-from polarcheck.arrays import Columns, Floats, Mask, Points, Rows, States
+from polarcheck.arrays import Columns, Floats, Mask, Points, Rows, States, cached_property
 from polarcheck.columns.trace import Trace
 from polarcheck.geometry.plane import cross
 from polarcheck.machines.modal import Motion

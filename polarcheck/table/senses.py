@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from functools import cached_property
-
 import numpy as np
 
-from polarcheck.arrays import Columns, Floats, Mask, Points, Rows, States, is_among
+from polarcheck.arrays import Columns, Floats, Mask, Points, Rows, States, cached_property, is_among
 from polarcheck.columns.trace import Trace
 from polarcheck.geometry.plane import angle_between
 from polarcheck.machines.modal import Motion

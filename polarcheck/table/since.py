@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import re
-from functools import cached_property
 from itertools import chain
 
 import numpy as np
 
-from polarcheck.arrays import Columns, Mask, Rows
+from polarcheck.arrays import Columns, Mask, Rows, cached_property
 from polarcheck.columns.filling import before, fill_down
 from polarcheck.columns.trace import Trace
 from polarcheck.machines.code_lists import FRAME_LISTS

@@ -46,4 +46,6 @@ class SkippedLoops(Table, frozen=True):
 
         loop: int[rows], the loop of each row.
         """
+        if not len(self):
+            return np.zeros(len(loop), bool)
         return np.isin(loop, self.loop[np.isin(self.reason, reasons)])

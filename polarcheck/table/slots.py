@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from functools import cached_property
-
 import numpy as np
 
-from polarcheck.arrays import Columns, Floats, Mask, Rows, computed
+from polarcheck.arrays import Columns, Floats, Mask, Rows, cached_property, computed
 from polarcheck.columns.trace import Trace
 from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.table.overcuts import CutsOfRows, Overcuts

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from functools import cached_property
-
 import numpy as np
 from msgspec.structs import astuple
 
-from polarcheck.arrays import Mask, Rows
+from polarcheck.arrays import Mask, Rows, cached_property
 from polarcheck.columns.filling import before, happened
 from polarcheck.columns.trace import Trace
 from polarcheck.geometry.tolerances import ROUNDING

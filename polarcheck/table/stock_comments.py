@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 
-from polarcheck.arrays import Columns, Floats, Rows, repeated
+from polarcheck.arrays import Columns, Floats, Rows, cached_property, repeated
 from polarcheck.columns.blocks import ExecutedBlocks
 from polarcheck.columns.comment_lengths import comments_with
 from polarcheck.columns.lengths import Lengths

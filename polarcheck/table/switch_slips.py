@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 
-from polarcheck.arrays import Columns, Mask, is_among
+from polarcheck.arrays import Columns, Mask, cached_property, is_among
 from polarcheck.columns.trace import Trace
 from polarcheck.machines.axes import AXES
 from polarcheck.machines.codes import code, code_set

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import sys
-from functools import cached_property
 
 import numpy as np
 
-from polarcheck.arrays import Columns, Floats, Mask, is_among
+from polarcheck.arrays import Columns, Floats, Mask, cached_property, is_among
 from polarcheck.columns.trace import Trace
 from polarcheck.machines.axes import INCREMENTS, numbers_of
 from polarcheck.machines.modal import Distance

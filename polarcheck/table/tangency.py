@@ -5,12 +5,11 @@ arc would be.
 
 from __future__ import annotations
 
-from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 
-from polarcheck.arrays import Columns, Floats, Mask, Points, Rows, different
+from polarcheck.arrays import Columns, Floats, Mask, Points, Rows, cached_property, different
 from polarcheck.columns.trace import Trace
 from polarcheck.geometry.plane import angle_between
 from polarcheck.machines.modal import Motion, Units

@@ -5,13 +5,12 @@ of C, and what it asks of the C axis.
 
 from __future__ import annotations
 
-from functools import cached_property
 from typing import NamedTuple
 
 import msgspec
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Points, Rows
+from polarcheck.arrays import Floats, Mask, Points, Rows, cached_property
 from polarcheck.columns.trace import Trace
 from polarcheck.geometry.cutter_compensation.compensation import Path, ToolPath
 from polarcheck.geometry.rounding import kept_ends, may_turn_back

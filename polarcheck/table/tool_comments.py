@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from functools import cached_property
-
 import numpy as np
 
-from polarcheck.arrays import Columns, Mask, Rows
+from polarcheck.arrays import Columns, Mask, Rows, cached_property
 from polarcheck.columns.blocks import ExecutedBlocks
 from polarcheck.columns.tool_numbers import named_tool
 from polarcheck.columns.tools import CalledTools

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from functools import cached_property
-
 import numpy as np
 
-from polarcheck.arrays import Columns, Floats, Mask, repeated
+from polarcheck.arrays import Columns, Floats, Mask, cached_property, repeated
 from polarcheck.columns.trace import Trace
 from polarcheck.table.tool_center import ToolCenter
 

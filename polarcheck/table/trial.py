@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from functools import cached_property
-
 import numpy as np
 
-from polarcheck.arrays import Mask
+from polarcheck.arrays import Mask, cached_property
 from polarcheck.columns.trace import Trace
 from polarcheck.table.infeed import Infeed
 from polarcheck.table.overcuts import Overcuts

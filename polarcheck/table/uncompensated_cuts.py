@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from functools import cached_property
-
 import numpy as np
 
-from polarcheck.arrays import Columns, Floats, Mask, Points, Rows
+from polarcheck.arrays import Columns, Floats, Mask, Points, Rows, cached_property
 from polarcheck.columns.filling import before, fill_down
 from polarcheck.columns.trace import Trace
 from polarcheck.geometry.cutter_compensation.compensation import Phase

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from functools import cached_property
-
 import numpy as np
 
-from polarcheck.arrays import Columns, Mask, Rows, different, repeated
+from polarcheck.arrays import Columns, Mask, Rows, cached_property, different, repeated
 from polarcheck.columns.coordinates import MEANT_IN_INCREMENTS
 from polarcheck.columns.trace import Trace
 from polarcheck.machines.modal import FeedMode, Units

@@ -8,13 +8,12 @@ stand. All places are on the plane that turns with the part: X as a radius, at t
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 import msgspec
 import numpy as np
 
-from polarcheck.arrays import Columns, Floats, Mask, Points, Rows, States, Table, is_among
+from polarcheck.arrays import Columns, Floats, Mask, Points, Rows, States, Table, cached_property, is_among
 from polarcheck.columns.trace import Trace
 from polarcheck.errors import TooHardError
 from polarcheck.geometry import polar

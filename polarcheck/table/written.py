@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import re
-from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from polarcheck.arrays import Mask, Rows, is_among, repeated
+from polarcheck.arrays import Mask, Rows, cached_property, is_among, repeated
 from polarcheck.execution.programs import block_text, find_programs
 from polarcheck.machines.code_lists import is_code
 from polarcheck.machines.codes import NO_CODE, code_numbers, code_set, modal_tables

@@ -8,6 +8,7 @@ from polarcheck.checking.rule import WARNING, Faults, Mask, rule
     "N{number} stands {count} times in this program: the control takes the next one behind the jump, else the"
     " first; number the target of a jump once",
     values={"number": "number", "count": "count"},
+    worse=("count",),
     over="faults",
 )
 def duplicate_sequence_number(faults: Faults) -> Mask:

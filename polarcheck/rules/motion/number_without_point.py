@@ -7,6 +7,7 @@ from polarcheck.checking.rule import WARNING, Hits, Unpointed, graded, rule
     WARNING,
     "{text} has no decimal point: the control takes it as {taken_as}",
     values={"word": "text", "count": "unpointed_count"},
+    worse=("count",),
     over="words",
     doubts=(("metal", "loop"),),
     follows={"block": ("too-many-digits", "stray-character", "bad-number")},

@@ -7,6 +7,7 @@ from polarcheck.checking.rule import ERROR, Hits, OtherMode, Written, rule
     ERROR,
     "{text}: {number_fault}{count:blocks}",
     values={"word": "text", "count": "count"},
+    worse=("count",),
     over="words",
     once="name",
     follows={

@@ -7,6 +7,7 @@ from polarcheck.checking.rule import NOTE, Hits, Written, rule
     NOTE,
     "{characters} not in the ISO set of controls{count:blocks}",
     values={"characters": "characters_counted", "count": "count"},
+    worse=("characters", "count"),
     over="foreign",
 )
 def character_outside_iso_set(written: Written) -> Hits:

@@ -7,6 +7,7 @@ from polarcheck.checking.rule import WARNING, Hits, Written, rule
     WARNING,
     "{code} and {other} of one modal group in a block; the control takes the last, {code}{count:blocks}",
     values={"code": "code", "other_code": "other", "count": "count"},
+    worse=("count",),
     over="words",
 )
 def codes_of_one_group(written: Written) -> Hits:

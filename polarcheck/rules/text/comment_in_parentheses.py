@@ -7,6 +7,7 @@ from polarcheck.checking.rule import WARNING, Hits, Written, rule
     WARNING,
     "text in parentheses is no comment in this language{count:blocks}: the control stops here; write ; before it",
     values={"count": "count"},
+    worse=("count",),
     over="comments",
 )
 def comment_in_parentheses(written: Written) -> Hits:

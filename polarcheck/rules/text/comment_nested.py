@@ -7,6 +7,7 @@ from polarcheck.checking.rule import WARNING, Hits, Written, rule
     WARNING,
     "a parenthesis opens inside this comment; the control closes the comment at the first ){count:blocks}",
     values={"count": "count"},
+    worse=("count",),
     over="comments",
 )
 def comment_nested(written: Written) -> Hits:

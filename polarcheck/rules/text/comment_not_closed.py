@@ -3,7 +3,13 @@ from __future__ import annotations
 from polarcheck.checking.rule import ERROR, Hits, Written, rule
 
 
-@rule(ERROR, "this comment is not closed on its line{count:blocks}", values={"count": "count"}, over="comments")
+@rule(
+    ERROR,
+    "this comment is not closed on its line{count:blocks}",
+    values={"count": "count"},
+    worse=("count",),
+    over="comments",
+)
 def comment_not_closed(written: Written) -> Hits:
     """
     Comment without its closing parenthesis.

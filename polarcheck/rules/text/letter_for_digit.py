@@ -7,6 +7,7 @@ from polarcheck.checking.rule import ERROR, Hits, Written, rule
     ERROR,
     "{text}: letter {letter}; write {meant}{count:blocks}",
     values={"word": "text", "word_needed": "meant", "count": "count"},
+    worse=("count",),
     over="words",
 )
 def letter_for_digit(written: Written) -> Hits:

@@ -7,6 +7,7 @@ from polarcheck.checking.rule import ERROR, Hits, OtherMode, Written, rule
     ERROR,
     "{stray}{count:blocks}",
     values={"count": "count"},
+    worse=("count",),
     over="strays",
     follows={
         "file": ("polar-code-of-another-control",),

@@ -7,6 +7,7 @@ from polarcheck.checking.rule import ERROR, Hits, Written, rule
     ERROR,
     "{prose}",
     values={"count": "count"},
+    worse=("count",),
     over="prose",
     follows={"block": ("comment-nested", "comment-not-closed")},
 )

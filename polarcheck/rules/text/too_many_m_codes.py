@@ -7,6 +7,7 @@ from polarcheck.checking.rule import WARNING, Hits, Machine, Words, Written, rul
     WARNING,
     "{count} M codes in a block; this control takes {limit}",
     values={"count": "count", "limit": "limit"},
+    worse=("count",),
     over="words",
 )
 def too_many_m_codes(words: Words, written: Written, machine: Machine) -> Hits:

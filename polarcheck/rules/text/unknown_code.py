@@ -10,6 +10,7 @@ OWN_CODES_END = 100
     ERROR,
     "{code} is no code of this control{times}{or_known}",
     values={"code": "code", "count": "code_count"},
+    worse=("count",),
     over="words",
     follows={"file": ("polar-code-of-another-control", "polar-switch-unknown")},
 )

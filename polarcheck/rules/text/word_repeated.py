@@ -7,6 +7,7 @@ from polarcheck.checking.rule import WARNING, Hits, Written, rule
     WARNING,
     "{repeated}; the control takes the last: write one of them, or a block for each{count:blocks}",
     values={"count": "count"},
+    worse=("count",),
     over="words",
 )
 def word_repeated(written: Written) -> Hits:

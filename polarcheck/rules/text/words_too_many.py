@@ -7,6 +7,7 @@ from polarcheck.checking.rule import WARNING, Hits, Machine, Words, Written, rul
     WARNING,
     "{count} words in a block; this control takes {limit}",
     values={"count": "count", "limit": "limit"},
+    worse=("count",),
     over="words",
 )
 def words_too_many(words: Words, written: Written, machine: Machine) -> Hits:

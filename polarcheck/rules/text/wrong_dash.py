@@ -7,6 +7,7 @@ from polarcheck.checking.rule import ERROR, Hits, Written, rule
     ERROR,
     "{text} is written with a dash of print; write a minus sign{count:blocks}",
     values={"word": "text", "count": "count"},
+    worse=("count",),
     over="words",
 )
 def wrong_dash(written: Written) -> Hits:
