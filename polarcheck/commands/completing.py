@@ -185,6 +185,7 @@ OPTIONS: dict[str, Values] = {
     "NAME": _encodings,
     "NAME|FILE": _machines,
     "PATH": _files,
+    "PATTERN": _nothing,
     "REF": _nothing,
     "RULE": _rules,
     "RULE=LEVEL": _levels,
