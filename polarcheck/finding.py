@@ -414,6 +414,8 @@ class FileReport(msgspec.Struct, frozen=True, kw_only=True):
     reason: why a file is unreadable: it could not be read, or not be checked to its end.
     sha256: of the bytes of the file; null if they could not be read.
     profile_sha256: of the machine with all that inherits and changes it: two files with the same were judged alike.
+    doubtful: keys of the profile that nobody is sure of, and that the result rests on: codes that the file writes, axes
+        and compensation of its sections; `polarcheck machines NAME` says why.
     settings: what decided for this file, where the files of the run have different settings.
     polar_sections: what the verdict rests on.
     findings: the reported faults, sorted by line.
@@ -437,6 +439,7 @@ class FileReport(msgspec.Struct, frozen=True, kw_only=True):
     reason: str | UnsetType = UNSET
     sha256: str | None = None
     profile_sha256: str = ""
+    doubtful: list[str] = []
     settings: Decided | UnsetType = UNSET
     polar_sections: list[PolarSection] = []
     findings: list[Finding]

@@ -366,6 +366,7 @@ def test_json_is_the_contract() -> None:
         "verdict",
         "sha256",
         "profile_sha256",
+        "doubtful",
         "polar_sections",
         "findings",
         "not_evaluated",

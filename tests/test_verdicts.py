@@ -299,6 +299,23 @@ def test_a_file_and_its_machine_have_a_hash() -> None:
     assert check("a.nc", "--ignore", "start-up-without-move")["files"][0]["profile_sha256"] == same
 
 
+def test_reports_name_the_doubtful_keys_that_they_rest_on() -> None:
+    profile = "inherits = 'fanuc-30i'\n[control]\nx = { value = 'diameter', source = 'GUESS', doubtful = true }\n"
+    codes = "[m_codes]\nlive_tool_on = { value = ['M133'], source = 'GUESS', doubtful = true }\n"
+    Path("our.toml").write_text(profile + codes, "utf-8")
+    make(JOB.replace('"fanuc-30i"', "'our.toml'"), a__nc=GOOD, b__nc="O1\nM133\nM30\n", c__nc="O1\nG21\nM30\n")
+    doubtful = {file["path"]: set(file["doubtful"]) for file in check(".")["files"]}
+    assert {"control.x", "compensation.start_up"} <= doubtful["a.nc"]
+    assert "m_codes.live_tool_on" not in doubtful["a.nc"]
+    assert doubtful["b.nc"] == {"m_codes.live_tool_on", "control.units"}
+    assert doubtful["c.nc"] == set()
+    Path("our.toml").write_text("inherits = 'siemens-transmit'\n", "utf-8")
+    Path("d.mpf").write_text("N1 G54 G71 G94\nN2 M30\n", "utf-8")
+    keys = set(check("d.mpf", "--machine", "our.toml")["files"][0]["doubtful"])
+    assert {"g_codes.work_offset", "g_code_system_b.mm", "g_code_system_b.feed_per_minute"} <= keys
+    assert not any(key.startswith(("polar.", "compensation.", "g_code_system_c.")) for key in keys)
+
+
 # ---- what could not be read or checked ----
 
 

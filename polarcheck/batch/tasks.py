@@ -14,6 +14,7 @@ import msgspec
 from polarcheck import __version__
 from polarcheck.batch.spool import Spool
 from polarcheck.checking import check
+from polarcheck.checking.polar_sections import with_doubts
 from polarcheck.checking.settings import Settings
 from polarcheck.checking.tables import Tables
 from polarcheck.errors import ClusterError, SourceError, TooHardError
@@ -364,6 +365,8 @@ def _check(task: Task, data: bytes) -> tuple[FileReport, Source, set[str], Basis
         found = check.read(data, settings.machine, settings.job, task.title, settings.encoding)
         text: Text = found[0][1]["text"]
         report = check.check_runs(found, settings.rules, settings.severities, settings.inline, settings.deselected)
+        if settings.doubtful:
+            report = with_doubts(report, found, settings.doubtful)
         for extra in settings.extras:
             report = extra(report, found)
         if settings.baseline is not None:

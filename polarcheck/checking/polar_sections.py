@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import functools
+from collections.abc import Iterator, Sequence
 from typing import Any
 
+import msgspec
 import numpy as np
 from msgspec import UNSET
 
@@ -14,8 +17,12 @@ from polarcheck.checking.tables import Tables
 from polarcheck.columns.sections import Sections
 from polarcheck.columns.trace import Trace
 from polarcheck.errors import TooHardError
-from polarcheck.finding import KnownStock, PolarSection
+from polarcheck.finding import FileReport, KnownStock, PolarSection
+from polarcheck.machines.code_lists import expanded
+from polarcheck.machines.codes import CODE_LIMIT, code_numbers
+from polarcheck.machines.machine import Machine
 from polarcheck.machines.modal import Units
+from polarcheck.reading.words import Text
 from polarcheck.table.bar import Bar
 from polarcheck.table.center import Center
 from polarcheck.table.dynamics import Dynamics
@@ -142,3 +149,57 @@ def _ramp_used(trace: Trace, ramps: Ramps) -> Floats:
     """Per section how much of a start-up or offset cancel its R needs, the highest."""
     is_ramp = (trace.compensation.starts_up | trace.compensation.cancels) & (trace.path.length != 0)
     return _of_sections(trace.mode.sections, np.where(is_ramp, ramps.used, -np.inf), np.maximum, -np.inf)
+
+
+# ---- doubtful keys of the profile ----
+
+#: Keys that every polar section rests on.
+_OF_SECTIONS = ("control.x", "polar.x", "polar.virtual_axis", "polar.zero_angle", "limits.c_feed")
+#: Keys that a section rests on that has no limit of C of the lathe.
+_WITHOUT_LIMIT = ("limits.c_feed_suspicious",)
+#: Keys that a section rests on in which such codes are written.
+_WITH_CODES = {"arcs.tolerance": ("G2", "G3"), "feed.dwell_words": ("G4",), "feed.dwell_per_revolution": ("G4",)}
+_CODES = ("g_codes", "m_codes")
+
+
+def with_doubts(report: FileReport, runs: Sequence[tuple[str, Tables]], doubtful: Sequence[str]) -> FileReport:
+    """Add the doubtful keys that a report rests on. doubtful: those of the profile, `polar.x`."""
+    machine: Machine = runs[0][1]["machine"]
+    written = set[str]().union(*(_written(tables["text"]) for _, tables in runs))
+    keys = [key for key in doubtful if _rests_on(key, report, machine, written)]
+    return msgspec.structs.replace(report, doubtful=keys) if keys else report
+
+
+def _written(text: Text) -> Iterator[str]:
+    """Yield the G and M codes of a text, each once."""
+    for letter in "GM":
+        numbers = code_numbers(text.words.value[text.words.address == ord(letter)])
+        present = np.zeros(CODE_LIMIT + 1, bool)
+        present[numbers] = True
+        yield from (f"{letter}{number / 10:g}" for number in present[:-1].nonzero()[0].tolist())
+
+
+@functools.lru_cache(500)
+def _one_by_one(codes: tuple[object, ...]) -> frozenset[str]:
+    """Return the codes of a list of the profile, ranges one by one; numbers in it are no codes."""
+    return frozenset(expanded(code for code in codes if isinstance(code, str)))
+
+
+def _rests_on(key: str, report: FileReport, machine: Machine, written: set[str]) -> bool:
+    group, _, name = key.partition(".")
+    if group in _CODES or getattr(machine, group, None) is machine.system:
+        codes = getattr(getattr(machine, group), name, None)
+        return isinstance(codes, list) and not written.isdisjoint(_one_by_one(tuple(codes)))
+    if key == "control.units":
+        return written.isdisjoint((*machine.codes("inch"), *machine.codes("mm")))
+    if not report.polar_sections:
+        return False
+    if key in _WITH_CODES:
+        return not written.isdisjoint(_WITH_CODES[key])
+    if key in _WITHOUT_LIMIT:
+        return any(section.c_feed_limit is None and section.c_feed is not None for section in report.polar_sections)
+    if group == "compensation":
+        return any(section.ramp_used is not None for section in report.polar_sections)
+    if group == "severities":
+        return machine.severities.get(name) == "off"
+    return key in _OF_SECTIONS

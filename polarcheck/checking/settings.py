@@ -38,6 +38,7 @@ class Settings(msgspec.Struct, frozen=True):
     decided: what of this the user has written, for reports.
     differs: the files of the run have different settings, so that its report says what decided for each.
     profile_sha256: of the machine.
+    doubtful: keys of the machine whose values are in doubt.
     extras: module-level functions, since other processes import them by name; called in this order.
     """
 
@@ -58,6 +59,7 @@ class Settings(msgspec.Struct, frozen=True):
     decided: Decided = Decided()
     differs: bool = False
     profile_sha256: str = ""
+    doubtful: Sequence[str] = ()
     extras: Sequence[Extra] = ()
 
     @property

@@ -314,6 +314,7 @@ class SettingsMaker:
             decided=self._decided(name, baseline, merged, profile, file),
             deselected=deselected,
             profile_sha256=self._hash(machine),
+            doubtful=[key for key, origin in profile.origins.items() if origin.doubtful],
             extras=options.extras,
         )
         return Applied(settings, merged, profile, file)
