@@ -16,7 +16,6 @@ from polarcheck.commands import (
     picturing,
     reporting,
     running,
-    show_files,
     silencing,
     standard_input,
     watching,
@@ -97,7 +96,12 @@ def _outputs(ctx: click.Context, parameter: click.Parameter, values: tuple[str, 
 @silencing.show_silenced
 @option("--part", "part", is_flag=True, help="In text, JSON and pages, what the program makes, too.")
 @reporting.paths
-@show_files.show_files
+@option(
+    "--show-files",
+    "lists_files",
+    is_flag=True,
+    help="Which files are read and which are not, with the reason; no check.",
+)
 @option("-q", "--quiet", is_flag=True, help="Findings only.")
 @fixing.wanted
 @options.debug
@@ -217,6 +221,8 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
     keep_within_memory()
     reporting.refuse(arguments.form, arguments.statistics)
     if arguments.lists_files:
+        from polarcheck.commands import show_files
+
         needing = {"-o": arguments.outputs, "--fix": arguments.fixes.fix, "--diff": arguments.fixes.diff}
         show_files.refuse(arguments.form, {**needing, "--watch": seen is not None})
     wants_pictures = picturing.FORMAT in (arguments.form, *(form for form, _ in arguments.outputs))
@@ -253,6 +259,8 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
     run_settings, tasks = decisions.shared(tasks, arguments.diff_base)
     tasks = narrowed(tasks, arguments.diff_base, arguments.changed, arguments.max_size, not arguments.quiet)
     if arguments.lists_files:
+        from polarcheck.commands import show_files
+
         show(show_files.text(arguments.form or "text", tasks, skipped).encode())
         return faults.report()
     is_colored = in_color(arguments.color)

@@ -6,7 +6,6 @@ import os
 from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
-from polarcheck.commands.options import option
 from polarcheck.errors import UsageError
 
 if TYPE_CHECKING:
@@ -15,13 +14,6 @@ if TYPE_CHECKING:
 
 #: The formats that can hold the list.
 _FORMATS = ("text", "json", "jsonl")
-
-show_files = option(
-    "--show-files",
-    "lists_files",
-    is_flag=True,
-    help="Which files are read and which are not, with the reason; no check.",
-)
 
 
 class Listed(NamedTuple):
