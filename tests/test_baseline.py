@@ -493,6 +493,9 @@ def test_a_broken_file_is_one_line(text: str | bytes, told: str) -> None:
         (', "count": "2"', "Expected `int`, got `str` - at `$.count`"),
         (', "resaon": "x"', "unknown field `resaon`; did you mean reason?"),
         (', "follows": "x"', "`$.follows`"),
+        (', "places": [{}, {"at": 1}]', "places: expected 1, as many as count says, found 2"),
+        (', "places": [{"at": "x"}]', "`$.places[0].at`"),
+        (', "places": [{"values": {"depth": "x"}}]', "`$.places[0].values[...]`"),
     ],
 )
 def test_a_broken_entry_is_named_with_its_line(more: str, told: str) -> None:
@@ -503,6 +506,21 @@ def test_a_broken_entry_is_named_with_its_line(more: str, told: str) -> None:
     assert "severity: expected one of note, warning, error, found 'bad'" in broken(
         text.replace(more, "").replace("error", "bad")
     )
+
+
+@pytest.mark.parametrize(
+    ("more", "told"),
+    [
+        ('"blocks": "AAA"', "blocks: expected hashes in base 64, four characters each"),
+        ('"blocks": "AA=="', "blocks: expected hashes in base 64, four characters each"),
+        ('"blocks": "A\\u00fcAA"', "blocks: expected hashes in base 64, four characters each"),
+        ('"of": 0', "of: expected a number above 0, found 0"),
+        ('"block": ""', "unknown field `block`; did you mean blocks?"),
+    ],
+)
+def test_a_broken_line_of_a_program_is_named(more: str, told: str) -> None:
+    message = broken(f'{{"schema": 2, "programs": [\n{{"file": "a.nc", {more}}}], "findings": []}}')
+    assert message == f"polarcheck: {FILE}: line 2, program 1: {told}\n" or told in message
 
 
 @pytest.mark.parametrize("encoding", ["utf-8-sig", "utf-16"])

@@ -145,6 +145,7 @@ def test_a_program_with_another_ending_is_named(tmp_path: Path, name: str) -> No
         ("a.hex", ":10010000214601360121470136007EFE09D2190140\n"),
         ("O1234.orig", BLOCKS),
         ("a.nc~", BLOCKS),
+        ("O1234.NC~", BLOCKS),
         ("P.SUB", "Sub AutoOpen()\nEnd Sub\n"),
         ("2026", "minutes of the meeting\n"),
         (".x.nc.swp", BLOCKS),

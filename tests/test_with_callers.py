@@ -71,7 +71,8 @@ def test_a_subprogram_that_is_gone_concerns_its_callers() -> None:
     git("rm", "-q", "one/subs/O9001")
     assert checked() == ["one/calls.nc"]
     result = call("check", "--with-callers", "--select", "subprogram-missing")
-    assert (result.exit_code, result.stdout.count("subprogram-missing")) == (1, 2), result.stdout
+    assert result.exit_code == 1
+    assert "subprogram-missing, alarm" in result.stdout
     commit()
     assert checked() == []
     # Between two commits, as in CI.

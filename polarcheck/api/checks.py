@@ -56,8 +56,9 @@ def check(
     patterns = names_of(_FUNCTION, "exclude", exclude)
     settings_of = OfPrograms(options(_FUNCTION, CheckKeywords, keywords, exclude=patterns))
     skipped: list[Skipped] = []
-    tasks, failures, doubts = runs.planned(named, settings_of, endings, force_exclude=force_exclude, skipped=skipped)
-    for doubt in doubts:
+    planned = runs.planned(named, settings_of, endings, force_exclude=force_exclude, skipped=skipped)
+    tasks, failures = planned.tasks, [*planned.failures, *planned.nothing]
+    for doubt in planned.doubts:
         warnings.warn(doubt, PolarcheckWarning, stacklevel=2)
     if failures:
         raise SourceError(failures[0])

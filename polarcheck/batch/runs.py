@@ -26,13 +26,15 @@ class Planned(NamedTuple):
     The programs of a run.
 
     tasks: the programs, with the settings of each.
-    failures: a line for each folder that cannot be read, or that nothing is left of.
+    failures: a line for each folder that cannot be read.
     doubts: a line for each path or setting that may not say what was meant.
+    nothing: why nothing is checked, where folders have programs that are excluded or have other endings.
     """
 
     tasks: list[Task]
     failures: list[str]
     doubts: list[str]
+    nothing: Sequence[str] = ()
 
 
 def planned(
@@ -58,7 +60,7 @@ def planned(
     """
     from polarcheck.batch import tasks as batch
 
-    failures, doubts, empty = list[str](), list[str](), list[str]()
+    failures, doubts, empty, nothing = list[str](), list[str](), list[str](), list[str]()
     paths = settings_of.left(paths, doubts.append) if force_exclude else paths
     skipped = [] if skipped is None else skipped
     tasks = batch.plan(
@@ -73,11 +75,11 @@ def planned(
         **(named or {}),
     )
     if not tasks and not force_exclude and any(entry.programs for entry in skipped):
-        failures += [f"nothing to check: {line}" for line in empty]
+        nothing = [f"nothing to check: {line}" for line in empty]
     else:
         doubts += [*empty, *settings_of.unmatched(paths, [task.place for task in tasks], extensions)]
         doubts += settings_of.left_behind()
-    return Planned(tasks, failures, doubts)
+    return Planned(tasks, failures, doubts, nothing)
 
 
 @contextlib.contextmanager

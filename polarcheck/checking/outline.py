@@ -22,7 +22,8 @@ _LARGEST = 64_000_000
 #: A hash has so many bits, four characters of base 64.
 BITS = 24
 _BLANKS = dict.fromkeys((*range(10), *range(11, 33), 127, 160, ord(";"))) | {ord(":"): "O"}
-_SEQUENCE_NUMBER = re.compile(r"^(/?)N\d+", re.MULTILINE)
+#: At the begin of a line, and behind the slash of block skip; both patterns begin with a letter, which is found fast.
+_SEQUENCE_NUMBERS = re.compile(r"N(?<=\nN)\d+"), re.compile(r"N(?<=\n/N)\d+")
 _PLUS = re.compile(r"(?<=[A-Z=])\+(?=[\d.])")
 _LEADING_ZEROS = re.compile(r"(?<![\d.])0+(?=[\d.])")
 _TRAILING_ZEROS = re.compile(r"\.\d*0(?!\d)")
@@ -66,9 +67,11 @@ def outline(text: str, lines: Iterable[int], most: int = MOST) -> Outline:
 def _in_one_spelling(text: str) -> str:
     """Return the blocks in one spelling: N G01 X+05.0 is G1X5. in any case, with or without blanks."""
     text = text if "\n" in text else text.replace("\r", "\n")
-    text = _SEQUENCE_NUMBER.sub(r"\1", text.upper().translate(_BLANKS))
+    text = "\n" + text.upper().translate(_BLANKS)
+    for pattern in _SEQUENCE_NUMBERS:
+        text = pattern.sub("", text)
     text = _LEADING_ZEROS.sub("", _PLUS.sub("", text))
-    return _TRAILING_ZEROS.sub(lambda number: number[0].rstrip("0"), text)
+    return _TRAILING_ZEROS.sub(lambda number: number[0].rstrip("0"), text)[1:]
 
 
 def _without_comments(texts: Sequence[Text]) -> str:

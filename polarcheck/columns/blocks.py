@@ -239,7 +239,10 @@ class ExecutedBlocks(Lookups):
 
     def listed(self, *keys: str) -> Mask:
         """Whether a row has a G code of any of these lists of the machine, as in `reference_return`."""
-        return self.codes(*(code for key in keys for code in self.machine.codes(key)))
+        machine = self.machine
+        return self.codes(
+            *machine.cached(" ".join(keys), lambda: tuple(code for key in keys for code in machine.codes(key)))
+        )
 
     @cached_property
     def switches_length_offset(self) -> Mask:

@@ -96,12 +96,7 @@ def _outputs(ctx: click.Context, parameter: click.Parameter, values: tuple[str, 
 @silencing.show_silenced
 @option("--part", "part", is_flag=True, help="In text, JSON and pages, what the program makes, too.")
 @reporting.paths
-@option(
-    "--show-files",
-    "lists_files",
-    is_flag=True,
-    help="Which files are read and which are not, with the reason; no check.",
-)
+@reporting.show_files
 @option("-q", "--quiet", is_flag=True, help="Findings only.")
 @fixing.wanted
 @options.debug
@@ -210,12 +205,12 @@ def _quoted(value: object) -> str:
 
 def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
     from polarcheck import reports
-    from polarcheck.batch import decisions
     from polarcheck.batch import tasks as batch
     from polarcheck.checking import rule
     from polarcheck.commands import live, overwriting, progress, signals
     from polarcheck.machines import profiles
     from polarcheck.memory import keep_within_memory
+    from polarcheck.settings import decisions
     from polarcheck.settings.of_programs import OfPrograms, Options
 
     keep_within_memory()
@@ -256,11 +251,13 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
         arguments.outputs, arguments.form == picturing.FORMAT, tasks, "-o html:"
     )
     overwriting.refuse(written, tasks)
-    run_settings, tasks = decisions.shared(tasks, arguments.diff_base)
+    run_settings = decisions.shared((task.settings for task in tasks), arguments.diff_base)
+    if run_settings.differing:
+        from polarcheck.batch.decisions import shared
+
+        _, tasks = shared(tasks)
     tasks = narrowed(tasks, arguments.diff_base, arguments.changed, arguments.max_size, not arguments.quiet)
     if arguments.lists_files:
-        from polarcheck.commands import show_files
-
         show(show_files.text(arguments.form or "text", tasks, skipped).encode())
         return faults.report()
     is_colored = in_color(arguments.color)
@@ -312,9 +309,12 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
         skipped=skipped,
         called_files=checked.called_files,
     )
-    for excess in decisions.too_many_warnings(report.files, tasks):
-        say(excess)
-        status = max(status, FINDINGS)
+    if any(task.settings.decided.max_warnings is not None for task in tasks):
+        from polarcheck.batch.decisions import too_many_warnings
+
+        for excess in too_many_warnings(report.files, tasks):
+            say(excess)
+            status = max(status, FINDINGS)
     pictures.end(reporting.unread(report.summary))
     if checked.stopped is None and arguments.diff_base is None and arguments.changed is None:
         running.warn_unused(applies.tools, checked.called)

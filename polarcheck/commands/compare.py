@@ -10,7 +10,7 @@ import click
 
 from polarcheck.commands import options
 from polarcheck.commands.options import narrower, option
-from polarcheck.errors import PolarcheckError, UsageError
+from polarcheck.errors import PolarcheckError, TooHardError, UsageError
 
 if TYPE_CHECKING:
     from polarcheck.batch.tasks import Task
@@ -126,6 +126,8 @@ def _compare(
     for old, new in pairs:
         try:
             found.append(_compared(old, new, same_up_to, max_size))
+        except TooHardError as error:
+            faults.failures.append(f"{old.title} | {new.title}: {error}")
         except PolarcheckError as error:
             faults.failures.append(str(error))
     if form == "json":

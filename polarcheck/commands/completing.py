@@ -189,6 +189,7 @@ OPTIONS: dict[str, Values] = {
     "RULE": _rules,
     "RULE=LEVEL": _levels,
     "SIZE": _nothing,
+    "PATTERN": _files,
     "TEXT": _nothing,
     "tcp://HOST:PORT": _nothing,
 }
@@ -198,6 +199,7 @@ ARGUMENTS: dict[str, Values] = {
     "FOLDER": _folders,
     "LATHE": _profiles,
     "NAME": _machines_and_verbs,
+    "OLD NEW": _files,
     "PATH": _files,
     "RULE": _pages,
 }

@@ -26,6 +26,14 @@ _WITH_COUNTS = ("text", "short", "concise", "json", "jsonl")
 statistics = option("--statistics", is_flag=True, help="How often each rule speaks, in place of the findings.")
 
 
+show_files = option(
+    "--show-files",
+    "lists_files",
+    is_flag=True,
+    help="Which files are read and which are not, with the reason; no check.",
+)
+
+
 def refuse(form: str | None, wants_statistics: bool) -> None:
     """Raise UsageError if counts are requested in a format that cannot hold them."""
     if wants_statistics and form not in (None, *_WITH_COUNTS):

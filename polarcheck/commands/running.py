@@ -28,6 +28,7 @@ class Faults:
     The failures of a run, for standard error.
 
     failures: a line for each file that could not be read or checked.
+    nothing: why nothing is checked.
     bugs: lines on internal errors of polarcheck.
     """
 
@@ -35,6 +36,7 @@ class Faults:
         """debug: show tracebacks of bugs."""
         self._debug = debug
         self.failures: list[str] = []
+        self.nothing: list[str] = []
         self.bugs: list[str] = []
 
     def bug(self, error: Exception) -> None:
@@ -43,10 +45,10 @@ class Faults:
 
     def report(self) -> int:
         """Write all failures to standard error; return their exit code."""
-        for failure in self.failures:
+        for failure in (*self.failures, *self.nothing):
             say(failure)
         say_lines(self.bugs)
-        return BUG if self.bugs else COULD_NOT_RUN if self.failures else CLEAN
+        return BUG if self.bugs else COULD_NOT_RUN if self.failures or self.nothing else CLEAN
 
 
 def planned(
@@ -70,6 +72,7 @@ def planned(
     """
     found = runs.planned(paths, settings_of, extensions, force_exclude=force_exclude, named=named, skipped=skipped)
     faults.failures += found.failures
+    faults.nothing += found.nothing
     for line in found.doubts:
         warn(line)
     return found.tasks

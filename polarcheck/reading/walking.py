@@ -17,105 +17,24 @@ EXTENSIONS = (
     *(".ptp", ".dnc", ".fnc", ".iso", ".din", ".pim", ".gcode", ".gco", ".g"),
 )
 #: Further endings of NC programs and subprograms, which mean other things elsewhere, too.
-_OTHER_EXTENSIONS = frozenset(
-    (
-        *(
-            ".sub",
-            ".ssb",
-            ".sbp",
-            ".msb",
-            ".lib",
-            ".ncd",
-            ".ncf",
-            ".ncg",
-            ".ncp",
-            ".anc",
-            ".cls",
-            ".dat",
-            ".fan",
-            ".fgc",
-        ),
-        *(
-            ".gc",
-            ".gcd",
-            ".gp",
-            ".hnc",
-            ".knc",
-            ".mpr",
-            ".mpt",
-            ".out",
-            ".p",
-            ".pit",
-            ".pm",
-            ".prf",
-            ".pu1",
-            ".pu2",
-            ".s",
-        ),
-        *(".rol", ".tcn", ".tp", ".txt", ".xpi", ".arc", ".wpd", ".001", ".002", ".003", ".bak", ".old"),
-    )
+_OTHERS = (
+    ".sub .ssb .sbp .msb .lib .ncd .ncf .ncg .ncp .anc .cls .dat .fan .fgc .gc .gcd .gp .hnc .knc .mpr "
+    ".mpt .out .p .pit .pm .prf .pu1 .pu2 .s .rol .tcn .tp .txt .xpi .arc .wpd .001 .002 .003 .bak .old"
 )
+_OTHER_EXTENSIONS = frozenset(_OTHERS.split())
 #: Endings of what is never a program, though lines of a program may stand at its head: documents, data, code, copies.
-_NO_PROGRAMS = frozenset(
-    (
-        *(".md", ".rst", ".adoc", ".tex", ".html", ".htm", ".xml", ".json", ".jsonl", ".toml", ".yml", ".yaml", ".ini"),
-        *(
-            ".cfg",
-            ".csv",
-            ".tsv",
-            ".sarif",
-            ".log",
-            ".py",
-            ".pyc",
-            ".js",
-            ".ts",
-            ".css",
-            ".c",
-            ".cpp",
-            ".sh",
-            ".bat",
-            ".ps1",
-        ),
-        *(
-            ".pdf",
-            ".png",
-            ".jpg",
-            ".jpeg",
-            ".gif",
-            ".bmp",
-            ".svg",
-            ".tif",
-            ".tiff",
-            ".webp",
-            ".doc",
-            ".docx",
-            ".xls",
-            ".xlsx",
-        ),
-        *(
-            ".dxf",
-            ".dwg",
-            ".step",
-            ".stp",
-            ".stl",
-            ".igs",
-            ".iges",
-            ".zip",
-            ".gz",
-            ".7z",
-            ".tar",
-            ".exe",
-            ".dll",
-            ".so",
-        ),
-        *(".orig", ".rej", ".diff", ".patch", ".lock", ".db", ".ipynb", ".ambr"),
-    )
+_DOCUMENTS = (
+    ".md .rst .adoc .tex .html .htm .xml .json .jsonl .toml .yml .yaml .ini .cfg .csv .tsv .sarif .log "
+    ".py .pyc .js .ts .css .c .cpp .sh .bat .ps1 .pdf .png .jpg .jpeg .gif .bmp .svg .tif .tiff .webp "
+    ".doc .docx .xls .xlsx .dxf .dwg .step .stp .stl .igs .iges .zip .gz .7z .tar .exe .dll .so .orig "
+    ".rej .diff .patch .lock .db .ipynb .ambr"
 )
+_NO_PROGRAMS = frozenset(_DOCUMENTS.split())
 _SKIPPED_FOLDERS = frozenset(("node_modules", "__pycache__"))
 #: Folders of git and of polarcheck itself, which never hold programs.
 _NO_WORD = frozenset((".git", ".polarcheck_cache"))
 #: O1234, O0001(SB12 RG FRONT), O1234.bak: as controls and transfer programs name what they punch out; but no pages.
-_O_NAME = r"(?i)O\d{2,8}(?:\([^)]*\))?(?:\.(?!orig$|html?$)[^.]*)?"
+_O_NAME = r"(?i)O\d{2,8}(?:\([^)]*\))?(?:\.(?!orig$|html?$)[^.~]*)?"
 #: O1234-REV, O0001_version1, 4711: a number of a program with more behind it.
 _NUMBERED = r"(?i)O?\d{2,8}(?!\d).{0,100}"
 _SNIFFED = frozenset(("", ".txt"))

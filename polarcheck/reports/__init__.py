@@ -119,6 +119,15 @@ def _module(form: str) -> ModuleType:
     return importlib.import_module(f"polarcheck.reports.{form}")
 
 
+def settings_lines(report: Report) -> Iterator[str]:
+    """Yield one line on the settings that are not the default, if there are any."""
+    settings = report.settings
+    if settings.differing or settings.diff_base or (settings.sources or {}).keys() - {"machine"}:
+        from polarcheck.reports.pages.settings_line import settings_line  # imported late: most runs have none
+
+        yield from settings_line(report)
+
+
 def counted(number: int, noun: str) -> str:
     """`1 error`, `2 errors`, `2 fixes`."""
     ending = "" if number == 1 else "es" if noun.endswith("x") else "s"

@@ -11,10 +11,9 @@ from msgspec import UNSET
 from polarcheck.finding import UNREADABLE
 from polarcheck.reading.excerpt import visible
 from polarcheck.reading.files import STANDARD_INPUT
-from polarcheck.reports import SEVERITIES, counted
+from polarcheck.reports import SEVERITIES, counted, settings_lines
 from polarcheck.reports.ci.paths import from_root
 from polarcheck.reports.concise import line, unreadable_line
-from polarcheck.reports.pages.settings_line import settings_lines
 from polarcheck.reports.text import summary, verdict
 
 if TYPE_CHECKING:

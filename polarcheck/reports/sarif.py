@@ -9,10 +9,10 @@ from msgspec import UNSET
 
 from polarcheck.finding import ALLOW, BASELINE, UNREADABLE, Silenced
 from polarcheck.reading.excerpt import visible
+from polarcheck.reports import settings_lines
 from polarcheck.reports.ci import rule_help
 from polarcheck.reports.ci.paths import uri
 from polarcheck.reports.json import encoded
-from polarcheck.reports.pages.settings_line import settings_lines
 
 if TYPE_CHECKING:
     from polarcheck.checking.rule import Rule

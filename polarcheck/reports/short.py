@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING
 
 from polarcheck.reading.excerpt import visible
 from polarcheck.reading.files import STANDARD_INPUT
-from polarcheck.reports import Background, Parts, of_each, painted
+from polarcheck.reports import Background, Parts, of_each, painted, settings_lines
 from polarcheck.reports.concise import lines
-from polarcheck.reports.pages.settings_line import settings_lines
 from polarcheck.reports.text import summary
 
 if TYPE_CHECKING:

@@ -12,9 +12,8 @@ from msgspec import UNSET
 
 from polarcheck.finding import DESELECTED, FAIL, PASS, UNREADABLE, UNVERIFIED
 from polarcheck.reading.excerpt import excerpt, visible, without_commands
-from polarcheck.reports import SEVERITIES, Background, Parts, counted, of_each, painted
+from polarcheck.reports import SEVERITIES, Background, Parts, counted, of_each, painted, settings_lines
 from polarcheck.reports.pages.resting import resting
-from polarcheck.reports.pages.settings_line import settings_lines
 
 if TYPE_CHECKING:
     from polarcheck.checking.rule import Rule

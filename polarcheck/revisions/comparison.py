@@ -9,7 +9,7 @@ import msgspec
 import numpy as np
 
 from polarcheck.arrays import Rows
-from polarcheck.checking.not_evaluated import unexecuted
+from polarcheck.checking.not_evaluated import bounds_not_reported, unexecuted
 from polarcheck.checking.polar_sections import polar_sections
 from polarcheck.checking.quantity import rounded
 from polarcheck.checking.tables import Tables
@@ -78,7 +78,9 @@ def compared(old: Revision, new: Revision, tolerance: float) -> Comparison:
     same_words = is_same_machine and old.trace.job == new.trace.job and has_same_words(old.trace, new.trace)
     differs = bool(between) or any(section.change not in ("same", "not compared") for section in sections)
     verdict = SAME_METAL
-    if differs:
+    if any(run.is_broken_off for run in found):
+        verdict = NOT_COMPARED  # what was not reached is not missing
+    elif differs:
         verdict = DIFFERS
     elif same_words:
         verdict = SAME_WORDS
@@ -147,9 +149,14 @@ class _Runs:
         self.measured: list[tuple[float, bool]] = []
         self.not_compared: list[NotCompared] = list(self._missing())
 
+    @property
+    def is_broken_off(self) -> bool:
+        """A bound has ended one of the runs."""
+        return any(len(tables["faults"].is_bound) and tables["faults"].is_bound.any() for tables in self._tables)
+
     def _missing(self) -> Iterator[NotCompared]:
         for name, tables in zip(("old", "new"), self._tables, strict=True):
-            for entry in unexecuted(tables):
+            for entry in (*unexecuted(tables), *bounds_not_reported(tables, ())):
                 yield NotCompared(f"{name}: {entry.reason}", matters=entry.matters)
             unreadable = int(np.count_nonzero(tables["words"].is_unreadable))
             if unreadable:

@@ -11,10 +11,11 @@ from polarcheck.columns.filling import before, fill_down
 from polarcheck.columns.trace import Trace
 from polarcheck.machines.axes import FIRST_NAMED
 from polarcheck.machines.codes import code_set
-from polarcheck.machines.modal import MM_PER_INCH, Units
+from polarcheck.machines.modal import MM_PER_INCH, FeedMode, Units
 
 #: Words that plain moves are written with, and those that only name blocks.
 _OF_MOVES = ("X", "Z", "U", "W", "I", "J", "K", "R", "F", "N", "O", "/")
+_FEED_MODES: dict[int, str] = {FeedMode.PER_MINUTE: " mm/min", FeedMode.PER_REVOLUTION: " mm/rev"}
 #: Words beside the code of a call: the program or block, how often, where from.
 _OF_CALLS = "PLQH"
 #: Words that hold lengths in a cycle.
@@ -134,6 +135,8 @@ class _Reader:
         """The step of a row; None where it orders nothing that was not in force."""
         low, high = np.searchsorted(self._trace.run.row, (row, row + 1)).tolist()
         parts = [part for index in range(low, high) if (part := self._part(row, index)) is not None]
+        if parts and self._is_same_machine and self._trace.modal.in_cycle[row]:
+            parts.append(self._feed(row))
         if self._turns_side[row]:
             side = f"G{int(self._trace.compensation.side[row])}"
             parts.insert(0, (side, None, side))
@@ -159,11 +162,18 @@ class _Reader:
                     return None
                 self._in_force[name] = value
             return name, value, text
-        if name in ("N", "O", "/"):
+        if name in ("N", "O", "/") or (name == "F" and self._trace.modal.in_cycle[row]):
             return None
         if name == "G":
             return text, None, text
         return (name, self._length(name, row, value), text) if is_special or name not in self._of_moves else None
+
+    def _feed(self, row: int) -> tuple[str, float | None, str]:
+        """F in force in a cycle, wherever it is written [mm per min or per revolution]."""
+        feedrate = self._trace.feedrate
+        feed = float(np.nan_to_num(feedrate.feed_number[row]))
+        mode = _FEED_MODES.get(int(feedrate.feed_mode[row]), "")
+        return f"F{mode}", feed, f"F{feed:.10g}{mode}"
 
     def _length(self, name: str, row: int, value: float) -> float:
         """A word of a cycle as a length [mm, X as a radius], where it may be one."""

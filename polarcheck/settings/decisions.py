@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from polarcheck.finding import Decided
+from polarcheck import __version__
+from polarcheck.checking.settings import Settings
+from polarcheck.finding import Decided, RunSettings
 from polarcheck.machines.job import level_of, names_of, reason_of
 from polarcheck.reading.files import shown
 from polarcheck.settings.job_layers import Merged
@@ -26,6 +28,19 @@ OPTIONS = {
     "strict": "--strict",
     "baseline": "--baseline",
 }
+
+
+def shared(of_files: Iterable[Settings], diff_base: str | None = None) -> RunSettings:
+    """
+    Return the settings that the files of a run share.
+
+    of_files: those of each file. diff_base: the commit since which a file must have changed.
+    """
+    distinct = list({id(settings): settings.decided for settings in of_files}.values()) or [Decided()]
+    values = {name: [getattr(decided, name) for decided in distinct] for name in Decided.__struct_fields__}
+    differing = [name for name, of_each in values.items() if any(value != of_each[0] for value in of_each)]
+    common = {name: None if name in differing else of_each[0] for name, of_each in values.items()}
+    return RunSettings(version=__version__, diff_base=diff_base, differing=differing, **common)
 
 
 def decided(

@@ -22,7 +22,6 @@ from polarcheck.machines.machine import Machine
 from polarcheck.machines.part import Part
 from polarcheck.reading.files import STANDARD_INPUT
 from polarcheck.settings import decisions, job_files, selection
-from polarcheck.settings.deselection import deselected
 from polarcheck.settings.job_files import JobFile
 from polarcheck.settings.job_layers import Merged
 from polarcheck.settings.selection import Rules
@@ -151,7 +150,13 @@ class OfPrograms:
 
     def left_behind(self) -> list[str]:
         """Return a line for each job file, of those loaded so far, that leaves values of one above it behind."""
-        loaded = [file for file in self._loaded.values() if file.path not in (None, self._options.config)]
+        loaded = [
+            file
+            for file in self._loaded.values()
+            if file.path is not None
+            and file.path != self._options.config
+            and self._nearest.above(file.path) is not None
+        ]
         if not loaded:
             return []
         from polarcheck.settings import jobs_above
@@ -358,13 +363,20 @@ class SettingsMaker:
             names = selection.Names(options.select, options.ignore, options.severities, options.spelled)
             levels = selection.severities(names, job, merged.at, self._known, machine)
             rules = selection.chosen(names, job, merged.at, self._known, machine)
-            lines = (
-                deselected(names, options.named, merged, profile, self._known, rules, levels)
-                if options.gives_verdicts
-                else []
-            )
+            lines = list[str]()
+            if options.gives_verdicts and (any(of_job) or _selects(names, profile)):
+                from polarcheck.settings.deselection import deselected
+
+                lines = deselected(names, options.named, merged, profile, self._known, rules, levels)
             self._rules[key] = rules, levels, lines
         return self._rules[key]
+
+
+def _selects(names: selection.Names, profile: profiles.Profile) -> bool:
+    """Return True if the command line selects rules, or a profile sets a severity without a source that says why."""
+    origins = (profile.origins.get(f"severities.{name}") for name in profile.machine.severities)
+    given = names.selected or names.ignored or names.levels
+    return bool(given) or any(origin is not None and not origin.source for origin in origins)
 
 
 def _with_line(message: str, merged: Merged) -> str:

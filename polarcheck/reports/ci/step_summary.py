@@ -9,9 +9,8 @@ from msgspec import UNSET
 
 from polarcheck.finding import UNREADABLE
 from polarcheck.reading.excerpt import visible
-from polarcheck.reports import SEVERITIES, counted
+from polarcheck.reports import SEVERITIES, counted, settings_lines
 from polarcheck.reports.ci.paths import from_root
-from polarcheck.reports.pages.settings_line import settings_lines
 from polarcheck.reports.pages.statistics import counts
 from polarcheck.reports.text import summary
 

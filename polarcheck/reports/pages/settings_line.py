@@ -19,7 +19,7 @@ _SHOWN = (
 _NAMED = 5
 
 
-def settings_lines(report: Report) -> Iterator[str]:
+def settings_line(report: Report) -> Iterator[str]:
     """Yield the line, such as `settings: select overcut (--select), fail_on never (POLARCHECK_FAIL_ON)`, if any."""
     facts = [fact for name in _SHOWN if (fact := _fact(report.settings, name))]
     if facts:
