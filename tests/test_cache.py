@@ -229,8 +229,7 @@ def test_what_is_never_kept(checked: list[str], monkeypatch: pytest.MonkeyPatch)
     assert checked == ["a.nc", "-", "a.nc", "-"]
     monkeypatch.setattr("polarcheck.checking.check.check_runs", lambda *given: 1 / 0)
     assert check("tool.nc").exit_code == 3
-    monkeypatch.undo()
-    assert not list(Path().rglob("*.cache"))
+    assert not entries()
 
 
 def entries() -> list[Path]:

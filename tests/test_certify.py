@@ -341,6 +341,7 @@ def test_an_update_says_what_changes_and_keeps_what_fails(example: Path) -> None
     [
         ('"post.toml"', "post.toml: is no golden trace, and stays as it is: contour/lathe-8 names another file"),
         ('"golden/indexing.jsonl"', "golden/indexing.jsonl: is the golden trace of contour/lathe-8 and of"),
+        ('"../new/contour.jsonl"', "../new/contour.jsonl: lies outside of the folder of the manifest"),
     ],
 )  # fmt: skip
 def test_an_update_overwrites_no_other_file(example: Path, golden: str, said: str) -> None:

@@ -23,8 +23,7 @@ from programs import ROOT
 
 import polarcheck
 from polarcheck import reports
-from polarcheck.api import runs
-from polarcheck.batch import executors
+from polarcheck.batch import executors, runs
 from polarcheck.batch import tasks as batch
 from polarcheck.checking.rule import load_all
 from polarcheck.columns.trace import Trace

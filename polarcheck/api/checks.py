@@ -6,10 +6,9 @@ import warnings
 from collections.abc import Iterable
 from typing import Unpack
 
-from polarcheck.api import runs
 from polarcheck.api.keywords import CheckKeywords, PathName, names_of, options, paths_of, takes
 from polarcheck.api.programs import NAMELESS, Call
-from polarcheck.batch import decisions
+from polarcheck.batch import decisions, runs
 from polarcheck.batch import tasks as batch
 from polarcheck.batch.baselines import Baselines
 from polarcheck.batch.tasks import Outcome, Task

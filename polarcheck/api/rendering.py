@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from polarcheck import reports
-from polarcheck.api.runs import placed
 from polarcheck.batch import tasks as batch
+from polarcheck.batch.runs import folders
 from polarcheck.checking import rule
 from polarcheck.errors import UsageError
 from polarcheck.finding import FileReport, Report
@@ -29,4 +29,5 @@ def render(report: Report | FileReport, form: str = "text") -> str:
         report = batch.report([report], report.machine)
     if not isinstance(report, Report):
         raise UsageError(f"polarcheck.render(): expected a report of check, found {type(report).__name__}")
-    return reports.render(form, report, placed(Background(rules=rule.load_all())))
+    root, folder = folders()
+    return reports.render(form, report, Background(rules=rule.load_all(), root=root, folder=folder))

@@ -17,7 +17,8 @@ def updates(loaded: Loaded, certified: Mapping[str, Certified], names: frozenset
     Write the golden traces of the named cases, and yield a line on each, and whether it could be written.
 
     A case that fails for another reason than its golden trace keeps the one that it has. Raises CertificateError for
-    two cases with one file, and for a file that holds anything else, before any is written.
+    two cases with one file, for a file outside of the folder of the manifest, and for one that holds anything else,
+    before any is written.
     """
     wanted = [entry for name, entry in certified.items() if name in names and entry.case.golden is not None]
     _refuse(loaded, wanted)
@@ -34,6 +35,10 @@ def _refuse(loaded: Loaded, wanted: list[Certified]) -> None:
         if owner != entry.case.title:
             raise CertificateError(
                 f"{title}: is the golden trace of {owner} and of {entry.case.title}: give each its own"
+            )
+        if not path.resolve().is_relative_to(loaded.path.resolve().parent):
+            raise CertificateError(
+                f"{title}: lies outside of the folder of the manifest, and is not written: {entry.case.title} names it"
             )
         if path.exists() and not golden.is_golden(path):
             raise CertificateError(

@@ -185,11 +185,11 @@ OPTIONS: dict[str, Values] = {
     "NAME": _encodings,
     "NAME|FILE": _machines,
     "PATH": _files,
+    "PATTERN": _files,
     "REF": _nothing,
     "RULE": _rules,
     "RULE=LEVEL": _levels,
     "SIZE": _nothing,
-    "PATTERN": _files,
     "TEXT": _nothing,
     "tcp://HOST:PORT": _nothing,
 }
@@ -201,6 +201,7 @@ ARGUMENTS: dict[str, Values] = {
     "NAME": _machines_and_verbs,
     "OLD NEW": _files,
     "PATH": _files,
+    "PATTERN": _files,
     "RULE": _pages,
 }
 

@@ -85,10 +85,11 @@ def unread(summary: Summary) -> list[str]:
 
 def background(plain: Background, tasks: Iterable[Task]) -> Background:
     """Add the settings of each file, and the folders that paths are relative to, to a background."""
-    from polarcheck.api.runs import placed
+    from polarcheck.batch.runs import folders
     from polarcheck.batch.tasks import settings_of
 
-    return placed(plain._replace(settings=settings_of(tasks)))
+    root, folder = folders()
+    return plain._replace(settings=settings_of(tasks), root=root, folder=folder)
 
 
 def written(outputs: Iterable[tuple[str, Path]], form: str, report: Report, plain: Background) -> Iterator[OutputError]:

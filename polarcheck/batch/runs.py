@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 if TYPE_CHECKING:
     from polarcheck.batch.tasks import Outcome, Task
     from polarcheck.reading.walking import Skipped
-    from polarcheck.reports import Background
     from polarcheck.settings.of_programs import OfPrograms
 
 #: Processes are started once they save more time than this [s]. A fork, as on Linux, costs little; a spawned process
@@ -151,12 +150,12 @@ def _by_processes(tasks: Sequence[Task], most: int, count: int) -> Generator[Out
     return executors.by_processes(tasks, most, count)
 
 
-def placed(background: Background) -> Background:
-    """Add the folders that paths are relative to."""
+def folders() -> tuple[str, str]:
+    """Return the root of the repository, and the folder that paths are relative to, with slashes; empty if unknown."""
     folder = ""
     with contextlib.suppress(OSError):  # the working folder may be gone
         folder = os.getcwd()  # noqa: PTH109
-    return background._replace(root=_root(folder).replace(os.sep, "/"), folder=folder.replace(os.sep, "/"))
+    return _root(folder).replace(os.sep, "/"), folder.replace(os.sep, "/")
 
 
 def _root(folder: str) -> str:
