@@ -201,7 +201,6 @@ ARGUMENTS: dict[str, Values] = {
     "NAME": _machines_and_verbs,
     "OLD NEW": _files,
     "PATH": _files,
-    "PATTERN": _files,
     "RULE": _pages,
 }
 
