@@ -31,9 +31,9 @@ def aligned(old: Sequence[int], new: Sequence[int]) -> dict[int, int]:
             pairs[end] = new_end
         if start == end or new_start == new_end:
             continue
-        found = [*_compared(old[start:end], new[new_start:new_end])]
-        pairs.update((start + at, new_start + new_at) for at, new_at in found)
-        anchors = [] if found else _anchors(old, new, (start, end, new_start, new_end))
+        pairs_here = [*_compared(old[start:end], new[new_start:new_end])]
+        pairs.update((start + at, new_start + new_at) for at, new_at in pairs_here)
+        anchors = [] if pairs_here else _anchors(old, new, (start, end, new_start, new_end))
         if anchors:
             for (at, new_at), (following, new_following) in zip(
                 [(start - 1, new_start - 1), *anchors], [*anchors, (end, new_end)], strict=True

@@ -174,9 +174,9 @@ def _lines(data: bytes, raws: Sequence[msgspec.Raw], kind: type[_Line], noun: st
     at, number = 0, 1
     for count, raw in enumerate(raws, 1):
         text = bytes(raw)
-        found = data.index(text, at)
-        number += data.count(10, at, found)
-        at = found
+        end = data.index(text, at)
+        number += data.count(10, at, end)
+        at = end
         try:
             decoded.append(_checked(_decoded(text, kind)))
         except ValueError as error:

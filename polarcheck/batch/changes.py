@@ -120,13 +120,13 @@ def by_files(
     real = files.RealPaths()
     named = {real.of(name) for name in names}
     root = git.Repositories(real).root(os.curdir)
-    kept: set[str] | None = None
+    in_git: set[str] | None = None
     changed = named
     if root is not None:
         ref = git.Reference(f"{option}:", before)
         changed = named | git.gone(root, ref)
-        kept = git.tracked(root, ref) | named
+        in_git = git.tracked(root, ref) | named
     if not changed:
         return []
     changes = Changes(changed, real)
-    return [task for task in tasks if (kept is None or real.of(task.path) in kept) and changes.concern(task, most)]
+    return [task for task in tasks if (in_git is None or real.of(task.path) in in_git) and changes.concern(task, most)]

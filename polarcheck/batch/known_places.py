@@ -82,10 +82,10 @@ class Versions:
         Of a long program blocks between two that are listed are the same if one of these two is.
         """
         old = self._in_old(at)
-        found = {self._pairs[old]} if old in self._pairs else set()
+        places = {self._pairs[old]} if old in self._pairs else set()
         if not self._is_whole and old + 1 in self._pairs:
-            found.add(self._pairs[old + 1] - 1)
-        return found
+            places.add(self._pairs[old + 1] - 1)
+        return places
 
     def target(self, line: int) -> int | None:
         """Return the index of the block in a line; None if no block stands there."""
@@ -138,8 +138,8 @@ class Versions:
 
 def _thinned(hashes: Sequence[int], of: int) -> tuple[list[int], list[int]]:
     """Return the indices of the hashes that are a multiple of a number, and these hashes."""
-    kept = [at for at, value in enumerate(hashes) if value % of == 0]
-    return kept, [hashes[at] for at in kept]
+    chosen = [at for at, value in enumerate(hashes) if value % of == 0]
+    return chosen, [hashes[at] for at in chosen]
 
 
 def versions(program: Program | None, outline: Outline | UnsetType) -> Versions | None:
@@ -158,13 +158,13 @@ def matches(entries: Iterable[Entry], both: Versions | None, report: FileReport)
     for number, finding in enumerate(report.findings):
         if key_of(finding) in known:
             numbers.setdefault(key_of(finding), []).append(number)
-    found: list[Match | None] = [None] * len(report.findings)
+    matches: list[Match | None] = [None] * len(report.findings)
     if both is not None and not both.is_same:
-        return found
+        return matches
     for key, of_key in numbers.items():
         for number, match in _of_entry(known[key], both, {number: report.findings[number] for number in of_key}):
-            found[number] = match
-    return found
+            matches[number] = match
+    return matches
 
 
 def _of_entry(entry: Entry, both: Versions | None, findings: Mapping[int, Finding]) -> Iterator[tuple[int, Match]]:

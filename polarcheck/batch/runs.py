@@ -102,14 +102,14 @@ def outcomes(
             from polarcheck.batch import cluster as clusters
             from polarcheck.batch import executors
 
-            found = executors.outcomes(tasks, stack.enter_context(clusters.workers(cluster, tasks, most)), most)
+            outcomes = executors.outcomes(tasks, stack.enter_context(clusters.workers(cluster, tasks, most)), most)
         elif workers == 1 or len(tasks) <= 1:
-            found = one_by_one(tasks, most)
+            outcomes = one_by_one(tasks, most)
         elif workers:
-            found = _by_processes(tasks, most, workers)
+            outcomes = _by_processes(tasks, most, workers)
         else:
-            found = _as_it_pays(tasks, most, cores())
-        yield stack.enter_context(contextlib.closing(found))
+            outcomes = _as_it_pays(tasks, most, cores())
+        yield stack.enter_context(contextlib.closing(outcomes))
 
 
 def cores() -> int:

@@ -354,8 +354,8 @@ def fails(report: FileReport, settings: Settings) -> bool:
     severities = {finding.severity for finding in report.findings}
     if settings.decided.max_warnings is not None:
         severities.discard("warning")
-    told = any(SEVERITIES[severity] >= SEVERITIES.get(settings.fail_on, ERROR + 1) for severity in severities)
-    return told or (settings.strict and report.verdict == "unverified")
+    is_severe = any(SEVERITIES[severity] >= SEVERITIES.get(settings.fail_on, ERROR + 1) for severity in severities)
+    return is_severe or (settings.strict and report.verdict == "unverified")
 
 
 def _check(task: Task, data: bytes) -> tuple[FileReport, Source, set[str], Basis | None]:

@@ -14,12 +14,12 @@ _NAMED = 8
 
 def once(skipped: Iterable[Skipped], read: Container[str], real: RealPaths) -> list[Skipped]:
     """Return each file and folder once, without those that are read after all. read: real paths."""
-    found: dict[str, Skipped] = {}
+    entries: dict[str, Skipped] = {}
     for entry in skipped:
         path = real.of(entry.path)
         if path not in read:
-            found.setdefault(path, entry)
-    return list(found.values())
+            entries.setdefault(path, entry)
+    return list(entries.values())
 
 
 def never_called(skipped: Sequence[Skipped], called_files: Collection[str], real: RealPaths) -> list[Skipped]:

@@ -146,17 +146,17 @@ def _result(
     alone: Mapping[str, _Alone],
 ) -> CaseResult:
     """Return what came of a case."""
-    report, own = case_runs[case.title].report, alone[case.title]
-    reasons = list(own.reasons)
+    report, itself = case_runs[case.title].report, alone[case.title]
+    reasons = list(itself.reasons)
     remarks = [loaded.remarks[case.title]] if case.title in loaded.remarks else []
     same_path, compared = (None, _NOTHING) if report is None else _other(loaded, case, case_runs)
     is_golden_there = loaded.has_golden(case)
     # A golden trace that is not there yet is no news of a case that fails anyway.
     if is_golden_there or not (reasons or compared.reasons):
-        reasons += own.path.reasons
+        reasons += itself.path.reasons
     if compared.reasons and case.same_path_as is not None:
         reference = loaded.cases[case.same_path_as]
-        if is_golden_there and not own.fails(True) and alone[reference.title].fails(loaded.has_golden(reference)):
+        if is_golden_there and not itself.fails(True) and alone[reference.title].fails(loaded.has_golden(reference)):
             remarks.append(f"the path is not that of {reference.title}, which fails itself")
         else:
             reasons += compared.reasons
@@ -170,8 +170,8 @@ def _result(
         expected=case.expected,
         verdict=None if report is None else report.verdict,
         reasons=reasons,
-        remarks=[*remarks, *own.path.remarks, *compared.remarks],
-        golden=own.golden,
+        remarks=[*remarks, *itself.path.remarks, *compared.remarks],
+        golden=itself.golden,
         same_path=same_path,
     )
 

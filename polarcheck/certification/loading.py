@@ -58,8 +58,8 @@ class Loaded(msgspec.Struct, frozen=True):
 
     def tolerance(self, case: Case) -> float:
         """Return the tolerance of paths of a case [mm]."""
-        given = (of.tolerance for of in self._nearest(case))
-        return next((tolerance for tolerance in given if tolerance is not None), _TOLERANCE)
+        tolerances = (of.tolerance for of in self._nearest(case))
+        return next((tolerance for tolerance in tolerances if tolerance is not None), _TOLERANCE)
 
     def path_of(self, case: Case) -> str:
         """Return which path of a case is compared: tool or programmed."""

@@ -53,16 +53,16 @@ def with_golden(ours: ToolPath, golden: ToolPath, tolerance: float, title: str) 
             return 0.0, f"it is turned by {apart:.3f} deg against {title}"
         return 0.0, ""
 
-    found = _compared(ours, golden, tolerance, title, turned_by)
-    if found.reasons or found.deviation is None:
-        return found
+    comparison = _compared(ours, golden, tolerance, title, turned_by)
+    if comparison.reasons or comparison.deviation is None:
+        return comparison
     for number in range(len(ours.turned)):
         mine, other = ours.of_section(number), golden.of_section(number)
         change = _feed_change(mine, other, tolerance)
         if change is not None:
             line, now, before = change
-            found.reasons.append(f"line {line}: F is {_feed(now)}, in {title} {_feed(before)}")
-    return found
+            comparison.reasons.append(f"line {line}: F is {_feed(now)}, in {title} {_feed(before)}")
+    return comparison
 
 
 def with_other(ours: ToolPath, other: ToolPath, tolerance: float, title: str) -> Comparison:
@@ -92,8 +92,8 @@ def with_other(ours: ToolPath, other: ToolPath, tolerance: float, title: str) ->
             return turns[0], f"it is turned by {-off:.3f} deg against {title}"
         return turn, ""
 
-    found = _compared(ours, other, tolerance, title, turned_by)
-    return found._replace(remarks=found.remarks + remarks)
+    comparison = _compared(ours, other, tolerance, title, turned_by)
+    return comparison._replace(remarks=comparison.remarks + remarks)
 
 
 def _compared(

@@ -70,8 +70,8 @@ def words(cell: Cell, certificate: Certificate) -> str:
     return f"{cell.state} {count} of {len(cell.cases)}" if cell.state != PASS else f"{cell.state} {count}"
 
 
-def _padded(said: str, width: int) -> str:
-    return said + " " * (width - cells(said))
+def _padded(words: str, width: int) -> str:
+    return words + " " * (width - cells(words))
 
 
 def _reasons(case: CaseResult, columns: int, paint: Paint) -> Iterator[str]:

@@ -69,16 +69,16 @@ def default_tolerance(old: Revision, new: Revision) -> float:
 def compared(old: Revision, new: Revision, tolerance: float) -> Comparison:
     """Compare two revisions. tolerance: lengths that differ by no more are the same [mm]."""
     is_same_machine = old.trace.machine == new.trace.machine
-    found = [_Runs(*pair, tolerance, is_same_machine) for pair in _pairs_of_runs(old, new)]
-    sections = [section for run in found for section in run.sections()]
-    between = [difference for run in found for difference in run.outside()]
+    runs = [_Runs(*pair, tolerance, is_same_machine) for pair in _pairs_of_runs(old, new)]
+    sections = [section for run in runs for section in run.sections()]
+    between = [difference for run in runs for difference in run.outside()]
     missing = sorted(
-        dict.fromkeys(reason for run in found for reason in run.not_compared), key=lambda reason: not reason.matters
+        dict.fromkeys(reason for run in runs for reason in run.not_compared), key=lambda reason: not reason.matters
     )
     same_words = is_same_machine and old.trace.job == new.trace.job and has_same_words(old.trace, new.trace)
     differs = bool(between) or any(section.change not in ("same", "not compared") for section in sections)
     verdict = SAME_METAL
-    if any(run.is_broken_off for run in found):
+    if any(run.is_broken_off for run in runs):
         verdict = NOT_COMPARED  # what was not reached is not missing
     elif differs:
         verdict = DIFFERS
@@ -88,7 +88,7 @@ def compared(old: Revision, new: Revision, tolerance: float) -> Comparison:
         verdict = NOT_COMPARED
     if verdict == SAME_WORDS:
         missing = [NotCompared(reason.reason, matters=False) for reason in missing]
-    measured = [value for run in found for value in run.measured]
+    measured = [value for run in runs for value in run.measured]
     largest = max(measured, default=None, key=lambda each: each[0])
     return Comparison(
         old=_program(old),
@@ -141,8 +141,8 @@ class _Runs:
         self._traces: tuple[Trace, Trace] = old["trace"], new["trace"]
         self._steps = tuple(steps(trace, is_same_machine=is_same_machine) for trace in self._traces)
         self._old, self._new = (
-            of_sections(trace, tables["tool_center"], found)
-            for trace, tables, found in zip(self._traces, self._tables, self._steps, strict=True)
+            of_sections(trace, tables["tool_center"], steps)
+            for trace, tables, steps in zip(self._traces, self._tables, self._steps, strict=True)
         )
         self._partner, self._ordered = paired(self._old, self._new)
         #: Largest deviations [mm], and whether they are exact.
@@ -209,23 +209,23 @@ class _Runs:
         ]
         known.update((each.what, each.old, each.new) for each in state if each.what != "c_angle")
         why = self._why_not(old, new)
-        deviation, found = None, list[Difference]()
+        deviation, differences = None, list[Difference]()
         if not why:
-            why, deviation, found = self._measured(old, new)
+            why, deviation, differences = self._measured(old, new)
         if why:
             lines = f"section of line {side.line} (old) and {other.line} (new)"
             self.not_compared.append(NotCompared(f"{lines}: {why}"))
         elif old.stretch.as_programmed:
             reason = f"section of line {side.line}: {old.stretch.as_programmed}: compared as programmed, for any R"
             self.not_compared.append(NotCompared(reason, matters=False))
-        found = [*found, *state]
-        change = "changed" if found else "not compared" if why else "same"
+        differences = [*differences, *state]
+        change = "changed" if differences else "not compared" if why else "same"
         if number not in self._ordered:
             change = "moved"
             text = f"the section of line {side.line} runs at another place in the order, in line {other.line}"
-            found.insert(0, Difference("section", text, None, None, "", side.line, other.line))
+            differences.insert(0, Difference("section", text, None, None, "", side.line, other.line))
         largest = None if deviation is None else rounded(length_of(old, deviation))
-        return SectionPair(side, other, change, largest, deviation is None or deviation.is_exact, found)
+        return SectionPair(side, other, change, largest, deviation is None or deviation.is_exact, differences)
 
     def _measured(self, old: Part, new: Part) -> tuple[str, PathDeviation | None, list[Difference]]:
         """Why two parts were not compared, or how far their paths are apart and what differs."""
@@ -259,7 +259,7 @@ class _Runs:
 
     def outside(self) -> list[Difference]:
         """Return what differs between the sections that both revisions have in the same order."""
-        found: list[Difference] = []
+        differences: list[Difference] = []
         partners: Rows = self._partner[self._ordered]
         for (low, high), (new_low, new_high) in zip(
             _gaps(self._traces[0], self._ordered), _gaps(self._traces[1], partners), strict=True
@@ -273,10 +273,10 @@ class _Runs:
             )
             if not why:
                 why, _, differing = self._measured(old, new)
-                found += differing
+                differences += differing
             if why:
                 self.not_compared.append(NotCompared(f"outside of sections: {why}"))
-        return found
+        return differences
 
     def _outside(self, side: int, first: int, until: int) -> Part:
         trace = self._traces[side]
