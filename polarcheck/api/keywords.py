@@ -165,7 +165,7 @@ def _described_by(kind: type) -> list[type]:
     return order[order.index(kind) :]
 
 
-def options(function: str, kind: type, given: Mapping[str, Any], **more: Any) -> Options:
+def options(function: str, kind: type, values: Mapping[str, Any], **more: Any) -> Options:
     """
     Return the options of keywords.
 
@@ -176,23 +176,23 @@ def options(function: str, kind: type, given: Mapping[str, Any], **more: Any) ->
     Raises UsageError, which names the function and the keyword at fault.
     """
     known = kind.__annotations__
-    for name in given:
+    for name in values:
         if name not in known:
             raise UsageError(f"{function}: unknown keyword {name}{suggestion(name, known)}")
-    table = {name: _plain(value) for name, value in given.items() if value is not None}
+    table = {name: _plain(value) for name, value in values.items() if value is not None}
     for name in _LISTS:
         if name in table and not (name in _WITH_REASON and isinstance(table[name], dict)):
             table[name] = names_of(function, name, table[name])
     for name in ("baseline", "config", "machine", "offsets", "encoding"):
         if not isinstance(table.get(name, ""), str):
-            raise UsageError(f"{function}: {name}: expected a name or a path, found {_short(given[name])}")
+            raise UsageError(f"{function}: {name}: expected a name or a path, found {_short(values[name])}")
     if "encoding" in table and not _is_encoding(table["encoding"]):
         raise UsageError(
-            f"{function}: encoding: unknown encoding {_short(given['encoding'])}; for example utf-8, cp1252"
+            f"{function}: encoding: unknown encoding {_short(values['encoding'])}; for example utf-8, cp1252"
         )
     for name in ("use_baseline", "use_config"):
         if not isinstance(table.get(name, True), bool):
-            raise UsageError(f"{function}: {name}: expected True or False, found {_short(given[name])}")
+            raise UsageError(f"{function}: {name}: expected True or False, found {_short(values[name])}")
     # What has a reason stays a value of the job, where reasons belong.
     of_options = {
         name: table.pop(name)
@@ -202,7 +202,7 @@ def options(function: str, kind: type, given: Mapping[str, Any], **more: Any) ->
     _check(function, of_options)
     job = _job(function, table)
     changes = of_options.pop("changes", {})
-    given_keywords = keywords(function, job, changes)
+    of_job = keywords(function, job, changes)
     levels = job.pop("severities", {})
     reasoned = {name: level for name, level in levels.items() if not isinstance(level, str)}
     if reasoned:
@@ -213,7 +213,7 @@ def options(function: str, kind: type, given: Mapping[str, Any], **more: Any) ->
     paths: dict[str, Any] = {name: Path(of_options[name]) for name in ("baseline", "config") if name in of_options}
     if "drawings" in of_options:
         paths["drawings"] = [Path(path) for path in of_options["drawings"]]
-    return Options(**{**of_options, **paths, **more}, named=named, keywords=given_keywords)
+    return Options(**{**of_options, **paths, **more}, named=named, keywords=of_job)
 
 
 def _is_encoding(name: str) -> bool:
@@ -287,14 +287,14 @@ def names_of(function: str, keyword: str, value: Any) -> list[str]:
     return names
 
 
-def _check(function: str, given: Mapping[str, Any]) -> None:
+def _check(function: str, values: Mapping[str, Any]) -> None:
     """Raise UsageError for values of keywords that no job file has."""
-    if not isinstance(given.get("changes", {}), dict):
-        raise UsageError(f"{function}: changes: expected keys with values, found {_short(given['changes'])}")
-    for folder in given.get("subprograms", ()):
+    if not isinstance(values.get("changes", {}), dict):
+        raise UsageError(f"{function}: changes: expected keys with values, found {_short(values['changes'])}")
+    for folder in values.get("subprograms", ()):
         if not os.path.isdir(folder):  # noqa: PTH112  Path.is_dir raises for some names
             raise UsageError(f"{function}: subprograms: there is no folder {shown(folder)}")
-    tolerance = given.get("tolerance", 1.0)
+    tolerance = values.get("tolerance", 1.0)
     if not _is_number(tolerance) or not 0 < tolerance <= _LARGEST_TOLERANCE:
         raise UsageError(
             f"{function}: tolerance: expected a length above 0 and up to {_LARGEST_TOLERANCE:g}, found "
@@ -317,13 +317,13 @@ def paths_of(function: str, paths: PathName | Iterable[PathName]) -> list[str]:
     Raises UsageError for what is no path.
     """
     listed: Sequence[Any] = [paths] if isinstance(paths, str | os.PathLike) else list(_iterated(function, paths))
-    found = []
+    names = []
     for path in listed:
         name = os.fspath(path) if isinstance(path, str | os.PathLike) else None
         if not isinstance(name, str) or not name:
             raise UsageError(f"{function}: expected the path of a program or folder, found {_short(path)}")
-        found.append(os.path.join(os.curdir, name) if name == "-" else name)  # noqa: PTH118
-    return found
+        names.append(os.path.join(os.curdir, name) if name == "-" else name)  # noqa: PTH118
+    return names
 
 
 def _iterated(function: str, paths: Any) -> Iterable[Any]:

@@ -24,8 +24,8 @@ def machine(name: PathName, *, changes: Mapping[str, Any] | None = None) -> Mach
     Raises MachineError, which names the file and the key, or the nearest name of a machine; UsageError for what is no
     name.
     """
-    given = {"machine": name, "changes": changes, "use_config": False}
-    return OfPrograms(options("polarcheck.machine()", ExecutionKeywords, given))("").machine
+    values = {"machine": name, "changes": changes, "use_config": False}
+    return OfPrograms(options("polarcheck.machine()", ExecutionKeywords, values))("").machine
 
 
 def machine_names() -> list[str]:

@@ -58,19 +58,19 @@ class Call(NamedTuple):
 
     function: its name, for messages.
     kind: the TypedDict of the keywords that it takes.
-    given: the keywords.
+    values: the keywords.
     more: further fields of the options.
     """
 
     function: str
     kind: type
-    given: Mapping[str, Any]
+    values: Mapping[str, Any]
     more: Mapping[str, Any] = {}
 
     def of_path(self, path: PathName, max_size: int) -> Program:
         """Return the program of a file. Raises SourceError, UsageError, JobError and MachineError in one line."""
         (name,) = paths_of(self.function, [path])
-        return of_file(name, options(self.function, self.kind, self.given, **self.more), max_size)
+        return of_file(name, options(self.function, self.kind, self.values, **self.more), max_size)
 
     def of_text(self, text: str | bytes, name: str) -> Program:
         """
@@ -81,8 +81,8 @@ class Call(NamedTuple):
         if not isinstance(text, str | bytes):
             raise UsageError(f"{self.function}: expected a program as str or bytes, found {type(text).__name__}")
         (path,) = paths_of(self.function, [name])
-        given = self.given if "config" in self.given else {"use_config": False, **self.given}
-        settings = OfPrograms(options(self.function, self.kind, given, **self.more))(path)
+        values = self.values if "config" in self.values else {"use_config": False, **self.values}
+        settings = OfPrograms(options(self.function, self.kind, values, **self.more))(path)
         if isinstance(text, str):
             text, settings = (
                 text.encode("utf-8", "backslashreplace"),
@@ -92,7 +92,7 @@ class Call(NamedTuple):
 
     def with_one_state(self) -> Call:
         """Return the call of a function that runs a program once: block skip is off unless a keyword sets it."""
-        skip = self.given.get("block_skip") or "off"
+        skip = self.values.get("block_skip") or "off"
         if skip == "both":
             raise UsageError(f"{self.function}: block_skip: expected on or off, found both")
-        return self._replace(given={**self.given, "block_skip": skip})
+        return self._replace(values={**self.values, "block_skip": skip})
