@@ -11,7 +11,7 @@ from polarcheck.reports import counted
 if TYPE_CHECKING:
     from polarcheck.finding import FileReport, KnownStock, PolarSection
 
-#: At most this many sections are listed; the others are counted. The JSON report has them all.
+#: At most this many sections, or keys of the machine, are listed; the others are counted. JSON has them all.
 _LISTED = 5
 _INSIDE = "polar sections"
 
@@ -34,6 +34,14 @@ def resting(file: FileReport) -> Iterator[str]:
     light = dict.fromkeys(missing.reason for missing in file.not_evaluated if not missing.matters)
     for reason in light:
         yield f"not judged, but without weight: {reason}"
+    if file.doubtful:
+        yield _doubtful(file.doubtful, file.machine)
+
+
+def _doubtful(keys: Sequence[str], machine: str) -> str:
+    """Name keys of the machine that no manual proves, the first of them where there are many."""
+    more = f" and {len(keys) - _LISTED} more" if len(keys) > _LISTED else ""
+    return f"doubtful in {machine}: {', '.join(keys[:_LISTED])}{more}"
 
 
 def _section(section: PolarSection) -> str:
