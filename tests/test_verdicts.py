@@ -309,6 +309,7 @@ def test_reports_name_the_doubtful_keys_that_they_rest_on() -> None:
     assert "m_codes.live_tool_on" not in doubtful["a.nc"]
     assert doubtful["b.nc"] == {"m_codes.live_tool_on", "control.units"}
     assert doubtful["c.nc"] == set()
+    assert "doubtful in our: control.units, m_codes.live_tool_on\n" in call("check", "b.nc").stdout
     Path("our.toml").write_text("inherits = 'siemens-transmit'\n", "utf-8")
     Path("d.mpf").write_text("N1 G54 G71 G94\nN2 M30\n", "utf-8")
     keys = set(check("d.mpf", "--machine", "our.toml")["files"][0]["doubtful"])
