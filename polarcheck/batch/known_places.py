@@ -158,13 +158,13 @@ def matches(entries: Iterable[Entry], both: Versions | None, report: FileReport)
     for number, finding in enumerate(report.findings):
         if key_of(finding) in known:
             numbers.setdefault(key_of(finding), []).append(number)
-    matches: list[Match | None] = [None] * len(report.findings)
+    of_findings: list[Match | None] = [None] * len(report.findings)
     if both is not None and not both.is_same:
-        return matches
+        return of_findings
     for key, of_key in numbers.items():
         for number, match in _of_entry(known[key], both, {number: report.findings[number] for number in of_key}):
-            matches[number] = match
-    return matches
+            of_findings[number] = match
+    return of_findings
 
 
 def _of_entry(entry: Entry, both: Versions | None, findings: Mapping[int, Finding]) -> Iterator[tuple[int, Match]]:
