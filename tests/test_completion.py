@@ -232,7 +232,7 @@ def test_the_script_for_bash_has_no_fault_of_syntax() -> None:
 
 
 TYPED = {
-    "comp": "completion",
+    "compl": "completion",
     "check --mach": "check --machine",
     "check --machine fanuc-3": "check --machine fanuc-30i",
     "check --machine=fanuc-3": "check --machine=fanuc-30i",

@@ -253,7 +253,7 @@ def test_a_pipe_from_the_shell_is_read(option: str, monkeypatch: pytest.MonkeyPa
 
 def test_inheritance_in_a_circle() -> None:
     make(a__toml="inherits = 'b.toml'", b__toml="inherits = 'a.toml'", c__toml="inherits = 'c.toml'")
-    assert refusal_of_lathe("machines", "a.toml") == "polarcheck: a.toml: inherits from itself\n"
+    assert refusal_of_lathe("machines", "a.toml") == "polarcheck: a.toml: inherits from itself, by way of b.toml\n"
     assert refusal_of_lathe("machines", "c.toml") == "polarcheck: c.toml: inherits from itself\n"
     Path("d").mkdir()
     make(e__toml="inherits = 'd/../e.toml'")

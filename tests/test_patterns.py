@@ -26,7 +26,7 @@ from polarcheck.execution.programs import ProgramName
 from polarcheck.machines import profiles
 from polarcheck.machines.job import Job, with_tool
 from polarcheck.machines.machine import Machine
-from polarcheck.reading import language_blocks, languages, surroundings, translation
+from polarcheck.reading import language_blocks, languages, surroundings, translation, walking
 from polarcheck.reading.globs import Globs
 from polarcheck.reading.source import read_source
 
@@ -66,6 +66,8 @@ def build_every_pattern() -> None:
     library.names_of(ProgramName(None, "A.B+C"))
     library._with_head(b"G0\n", "x.nc", ProgramName(None, "OFACE"))
     Globs("/programs", GLOBS)
+    for head in (walking._HEAD, walking._STRICT_HEAD):
+        walking._reads_as_program("", head)
     with contextlib.suppress(UsageError):
         with_tool(Job(), "8:radius=x")
     report_of("O1\nG0 X1.\n#1=1\nO2\nM30\n", "fanuc")
