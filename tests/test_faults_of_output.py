@@ -16,6 +16,7 @@ from typing import Any
 
 import msgspec
 import pytest
+from test_jobs import UNVERIFIED
 
 import polarcheck
 from polarcheck.batch import tasks as batch
@@ -186,11 +187,11 @@ def test_a_pipe_that_the_shell_has_opened_gets_the_report() -> None:
     outputs = own_descriptors(writing)
     for output in outputs:
         status, shown, told = run("check", "b.nc", *ONLY, "-o", f"json:{output}", pass_fds=(writing,))
-        assert (status, told, "pass" in shown) == (0, "", True), output
+        assert (status, told, "unverified  b.nc: " in shown) == (0, "", True), output
     os.close(writing)
     with open(reading) as pipe:  # noqa: PTH123
         text = pipe.read()
-    assert text.count('"schema": 1,') == len(outputs)
+    assert text.count('"schema": 2,') == len(outputs)
     assert Path("link").is_symlink()
 
 
@@ -210,7 +211,7 @@ def test_a_report_goes_behind_what_a_standard_stream_holds(output: str, number: 
             file.seek(0)
             text = file.read()
         assert text.startswith("first\n")
-    assert text.count('"schema": 1,') == 1
+    assert text.count('"schema": 2,') == 1
     assert ("error: G0 cannot be used" in text) == (number == 1)
 
 
@@ -223,7 +224,7 @@ def test_a_descriptor_that_cannot_be_written_is_one_line() -> None:
     ):
         with open(os.devnull) as unwritable:  # noqa: PTH123
             status, shown, told = run("check", "b.nc", *ONLY, "-o", f"json:{output}", stdin=unwritable)
-        assert (status, told.count("\n"), "pass" in shown) == (2, 1, True), told
+        assert (status, told.count("\n"), "unverified  b.nc: " in shown) == (2, 1, True), told
         assert told.startswith(f"polarcheck: {output}: {said}")
 
 
@@ -300,9 +301,12 @@ def test_what_is_finished_is_kept(number: int, status: int, how: str) -> None:
     running.send_signal(number)
     shown, told = running.communicate(timeout=60)
     assert running.returncode == status
-    assert told == f"polarcheck: {how} after 2 of 3 files; these are reported\n"
+    reason = f"{how} after 2 of 3 files; these are reported"
+    assert told == f"polarcheck: {reason}\n{UNVERIFIED}"
     assert "a.nc:4:1: error" in shown
-    assert [file["path"] for file in json.loads(Path("r.json").read_text())["files"]] == ["a.nc", "b.nc"]
+    report = json.loads(Path("r.json").read_text())
+    assert [(file["path"], file["verdict"]) for file in report["files"]] == [("a.nc", "fail"), ("b.nc", "unverified")]
+    assert report["interrupted"] == {"reason": reason, "checked": 2, "planned": 3, "next_path": "-"}
 
 
 # ---- what goes wrong in one file ----
@@ -328,14 +332,22 @@ def checked(bad: Exception, monkeypatch: pytest.MonkeyPatch) -> tuple[batch.Chec
 
 def test_a_bug_costs_its_file_only(monkeypatch: pytest.MonkeyPatch) -> None:
     found, told, bugs = checked(ZeroDivisionError("division by zero"), monkeypatch)
-    assert [file.path for file in found.files] == ["a.nc", "c.nc"]
+    assert [(file.path, file.verdict, file.reason or "") for file in found.files] == [
+        ("a.nc", "pass", ""),
+        ("b.nc", "unreadable", "a fault of polarcheck: ZeroDivisionError: division by zero"),
+        ("c.nc", "pass", ""),
+    ]
     assert told == []
     assert [(type(bug), bug.__notes__) for bug in bugs] == [(ZeroDivisionError, ["while checking b.nc"])]
 
 
 def test_too_little_memory_costs_its_file_only(monkeypatch: pytest.MonkeyPatch) -> None:
     found, told, bugs = checked(MemoryError(), monkeypatch)
-    assert [file.path for file in found.files] == ["a.nc", "c.nc"]
+    assert [(file.path, file.verdict, file.reason or "") for file in found.files] == [
+        ("a.nc", "pass", ""),
+        ("b.nc", "unreadable", "there is not enough memory to check it"),
+        ("c.nc", "pass", ""),
+    ]
     assert told == ["b.nc: there is not enough memory to check it"]
     assert bugs == []
 
@@ -348,9 +360,16 @@ def test_a_file_that_needs_more_memory_than_there_is_costs_itself_only() -> None
         "check", "a.nc", "huge.nc", "b.nc", *ONLY, "--format", "concise", "-o", "json:r.json",
         preexec_fn=bounded("RLIMIT_DATA", 500_000_000),
     )  # fmt: skip
-    assert (status, told) == (2, "polarcheck: huge.nc: there is not enough memory to check it\n")
+    why = "there is not enough memory to check it"
+    assert (status, told) == (2, f"polarcheck: huge.nc: {why}\n{UNVERIFIED}")
     assert "a.nc:4:1: error" in shown
-    assert [file["path"] for file in json.loads(Path("r.json").read_text())["files"]] == ["a.nc", "b.nc"]
+    assert f"huge.nc:1:1: error: {why} [unreadable]\n" in shown
+    files = json.loads(Path("r.json").read_text())["files"]
+    assert [(file["path"], file["verdict"], file.get("reason")) for file in files] == [
+        ("a.nc", "fail", None),
+        ("huge.nc", "unreadable", why),
+        ("b.nc", "unverified", None),
+    ]
 
 
 @pytest.mark.slow

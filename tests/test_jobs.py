@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import gc
+import json
 import multiprocessing
 import multiprocessing.queues
 import os
@@ -29,6 +30,7 @@ from polarcheck.checking.rule import load_all
 from polarcheck.columns.trace import Trace
 from polarcheck.commands import progress
 from polarcheck.errors import ClusterError
+from polarcheck.finding import UNREADABLE
 from polarcheck.settings.of_programs import OfPrograms, Options
 
 RAPID = "G98 G0 X60. C0\nG12.1\nG1 X40. F200\nG0 C5.\nG1 C-5.\nG13.1\n"
@@ -39,6 +41,8 @@ OF_MANY = [form for form in reports.formats() if form not in reports.PER_FILE]
 ENDLESS = "#1=0\nWHILE[#1LT1]DO1\n#2=#2+1\nEND1\nM30\n"
 FOREVER = ("--max-seconds", "60", "--max-statements", "1000000000000", "--max-blocks", "1000000000000")
 ONLY = ("--select", "rapid-in-polar")
+#: What --format concise says on standard error where a rule, here one that ONLY deselects, leaves a program unverified.
+UNVERIFIED = "polarcheck: warning: some rules could not be evaluated; --format text says which, and what to give\n"
 posix = pytest.mark.skipif(sys.platform == "win32", reason="signals and /proc of POSIX")
 linux = pytest.mark.skipif(sys.platform != "linux", reason="forks, and looks into /proc")
 
@@ -77,6 +81,12 @@ def by_processes(tasks: list[batch.Task], workers: int = 2, method: str = "fork"
 
 def paths_of(found: list[batch.Outcome]) -> list[str]:
     return [outcome.report.path for outcome in found if outcome.report]
+
+
+def unreadable(found: list[batch.Outcome]) -> dict[str, str]:
+    """The files whose reports say that they were not checked, and why."""
+    told = [outcome.report for outcome in found if outcome.report]
+    return {report.path: report.reason or "" for report in told if report.verdict == UNREADABLE}
 
 
 @contextlib.contextmanager
@@ -156,7 +166,7 @@ def test_a_pipe_of_the_shell_stands_among_many_files() -> None:
     words = ("check", "f", pipe, *ONLY, "--jobs", "2", "--format", "concise")
     status, shown, told = run(*words, pass_fds=(reading,))
     os.close(reading)
-    assert (status, told) == (1, "")
+    assert (status, told) == (1, UNVERIFIED)
     assert f"{pipe}:4:1: error" in shown
 
 
@@ -177,7 +187,8 @@ def test_a_file_that_ends_its_process_is_told_and_the_others_are_whole(monkeypat
     assert [outcome.failure for outcome in found if outcome.failure] == [
         "f/004.nc: could not be checked: its process ended"
     ]
-    assert paths_of(found) == [f"f/{number:03}.nc" for number in range(30) if number != 4]
+    assert paths_of(found) == [f"f/{number:03}.nc" for number in range(30)]
+    assert unreadable(found) == {"f/004.nc": "could not be checked: its process ended"}
 
 
 @linux
@@ -242,7 +253,8 @@ def test_a_result_that_there_is_no_memory_to_send_costs_its_file_alone(monkeypat
     assert [outcome.failure for outcome in found if outcome.failure] == [
         "f/003.nc: could not be checked: its process ended"
     ]
-    assert len(paths_of(found)) == 5
+    assert paths_of(found) == [task.path for task in tasks]
+    assert unreadable(found) == {"f/003.nc": "could not be checked: its process ended"}
 
 
 @linux
@@ -342,7 +354,8 @@ def test_what_may_have_ended_a_process_is_not_checked_by_this_one(monkeypatch: p
     # The files that were submitted with it may have done it as well.
     assert lost == [f"f/{number:03}.nc: could not be checked: its process ended" for number in range(2, 2 + len(lost))]
     assert 1 <= len(lost) <= executors._AHEAD
-    assert len(paths_of(found)) == 15 - len(lost)
+    assert paths_of(found) == [task.path for task in tasks]
+    assert [f"{path}: {reason}" for path, reason in unreadable(found).items()] == lost
 
 
 @linux
@@ -439,9 +452,19 @@ def test_an_interrupt_keeps_what_is_finished(number: int, status: int, how: str,
     assert running.returncode == status
     assert are_gone(workers)
     # Whether the last file is finished by then is a matter of luck.
-    ends = [f"polarcheck: {how} after {count} of 30 files; these are reported\n" for count in (28, 29)]
+    ends = [f"polarcheck: {how} after {count} of 30 files; these are reported\n{UNVERIFIED}" for count in (28, 29)]
     assert told in ends
-    assert Path("r.json").read_text().count('"path"') == 28 + ends.index(told)
+    count = 28 + ends.index(told)
+    report = json.loads(Path("r.json").read_text())
+    others = [f"f/{number:03}.nc" for number in range(30) if number != 28]
+    assert [file["path"] for file in report["files"]] == others[:count]
+    assert report["interrupted"] == {
+        "reason": f"{how} after {count} of 30 files; these are reported",
+        "checked": count,
+        "planned": 30,
+        "next_path": "f/028.nc",
+    }
+    assert report["summary"]["unreadable"] == 0
 
 
 @linux
