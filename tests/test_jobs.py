@@ -42,7 +42,7 @@ ENDLESS = "#1=0\nWHILE[#1LT1]DO1\n#2=#2+1\nEND1\nM30\n"
 FOREVER = ("--max-seconds", "60", "--max-statements", "1000000000000", "--max-blocks", "1000000000000")
 ONLY = ("--select", "rapid-in-polar")
 #: What --format concise says on standard error where a rule, here one that ONLY deselects, leaves a program unverified.
-UNVERIFIED = "polarcheck: warning: some rules could not be evaluated; --format text says which, and what to give\n"
+UNVERIFIED = "polarcheck: warning: some files are unverified; --format text says why, and what to give\n"
 posix = pytest.mark.skipif(sys.platform == "win32", reason="signals and /proc of POSIX")
 linux = pytest.mark.skipif(sys.platform != "linux", reason="forks, and looks into /proc")
 

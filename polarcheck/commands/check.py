@@ -327,5 +327,5 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
         for line in reporting.unread(report.summary):
             warn(line)
     if form == "concise" and not arguments.quiet and any(file.verdict == "unverified" for file in report.files):
-        warn("some rules could not be evaluated; --format text says which, and what to give")
+        warn("some files are unverified; --format text says why, and what to give")
     return status
