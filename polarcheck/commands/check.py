@@ -27,7 +27,11 @@ from polarcheck.commands.output import COLUMNS, columns, draws_dots, in_color, s
 from polarcheck.reports import formats
 
 if TYPE_CHECKING:
+    from polarcheck.batch.tasks import Task
+    from polarcheck.finding import Report
     from polarcheck.reading.walking import Skipped
+    from polarcheck.reports import Background
+    from polarcheck.settings.of_programs import Options
 
 #: With more files than this the default format is short.
 _LONG = 3
@@ -204,14 +208,12 @@ def _quoted(value: object) -> str:
 
 
 def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
-    from polarcheck import reports
     from polarcheck.batch import tasks as batch
-    from polarcheck.checking import rule
     from polarcheck.commands import live, overwriting, progress, signals
     from polarcheck.machines import profiles
     from polarcheck.memory import keep_within_memory
     from polarcheck.settings import decisions
-    from polarcheck.settings.of_programs import OfPrograms, Options
+    from polarcheck.settings.of_programs import OfPrograms
 
     keep_within_memory()
     reporting.refuse(arguments.form, arguments.statistics)
@@ -220,20 +222,7 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
 
         needing = {"-o": arguments.outputs, "--fix": arguments.fixes.fix, "--diff": arguments.fixes.diff}
         show_files.refuse(arguments.form, {**needing, "--watch": seen is not None})
-    wants_pictures = picturing.FORMAT in (arguments.form, *(form for form, _ in arguments.outputs))
-    extras = reporting.extras(arguments.shown_too, arguments.form, arguments.outputs)
-    extras += picturing.extras() if wants_pictures else ()
-    if arguments.part:
-        from polarcheck.parts.comparison import compared_in
-        from polarcheck.parts.part_report import part_of
-
-        extras = (*extras, part_of, compared_in)
-    applies = Options(
-        use_config=not arguments.no_config,
-        use_baseline=not arguments.no_baseline,
-        extras=extras,
-        **arguments.more,
-    )
+    applies = _options(arguments)
     faults = running.Faults(arguments.debug)
     skipped: list[Skipped] = []
     tasks = running.planned(
@@ -270,21 +259,7 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
     form = arguments.form or ("text" if len(tasks) <= _LONG or arguments.shown_too else "short")
     if not arguments.quiet:
         tasks = reporting.with_makes(tasks, (form, *(other for other, _ in arguments.outputs)))
-    plain = reporting.background(
-        reports.Background(
-            rules=rule.load_all(),
-            columns=COLUMNS,
-            quiet=arguments.quiet,
-            command=arguments.command,
-            following=arguments.following,
-            silenced=arguments.silenced,
-            fixed=fixed.fixed,
-            dots=draws_dots(),
-            has_baseline=baselines is not None,
-            drawn=pictures.drawn,
-        ),
-        tasks,
-    )
+    plain = _background(arguments, tasks, pictures, fixed.fixed, has_baseline=baselines is not None)
     bar = progress.Bar(len(tasks), not arguments.quiet)
     shown = plain._replace(columns=columns(), color=is_colored)
     live_report = live.Live(
@@ -309,12 +284,9 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
         skipped=skipped,
         called_files=checked.called_files,
     )
-    if any(task.settings.decided.max_warnings is not None for task in tasks):
-        from polarcheck.batch.decisions import too_many_warnings
-
-        for excess in too_many_warnings(report.files, tasks):
-            say(excess)
-            status = max(status, FINDINGS)
+    for excess in _excesses(report, tasks):
+        say(excess)
+        status = max(status, FINDINGS)
     pictures.end(reporting.unread(report.summary))
     if checked.stopped is None and arguments.diff_base is None and arguments.changed is None:
         running.warn_unused(applies.tools, checked.called)
@@ -323,9 +295,72 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
         say(str(error))
         status = max(status, COULD_NOT_RUN)
     live_report.end(report, checked.lines)
-    if form not in _WITH_SUMMARY and not arguments.quiet:
+    if not arguments.quiet:
+        _warn_of_the_rest(form, report)
+    return status
+
+
+def _options(arguments: _Arguments) -> Options:
+    """Return the options that apply to programs, with what reports ask of each."""
+    from polarcheck.settings.of_programs import Options
+
+    extras = reporting.extras(arguments.shown_too, arguments.form, arguments.outputs)
+    if picturing.FORMAT in (arguments.form, *(form for form, _ in arguments.outputs)):
+        extras += picturing.extras()
+    if arguments.part:
+        from polarcheck.parts.comparison import compared_in
+        from polarcheck.parts.part_report import part_of
+
+        extras = (*extras, part_of, compared_in)
+    return Options(
+        use_config=not arguments.no_config,
+        use_baseline=not arguments.no_baseline,
+        extras=extras,
+        **arguments.more,
+    )
+
+
+def _background(
+    arguments: _Arguments, tasks: Sequence[Task], pictures: picturing.Pictures, fixed: int, *, has_baseline: bool
+) -> Background:
+    """
+    Return what reports in files show; the terminal has its own width and colors.
+
+    fixed: how many fixes were written.
+    """
+    from polarcheck import reports
+    from polarcheck.checking import rule
+
+    return reporting.background(
+        reports.Background(
+            rules=rule.load_all(),
+            columns=COLUMNS,
+            quiet=arguments.quiet,
+            command=arguments.command,
+            following=arguments.following,
+            silenced=arguments.silenced,
+            fixed=fixed,
+            dots=draws_dots(),
+            has_baseline=has_baseline,
+            drawn=pictures.drawn,
+        ),
+        tasks,
+    )
+
+
+def _excesses(report: Report, tasks: Sequence[Task]) -> Sequence[str]:
+    """Return a line for each --max-warnings that is exceeded."""
+    if all(task.settings.decided.max_warnings is None for task in tasks):
+        return ()
+    from polarcheck.batch.decisions import too_many_warnings
+
+    return [*too_many_warnings(report.files, tasks)]
+
+
+def _warn_of_the_rest(form: str, report: Report) -> None:
+    """Warn of what a report of this format does not say."""
+    if form not in _WITH_SUMMARY:
         for line in reporting.unread(report.summary):
             warn(line)
-    if form == "concise" and not arguments.quiet and any(file.verdict == "unverified" for file in report.files):
+    if form == "concise" and any(file.verdict == "unverified" for file in report.files):
         warn("some files are unverified; --format text says why, and what to give")
-    return status
