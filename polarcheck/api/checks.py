@@ -8,15 +8,17 @@ from typing import Unpack
 
 from polarcheck.api.keywords import CheckKeywords, PathName, names_of, options, paths_of, takes
 from polarcheck.api.programs import NAMELESS, Call
-from polarcheck.batch import decisions, runs
+from polarcheck.batch import runs
 from polarcheck.batch import tasks as batch
 from polarcheck.batch.baselines import Baselines
+from polarcheck.batch.decisions import with_own_settings
 from polarcheck.batch.tasks import Outcome, Task
 from polarcheck.errors import PolarcheckWarning, SourceError, UsageError
 from polarcheck.finding import FileReport, Report
 from polarcheck.machines import profiles
 from polarcheck.reading import files
 from polarcheck.reading.walking import Skipped
+from polarcheck.settings.decisions import shared
 from polarcheck.settings.of_programs import OfPrograms
 
 _FUNCTION = "polarcheck.check()"
@@ -62,7 +64,9 @@ def check(
         warnings.warn(doubt, PolarcheckWarning, stacklevel=2)
     if failures:
         raise SourceError(failures[0])
-    settings, tasks = decisions.shared(tasks)
+    settings = shared(task.settings for task in tasks)
+    if settings.differing:
+        tasks = with_own_settings(tasks)
     baselines = Baselines(tasks, named) if any(task.settings.baseline for task in tasks) else None
     with runs.outcomes(tasks, max_size, processes) as outcomes:
         reports = [_report(outcome) for outcome in (baselines.outcomes(outcomes) if baselines else outcomes)]

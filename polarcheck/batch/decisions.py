@@ -9,25 +9,17 @@ import msgspec
 
 from polarcheck.batch.tasks import Task
 from polarcheck.checking.settings import Settings
-from polarcheck.finding import FileReport, RunSettings
-from polarcheck.settings import decisions
+from polarcheck.finding import FileReport
 
 
-def shared(tasks: Sequence[Task], diff_base: str | None = None) -> tuple[RunSettings, list[Task]]:
-    """
-    Return the settings that the files of a run share, and the tasks; where settings differ, reports say them by file.
-
-    diff_base: the commit since which a file must have changed.
-    """
-    settings = decisions.shared([task.settings for task in tasks], diff_base)
-    if not settings.differing:
-        return settings, list(tasks)
+def with_own_settings(tasks: Sequence[Task]) -> list[Task]:
+    """Return the tasks of a run whose settings differ: the report of each file has its own."""
     # Tasks with the same settings share them: other processes get them once.
     marked: dict[int, Settings] = {}
     for task in tasks:
         if id(task.settings) not in marked:
             marked[id(task.settings)] = msgspec.structs.replace(task.settings, differs=True)
-    return settings, [msgspec.structs.replace(task, settings=marked[id(task.settings)]) for task in tasks]
+    return [msgspec.structs.replace(task, settings=marked[id(task.settings)]) for task in tasks]
 
 
 def too_many_warnings(reports: Iterable[FileReport], tasks: Iterable[Task]) -> Iterator[str]:

@@ -23,29 +23,11 @@ _INIT = "init"
 _FORMATS = ("text", "json", "html")
 
 
-def _outputs(ctx: click.Context, parameter: click.Parameter, values: tuple[str, ...]) -> list[tuple[str, Path]]:
-    outputs = []
-    for value in values:
-        form, _, path = value.partition(":")
-        if form not in _FORMATS or path in ("", "-"):
-            raise click.BadParameter(f"{value!r}: expected FORMAT:FILE, the format one of {', '.join(_FORMATS)}")
-        outputs.append((form, Path(path)))
-    return outputs
-
-
 @click.command(short_help="Check the programs of a post for each control against a manifest.")
 @click.argument("manifest", metavar="FILE")
 @click.argument("folder", required=False, metavar="[FOLDER]", type=click.Path(file_okay=False, path_type=Path))
 @narrower("--format", "form", type=click.Choice(_FORMATS), default="text", show_default=True)
-@option(
-    "-o",
-    "--output",
-    "outputs",
-    multiple=True,
-    callback=_outputs,
-    metavar="FORMAT:FILE",
-    help="A report in a file, too.",
-)
+@options.outputs(_FORMATS)
 @option("--strict/--no-strict", default=False, help="Fail where a feature has no case on a control, too.")
 @click.option("--update", is_flag=True, help="Write the golden traces of cases that pass otherwise.")
 @option("--case", "names", multiple=True, metavar="TEXT", help="Only this case; may be repeated.")

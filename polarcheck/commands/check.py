@@ -46,18 +46,6 @@ _FORMATS = formats()
 _WITH_SUMMARY = ("text", "short", "github", "json", "jsonl")
 
 
-def _outputs(ctx: click.Context, parameter: click.Parameter, values: tuple[str, ...]) -> list[tuple[str, Path]]:
-    outputs = []
-    for value in values:
-        form, _, path = value.partition(":")
-        if form not in _FORMATS or not path:
-            raise click.BadParameter(f"{value!r}: expected FORMAT:FILE, the format one of {', '.join(_FORMATS)}")
-        if path == "-":
-            raise click.BadParameter(f"{value!r}: --format chooses the report on standard output")
-        outputs.append((form, Path(path)))
-    return outputs
-
-
 @click.command
 @click.argument("paths", nargs=-1, metavar="PATH...")
 @options.executing("programs")
@@ -70,15 +58,7 @@ def _outputs(ctx: click.Context, parameter: click.Parameter, values: tuple[str, 
     show_default=f"text for up to {_LONG} files, else short",
     help="Of the report on stdout.",
 )
-@option(
-    "-o",
-    "--output",
-    "outputs",
-    multiple=True,
-    callback=_outputs,
-    metavar="FORMAT:FILE",
-    help="A report in a file, too.",
-)
+@options.outputs(_FORMATS)
 @silencing.baseline
 @silencing.no_baseline
 @silencing.fail_on_stale
@@ -242,9 +222,9 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
     overwriting.refuse(written, tasks)
     run_settings = decisions.shared((task.settings for task in tasks), arguments.diff_base)
     if run_settings.differing:
-        from polarcheck.batch.decisions import shared
+        from polarcheck.batch.decisions import with_own_settings
 
-        _, tasks = shared(tasks)
+        tasks = with_own_settings(tasks)
     tasks = narrowed(tasks, arguments.diff_base, arguments.changed, arguments.max_size, not arguments.quiet)
     if arguments.lists_files:
         show(show_files.text(arguments.form or "text", tasks, skipped).encode())

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -48,6 +49,33 @@ def many(*names: str, **attributes: Any) -> Decorator:
 
 def _listed(ctx: click.Context, parameter: click.Parameter, values: tuple[str, ...]) -> tuple[str, ...]:
     return tuple(name for value in values for name in value.replace(",", " ").split())
+
+
+def outputs(formats: Sequence[str]) -> Decorator:
+    """Return the option --output, which may be repeated: a format and a file each."""
+    return option(
+        "-o",
+        "--output",
+        "outputs",
+        multiple=True,
+        callback=partial(_outputs, formats),
+        metavar="FORMAT:FILE",
+        help="A report in a file, too.",
+    )
+
+
+def _outputs(
+    formats: Sequence[str], ctx: click.Context, parameter: click.Parameter, values: tuple[str, ...]
+) -> list[tuple[str, Path]]:
+    reports = []
+    for value in values:
+        form, _, path = value.partition(":")
+        if form not in formats or not path:
+            raise click.BadParameter(f"{value!r}: expected FORMAT:FILE, the format one of {', '.join(formats)}")
+        if path == "-":
+            raise click.BadParameter(f"{value!r}: --format chooses the report on standard output")
+        reports.append((form, Path(path)))
+    return reports
 
 
 def encoding(what: str) -> Decorator:

@@ -63,7 +63,7 @@ def decided(
     """
     job = merged.job
     values: dict[str, Any] = {key: getattr(job, key) for key in _PLAIN}
-    values |= {key: given for key in _PLAIN if (given := options[key]) is not None}
+    values |= {key: options[key] for key in _PLAIN if options[key] is not None}
     # --select counts in place of what the job selects and ignores.
     values["select"] = [*options["select"]] or names_of(job.select)
     values["ignore"] = [*([] if options["select"] else names_of(job.ignore)), *options["ignore"]]
