@@ -76,6 +76,7 @@ def hexagon(*, blocks: list[str] | None = None, **more: Any) -> SectionPicture:
         share=[rate / 500.0] * count,
         begin=[number * time for number in range(count)],
         time=[time] * count,
+        center=[None] * count,
     )
     rates = Rates(
         t=[(number + part) * time for number in range(count) for part in (0.0, 0.5, 1.0)],

@@ -30,6 +30,23 @@ class Points(msgspec.Struct, frozen=True, kw_only=True):
     move: list[int | None]
 
 
+class Writing(msgspec.Struct, frozen=True, kw_only=True):
+    """
+    How the program writes a point of the plane.
+
+    linear, virtual: what stands before the numbers, as X and C, Y or C2=.
+    virtual_diameter: the virtual axis is written as a diameter.
+    origin: the zero of the program on the plane, [x, c] [mm]; null where the section changes it or it is not known.
+    turn: the angle of the program's axes on the plane [deg].
+    """
+
+    linear: str = "X"
+    virtual: str = "C"
+    virtual_diameter: bool = False
+    origin: tuple[float, float] | None = (0.0, 0.0)
+    turn: float = 0.0
+
+
 class MoveTable(msgspec.Struct, frozen=True, kw_only=True):
     """
     The moves of the tool center in a section, in order; in moves of Z alone x and c stand still.
@@ -47,6 +64,7 @@ class MoveTable(msgspec.Struct, frozen=True, kw_only=True):
     share: c_feed as a share of the limit of C, null without a limit.
     begin: the start in the section, as in Rates [s].
     time: the duration [s].
+    center: [x, c] of the center of an arc [mm], null for other moves.
     """
 
     line: list[int]
@@ -64,6 +82,7 @@ class MoveTable(msgspec.Struct, frozen=True, kw_only=True):
     share: list[float | None]
     begin: list[float | None]
     time: list[float | None]
+    center: list[tuple[float, float] | None]
 
 
 class Rates(msgspec.Struct, frozen=True, kw_only=True):
@@ -167,6 +186,7 @@ class SectionPicture(msgspec.Struct, frozen=True, kw_only=True):
     move_count: the number of all moves.
     makes: the shapes that it makes, all depths together, as in `polarcheck part`, with what is left standing.
     remarks: what is not drawn, and why; what is drawn as meant and not as the control reads it.
+    writing: how the program writes a point.
     """
 
     title: str
@@ -195,6 +215,7 @@ class SectionPicture(msgspec.Struct, frozen=True, kw_only=True):
     move_count: int = 0
     makes: list[str] = []
     remarks: list[str] = []
+    writing: Writing = Writing()
 
 
 class Picture(msgspec.Struct, frozen=True, kw_only=True):
