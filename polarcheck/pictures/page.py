@@ -86,10 +86,10 @@ def _hash(script: str) -> str:
 
 def _data(pictures: Sequence[Picture]) -> str:
     """Return the data of the pictures as JSON that is safe in HTML, without what the page says in words already."""
+    names = ("findings", "sections", "source", "source_line", "source_lines")
     drawn = [
         {
-            "findings": _shown(picture.findings),
-            "sections": _shown(picture.sections),
+            **{name: _shown(getattr(picture, name)) for name in names},
             "order": (order := _order(picture.findings)),
             "numbers": _numbers(order),
         }
