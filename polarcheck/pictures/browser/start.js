@@ -4,6 +4,7 @@
 const VIEWS = [
   chosenView,
   movesView,
+  textsView,
 ];
 
 function start() {
