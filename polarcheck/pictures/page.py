@@ -70,7 +70,8 @@ def _hash(script: str) -> str:
 
 def _data(pictures: Sequence[Picture]) -> str:
     """Return the data of the pictures as JSON that is safe in HTML, without what the page says in words already."""
-    drawn = [{"findings": _shown(picture.findings), "sections": _shown(picture.sections)} for picture in pictures]
+    names = ("findings", "sections", "source", "source_line", "source_lines")
+    drawn = [{name: _shown(getattr(picture, name)) for name in names} for picture in pictures]
     return msgspec.json.encode(drawn).decode().translate(_IN_SCRIPT)
 
 
