@@ -14,6 +14,34 @@ function clockOf(seconds) {
   return `${Math.floor(tenths / 600)}:${((tenths % 600) / 10).toFixed(1).padStart(4, "0")}`;
 }
 
+/** The players of all sections of a program; each is made as its section is first shown. */
+function playersView(root, picture, state, program, sections) {
+  const players = [];
+  function playerOf(place) {
+    if (!players[place]) {
+      const next = place + 1 < sections.views.length ? () => {
+        state.choose({ program, section: place + 1, move: null });
+        return playerOf(place + 1);
+      } : null;
+      players[place] = playerView(sections.views[place].root, program, place, picture.sections[place], state, next);
+    }
+    return players[place];
+  }
+  const show = ({ section }) => {
+    if (section !== null && sections.views[section]) {
+      playerOf(section).show();
+    }
+  };
+  state.subscribe((chosen, before) => {
+    if (chosen.program === program && (chosen.section !== before.section || chosen.view !== before.view || chosen.program !== before.program)) {
+      show(chosen);
+    }
+  });
+  if (sections.views.length) {
+    playerOf(0);
+  }
+}
+
 /**
  * The player of a section.
  *
@@ -236,7 +264,14 @@ function playerView(root, program, place, section, state, next) {
   }
 
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", recolor);
-  return { open: () => { open(); redraw(); }, play, recolor };
+  return {
+    play,
+    /** Draw what is in sight. */
+    show() {
+      open();
+      redraw();
+    },
+  };
 }
 
 /** What a key belongs to where the focus is there. */
