@@ -4,6 +4,7 @@
 const VIEWS = [
   chosenView,
   movesView,
+  playersView,
 ];
 
 function start() {

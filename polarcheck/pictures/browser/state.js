@@ -15,9 +15,9 @@ function pageState(programs) {
   const views = [];
 
   function ofFinding(program, place) {
-    const { section, move, line } = programs[program].findings[place];
-    const { sections } = programs[program];
-    return section === null || !sections[section] ? { move: null, line } : { section, move, line };
+    const { section, move, line, is_beside: isBeside } = programs[program].findings[place];
+    const isDrawn = section !== null && programs[program].sections[section] !== undefined;
+    return isDrawn ? { section, move: isBeside ? null : move, line } : { move: null, line };
   }
 
   function ofMove(program, section, move) {
