@@ -76,6 +76,7 @@ def hexagon(*, blocks: list[str] | None = None, **more: Any) -> SectionPicture:
         share=[rate / 500.0] * count,
         begin=[number * time for number in range(count)],
         time=[time] * count,
+        center=[None] * count,
         jump=[False] * count,
         angle=[(30.0 + 60.0 * number, 90.0 + 60.0 * number) for number in range(count)],
     )

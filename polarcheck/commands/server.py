@@ -54,12 +54,14 @@ def _serve(no_config: bool, trust: tuple[Path, ...], arguments: dict[str, Any]) 
         raise UsageError(f"standard input or output: {error.strerror}: an editor starts the server") from None
     if os.isatty(streams.source):
         say("an editor starts the server, and speaks to it over standard input; Ctrl-C ends it")
+    from polarcheck.server.features import register
     from polarcheck.server.session import Server
 
     # The server runs for hours, so garbage is collected, which other commands leave to the end of the process.
     gc.enable()
     keep_within_memory()
     session = Server(_Settings(no_config, arguments), _trusted(trust, arguments))
+    register(session)
     return process.serve(session, streams)
 
 

@@ -7,7 +7,7 @@ from typing import Any, cast, get_args
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Points, Rows, States
+from polarcheck.arrays import Floats, Mask, Points, Rows, States, is_among
 from polarcheck.checking.places import block_in_line
 from polarcheck.columns.trace import Trace
 from polarcheck.geometry.cutter_compensation.compensation import Phase
@@ -151,6 +151,7 @@ class SectionMoves:
             share=numbers_of(self.c_feed[chosen] / limit, RATE + 1),
             begin=numbers_of(self.begin[chosen], TIME),
             time=numbers_of(self.time[chosen], TIME),
+            center=_centers(moves.kind[chosen], moves.center[chosen]),
             jump=self.jump[chosen].tolist(),
             angle=list(zip(*(numbers_of(angle[chosen], RATE) for angle in moves.c_angles), strict=True)),
         )
@@ -192,6 +193,16 @@ def _with_standing(trace: Trace, dynamics: Dynamics) -> tuple[Moves, Rows]:
     }
     columns = {name: np.insert(getattr(moves, name), at, values) for name, values in still.items()}
     return Moves(entry=moves.entry, c_axis=moves.c_axis, **columns), np.insert(np.arange(len(moves)), at, -1)
+
+
+def _centers(kind: States, center: Points) -> list[tuple[float, float] | None]:
+    """Return the center of each arc [mm], None for other moves."""
+    is_arc = is_among(kind, (Motion.CW, Motion.CCW)) & ~np.isnan(center)
+    rounded = np.round(center, LENGTH) + 0.0
+    return [
+        (x, c) if known else None
+        for x, c, known in zip(rounded.real.tolist(), rounded.imag.tolist(), is_arc.tolist(), strict=True)
+    ]
 
 
 def _sequence_numbers(trace: Trace) -> dict[int, str]:

@@ -33,6 +33,23 @@ class Points(msgspec.Struct, frozen=True, kw_only=True):
     move: list[int | None]
 
 
+class Writing(msgspec.Struct, frozen=True, kw_only=True):
+    """
+    How the program writes a point of the plane.
+
+    linear, virtual: what stands before the numbers, as X and C, Y or C2=.
+    virtual_diameter: the virtual axis is written as a diameter.
+    origin: the zero of the program on the plane, [x, c] [mm]; null where the section changes it or it is not known.
+    turn: the angle of the program's axes on the plane [deg].
+    """
+
+    linear: str = "X"
+    virtual: str = "C"
+    virtual_diameter: bool = False
+    origin: tuple[float, float] | None = (0.0, 0.0)
+    turn: float = 0.0
+
+
 class MoveTable(msgspec.Struct, frozen=True, kw_only=True):
     """
     The moves of the tool center in a section, in order; in moves of Z alone x and c stand still.
@@ -50,6 +67,7 @@ class MoveTable(msgspec.Struct, frozen=True, kw_only=True):
     share: c_feed as a share of the limit of C, null without a limit.
     begin: the start in the section, as in Rates [s].
     time: the duration [s].
+    center: [x, c] of the center of an arc [mm], null for other moves.
     jump: C would have to turn at once at the center: the move passes it, or begins there in another direction.
     angle: C as the control shows it, before and after [deg].
     """
@@ -69,6 +87,7 @@ class MoveTable(msgspec.Struct, frozen=True, kw_only=True):
     share: list[float | None]
     begin: list[float | None]
     time: list[float | None]
+    center: list[tuple[float, float] | None]
     jump: list[bool]
     angle: list[tuple[float | None, float | None]]
 
@@ -213,6 +232,7 @@ class SectionPicture(msgspec.Struct, frozen=True, kw_only=True):
     move_count: the number of all moves.
     makes: the shapes that it makes, all depths together, as in `polarcheck part`, with what is left standing.
     remarks: what is not drawn, and why; what is drawn as meant and not as the control reads it.
+    writing: how the program writes a point.
     frame: [x0, c0, x1, c1] of all that is drawn, with the cutter, the stock and the center [mm].
     entry: C where the x of the plane lies on the X axis, which is C at G12.1 [deg].
     entry_known: False if nothing says C there, and it is taken as 0.
@@ -248,6 +268,7 @@ class SectionPicture(msgspec.Struct, frozen=True, kw_only=True):
     move_count: int = 0
     makes: list[str] = []
     remarks: list[str] = []
+    writing: Writing = Writing()
     frame: tuple[float, float, float, float] = (-1.0, -1.0, 1.0, 1.0)
     entry: float = 0.0
     entry_known: bool = True

@@ -25,6 +25,7 @@ from polarcheck.pictures.moves import LENGTH, POSITIONING, RATE, TIME, SectionMo
 from polarcheck.pictures.parts import parts
 from polarcheck.pictures.paths import Chords
 from polarcheck.pictures.picture import Mark, Points, Rates, SectionPicture
+from polarcheck.pictures.writing import writing
 from polarcheck.table.finished import Level
 from polarcheck.table.moves import Moves
 from polarcheck.table.overcuts import curves_of
@@ -133,6 +134,7 @@ def section_picture(
         marks=list(extras.marks),
         makes=list(extras.makes),
         remarks=_remarks(len(chosen), len(listed), as_meant(trace, section)),
+        writing=writing(trace, section),
         entry=round(float(trace.path.section_entry[section]), RATE),
         entry_known=bool(trace.path.knows_section_entry[section]),
         sense=c_axis.sense,

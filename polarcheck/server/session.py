@@ -1,4 +1,4 @@
-"""The session with an editor: registers the features of the server, and hands each to its module."""
+"""The session with an editor: its documents and folders, and what the modules in `features/` are built on."""
 
 from __future__ import annotations
 
@@ -11,12 +11,13 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from lsprotocol import types
 from pygls.lsp.server import LanguageServer
-from pygls.protocol import LanguageServerProtocol, lsp_method
 
 from polarcheck import __version__
 from polarcheck.reading.excerpt import shortened, visible
 from polarcheck.server.buffers import Buffer, Buffers
+from polarcheck.server.documents import Documents
 from polarcheck.server.open_text import OpenText, path_of
+from polarcheck.server.protocol import Protocol
 
 if TYPE_CHECKING:
     from polarcheck.server.judged import Judged, SettingsOf
@@ -31,27 +32,6 @@ _NO_PROGRAMS = (".toml", ".json", ".md", ".py")
 Result = TypeVar("Result")
 
 
-class Protocol(LanguageServerProtocol):
-    """The protocol with our own documents: those of pygls end lines where editors do not, as at U+0085."""
-
-    _server: Server
-
-    @lsp_method(types.TEXT_DOCUMENT_DID_OPEN)
-    def lsp_text_document__did_open(self, params: types.DidOpenTextDocumentParams) -> None:
-        """Handle an opened document."""
-        self._server.opened(params.text_document)
-
-    @lsp_method(types.TEXT_DOCUMENT_DID_CHANGE)
-    def lsp_text_document__did_change(self, params: types.DidChangeTextDocumentParams) -> None:
-        """Handle a changed document."""
-        self._server.changed(params)
-
-    @lsp_method(types.TEXT_DOCUMENT_DID_CLOSE)
-    def lsp_text_document__did_close(self, params: types.DidCloseTextDocumentParams) -> None:
-        """Handle a closed document."""
-        self._server.closed(params.text_document.uri)
-
-
 class Server(LanguageServer):
     """
     A session with one editor.
@@ -59,6 +39,7 @@ class Server(LanguageServer):
     settings_of: returns the settings of a program; raises a PolarcheckError.
     trusted: folders outside the workspace from which files may be opened, too.
     buffers: the open documents.
+    published: called with each document and the result of its check, once its diagnostics are sent.
     """
 
     def __init__(self, settings_of: SettingsOf, trusted: Sequence[Path] = ()) -> None:
@@ -69,7 +50,8 @@ class Server(LanguageServer):
         self._loop: asyncio.AbstractEventLoop | None = None
         self._polling: asyncio.Task[None] | None = None
         self.buffers = Buffers(settings_of, self.folders_of, self._publish, self._report_bug)
-        _register(self)
+        self.documents = Documents(self.buffers, settings_of, self.folders_of)
+        self.published: list[Callable[[Buffer, Judged], None]] = []
 
     # ---- what may be opened ----
 
@@ -122,14 +104,8 @@ class Server(LanguageServer):
         if buffer.judged is not judged:
             return
         self.text_document_publish_diagnostics(types.PublishDiagnosticsParams(buffer.uri, marks, buffer.version))
-        if self._refreshes_lenses:
-            self.workspace_code_lens_refresh(None)
-
-    @property
-    def _refreshes_lenses(self) -> bool:
-        of_workspace = self.client_capabilities.workspace
-        lens = of_workspace.code_lens if of_workspace is not None else None
-        return bool(lens is not None and lens.refresh_support)
+        for notify in self.published:
+            notify(buffer, judged)
 
     # ---- requests ----
 
@@ -195,6 +171,7 @@ class Server(LanguageServer):
         for uri in list(self.buffers.open):
             self.buffers.drop(uri)
         self.buffers.worker.end()
+        self.documents.end()
 
 
 def _load() -> None:
@@ -203,114 +180,3 @@ def _load() -> None:
     from polarcheck.server import judged  # noqa: F401
 
     load_all()
-
-
-def _register(server: Server) -> None:
-    """Register the features as methods of the protocol."""
-    feature = server.feature
-
-    @feature(types.INITIALIZE)
-    def initialize(params: types.InitializeParams) -> None:
-        server.find_roots()
-
-    @feature(types.INITIALIZED)
-    async def initialized(params: types.InitializedParams) -> None:
-        await server.begin()
-
-    @feature(types.WORKSPACE_DID_CHANGE_WORKSPACE_FOLDERS)
-    def folders_changed(params: types.DidChangeWorkspaceFoldersParams) -> None:
-        server.find_roots()
-        for buffer in server.buffers.open.values():
-            server.buffers.touch(buffer, 0.0)
-
-    @feature(types.WORKSPACE_DID_CHANGE_WATCHED_FILES)
-    async def files_changed(params: types.DidChangeWatchedFilesParams) -> None:
-        await server.buffers.check_stale()
-
-    @feature(types.WORKSPACE_DID_CHANGE_CONFIGURATION)
-    def configured(params: types.DidChangeConfigurationParams) -> None:
-        """Do nothing: settings are in polarcheck.toml and on the command line, never in the editor."""
-
-    @feature(types.TEXT_DOCUMENT_DID_SAVE)
-    async def saved(params: types.DidSaveTextDocumentParams) -> None:
-        await server.buffers.check_stale()
-
-    @feature(types.TEXT_DOCUMENT_HOVER)
-    async def hover(params: types.HoverParams) -> types.Hover | None:
-        def find(judged: Judged) -> types.Hover | None:
-            from polarcheck.server.hover import hover
-
-            of_text = server.client_capabilities.text_document
-            shown = of_text.hover.content_format if of_text is not None and of_text.hover is not None else None
-            return hover(judged, params.position, server.prefers_markdown(shown))
-
-        return await server.ask(params.text_document.uri, find, None, soon=True)
-
-    @feature(types.TEXT_DOCUMENT_CODE_LENS, types.CodeLensOptions())
-    async def code_lens(params: types.CodeLensParams) -> list[types.CodeLens]:
-        def find(judged: Judged) -> list[types.CodeLens]:
-            from polarcheck.server.outline import code_lenses
-
-            return code_lenses(judged)
-
-        return await server.ask(params.text_document.uri, find, [])
-
-    @feature(types.TEXT_DOCUMENT_DOCUMENT_SYMBOL)
-    async def document_symbol(params: types.DocumentSymbolParams) -> list[types.DocumentSymbol]:
-        def find(judged: Judged) -> list[types.DocumentSymbol]:
-            from polarcheck.server.outline import symbols
-
-            return symbols(judged)
-
-        return await server.ask(params.text_document.uri, find, [])
-
-    @feature(types.TEXT_DOCUMENT_DEFINITION)
-    async def definition(params: types.DefinitionParams) -> list[types.Location]:
-        def find(judged: Judged) -> list[types.Location]:
-            from polarcheck.server.definition import definition
-
-            return definition(judged, params.text_document.uri, params.position)
-
-        return await server.ask(params.text_document.uri, find, [], soon=True)
-
-    @feature(
-        types.TEXT_DOCUMENT_CODE_ACTION, types.CodeActionOptions(code_action_kinds=[types.CodeActionKind.QuickFix])
-    )
-    async def code_action(params: types.CodeActionParams) -> list[types.CodeAction]:
-        wanted = params.context.only
-        if wanted and not any(
-            types.CodeActionKind.QuickFix.value.startswith(str(kind)) for kind in map(_value, wanted)
-        ):
-            return []
-        uri = params.text_document.uri
-        buffer = server.buffers.open.get(uri)
-        version = buffer.version if buffer is not None else None
-
-        def find(judged: Judged) -> list[types.CodeAction]:
-            from polarcheck.server.actions import actions
-
-            of_workspace = server.client_capabilities.workspace
-            edits = of_workspace.workspace_edit if of_workspace is not None else None
-            return actions(judged, uri, version, params.range, bool(edits is not None and edits.document_changes))
-
-        return await server.ask(uri, find, [], soon=True)
-
-    @feature(types.TEXT_DOCUMENT_COMPLETION, types.CompletionOptions(trigger_characters=[" "], resolve_provider=True))
-    async def completion(params: types.CompletionParams) -> list[types.CompletionItem]:
-        from polarcheck.server.allowing import completions
-
-        # Completion uses the text alone, since no check finishes while somebody types.
-        buffer = server.buffers.open.get(params.text_document.uri)
-        if buffer is None:
-            return []
-        return await server.buffers.worker.do(completions, buffer.text, params.position, buffer.judged)
-
-    @feature(types.COMPLETION_ITEM_RESOLVE)
-    async def resolve(item: types.CompletionItem) -> types.CompletionItem:
-        from polarcheck.server.allowing import with_page
-
-        return await server.buffers.worker.do(with_page, item, True)
-
-
-def _value(kind: types.CodeActionKind | str) -> str:
-    return str(kind.value) if isinstance(kind, types.CodeActionKind) else kind
