@@ -34,12 +34,29 @@ _SCRIPTS = (
     "pins",
     "section",
     "workbench",
+    "timeline",
+    "metal",
+    "machine",
+    "canvas",
+    "gauges",
+    "player",
     "findings",
-    "texts",
+    "positions",
+    "shapes",
+    "distances",
+    "zoom",
+    "source",
+    "measuring",
+    "asked",
+    "sides",
+    "links",
+    "tools",
+    "keys",
     "choosing",
     "printing",
     "start",
 )
+_STYLES = ("page", "player", "tools")
 #: Only the scripts of this page run, and only a library beside it is loaded. plotly sets styles.
 _POLICY = (
     "default-src 'none'; script-src {}; style-src 'unsafe-inline'; img-src data: blob:; base-uri 'none'; "
@@ -51,18 +68,25 @@ _RANK = {"error": 3, "warning": 2, "note": 1}
 _NO_SCRIPTS = "The pictures need a browser that runs scripts; all findings are in the table."
 
 
-def page(pictures: Sequence[Picture], library: str = "", beside: str = "", notes: Iterable[str] = ()) -> str:
+def page(
+    pictures: Sequence[Picture],
+    library: str = "",
+    beside: str = "",
+    notes: Iterable[str] = (),
+    sources: str = "'self' file:",
+) -> str:
     """
     Return the page of one program, or of several one below the other.
 
     library: plotly's JavaScript, to be included in the page.
     beside: without `library`, the name of the file with it in the folder of the page.
     notes: what the page says behind the programs, in a line each.
+    sources: without `library`, the sources from which the policy of the page allows to load it.
     """
     scripts = "\n".join(_part(f"{name}.js") for name in _SCRIPTS)
     script = f'\n(() => {{\n"use strict";\n{scripts}}})();\n'
     included = library.replace("</script", "<\\/script")
-    allowed = [_hash(script), _hash(included) if included else "'self' file:"]
+    allowed = [_hash(script), _hash(included) if included else sources]
     loaded = f"<script>{included}</script>" if included else f'<script src="{_text(beside)}"></script>'
     return Template(_part("page.html")).substitute(
         policy=_POLICY.format(" ".join(allowed)),
@@ -83,7 +107,7 @@ def _style() -> str:
     """Return the style; its dark colours count where the system is dark, and where the switch of the page says so."""
     dark = _part("dark.css")
     return (
-        _part("page.css")
+        "\n".join(_part(f"{name}.css") for name in _STYLES)
         + f'\n@media screen and (prefers-color-scheme: dark) {{ :root:not([data-theme="light"]) {{ {dark} }} }}\n'
         + f'@media screen {{ :root[data-theme="dark"] {{ {dark} }} }}'
     )

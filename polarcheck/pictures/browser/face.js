@@ -3,19 +3,20 @@
 const DASHES = { positioning: "dash", "start up": "dashdot", cancel: "dashdot", unknown: "dot" };
 /** These buttons alone: by itself the library offers one that sends the picture to its maker. */
 const BUTTONS = [["toImage", "zoom2d", "pan2d", "zoomIn2d", "zoomOut2d", "resetScale2d"]];
-const OPTIONS = { displaylogo: false, responsive: true, modeBarButtons: BUTTONS };
+const OPTIONS = { displaylogo: false, responsive: true, modeBarButtons: BUTTONS, scrollZoom: true, doubleClick: false };
 /** So many arrows tell the direction of a path. */
 const ARROWS = 14;
 /** So many points of it, at least, can be pointed at. */
 const POINTED = 3000;
 
 /** All that is drawn of a section, but for what is chosen. */
-function faceTraces(section, level, coloring) {
+function faceTraces(section, level, coloring, isAsked = true) {
   const units = unitsOf(section);
   return [
     ...bar(section, units),
     ...parts(section, units, level),
     ...surroundings(section, units),
+    ...(isAsked ? askedTraces(section, units) : []),
     line("programmed contour", section.programmed.x.map(units.x), section.programmed.c.map(units.c), { color: color("--ink"), width: 1 }),
     ...toolPath(section, units, coloring),
     ...directions(section, units),
@@ -278,7 +279,7 @@ function toPointAt(section, units) {
 }
 
 /** The chosen move and the cutter at its end, as shapes: these alone are drawn again where another one is chosen. */
-function chosenOnFace(section, move) {
+function chosenOnFace(section, move, hasCutter) {
   if (move === null) {
     return [];
   }
@@ -291,7 +292,7 @@ function chosenOnFace(section, move) {
   ] : [];
   const [x, c] = section.moves.end[move];
   const radius = section.radius;
-  if (x !== null && c !== null && radius !== null && section.moves.role[move] !== "unknown") {
+  if (hasCutter && x !== null && c !== null && radius !== null && section.moves.role[move] !== "unknown") {
     shapes.push({
       type: "circle", x0: units.x(x - radius), x1: units.x(x + radius), y0: units.c(c - radius), y1: units.c(c + radius),
       line: { color: color("--ink"), width: 1.5 }, fillcolor: color("--cutter"), layer: "above",
@@ -354,7 +355,7 @@ function faceLayout(section) {
   const { "xaxis.range": x, "yaxis.range": y } = wholeFace(section);
   return {
     margin: isNarrow ? { l: 44, r: 6, t: 6, b: 38 } : { l: 56, r: 10, t: 10, b: 42 }, paper_bgcolor: color("--paper"), plot_bgcolor: color("--paper"),
-    hovermode: "closest", hoverdistance: 24, font: { family: "system-ui, sans-serif", size: isNarrow ? 10 : 12, color: color("--ink") }, dragmode: "zoom",
+    hovermode: "closest", hoverdistance: 24, font: { family: "system-ui, sans-serif", size: isNarrow ? 10 : 12, color: color("--ink") }, dragmode: "pan",
     modebar: { bgcolor: "rgba(0,0,0,0)", color: color("--quiet"), activecolor: color("--ink") }, showlegend: false,
     xaxis: { ...axis, range: x, title: { text: `X [${units.name}, ${section.diameter ? "diameter" : "radius"}]`, standoff: 6 } },
     yaxis: { ...axis, range: y, title: { text: `C [${units.name}]`, standoff: 4 }, scaleanchor: "x", scaleratio: units.ratio },

@@ -2,7 +2,7 @@
 
 /** Below this share of its limit a curve would be flattened by the line of the limit, which then stands as words. */
 const NEAR_LIMIT = 0.3;
-const RATE_OPTIONS = { displaylogo: false, responsive: true, displayModeBar: false };
+const RATE_OPTIONS = { displaylogo: false, responsive: true, displayModeBar: false, doubleClick: "reset+autosize" };
 
 function rateRows(section) {
   const units = unitsOf(section);

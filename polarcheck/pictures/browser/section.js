@@ -21,7 +21,12 @@ function sectionView(root, picture, state, program, place) {
   face.ofSection = section;
 
   function layoutOfFace() {
-    return { ...faceLayout(section), shapes: chosenOnFace(section, moveHere()) };
+    return { ...faceLayout(section), shapes: shapesOnFace() };
+  }
+
+  /** The chosen move; the player draws it, and the cutter at a time, on its canvas. */
+  function shapesOnFace() {
+    return state.chosen.playing ? [] : chosenOnFace(section, moveHere(), state.chosen.time === null);
   }
 
   function moveHere() {
@@ -30,7 +35,7 @@ function sectionView(root, picture, state, program, place) {
   }
 
   function traces() {
-    return faceTraces(section, coloring.level, coloring.name).map((trace) =>
+    return faceTraces(section, coloring.level, coloring.name, coloring.isAsked).map((trace) =>
       (hidden.has(trace.legendgroup || trace.name) ? { ...trace, visible: "legendonly" } : trace));
   }
 
@@ -87,10 +92,10 @@ function sectionView(root, picture, state, program, place) {
   }
 
   function showChosen() {
-    if (isDrawn && !root.hidden && !state.chosen.playing) {
-      Plotly.relayout(face, { shapes: chosenOnFace(section, moveHere()) });
+    if (isDrawn && !root.hidden) {
+      Plotly.relayout(face, { shapes: shapesOnFace() });
       if (hasRates) {
-        Plotly.relayout(rates, { shapes: chosenInRates(section, moveHere()) });
+        Plotly.relayout(rates, { shapes: chosenInRates(section, state.chosen.playing ? null : moveHere()) });
       }
     }
   }
@@ -146,8 +151,13 @@ function sectionView(root, picture, state, program, place) {
   rates.hidden = !hasRates;
   root.querySelector(".drawings").hidden = false;
   state.subscribe((chosen, before) => {
-    if (["program", "section", "move", "finding", "playing"].some((name) => chosen[name] !== before[name])) {
+    // One change of a plot takes longer than a frame of the player has.
+    const goesOn = chosen.playing && before.playing;
+    if (!goesOn && ["program", "section", "move", "finding", "time", "playing"].some((name) => chosen[name] !== before[name])) {
       showChosen();
+    }
+    if (chosen.view !== before.view && isDrawn && !root.hidden) {
+      Plotly.Plots.resize(face);
     }
   });
   const view = {

@@ -10,6 +10,8 @@ const ON_CIRCLE = 2e-5;
 /** Chords of an arc lie this near it: a length [mm], and a share of its radius. Flats of a polygon do not. */
 const SAG_LEAST = 0.03;
 const SAG = 5e-4;
+/** Points are taken within this share of the reach: walls between near corners can be taken, too. */
+const POINT_REACH = 0.75;
 /** Blocks of straight moves, at least, of which an arc is read. */
 const BLOCKS_OF_ARC = 6;
 
@@ -130,7 +132,7 @@ function arcsOfChords(chords, name, layer) {
     const last = endOfArc(way, place);
     if (last >= place + BLOCKS_OF_ARC) {
       const lines = `lines ${chords[place].line} to ${chords[last - 1].line}`;
-      shapes.push(arcThrough(way.slice(place, last + 1), circleThrough(way.slice(place, last + 1)), `${name}, ${lines}`, layer));
+      shapes.push(arcThrough(way.slice(place, last + 1), circleThrough(threeOf(way, place, last)), `${name}, ${lines}`, layer));
       place = last;
     } else {
       shapes.push(lineShape(way[place], way[place + 1], `${name}, line ${chords[place].line}`, layer));
@@ -185,8 +187,7 @@ function shapesOfRing(ring, name, layer, isClosed = true) {
   while (place + 1 < way.length) {
     const last = endOfArc(way, place);
     if (last > place + 2) {
-      const chords = way.slice(place, last + 1);
-      shapes.push(arcThrough(chords, circleThrough(chords), name, layer));
+      shapes.push(arcThrough(way.slice(place, last + 1), circleThrough(threeOf(way, place, last)), name, layer));
       place = last;
     } else {
       shapes.push(lineShape(way[place], way[place + 1], name, layer));
@@ -227,7 +228,7 @@ function isOneArc(way, first, last) {
   if (count < 3) {
     return true;
   }
-  const center = circleThrough([way[first], way[first + (count >> 1)], way[last]]);
+  const center = circleThrough(threeOf(way, first, last));
   if (center === null) {
     return false;
   }
@@ -241,11 +242,14 @@ function isOneArc(way, first, last) {
   );
 }
 
-/** The center of the circle through the first, the middle and the last of points; null if they lie on a line. */
-function circleThrough(points) {
-  const isClosed = distanceOf(points[0], points[points.length - 1]) < 1e-9;
-  const last = isClosed ? Math.floor((2 * points.length) / 3) : points.length - 1;
-  const [a, b, d] = [points[0], points[last >> 1], points[last]];
+/** The first, a middle and the last point between two places; of a closed ring the last one but one. */
+function threeOf(way, first, last) {
+  const end = distanceOf(way[first], way[last]) < 1e-9 ? last - 1 : last;
+  return [way[first], way[(first + end) >> 1], way[end]];
+}
+
+/** The center of the circle through three points; null if they lie on a line. */
+function circleThrough([a, b, d]) {
   const [p, q] = [minus(b, a), minus(d, a)];
   const twice = 2 * cross(p, q);
   if (Math.abs(twice) <= 1e-9 * sizeOf(p) * sizeOf(q)) {
@@ -275,12 +279,20 @@ function nearestOn(shape, point) {
   return distanceOf(point, ends[0]) <= distanceOf(point, ends[1]) ? ends[0] : ends[1];
 }
 
+/** The shape, with the box that it lies in: x, c of its lower and of its upper corner. */
+function boxed(shape) {
+  const points = shape.kind === "line" ? [shape.from, shape.to]
+    : [-1, 1].map((side) => [shape.center[0] + side * shape.radius, shape.center[1] + side * shape.radius]);
+  shape.box = [0, 1].flatMap((end) => [0, 1].map((axis) => Math[end ? "max" : "min"](points[0][axis], points[1][axis])));
+  return shape;
+}
+
 /** What is nearest to a point within a reach [mm]: a point before a wall; of walls in one place the first. */
 function nearestShape(points, walls, place, reach) {
   let found = null;
-  let least = reach;
+  let least = POINT_REACH * reach;
   for (const shape of points) {
-    const away = distanceOf(shape.at, place);
+    const away = Math.hypot(shape.at[0] - place[0], shape.at[1] - place[1]);
     if (away < least) {
       [found, least] = [shape, away];
     }
@@ -289,10 +301,15 @@ function nearestShape(points, walls, place, reach) {
     return { shape: found, at: found.at };
   }
   let at = place;
+  least = reach;
   for (const shape of walls) {
+    const { box } = shape;
+    if (place[0] < box[0] - least || place[1] < box[1] - least || place[0] > box[2] + least || place[1] > box[3] + least) {
+      continue;
+    }
     const on = nearestOn(shape, place);
     const away = distanceOf(on, place);
-    if (away < least - 1e-3 * reach) {
+    if (away < least - (found === null ? 0 : 0.01 * reach)) {
       [found, least, at] = [shape, away, on];
     }
   }
