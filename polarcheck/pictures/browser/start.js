@@ -24,6 +24,7 @@ function start() {
   );
   views.forEach((view) => inSight.observe(view.root));
   printable(views);
+  served(() => null, () => {});
 }
 
 start();
