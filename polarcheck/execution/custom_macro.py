@@ -26,7 +26,8 @@ from polarcheck.reading.excerpt import shortened
 
 _OUTPUTS: Final = ("BPRNT", "DPRNT", "POPEN", "PCLOS", "SETVN")
 _SHORT: Final = {"WH": "WHILE", "GO": "GOTO", "EN": "END", "TH": "THEN"} | {name[:2]: name for name in _OUTPUTS[:4]}
-_KEYWORD: Final = re.compile("|".join(["IF", "WHILE", "DO", "END", "GOTO", "THEN", *_OUTPUTS, *_SHORT]))
+#: The words of macro statements, also in their short forms.
+KEYWORD: Final = re.compile("|".join(["IF", "WHILE", "DO", "END", "GOTO", "THEN", *_OUTPUTS, *_SHORT]))
 _HEAD: Final = re.compile(r"/([1-9]?)|N([0-9]+)|[O:][0-9]")
 _DIGITS: Final = re.compile("[0-9]+")
 _SKIP: Final = re.compile("/([1-9]?)")
@@ -88,11 +89,11 @@ class _Reader:
 
     def keyword(self) -> str:
         """The macro word that stands here, spelled out; "" where there is none."""
-        match = _KEYWORD.match(self.text, self.at)
+        match = KEYWORD.match(self.text, self.at)
         return _SHORT.get(match[0], match[0]) if match else ""
 
     def take_keyword(self) -> str:
-        match = _KEYWORD.match(self.text, self.at)
+        match = KEYWORD.match(self.text, self.at)
         self.at = match.end() if match else self.at
         return _SHORT.get(match[0], match[0]) if match else ""
 

@@ -29,9 +29,15 @@ def read_high_level(block: str, machine: Machine, names: Names, read_macro: Call
 
     machine: has the codes and axes. names: the names of variables and tools so far. read_macro: reads custom macro.
     """
-    if ("#" in block or "[" in block or "=" not in block) and _CUSTOM_MACRO.search(_STRING.sub("", block)):
+    if is_custom_macro(block):
         return read_macro(block)
     return _Reader(block, machine, names).read_block()
+
+
+def is_custom_macro(block: str) -> bool:
+    """Return True for a block that is written in custom macro."""
+    has_signs = "#" in block or "[" in block or "=" not in block
+    return has_signs and _CUSTOM_MACRO.search(_STRING.sub("", block)) is not None
 
 
 class _Reader(SpokenBlock):

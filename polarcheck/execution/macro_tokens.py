@@ -45,10 +45,11 @@ GRAMMAR: Final = Grammar(
 )
 # The control takes the first two letters of a name for the whole; POW has no short form, since PO is POPEN.
 _SHORT: Final = {name[:2]: name for name in [*_FUNCTION_NAMES, "AND", "XOR"] if name not in ("POW", _WHOLE)}
-_NAMES: Final = sorted(
+#: Functions and operators of letters, also in their short forms, the longer first.
+NAMES: Final = sorted(
     [*_FUNCTION_NAMES, *(name for name in GRAMMAR.operators if name.isalpha()), *_SHORT], key=len, reverse=True
 )
-_TOKEN: Final = re.compile(rf"({NUMBER})|#([0-9]+)|(#_[A-Z0-9_]+)|({'|'.join(_NAMES)})|([-+*/,#\[\]])")
+_TOKEN: Final = re.compile(rf"({NUMBER})|#([0-9]+)|(#_[A-Z0-9_]+)|({'|'.join(NAMES)})|([-+*/,#\[\]])")
 
 _CAPITALS: Final = {ord(letter): ord(letter) - 32 for letter in "abcdefghijklmnopqrstuvwxyz"}
 

@@ -42,9 +42,15 @@ _FUNCTIONS: Final = {
 }
 #: Functions whose value is not known: DROUND rounds to the unit of the machine, NOT depends on the bits of a number.
 _NOT_CALCULATED: Final = frozenset(("NOT", "DROUND", "DFIX", "DFUP"))
-_NO_VALUES: Final = _COMPARISONS | {*_JOINS, "MOD", "IF", "GOTO", "CALL", "MODIN", "MODOUT", "RTS", "NOEX"}
+#: Names that are neither variables nor functions.
+NO_VALUES: Final = _COMPARISONS | {*_JOINS, "MOD", "IF", "GOTO", "CALL", "MODIN", "MODOUT", "RTS", "NOEX"}
 #: VZOFX, VTOFX[5]: a variable of the system.
 SYSTEM: Final = re.compile(r"V(?!C[0-9])[A-Z][A-Z0-9]*+")
+
+
+def is_function(name: str) -> bool:
+    """Return True for the name of a function, also of one whose value is not calculated."""
+    return name in _FUNCTIONS or name in _NOT_CALCULATED or name == "MOD"
 
 
 class Token(msgspec.Struct, frozen=True):
@@ -212,10 +218,10 @@ class Values:
             self.at += 1
             pieces.append((f"#{UNKNOWN}+0*", token.start, token.end))
             return True
-        if self.is_sign("[", 1) and token.text in (*_FUNCTIONS, *_NOT_CALCULATED, "MOD"):
+        if self.is_sign("[", 1) and is_function(token.text):
             self.function(pieces, opens)
             return True
-        if token.text in _FUNCTIONS or token.text in _NO_VALUES:
+        if token.text in _FUNCTIONS or token.text in NO_VALUES:
             return None
         self.at += 1
         if SYSTEM.fullmatch(token.text):

@@ -10,9 +10,13 @@ from collections.abc import Iterable
 from functools import cached_property
 from itertools import accumulate
 from pathlib import Path
+from typing import TYPE_CHECKING
 from urllib.parse import unquote_to_bytes
 
 from lsprotocol import types
+
+if TYPE_CHECKING:
+    from polarcheck.reading.source import Positions
 
 #: The line ends of editors; those of controls are in `reading.source`.
 _LINE_END = re.compile(r"\r\n|\n|\r")
@@ -89,6 +93,30 @@ class OpenText:
     def range(self, start: int, end: int) -> types.Range:
         """Return the range from an offset up to another one, exclusive."""
         return types.Range(self.position(start), self.position(max(start, end)))
+
+    def columns(self, starts: Positions, ends: Positions) -> tuple[Positions, Positions, Positions]:
+        """
+        Return the lines of offsets from 0, their characters, and the lengths up to other offsets, as the editor counts.
+
+        starts, ends: int[n]. What reaches over the end of its line ends there.
+        """
+        import numpy as np
+
+        heads = np.array(self._starts, np.int64)
+        lines = np.searchsorted(heads, starts, side="right") - 1
+        limits = np.append(heads[1:], len(self.text) + 1)[lines] - 1
+        ends = np.minimum(ends, np.maximum(limits, starts))
+        characters, lengths = starts - heads[lines], ends - starts
+        if not self.text.isascii():
+            name, width = _WIDTHS[self.units]
+            for index, (line, start, end) in enumerate(
+                zip(lines.tolist(), starts.tolist(), ends.tolist(), strict=True)
+            ):
+                before, inside = self.text[self._starts[line] : start], self.text[start:end]
+                if not (before.isascii() and inside.isascii()):
+                    characters[index] = len(before.encode(name)) // width
+                    lengths[index] = len(inside.encode(name)) // width
+        return lines, characters, lengths
 
     def changed(self, changes: Iterable[Change]) -> OpenText:
         """Return the text after changes, each applied to the result of the one before."""

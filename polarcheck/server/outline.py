@@ -1,4 +1,4 @@
-"""The outline of a document: its programs and polar sections; and a line above each section with its time and rates."""
+"""The lines above polar sections, with time, rates and radius of each."""
 
 from __future__ import annotations
 
@@ -7,11 +7,9 @@ from collections.abc import Iterable
 
 from lsprotocol import types
 
-from polarcheck.execution.programs import Program, find_programs
 from polarcheck.finding import PolarSection
 from polarcheck.machines.modal import MM_PER_INCH
 from polarcheck.reading.excerpt import visible
-from polarcheck.reading.words import Text
 from polarcheck.server.judged import Judged
 
 
@@ -21,11 +19,11 @@ def code_lenses(judged: Judged) -> list[types.CodeLens]:
         return []
     return [
         types.CodeLens(judged.text.line_range(line), types.Command(visible(summary(section, runs)), ""))
-        for line, (section, runs) in _by_line(judged.report.polar_sections).items()
+        for line, (section, runs) in sections_by_line(judged.report.polar_sections).items()
     ]
 
 
-def _by_line(sections: Iterable[PolarSection]) -> dict[int, tuple[PolarSection, int]]:
+def sections_by_line(sections: Iterable[PolarSection]) -> dict[int, tuple[PolarSection, int]]:
     """
     Return for each line where sections begin the one with the highest rate of C, and their number.
 
@@ -63,49 +61,3 @@ def _radius(section: PolarSection) -> str:
     is_inch = section.units == "inch"
     radius = section.radius / MM_PER_INCH if is_inch else section.radius
     return f"R {radius:.{4 if is_inch else 3}f} {section.units} (offset {section.offset}, {section.radius_source})"
-
-
-def symbols(judged: Judged) -> list[types.DocumentSymbol]:
-    """Return the programs of the document, each with its polar sections."""
-    programs = []
-    for text in judged.texts:
-        for program in find_programs(text).programs:
-            if program.file == 0 and program.first < program.end:
-                programs.append(_of_program(program, text, judged))
-    return programs
-
-
-def _of_program(program: Program, text: Text, judged: Judged) -> types.DocumentSymbol:
-    begins = judged.text.place_of(int(text.blocks.start[program.first]))
-    ends = judged.text.place_of(int(text.blocks.end[program.end - 1]))
-    name = f"O{program.number:04d}" if program.number is not None else program.name or "program"
-    channel = f"{text.source.channel} " if text.source.channel else ""
-    first, last = (int(text.blocks.line[block]) for block in (program.first, program.end - 1))
-    sections = judged.report.polar_sections if judged.report is not None else ()
-    inside = [
-        section
-        for section in sections
-        if first <= section.line <= last and (section.channel or "") == text.source.channel
-    ]
-    return types.DocumentSymbol(
-        name=visible(channel + name),
-        kind=types.SymbolKind.Function,
-        range=judged.text.range(begins, ends),
-        selection_range=judged.text.range(
-            begins, min(ends, judged.text.offset_of(first + 1) if last > first else ends)
-        ),
-        children=list(_of_sections(inside, last, judged)),
-    )
-
-
-def _of_sections(sections: Iterable[PolarSection], last: int, judged: Judged) -> Iterable[types.DocumentSymbol]:
-    for section, runs in _by_line(sections).values():
-        head = judged.text.line_range(section.line)
-        end = judged.text.line_range(min(max(section.end_line, section.line), last)).end
-        yield types.DocumentSymbol(
-            name=visible(judged.text.line_text(section.line).strip() or "polar section"),
-            detail=visible(summary(section, runs)),
-            kind=types.SymbolKind.Namespace,
-            range=types.Range(head.start, end),
-            selection_range=head,
-        )

@@ -15,6 +15,7 @@ from pygls.lsp.server import LanguageServer
 from polarcheck import __version__
 from polarcheck.reading.excerpt import shortened, visible
 from polarcheck.server.buffers import Buffer, Buffers
+from polarcheck.server.documents import Documents
 from polarcheck.server.open_text import OpenText, path_of
 from polarcheck.server.protocol import Protocol
 
@@ -49,6 +50,7 @@ class Server(LanguageServer):
         self._loop: asyncio.AbstractEventLoop | None = None
         self._polling: asyncio.Task[None] | None = None
         self.buffers = Buffers(settings_of, self.folders_of, self._publish, self._report_bug)
+        self.documents = Documents(self.buffers, settings_of, self.folders_of)
         self.published: list[Callable[[Buffer, Judged], None]] = []
 
     # ---- what may be opened ----
@@ -169,6 +171,7 @@ class Server(LanguageServer):
         for uri in list(self.buffers.open):
             self.buffers.drop(uri)
         self.buffers.worker.end()
+        self.documents.end()
 
 
 def _load() -> None:

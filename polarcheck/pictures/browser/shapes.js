@@ -10,6 +10,8 @@ const ON_CIRCLE = 2e-5;
 /** Chords of an arc lie this near it: a length [mm], and a share of its radius. Flats of a polygon do not. */
 const SAG_LEAST = 0.03;
 const SAG = 5e-4;
+/** Points are taken within this share of the reach: walls between near corners can be taken, too. */
+const POINT_REACH = 0.75;
 /** Blocks of straight moves, at least, of which an arc is read. */
 const BLOCKS_OF_ARC = 6;
 
@@ -227,7 +229,7 @@ function isOneArc(way, first, last) {
   if (count < 3) {
     return true;
   }
-  const center = circleThrough([way[first], way[first + (count >> 1)], way[last]]);
+  const center = circleThrough(way.slice(first, last + 1));
   if (center === null) {
     return false;
   }
@@ -244,7 +246,7 @@ function isOneArc(way, first, last) {
 /** The center of the circle through the first, the middle and the last of points; null if they lie on a line. */
 function circleThrough(points) {
   const isClosed = distanceOf(points[0], points[points.length - 1]) < 1e-9;
-  const last = isClosed ? Math.floor((2 * points.length) / 3) : points.length - 1;
+  const last = points.length - (isClosed ? 2 : 1);
   const [a, b, d] = [points[0], points[last >> 1], points[last]];
   const [p, q] = [minus(b, a), minus(d, a)];
   const twice = 2 * cross(p, q);
@@ -275,12 +277,20 @@ function nearestOn(shape, point) {
   return distanceOf(point, ends[0]) <= distanceOf(point, ends[1]) ? ends[0] : ends[1];
 }
 
+/** The shape, with the box that it lies in: x, c of its lower and of its upper corner. */
+function boxed(shape) {
+  const points = shape.kind === "line" ? [shape.from, shape.to]
+    : [-1, 1].map((side) => [shape.center[0] + side * shape.radius, shape.center[1] + side * shape.radius]);
+  shape.box = [0, 1].flatMap((end) => [0, 1].map((axis) => Math[end ? "max" : "min"](points[0][axis], points[1][axis])));
+  return shape;
+}
+
 /** What is nearest to a point within a reach [mm]: a point before a wall; of walls in one place the first. */
 function nearestShape(points, walls, place, reach) {
   let found = null;
-  let least = reach;
+  let least = POINT_REACH * reach;
   for (const shape of points) {
-    const away = distanceOf(shape.at, place);
+    const away = Math.hypot(shape.at[0] - place[0], shape.at[1] - place[1]);
     if (away < least) {
       [found, least] = [shape, away];
     }
@@ -289,10 +299,15 @@ function nearestShape(points, walls, place, reach) {
     return { shape: found, at: found.at };
   }
   let at = place;
+  least = reach;
   for (const shape of walls) {
+    const { box } = shape;
+    if (place[0] < box[0] - least || place[1] < box[1] - least || place[0] > box[2] + least || place[1] > box[3] + least) {
+      continue;
+    }
     const on = nearestOn(shape, place);
     const away = distanceOf(on, place);
-    if (away < least - 1e-3 * reach) {
+    if (away < least - (found === null ? 0 : 0.01 * reach)) {
       [found, least, at] = [shape, away, on];
     }
   }

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 from lsprotocol import types
 
 if TYPE_CHECKING:
-    from polarcheck.server.judged import Judged
     from polarcheck.server.session import Server
+    from polarcheck.server.structure.document import Document
 
 
 def register(server: Server) -> None:
@@ -16,9 +16,13 @@ def register(server: Server) -> None:
 
     @server.feature(types.TEXT_DOCUMENT_DOCUMENT_SYMBOL)
     async def document_symbol(params: types.DocumentSymbolParams) -> list[types.DocumentSymbol]:
-        def find(judged: Judged) -> list[types.DocumentSymbol]:
-            from polarcheck.server.outline import symbols
+        # The details of polar sections are those of the report.
+        judged = await server.buffers.judged(params.text_document.uri)
+        sections = judged.report.polar_sections if judged is not None and judged.report is not None else ()
 
-            return symbols(judged)
+        def find(document: Document) -> list[types.DocumentSymbol]:
+            from polarcheck.server.structure.symbols import symbols
 
-        return await server.ask(params.text_document.uri, find, [])
+            return symbols(document, sections)
+
+        return await server.documents.ask(params.text_document.uri, find, [])

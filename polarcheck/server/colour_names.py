@@ -1,0 +1,14 @@
+"""The names of semantic colours; apart from what finds them, since the editor is told them first of all."""
+
+from __future__ import annotations
+
+from lsprotocol import types
+
+#: The kinds of tokens, which are those of the protocol, so that every theme has colours for them.
+KINDS = (
+    *("function", "method", "property", "number", "variable", "comment", "label", "keyword", "namespace"),
+    *("string", "operator", "parameter", "enumMember"),
+)
+#: skipped: in a block that block skip leaves out. readonly: a variable of the control.
+MODIFIERS = ("declaration", "skipped", "readonly")
+LEGEND = types.SemanticTokensLegend(list(KINDS), list(MODIFIERS))

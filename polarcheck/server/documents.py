@@ -1,0 +1,81 @@
+"""Answers about the open documents that need no check: they are read as their machine reads them, in a thread."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, TypeVar
+
+from polarcheck.errors import PolarcheckError
+from polarcheck.server.buffers import Buffer, Buffers
+from polarcheck.server.worker import Worker
+
+if TYPE_CHECKING:
+    from polarcheck.checking.settings import Settings
+    from polarcheck.machines.machine import Machine
+    from polarcheck.server.judged import SettingsOf
+    from polarcheck.server.open_text import OpenText
+    from polarcheck.server.structure.document import Document
+
+Result = TypeVar("Result")
+
+
+class Documents:
+    """
+    The open documents as their machines read them.
+
+    buffers: the open documents.
+    settings_of: returns the settings of a program.
+    folders_of: returns the folders from which files may be opened for a program.
+    worker: a thread, so that no answer waits for a check.
+    """
+
+    def __init__(self, buffers: Buffers, settings_of: SettingsOf, folders_of: Callable[[Path], Sequence[Path]]) -> None:
+        self.buffers, self.settings_of, self.folders_of = buffers, settings_of, folders_of
+        self.worker = Worker()
+        self._known: dict[str, tuple[Settings | None, Document]] = {}
+
+    async def ask(self, uri: str, function: Callable[[Document], Result], none: Result) -> Result:
+        """Apply a function to the present text of a document; return `none` if there is no such document."""
+        buffer = self.buffers.open.get(uri)
+        if buffer is None:
+            return none
+        settings = buffer.judged.settings if buffer.judged is not None else None
+        return await self.worker.do(self._apply, function, buffer, buffer.text, settings)
+
+    def _apply(
+        self, function: Callable[[Document], Result], buffer: Buffer, text: OpenText, settings: Settings | None
+    ) -> Result:
+        return function(self._document(buffer, text, settings))
+
+    def _document(self, buffer: Buffer, text: OpenText, settings: Settings | None) -> Document:
+        """Return a document; while its text is not checked yet, with the settings of the last check."""
+        from polarcheck.server.structure.document import Document
+
+        for uri in self._known.keys() - self.buffers.open.keys():
+            self._known.pop(uri, None)
+        known_settings, known = self._known.get(buffer.uri, (None, None))
+        settings = settings or known_settings
+        if known is not None and known.text is text and settings is known_settings:
+            return known
+        machine, folders = self.machine_of(buffer.path, settings)
+        document = Document(buffer.uri, buffer.path, text, machine, folders)
+        self._known[buffer.uri] = settings, document
+        return document
+
+    def machine_of(self, path: Path, settings: Settings | None = None) -> tuple[Machine, Sequence[str]]:
+        """Return the machine of a program and the folders of those it calls; the default if its settings are broken."""
+        from polarcheck import bounded
+        from polarcheck.machines import profiles
+
+        try:
+            if settings is None:
+                with bounded.only_below(self.folders_of(path)):
+                    settings = self.settings_of(path)
+            return settings.machine, settings.job.run.subprograms
+        except PolarcheckError:
+            return profiles.load(profiles.DEFAULT).machine, ()
+
+    def end(self) -> None:
+        """End the thread."""
+        self.worker.end()

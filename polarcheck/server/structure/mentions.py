@@ -1,0 +1,389 @@
+"""All places of a text that name something: N numbers, labels, variables, programs; and what names them by a value."""
+
+from __future__ import annotations
+
+import bisect
+import enum
+import itertools
+import re
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from polarcheck.arrays import cached_property
+from polarcheck.execution.listing import Listing
+from polarcheck.execution.macro import VariableKind, Variables
+from polarcheck.execution.programs import LABEL, SEQUENCE_NUMBER, Program, ProgramName, block_text, name_at_head
+from polarcheck.execution.run import begins_program, is_code
+from polarcheck.execution.statement import Kind as StatementKind
+from polarcheck.execution.statement import Statement, Word
+from polarcheck.server.structure.lexing import Token, tokens
+
+_NUMBER_LIMIT = 1e15
+_DIGITS = re.compile(r"\d+")
+_SEQUENCE_NAME = re.compile(r"(?<![A-Z0-9_$])N(?!OEX(?![A-Z0-9]))[A-Z][A-Z0-9]{0,3}+(?![A-Z0-9_.=\[])", re.IGNORECASE)
+#: Programs of so many repeats: the last digits of P are the number.
+_REPEATED = 10_000
+
+
+class Kind(enum.Enum):
+    """What is named."""
+
+    SEQUENCE = "N number"
+    LABEL = "label"
+    VARIABLE = "variable"
+    PROGRAM = "program"
+
+
+class Role(enum.Enum):
+    """
+    What a place does with it.
+
+    DEFINES: it stands here. ASSIGNS: a variable takes a value. REFERS: it is used.
+    """
+
+    DEFINES = enum.auto()
+    ASSIGNS = enum.auto()
+    REFERS = enum.auto()
+
+
+class Into(enum.Enum):
+    """In which program the N number of a reference is looked for: its own, that of the caller, or the called one."""
+
+    OWN = enum.auto()
+    CALLER = enum.auto()
+    CALLED = enum.auto()
+
+
+class Mention(NamedTuple):
+    """
+    A place that names something.
+
+    kind, role: what it names, and what it does.
+    keys: number or name in capitals; of programs each key by which it can be called.
+    written: as it is written.
+    block: of the listing.
+    start, end: the characters of the number or name, end exclusive.
+    begin: where the word around it begins, for the cursor.
+    into: the program of an N number.
+    called: the program that the block calls, if the N number is in that.
+    code: what calls a program: M98, G65.
+    has_repeats: P has the repeats before the last four digits.
+    """
+
+    kind: Kind
+    role: Role
+    keys: tuple[int | str, ...]
+    written: str
+    block: int
+    start: int
+    end: int
+    begin: int
+    into: Into = Into.OWN
+    called: ProgramName | None = None
+    code: str = ""
+    has_repeats: bool = False
+
+    @property
+    def name(self) -> int | str:
+        """The number or name; of a program that has both the number."""
+        return next((key for key in self.keys if isinstance(key, int)), self.keys[0])
+
+    @property
+    def shown(self) -> str:
+        """The name as messages have it: N100, O0002, #100, END."""
+        if self.kind is Kind.SEQUENCE:
+            return f"N{self.name}"
+        if self.kind is Kind.PROGRAM:
+            return f"O{self.name:04d}" if isinstance(self.name, int) else self.name
+        return f"#{self.name}" if isinstance(self.name, int) else self.name
+
+
+class Computed(NamedTuple):
+    """A block that names something by a value: which one is not known."""
+
+    kind: Kind
+    block: int
+
+
+class Mentions:
+    """The mentions of a listing, in order; computed: those whose name is not known."""
+
+    def __init__(self, listing: Listing) -> None:
+        self.listing = listing
+        self.computed: list[Computed] = []
+        found = [*self._numbers(), *self._labels(), *self._heads(), *self._flow(), *self._cycles(), *self._variables()]
+        self.all = sorted(set(found), key=lambda mention: (mention.start, mention.end))
+        self._blocks = [mention.block for mention in self.all]
+
+    def of_program(self, program: Program) -> list[Mention]:
+        """Return the mentions in a program."""
+        low, high = (bisect.bisect_left(self._blocks, block) for block in (program.first, program.end))
+        return self.all[low:high]
+
+    def at(self, character: int) -> Mention | None:
+        """Return the mention at a character, also at its end; the innermost one."""
+        hits = [mention for mention in self.all if mention.begin <= character <= mention.end]
+        return max(hits, key=lambda mention: mention.begin, default=None)
+
+    def variable_kind(self, mention: Mention) -> VariableKind:
+        """Return the kind of a variable of custom macro; LOCAL or COMMON by the language for those of a name."""
+        if isinstance(mention.name, int):
+            return self._variables_of_control.kind(mention.name)
+        language = self.listing.macro.language
+        if mention.name.startswith("#_"):
+            return VariableKind.SYSTEM
+        if language == "high-level":
+            is_parameter = mention.name[1:].isdigit() and len(mention.name) > 1
+            return VariableKind.RETAINED if is_parameter else VariableKind.LOCAL
+        return VariableKind.COMMON if re.fullmatch(r"VC?\d+", mention.name) else VariableKind.LOCAL
+
+    @cached_property
+    def _variables_of_control(self) -> Variables:
+        return Variables(self.listing.macro)
+
+    # ---- where they stand ----
+
+    def _mention(
+        self, kind: Kind, role: Role, key: int | str, span: tuple[int, int], block: int, begin: int
+    ) -> Mention:
+        written = self.listing.text.source.excerpt(*span)
+        return Mention(kind, role, (key,), written, block, *span, begin)
+
+    def _numbers(self) -> Iterator[Mention]:
+        """N numbers at blocks."""
+        text = self.listing.text
+        words = text.words
+        at = np.flatnonzero((words.address == ord("N")) & (words.value < _NUMBER_LIMIT) & (words.value >= 0))
+        columns = (words.start[at].tolist(), words.end[at].tolist(), words.block[at].tolist())
+        cycles = self._cycle_blocks if self.listing.macro.language == "user-task" else frozenset()
+        for start, end, block in zip(*columns, strict=True):
+            digits = _DIGITS.search(text.source.excerpt(start, end))
+            if digits:
+                span = start + digits.start(), start + digits.end()
+                is_named = block in cycles and start > self._first_word(block)
+                role = Role.REFERS if is_named else Role.DEFINES
+                yield self._mention(Kind.SEQUENCE, role, int(digits[0]), span, block, start)
+        pattern = re.compile(SEQUENCE_NUMBER, re.IGNORECASE)
+        for block, start, written in self._macro_blocks:
+            match = pattern.match(written)
+            if match and len(match[1]) < 10:
+                span = start + match.start(1), start + match.end(1)
+                begin = start + written.upper().rindex("N", 0, match.start(1))
+                yield self._mention(Kind.SEQUENCE, Role.DEFINES, int(match[1]), span, block, begin)
+
+    def _first_word(self, block: int) -> int:
+        words = self.listing.text.words
+        return int(words.start[np.searchsorted(words.block, block)])
+
+    @cached_property
+    def _macro_blocks(self) -> list[tuple[int, int, str]]:
+        """The blocks with statements: number, first character, text."""
+        text = self.listing.text
+        blocks = np.flatnonzero(text.blocks.is_macro).tolist()
+        return [(block, int(text.blocks.start[block]), block_text(text, block)) for block in blocks]
+
+    def _labels(self) -> Iterator[Mention]:
+        names = self.listing.text.labels
+        for start, end, block in zip(names.start.tolist(), names.end.tolist(), names.block.tolist(), strict=True):
+            name = self.listing.text.source.excerpt(start, end).upper()
+            yield self._mention(Kind.LABEL, Role.DEFINES, name, (start, end), block, start)
+        pattern = re.compile(LABEL, re.IGNORECASE)
+        for block, start, written in self._macro_blocks:
+            match = pattern.match(written)
+            group = 1 if match and match[1] else 2
+            if match and self.listing.macro.language != "custom-macro":
+                span = start + match.start(group), start + match.end(group)
+                yield self._mention(Kind.LABEL, Role.DEFINES, match[group].upper(), span, block, span[0])
+
+    def _heads(self) -> Iterator[Mention]:
+        """The heads of programs."""
+        text = self.listing.text
+        words = text.words
+        by_block = {program.first: program for program in self.listing.programs.programs if program.has_head}
+        heads = np.flatnonzero(begins_program(words))
+        for start, end, block in zip(
+            *(column[heads].tolist() for column in (words.start, words.end, words.block)), strict=True
+        ):
+            program = by_block.get(block)
+            digits = _DIGITS.search(text.source.excerpt(start, end))
+            if program is not None and digits and program.number is not None:
+                span = start + digits.start(), start + digits.end()
+                yield self._mention(Kind.PROGRAM, Role.DEFINES, program.number, span, block, start)
+        for start, end, block in zip(
+            *(column.tolist() for column in (text.names.start, text.names.end, text.names.block)), strict=True
+        ):
+            program = by_block.get(block)
+            written = text.source.excerpt(start, end)
+            name = name_at_head(written).strip("<>").strip()
+            if program is not None and program.name == name:
+                first = start + written.index(name)
+                mention = self._mention(
+                    Kind.PROGRAM, Role.DEFINES, name.upper(), (first, first + len(name)), block, start
+                )
+                yield mention._replace(keys=ProgramName(None, name).keys)
+
+    # ---- jumps and calls ----
+
+    def _flow(self) -> Iterator[Mention]:
+        for block in self.listing.stops:
+            statement = self.listing.statement(block)
+            written, start = block_text(self.listing.text, block), int(self.listing.text.blocks.start[block])
+            parts = (statement, *([statement.then] if statement.then is not None else []), *statement.more)
+            labels: set[str] = set()
+            for part in parts:
+                labels |= {name.upper() for name in (part.label, part.until) if name}
+                yield from self._jump(part, block, start, written)
+                if part.call:
+                    yield from self._call(part, block, start, written)
+            if labels:
+                yield from self._label_uses(labels, block)
+
+    def _jump(self, part: Statement, block: int, start: int, written: str) -> Iterator[Mention]:
+        if part.jump is None or part.label or part.kind not in (StatementKind.GOTO, StatementKind.IF_GOTO):
+            return
+        digits = _DIGITS.search(written, part.jump.start, part.jump.end)
+        if len(part.jump.steps) > 1 or digits is None:
+            self.computed.append(Computed(Kind.SEQUENCE, block))
+            return
+        span = start + digits.start(), start + digits.end()
+        yield self._mention(Kind.SEQUENCE, Role.REFERS, int(digits[0][:18]), span, block, start + part.start)
+
+    def _label_uses(self, labels: set[str], block: int) -> Iterator[Mention]:
+        for token in tokens(self.listing, block):
+            if token.kind in ("target", "name") and token.text in labels:
+                span = token.start, token.end
+                yield self._mention(Kind.LABEL, Role.REFERS, token.text, span, block, token.start)
+
+    def _call(self, part: Statement, block: int, start: int, written: str) -> Iterator[Mention]:
+        macro = self.listing.macro
+        words = {word.address: word for word in reversed(part.words)}
+        if part.call in macro.program_returns:
+            yield from self._number_of(words.get("P"), Into.CALLER, None, block, start, written)
+            return
+        if part.call not in macro.call_codes:
+            return
+        called = self.listing.called_in(block)
+        is_subprogram = part.call in (*macro.subprogram_calls, *macro.local_calls)
+        of_begin = "P" if part.call in macro.local_calls else macro.sequence_word if is_subprogram else ""
+        if of_begin and of_begin in words:
+            is_own = "P" not in words and "<" not in words
+            into = Into.OWN if of_begin == "P" or is_own else Into.CALLED
+            yield from self._number_of(words[of_begin], into, called, block, start, written)
+        if called is None or called == (None, None):
+            if part.call not in macro.local_calls and "P" in words and words["P"].written is None:
+                self.computed.append(Computed(Kind.PROGRAM, block))
+            return
+        word = words.get("<") if called.name is not None else words.get("P")
+        if word is None:
+            return
+        place = _place_of_name(written, word, called)
+        if place is not None:
+            first, end = place
+            digits = written[first:end]
+            repeats = macro.repeats_in_p and is_subprogram and called.number is not None and len(digits) > 4
+            has_repeats = repeats and int(digits) > _REPEATED - 1
+            span = start + (end - 4 if has_repeats else first), start + end
+            mention = self._mention(Kind.PROGRAM, Role.REFERS, "", span, block, start + word.start)
+            yield mention._replace(keys=called.keys, code=part.call, has_repeats=bool(has_repeats))
+
+    def _number_of(
+        self, word: Word | None, into: Into, called: ProgramName | None, block: int, start: int, written: str
+    ) -> Iterator[Mention]:
+        """Yield the N number that a word of a call or return names."""
+        if word is None:
+            return
+        digits = _DIGITS.search(written, word.start, word.end)
+        if word.written is None or digits is None:
+            self.computed.append(Computed(Kind.SEQUENCE, block))
+            return
+        span = start + digits.start(), start + digits.end()
+        mention = self._mention(Kind.SEQUENCE, Role.REFERS, int(digits[0][:18]), span, block, start + word.start)
+        yield mention._replace(into=into, called=called)
+
+    # ---- cycles that name the blocks of their contour ----
+
+    @cached_property
+    def _cycle_blocks(self) -> frozenset[int]:
+        words = self.listing.text.words
+        codes = self.listing.machine.codes("repetitive_cycle")
+        return frozenset(words.block[is_code(words, codes)].tolist())
+
+    def _cycles(self) -> Iterator[Mention]:
+        """
+        The first and last block of a contour: G71 P10 Q20, G85 NLAP1.
+
+        P and Q of other cycles are depths. They are told from N numbers by the axis words beside them, and because no
+        block has these numbers.
+        """
+        text = self.listing.text
+        words = text.words
+        for block in sorted(self._cycle_blocks):
+            low, high = np.searchsorted(words.block, (block, block + 1)).tolist()
+            found = {chr(words.address[index]): index for index in reversed(range(low, high))}
+            if self.listing.macro.language == "user-task":
+                yield from self._cycle_names(block)
+            if not {"P", "Q"} <= found.keys() or {"X", "Z"} & found.keys():
+                continue
+            targets = self.listing.programs.targets(self.listing.programs.around(block))
+            pair = [found["P"], found["Q"]]
+            numbers = [int(words.value[index]) if _is_whole(float(words.value[index])) else -1 for index in pair]
+            if any(words.has_point[index] for index in pair) or not all(number in targets for number in numbers):
+                continue
+            for index, number in zip(pair, numbers, strict=True):
+                start, end = int(words.start[index]), int(words.end[index])
+                digits = _DIGITS.search(text.source.excerpt(start, end))
+                if digits:
+                    span = start + digits.start(), start + digits.end()
+                    yield self._mention(Kind.SEQUENCE, Role.REFERS, number, span, block, start)
+
+    def _cycle_names(self, block: int) -> Iterator[Mention]:
+        text = self.listing.text
+        start = int(text.blocks.start[block])
+        for match in _SEQUENCE_NAME.finditer(block_text(text, block)):
+            span = start + match.start(), start + match.end()
+            yield self._mention(Kind.LABEL, Role.REFERS, match[0].upper(), span, block, span[0])
+
+    # ---- variables ----
+
+    def _variables(self) -> Iterator[Mention]:
+        for block, _, _ in self._macro_blocks:
+            found = tokens(self.listing, block)
+            for token, following in itertools.zip_longest(found, found[1:]):
+                if token.kind == "computed":
+                    self.computed.append(Computed(Kind.VARIABLE, block))
+                elif token.kind == "variable" or token.text.startswith("#_"):
+                    is_assigned = following is not None and following.kind == "operator" and following.text == "="
+                    role = Role.ASSIGNS if is_assigned else Role.REFERS
+                    span = token.start, token.end
+                    yield self._mention(Kind.VARIABLE, role, variable_name(token), span, block, token.start)
+
+
+def variable_name(token: Token) -> int | str:
+    """Return the name of a variable: 100 of #0100, R5 of R05, WIDTH."""
+    match = re.fullmatch(r"(#|R|V|VC)(\d+)", token.text)
+    if match is None:
+        return token.text
+    number = int(match[2][:18])
+    return number if match[1] == "#" else f"{match[1]}{number}"
+
+
+def _is_whole(value: float) -> bool:
+    return 0 <= value < _NUMBER_LIMIT and value == int(value)
+
+
+def _place_of_name(written: str, word: Word, called: ProgramName) -> tuple[int, int] | None:
+    """Return the characters of the number or name of a call within its block."""
+    if called.number is not None:
+        digits = _DIGITS.search(written, word.start, word.end)
+        return digits.span() if digits else None
+    name = called.name or ""
+    is_numbered = name[:1] == "L" and name[1:].isdecimal()
+    pattern = (
+        rf"L\s*{name[1:]}(?!\d)"
+        if is_numbered
+        else rf"(?<![A-Z0-9]){re.escape(name)}(?![A-Z0-9_])|{re.escape(name)}(?=_[MS]PF)"
+    )
+    match = re.compile(pattern, re.IGNORECASE).search(written, word.start, max(word.end, word.start + 1))
+    return match.span() if match else None
