@@ -5,6 +5,7 @@ from __future__ import annotations
 import http.client
 import json
 import re
+import signal
 import socket
 import threading
 from collections.abc import Callable
@@ -13,7 +14,8 @@ from typing import Any
 from urllib.parse import urlsplit
 
 import pytest
-from test_cli import call, make
+from test_cli import call, make, process
+from test_page_in_browser import CHROMIUM, browser
 from test_pictures import GROOVE, HEXAGON
 from test_plot import PLOTLY, RADIUS
 
@@ -22,6 +24,7 @@ from polarcheck.pictures import library
 from polarcheck.pictures import serving as served
 
 pytestmark = pytest.mark.usefixtures("own_folder")
+__all__ = ["browser"]  # a fixture
 
 
 class Visitor:
@@ -108,7 +111,7 @@ def test_a_saved_program_is_a_new_version_and_a_broken_one_keeps_the_last(
         assert "no findings" in visitor.ask()[1]
         assert visitor.event() == {
             "version": versions[1],
-            "notice": "the program is empty. This is the last state that could be read.",
+            "notice": "a.nc: the program is empty. This is the last state that could be read.",
         }
         Path("a.nc").unlink()
 
@@ -160,7 +163,7 @@ def test_a_folder_has_an_index_and_new_programs_come_to_it(visitor: Visitor, bet
         Path("f/a.nc").unlink()
 
     def deleted() -> None:
-        assert visitor.event("a.nc.html")["notice"].startswith("the program is not there.")
+        assert visitor.event("a.nc.html")["notice"].startswith("f/a.nc: the program is not there.")
         assert visitor.event("b.nc.html")["notice"] == ""
         Path("f/new.nc").write_bytes(b"")
 
@@ -304,3 +307,44 @@ def test_a_port_that_is_taken_is_one_line(visitor: Visitor) -> None:
         result = call("plot", "--serve", "a.nc", "--port", str(port))
     assert result.exit_code == 2
     assert result.stderr == f"polarcheck: --port {port}: Address already in use\n"
+
+
+@pytest.mark.slow
+@pytest.mark.xdist_group("browser")
+@pytest.mark.skipif(CHROMIUM is None, reason="there is no chromium here")
+def test_a_browser_shows_what_is_saved_and_keeps_what_is_chosen(browser: Any) -> None:
+    make(a__nc=GROOVE)
+    running = process("plot", "--serve", "a.nc", *RADIUS, stderr=None)
+    try:
+        assert running.stdout is not None
+        address = running.stdout.readline().strip()
+        page = browser.new_page(viewport={"width": 1280, "height": 900})
+        errors: list[str] = []
+        page.on("pageerror", lambda error: errors.append(str(error)))
+        page.goto(f"{address}#L8")
+        page.locator(".face .main-svg").first.wait_for()
+        face = "document.querySelector('.face')"
+        page.evaluate(f"Plotly.relayout({face}, {{'xaxis.range': [0, 40], 'yaxis.range': [-10, 10]}})")
+        window = page.evaluate(f"{face}._fullLayout.xaxis.range")
+
+        make(a__nc=GROOVE.replace("G12.1", "(NEW)\n(LINES)\nG12.1"))
+        page.get_by_text("lines 5 to 17").first.wait_for(timeout=30000)
+        page.locator(".face .main-svg").first.wait_for()
+        page.wait_for_url("**/#L10")
+        assert page.evaluate(f"{face}._fullLayout.xaxis.range") == pytest.approx(window)
+
+        Path("a.nc").unlink()
+        notice = page.get_by_text("a.nc: No such file or directory. This is the last state")
+        notice.wait_for(timeout=30000)
+        make(a__nc=HEXAGON)
+        notice.wait_for(state="hidden", timeout=30000)
+        page.get_by_text("no findings").first.wait_for()
+
+        running.send_signal(signal.SIGINT)
+        assert running.wait(20) == 0
+        page.get_by_text("polarcheck does not serve this page any more").wait_for(timeout=30000)
+        assert errors == []
+        page.close()
+    finally:
+        running.kill()
+        running.communicate()

@@ -176,8 +176,8 @@ class _Rounds:
         read = {report.path: report for report in checked.files}
         for title, name in self._pages.names.items():
             if title not in read:
-                why = "the program is empty" if title in present else "the program is not there"
-                self._pages.keep(name, "; ".join([*faults.failures[:1], why][:1]))
+                why = f"{title}: the program is {'empty' if title in present else 'not there'}"
+                self._pages.keep(name, faults.failures[0] if faults.failures else why)
         if not is_one:
             self._pages.put_index(checked.files)
         return faults.report()
@@ -234,7 +234,7 @@ class _Pages(picturing.Pictures):
 
     def miss(self, report: FileReport) -> None:
         """Keep the page of a program that could not be read or checked."""
-        self.keep(self.names[report.path], report.reason or "")
+        self.keep(self.names[report.path], f"{report.path}: {report.reason}")
 
     def keep(self, name: str, reason: str) -> None:
         """Say on a page why it is that of an earlier state."""
