@@ -118,6 +118,7 @@ def test_settings_are_read_anew_when_they_change() -> None:
         assert editor.asks("hover", Path("polarcheck.toml").absolute().as_uri(), 1, 1) is None
 
 
+@pytest.mark.slow
 def test_called_programs_are_watched_where_they_lie() -> None:
     Path("sub").mkdir()
     Path("polarcheck.toml").write_text('[run]\nsubprograms = ["sub"]\n', "utf-8")

@@ -24,14 +24,22 @@ from polarcheck.reading.excerpt import visible
 _SCRIPTS = (
     "words",
     "state",
+    "theme",
     "colors",
     "plane",
     "face",
     "rates",
     "moves",
     "legend",
+    "pins",
     "section",
     "workbench",
+    "timeline",
+    "metal",
+    "machine",
+    "canvas",
+    "gauges",
+    "player",
     "findings",
     "positions",
     "shapes",
@@ -48,7 +56,7 @@ _SCRIPTS = (
     "printing",
     "start",
 )
-_STYLES = ("page", "tools")
+_STYLES = ("page", "player", "tools")
 #: Only the scripts of this page run, and only a library beside it is loaded. plotly sets styles.
 _POLICY = (
     "default-src 'none'; script-src {}; style-src 'unsafe-inline'; img-src data: blob:; base-uri 'none'; "
@@ -83,7 +91,7 @@ def page(
     return Template(_part("page.html")).substitute(
         policy=_POLICY.format(" ".join(allowed)),
         title=_text(", ".join(picture.path for picture in pictures)),
-        style="\n".join(_part(f"{name}.css") for name in _STYLES),
+        style=_style(),
         body="\n".join([*(_program(number, picture) for number, picture in enumerate(pictures)), *map(_note, notes)]),
         data=_data(pictures),
         library=loaded,
@@ -93,6 +101,16 @@ def page(
 
 def _part(name: str) -> str:
     return resources.files("polarcheck.pictures").joinpath("browser", name).read_text("utf-8")
+
+
+def _style() -> str:
+    """Return the style; its dark colours count where the system is dark, and where the switch of the page says so."""
+    dark = _part("dark.css")
+    return (
+        "\n".join(_part(f"{name}.css") for name in _STYLES)
+        + f'\n@media screen and (prefers-color-scheme: dark) {{ :root:not([data-theme="light"]) {{ {dark} }} }}\n'
+        + f'@media screen {{ :root[data-theme="dark"] {{ {dark} }} }}'
+    )
 
 
 def _hash(script: str) -> str:
@@ -258,11 +276,16 @@ def _notes(number: int, section: SectionPicture) -> str:
     return notes
 
 
+def _letter(place: int) -> str:
+    """Return the letter of a mark, as on the drawing: A to Z, then A1."""
+    return chr(ord("A") + place % 26) + (str(place // 26) if place >= 26 else "")
+
+
 def _mark(number: int, place: int, mark: Mark, section: SectionPicture) -> str:
     x, c = mark.place[0] * (2 if section.diameter else 1) / section.scale, mark.place[1] / section.scale
     digits = 4 if section.units == "inch" else 3
     return (
-        f'<tr data-picture="{number}" data-mark="{place}"><td class="line">{place + 1}</td>'
+        f'<tr data-picture="{number}" data-mark="{place}"><td>{_letter(place)}</td>'
         f'<td class="line">{", ".join(map(str, mark.lines))}</td><td>X{x:.{digits}f} C{c:.{digits}f}</td>'
         f"<td>{_text(mark.text)}</td></tr>"
     )
