@@ -18,6 +18,7 @@ from polarcheck.execution.programs import LABEL, SEQUENCE_NUMBER, Program, Progr
 from polarcheck.execution.run import begins_program, is_code
 from polarcheck.execution.statement import Kind as StatementKind
 from polarcheck.execution.statement import Statement, Word
+from polarcheck.server.structure.document import Document
 from polarcheck.server.structure.lexing import Token, tokens
 
 _NUMBER_LIMIT = 1e15
@@ -387,3 +388,8 @@ def _place_of_name(written: str, word: Word, called: ProgramName) -> tuple[int, 
     )
     match = re.compile(pattern, re.IGNORECASE).search(written, word.start, max(word.end, word.start + 1))
     return match.span() if match else None
+
+
+def mentions_of(document: Document) -> list[Mentions]:
+    """Return the mentions of each channel of a document; found once for each state of its text."""
+    return document.cached("mentions", lambda: [Mentions(listing) for listing in document.listings])
