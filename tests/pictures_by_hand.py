@@ -76,13 +76,26 @@ def hexagon(*, blocks: list[str] | None = None, **more: Any) -> SectionPicture:
         share=[rate / 500.0] * count,
         begin=[number * time for number in range(count)],
         time=[time] * count,
+        center=[None] * count,
+        jump=[False] * count,
+        angle=[(30.0 + 60.0 * number, 90.0 + 60.0 * number) for number in range(count)],
     )
+    stops = [
+        (1 - part) * complex(*way[number]) + part * complex(*way[number + 1])
+        for number in range(count)
+        for part in (0.0, 0.5, 1.0)
+    ]
     rates = Rates(
         t=[(number + part) * time for number in range(count) for part in (0.0, 0.5, 1.0)],
         c_feed=[near, rate, near] * count,
         x_feed=[-100.0, 0.0, 100.0] * count,
         feed=[200.0] * (3 * count),
         move=[number for number in range(count) for _ in range(3)],
+        x=[point.real for point in stops],
+        c=[point.imag for point in stops],
+        z=[-5.0] * (3 * count),
+        angle=[30.0 + 60.0 * (number + part) for number in range(count) for part in (0.0, 0.5, 1.0)],
+        machine_x=[abs(point) for point in stops],
     )
     whole = SectionPicture(
         title="Lines 1 to 6, offset 1",
@@ -108,6 +121,8 @@ def hexagon(*, blocks: list[str] | None = None, **more: Any) -> SectionPicture:
         rates=rates,
         parts=[PartPicture(z=-5.0, polygons=[[wall[:-1]]], text="hexagon, 30.000 across flats", known_outside=True)],
         marks=[],
+        frame=(-32.0, -32.0, 32.0, 32.0),
+        bar=[[(30.0 * math.cos(angle * math.pi / 32), 30.0 * math.sin(angle * math.pi / 32)) for angle in range(64)]],
     )
     return msgspec.structs.replace(whole, **more)
 

@@ -157,8 +157,11 @@ def test_so_do_their_twins_with_the_drawing_of_the_twin(seed: int, twin: Twin) -
 
 
 @pytest.mark.one_in(3)
-@pytest.mark.parametrize("by", [0.3, -0.2])
-@pytest.mark.parametrize("family", ["polygons", "crosses", "cams", "eccentrics"])
+@pytest.mark.parametrize(
+    ("family", "by"),
+    # A cam has thousands of corners: one of the two ways is enough.
+    [("cams", 0.3), *((family, by) for family in ("polygons", "crosses", "eccentrics") for by in (0.3, -0.2))],
+)
 def test_a_larger_or_smaller_drawing_differs_by_what_shapely_says(family: str, by: float) -> None:
     made = (program_of(seed, family=family) for seed in range(100))
     # Pockets are in a plate without end.

@@ -25,7 +25,8 @@ from test_cli import IMPORTED_FROM
 
 not_on_windows = pytest.mark.skipif(sys.platform == "win32", reason="no bound on the time or memory of a process")
 
-#: About a minute in all, on two cores.
+#: About a minute in all, on two cores. Of programs that look sound each costs a second.
+fewest = settings(max_examples=10, deadline=None, suppress_health_check=list(HealthCheck))
 few = settings(max_examples=25, deadline=None, suppress_health_check=list(HealthCheck))
 more = settings(max_examples=100, deadline=None, suppress_health_check=list(HealthCheck))
 
@@ -33,7 +34,7 @@ more = settings(max_examples=100, deadline=None, suppress_health_check=list(Heal
 @pytest.mark.slow
 @pytest.mark.uncounted
 @given(strategies.sound_programs(), strategies.setups)
-@few
+@fewest
 def test_programs_that_look_sound(data: bytes, setup: int) -> None:
     fuzz_targets.whole(data, setup)
     fuzz_targets.trace(data, setup)
@@ -194,7 +195,7 @@ def script(*arguments: str) -> tuple[int, str]:
 @pytest.mark.slow
 @not_on_windows
 def test_the_script_fuzzes_for_as_long_as_it_is_told() -> None:
-    status, told = script("--minutes", "0.15", "--jobs", "1", "--target", "reader", "--target", "statement")
+    status, told = script("--minutes", "0.05", "--jobs", "1", "--target", "reader", "--target", "statement")
     assert (status, "0 distinct failures" in told) == (0, True), told
     assert " inputs in " in told
 

@@ -128,16 +128,22 @@ def archive(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @posix
-@pytest.mark.parametrize("form", OF_MANY)
-def test_several_processes_say_what_one_says(form: str, archive: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_several_processes_say_what_one_says(archive: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(archive)
-    words = ("check", ".", "--tool", "1:radius=5", "--max-size", "100k", "--format", form)
-    status, shown, told = alone = run(*words, "--jobs", "1")
+    words = ("check", ".", "--tool", "1:radius=5", "--max-size", "100k", "--format", "concise")
+    reports = {}
+    for jobs in ("1", "3"):
+        folder = tmp_path / jobs
+        folder.mkdir()
+        files = [part for form in OF_MANY for part in ("-o", f"{form}:{folder / form}")]
+        reports[jobs] = run(*words, "--jobs", jobs, *files), {form: (folder / form).read_text() for form in OF_MANY}
+    (status, shown, errors), written = reports["1"]
     assert status == 2
-    assert "link.nc: No such file" in told
-    assert "large.nc: larger than 100 kB" in told
+    assert "link.nc: No such file" in errors
+    assert "large.nc: larger than 100 kB" in errors
     assert "rapid-in-polar" in shown
-    assert run(*words, "--jobs", "3") == alone
+    assert all("rapid-in-polar" in report for report in written.values())
+    assert reports["3"] == reports["1"]
 
 
 def test_processes_that_are_spawned_get_all_they_need() -> None:

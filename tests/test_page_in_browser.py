@@ -75,7 +75,7 @@ class Opened:
     def click_as_told(self, place: tuple[float, float], line: str) -> None:
         """A click where the pointer is told to be at a line; what is told comes some time after the pointer."""
         self.page.mouse.move(*place)
-        self.page.locator(f"#told dt:text-is('line') + dd:has-text('{line}')").wait_for()
+        self.page.locator(f"#hover dt:text-is('line') + dd:has-text('{line}')").wait_for()
         self.page.mouse.click(*place)
 
     def at(self, x: float, c: float) -> tuple[float, float]:
@@ -113,10 +113,10 @@ def test_choosing_shows_the_same_move_everywhere(opened: Opened) -> None:
     # The middle of the flat at 60 deg.
     opened.click_as_told(opened.at(9.5, 16.454), "1,")
     assert opened.fact("line").startswith("1,")
-    assert opened.fact("line", "#told").startswith("1,")
+    assert opened.fact("line", "#hover").startswith("1,")
     opened.click_as_told(opened.in_time(0.58), "4,")
     assert opened.fact("line").startswith("4,")
-    assert "too deep" in opened.fact("found")
+    assert "too deep" in opened.fact("error")
     assert page.locator("tr.is-chosen[data-finding]").get_attribute("data-finding") == "1"
     page.click("tr[data-finding='0']")
     assert opened.fact("line").startswith("2,")
@@ -168,10 +168,10 @@ def test_it_prints(browser: Any, address: str, size: str, tmp_path: Path) -> Non
     found = Opened(browser, address)
     found.page.wait_for_selector(".rates .main-svg")
     printed = found.page.pdf(path=tmp_path / "page.pdf", format=size)
-    # Head and findings, then the section with both pictures.
+    # The head and the section with both pictures, then all findings.
     assert len(re.findall(rb"/Type\s*/Page\b", printed)) == 2
     found.page.emulate_media(media="print")
-    assert [found.page.locator(name).first.is_visible() for name in (".findings", ".controls", ".beside")] == [
+    assert [found.page.locator(name).first.is_visible() for name in (".findings", ".bar", ".aside")] == [
         True,
         False,
         False,
@@ -192,7 +192,7 @@ def test_without_scripts_findings_are_read(browser: Any, address: str) -> None:
     context = browser.new_context(java_script_enabled=False)
     found = context.new_page()
     found.goto(address)
-    assert found.locator("tr[data-finding]").all_inner_texts()[0].split()[:4] == ["2", "error", "too", "fast"]
+    assert found.locator("tr[data-finding]").all_inner_texts()[0].split()[:5] == ["1", "2", "error", "too", "fast"]
     assert found.locator("noscript p").is_visible()
     assert not found.locator(".drawings").is_visible()
     context.close()

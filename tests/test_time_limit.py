@@ -433,7 +433,7 @@ def test_every_command_ends_in_a_report_when_the_time_runs_out(
         return clock.looks
 
     every = looks_of(float("inf"))
-    for last in sorted({1, 2, every - 1, every - 2, *range(3, every, max(every // 12, 1))}):
+    for last in sorted({1, 2, every - 1, every - 2, *range(3, every, max(every // 6, 1))}):
         looks_of(last)
 
 

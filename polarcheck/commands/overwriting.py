@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import stat
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from polarcheck.batch.tasks import Task
@@ -12,10 +12,12 @@ from polarcheck.errors import OutputError
 from polarcheck.reading import files
 
 
-def refuse(outputs: Sequence[Path], tasks: Sequence[Task]) -> None:
+def refuse(outputs: Sequence[Path], tasks: Sequence[Task], options: Mapping[Path, str] | None = None) -> None:
     """
     Raise OutputError, before anything is checked or written, for a report that would overwrite a file of this run, a
     called program or another report, or that has the name of a program.
+
+    options: the option that names an output, where it is not -o.
     """
     if not outputs:
         return
@@ -33,17 +35,18 @@ def refuse(outputs: Sequence[Path], tasks: Sequence[Task]) -> None:
     written: set[str] = set()
     for output in outputs:
         target, shown = _real(output), files.shown(str(output))
+        named = f"{(options or {}).get(output, '-o')} {shown}"
         identity = _identity(output)
         source = inputs.get(target) or (same.get(identity) if identity else None)
         if source is not None:
-            raise OutputError(f"-o {shown}: {_beside(source, shown)}is read by this run; name another file")
+            raise OutputError(f"{named}: {_beside(source, shown)}is read by this run; name another file")
         folder = folders.get(str(Path(target).parent))
         if folder is not None and Path(target).exists():
-            raise OutputError(f"-o {shown}: a file in {files.shown(folder)}, a folder of subprograms; name another one")
+            raise OutputError(f"{named}: a file in {files.shown(folder)}, a folder of subprograms; name another one")
         if walking.has_name_of_program(target, walking.EXTENSIONS) or target.endswith(".toml"):
-            raise OutputError(f"-o {shown}: this is the name of a program or of a job file; give the report another")
+            raise OutputError(f"{named}: this is the name of a program or of a job file; give the report another")
         if target in written:
-            raise OutputError(f"-o {shown}: two reports would be written to this file")
+            raise OutputError(f"{named}: two reports would be written to this file")
         written.add(target)
 
 

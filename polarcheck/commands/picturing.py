@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -22,12 +22,17 @@ if TYPE_CHECKING:
 FORMAT = "html"
 
 
-def extras() -> tuple[Extra, ...]:
-    """Return the function that adds pictures to reports. Raises UsageError if plotly is missing."""
+def extras(*, for_page: bool = True) -> tuple[Extra, ...]:
+    """
+    Return the function that adds pictures to reports.
+
+    for_page: they are drawn on a page. Raises UsageError if plotly is missing, which pages need.
+    """
     from polarcheck.pictures.drawing import drawn
     from polarcheck.pictures.library import require
 
-    require()
+    if for_page:
+        require()
     return (drawn,)
 
 
@@ -44,15 +49,26 @@ def is_folder(path: Path) -> bool:
     return path.is_dir() or not (path.suffix or path.exists())
 
 
+def create_folder(folder: Path) -> None:
+    """Create a folder unless it exists. Raises OutputError if that fails."""
+    try:
+        folder.mkdir(exist_ok=True)
+    except (OSError, ValueError) as error:
+        said = getattr(error, "strerror", None) or error
+        raise OutputError(f"{shown(str(folder))}: {said}") from None
+
+
 class Pictures:
     """
     Separates pictures from reports.
 
     drawn: the drawings, by the path of the program.
+    also: takes each report and its drawing, too.
     """
 
     def __init__(self) -> None:
         self.drawn: dict[str, Drawn] = {}
+        self.also: Callable[[FileReport, Drawn], None] = lambda report, drawn: None
 
     def split(self, outcomes: Iterable[Outcome]) -> Iterator[Outcome]:
         """Yield the outcomes without their pictures, which are stored."""
@@ -72,6 +88,7 @@ class Pictures:
             plain = msgspec.structs.replace(outcome, report=report)
             if drawn is not None:
                 self.store(plain, drawn)
+                self.also(report, drawn)
             yield plain
 
     def store(self, outcome: Outcome, drawn: Drawn) -> None:
@@ -87,6 +104,13 @@ class Pictures:
 
     def end(self, notes: Sequence[str] = ()) -> None:
         """Finish after the last program. notes: what the walks did not read, in words."""
+
+
+class Discarded(Pictures):
+    """Stores no drawing."""
+
+    def store(self, outcome: Outcome, drawn: Drawn) -> None:
+        """Store nothing."""
 
 
 class Folder(Pictures):
@@ -118,11 +142,7 @@ class Folder(Pictures):
         from polarcheck.pictures.library import FILE_NAME, library
 
         self._background = background
-        try:
-            self._folder.mkdir(exist_ok=True)
-        except (OSError, ValueError) as error:
-            said = getattr(error, "strerror", None) or error
-            raise OutputError(f"{shown(str(self._folder))}: {said}") from None
+        create_folder(self._folder)
         write(self._folder / FILE_NAME, library())
 
     def store(self, outcome: Outcome, drawn: Drawn) -> None:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import click
 
-from polarcheck.commands import options, picturing
+from polarcheck.commands import options, picturing, still_files
 from polarcheck.commands.options import option
 
 
@@ -18,8 +19,9 @@ from polarcheck.commands.options import option
     "-o",
     "--output",
     metavar="FILE",
-    help="The page; or a folder, for a page of each program and index.html.",
+    help="The page; or a folder, for a page of each program and index.html; a picture with the ending .png or .svg.",
 )
+@still_files.options
 @options.extensions
 @options.exclude
 @options.max_size
@@ -31,6 +33,9 @@ def plot(
     /,
     paths: tuple[str, ...],
     output: str | None,
+    png: str | None,
+    svg: str | None,
+    chosen: tuple[int, ...],
     extensions: tuple[str, ...],
     max_size: int,
     workers: int,
@@ -43,7 +48,8 @@ def plot(
     The page holds all that it needs, and works without a network: of each polar section the programmed contour, the
     path of the tool center, the finished part and the cutter, with the rates of C and X over time; and the findings of
     `check`. It is written to FILE, or to standard output. In FOLDER, one that is there or a new one whose name has no
-    ending, each of several programs gets its page, beside an index.html that leads to them.
+    ending, each of several programs gets its page, beside an index.html that leads to them. --png and --svg write the
+    face of each section with its findings as a picture for a document.
 
     Ends with 0 where all pages were made, whatever was found, 2 if something could not be read or written, 3 for a
     bug.
@@ -59,15 +65,22 @@ def plot(
     from polarcheck.settings.of_programs import OfPrograms, Options
 
     keep_within_memory()
-    applies = Options(use_config=not no_config, extras=picturing.extras(), **arguments)
+    targets, output = still_files.targets(png, svg, output)
+    has_page = output is not None or not targets
+    applies = Options(use_config=not no_config, extras=picturing.extras(for_page=has_page), **arguments)
     faults = running.Faults(options.DEBUG in ctx.meta)
     tasks = running.planned(paths, OfPrograms(applies), extensions, faults)
     outputs = [] if output is None else [(picturing.FORMAT, Path(output))]
-    pictures, pages, written = picturing.of_outputs(outputs, output is None, tasks, "-o ")
-    overwriting.refuse(written, tasks)
+    pictures, pages, written = (
+        picturing.of_outputs(outputs, output is None, tasks, "-o ") if has_page else (picturing.Discarded(), [], [])
+    )
+    stills = still_files.Stills(targets, tasks, chosen)
+    overwriting.refuse([*written, *stills.files], tasks, stills.options)
     plain = reports.Background(rules=rule.load_all(), drawn=pictures.drawn)
     background = reporting.background(plain, tasks)
     pictures.begin(background)
+    stills.begin()
+    pictures.also = partial(stills.write, background=background)
     bar = progress.Bar(len(tasks), True)
     checked = running.Runner(max_size, workers, None).check(tasks, bar, faults, take=pictures.split)
     status = faults.report()
@@ -75,13 +88,14 @@ def plot(
         status, how = signals.exit_status(checked.stopped)
         say(f"{how} after {len(checked.files)} of {len(tasks)} files")
     pictures.end()
-    readable = checked.readable if pages or output is None else []
+    to_stdout = has_page and output is None
+    readable = checked.readable if pages or to_stdout else []
     if readable:
         report = batch.report(readable, profiles.machine_id(applies.machine or profiles.DEFAULT))
         page = reports.render(picturing.FORMAT, report, background)
         for _, path in pages:
             files.write(path, page)
-        if output is None:
+        if to_stdout:
             show(page.encode())
     if checked.stopped is None:
         running.warn_unused(applies.tools, checked.called)

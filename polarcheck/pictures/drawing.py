@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from itertools import chain
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
@@ -15,7 +15,11 @@ from polarcheck.columns.trace import Trace
 from polarcheck.errors import TooHardError
 from polarcheck.finding import FileReport, Finding, MadeShape, PolarSection
 from polarcheck.parts.part_report import made_by
+from polarcheck.pictures.listing import listing
 from polarcheck.pictures.picture import Drawn, Mark, SectionPicture
+
+if TYPE_CHECKING:
+    from polarcheck.table.bar import Known
 
 #: The most sections of a file that are drawn.
 _MOST = 200
@@ -48,7 +52,17 @@ def drawn(report: FileReport, runs: Sequence[tuple[str, Tables]]) -> FileReport:
     if len(sections) > _MOST:
         remarks.append(f"only the first {_MOST} of {len(sections)} polar sections are drawn")
     states = dict.fromkeys(state for state, _ in channels if state)
-    shown = Drawn(sections=sections[:_MOST], skip=next(iter(states), ""), remarks=list(dict.fromkeys(remarks)))
+    source, source_line, source_lines = listing(
+        channels[0][1]["text"].source, [*lines.tolist(), *(section.line for section in sections)]
+    )
+    shown = Drawn(
+        sections=sections[:_MOST],
+        skip=next(iter(states), ""),
+        remarks=list(dict.fromkeys(remarks)),
+        source=source,
+        source_line=source_line,
+        source_lines=source_lines,
+    )
     fields = {name: getattr(report, name) for name in FileReport.__struct_fields__}
     return DrawnReport(**fields, drawn=shown)
 
@@ -93,6 +107,7 @@ def _sections(tables: Tables, lines: Any, remarks: list[str]) -> list[SectionPic
             lambda: list(left_marks(trace, tables["coverage"], levels)), "what is left standing", remarks
         ),
     ]
+    bar = _bar(tables)
     return [
         section_picture(
             trace,
@@ -105,10 +120,17 @@ def _sections(tables: Tables, lines: Any, remarks: list[str]) -> list[SectionPic
                 [level for level in (*levels, *meant) if level.section == number],
                 [mark for of_section, mark in marks if of_section == number],
                 list(dict.fromkeys(_in_words(shape) for shape in makes if _is_of(shape, section))),
+                bar,
             ),
         )
         for number, section in enumerate(sections[:_MOST])
     ]
+
+
+def _bar(tables: Tables) -> tuple[float, float]:
+    """Return the diameter of the bar before milling, its largest where there are two, and of its bore [mm]."""
+    known: Known = tables["bar"].known
+    return known.smallest if np.isnan(known.largest) else known.largest, known.bore
 
 
 def _is_of(shape: MadeShape, section: PolarSection) -> bool:

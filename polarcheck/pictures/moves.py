@@ -7,10 +7,12 @@ from typing import Any, cast, get_args
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Points, Rows, States
+from polarcheck.arrays import Floats, Mask, Points, Rows, States, is_among
 from polarcheck.checking.places import block_in_line
 from polarcheck.columns.trace import Trace
 from polarcheck.geometry.cutter_compensation.compensation import Phase
+from polarcheck.geometry.rates import c_feed
+from polarcheck.geometry.tolerances import ZERO
 from polarcheck.machines.modal import Motion
 from polarcheck.pictures.picture import MoveTable, Role
 from polarcheck.table.dynamics import Dynamics
@@ -21,7 +23,9 @@ POSITIONING, CUT, START_UP, CANCEL, CORNER, UNKNOWN = map(np.int16, range(len(RO
 #: The longest text of a block [characters].
 _BLOCK = 120
 #: Decimals of lengths [mm], of rates and shares, and of times [s].
-LENGTH, RATE, TIME = 4, 3, 4
+LENGTH, RATE, TIME = 4, 3, 6
+#: C turns at once by more than this [deg].
+_TURNS = 1e-3
 
 
 class SectionMoves:
@@ -88,6 +92,17 @@ class SectionMoves:
         ).astype(np.int16)
 
     @cached_property
+    def jump(self) -> Mask:
+        """C would have to turn at once: at the center of C, in the move or where it begins."""
+        moves = self.moves
+        before, after = moves.c_angles
+        jumps = np.isinf(c_feed(*moves.shape, 1.0))
+        follows = moves.section[1:] == moves.section[:-1]
+        # Angles are continuous but at the center itself.
+        jumps[1:] |= follows & (np.abs(before[1:] - after[:-1]) > _TURNS) & (np.abs(moves.start[1:]) <= ZERO)
+        return jumps & self.is_known
+
+    @cached_property
     def z(self) -> tuple[Floats, Floats]:
         """Z before and after each move [mm]."""
         return z_along(self.trace, self.moves)
@@ -136,6 +151,9 @@ class SectionMoves:
             share=numbers_of(self.c_feed[chosen] / limit, RATE + 1),
             begin=numbers_of(self.begin[chosen], TIME),
             time=numbers_of(self.time[chosen], TIME),
+            center=_centers(moves.kind[chosen], moves.center[chosen]),
+            jump=self.jump[chosen].tolist(),
+            angle=list(zip(*(numbers_of(angle[chosen], RATE) for angle in moves.c_angles), strict=True)),
         )
 
 
@@ -175,6 +193,16 @@ def _with_standing(trace: Trace, dynamics: Dynamics) -> tuple[Moves, Rows]:
     }
     columns = {name: np.insert(getattr(moves, name), at, values) for name, values in still.items()}
     return Moves(entry=moves.entry, c_axis=moves.c_axis, **columns), np.insert(np.arange(len(moves)), at, -1)
+
+
+def _centers(kind: States, center: Points) -> list[tuple[float, float] | None]:
+    """Return the center of each arc [mm], None for other moves."""
+    is_arc = is_among(kind, (Motion.CW, Motion.CCW)) & ~np.isnan(center)
+    rounded = np.round(center, LENGTH) + 0.0
+    return [
+        (x, c) if known else None
+        for x, c, known in zip(rounded.real.tolist(), rounded.imag.tolist(), is_arc.tolist(), strict=True)
+    ]
 
 
 def _sequence_numbers(trace: Trace) -> dict[int, str]:

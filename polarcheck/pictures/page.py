@@ -21,7 +21,22 @@ from polarcheck.pictures.picture import FindingPicture, Mark, Picture, SectionPi
 from polarcheck.reading.excerpt import visible
 
 #: The scripts; each may use those before it.
-_SCRIPTS = ("words", "colors", "face", "rates", "moves", "section", "choosing", "printing", "start")
+_SCRIPTS = (
+    "words",
+    "state",
+    "colors",
+    "plane",
+    "face",
+    "rates",
+    "moves",
+    "legend",
+    "section",
+    "workbench",
+    "findings",
+    "choosing",
+    "printing",
+    "start",
+)
 #: Only the scripts of this page run, and only a library beside it is loaded. plotly sets styles.
 _POLICY = (
     "default-src 'none'; script-src {}; style-src 'unsafe-inline'; img-src data: blob:; base-uri 'none'; "
@@ -29,21 +44,29 @@ _POLICY = (
 )
 #: Characters that could end a script in HTML, or that a script must not contain.
 _IN_SCRIPT = str.maketrans({mark: f"\\u{ord(mark):04x}" for mark in "<>&\u2028\u2029"})
+_RANK = {"error": 3, "warning": 2, "note": 1}
 _NO_SCRIPTS = "The pictures need a browser that runs scripts; all findings are in the table."
 
 
-def page(pictures: Sequence[Picture], library: str = "", beside: str = "", notes: Iterable[str] = ()) -> str:
+def page(
+    pictures: Sequence[Picture],
+    library: str = "",
+    beside: str = "",
+    notes: Iterable[str] = (),
+    sources: str = "'self' file:",
+) -> str:
     """
     Return the page of one program, or of several one below the other.
 
     library: plotly's JavaScript, to be included in the page.
     beside: without `library`, the name of the file with it in the folder of the page.
     notes: what the page says behind the programs, in a line each.
+    sources: without `library`, the sources from which the policy of the page allows to load it.
     """
     scripts = "\n".join(_part(f"{name}.js") for name in _SCRIPTS)
     script = f'\n(() => {{\n"use strict";\n{scripts}}})();\n'
     included = library.replace("</script", "<\\/script")
-    allowed = [_hash(script), _hash(included) if included else "'self' file:"]
+    allowed = [_hash(script), _hash(included) if included else sources]
     loaded = f"<script>{included}</script>" if included else f'<script src="{_text(beside)}"></script>'
     return Template(_part("page.html")).substitute(
         policy=_POLICY.format(" ".join(allowed)),
@@ -70,7 +93,15 @@ def _hash(script: str) -> str:
 
 def _data(pictures: Sequence[Picture]) -> str:
     """Return the data of the pictures as JSON that is safe in HTML, without what the page says in words already."""
-    drawn = [{"findings": _shown(picture.findings), "sections": _shown(picture.sections)} for picture in pictures]
+    names = ("findings", "sections", "source", "source_line", "source_lines")
+    drawn = [
+        {
+            **{name: _shown(getattr(picture, name)) for name in names},
+            "order": (order := _order(picture.findings)),
+            "numbers": _numbers(order),
+        }
+        for picture in pictures
+    ]
     return msgspec.json.encode(drawn).decode().translate(_IN_SCRIPT)
 
 
@@ -100,16 +131,32 @@ def _note(text: str) -> str:
 def _program(number: int, picture: Picture) -> str:
     sections = "\n".join(_section(number, place, section) for place, section in enumerate(picture.sections))
     lacking = "".join(f"<li>{_text(reason)}</li>" for reason in picture.not_evaluated)
-    return (
-        f'<main class="program" id="p{number}">\n<header>\n<h1>{_text(picture.path)}</h1>\n'
-        f'<p class="verdict {_text(picture.verdict.split()[0] if picture.verdict else "")}">'
-        f"<strong>{_text(picture.verdict)}</strong> {_text(picture.summary)}</p>\n"
-        f"<dl>{_pairs(picture.head)}</dl>\n"
-        + (f'<h2>Not evaluated</h2>\n<ul class="lacking">{lacking}</ul>\n' if lacking else "")
-        + f"<noscript><p>{_NO_SCRIPTS}</p></noscript>\n</header>\n"
-        + _findings(number, picture.findings)
-        + f"{sections}\n</main>"
+    return Template(_part("program.html")).substitute(
+        picture=number,
+        path=_text(picture.path),
+        state=_text(picture.verdict.split()[0] if picture.verdict else ""),
+        verdict=_text(picture.verdict),
+        summary=_text(picture.summary),
+        no_scripts=_NO_SCRIPTS,
+        shape="" if picture.sections else " is-plain",
+        sections=sections,
+        findings=_findings(number, picture.findings),
+        lacking=f'<h2>Not evaluated</h2>\n<ul class="lacking">{lacking}</ul>' if lacking else "",
+        head=_pairs(picture.head),
     )
+
+
+def _order(findings: Sequence[FindingPicture]) -> list[int]:
+    """Return the places of the findings as they are listed: the worst first, silenced ones last."""
+    return sorted(
+        range(len(findings)),
+        key=lambda place: (bool(findings[place].silenced), -_RANK.get(findings[place].severity, 0), place),
+    )
+
+
+def _numbers(order: Sequence[int]) -> list[int]:
+    """Return the number of each finding in the list, from 1."""
+    return [place + 1 for place in sorted(range(len(order)), key=order.__getitem__)]
 
 
 def _pairs(pairs: Iterable[tuple[str, str]]) -> str:
@@ -119,15 +166,16 @@ def _pairs(pairs: Iterable[tuple[str, str]]) -> str:
 def _findings(number: int, findings: Sequence[FindingPicture]) -> str:
     if not findings:
         return '<p class="none">No findings.</p>\n'
-    rows = "\n".join(_finding(number, place, finding) for place, finding in enumerate(findings))
-    heads = "".join(f'<th scope="col">{head}</th>' for head in ("Line", "Severity", "What is wrong", "Rule"))
+    order = _order(findings)
+    rows = "\n".join(_finding(number, place, count, findings[place]) for count, place in enumerate(order, 1))
+    heads = "".join(f'<th scope="col">{head}</th>' for head in ("No.", "Line", "Severity", "What is wrong", "Rule"))
     return (
-        f'<h2>Findings</h2>\n<table class="findings">\n<thead><tr>{heads}</tr></thead>\n<tbody>\n{rows}\n</tbody>\n'
+        f'<h2>All findings</h2>\n<table class="findings">\n<thead><tr>{heads}</tr></thead>\n<tbody>\n{rows}\n</tbody>\n'
         "</table>\n"
     )
 
 
-def _finding(number: int, place: int, finding: FindingPicture) -> str:
+def _finding(number: int, place: int, count: int, finding: FindingPicture) -> str:
     severity = f"{finding.severity}, silenced ({finding.silenced})" if finding.silenced else finding.severity
     more = [("Why", finding.why), ("Fix", finding.fix)]
     notes = "".join(f'<p class="more"><span>{label}</span> {_text(text)}</p>' for label, text in more if text)
@@ -135,7 +183,7 @@ def _finding(number: int, place: int, finding: FindingPicture) -> str:
     state = " silenced" if finding.silenced else ""
     return (
         f'<tr class="{_text(finding.severity)}{state}" data-picture="{number}" data-finding="{place}">'
-        f'<td class="line">{finding.line}</td><td class="severity">{_text(severity)}</td>'
+        f'<td class="line">{count}</td><td class="line">{finding.line}</td><td class="severity">{_text(severity)}</td>'
         f"<td><p>{_text(finding.message)}</p><code>{_text(finding.block)}</code>{notes}</td>"
         f"<td>{_text(finding.rule)}{alarm}</td></tr>"
     )
@@ -146,6 +194,7 @@ def _section(number: int, place: int, section: SectionPicture) -> str:
         picture=number,
         section=place,
         title=_text(section.title),
+        missing=f'<p class="missing">{_text(section.needs_radius)}</p>' if section.needs_radius else "",
         facts=_pairs(_facts(section)),
         notes=_notes(number, section),
     )
@@ -184,8 +233,8 @@ def _length(value: float, section: SectionPicture) -> str:
 
 
 def _notes(number: int, section: SectionPicture) -> str:
-    """Return HTML: why there is no tool path, what the section makes, and what it overcuts or leaves standing."""
-    notes = f'<p class="missing">{_text(section.needs_radius)}</p>\n' if section.needs_radius else ""
+    """Return HTML: what the section makes, and what it overcuts or leaves standing."""
+    notes = ""
     shapes = section.makes or [part.text for part in section.parts]
     if shapes:
         notes += f'<ul class="parts">{"".join(f"<li>{_text(text)}</li>" for text in shapes)}</ul>\n'

@@ -30,6 +30,23 @@ class Points(msgspec.Struct, frozen=True, kw_only=True):
     move: list[int | None]
 
 
+class Writing(msgspec.Struct, frozen=True, kw_only=True):
+    """
+    How the program writes a point of the plane.
+
+    linear, virtual: what stands before the numbers, as X and C, Y or C2=.
+    virtual_diameter: the virtual axis is written as a diameter.
+    origin: the zero of the program on the plane, [x, c] [mm]; null where the section changes it or it is not known.
+    turn: the angle of the program's axes on the plane [deg].
+    """
+
+    linear: str = "X"
+    virtual: str = "C"
+    virtual_diameter: bool = False
+    origin: tuple[float, float] | None = (0.0, 0.0)
+    turn: float = 0.0
+
+
 class MoveTable(msgspec.Struct, frozen=True, kw_only=True):
     """
     The moves of the tool center in a section, in order; in moves of Z alone x and c stand still.
@@ -47,6 +64,9 @@ class MoveTable(msgspec.Struct, frozen=True, kw_only=True):
     share: c_feed as a share of the limit of C, null without a limit.
     begin: the start in the section, as in Rates [s].
     time: the duration [s].
+    center: [x, c] of the center of an arc [mm], null for other moves.
+    jump: C would have to turn at once at the center: the move passes it, or begins there in another direction.
+    angle: C as the control shows it, before and after [deg].
     """
 
     line: list[int]
@@ -64,16 +84,26 @@ class MoveTable(msgspec.Struct, frozen=True, kw_only=True):
     share: list[float | None]
     begin: list[float | None]
     time: list[float | None]
+    center: list[tuple[float, float] | None]
+    jump: list[bool]
+    angle: list[tuple[float | None, float | None]]
 
 
 class Rates(msgspec.Struct, frozen=True, kw_only=True):
     """
     Curves over the time of a section. A move of unknown time has no points.
 
+    Between two points of a move all columns but `move` are nearly straight: x, c, z and machine_x within 0.01 mm and
+    angle within 0.1 deg, unless the page says that points are left out. Where C jumps, two points have the same time.
+
     t: [s].
-    c_feed: the rate of C, with its sign [deg/min].
+    c_feed: the rate of C, with its sign [deg/min]; null where C jumps.
     x_feed, feed: [mm/min].
     move: the move in the table of moves.
+    x, c: the center of the cutter on the plane [mm].
+    z: [mm].
+    angle: C as the control shows it, continuous along the section [deg].
+    machine_x: the X axis, a radius, negative on a machine that stays on the negative side [mm].
     """
 
     t: list[float | None]
@@ -81,6 +111,11 @@ class Rates(msgspec.Struct, frozen=True, kw_only=True):
     x_feed: list[float | None]
     feed: list[float | None]
     move: list[int | None]
+    x: list[float | None]
+    c: list[float | None]
+    z: list[float | None]
+    angle: list[float | None]
+    machine_x: list[float | None]
 
 
 class PartPicture(msgspec.Struct, frozen=True, kw_only=True):
@@ -119,13 +154,34 @@ class Mark(msgspec.Struct, frozen=True, kw_only=True):
     rings: list[list[tuple[float, float]]]
 
 
+class DrawnPart(msgspec.Struct, frozen=True, kw_only=True):
+    """
+    What the job asks for, a drawing or a shape.
+
+    title: the name of the drawing, or the shape.
+    z: the depth that it was compared at [mm].
+    agrees: what is made agrees with it; null if nothing was compared with it.
+    lines: its curves as points [x, c] [mm]; a closed one ends with its first point.
+    """
+
+    title: str
+    z: float | None
+    agrees: bool | None
+    lines: list[list[tuple[float, float]]]
+
+
 class FindingPicture(msgspec.Struct, frozen=True, kw_only=True):
     """
     A finding, as it is shown.
 
-    section: its number among the pictures of sections, null outside sections.
-    move: the first move of its block in the section, null without one.
+    section: its number among the pictures of sections: of its block or, outside sections, of the nearest one; null if
+        nothing is drawn.
+    move: the move at its place or, without one of its block, the nearest one of the section; null without moves.
     silenced: what silences it, empty if nothing does.
+    places: where it is on the face, [x, c] [mm]; several if it stands for several blocks.
+    span: the width of a window that shows it at its own scale [mm]; null if it has no scale, or no place.
+    also: the other lines that it stands for.
+    is_beside: its block is not on the drawn path.
     """
 
     rule: str
@@ -139,6 +195,10 @@ class FindingPicture(msgspec.Struct, frozen=True, kw_only=True):
     section: int | None
     move: int | None
     silenced: str
+    places: list[tuple[float, float]] = []
+    span: float | None = None
+    also: list[int] = []
+    is_beside: bool = False
 
 
 class SectionPicture(msgspec.Struct, frozen=True, kw_only=True):
@@ -167,6 +227,13 @@ class SectionPicture(msgspec.Struct, frozen=True, kw_only=True):
     move_count: the number of all moves.
     makes: the shapes that it makes, all depths together, as in `polarcheck part`, with what is left standing.
     remarks: what is not drawn, and why; what is drawn as meant and not as the control reads it.
+    writing: how the program writes a point.
+    frame: [x0, c0, x1, c1] of all that is drawn, with the cutter, the stock and the center [mm].
+    entry: C where the x of the plane lies on the X axis, which is C at G12.1 [deg].
+    entry_known: False if nothing says C there, and it is taken as 0.
+    sense: 1 where C grows with the angle on the plane, -1 where it falls.
+    bar: rings of the bar before milling [mm], its outside first, then its bore; empty if it is not known.
+    drawing: the lines of the part asked for, where the comparison has placed it.
     """
 
     title: str
@@ -195,6 +262,13 @@ class SectionPicture(msgspec.Struct, frozen=True, kw_only=True):
     move_count: int = 0
     makes: list[str] = []
     remarks: list[str] = []
+    writing: Writing = Writing()
+    frame: tuple[float, float, float, float] = (-1.0, -1.0, 1.0, 1.0)
+    entry: float = 0.0
+    entry_known: bool = True
+    sense: int = 1
+    bar: list[list[tuple[float, float]]] = []
+    drawing: list[DrawnPart] = []
 
 
 class Picture(msgspec.Struct, frozen=True, kw_only=True):
@@ -208,6 +282,9 @@ class Picture(msgspec.Struct, frozen=True, kw_only=True):
     not_evaluated: a line for each reason.
     findings: the findings, silenced ones included.
     sections: the pictures of the sections.
+    source: the lines of the file, long ones shortened; a part of them if there are very many.
+    source_line: the number of the first of these lines.
+    source_lines: the number of all lines of the file.
     """
 
     path: str
@@ -217,6 +294,28 @@ class Picture(msgspec.Struct, frozen=True, kw_only=True):
     not_evaluated: list[str]
     findings: list[FindingPicture]
     sections: list[SectionPicture]
+    source: list[str] = []
+    source_line: int = 1
+    source_lines: int = 0
+
+
+class Place(msgspec.Struct, frozen=True, kw_only=True):
+    """
+    The place of a finding on the face, as in FindingPicture.
+
+    section, move: as in FindingPicture; section is the number among all pictures of the program.
+    """
+
+    section: int | None
+    move: int | None
+    places: list[tuple[float, float]]
+    span: float | None
+    also: list[int]
+    is_beside: bool
+
+
+#: Identifies a finding of a file: its rule, line, column and channel.
+Key = tuple[str, int, int, str]
 
 
 class Drawn(msgspec.Struct, frozen=True, kw_only=True):
@@ -226,8 +325,14 @@ class Drawn(msgspec.Struct, frozen=True, kw_only=True):
     sections: the pictures of the sections.
     skip: the state of block skip that is drawn, empty if it makes no difference.
     remarks: what is not drawn of the whole program, and why.
+    places: where its findings are.
+    source, source_line, source_lines: as in Picture.
     """
 
     sections: list[SectionPicture]
     skip: str
     remarks: list[str]
+    places: dict[Key, Place] = {}
+    source: list[str] = []
+    source_line: int = 1
+    source_lines: int = 0

@@ -19,11 +19,13 @@ from polarcheck.columns.trace import Trace
 from polarcheck.finding import PolarSection
 from polarcheck.machines.modal import MM_PER_INCH
 from polarcheck.parts.as_meant import as_meant
-from polarcheck.pictures import paths, rates
+from polarcheck.pictures import instants, paths, rates
+from polarcheck.pictures.extent import bar_rings, frame
 from polarcheck.pictures.moves import LENGTH, POSITIONING, RATE, TIME, SectionMoves, numbers_of
 from polarcheck.pictures.parts import parts
 from polarcheck.pictures.paths import Chords
 from polarcheck.pictures.picture import Mark, Points, Rates, SectionPicture
+from polarcheck.pictures.writing import writing
 from polarcheck.table.finished import Level
 from polarcheck.table.moves import Moves
 from polarcheck.table.overcuts import curves_of
@@ -45,11 +47,13 @@ class Extras(msgspec.Struct, frozen=True):
     levels: the finished part at each depth.
     marks: areas that are overcut or left standing.
     makes: the shapes that the section makes, in words.
+    bar: the outside diameter of the bar before milling, and of its bore; NaN if unknown [mm].
     """
 
     levels: Sequence[Level]
     marks: Sequence[Mark]
     makes: Sequence[str]
+    bar: tuple[float, float]
 
 
 def section_picture(
@@ -84,7 +88,8 @@ def section_picture(
     )
     path = rates.path_segments(table, chosen)
     path = msgspec.structs.replace(path, move=np.searchsorted(chosen, path.move))
-    curves = rates.thinned(rates.samples(path, table.dynamics.c_limit), keep, most)
+    c_axis = trace.path.c_axis
+    curves = rates.thinned(instants.samples(path, table.dynamics.c_limit, c_axis.sense, most), keep, most)
     # The first of the moves of each block.
     first = _first_of(moves.row, path_moves.row[contour.move])
     extremes = (table.c_feed[chosen], table.x_feed[chosen], -moves.nearest)
@@ -119,12 +124,29 @@ def section_picture(
             x_feed=numbers_of(curves.x_feed, RATE),
             feed=numbers_of(curves.feed, RATE),
             move=_place(listed, curves.move).tolist(),
+            x=numbers_of(curves.point.real, LENGTH),
+            c=numbers_of(curves.point.imag, LENGTH),
+            z=numbers_of(curves.z, LENGTH),
+            angle=numbers_of(curves.angle, RATE),
+            machine_x=numbers_of(_side_of_x(moves, c_axis.is_fixed) * np.abs(curves.point), LENGTH),
         ),
         parts=list(parts(trace, extras.levels, unseen)),
         marks=list(extras.marks),
         makes=list(extras.makes),
         remarks=_remarks(len(chosen), len(listed), as_meant(trace, section)),
+        writing=writing(trace, section),
+        entry=round(float(trace.path.section_entry[section]), RATE),
+        entry_known=bool(trace.path.knows_section_entry[section]),
+        sense=c_axis.sense,
+        frame=frame(np.concatenate([tool.point, contour.point]), summary.radius, extras.bar[0]),
+        bar=bar_rings(*extras.bar),
     )
+
+
+def _side_of_x(moves: Moves, is_fixed: bool) -> int:
+    """Return -1 for a section that begins on the negative side of X, where the machine stays then; else 1."""
+    first = complex(moves.start[0]) if len(moves) else 0.0
+    return -1 if first.imag == 0 and first.real < 0 and not is_fixed else 1
 
 
 def _mask(chosen: Rows, count: int) -> Mask:

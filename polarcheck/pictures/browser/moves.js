@@ -4,7 +4,58 @@ const ROW = 24;
 /** Rows that are made above and below those in sight. */
 const SPARE = 12;
 
-function moveTable(box, section, choose) {
+/** The table of the moves of the section that is shown, and what steps through them. */
+function movesView(root, picture, state, program) {
+  const find = (name) => root.querySelector(`.${name}`);
+  const slider = find("step");
+  let section = null;
+  let showRow = () => {};
+  const choose = (move) => state.choose({ program, section, move });
+  const count = () => picture.sections[section].moves.line.length;
+
+  function show(chosen) {
+    if (chosen.program !== program || chosen.section === null) {
+      return;
+    }
+    if (chosen.section !== section) {
+      section = chosen.section;
+      showRow = moveTable(find("moves"), picture.sections[section], choose, picture.findings.filter((finding) => !finding.silenced));
+      slider.max = String(Math.max(count() - 1, 0));
+    }
+    slider.value = String(chosen.move === null ? 0 : chosen.move);
+    find("count").textContent = chosen.move === null ? `${count()} moves` : `${chosen.move + 1} of ${count()}`;
+    showRow(chosen.move);
+  }
+
+  let isRequested = false;
+  slider.addEventListener("input", () => {
+    // A slider moves faster than pictures are drawn.
+    if (!isRequested) {
+      isRequested = true;
+      requestAnimationFrame(() => {
+        isRequested = false;
+        choose(Number(slider.value));
+      });
+    }
+  });
+  const step = (way) => {
+    const from = state.chosen.move === null ? (way > 0 ? -1 : count()) : state.chosen.move;
+    choose(Math.min(Math.max(from + way, 0), count() - 1));
+  };
+  find("back").addEventListener("click", () => step(-1));
+  find("on").addEventListener("click", () => step(1));
+  find("move-list").hidden = !picture.sections.length;
+  state.subscribe(show);
+  if (picture.sections.length) {
+    show({ program, section: 0, move: null });
+  }
+}
+
+function moveTable(box, section, choose, findings) {
+  const severities = new Map();
+  for (const finding of [...findings].reverse()) {
+    [finding.line, ...(finding.also || [])].forEach((line) => severities.set(line, finding.severity));
+  }
   const units = unitsOf(section);
   const { moves } = section;
   const count = moves.line.length;
@@ -24,7 +75,7 @@ function moveTable(box, section, choose) {
   box.replaceChildren(table);
   let chosen = null;
 
-  const number = (value, told) => (value === null ? "" : told(value));
+  const number = (value, text) => (value === null ? "" : text(value));
   function row(move) {
     const values = [
       String(moves.line[move]), moves.block[move], number(moves.z[move][1], units.length),
@@ -36,7 +87,7 @@ function moveTable(box, section, choose) {
     made.dataset.move = String(move);
     made.setAttribute("aria-rowindex", String(move + 2));
     made.title = `${moves.role[move]}: ${moves.block[move]}`;
-    made.className = [move === chosen ? "is-chosen" : "", moves.share[move] > 1 ? "above" : ""].join(" ").trim();
+    made.className = [move === chosen ? "is-chosen" : "", moves.share[move] > 1 ? "above" : "", severities.get(moves.line[move]) || ""].join(" ").trim();
     return made;
   }
 
@@ -68,13 +119,14 @@ function moveTable(box, section, choose) {
     fill();
   }
 
-  box.addEventListener("scroll", () => requestAnimationFrame(fill));
+  box.onscroll = () => requestAnimationFrame(fill);
   body.addEventListener("click", (event) => {
-    const found = event.target.closest("tr[data-move]");
-    if (found) {
-      choose(Number(found.dataset.move));
+    const hit = event.target.closest("tr[data-move]");
+    if (hit) {
+      choose(Number(hit.dataset.move));
     }
   });
+  box.scrollTop = 0;
   fill();
   return show;
 }

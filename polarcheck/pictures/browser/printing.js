@@ -1,6 +1,6 @@
 // ---- printing: all pictures are drawn, as wide as a page of A4 or Letter leaves room ----
 
-const PAPER = { width: 660, face: 440, rates: 250 };
+const PAPER = { width: 660, face: 410, rates: 220 };
 
 function printable(views) {
   const resized = (sizes) => {

@@ -1,29 +1,35 @@
-// ---- start: the data into the pictures ----
+// ---- start: the data into the views ----
+
+/** Views of a program, each called with the element of the program, its picture, the state and its number. */
+const VIEWS = [
+  chosenView,
+  movesView,
+  playersView,
+];
 
 function start() {
   if (typeof Plotly === "undefined") {
     document.querySelector("main").prepend(element("p", "The library that draws is missing beside this page."));
     return;
   }
-  const told = element("dl");
-  told.id = "told";
-  told.hidden = true;
-  document.body.append(told);
-  let choose = () => {};
-  const programs = JSON.parse(document.getElementById("data").textContent).map(({ findings, sections }, program) => ({
-    findings,
-    views: sections.map((section, place) =>
-      sectionView(document.getElementById(`p${program}s${place}`), section, (move) => choose(program, place, move)),
-    ),
-  }));
-  choose = chooser(programs);
-  const views = programs.flatMap((program) => program.views);
-  const inSight = new IntersectionObserver(
-    (entries) => entries.filter((entry) => entry.isIntersecting).forEach((entry) => views.find((view) => view.root === entry.target).draw()),
-    { rootMargin: "400px" },
-  );
-  views.forEach((view) => inSight.observe(view.root));
-  printable(views);
+  const hover = element("dl");
+  hover.id = "hover";
+  hover.hidden = true;
+  document.body.append(hover);
+  const pictures = JSON.parse(document.getElementById("data").textContent);
+  const state = pageState(pictures);
+  const programs = pictures.map((picture, program) => {
+    const root = document.getElementById(`p${program}`);
+    const sections = sectionsView(root, picture, state, program);
+    const list = findingsView(root, picture, state, program, sections);
+    VIEWS.forEach((view) => view(root, picture, state, program, sections));
+    return { root, picture, sections, list };
+  });
+  chooser(programs, state);
+  printable(programs.flatMap((program) => program.sections.views));
+  if (pictures[0].sections.length) {
+    state.choose({ program: 0, section: 0 });
+  }
 }
 
 start();

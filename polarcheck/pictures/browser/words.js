@@ -67,5 +67,13 @@ function element(name, text = "", ...children) {
 
 /** Pairs of label and text as the entries of a list of definitions. */
 function pairs(facts) {
-  return facts.flatMap(([label, told]) => [element("dt", label), element("dd", told)]);
+  return facts.flatMap(([label, text]) => [element("dt", label), element("dd", text)]);
+}
+
+/** A button with a text and what it does. */
+function button(text, act) {
+  const made = element("button", text);
+  made.type = "button";
+  made.addEventListener("click", act);
+  return made;
 }

@@ -34,6 +34,9 @@ def picture(file: FileReport, background: Background) -> Picture:
         not_evaluated=list(_not_evaluated(file)),
         findings=[_finding(finding, places, background) for finding in findings],
         sections=drawn.sections,
+        source=drawn.source,
+        source_line=drawn.source_line,
+        source_lines=drawn.source_lines,
     )
 
 

@@ -1,0 +1,64 @@
+// @ts-check
+/** How polarcheck is started: the settings of the editor as a command line. */
+"use strict";
+
+const os = require("node:os");
+const path = require("node:path");
+
+/**
+ * @typedef {object} Settings
+ * @property {string} path
+ * @property {string} machine
+ * @property {string[]} arguments
+ * @property {string[]} trustedFolders
+ */
+
+/**
+ * Put the folder that is open and the user's own in the place of `${workspaceFolder}` and `~`.
+ * @param {string} text
+ * @param {string} folder of the workspace; empty without one
+ * @param {string} [home]
+ */
+function expanded(text, folder, home = os.homedir()) {
+  const inside = text.replaceAll("${workspaceFolder}", () => folder).replaceAll("${userHome}", () => home);
+  return inside === "~" || inside.startsWith("~/") || inside.startsWith("~\\") ? home + inside.slice(1) : inside;
+}
+
+/**
+ * The command that starts the server.
+ * @param {Settings} settings
+ * @param {string} folder of the workspace; empty without one
+ * @param {string} [home]
+ */
+function commandLine(settings, folder, home) {
+  /** @param {string} text */
+  const whole = (text) => expanded(text, folder, home);
+  const machine = settings.machine.trim();
+  return {
+    command: whole(settings.path.trim()) || "polarcheck",
+    args: [
+      "server",
+      ...(machine ? ["--machine", whole(machine)] : []),
+      ...settings.trustedFolders.flatMap((trusted) => ["--trust", path.normalize(whole(trusted))]),
+      ...settings.arguments.map(whole),
+    ],
+  };
+}
+
+/**
+ * What to do where polarcheck does not start, in one line.
+ * @param {string} command
+ * @param {number | null} code its exit code; null where it could not be started
+ * @param {string} said its last line of standard error
+ */
+function advice(command, code, said) {
+  if (code === null) {
+    return `polarcheck is not installed, or not on the PATH (${command}). Install it, in a checkout with: pip install ".[server,plot]" - or name its executable in the setting polarcheck.path.`;
+  }
+  if (/No such command/.test(said)) {
+    return `${command} is too old, or another program: it has no command "server". The setting polarcheck.path names the executable.`;
+  }
+  return said ? `polarcheck does not start: ${said}` : `polarcheck does not start: ${command} ended with ${code}.`;
+}
+
+module.exports = { advice, commandLine, expanded };

@@ -1,0 +1,369 @@
+// ---- player: the clock of a section; it moves the tool in the view onto the face and in that of the machine ----
+
+const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 5, 10];
+/** Numbers and the chosen move follow so often while it plays [ms]. */
+const READ_EVERY = 100;
+/** The longest time between two frames that counts as time [ms]: a page in the background stands still. */
+const LONGEST_FRAME = 250;
+/** A step by key [s], at speed 1. */
+const KEY_STEP = 0.1;
+
+/** Minutes and seconds, as 1:02.5. */
+function clockOf(seconds) {
+  const tenths = Math.round(seconds * 10);
+  return `${Math.floor(tenths / 600)}:${((tenths % 600) / 10).toFixed(1).padStart(4, "0")}`;
+}
+
+/** The players of all sections of a program; each is made as its section is first shown. */
+function playersView(root, picture, state, program, sections) {
+  const players = [];
+  function playerOf(place) {
+    if (!players[place]) {
+      const next = place + 1 < sections.views.length ? () => {
+        state.choose({ program, section: place + 1, move: null });
+        return playerOf(place + 1);
+      } : null;
+      players[place] = playerView(sections.views[place].root, program, place, picture.sections[place], state, next);
+    }
+    return players[place];
+  }
+  const show = ({ section }) => {
+    if (section !== null && sections.views[section]) {
+      playerOf(section).show();
+    }
+  };
+  state.subscribe((chosen, before) => {
+    if (chosen.program === program && (chosen.section !== before.section || chosen.view !== before.view || chosen.program !== before.program)) {
+      show(chosen);
+    }
+  });
+  if (sections.views.length) {
+    playerOf(0);
+  }
+}
+
+/**
+ * The player of a section.
+ *
+ * root: its element, with the places .player, .machine, .face and .over. program, place: its numbers. next: the player
+ * of the next section, as a function, null for the last one. The timeline and the views are made as it is first shown.
+ */
+function playerView(root, program, place, section, state, next) {
+  const face = root.querySelector(".face");
+  const control = playerControls(root.querySelector(".player"), next !== null);
+  const moment = { place: 1, play: 0, move: -1, kind: STEADY };
+  let views = null;
+  let isPlaying = false;
+  /** True once a move or a time of the section is chosen: until then nothing covers the face. */
+  let isShown = false;
+  let frame = 0;
+  let lastFrame = 0;
+  let lastRead = 0;
+  let sent = null;
+
+  /** The timeline and the views, made at the first call. */
+  function open() {
+    if (views) {
+      return;
+    }
+    const line = timelineOf(section);
+    const canvas = element("canvas");
+    canvas.setAttribute("role", "img");
+    const gauges = Object.assign(element("div"), { className: "gauges" });
+    root.querySelector(".machine").replaceChildren(canvas, gauges, ...whyNot(section));
+    views = { line, canvas, machine: machineView(canvas, section, line), gauges: gaugesView(gauges, section, line), over: null };
+    new ResizeObserver(redraw).observe(canvas);
+    control.setLength(line.length);
+    momentAt(line, 0, moment);
+    read();
+  }
+
+  /** The canvas over the face, once the face is drawn. */
+  function over() {
+    if (views.over === null && face._fullLayout) {
+      const plane = planeTransform(face);
+      views.over = faceCanvas(root.querySelector(".over"), face, section, views.line, plane);
+      plane.onChange(redraw);
+    }
+    return views.over;
+  }
+
+  /** Show a time on the slider. */
+  function seek(play) {
+    open();
+    momentAt(views.line, Math.min(Math.max(play, 0), views.line.length), moment);
+    read();
+    redraw();
+  }
+
+  function seekByHand(play) {
+    isPlaying = false;
+    control.setPlaying(false);
+    isShown = true;
+    seek(play);
+    report();
+  }
+
+  /** Write the numbers of the moment. */
+  function read() {
+    const { line, gauges, canvas } = views;
+    control.setTime(moment.play, `${clockOf(moment.time || 0)} of ${clockOf(line.duration || 0)}`);
+    gauges.show(moment, true);
+    control.setBlock(blockText(section, moment), noteText(section, line, moment));
+    if (!isPlaying) {
+      canvas.setAttribute("aria-label", `The view along the spindle: the part turns, the cutter moves along X. ${blockText(section, moment)}`);
+    }
+  }
+
+  /** Tell the page what is chosen now: while it plays only as the move changes. */
+  function report() {
+    const now = { program, section: place, move: moment.move < 0 ? null : moment.move, time: moment.time, playing: isPlaying };
+    if (!sent || !isPlaying || sent.move !== now.move || sent.playing !== now.playing) {
+      sent = now;
+      state.choose(now);
+    }
+  }
+
+  function redraw() {
+    if (!frame && views) {
+      frame = requestAnimationFrame(drawFrame);
+    }
+  }
+
+  function drawFrame(now) {
+    frame = 0;
+    if (isPlaying) {
+      advance(now);
+    }
+    const faceView = over();
+    const isDone = [views.machine.draw(moment), !isShown || !faceView || faceView.draw(moment, control.hasMetal())];
+    if (isPlaying || isDone.includes(false)) {
+      redraw();
+    }
+  }
+
+  /** Go on by the time since the last frame. */
+  function advance(now) {
+    const passed = Math.min(Math.max(now - lastFrame, 0), LONGEST_FRAME) / 1000;
+    lastFrame = now;
+    momentAt(views.line, Math.min(moment.play + passed * control.speed(), views.line.length), moment);
+    if (moment.play >= views.line.length) {
+      pause();
+    } else if (now - lastRead >= READ_EVERY) {
+      lastRead = now;
+      read();
+      report();
+    } else {
+      views.gauges.show(moment, false);
+    }
+  }
+
+  function play() {
+    open();
+    if (!(views.line.length > 0)) {
+      return;
+    }
+    if (moment.play >= views.line.length) {
+      seek(0);
+    }
+    isPlaying = true;
+    isShown = true;
+    lastFrame = performance.now();
+    lastRead = lastFrame;
+    control.setPlaying(true);
+    read();
+    report();
+    redraw();
+  }
+
+  function pause() {
+    isPlaying = false;
+    control.setPlaying(false);
+    read();
+    report();
+  }
+
+  function toggle() {
+    (isPlaying ? pause : play)();
+  }
+
+  /** Show the beginning of the next section, and play it. */
+  function goOn() {
+    if (next !== null) {
+      pause();
+      next().play();
+    }
+  }
+
+  /** Follow what others have chosen: a move, of which the end is shown, or a time. */
+  function follow(chosen) {
+    if (chosen.program !== program || chosen.section !== place) {
+      stop();
+      return;
+    }
+    const isOwn = sent !== null && sent.move === chosen.move && sent.time === chosen.time && sent.playing === chosen.playing;
+    if (isOwn) {
+      return;
+    }
+    stop();
+    open();
+    sent = { ...chosen };
+    if (chosen.move === null) {
+      isShown = false;
+      if (views.over) {
+        views.over.clear();
+      }
+      seek(0);
+      return;
+    }
+    isShown = true;
+    const hasTime = chosen.time !== null && chosen.time !== undefined;
+    seek(hasTime ? playAtTime(views.line, chosen.time) : playAtEndOf(views.line, chosen.move));
+  }
+
+  /** Stand still for the sake of another choice. */
+  function stop() {
+    if (isPlaying) {
+      isPlaying = false;
+      control.setPlaying(false);
+      // The page is being told of that choice; this follows it.
+      queueMicrotask(() => state.choose({ playing: false }));
+    }
+  }
+
+  const step = () => KEY_STEP * control.speed();
+  const actions = {
+    " ": toggle, ".": () => seekByHand(moment.play + step()), ",": () => seekByHand(moment.play - step()),
+    ">": () => control.faster(1), "<": () => control.faster(-1), n: goOn,
+  };
+  document.addEventListener("keydown", (event) => {
+    const target = event.target instanceof Element ? event.target : document.body;
+    const isTaken = target.closest(event.key === " " ? TAKES_SPACE : TAKES_TEXT);
+    const isOurs = state.chosen.program === program && (state.chosen.section === null ? 0 : state.chosen.section) === place;
+    const isPlain = !event.defaultPrevented && !event.ctrlKey && !event.altKey && !event.metaKey;
+    if (isOurs && isPlain && !isTaken && actions[event.key]) {
+      event.preventDefault();
+      actions[event.key]();
+    }
+  });
+  control.onPlay(toggle);
+  control.onSeek(seekByHand);
+  control.onNext(goOn);
+  control.onMetal(redraw);
+  state.subscribe(follow);
+
+  /** Draw with the colors that the page has now. */
+  function recolor() {
+    if (views) {
+      views.machine.refit();
+      if (views.over) {
+        views.over.refit();
+      }
+      redraw();
+    }
+  }
+
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", recolor);
+  return {
+    play,
+    /** Draw what is in sight. */
+    show() {
+      open();
+      redraw();
+    },
+  };
+}
+
+/** What a key belongs to where the focus is there. */
+const TAKES_TEXT = "select, textarea, input:not(.clock):not([type=checkbox])";
+const TAKES_SPACE = "select, textarea, input:not(.clock), button, summary, a, [role=button], [role=tab], tr[tabindex]";
+
+/** Why there is less to see than there could be. */
+function whyNot(section) {
+  const told = [];
+  if (section.radius === null) {
+    told.push("R of the cutter is not known, so that no metal is taken away: the point alone moves.");
+  } else if (section.stock === null && !section.bar.length) {
+    told.push("The diameter of the stock is not known; the bar is drawn as far as the tool reaches.");
+  }
+  return told.map((text) => Object.assign(element("p", text), { className: "remark" }));
+}
+
+/** The block that runs, as one line. */
+function blockText(section, { move }) {
+  return move < 0 ? "" : `line ${section.moves.line[move]}: ${section.moves.block[move]}`;
+}
+
+/** What is special about a moment; empty if nothing is. */
+function noteText(section, line, { move, kind, feed, play }) {
+  if (kind === JUMP) {
+    return "At the center the C axis would have to turn 180 deg at once. The clock waits here while it is shown.";
+  }
+  if (kind === ASSUMED) {
+    const hasFeed = Number.isFinite(feed) && section.moves.role[move] !== "positioning";
+    return `The time of this move is not known: it is shown ${hasFeed ? "at its F" : "quickly"}, and not counted.`;
+  }
+  return play >= line.length && line.length > 0 ? "End of the section." : "";
+}
+
+/** The controls of a player in their place. */
+function playerControls(bar, hasNext) {
+  const button = (name, text, label) => Object.assign(element("button", text), { type: "button", className: name, ariaLabel: label, title: label });
+  const toggle = button("play", "\u25b6", "Play (space)");
+  const next = button("next", "\u23ed", "Next section (n)");
+  next.hidden = !hasNext;
+  const slider = Object.assign(element("input"), { type: "range", className: "clock", min: "0", max: "0", step: "any", value: "0", ariaLabel: "Time in the section" });
+  const time = Object.assign(element("output", "0:00.0"), { className: "time" });
+  const speed = Object.assign(element("select"), { className: "speed", ariaLabel: "Speed", title: "Speed (< and >)" });
+  speed.append(...SPEEDS.map((each) => Object.assign(element("option", `${each}\u00d7`), { value: String(each) })));
+  speed.value = "1";
+  const metal = Object.assign(element("input"), { type: "checkbox", checked: true, className: "with-metal" });
+  const block = Object.assign(element("code"), { className: "running" });
+  const note = Object.assign(element("p"), { className: "player-note" });
+  note.setAttribute("role", "status");
+  bar.replaceChildren(toggle, next, slider, time, speed, element("label", "", metal, " metal"), block, note);
+  let isDue = false;
+  return {
+    speed: () => Number(speed.value),
+    hasMetal: () => metal.checked,
+    faster(way) {
+      speed.selectedIndex = Math.min(Math.max(speed.selectedIndex + way, 0), SPEEDS.length - 1);
+    },
+    setLength(length) {
+      slider.max = String(length);
+      [toggle, slider].forEach((each) => {
+        each.disabled = !(length > 0);
+      });
+    },
+    setTime(play, text) {
+      slider.value = String(play);
+      slider.setAttribute("aria-valuetext", text);
+      write(time, text);
+    },
+    setBlock(text, remark) {
+      write(block, text);
+      write(note, remark);
+    },
+    setPlaying(isPlaying) {
+      toggle.textContent = isPlaying ? "\u23f8" : "\u25b6";
+      toggle.ariaLabel = isPlaying ? "Pause (space)" : "Play (space)";
+      toggle.title = toggle.ariaLabel;
+      bar.classList.toggle("is-playing", isPlaying);
+    },
+    onPlay: (action) => toggle.addEventListener("click", action),
+    onNext: (action) => next.addEventListener("click", action),
+    onMetal: (action) => metal.addEventListener("change", action),
+    onSeek(action) {
+      // A slider moves more often than is drawn.
+      slider.addEventListener("input", () => {
+        if (!isDue) {
+          isDue = true;
+          requestAnimationFrame(() => {
+            isDue = false;
+            action(Number(slider.value));
+          });
+        }
+      });
+    },
+  };
+}
