@@ -7,9 +7,7 @@ from importlib import resources
 from typing import Any
 
 import pytest
-from test_page_in_browser import CHROMIUM, Opened, browser
-
-from polarcheck.pictures.page import page
+from test_page_in_browser import CHROMIUM, browser
 
 playwright = pytest.importorskip("playwright.sync_api")
 plotly = pytest.importorskip("plotly.offline")

@@ -106,6 +106,7 @@ class Computed(NamedTuple):
 
     kind: Kind
     block: int
+    into: Into = Into.OWN
 
 
 class Mentions:
@@ -297,7 +298,7 @@ class Mentions:
             return
         digits = _DIGITS.search(written, word.start, word.end)
         if word.written is None or digits is None:
-            self.computed.append(Computed(Kind.SEQUENCE, block))
+            self.computed.append(Computed(Kind.SEQUENCE, block, into))
             return
         span = start + digits.start(), start + digits.end()
         mention = self._mention(Kind.SEQUENCE, Role.REFERS, int(digits[0][:18]), span, block, start + word.start)

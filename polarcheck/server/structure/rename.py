@@ -8,6 +8,7 @@ whose number is computed, a number that its word cannot hold.
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 
 from lsprotocol import types
 
@@ -72,9 +73,8 @@ def _refuse_system(uses: Uses, use: Use) -> None:
         return
     kind = uses.kind_of(use)
     if kind not in (VariableKind.LOCAL, VariableKind.COMMON, VariableKind.RETAINED):
-        raise RenameError(
-            f"{use.mention.shown} is a variable of the control: {_KINDS.get(kind, 'it has none of this number')}"
-        )
+        reason = _KINDS.get(kind, "the control has none of this number")
+        raise RenameError(f"{use.mention.shown} is no variable of programs: {reason}")
 
 
 class _Renaming:
@@ -167,10 +167,11 @@ class _Renaming:
     def _renamed(self, key: int | str) -> Mention:
         return self.mention._replace(keys=(key,))
 
-    def _refuse_computed(self, owners: list[Owner], kind: Kind, what: str) -> None:
+    def _refuse_computed(self, owners: Iterable[Owner], kind: Kind, what: str, into: Into = Into.OWN) -> None:
         for owner in owners:
             for one in owner.mentions.computed:
-                if one.kind is kind and owner.program.first <= one.block < owner.program.end:
+                inside = owner.program.first <= one.block < owner.program.end
+                if one.kind is kind and one.into is into and inside:
                     raise RenameError(f"{self._line(owner, one.block)} {what}: it may be {self.mention.shown}")
 
     def _check_there(self, key: int | str, found: list[Use]) -> None:
@@ -183,17 +184,20 @@ class _Renaming:
 
     def _check_number(self, key: int | str, found: list[Use]) -> None:
         targets = self.uses.targets(self.use)
-        self._refuse_computed(targets, Kind.SEQUENCE, "computes the number that it goes to")
+        what = "computes the number that it goes to"
+        self._refuse_computed(targets, Kind.SEQUENCE, what)
+        for target in targets:
+            self._refuse_computed(self.uses.callees(target), Kind.SEQUENCE, what, Into.CALLER)
+            self._refuse_computed(self.uses.callers(target), Kind.SEQUENCE, what, Into.CALLED)
         self._check_there(key, [Use(target, self.mention) for target in targets])
         wanted = {target.key for target in targets}
         for one in found:
             if one.mention.into is not Into.OWN:
                 others = [target for target in self.uses.targets(one) if target.key not in wanted]
                 if others:
-                    where = f"the program in {self._line(others[0], others[0].program.first)}"
-                    raise RenameError(
-                        f"{self._line(one.owner, one.mention.block)} means N{self.mention.name} of {where}, too"
-                    )
+                    place = self._line(one.owner, one.mention.block)
+                    other = self._line(others[0], others[0].program.first)
+                    raise RenameError(f"{place} means N{self.mention.name} of the program in {other}, too")
 
     def _check_variable(self, key: int | str, found: list[Use]) -> None:
         scope = self.uses.scope(self.use)
@@ -201,9 +205,10 @@ class _Renaming:
         before = self.uses.kind_of(self.use)
         after = self.use.owner.mentions.variable_kind(self._renamed(key))
         if after is not before:
-            kinds = f"{_KINDS.get(before, 'none')}, {self._renamed(key).shown} is {_KINDS.get(after, 'none of this control')}"
-            raise RenameError(f"{self.mention.shown} is {kinds}")
-        self._check_there(key, [Use(owner, self.mention) for owner in scope])
+            shown, kind = self._renamed(key).shown, _KINDS.get(after, "none of this control")
+            raise RenameError(f"{self.mention.shown} is {_KINDS[before]}, {shown} is {kind}")
+        others = self.uses.scope(Use(self.use.owner, self._renamed(key)))
+        self._check_there(key, [Use(owner, self.mention) for owner in (*scope, *others)])
         if before is VariableKind.LOCAL and isinstance(key, int):
             self._check_arguments(scope, key)
 
@@ -222,14 +227,14 @@ class _Renaming:
                     repeats = number > max(ARGUMENTS.values()) or (letter or "") in "IJK"
                     if letter in addresses or (repeats and addresses & set("IJK")):
                         place = self._line(call.owner, call.mention.block)
-                        raise RenameError(
-                            f"{place} gives #{number} its value by {letter or 'I, J, K'}: change the call first"
-                        )
+                        given = f"#{number} its value by {letter or 'I, J, K'}"
+                        raise RenameError(f"{place} gives {given}: change the call first")
 
     def _check_program(self, key: int | str, found: list[Use]) -> None:
         probe = self._renamed(key)
         for owner in self.uses.defining(key):
             raise RenameError(f"{probe.shown} is there already, in {self._line(owner, owner.program.first)}")
+        self._refuse_computed(self.uses.owners(self.uses.document), Kind.PROGRAM, "computes the program that it calls")
         definitions = [one for one in found if one.mention.role is Role.DEFINES]
         if len(definitions) > 1:
             place = self._line(definitions[1].owner, definitions[1].mention.block)
@@ -240,9 +245,7 @@ class _Renaming:
             macro = one.owner.mentions.listing.macro
             if is_call and macro.repeats_in_p and one.mention.code in macro.subprogram_calls and width > 4:
                 place = self._line(one.owner, one.mention.block)
-                raise RenameError(
-                    f"{place} calls it by P, which has the repeats before the last four digits: expected up to four"
-                )
+                raise RenameError(f"{place}: P has the repeats before the last four digits, so expected four at most")
 
     # ---- as it is written ----
 

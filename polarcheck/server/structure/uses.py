@@ -130,11 +130,15 @@ class Uses:
         same_channel = [one for one in own if one.mentions is caller.mentions]
         if own:
             return same_channel or own
-        for documents in (self.workspace.called(caller.document, called), self._naming(called.keys)):
+        places = self.workspace.called, self._naming_in, self.workspace.of_file_name
+        for documents in (place(caller.document, called) for place in places):
             found = [one for document in documents for one in _called_in(self.owners(document), called)]
             if found:
                 return found
         return []
+
+    def _naming_in(self, caller: Document, called: ProgramName) -> Iterator[Document]:
+        return self._naming(called.keys)
 
     def _naming(self, keys: Sequence[int | str]) -> Iterator[Document]:
         return (
@@ -190,10 +194,11 @@ class Uses:
                 if mention.role is Role.DEFINES and mention.kind is Kind.PROGRAM:
                     yield Use(owner, mention)
         yield from self.calls_of(targets)
-        if not targets:  # a program that nobody knows: its calls in this document
+        if not targets:  # a program that nobody knows: its calls
             yield from (
                 Use(owner, mention)
-                for owner in self.owners(self.document)
+                for document in self.workspace.matching(naming(use.mention.keys))
+                for owner in self.owners(document)
                 for mention in owner.all
                 if mention.kind is Kind.PROGRAM and set(mention.keys) & set(use.mention.keys)
             )

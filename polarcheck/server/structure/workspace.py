@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from polarcheck import bounded
-from polarcheck.execution.library import Library
+from polarcheck.execution.library import Library, names_of
 from polarcheck.execution.programs import ProgramName
 from polarcheck.machines.machine import Machine
 from polarcheck.reading.source import read_source
@@ -24,6 +24,8 @@ from polarcheck.server.structure.document import Document
 _MOST_FILES, _LARGEST, _PATIENCE = 5_000, 50_000_000, 4.0
 #: The most files that are read as programs.
 _MOST_READ = 200
+#: The most files of one name.
+_MOST_NAMED = 8
 
 
 class Opened(NamedTuple):
@@ -115,6 +117,17 @@ class Workspace:
             places = Library(caller.folders, caller.machine).places(name)
             return [self._of_file(place.path, place.data) for place in places]
         return []
+
+    def of_file_name(self, caller: Document, name: ProgramName) -> list[Document]:
+        """Return the documents of the workspace whose file has the name of a program, beside the caller first."""
+        wanted = names_of(name)
+        if wanted is None:
+            return []
+        paths = [path for path in self._listed() if wanted.fullmatch(os.path.basename(path))]  # noqa: PTH119
+        folder = _real(caller.path.parent)
+        paths.sort(key=lambda path: _real(Path(path).parent) != folder)
+        found = ((path, self._read(Path(path))) for path in paths[:_MOST_NAMED])
+        return [self._of_file(Path(path), data) for path, data in found if data is not None]
 
     def _of_open(self, real: str, one: Opened) -> Document:
         if real not in self._documents:
