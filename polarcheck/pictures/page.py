@@ -32,6 +32,12 @@ _SCRIPTS = (
     "legend",
     "section",
     "workbench",
+    "timeline",
+    "metal",
+    "machine",
+    "canvas",
+    "gauges",
+    "player",
     "findings",
     "positions",
     "shapes",
@@ -48,7 +54,7 @@ _SCRIPTS = (
     "printing",
     "start",
 )
-_STYLES = ("page", "tools")
+_STYLES = ("page", "player", "tools")
 #: Only the scripts of this page run, and only a library beside it is loaded. plotly sets styles.
 _POLICY = (
     "default-src 'none'; script-src {}; style-src 'unsafe-inline'; img-src data: blob:; base-uri 'none'; "
