@@ -41,25 +41,12 @@ def register(server: Server) -> None:
 
     @server.feature(types.TEXT_DOCUMENT_RENAME, types.RenameOptions(prepare_provider=True))
     async def rename(params: types.RenameParams) -> types.WorkspaceEdit | None:
-        of_workspace = server.client_capabilities.workspace
-        of_edits = of_workspace.workspace_edit if of_workspace is not None else None
-        with_versions = bool(of_edits is not None and of_edits.document_changes)
+        from polarcheck.server.workspace_edits import workspace_edit
 
         def find(document: Document) -> types.WorkspaceEdit:
             from polarcheck.server.structure.rename import rename
 
             edits = rename(document, params.position, params.new_name, server.documents.workspace(document))
-            if not with_versions:
-                return types.WorkspaceEdit(changes=edits)
-            opened = server.buffers.open
-            versions = {uri: opened[uri].version if uri in opened else None for uri in edits}
-            return types.WorkspaceEdit(
-                document_changes=[
-                    types.TextDocumentEdit(
-                        types.OptionalVersionedTextDocumentIdentifier(uri, versions[uri]), list(found)
-                    )
-                    for uri, found in edits.items()
-                ]
-            )
+            return workspace_edit(server, edits)
 
         return await ask(params.text_document.uri, find)

@@ -56,7 +56,7 @@ def _of_listing(document: Document, listing: Listing, shown: types.Range | None)
         if kept[block] or "\n" in written:
             continue
         if not written.strip():
-            yield from _changed(start, written, _BLANKS.sub("", written))
+            yield from _without_blanks(start, written)
             continue
         if text.blocks.is_macro[block]:
             inner = _of_statement(listing, block)
@@ -69,6 +69,11 @@ def _of_listing(document: Document, listing: Listing, shown: types.Range | None)
 def _changed(start: int, before: str, after: str) -> Iterator[Edit]:
     if before != after:
         yield start, start + len(before), after
+
+
+def _without_blanks(start: int, written: str) -> Iterator[Edit]:
+    """Yield the edits that take out blanks, and no line end."""
+    return ((start + gap.start(), start + gap.end(), "") for gap in _BLANKS.finditer(written))
 
 
 def _kept(listing: Listing) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
@@ -119,7 +124,7 @@ def _of_words(content: str, pieces: list[tuple[int, int, str]]) -> Iterator[Edit
         written = content[start:end]
         if kind != "comment":
             # Not the whole word: no two edits begin at one place.
-            yield from ((start + gap.start(), start + gap.end(), "") for gap in _BLANKS.finditer(written))
+            yield from _without_blanks(start, written)
         if index + 1 == len(pieces):
             continue
         after, _, next_kind = pieces[index + 1]
@@ -143,12 +148,12 @@ def _of_statement(listing: Listing, block: int) -> Iterator[Edit]:
         return
     low, high = np.searchsorted(text.comments.block, (block, block + 1)).tolist()
     spans = list(zip(text.comments.start[low:high].tolist(), text.comments.end[low:high].tolist(), strict=True))
-    bare = len(written.rstrip())
+    bare, lead = len(written.rstrip()), len(written) - len(written.lstrip())
     for gap in _BLANKS.finditer(written):
         place = start + gap.start(), start + gap.end()
         is_inside = any(first <= place[0] < last for first, last in spans)
         aligns = any(first == place[1] for first, _ in spans)
-        if not is_inside and not aligns and gap.start() and gap.end() <= bare and gap[0] != " ":
+        if not is_inside and not aligns and lead <= gap.start() < bare and gap[0] != " ":
             yield (*place, " ")
 
 
@@ -160,7 +165,7 @@ def _ends(content: str, start: int, end: int, *, nested: bool) -> Iterator[Edit]
         yield start + lead.start(1), start + lead.end(1), ""
     bare = written.rstrip(" \t\r")
     if content[end : end + 1] in _ENDS_LINE:
-        yield from _changed(start + len(bare), written[len(bare) :], _BLANKS.sub("", written[len(bare) :]))
+        yield from _without_blanks(start + len(bare), written[len(bare) :])
 
 
 # ---- the proof ----
