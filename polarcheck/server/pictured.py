@@ -13,6 +13,7 @@ from pygls.exceptions import JsonRpcException, JsonRpcInvalidParams
 
 from polarcheck import bounded
 from polarcheck.errors import PolarcheckError, StoppedError
+from polarcheck.reading import files
 from polarcheck.reading.excerpt import visible
 from polarcheck.server.judged import Judged
 from polarcheck.time_limit import seconds_for, time_limit
@@ -95,7 +96,9 @@ def picture(
             bounded.only_below(folders),
             time_limit(seconds_for(len(judged.text.data), judged.settings.job.run.max_seconds), is_stopped),
         ):
-            named = msgspec.structs.replace(judged.report, machine=visible(judged.settings.machine_id))
+            named = msgspec.structs.replace(
+                judged.report, path=_title(judged.path, folders), machine=visible(judged.settings.machine_id)
+            )
             report, drawing = split(drawn(named, judged.runs))
     except StoppedError:
         raise Changed("the text has changed") from None
@@ -112,6 +115,12 @@ def picture(
     from polarcheck.pictures.library import library as javascript
 
     return page([shown], javascript())
+
+
+def _title(path: Path, folders: Sequence[Path]) -> str:
+    """Return the path of a program as the editor shows it: from the folder that is open."""
+    inside = [folder for folder in folders if path.is_relative_to(folder) and folder != path.parent]
+    return files.shown(str(path.relative_to(inside[0])) if inside else path.name)
 
 
 @functools.cache
