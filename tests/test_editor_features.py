@@ -16,13 +16,12 @@ from lsprotocol import types
 from test_cli import COMPENSATED, GOOD, RAPID
 
 from polarcheck.checking.rule import load_all
-from polarcheck.checking.settings import Settings
+from polarcheck.commands import server as command
 from polarcheck.errors import StoppedError
 from polarcheck.finding import Edit, FileReport, Fix
 from polarcheck.server import actions, allowing, definition, diagnostics, hover, markdown, outline
 from polarcheck.server.judged import Judged, judge
 from polarcheck.server.open_text import OpenText, path_of
-from polarcheck.settings.of_programs import OfPrograms, Options
 
 pytestmark = pytest.mark.usefixtures("own_folder")
 
@@ -48,10 +47,7 @@ M99
 
 
 def settings_of(**asked: Any) -> Any:
-    def find(path: Path) -> Settings:
-        return OfPrograms(Options(**asked))(str(path))
-
-    return find
+    return command._Settings(not asked.pop("use_config", True), asked)
 
 
 def judged_of(text: str, folders: Sequence[Path] = (), **asked: Any) -> Judged:
@@ -492,4 +488,4 @@ def test_called_programs_come_from_the_folders_that_are_named(tmp_path: Path, mo
     Path("polarcheck.toml").write_text('[run]\nsubprograms = ["../sub"]\n', "utf-8")
     judged = judged_of(RAPID.replace("G0 C5.", "M98 P77"), select=["rapid-in-polar"])
     assert [found.line for found in report_of(judged).findings] == [4]
-    assert Path("../sub/O77.NC").resolve() in [path.resolve() for path in judged.files_read]
+    assert os.path.realpath("../sub/O77.NC") in judged.read

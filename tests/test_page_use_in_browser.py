@@ -7,9 +7,7 @@ from importlib import resources
 from typing import Any
 
 import pytest
-from test_page_in_browser import CHROMIUM, Opened, browser
-
-from polarcheck.pictures.page import page
+from test_page_in_browser import CHROMIUM, browser
 
 playwright = pytest.importorskip("playwright.sync_api")
 plotly = pytest.importorskip("plotly.offline")
@@ -24,12 +22,12 @@ __all__ = ["browser"]
 
 #: A square of 30 across with a corner of R5, a slanted wall, circles of R10 about the center and of R2 beside it.
 SHAPES = """
+const round = (center, radius) => arcShape(center, radius, 0, 2 * Math.PI, "", "");
 const walls = {
   right: lineShape([15, -10], [15, 10], "", ""), left: lineShape([-15, 8], [-15, -8], "", ""),
   slant: lineShape([15, 10], [5, 20], "", ""), nearly: lineShape([-15, 0], [-15.0001, 2], "", ""),
-  bore: circleShape(10, "", ""), pin: arcShape([20, 0], 2, 0, 2 * Math.PI, "", ""),
-  inside: arcShape([3, 0], 4, 0, 2 * Math.PI, "", ""), outer: circleShape(12, "", ""), corner: arcShape([10, 10], 5, 0, Math.PI / 2, "", ""),
-  above: lineShape([15, 5], [15, 9], "", ""),
+  above: lineShape([15, 5], [15, 9], "", ""), corner: arcShape([10, 10], 5, 0, Math.PI / 2, "", ""),
+  bore: round([0, 0], 10), outer: round([0, 0], 12), pin: round([20, 0], 2), inside: round([3, 0], 4),
   zero: pointShape([0, 0], "", ""), point: pointShape([3, 4], "", ""),
 };
 """
@@ -77,19 +75,19 @@ def test_what_is_measured(blank: Any, first: str, second: str | None, expected: 
 
 
 def test_arcs_are_read_from_chords_and_polygons_are_not(blank: Any) -> None:
-    """A ring with a half circle of R20 in 90 chords and a straight side; a hexagon; a circle; a polygon of 40 flats."""
-    found = blank.evaluate(
+    """A half circle of R20 in 90 chords with its straight side; a hexagon; a circle; a polygon of 40 flats."""
+    half, hexagon, circle, polygon = blank.evaluate(
         """() => {
-        const around = (count, radius, share) => Array.from({ length: count + 1 }, (_, at) => {
+        const around = (count, share) => Array.from({ length: count + 1 }, (_, at) => {
           const angle = (at / count) * share * 2 * Math.PI;
-          return [Number((radius * Math.cos(angle) + 3).toFixed(4)), Number((radius * Math.sin(angle)).toFixed(4))];
+          return [20 * Math.cos(angle) + 3, 20 * Math.sin(angle)].map((value) => Number(value.toFixed(4)));
         });
-        return [around(90, 20, 0.5), around(6, 20, 1), around(180, 20, 1), around(40, 20, 1)].map((ring) =>
-          shapesOfRing(ring, "", "").map((shape) => (shape.kind === "arc" ? [shape.radius, shape.center[0], shape.sweep] : shape.kind)));
+        const told = ({ kind, radius, center, sweep }) => (kind === "arc" ? [radius, center[0], sweep] : kind);
+        return [around(90, 0.5), around(6, 1), around(180, 1), around(40, 1)].map((ring) =>
+          shapesOfRing(ring, "", "").map(told));
         }"""
     )
-    half, hexagon, circle, polygon = found
-    assert half[1:] == ["line"] and half[0] == pytest.approx([20, 3, 3.14159], abs=1e-3)
+    assert half == [pytest.approx([20, 3, 3.14159], abs=1e-3), "line"]
     assert hexagon == ["line"] * 6
-    assert len(circle) == 1 and circle[0] == pytest.approx([20, 3, 6.28319], abs=1e-3)
+    assert circle == [pytest.approx([20, 3, 6.28319], abs=1e-3)]
     assert polygon == ["line"] * 40

@@ -37,13 +37,13 @@ _NAME_LENGTH = 40
 #: Longer programs share constant columns [rows]. In shorter ones the memory saved is not worth the time.
 _MANY_ROWS = 10_000
 Found = TypeVar("Found", bound=Finding)
-#: Identifies a finding of a run: the name of its rule, and its index in _Listed.findings of that rule.
+#: Identifies a finding of a run: the name of its rule, and its index in Listed.findings of that rule.
 _Number = tuple[str, int]
 
 
-class _Listed(msgspec.Struct, frozen=True):
+class Listed(msgspec.Struct, frozen=True):
     """
-    The findings of one rule.
+    The findings of one rule in one run; the table `listed` has them by rule.
 
     index: the elements hit, sorted (hits).
     finding: the index in `findings` of the finding that covers each hit (hits).
@@ -93,7 +93,7 @@ class Engine:
         self._empty_hits: dict[int, Hits] = {}
         self._columns_seen: dict[str, int] = {}
         self._constant_masks: dict[tuple[int, bool], Mask] = {}
-        self._listed_by_rule: dict[str, _Listed | None] = {}
+        self._listed_by_rule: dict[str, Listed | None] = {}
         self._in_progress: set[str] = set()
         self.heads = program_heads(self.trace)
         self.rows_in_calls: dict[tuple[str, int, int], int] = {}
@@ -151,6 +151,8 @@ class Engine:
         listed = None
         while listed is None:
             listed = self._all_listed()
+        # Pictures show the other places of a finding. Rules of a second engine, on allow comments, come to the first.
+        self.tables.give("listed", {**self.tables.get("listed", {}), **listed})
         roots = _roots(listed)
         following: dict[_Number, list[Finding]] = {}
         for number, root in roots.items():
@@ -162,7 +164,7 @@ class Engine:
             if number == root
         ]
 
-    def _all_listed(self) -> dict[str, _Listed] | None:
+    def _all_listed(self) -> dict[str, Listed] | None:
         """List the findings of each rule; None if a rule was given up, since findings may have followed from it."""
         self._listed_by_rule.clear()
         self._in_progress.clear()
@@ -187,12 +189,12 @@ class Engine:
         self.used |= self.allows.used(finding.rule, at)
         return allowed(finding, self.allows.reason(finding.rule, block))
 
-    def _listed(self, rule: Rule) -> _Listed | None:
+    def _listed(self, rule: Rule) -> Listed | None:
         if rule.name not in self._listed_by_rule:
             self._listed_by_rule[rule.name] = self._list_findings(rule)
         return self._listed_by_rule[rule.name]
 
-    def _list_findings(self, rule: Rule) -> _Listed | None:
+    def _list_findings(self, rule: Rule) -> Listed | None:
         hits = self.hits(rule)
         if hits is self._empty_hits.get(len(hits.mask)):
             return None
@@ -228,7 +230,7 @@ class Engine:
                     causes.append((self._names[cause[first]], int(element[first])) if has_cause else None)
                 if len(groups) > LISTED:
                     self.unlisted.append(_unlisted(rule, len(groups)))
-        return _Listed(index, finding, silent, findings, causes)
+        return Listed(index, finding, silent, findings, causes)
 
     def _silenced(self, rule: Rule, index: Rows) -> Mask:
         """True for the elements that an allow comment silences."""
@@ -409,7 +411,7 @@ def program_heads(trace: Trace) -> list[tuple[int, str]]:
     ]
 
 
-def _roots(listed: Mapping[str, _Listed]) -> dict[_Number, _Number]:
+def _roots(listed: Mapping[str, Listed]) -> dict[_Number, _Number]:
     """
     Map each finding to the root of its chain of causes; a finding without a cause is its own root.
 
@@ -439,7 +441,7 @@ def _roots(listed: Mapping[str, _Listed]) -> dict[_Number, _Number]:
     return roots
 
 
-def _finding_of(listed: Mapping[str, _Listed], number: _Number) -> Finding:
+def _finding_of(listed: Mapping[str, Listed], number: _Number) -> Finding:
     return listed[number[0]].findings[number[1]]
 
 

@@ -76,9 +76,20 @@ class _Settings:
         self._use_config, self._arguments = not no_config, arguments
 
     def __call__(self, path: Path) -> Any:
-        from polarcheck.settings.of_programs import OfPrograms, Options
+        from polarcheck.settings.of_programs import OfPrograms
 
-        return OfPrograms(Options(use_config=self._use_config, **self._arguments))(str(path))
+        return OfPrograms(self._options())(str(path))
+
+    def fallback(self, path: Path) -> Any:
+        """Return the settings that are left while the job file of a program cannot be used."""
+        from polarcheck.settings.fallback import fallback
+
+        return fallback(path, self._options())
+
+    def _options(self) -> Any:
+        from polarcheck.settings.of_programs import Options
+
+        return Options(use_config=self._use_config, **self._arguments)
 
 
 def _trusted(trust: tuple[Path, ...], arguments: dict[str, Any]) -> list[Path]:

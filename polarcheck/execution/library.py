@@ -93,8 +93,10 @@ class Library:
         """Each folder that can be listed, its title, and what lies in it, by name; backups come last."""
         found = []
         for folder, title in self._folders:
+            bounded.note(folder)
             with contextlib.suppress(OSError):
-                found.append((folder, title, sorted(folder.iterdir(), key=lambda path: (_is_backup(path), path))))
+                paths = {*folder.iterdir(), *bounded.opened_in(folder)}
+                found.append((folder, title, sorted(paths, key=lambda path: (_is_backup(path), path))))
         return found
 
     @cached_property

@@ -36,10 +36,7 @@ def runs(source: Source, machine: Machine, job: Job) -> list[tuple[str, Run]]:
     where a program whose number is computed lies in a file that was not read yet. A channel runs for itself, from the
     power-on states on. It can call the programs of the others.
     """
-    control = machine.control
-    texts = [read_text(one, machine) for one in channels(source, control.channel_mark, control.line_comments)]
-    if len(texts) > 1:
-        texts = _with_programs(texts)
+    texts = texts_of(source, machine)
     called = [_called(text, machine) for text in texts] if len(texts) > 1 else [frozenset[int | str]()]
     found = []
     for number, text in enumerate(texts):
@@ -48,6 +45,13 @@ def runs(source: Source, machine: Machine, job: Job) -> list[tuple[str, Run]]:
         beside = Beside([texts[one] for one in at], frozenset[int | str]().union(*(called[one] for one in at)))
         found += _runs(text, machine, job, beside)
     return found
+
+
+def texts_of(source: Source, machine: Machine) -> list[Text]:
+    """Return the text of each channel of a file; nothing is executed."""
+    control = machine.control
+    texts = [read_text(one, machine) for one in channels(source, control.channel_mark, control.line_comments)]
+    return _with_programs(texts) if len(texts) > 1 else texts
 
 
 def _with_programs(channels: Sequence[Text]) -> list[Text]:

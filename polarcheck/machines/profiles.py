@@ -11,6 +11,7 @@ from typing import Any, get_origin
 
 import msgspec
 
+from polarcheck import bounded
 from polarcheck.errors import MachineError, suggestion
 from polarcheck.machines import axis_names, parameters, toml_text
 from polarcheck.machines.code_lists import FRAME_LISTS
@@ -180,6 +181,7 @@ def _find(name: str, folder: Path) -> tuple[Path, str]:
     if built_in.parent == FOLDER and os.path.isfile(built_in):  # noqa: PTH113  Path.is_file raises for some names
         return built_in, name
     path = folder / name
+    bounded.note(path)
     if is_meant(path, name):
         return path, str(path)
     if name.endswith(".toml"):

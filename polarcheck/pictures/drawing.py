@@ -2,21 +2,24 @@
 
 from __future__ import annotations
 
+import cmath
 from collections.abc import Callable, Sequence
-from itertools import chain
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 import numpy as np
 
+from polarcheck.arrays import Rows
 from polarcheck.checking.channels import first_runs
 from polarcheck.checking.polar_sections import polar_sections
 from polarcheck.checking.tables import Tables
 from polarcheck.columns.trace import Trace
 from polarcheck.errors import TooHardError
-from polarcheck.finding import FileReport, Finding, MadeShape, PolarSection
+from polarcheck.finding import FileReport, MadeShape, PolarSection
 from polarcheck.parts.part_report import made_by
 from polarcheck.pictures.listing import listing
-from polarcheck.pictures.picture import Drawn, Mark, SectionPicture
+from polarcheck.pictures.moves import LENGTH, SectionMoves
+from polarcheck.pictures.picture import Drawn, Key, Mark, Place, SectionPicture, key_of
+from polarcheck.pictures.places import Face, Spot, Spots, with_followers
 
 if TYPE_CHECKING:
     from polarcheck.table.bar import Known
@@ -39,26 +42,29 @@ class DrawnReport(FileReport, frozen=True, kw_only=True):
 
 def drawn(report: FileReport, runs: Sequence[tuple[str, Tables]]) -> FileReport:
     """Return the report with the pictures of the program; of two runs with block skip the first is drawn."""
-    channels = first_runs(runs)
+    channels = [tables for _, tables in first_runs(runs)]
     remarks: list[str] = []
-    lines = np.array(sorted({finding.line for finding in _all([*report.findings, *report.silenced])}), np.int64)
-    sections: list[SectionPicture] = []
-    for _, tables in channels:
+    spots = _spots(report, [Spots(tables) for tables in channels])
+    lines = {line for _, spot in spots.values() for line in spot.also} | {key[1] for key in spots}
+    wanted = np.array(sorted(lines), np.int64)
+    sections: list[_Section] = []
+    for run, tables in enumerate(channels):
         try:
-            sections += _sections(tables, lines, remarks)
+            sections += _sections(run, tables, wanted, remarks)
         except TooHardError as error:
             remarks.append(f"not drawn: {error}")
-    sections.sort(key=lambda section: section.line)
+    sections.sort(key=lambda section: section.picture.line)
     if len(sections) > _MOST:
         remarks.append(f"only the first {_MOST} of {len(sections)} polar sections are drawn")
-    states = dict.fromkeys(state for state, _ in channels if state)
-    source, source_line, source_lines = listing(
-        channels[0][1]["text"].source, [*lines.tolist(), *(section.line for section in sections)]
-    )
+        del sections[_MOST:]
+    states = dict.fromkeys(state for state, _ in first_runs(runs) if state)
+    first_lines = (section.picture.line for section in sections)
+    source, source_line, source_lines = listing(channels[0]["text"].source, [*lines, *first_lines])
     shown = Drawn(
-        sections=sections[:_MOST],
+        sections=[section.picture for section in sections],
         skip=next(iter(states), ""),
         remarks=list(dict.fromkeys(remarks)),
+        places={key: _place(run, spot, sections) for key, (run, spot) in spots.items()},
         source=source,
         source_line=source_line,
         source_lines=source_lines,
@@ -74,14 +80,61 @@ def split(report: FileReport) -> tuple[FileReport, Drawn | None]:
     return FileReport(**{name: getattr(report, name) for name in FileReport.__struct_fields__}), report.drawn
 
 
-def _all(findings: Sequence[Finding]) -> list[Finding]:
-    return [*findings, *chain.from_iterable(finding.follows for finding in findings)]
+class _Section(NamedTuple):
+    """
+    The picture of a section.
+
+    run: the number of its run. number: its number in that run. listed: the moves in its table, numbers of its run.
+    face: where the tool stands.
+    """
+
+    run: int
+    number: int
+    picture: SectionPicture
+    listed: Rows
+    face: Face
 
 
-def _sections(tables: Tables, lines: Any, remarks: list[str]) -> list[SectionPicture]:
+def _spots(report: FileReport, runs: Sequence[Spots]) -> dict[Key, tuple[int, Spot]]:
+    """Return for each finding the number of its run, and its place there."""
+    found: dict[Key, tuple[int, Spot]] = {}
+    for finding in with_followers([*report.findings, *report.silenced]):
+        key = key_of(finding)
+        of_channel = [number for number, spots in enumerate(runs) if key[3] in ("", spots.channel)]
+        run = next((number for number in of_channel if runs[number].has(finding)), next(iter(of_channel), 0))
+        found.setdefault(key, (run, runs[run].of(finding)))
+    return found
+
+
+def _place(run: int, spot: Spot, sections: Sequence[_Section]) -> Place:
+    """Return the place of a finding among the pictures of the program."""
+    own = {section.number: place for place, section in enumerate(sections) if section.run == run}
+    if spot.row < 0 or not own:
+        return Place(section=None, move=None, places=[], span=None, also=spot.also, is_beside=True)
+    face = sections[next(iter(own.values()))].face
+    number = face.nearest_section(spot.row)
+    shown = own.get(number, own[min(own, key=lambda each: abs(each - number))])
+    listed = sections[shown].listed
+    known = [place for row in spot.rows.tolist() if not cmath.isnan(place := face.place(row, spot.at_nearest))]
+    if not cmath.isnan(spot.place):
+        known = [spot.place, *known[1:]]
+    points = dict.fromkeys((round(place.real, LENGTH), round(place.imag, LENGTH)) for place in known)
+    move = int(np.searchsorted(listed, face.move(spot.row, spot.at_nearest)))
+    return Place(
+        section=shown,
+        move=min(move, len(listed) - 1) if len(listed) else None,
+        places=list(points),
+        span=spot.span,
+        also=spot.also,
+        is_beside=not len(face.moves_of(spot.row)),
+    )
+
+
+def _sections(run: int, tables: Tables, lines: Rows, remarks: list[str]) -> list[_Section]:
     """
     Return the pictures of one run.
 
+    run: its number.
     lines: the lines with findings.
     remarks: takes a line for each thing that is not drawn.
     """
@@ -90,7 +143,6 @@ def _sections(tables: Tables, lines: Any, remarks: list[str]) -> list[SectionPic
     if not sections:
         return []
     from polarcheck.pictures.marks import left_marks, overcut_marks
-    from polarcheck.pictures.moves import SectionMoves
     from polarcheck.pictures.sections import Extras, section_picture
     from polarcheck.table.moves import programmed_moves
 
@@ -107,21 +159,26 @@ def _sections(tables: Tables, lines: Any, remarks: list[str]) -> list[SectionPic
             lambda: list(left_marks(trace, tables["coverage"], levels)), "what is left standing", remarks
         ),
     ]
-    bar = _bar(tables)
+    bar, face = _bar(tables), Face(moves)
     return [
-        section_picture(
-            trace,
-            moves,
-            programmed,
-            section,
+        _Section(
+            run,
             number,
-            lines,
-            Extras(
-                [level for level in (*levels, *meant) if level.section == number],
-                [mark for of_section, mark in marks if of_section == number],
-                list(dict.fromkeys(_in_words(shape) for shape in makes if _is_of(shape, section))),
-                bar,
+            *section_picture(
+                trace,
+                moves,
+                programmed,
+                section,
+                number,
+                lines,
+                Extras(
+                    [level for level in (*levels, *meant) if level.section == number],
+                    [mark for of_section, mark in marks if of_section == number],
+                    list(dict.fromkeys(_in_words(shape) for shape in makes if _is_of(shape, section))),
+                    bar,
+                ),
             ),
+            face,
         )
         for number, section in enumerate(sections[:_MOST])
     ]

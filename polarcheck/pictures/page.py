@@ -32,11 +32,29 @@ _SCRIPTS = (
     "legend",
     "section",
     "workbench",
+    "timeline",
+    "metal",
+    "machine",
+    "canvas",
+    "gauges",
+    "player",
     "findings",
+    "positions",
+    "shapes",
+    "distances",
+    "zoom",
+    "source",
+    "measuring",
+    "asked",
+    "sides",
+    "links",
+    "tools",
+    "keys",
     "choosing",
     "printing",
     "start",
 )
+_STYLES = ("page", "player", "tools")
 #: Only the scripts of this page run, and only a library beside it is loaded. plotly sets styles.
 _POLICY = (
     "default-src 'none'; script-src {}; style-src 'unsafe-inline'; img-src data: blob:; base-uri 'none'; "
@@ -71,7 +89,7 @@ def page(
     return Template(_part("page.html")).substitute(
         policy=_POLICY.format(" ".join(allowed)),
         title=_text(", ".join(picture.path for picture in pictures)),
-        style=_part("page.css"),
+        style="\n".join(_part(f"{name}.css") for name in _STYLES),
         body="\n".join([*(_program(number, picture) for number, picture in enumerate(pictures)), *map(_note, notes)]),
         data=_data(pictures),
         library=loaded,

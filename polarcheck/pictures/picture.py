@@ -7,9 +7,12 @@ columns of a table have the same length.
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import msgspec
+
+if TYPE_CHECKING:
+    from polarcheck.finding import Finding
 
 #: How a move is drawn. corner: a line that the control adds at an outside corner. unknown: the move runs in offset mode
 #: and R or the position is unknown, so that the programmed path is drawn.
@@ -161,12 +164,14 @@ class DrawnPart(msgspec.Struct, frozen=True, kw_only=True):
     title: the name of the drawing, or the shape.
     z: the depth that it was compared at [mm].
     agrees: what is made agrees with it; null if nothing was compared with it.
-    lines: its curves as points [x, c] [mm]; a closed one ends with its first point.
+    rings: its closed curves as points [x, c] [mm], the last of which is joined to the first.
+    lines: its open curves, likewise.
     """
 
     title: str
     z: float | None
     agrees: bool | None
+    rings: list[list[tuple[float, float]]]
     lines: list[list[tuple[float, float]]]
 
 
@@ -232,6 +237,7 @@ class SectionPicture(msgspec.Struct, frozen=True, kw_only=True):
     entry: C where the x of the plane lies on the X axis, which is C at G12.1 [deg].
     entry_known: False if nothing says C there, and it is taken as 0.
     sense: 1 where C grows with the angle on the plane, -1 where it falls.
+    face: Z of the face, above which nothing is cut; null if it is not known [mm].
     bar: rings of the bar before milling [mm], its outside first, then its bore; empty if it is not known.
     drawing: the lines of the part asked for, where the comparison has placed it.
     """
@@ -267,6 +273,7 @@ class SectionPicture(msgspec.Struct, frozen=True, kw_only=True):
     entry: float = 0.0
     entry_known: bool = True
     sense: int = 1
+    face: float | None = None
     bar: list[list[tuple[float, float]]] = []
     drawing: list[DrawnPart] = []
 
@@ -316,6 +323,11 @@ class Place(msgspec.Struct, frozen=True, kw_only=True):
 
 #: Identifies a finding of a file: its rule, line, column and channel.
 Key = tuple[str, int, int, str]
+
+
+def key_of(finding: Finding) -> Key:
+    """Return what identifies a finding of a file."""
+    return finding.rule, finding.line, finding.column, finding.channel or ""
 
 
 class Drawn(msgspec.Struct, frozen=True, kw_only=True):

@@ -64,9 +64,9 @@ def section_picture(
     section: int,
     lines: Rows,
     extras: Extras,
-) -> SectionPicture:
+) -> tuple[SectionPicture, Rows]:
     """
-    Return the picture of one section.
+    Return the picture of one section, and the moves in its table as numbers of the moves of the program.
 
     table: the moves of the program.
     programmed: the programmed path of the program.
@@ -96,7 +96,7 @@ def section_picture(
     listed = _listed(keep, [tool.move, first, curves.move, *map(_highest, extremes)], most)
     enter = int(trace.mode.sections.enter[section])
     limits = trace.machine.limits
-    return SectionPicture(
+    picture = SectionPicture(
         title=_title(summary),
         line=summary.line,
         end_line=summary.end_line,
@@ -141,6 +141,7 @@ def section_picture(
         frame=frame(np.concatenate([tool.point, contour.point]), summary.radius, extras.bar[0]),
         bar=bar_rings(*extras.bar),
     )
+    return picture, chosen[listed]
 
 
 def _side_of_x(moves: Moves, is_fixed: bool) -> int:

@@ -7,23 +7,25 @@ import contextlib
 import os
 import threading
 import time
-from collections.abc import Awaitable, Callable, Sequence
+from collections.abc import Awaitable, Callable, Mapping, Sequence
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
+from polarcheck import bounded
+from polarcheck.bounded import Seen
 from polarcheck.errors import StoppedError
-from polarcheck.machines.job import FILE_NAME, PROJECT
-from polarcheck.reading.files import State, state
 from polarcheck.server.open_text import OpenText
 from polarcheck.server.worker import Worker
 
 if TYPE_CHECKING:
+    from polarcheck.checking.settings import Settings
     from polarcheck.server.judged import Judged, SettingsOf
 
 #: The least and the most pause after the last key before a check begins; in between, the time of the last check [s].
 _PAUSE, _LONGEST_PAUSE = 0.25, 2.0
 
-Signature = tuple[State, ...]
+Result = TypeVar("Result")
 
 
 class Buffer:
@@ -36,7 +38,9 @@ class Buffer:
     stopped: set to cancel the present check.
     hurry: set to check at once.
     task: the present check.
-    seen: the state of the files that the last result depends on.
+    read: what the last result depends on, by absolute path.
+    settings: the last settings that could be used.
+    real: the path, with all links resolved.
     """
 
     def __init__(self, uri: str, path: Path, text: OpenText, version: int | None) -> None:
@@ -50,7 +54,9 @@ class Buffer:
         self.stopped = threading.Event()
         self.hurry = asyncio.Event()
         self.task: asyncio.Task[None] | None = None
-        self.seen: Signature = ()
+        self.read: dict[str, Seen] = {}
+        self.settings: Settings | None = None
+        self.real = os.path.realpath(path)
 
     def stop(self) -> None:
         """Cancel the running or pending check."""
@@ -87,6 +93,7 @@ class Buffers:
         self.drop(buffer.uri)
         self.open[buffer.uri] = buffer
         self.touch(buffer, 0.0)
+        self._touch_callers(buffer)
 
     def drop(self, uri: str) -> Buffer | None:
         """Remove a document that has been closed."""
@@ -94,12 +101,30 @@ class Buffers:
         if buffer is not None:
             buffer.is_open = False
             buffer.stop()
+            self._touch_callers(buffer)
         return buffer
 
     def change(self, buffer: Buffer, text: OpenText, version: int | None) -> None:
         """Replace the text of a document."""
         buffer.text, buffer.version = text, version
         self.touch(buffer, buffer.pause)
+        self._touch_callers(buffer)
+
+    def _touch_callers(self, called: Buffer) -> None:
+        """Check the programs again that call a document: its text in the editor counts, saved or not."""
+        folder = os.path.dirname(called.real)  # noqa: PTH120
+        is_new = called.is_open and bounded.version(called.real) is None
+        for buffer in self.open.values():
+            if buffer is not called and (called.real in buffer.read or (is_new and folder in buffer.read)):
+                self.touch(buffer, buffer.pause)
+
+    def texts(self) -> dict[str, OpenText]:
+        """Return the texts of all documents, by the paths of their files with all links resolved."""
+        return {buffer.real: buffer.text for buffer in self.open.values()}
+
+    async def ask(self, function: Callable[[Judged], Result], judged: Judged) -> Result:
+        """Apply a function to a result, in the worker thread; it reads files as a check does."""
+        return await self.worker.do(_apply, function, judged, self._folders_of(judged.path), self.texts())
 
     def touch(self, buffer: Buffer, delay: float) -> None:
         """Cancel the check of a document, and check it again after a delay [s] without a change."""
@@ -112,23 +137,33 @@ class Buffers:
             with contextlib.suppress(TimeoutError):
                 await asyncio.wait_for(buffer.hurry.wait(), delay)
         text, begun = buffer.text, time.monotonic()
-        judged = await self.worker.do(self._judge, text, buffer.path, buffer.stopped.is_set)
+        texts = self.texts()
+        judged = await self.worker.do(self._judge, text, buffer, texts, buffer.stopped.is_set)
         if judged is None:
             return
+        now = self.texts()
+        if any(texts.get(path) is not now.get(path) for path in judged.read):
+            self.touch(buffer, buffer.pause)
+            return
         buffer.pause = min(max(_PAUSE, time.monotonic() - begun), _LONGEST_PAUSE)
-        buffer.judged = judged
+        buffer.judged, buffer.read = judged, dict(judged.read)
+        if not judged.error:
+            buffer.settings = judged.settings
         try:
-            buffer.seen = await self.worker.do(signature, self._watched(judged))
             await self._publish(buffer, judged)
         except Exception as error:
             self._bug(error, str(buffer.path))
 
-    def _judge(self, text: OpenText, path: Path, is_stopped: Callable[[], bool]) -> Judged | None:
+    def _judge(
+        self, text: OpenText, buffer: Buffer, texts: Mapping[str, OpenText], is_stopped: Callable[[], bool]
+    ) -> Judged | None:
         """Check a text, in the worker thread; None if the check is cancelled."""
         from polarcheck.server.judged import Judged, judge
 
+        path = buffer.path
         try:
-            return judge(text, path, self._settings_of, self._folders_of(path), is_stopped)
+            with bounded.open_in_editor(_data(texts)):
+                return judge(text, path, self._settings_of, self._folders_of(path), is_stopped, buffer.settings)
         except StoppedError:
             return None
         except Exception as error:
@@ -151,27 +186,38 @@ class Buffers:
                 return None
         return buffer.judged if buffer is not None and buffer.is_open else None
 
-    def _watched(self, judged: Judged) -> list[Path]:
-        """Return the files that a result depends on: those read, and the job files that could be created."""
-        paths = judged.files_read
-        roots = self._folders_of(judged.path)
-        for folder in Path(os.path.realpath(judged.path)).parents:
-            if not any(folder.is_relative_to(root) for root in roots):
-                break
-            paths += [folder / FILE_NAME, folder / PROJECT]
-        return paths
-
     async def check_stale(self) -> None:
-        """Check each document again whose settings or called programs have changed."""
+        """Check each document again if a file has changed that its last result depends on."""
         for buffer in list(self.open.values()):
             judged = buffer.judged
             if judged is None:
                 continue
-            seen = await self.worker.do(signature, self._watched(judged))
-            if buffer.is_open and buffer.judged is judged and seen != buffer.seen:
+            now = await self.worker.do(_unchanged, buffer.read)
+            if not buffer.is_open or buffer.judged is not judged:
+                continue
+            if now is None:
                 self.touch(buffer, 0.0)
+            else:
+                buffer.read = now
 
 
-def signature(paths: Sequence[Path]) -> Signature:
-    """Return a value that differs once one of these files is changed, created or removed."""
-    return tuple(map(state, paths))
+def _data(texts: Mapping[str, OpenText]) -> dict[str, Callable[[], bytes]]:
+    return {path: partial(getattr, text, "data") for path, text in texts.items()}
+
+
+def _apply(
+    function: Callable[[Judged], Result], judged: Judged, folders: Sequence[Path], texts: Mapping[str, OpenText]
+) -> Result:
+    with bounded.only_below(folders), bounded.open_in_editor(_data(texts)):
+        return function(judged)
+
+
+def _unchanged(read: Mapping[str, Seen]) -> dict[str, Seen] | None:
+    """Return how files are to be seen from now on; None if one of them has changed."""
+    now = {}
+    for path, before in read.items():
+        seen = bounded.unchanged(path, before)
+        if seen is None:
+            return None
+        now[path] = seen
+    return now

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import NamedTuple
+from types import MappingProxyType
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
@@ -14,14 +15,22 @@ from polarcheck.checking.settings import Settings
 from polarcheck.checking.tables import Tables
 from polarcheck.columns.trace import Trace
 from polarcheck.errors import PolarcheckError, StoppedError
+from polarcheck.execution.runs import texts_of
 from polarcheck.finding import FileReport
-from polarcheck.reading import files
+from polarcheck.reading import files, source
 from polarcheck.reading.words import Text
 from polarcheck.server.open_text import OpenText
 from polarcheck.time_limit import seconds_for, time_limit
 
-#: Returns the settings of a program. Raises a PolarcheckError for settings that cannot be used.
-SettingsOf = Callable[[Path], Settings]
+
+class SettingsOf(Protocol):
+    """Returns the settings of a program."""
+
+    def __call__(self, path: Path) -> Settings:
+        """Return the settings. Raises a PolarcheckError for settings that cannot be used."""
+
+    def fallback(self, path: Path) -> Settings:
+        """Return what is left of the settings while they cannot be used."""
 
 
 class Judged(NamedTuple):
@@ -30,10 +39,12 @@ class Judged(NamedTuple):
 
     text: the text.
     path: the path of its file.
-    error: why it could not be checked, in one line; if empty, the other fields are set.
-    settings: the settings of the program.
+    error: why it could not be checked, in one line; then there are no runs and no report.
+    settings: the settings of the program; after an error, the last ones that could be used, or the default ones.
     runs: each run by its name, with its tables, from check.read.
     report: the report.
+    read: what the result depends on, by absolute path: the files that were read or looked for, and folders.
+    plain: the texts of the channels after an error, for what needs no execution.
     """
 
     text: OpenText
@@ -42,6 +53,8 @@ class Judged(NamedTuple):
     settings: Settings | None = None
     runs: Sequence[tuple[str, Tables]] = ()
     report: FileReport | None = None
+    read: Mapping[str, bounded.Seen] = MappingProxyType({})
+    plain: Sequence[Text] = ()
 
     @property
     def traces(self) -> Iterator[Trace]:
@@ -52,7 +65,7 @@ class Judged(NamedTuple):
     @property
     def texts(self) -> list[Text]:
         """Return the text of each channel once, with the called files after it."""
-        texts = [trace.text for trace in self.traces]
+        texts = [trace.text for trace in self.traces] or list(self.plain)
         return [text for index, text in enumerate(texts) if all(text is not earlier for earlier in texts[:index])]
 
     def row_of(self, line: int) -> tuple[Tables, int, int] | None:
@@ -65,15 +78,6 @@ class Judged(NamedTuple):
                 of_line = rows[trace.run.depth[rows] == trace.run.depth[rows[0]]]
                 return tables, int(rows[0]), len(of_line)
         return None
-
-    @property
-    def files_read(self) -> list[Path]:
-        """Return the other files that the result depends on, and the folders of called programs."""
-        if self.settings is None:
-            return []
-        folders = [Path(folder) for folder in self.settings.job.run.subprograms]
-        called = [folder / part.name for folder in folders for text in self.texts for part in text.source.parts]
-        return [*self.settings.read, *folders, *called]
 
 
 def _without_known(
@@ -94,14 +98,17 @@ def judge(
     settings_of: SettingsOf,
     folders: Sequence[Path],
     is_stopped: Callable[[], bool] = lambda: False,
+    last: Settings | None = None,
 ) -> Judged:
     """
     Check a buffer as if it were saved. Only files in the folders and in those of subprograms are opened.
 
     is_stopped: returns True once the check is cancelled; then StoppedError is raised. A bug raises its own exception.
+    last: the last settings of the program that could be used.
     """
-    try:
-        with bounded.only_below(folders):
+    settings = None
+    with bounded.only_below(folders), bounded.recorded() as read:
+        try:
             settings = settings_of(path)
             job = settings.job
             with time_limit(seconds_for(len(text.data), job.run.max_seconds), is_stopped):
@@ -109,10 +116,23 @@ def judge(
                 report = check.check_runs(runs, settings.rules, settings.severities, settings.inline)
                 if settings.baseline is not None:
                     report = _without_known(report, runs, path, settings)
+            return Judged(text, path, "", settings, runs, report, read)
+        except StoppedError:
+            raise
+        except PolarcheckError as caught:
+            error = str(caught)
+        except MemoryError:
+            error = "there is not enough memory to check this program"
+        settings = settings or last or settings_of.fallback(path)
+        return Judged(text, path, error, settings, read=read, plain=_plain(text, path, settings, is_stopped))
+
+
+def _plain(text: OpenText, path: Path, settings: Settings, is_stopped: Callable[[], bool]) -> list[Text]:
+    """Return the text of each channel of a program that could not be checked."""
+    try:
+        with time_limit(seconds_for(len(text.data), settings.job.run.max_seconds), is_stopped):
+            return texts_of(source.read_source(text.data, files.shown(str(path))), settings.machine)
     except StoppedError:
         raise
-    except PolarcheckError as error:
-        return Judged(text, path, str(error))
-    except MemoryError:
-        return Judged(text, path, "there is not enough memory to check this program")
-    return Judged(text, path, "", settings, runs, report)
+    except (PolarcheckError, MemoryError):
+        return []

@@ -40,6 +40,7 @@ class Server(LanguageServer):
     trusted: folders outside the workspace from which files may be opened, too.
     buffers: the open documents.
     published: called with each document and the result of its check, once its diagnostics are sent.
+    gone: called with the URI of each document that is closed.
     """
 
     def __init__(self, settings_of: SettingsOf, trusted: Sequence[Path] = ()) -> None:
@@ -52,6 +53,7 @@ class Server(LanguageServer):
         self.buffers = Buffers(settings_of, self.folders_of, self._publish, self._report_bug)
         self.documents = Documents(self.buffers, settings_of, self.folders_of)
         self.published: list[Callable[[Buffer, Judged], None]] = []
+        self.gone: list[Callable[[str], None]] = []
 
     # ---- what may be opened ----
 
@@ -96,6 +98,8 @@ class Server(LanguageServer):
         """Remove the diagnostics of a closed document."""
         if self.buffers.drop(uri) is not None:
             self.text_document_publish_diagnostics(types.PublishDiagnosticsParams(uri, []))
+            for forget in self.gone:
+                forget(uri)
 
     async def _publish(self, buffer: Buffer, judged: Judged) -> None:
         from polarcheck.server.diagnostics import diagnostics
@@ -112,7 +116,7 @@ class Server(LanguageServer):
     async def ask(self, uri: str, function: Callable[[Judged], Result], none: Result, *, soon: bool = False) -> Result:
         """Apply a function to the checked document; return `none` if there is no such document."""
         judged = await self.buffers.judged(uri, soon=soon)
-        return none if judged is None else await self.buffers.worker.do(function, judged)
+        return none if judged is None else await self.buffers.ask(function, judged)
 
     def prefers_markdown(self, formats: Sequence[types.MarkupKind] | None) -> bool:
         """Return True if Markdown is among the formats that the editor shows."""

@@ -194,6 +194,8 @@ def in_folder(folder: Path) -> Path | None:
     """Return the job file in a folder, or None."""
     if not bounded.may_read(folder):
         return None
+    bounded.note(folder / FILE_NAME)
+    bounded.note(folder / PROJECT)
     # A broken link, a folder or a pipe of this name is not skipped: reading it reports the error.
     if os.path.lexists(folder / FILE_NAME):
         return folder / FILE_NAME
@@ -245,6 +247,7 @@ def load(path: Path, *, pipes: bool = False) -> JobFile:
 def _extended(path: Path, written: str, named_by: str) -> Path:
     """Return the file that `extend` of a job file means; of a folder, the nearest one in it or above it."""
     meant = Path(os.path.normpath(job_layers.beside(path.parent, written)))
+    bounded.note(meant)
     if not meant.is_dir():
         return _relative(meant)
     nearest = Nearest().of(meant)

@@ -3,18 +3,19 @@
 const DASHES = { positioning: "dash", "start up": "dashdot", cancel: "dashdot", unknown: "dot" };
 /** These buttons alone: by itself the library offers one that sends the picture to its maker. */
 const BUTTONS = [["toImage", "zoom2d", "pan2d", "zoomIn2d", "zoomOut2d", "resetScale2d"]];
-const OPTIONS = { displaylogo: false, responsive: true, modeBarButtons: BUTTONS };
+const OPTIONS = { displaylogo: false, responsive: true, modeBarButtons: BUTTONS, scrollZoom: true, doubleClick: false };
 /** So many arrows tell the direction of a path. */
 const ARROWS = 14;
 /** So many points of it, at least, can be pointed at. */
 const POINTED = 3000;
 
 /** All that is drawn of a section, but for what is chosen. */
-function faceTraces(section, level, coloring) {
+function faceTraces(section, level, coloring, isAsked = true) {
   const units = unitsOf(section);
   return [
     ...parts(section, units, level),
     ...surroundings(section, units),
+    ...(isAsked ? askedTraces(section, units) : []),
     ...(section.needs_radius ? [] : colorBar(section, coloring)),
     line("programmed contour", section.programmed.x.map(units.x), section.programmed.c.map(units.c), { color: INK, width: 1 }),
     ...toolPath(section, units, coloring),
@@ -322,7 +323,7 @@ function faceLayout(section) {
   const axis = { showgrid: true, gridcolor: "#e4e4e4", zeroline: true, zerolinecolor: "#9a9a9a", showline: true, linecolor: "#888", mirror: true, ticks: "outside", nticks: 11 };
   return {
     margin: { l: 62, r: 12, t: 30, b: 48 }, paper_bgcolor: "#fff", plot_bgcolor: "#fff", hovermode: "closest", hoverdistance: 24,
-    font: { family: "system-ui, sans-serif", size: 12, color: INK }, dragmode: "zoom",
+    font: { family: "system-ui, sans-serif", size: 12, color: INK }, dragmode: "pan",
     legend: { orientation: "h", x: 0, y: -0.13, yanchor: "top", xanchor: "left", font: { size: 11 } },
     xaxis: { ...axis, title: { text: `X [${units.name}, ${section.diameter ? "diameter" : "radius"}]`, standoff: 8 } },
     yaxis: { ...axis, title: { text: `C [${units.name}]`, standoff: 8 }, scaleanchor: "x", scaleratio: units.ratio },

@@ -215,9 +215,7 @@ function nextPoint(points, from, way) {
 
 /** What measuring shows over a face: the marks, and the result in words. */
 function measuringBox(root) {
-  const svg = document.createElementNS("http://www.w3.org/2000/svg", "svg");
-  svg.classList.add("measure");
-  svg.setAttribute("aria-hidden", "true");
+  const svg = svgElement("svg", { class: "measure", "aria-hidden": "true" });
   const panel = element("div");
   panel.className = "measured";
   panel.hidden = true;
@@ -300,16 +298,11 @@ function measureInWords(section, label, kind, value) {
 }
 
 function drawnLine(points, name) {
-  const line = document.createElementNS("http://www.w3.org/2000/svg", "polyline");
-  line.setAttribute("points", points.map((point) => point.map((value) => value.toFixed(1)).join(",")).join(" "));
-  line.setAttribute("class", name);
-  return line;
+  return svgElement("polyline", { class: name, points: points.map((point) => point.map((value) => value.toFixed(1)).join(",")).join(" ") });
 }
 
 function drawnDot([x, y], name) {
-  const dot = document.createElementNS("http://www.w3.org/2000/svg", "circle");
-  Object.entries({ cx: x.toFixed(1), cy: y.toFixed(1), r: 5, class: name }).forEach(([key, value]) => dot.setAttribute(key, value));
-  return dot;
+  return svgElement("circle", { class: name, cx: x.toFixed(1), cy: y.toFixed(1), r: 5 });
 }
 
 function drawnShape({ shape, at }, plane, name) {

@@ -71,3 +71,11 @@ async function copyText(text, say) {
   }
   say(isCopied ? `copied: ${text}` : `to copy: ${text}`);
 }
+
+/** A new element of a drawing within the page. */
+function svgElement(name, attributes) {
+  const space = Object.assign(document.createElement("template"), { innerHTML: "<svg></svg>" }).content.firstChild.namespaceURI;
+  const made = document.createElementNS(space, name);
+  Object.entries(attributes).forEach(([key, value]) => made.setAttribute(key, String(value)));
+  return made;
+}

@@ -26,7 +26,7 @@ function sectionView(root, section, state, program, place) {
 
   function redraw() {
     if (isDrawn) {
-      Plotly.react(face, faceTraces(section, coloring.level, coloring.name), face.layout, OPTIONS);
+      Plotly.react(face, faceTraces(section, coloring.level, coloring.name, coloring.isAsked), face.layout, OPTIONS);
     }
   }
 
@@ -35,10 +35,10 @@ function sectionView(root, section, state, program, place) {
       return;
     }
     isDrawn = true;
-    Plotly.newPlot(face, faceTraces(section, coloring.level, coloring.name), layoutOfFace(), OPTIONS);
+    Plotly.newPlot(face, faceTraces(section, coloring.level, coloring.name, coloring.isAsked), layoutOfFace(), OPTIONS);
     listen(face);
     if (hasRates) {
-      Plotly.newPlot(rates, rateTraces(section), { ...rateLayout(section), shapes: chosenInRates(section, moveHere()) }, { ...OPTIONS, displayModeBar: false });
+      Plotly.newPlot(rates, rateTraces(section), { ...rateLayout(section), shapes: chosenInRates(section, moveHere()) }, { ...OPTIONS, displayModeBar: false, scrollZoom: false, doubleClick: "reset+autosize" });
       listen(rates);
     }
   }

@@ -132,7 +132,7 @@ function arcsOfChords(chords, name, layer) {
     const last = endOfArc(way, place);
     if (last >= place + BLOCKS_OF_ARC) {
       const lines = `lines ${chords[place].line} to ${chords[last - 1].line}`;
-      shapes.push(arcThrough(way.slice(place, last + 1), circleThrough(way.slice(place, last + 1)), `${name}, ${lines}`, layer));
+      shapes.push(arcThrough(way.slice(place, last + 1), circleThrough(threeOf(way, place, last)), `${name}, ${lines}`, layer));
       place = last;
     } else {
       shapes.push(lineShape(way[place], way[place + 1], `${name}, line ${chords[place].line}`, layer));
@@ -187,8 +187,7 @@ function shapesOfRing(ring, name, layer, isClosed = true) {
   while (place + 1 < way.length) {
     const last = endOfArc(way, place);
     if (last > place + 2) {
-      const chords = way.slice(place, last + 1);
-      shapes.push(arcThrough(chords, circleThrough(chords), name, layer));
+      shapes.push(arcThrough(way.slice(place, last + 1), circleThrough(threeOf(way, place, last)), name, layer));
       place = last;
     } else {
       shapes.push(lineShape(way[place], way[place + 1], name, layer));
@@ -229,7 +228,7 @@ function isOneArc(way, first, last) {
   if (count < 3) {
     return true;
   }
-  const center = circleThrough(way.slice(first, last + 1));
+  const center = circleThrough(threeOf(way, first, last));
   if (center === null) {
     return false;
   }
@@ -243,11 +242,14 @@ function isOneArc(way, first, last) {
   );
 }
 
-/** The center of the circle through the first, the middle and the last of points; null if they lie on a line. */
-function circleThrough(points) {
-  const isClosed = distanceOf(points[0], points[points.length - 1]) < 1e-9;
-  const last = points.length - (isClosed ? 2 : 1);
-  const [a, b, d] = [points[0], points[last >> 1], points[last]];
+/** The first, a middle and the last point between two places; of a closed ring the last one but one. */
+function threeOf(way, first, last) {
+  const end = distanceOf(way[first], way[last]) < 1e-9 ? last - 1 : last;
+  return [way[first], way[(first + end) >> 1], way[end]];
+}
+
+/** The center of the circle through three points; null if they lie on a line. */
+function circleThrough([a, b, d]) {
   const [p, q] = [minus(b, a), minus(d, a)];
   const twice = 2 * cross(p, q);
   if (Math.abs(twice) <= 1e-9 * sizeOf(p) * sizeOf(q)) {

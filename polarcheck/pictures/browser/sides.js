@@ -97,12 +97,6 @@ function smallFace(section, findings) {
   return face;
 }
 
-function svgElement(name, attributes) {
-  const made = document.createElementNS("http://www.w3.org/2000/svg", name);
-  Object.entries(attributes).forEach(([key, value]) => made.setAttribute(key, String(value)));
-  return made;
-}
-
 /** A path of at most some 2,000 points: more are not seen in a small picture. */
 function thinPath(path, px) {
   const step = Math.max(Math.ceil(path.x.length / 2000), 1);

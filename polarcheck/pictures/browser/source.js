@@ -13,9 +13,47 @@ function findingsByLine(findings) {
   return lines;
 }
 
+/** The tabs of the texts beside the picture: the program, and the table of moves. Returns what shows one of them. */
+function textSwitch(root, picture) {
+  const place = root.querySelector(".text-switch");
+  const panels = { source: root.querySelector(".source"), moves: root.querySelector(".move-list") };
+  const tabs = Object.entries({ source: "Program", moves: "Moves" }).map(([name, text]) => {
+    const tab = button(text, () => show(name));
+    panels[name].id = `${root.id}${name}`;
+    tab.id = `${root.id}${name}-tab`;
+    Object.entries({ role: "tab", "aria-controls": panels[name].id }).forEach(([key, value]) => tab.setAttribute(key, value));
+    panels[name].setAttribute("aria-labelledby", tab.id);
+    panels[name].removeAttribute("aria-label");
+    return [name, tab];
+  });
+
+  function show(shown) {
+    tabs.forEach(([name, tab]) => {
+      panels[name].hidden = name !== shown;
+      tab.setAttribute("aria-selected", String(name === shown));
+      tab.tabIndex = name === shown ? 0 : -1;
+    });
+  }
+
+  place.append(...tabs.map(([, tab]) => tab));
+  place.addEventListener("keydown", (event) => {
+    if (event.key === "ArrowLeft" || event.key === "ArrowRight") {
+      const [name, tab] = tabs.find(([, other]) => other !== event.target);
+      event.preventDefault();
+      event.stopPropagation();
+      show(name);
+      tab.focus();
+    }
+  });
+  place.hidden = !picture.sections.length;
+  show(picture.source.length || !picture.sections.length ? "source" : "moves");
+  return show;
+}
+
 /** The source of a program. */
 function sourceView(root, picture, state, program) {
   const place = root.querySelector(".source");
+  const showText = textSwitch(root, picture);
   const { source, source_line: first, findings } = picture;
   if (!source.length) {
     place.append(element("p", "The text of the program is not on this page."));
@@ -184,7 +222,13 @@ function sourceView(root, picture, state, program) {
     }
   });
   show(state.chosen.program === program ? state.chosen.line : null);
-  return { find: () => { field.focus(); field.select(); } };
+  function toFind() {
+    showText("source");
+    field.focus();
+    field.select();
+  }
+
+  return { find: toFind };
 }
 
 /** The first move behind those of the same run of a block. */

@@ -24,13 +24,15 @@ function start() {
     const sections = sectionsView(root, picture, state, program);
     const list = findingsView(root, picture, state, program, sections);
     VIEWS.forEach((view) => view(root, picture, state, program, sections));
-    return { root, picture, sections, list };
+    return { root, picture, sections, list, tools: toolsView(root, picture, state, program, sections, pictures) };
   });
+  toolKeys(programs.map((program) => program.tools), state);
   chooser(programs, state);
   printable(programs.flatMap((program) => program.sections.views));
   if (pictures[0].sections.length) {
     state.choose({ program: 0, section: 0 });
   }
+  linked(pictures, state, ({ program }) => programs[program].root.scrollIntoView({ block: "start" }));
 }
 
 start();

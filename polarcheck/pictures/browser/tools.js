@@ -1,13 +1,12 @@
 // ---- tools: the buttons above the face, and what the page says when they have done something ----
 
 /** The tools of a program: what the keys call. */
-function toolsView(root, picture, state, program, sections) {
+function toolsView(root, picture, state, program, sections, pictures) {
   const place = root.querySelector(".tools");
   const said = element("output");
   said.className = "said";
   said.setAttribute("role", "status");
   let timer = null;
-  let isAsked = true;
   let pointed = null;
 
   const say = (text) => {
@@ -30,7 +29,7 @@ function toolsView(root, picture, state, program, sections) {
       made.setAttribute("aria-pressed", "false");
       return made;
     },
-    hasDrawing: () => isAsked,
+    hasDrawing: () => !sections.views.length || sections.shown().coloring.isAsked !== false,
   };
   const source = sourceView(root, picture, state, program);
   const zoom = zoomView(root, picture, state, program, sections, hand);
@@ -44,7 +43,7 @@ function toolsView(root, picture, state, program, sections) {
   const hasDrawing = picture.sections.some((section) => section.drawing.length);
   const drawing = () => {
     if (hasDrawing) {
-      isAsked = !isAsked;
+      const isAsked = !hand.hasDrawing();
       asked.setAttribute("aria-pressed", String(isAsked));
       sections.views.forEach((view) => {
         view.coloring.isAsked = isAsked;
@@ -76,7 +75,7 @@ function toolsView(root, picture, state, program, sections) {
   }
 
   function link() {
-    const hash = linkOf(state.pictures, { ...state.chosen });
+    const hash = linkOf(pictures, state.chosen);
     if (!hash) {
       say("no link: choose a line first");
       return;
@@ -113,7 +112,7 @@ function toolsView(root, picture, state, program, sections) {
     });
   });
   return {
-    measure: measure.toggle, isMeasuring: measure.isOn, letGo: measure.letGo, copy, link, find: () => { state.choose({ program, text: "source" }); source.find(); },
+    measure: measure.toggle, isMeasuring: measure.isOn, letGo: measure.letGo, copy, link, find: source.find,
     drawing, sides: sides.toggle, zoom,
   };
 }

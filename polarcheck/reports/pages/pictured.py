@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from itertools import chain
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from polarcheck.finding import UNREADABLE
-from polarcheck.pictures.picture import Drawn, FindingPicture, Picture, SectionPicture
+from polarcheck.pictures.picture import Drawn, FindingPicture, Picture, Place, key_of
 from polarcheck.reports import SEVERITIES, counted
 from polarcheck.reports.pages.resting import resting
 from polarcheck.reports.text import first_sentence, verdict
@@ -17,6 +16,7 @@ if TYPE_CHECKING:
     from polarcheck.reports import Background
 
 _NOTHING = Drawn(sections=[], skip="", remarks=[])
+_NOWHERE = Place(section=None, move=None, places=[], span=None, also=[], is_beside=True)
 #: The label of each line on what a verdict rests on, by how the line begins.
 _LABELS = {"rests on ": "judged for", "section of ": "section", "not judged, but without weight: ": "not judged"}
 
@@ -24,7 +24,6 @@ _LABELS = {"rests on ": "judged for", "section of ": "section", "not judged, but
 def picture(file: FileReport, background: Background) -> Picture:
     """Return the data of a file's page; without pictures if none were requested."""
     drawn = background.drawn.get(file.path, _NOTHING)
-    places = [_Place(section) for section in drawn.sections]
     findings = sorted([*file.findings, *file.silenced], key=lambda finding: (finding.line, finding.column))
     return Picture(
         path=file.path,
@@ -32,7 +31,7 @@ def picture(file: FileReport, background: Background) -> Picture:
         summary=_summary(file),
         head=list(_head(file, drawn, background)),
         not_evaluated=list(_not_evaluated(file)),
-        findings=[_finding(finding, places, background) for finding in findings],
+        findings=[_finding(finding, drawn, background) for finding in findings],
         sections=drawn.sections,
         source=drawn.source,
         source_line=drawn.source_line,
@@ -78,37 +77,11 @@ def _not_evaluated(file: FileReport) -> Iterator[str]:
         yield f"{reason} ({counted(blocks[reason], 'block')}; {', '.join(dict.fromkeys(rules))})"
 
 
-class _Place:
-    """
-    The places of findings in a section.
-
-    section: the section.
-    first: the number of the first move of each line.
-    """
-
-    def __init__(self, section: SectionPicture) -> None:
-        self.section = section
-        self.first: dict[int, int] = {}
-        for number, line in enumerate(section.moves.line):
-            self.first.setdefault(line, number)
-
-    def is_of(self, finding: Finding) -> bool:
-        """Return True if a finding belongs to the section."""
-        if (finding.channel or "") not in ("", self.section.channel):
-            return False
-        if finding.section_line is not None:
-            return finding.section_line == self.section.line
-        return self.section.line <= finding.line <= self.section.end_line
-
-
-def _finding(finding: Finding, places: Sequence[_Place], background: Background) -> FindingPicture:
+def _finding(finding: Finding, drawn: Drawn, background: Background) -> FindingPicture:
     from polarcheck.finding import Silenced
 
     rule = background.rules.get(finding.rule)
-    sections = [number for number, place in enumerate(places) if place.is_of(finding)]
-    # A program that is called twice has a section for each call.
-    with_move = [number for number in sections if finding.line in places[number].first]
-    section = next(chain(with_move, sections), None)
+    place = drawn.places.get(key_of(finding), _NOWHERE)
     by = ""
     if isinstance(finding, Silenced):
         by = f"{finding.by}: {finding.reason}" if finding.reason else finding.by
@@ -121,7 +94,11 @@ def _finding(finding: Finding, places: Sequence[_Place], background: Background)
         why=first_sentence(rule.page) if rule else "",
         alarm=finding.alarm or "",
         fix=finding.fix.title if finding.fix is not None else "",
-        section=section,
-        move=None if section is None else places[section].first.get(finding.line),
+        section=place.section,
+        move=place.move,
         silenced=by,
+        places=place.places,
+        span=place.span,
+        also=place.also,
+        is_beside=place.is_beside,
     )

@@ -1,0 +1,261 @@
+"""Where findings are on the face, which other lines they stand for, and how large a window shows them."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Iterator, Sequence
+from functools import cached_property
+
+import msgspec
+import numpy as np
+
+from polarcheck.arrays import Floats, Points, Rows, States
+from polarcheck.checking import places
+from polarcheck.checking.engine import Listed
+from polarcheck.checking.rule import load_all
+from polarcheck.checking.tables import Tables
+from polarcheck.columns.trace import Trace
+from polarcheck.finding import Finding
+from polarcheck.geometry.plane import arc_sweep
+from polarcheck.geometry.tolerances import ZERO
+from polarcheck.machines.modal import Motion
+from polarcheck.pictures.moves import LENGTH, SectionMoves
+
+#: The most rows of a finding that get a place, and other lines of it that are listed.
+MOST = 500
+#: Values of findings that say how large the fault is, and how many times as wide the window is.
+_SIZES, _OF_SIZE = ("depth", "height", "gap", "difference", "cut_away", "too_much", "largest"), 8.0
+#: The same of distances from the center, of R, and of the way of a block.
+_OF_DISTANCE, _OF_RADIUS, _OF_WAY = 8.0, 6.0, 6.0
+#: Values of findings about ramps, whose scale is R.
+_OF_RAMPS = ("length_needed",)
+#: The narrowest and the widest window [mm].
+_NARROWEST, _WIDEST = 0.05, 1000.0
+#: The width of a window at the center, if R is not known [mm].
+_AT_CENTER = 5.0
+
+
+class Spot(msgspec.Struct, frozen=True):
+    """
+    The place of a finding in its run.
+
+    row: the row at fault, -1 if nothing is executed.
+    rows: all rows that it stands for.
+    also: the other lines that it stands for.
+    place: the point that its values give; NaN if they give none [mm].
+    at_nearest: it is about the distance from the center.
+    span: as in FindingPicture.
+    """
+
+    row: int
+    rows: Rows
+    also: list[int]
+    place: complex
+    at_nearest: bool
+    span: float | None
+
+
+class Spots:
+    """The places of the findings of one run, without what a page lists of its sections."""
+
+    def __init__(self, tables: Tables) -> None:
+        self.tables = tables
+        self.trace: Trace = tables["trace"]
+
+    @property
+    def channel(self) -> str:
+        """The channel of the run, empty if there is only one."""
+        return self.trace.text.source.channel
+
+    @cached_property
+    def _elements(self) -> dict[tuple[str, int, int], Rows]:
+        """The elements that each finding stands for, by rule, line and column."""
+        listed: dict[str, Listed] = self.tables.get("listed", {})
+        elements: dict[tuple[str, int, int], Rows] = {}
+        for rule, of_rule in listed.items():
+            order = np.argsort(of_rule.finding, kind="stable")
+            bounds = np.searchsorted(of_rule.finding[order], np.arange(len(of_rule.findings) + 1))
+            for number, finding in enumerate(of_rule.findings):
+                own = of_rule.index[order[bounds[number] : bounds[number + 1]]]
+                elements.setdefault((rule, finding.line, finding.column), own)
+        return elements
+
+    @cached_property
+    def _lines(self) -> tuple[Rows, Rows]:
+        """The rows in the order of their lines in the file, and these lines."""
+        line = self.trace.blocks.line_in_file
+        order = np.argsort(line, kind="stable")
+        return order, line[order]
+
+    def has(self, finding: Finding) -> bool:
+        """Return True if the run has this finding."""
+        return (finding.rule, finding.line, finding.column) in self._elements
+
+    def of(self, finding: Finding) -> Spot:
+        """Return the place of a finding of the file."""
+        rows, also = self._rows(finding)
+        values, rule = finding.values, load_all().get(finding.rule)
+        x, c = values.get("plane_x"), values.get("plane_c")
+        place = complex(x, c) if isinstance(x, float | int) and isinstance(c, float | int) else complex(math.nan)
+        at_nearest = "nearest" in values or (rule is not None and "center" in rule.parameters)
+        row = int(rows[0]) if len(rows) else -1
+        return Spot(row, rows[:MOST], also, place, at_nearest, self._span(finding, row, at_nearest))
+
+    def _rows(self, finding: Finding) -> tuple[Rows, list[int]]:
+        """Return the rows of a finding, those of its line first, and its other lines."""
+        trace = self.trace
+        order, lines = self._lines
+        low, high = np.searchsorted(lines, [finding.line, finding.line + 1])
+        of_line = order[low:high]
+        if not len(of_line) and low:
+            # Text between blocks, or behind them: the block before it.
+            of_line = order[low - 1 : low]
+        elif not len(of_line):
+            of_line = order[:1]
+        elements, rule = self._elements.get((finding.rule, finding.line, finding.column)), load_all().get(finding.rule)
+        if elements is None or rule is None:
+            return of_line, []
+        row = places.rows(rule.over, self.tables)[elements]
+        line = trace.text.blocks.line[places.blocks(rule.over, self.tables)[elements]]
+        line[row >= 0] = trace.blocks.line_in_file[row[row >= 0]]
+        is_own = line == finding.line
+        row = np.concatenate([row[is_own], row[~is_own]])
+        also = np.unique(line[~is_own])[:MOST].tolist() if finding.count > 1 else []
+        return (row[row >= 0] if (row >= 0).any() else of_line), also
+
+    def _span(self, finding: Finding, row: int, at_nearest: bool) -> float | None:
+        if row < 0:
+            return None
+        values = finding.values
+        radius = self._number(values.get("radius")) or abs(float(self.trace.compensation.radius_of_move[row]))
+        size = max((self._number(values.get(name)) for name in _SIZES), default=0.0)
+        if size > 0:
+            span = _OF_SIZE * size
+        elif at_nearest:
+            near = self._number(values.get("nearest"))
+            span = _OF_DISTANCE * near if near > ZERO else _OF_RADIUS * radius if radius > 0 else _AT_CENTER
+        elif any(name in values for name in _OF_RAMPS):
+            span = _OF_RADIUS * radius
+        else:
+            way = float(self.trace.path.length[row])
+            span = _OF_WAY * way
+            if radius > 0 and "radius" in values:
+                span = min(span, _OF_RADIUS * radius)
+        if not span > 0:
+            return None
+        return round(min(max(span, _NARROWEST), _WIDEST), LENGTH)
+
+    @staticmethod
+    def _number(value: object) -> float:
+        return float(value) if isinstance(value, float | int) and math.isfinite(value) else 0.0
+
+
+class Face:
+    """Where the tool stands on the faces of a run."""
+
+    def __init__(self, table: SectionMoves) -> None:
+        self.trace = table.trace
+        self._table = table
+        self._order = np.argsort(table.moves.row, kind="stable")
+        self._rows = table.moves.row[self._order]
+
+    def moves_of(self, row: int) -> Rows:
+        """Return the moves of a row, in order."""
+        low, high = np.searchsorted(self._rows, [row, row + 1])
+        return self._order[low:high]
+
+    def place(self, row: int, at_nearest: bool) -> complex:
+        """Return the place of a row on its face [mm]; NaN if it is not known."""
+        moves = self._table.moves
+        own = self.moves_of(row)
+        if len(own) and self._table.is_known[move := self.move(row, at_nearest)]:
+            if at_nearest:
+                return _nearest_point(*(column[move] for column in moves.shape))
+            return _middle(*moves.shape, move)
+        path = self.trace.path
+        if path.travels[row]:
+            kind = self.trace.axes.motion
+            return _middle(path.start, path.end, np.where(path.is_arc, path.center, np.nan), kind, row)
+        return self._standing(row)
+
+    def move(self, row: int, at_nearest: bool) -> int:
+        """Return the move of a row that is drawn for it, else the last move before it; -1 if there is none."""
+        own, nearest = self.moves_of(row), self._table.moves.nearest
+        if not len(own):
+            before = int(np.searchsorted(self._rows, row))
+            return int(self._order[before - 1]) if before else -1
+        is_nearest = at_nearest and not np.isnan(nearest[own]).all()
+        return int(own[np.nanargmin(nearest[own]) if is_nearest else np.argmax(np.nan_to_num(self._length[own]))])
+
+    @cached_property
+    def _length(self) -> Floats:
+        return self._table.moves.length
+
+    def _standing(self, row: int) -> complex:
+        """Return where the tool stands behind a row without a move on the plane [mm]."""
+        trace, moves = self.trace, self._table.moves
+        section = int(trace.mode.section[row])
+        before = int(np.searchsorted(self._rows, row))
+        if section >= 0:
+            last = int(self._order[before - 1]) if before else -1
+            known = last >= 0 and moves.section[last] == section and self._table.is_known[last]
+            return complex(moves.end[last] if known else trace.path.end[row])
+        near = self.nearest_section(row)
+        if near < 0:
+            return complex(math.nan)
+        x, angle = float(trace.path.x[row]), float(trace.path.c_angle[row])
+        turn = trace.path.c_axis.sense * (angle - float(trace.path.section_entry[near]))
+        # Where C is not known the tool is drawn on the X axis.
+        return cmath.rect(x, math.radians(turn)) if math.isfinite(turn) else complex(x)
+
+    def nearest_section(self, row: int) -> int:
+        """Return the section of a row or, outside sections, the nearest one; -1 if there is none."""
+        mode = self.trace.mode
+        if mode.section[row] >= 0:
+            return int(mode.section[row])
+        enter, leave = mode.sections.enter, mode.sections.leave
+        following = int(np.searchsorted(enter, row))
+        if following == len(enter):
+            return following - 1
+        if not following:
+            return 0
+        return following if enter[following] - row <= row - leave[following - 1] else following - 1
+
+
+def _middle(start: Points, end: Points, center: Points, kind: States, index: int) -> complex:
+    """Return the point in the middle of a move [mm]."""
+    at = slice(index, index + 1)
+    sweep = float(arc_sweep(start[at], end[at], center[at], np.asarray(kind[at]))[0])
+    if kind[index] in (Motion.CW, Motion.CCW) and not cmath.isnan(complex(center[index])):
+        middle = complex(center[index])
+        return middle + complex(start[index] - middle) * cmath.exp(0.5j * sweep)
+    return complex(start[index] + end[index]) / 2
+
+
+def _nearest_point(start: complex, end: complex, center: complex, kind: int) -> complex:
+    """Return the point of a move that is nearest to the center of C [mm]."""
+    start, end, center = complex(start), complex(end), complex(center)
+    ends = min(start, end, key=abs)
+    if kind in (Motion.CW, Motion.CCW) and not cmath.isnan(center):
+        if abs(center) <= ZERO:
+            return start
+        radius = abs(start - center)
+        toward = center - center / abs(center) * radius
+        first, last, middle = (np.array([value], complex) for value in (start, end, center))
+        sweep = float(arc_sweep(first, last, middle, np.array([kind], np.int16))[0])
+        turn = cmath.phase((toward - center) / (start - center)) if radius > ZERO else 0.0
+        turn = turn % (2 * math.pi) if sweep > 0 else -(-turn % (2 * math.pi))
+        return toward if abs(turn) <= abs(sweep) else ends
+    way = end - start
+    if abs(way) <= ZERO:
+        return ends
+    share = -(start * way.conjugate()).real / abs(way) ** 2
+    return start + share * way if 0 < share < 1 else ends
+
+
+def with_followers(findings: Sequence[Finding]) -> Iterator[Finding]:
+    """Yield findings and those that follow from them."""
+    for finding in findings:
+        yield finding
+        yield from finding.follows
