@@ -52,6 +52,7 @@ _SCRIPTS = (
     "keys",
     "choosing",
     "printing",
+    "embedded",
     "start",
 )
 _STYLES = ("page", "player", "tools")

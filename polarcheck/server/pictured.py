@@ -11,7 +11,6 @@ from typing import Any
 import msgspec
 from pygls.exceptions import JsonRpcException, JsonRpcInvalidParams
 
-from polarcheck import bounded
 from polarcheck.errors import PolarcheckError, StoppedError
 from polarcheck.reading import files
 from polarcheck.reading.excerpt import visible
@@ -75,7 +74,7 @@ def picture(
     """
     Return the page of a checked program.
 
-    folders: where files may be opened.
+    folders: those that are open in the editor; the page names the program from there.
     is_stopped: returns True once the text has changed; then Changed is raised.
     address: from where the page loads plotly; if empty, the page holds it.
     sources: the source of scripts that the policy of the page allows with an address.
@@ -92,10 +91,7 @@ def picture(
     from polarcheck.reports.pages import pictured
 
     try:
-        with (
-            bounded.only_below(folders),
-            time_limit(seconds_for(len(judged.text.data), judged.settings.job.run.max_seconds), is_stopped),
-        ):
+        with time_limit(seconds_for(len(judged.text.data), judged.settings.job.run.max_seconds), is_stopped):
             named = msgspec.structs.replace(
                 judged.report, path=_title(judged.path, folders), machine=visible(judged.settings.machine_id)
             )
