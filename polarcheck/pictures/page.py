@@ -56,6 +56,7 @@ _SCRIPTS = (
     "printing",
     "memory",
     "serving",
+    "embedded",
     "start",
 )
 _STYLES = ("page", "player", "tools")

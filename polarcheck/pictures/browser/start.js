@@ -5,6 +5,7 @@ const VIEWS = [
   chosenView,
   movesView,
   playersView,
+  embeddedView,
 ];
 
 function start() {
