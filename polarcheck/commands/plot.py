@@ -15,6 +15,7 @@ from polarcheck.commands.options import option
 @click.command(short_help="Draw what a program makes and how the tool runs, as a page.")
 @click.argument("paths", nargs=-1, required=True, metavar="PATH...")
 @options.executing("programs")
+@options.comparing
 @option(
     "-o",
     "--output",
