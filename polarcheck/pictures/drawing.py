@@ -109,24 +109,26 @@ def _spots(report: FileReport, runs: Sequence[Spots]) -> dict[Key, tuple[int, Sp
 def _place(run: int, spot: Spot, sections: Sequence[_Section]) -> Place:
     """Return the place of a finding among the pictures of the program."""
     own = {section.number: place for place, section in enumerate(sections) if section.run == run}
-    if spot.row < 0 or not own:
+    if not spot.rows or not own:
         return Place(section=None, move=None, places=[], span=None, also=spot.also, is_beside=True)
     face = sections[next(iter(own.values()))].face
-    number = face.nearest_section(spot.row)
+    row = spot.rows[0]
+    number = face.nearest_section(row)
     shown = own.get(number, own[min(own, key=lambda each: abs(each - number))])
-    listed = sections[shown].listed
-    known = [place for row in spot.rows.tolist() if not cmath.isnan(place := face.place(row, spot.at_nearest))]
-    if not cmath.isnan(spot.place):
-        known = [spot.place, *known[1:]]
-    points = dict.fromkeys((round(place.real, LENGTH), round(place.imag, LENGTH)) for place in known)
-    move = int(np.searchsorted(listed, face.move(spot.row, spot.at_nearest)))
+    picture, listed = sections[shown].picture, sections[shown].listed
+    known = [*spot.known, *(face.place(each, spot.where) for each in spot.rows[len(spot.known) :])]
+    points = dict.fromkeys(
+        (round(each.real, LENGTH), round(each.imag, LENGTH)) for each in known if cmath.isfinite(each)
+    )
+    move = int(np.searchsorted(listed, face.move(row, spot.where)))
+    wide = max(picture.frame[2] - picture.frame[0], picture.frame[3] - picture.frame[1])
     return Place(
         section=shown,
         move=min(move, len(listed) - 1) if len(listed) else None,
         places=list(points),
-        span=spot.span,
+        span=None if spot.span is None else round(min(spot.span, wide), LENGTH),
         also=spot.also,
-        is_beside=not len(face.moves_of(spot.row)),
+        is_beside=not len(face.moves_of(row)),
     )
 
 
