@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from polarcheck.server.judged import SettingsOf
     from polarcheck.server.open_text import OpenText
     from polarcheck.server.structure.document import Document
+    from polarcheck.server.structure.workspace import Workspace
 
 Result = TypeVar("Result")
 
@@ -62,6 +63,13 @@ class Documents:
         document = Document(buffer.uri, buffer.path, text, machine, folders)
         self._known[buffer.uri] = settings, document
         return document
+
+    def workspace(self, document: Document) -> Workspace:
+        """Return the files around a document, for one request."""
+        from polarcheck.server.structure.workspace import Opened, Workspace
+
+        opened = [Opened(buffer.uri, buffer.path, buffer.text) for buffer in list(self.buffers.open.values())]
+        return Workspace(document, opened, self.folders_of(document.path), self.machine_of)
 
     def machine_of(self, path: Path, settings: Settings | None = None) -> tuple[Machine, Sequence[str]]:
         """Return the machine of a program and the folders of those it calls; the default if its settings are broken."""
