@@ -75,7 +75,7 @@ def plot(
         serve,
         paths,
         {"-o": output, "--png": png, "--svg": svg, "--section": chosen},
-        {"--port": port is not None, "--open": opens},
+        {name: options.is_written(ctx, name[2:]) for name in ("--port", "--open")},
     )
     if serve:
         applies = Options(use_config=not no_config, extras=picturing.extras(), **arguments)
