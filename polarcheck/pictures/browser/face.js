@@ -94,8 +94,8 @@ function surroundings(section, units) {
   }
   const reach = reachOf(section);
   shapes.push({
-    ...line("C = 0", [0, units.x(reach)], [0, 0], { color: color("--axis"), width: 1, dash: "longdashdot" }, { showlegend: false }),
-    mode: "lines+text", text: ["", "C = 0"], textposition: "middle right", textfont: { color: color("--quiet"), size: 11 },
+    ...line("C = 0", [0, units.x(0.8 * reach), units.x(reach)], [0, 0, 0], { color: color("--axis"), width: 1, dash: "longdashdot" }, { showlegend: false }),
+    mode: "lines+text", text: ["", "C = 0", ""], textposition: "bottom center", textfont: { color: color("--quiet"), size: 11 },
   });
   shapes.push({
     type: "scatter", mode: "markers", name: "spindle center", x: [0], y: [0], hoverinfo: "skip",
@@ -104,9 +104,9 @@ function surroundings(section, units) {
   return shapes;
 }
 
-/** The x of the plane at the right of the frame [mm]. */
+/** How far the ray of C = 0 is drawn [mm]: to the right of the frame. */
 function reachOf({ frame }) {
-  return Math.max(frame[2] - 0.03 * (frame[2] - frame[0]), 0.2 * (frame[2] - frame[0]));
+  return Math.max(frame[2] - 0.02 * (frame[2] - frame[0]), 0.2 * (frame[2] - frame[0]));
 }
 
 /** The path of the tool center, a trace for each kind of move and class of color. */
@@ -221,7 +221,7 @@ function marks(section, units) {
     const places = {
       type: "scatter", mode: "markers+text", name, legendgroup: name, hoverinfo: "none",
       x: hits.map((mark) => units.x(mark.place[0])), y: hits.map((mark) => units.c(mark.place[1])),
-      text: hits.map((mark) => letterOf(mark.number - 1)), textposition: "top right", textfont: { color: ink, size: 13 },
+      text: hits.map((mark) => letterOf(mark.number - 1)), textposition: "bottom right", textfont: { color: ink, size: 13 },
       customdata: hits.map((mark) => ({ mark: mark.number - 1 })),
       marker: { symbol: kind === "overcut" ? "x-thin" : "star-triangle-dhits-open", size: 10, color: ink, line: { color: ink, width: 2 } },
     };
@@ -241,7 +241,9 @@ function ends(section, units) {
   if (!known.length) {
     return [];
   }
-  return [[known[0], "start", "top right", "circle-open"], [known[known.length - 1], "end", "bottom right", "square-open"]].map(
+  // The text stands towards the middle, where there is room for it.
+  const side = (place) => (path.x[place] > (section.frame[0] + section.frame[2]) / 2 ? "left" : "right");
+  return [[known[0], "start", `top ${side(known[0])}`, "circle-open"], [known[known.length - 1], "end", `bottom ${side(known[known.length - 1])}`, "square-open"]].map(
     ([place, text, textposition, symbol]) => ({
       type: "scatter", mode: "markers+text", x: [units.x(path.x[place])], y: [units.c(path.c[place])],
       text: [text], textposition, hoverinfo: "skip", showlegend: false, textfont: { color: color("--ink"), size: 12 },

@@ -1,6 +1,6 @@
 // ---- theme: light or dark, as the system has it or as chosen; drawings read their colours from the style ----
 
-const THEME_NAMES = { "": "Theme: system", light: "Theme: light", dark: "Theme: dark" };
+const THEME_NAMES = { "": "system", light: "light", dark: "dark" };
 const themeViews = [];
 
 /** The colour of a custom property of the style, as "--ink". */
@@ -32,7 +32,7 @@ function themeSwitch() {
   });
   made.className = "theme";
   const show = () => {
-    made.textContent = THEME_NAMES[document.documentElement.dataset.theme || ""];
+    made.textContent = `Theme: ${THEME_NAMES[document.documentElement.dataset.theme || ""]}`;
   };
   show();
   onTheme(show);

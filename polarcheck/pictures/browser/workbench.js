@@ -28,7 +28,7 @@ function sectionsView(root, picture, state, program) {
   root.querySelector(".aside").hidden = false;
   viewSwitch(root, articles, state, program);
   root.querySelector(".windows").append(
-    button("Zoom to the move", () => {
+    button("To move", () => {
       const { section, move } = state.chosen;
       if (move !== null && state.chosen.program === program) {
         const way = wayOf(picture.sections[section], move);
@@ -36,9 +36,15 @@ function sectionsView(root, picture, state, program) {
       }
     }),
     button("Back", () => views[shown].back()),
-    button("Whole face", () => views[shown].whole()),
-    themeSwitch(),
+    button("Whole", () => views[shown].whole()),
   );
+  const titles = ["Zoom to the chosen move", "The window before the zoom", "The whole face"];
+  [...root.querySelector(".windows").children].forEach((made, number) => {
+    made.title = titles[number];
+  });
+  if (program === 0) {
+    root.querySelector("header").append(themeSwitch());
+  }
   if (views.length) {
     show(0);
     new IntersectionObserver((entries) => entries.some((entry) => entry.isIntersecting) && views[shown].draw(), { rootMargin: "400px" })
