@@ -265,6 +265,14 @@ function chuckLayer(see, bar, section, line, palette) {
   pen.strokeStyle = palette.quiet;
   pen.fillStyle = palette.quiet;
   pen.lineWidth = Math.max(radius / 250, 1);
+  if (section.radius === null) {
+    // No layer of metal covers it.
+    pen.setLineDash([radius / 30, radius / 30]);
+    pen.beginPath();
+    pen.arc(0, 0, radius, 0, 2 * Math.PI);
+    pen.stroke();
+    pen.setLineDash([]);
+  }
   const ring = radius * 1.26;
   pen.beginPath();
   pen.arc(0, 0, ring, 0, 2 * Math.PI);
