@@ -66,7 +66,7 @@ function sectionsView(root, picture, state, program) {
     root.querySelector("header").append(themeSwitch());
   }
   if (views.length) {
-    show(0);
+    show(firstSection(picture));
     window.addEventListener("resize", () => requestAnimationFrame(fit));
     new IntersectionObserver((entries) => entries.some((entry) => entry.isIntersecting) && show(shown), { rootMargin: "400px" })
       .observe(root.querySelector(".stage"));
@@ -77,6 +77,12 @@ function sectionsView(root, picture, state, program) {
     }
   });
   return { views, shown: () => views[shown] };
+}
+
+/** The section of the worst finding, the first one without findings. */
+function firstSection({ order, findings }) {
+  const worst = order.find((number) => findings[number].section !== null && !findings[number].silenced);
+  return worst === undefined ? 0 : findings[worst].section;
 }
 
 /** Buttons for a few sections, a list for many. Returns what shows a section as chosen. */
