@@ -81,15 +81,16 @@ def test_what_is_measured(blank: Any, first: str, second: str | None, expected: 
 
 
 def test_arcs_are_read_from_chords_and_polygons_are_not(blank: Any) -> None:
-    """A half circle of R20 in 90 chords with its straight side; a hexagon; a circle; a polygon of 40 flats."""
-    half, hexagon, circle, polygon = blank.evaluate(
+    """A half circle of R20 with its side; a hexagon; a circle; a polygon of 40 flats; a slot with tangent ends."""
+    half, hexagon, circle, polygon, slot = blank.evaluate(
         """() => {
         const around = (count, share) => Array.from({ length: count + 1 }, (_, at) => {
           const angle = (at / count) * share * 2 * Math.PI;
           return [20 * Math.cos(angle) + 3, 20 * Math.sin(angle)].map((value) => Number(value.toFixed(4)));
         });
         const told = ({ kind, radius, center, sweep }) => (kind === "arc" ? [radius, center[0], sweep] : kind);
-        return [around(90, 0.5), around(6, 1), around(180, 1), around(40, 1)].map((ring) =>
+        const slot = [...around(90, 0.5), ...around(90, 0.5).map(([x, c]) => [6 - x, -50 - c])];
+        return [around(90, 0.5), around(6, 1), around(180, 1), around(40, 1), slot].map((ring) =>
           shapesOfRing(ring, "", "").map(told));
         }"""
     )
@@ -97,6 +98,8 @@ def test_arcs_are_read_from_chords_and_polygons_are_not(blank: Any) -> None:
     assert hexagon == ["line"] * 6
     assert circle == [pytest.approx([20, 3, 6.28319], abs=1e-3)]
     assert polygon == ["line"] * 40
+    end = pytest.approx([20, 3, 3.14159], abs=1e-3)
+    assert sorted(slot, key=str) == [end, end, "line", "line"]
 
 
 # ---- the page ----

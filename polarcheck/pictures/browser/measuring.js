@@ -300,7 +300,7 @@ function measureInWords(section, label, kind, value) {
     return [[label, wordsAt(section, value)]];
   }
   const digits = units.name === "inch" ? 4 : 3;
-  const names = [section.writing.linear, section.writing.virtual].map((address) => address.replace("=", ""));
+  const names = [section.writing.linear, section.writing.virtual].map(axisName);
   const sizes = coordinates(section, value, true).map((size) => size.toFixed(digits).replace(/^-(0\.0*)$/, "$1"));
   return names.map((name, axis) => {
     const isDiameter = axis ? section.writing.virtual_diameter : section.diameter;
