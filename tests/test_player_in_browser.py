@@ -281,7 +281,7 @@ CUTTER = """(name) => {
   let [x, y, count] = [0, 0, 0];
   for (let at = 0; at < data.length; at += 4) {
     const [red, green, blue, alpha] = data.slice(at, at + 4);
-    if (alpha > 150 && red > 150 && green > 90 && blue < 100 && red > green + 40) {
+    if (alpha > 150 && red > 150 && green > 120 && blue < 100 && red > green + 40) {
       x += (at / 4) % width; y += Math.floor(at / 4 / width); count += 1;
     }
   }

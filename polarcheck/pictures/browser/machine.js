@@ -5,7 +5,7 @@ const TAIL = 160;
 /** The radius of the view, as a share of the radius of the bar: room for jaws and the ring of degrees. */
 const ROOM = 1.42;
 /** The cutter is drawn up to so many radii of the bar from the center. */
-const FARTHEST = 2.4;
+const FARTHEST = 2;
 
 /** The colours of the canvases, from the style of the page. */
 function canvasColors() {
