@@ -32,7 +32,7 @@ def test_all_that_an_editor_asks_is_answered() -> None:
         (lens,) = editor.asks("codeLens", program)
         assert lens["range"]["start"] == place(1, 0)
         (symbol,) = editor.asks("documentSymbol", program)
-        assert [inner["name"] for inner in symbol["children"]] == ["G12.1"]
+        assert [inner["name"] for inner in symbol["children"]] == ["G12.1", "N10"]
         (target,) = editor.asks("definition", program, 6, 5)
         assert (target["uri"], target["range"]["start"]) == (program, place(7, 0))
         context = {"diagnostics": [], "only": ["quickfix"]}

@@ -11,8 +11,8 @@ from typing import Any
 import msgspec
 from pygls.exceptions import JsonRpcException, JsonRpcInvalidParams
 
-from polarcheck import bounded
 from polarcheck.errors import PolarcheckError, StoppedError
+from polarcheck.reading import files
 from polarcheck.reading.excerpt import visible
 from polarcheck.server.judged import Judged
 from polarcheck.time_limit import seconds_for, time_limit
@@ -74,7 +74,7 @@ def picture(
     """
     Return the page of a checked program.
 
-    folders: where files may be opened.
+    folders: those that are open in the editor; the page names the program from there.
     is_stopped: returns True once the text has changed; then Changed is raised.
     address: from where the page loads plotly; if empty, the page holds it.
     sources: the source of scripts that the policy of the page allows with an address.
@@ -91,11 +91,10 @@ def picture(
     from polarcheck.reports.pages import pictured
 
     try:
-        with (
-            bounded.only_below(folders),
-            time_limit(seconds_for(len(judged.text.data), judged.settings.job.run.max_seconds), is_stopped),
-        ):
-            named = msgspec.structs.replace(judged.report, machine=visible(judged.settings.machine_id))
+        with time_limit(seconds_for(len(judged.text.data), judged.settings.job.run.max_seconds), is_stopped):
+            named = msgspec.structs.replace(
+                judged.report, path=_title(judged.path, folders), machine=visible(judged.settings.machine_id)
+            )
             report, drawing = split(drawn(named, judged.runs))
     except StoppedError:
         raise Changed("the text has changed") from None
@@ -112,6 +111,12 @@ def picture(
     from polarcheck.pictures.library import library as javascript
 
     return page([shown], javascript())
+
+
+def _title(path: Path, folders: Sequence[Path]) -> str:
+    """Return the path of a program as the editor shows it: from the folder that is open."""
+    inside = [folder for folder in folders if path.is_relative_to(folder) and folder != path.parent]
+    return files.shown(str(path.relative_to(inside[0])) if inside else path.name)
 
 
 @functools.cache
