@@ -87,7 +87,7 @@ def draw_face(axes: Axes, section: SectionPicture, window: Window, entries: Sequ
             axes.add_patch(PathPatch(_area(polygon), facecolor=PART, edgecolor=edge, linewidth=0.6, zorder=2))
     _draw_surroundings(axes, section)
     for drawing in section.drawing:
-        for line in drawing.lines:
+        for line in (*([*ring, *ring[:1]] for ring in drawing.rings), *drawing.lines):
             axes.plot(*zip(*line, strict=True), color=LEFT, linewidth=1.8, alpha=0.45, zorder=3)
     _draw_path(axes, section.programmed)
     _draw_tool(axes, section)
