@@ -19,7 +19,7 @@ from test_plot import RADIUS, names_in
 
 from polarcheck.pictures.picture import DrawnPart, FindingPicture, Mark
 from polarcheck.pictures.stills import still as stills
-from polarcheck.pictures.stills.colors import ABOVE, SHADES
+from polarcheck.pictures.stills.colors import ABOVE, PLAIN, SHADES, coloring, round_bounds
 from polarcheck.pictures.stills.numbering import entries, labels
 from polarcheck.pictures.stills.still import still
 from polarcheck.pictures.stills.text import printable, wrapped
@@ -156,17 +156,37 @@ def test_all_that_is_known_of_a_section_is_drawn() -> None:
     root, text = read(still(picture(whole, findings=found, head=head, not_evaluated=["no feed"]), "svg"))
     for words in (
         "Lines 1 to 6, offset 1, channel 2", "cutter R 0.1575 inch (command line)", "stock 2.3622 inch across",
-        "limit of C 500 deg/min", "X [inch, diameter]", "part asked for", "bar", "rate of C, % of its limit",
+        "limit of C 500 deg/min", "X [inch, diameter]", "part asked for", "bar", "C rate, % of its limit",
         "error, line 3: too deep", "left standing, a rib", "Outside the polar sections", "error, line 9: elsewhere",
         "not evaluated: no feed", "not drawn: the rest",
     ):  # fmt: skip
         assert words in text
     # The first of a rule and another one are shown from near by.
     assert re.findall(r"(\d), enlarged", text) == ["1", "3", "4"]
-    assert {ABOVE, *SHADES[1:5]} <= colors(root)
+    assert {ABOVE, SHADES[1], SHADES[2], SHADES[4], SHADES[6]} <= colors(root)
     assert SHADES[0] not in re.findall(
         "stroke: (#[0-9a-f]{6})[^}]*?stroke-width: 1.6", ElementTree.tostring(root, "unicode")
     )
+
+
+def test_colors_are_those_of_the_page() -> None:
+    """At a bound a value is not above it; without a limit the classes are round, or each value has its own."""
+    whole = hexagon()
+    share = [0.01, 0.0100011, 0.05, 1.0, 1.01, None]
+    roles: Any = ["cut", "cut", "cut", "cut", "positioning", "cut"]
+    shown = coloring(
+        msgspec.structs.replace(whole, moves=msgspec.structs.replace(whole.moves, share=share, role=roles))
+    )
+    assert list(shown.moves) == [SHADES[0], SHADES[1], SHADES[2], SHADES[7], PLAIN, PLAIN]
+    assert (shown.title, shown.has_limit) == ("C rate, % of its limit", True)
+    free = msgspec.structs.replace(whole.moves, share=[None] * 6, c_feed=[10.0, 10.0, 20.0, 30.0, None, 0.0])
+    shown = coloring(msgspec.structs.replace(whole, moves=free))
+    assert (list(shown.bounds), shown.title) == ([0.0, 10.0, 20.0, 30.0], "C rate, deg/min")
+    assert list(shown.moves) == [SHADES[2], SHADES[2], SHADES[5], SHADES[7], PLAIN, SHADES[0]]
+    assert round_bounds([float(number) for number in range(3, 500)]) == [5, 10, 20, 50, 100, 200, 499]
+    assert coloring(msgspec.structs.replace(whole, moves=msgspec.structs.replace(free, c_feed=[7.0] * 6))).shades == [
+        SHADES[5]
+    ]
 
 
 def test_without_r_of_the_cutter_the_picture_says_what_to_give() -> None:
