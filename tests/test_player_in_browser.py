@@ -11,13 +11,10 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-import msgspec
 import pytest
 from click.testing import CliRunner
-from pictures_by_hand import FLATS, finding, hexagon, picture
 
 from polarcheck.commands import main
-from polarcheck.pictures.page import page
 
 playwright = pytest.importorskip("playwright.sync_api")
 plotly = pytest.importorskip("plotly.offline")
@@ -33,7 +30,17 @@ pytestmark = [
 REVERSED = 'inherits = "fanuc"\n[polar]\nzero_angle = "at-c0-reversed"\n'
 HEAD = "%\nO1\n{units} G98 G40 G18\nT0101\nM5\nG28 H0\nG97 S3000 M13\nG0 {entry} Z-5.\nG12.1\n"
 TAIL = "G13.1\nG0 X200. Z50.\nM30\n%\n"
-CONTOUR = "G1 X60. C0 F1500\nG42 X30. F200\nC8.660\nX0 C17.321\nX-30. C8.660\nC-8.660\nX0 C-17.321\nX30. C-8.660\nC0\nG40 X60. F1500\n"
+CONTOUR = """G1 X60. C0 F1500
+G42 X30. F200
+C8.660
+X0 C17.321
+X-30. C8.660
+C-8.660
+X0 C-17.321
+X30. C-8.660
+C0
+G40 X60. F1500
+"""
 ARCS = "G1 X60. C0 F900\nX40. F240\nG3 X-40. C0 R20.\nG2 X-20. C0 I5. J0\nG1 X-44. C12.\n"
 #: Each: the entry, the blocks, the units, and options.
 SECTIONS = {
@@ -156,10 +163,10 @@ def test_a_section_played_through_agrees_with_the_trace(
         opened.clock.run_for(round(traced.time / 10.3 / speed * 1000))
         time = float(opened.locator(".player .clock").input_value())
         place, c_axis, x_axis = traced.at(time)
-        x, c = re.findall(r"[XC](-?[\d.]+)", written(opened, "program"))
+        x, c = re.findall(r"[XC](-?[\d.]+)", written(opened, "part"))
         assert abs(complex(float(x) / 2, float(c)) * inch - place) < 0.01 + digits, time
-        assert float(written(opened, "machine C")) == pytest.approx(c_axis, abs=0.1), time
-        assert float(written(opened, "machine X")) / 2 * inch == pytest.approx(x_axis, abs=0.01 + digits), time
+        assert float(written(opened, "angle")) == pytest.approx(c_axis, abs=0.1), time
+        assert float(written(opened, "axis")) / 2 * inch == pytest.approx(x_axis, abs=0.01 + digits), time
         seen.append(time)
     assert seen == sorted(set(seen))
     assert seen[-1] > 0.85 * traced.time
