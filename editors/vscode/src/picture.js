@@ -83,6 +83,12 @@ class Picture {
     this.refresh(PAUSE);
   }
 
+  /** The server has ended; another one may have another library. */
+  ended() {
+    this.library = "";
+    this.refresh(0);
+  }
+
   async ask() {
     const asking = (this.asking = new vscode.CancellationTokenSource());
     const { webview } = this.panel;
