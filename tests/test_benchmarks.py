@@ -143,6 +143,7 @@ def test_each_package_and_table_has_a_stage() -> None:
     assert {*stages.OF_PACKAGE.values(), *stages.OF_TABLE.values()} <= {*stages.STAGES}
 
 
+@pytest.mark.slow
 def test_a_check_is_profiled(tmp_path: Path) -> None:
     path = tmp_path / "sound.nc"
     path.write_text(GOOD)

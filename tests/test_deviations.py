@@ -160,7 +160,8 @@ def test_so_do_their_twins_with_the_drawing_of_the_twin(seed: int, twin: Twin) -
 @pytest.mark.parametrize(
     ("family", "by"),
     # A cam has thousands of corners: one of the two ways is enough.
-    [("cams", 0.3), *((family, by) for family in ("polygons", "crosses", "eccentrics") for by in (0.3, -0.2))],
+    [*((family, by) for family in ("polygons", "crosses") for by in (0.3, -0.2)), ("cams", 0.3)]
+    + [("eccentrics", by) for by in (0.3, -0.2)],
 )
 def test_a_larger_or_smaller_drawing_differs_by_what_shapely_says(family: str, by: float) -> None:
     made = (program_of(seed, family=family) for seed in range(100))

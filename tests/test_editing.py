@@ -32,7 +32,7 @@ def test_all_that_an_editor_asks_is_answered() -> None:
         (lens,) = editor.asks("codeLens", program)
         assert lens["range"]["start"] == place(1, 0)
         (symbol,) = editor.asks("documentSymbol", program)
-        assert [inner["name"] for inner in symbol["children"]] == ["G12.1"]
+        assert [inner["name"] for inner in symbol["children"]] == ["G12.1", "N10"]
         (target,) = editor.asks("definition", program, 6, 5)
         assert (target["uri"], target["range"]["start"]) == (program, place(7, 0))
         context = {"diagnostics": [], "only": ["quickfix"]}
@@ -118,6 +118,7 @@ def test_settings_are_read_anew_when_they_change() -> None:
         assert editor.asks("hover", Path("polarcheck.toml").absolute().as_uri(), 1, 1) is None
 
 
+@pytest.mark.slow
 def test_called_programs_are_watched_where_they_lie() -> None:
     Path("sub").mkdir()
     Path("polarcheck.toml").write_text('[run]\nsubprograms = ["sub"]\n', "utf-8")

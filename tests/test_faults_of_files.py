@@ -124,6 +124,7 @@ def test_what_is_no_size_is_told(size: str) -> None:
     assert "expected a size above 0, such as 512MB" in result.stderr
 
 
+@pytest.mark.slow
 @of_posix
 @pytest.mark.parametrize(
     ("redirected", "names"),
@@ -167,6 +168,7 @@ def test_devices_sockets_and_pipes_without_a_writer_are_refused(monkeypatch: pyt
         assert call("trace", path).exit_code == 2
 
 
+@pytest.mark.slow
 @of_posix
 @pytest.mark.parametrize(
     ("redirected", "names"),
@@ -349,6 +351,7 @@ def nested(folder: str, depth: int) -> Iterator[None]:
             Path(folder).rmdir()
 
 
+@pytest.mark.slow
 @of_linux
 def test_folders_may_be_nested_deeper_than_functions() -> None:
     with nested("d", 1500):
@@ -413,6 +416,7 @@ SHOWN = [r"a\xff.nc", r"a\\xff.nc", r"a\\\\xff.nc", r"ü\xff.nc", "nl\n.nc", "ta
 SHOWN += ["\u202e.nc", "   .nc", "n" * 252 + ".nc", r"a\xed\xa0\x80.nc", r"b\.nc", "*.nc", "$(x);'\".nc", " "]
 
 
+@pytest.mark.slow
 @of_linux
 @pytest.mark.parametrize("locale", ["C.UTF-8", "C"])
 def test_names_of_any_bytes_are_checked_and_shown_apart(locale: str) -> None:
@@ -522,6 +526,7 @@ def test_a_program_that_two_lathes_share_is_checked_for_each() -> None:
 # ---- surroundings ----
 
 
+@pytest.mark.slow
 @of_posix
 @pytest.mark.parametrize(
     ("environment", "encoding"),

@@ -62,6 +62,7 @@ def bounded(name: str, most: int) -> Callable[[], None]:
 # ---- the user's files ----
 
 
+@pytest.mark.slow
 def test_a_report_never_takes_the_place_of_what_is_checked() -> None:
     Path("link.json").symlink_to("a.nc")
     os.link("a.nc", "twin.json")
@@ -76,6 +77,7 @@ def test_a_report_never_takes_the_place_of_what_is_checked() -> None:
         assert Path("a.nc").read_text() == RAPID
 
 
+@pytest.mark.slow
 def test_nor_of_what_settles_how_it_is_checked() -> None:
     Path("own").mkdir()
     texts = {
@@ -96,6 +98,7 @@ def test_nor_of_what_settles_how_it_is_checked() -> None:
     assert {name: Path(name).read_text() for name in texts} == texts
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["new.nc", "O1234", "O1234.bak", "pyproject.toml", "x.MPF"])
 def test_nor_has_it_the_name_of_a_program(name: str) -> None:
     status, _, told = run("check", "b.nc", "-o", f"json:{name}")
@@ -117,6 +120,7 @@ def test_two_reports_have_two_files() -> None:
 # ---- what cannot be written ----
 
 
+@pytest.mark.slow
 @posix
 @pytest.mark.parametrize(
     "arguments",
@@ -136,6 +140,7 @@ def test_standard_output_may_be_closed() -> None:
     assert run("check", "b.nc", *ONLY, preexec_fn=partial(os.close, 2))[0] == 0
 
 
+@pytest.mark.slow
 @posix
 def test_a_full_disk_keeps_the_report_of_last_time_and_shows_this_one() -> None:
     Path("r.json").write_text("the last one")
@@ -150,6 +155,7 @@ def test_a_full_disk_keeps_the_report_of_last_time_and_shows_this_one() -> None:
     assert {path.name for path in Path().iterdir()} == {"a.nc", "b.nc", "many.nc", "r.json", "s.txt"}
 
 
+@pytest.mark.slow
 @posix
 def test_where_nothing_can_be_written_is_said_and_the_report_is_shown() -> None:
     os.mkfifo("pipe")
@@ -195,6 +201,7 @@ def test_a_pipe_that_the_shell_has_opened_gets_the_report() -> None:
     assert Path("link").is_symlink()
 
 
+@pytest.mark.slow
 @posix
 @pytest.mark.parametrize("by_pipe", [True, False])
 @pytest.mark.parametrize(("output", "number"), [("/dev/stdout", 1), ("/dev/stderr", 2)])

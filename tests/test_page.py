@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 from html.parser import HTMLParser
+from importlib import resources
 from typing import Any
 
 import pytest
@@ -138,3 +139,14 @@ def test_a_page_allows_its_own_scripts_and_asks_nobody_for_anything() -> None:
 def test_the_same_pictures_make_the_same_page() -> None:
     made = [page([picture(hexagon(marks=[notch()]), findings=[finding("found")])], library=LIBRARY) for _ in range(2)]
     assert made[0] == made[1]
+
+
+def test_all_scripts_and_styles_are_part_of_the_page_and_no_name_is_defined_twice() -> None:
+    """The scripts share one scope: a second function of a name would take the place of the first."""
+    folder = resources.files("polarcheck.pictures").joinpath("browser")
+    texts = {file.name: file.read_text("utf-8") for file in folder.iterdir()}
+    made = page([picture(hexagon())], library=LIBRARY)
+    parts = [name for name in texts if name.endswith((".js", ".css"))]
+    assert [name for name in parts if texts[name].strip() not in made] == []
+    names = re.findall(r"^(?:async )?(?:function|const|let|class) +(\w+)", "\n".join(texts.values()), re.MULTILINE)
+    assert [name for name in set(names) if names.count(name) > 1] == []

@@ -116,7 +116,8 @@ def test_choosing_shows_the_same_move_everywhere(opened: Opened) -> None:
     assert opened.fact("line", "#hover").startswith("1,")
     opened.click_as_told(opened.in_time(0.58), "4,")
     assert opened.fact("line").startswith("4,")
-    assert "too deep" in opened.fact("error")
+    assert opened.fact("finding") == "2"
+    assert "too deep" in page.locator(".list li.is-chosen").inner_text()
     assert page.locator("tr.is-chosen[data-finding]").get_attribute("data-finding") == "1"
     page.click("tr[data-finding='0']")
     assert opened.fact("line").startswith("2,")

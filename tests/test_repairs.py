@@ -205,6 +205,31 @@ CASES = [
         "T0101\nG98G0X60.C0\nG12.1\nG1G41X40.F200\nC-10.\nG40X60.F1000 (OUT)\nG13.1\n",
     ),
     (
+        "stray-character",
+        "siemens-iso",
+        "G94 G0 X60. C0\nG12.1\nG1 X40. F200,5\nG13.1\n",
+        "G94 G0 X60. C0\nG12.1\nG1 X40. F200.5\nG13.1\n",
+    ),
+    (
+        "stray-character",
+        "fanuc",
+        "G98 G0 X60. C0 &\nG12.1\nG1 X40,5 C-1,25 F200 ; &\nC0\nG13.1\n",
+        "G98 G0 X60. C0 &\nG12.1\nG1 X40.5 C-1.25 F200 ; &\nC0\nG13.1\n",
+    ),
+    (
+        "stray-character",
+        "gsk-988",
+        "(X1,5)\nG98 G0 X60,0 C0\nG12.1\nG1 X40. F200\nG13.1\n",
+        "(X1,5)\nG98 G0 X60.0 C0\nG12.1\nG1 X40. F200\nG13.1\n",
+    ),
+    (
+        # The next move of the section says the F; its limit of C lowers it, and it is written again.
+        "rapid-in-polar",
+        "fanuc",
+        "G98 F999 G0 X60. C0\nG12.1\nG0 X40.\nG1 X39. F200\nG0 C5.\nG1 C-5.\nG13.1\n",
+        "G98 F999 G0 X60. C0\nG12.1\nG1 X40. F200\nG1 X39. F200\nG1 C5.\nG1 C-5.\nG13.1\n",
+    ),
+    (
         "rapid-in-polar",
         "fanuc",
         "G98 G0 X60. C0\nG12.1\nG1 X40. F200\nG0 C5. F1000\nG1 C-5. F200\nG13.1\n",
@@ -340,7 +365,10 @@ def test_each_repair_is_tried_on_three_programs(rule: str) -> None:
         ("c-feed-above-limit", "fanuc", "#1=500\nG98 G0 X60. C0\nG12.1\nG1 X4. C2. F#1\nX-4.\nG13.1\n"),
         ("z-with-plane-axis", "fanuc", "#1=5.\nG98 G0 X60. Z2. C0\nG12.1\nG1 X40. Z-#1 F200\nC5.\nG13.1\n"),
         # No F for positioning, or none to go on with.
-        ("rapid-in-polar", "fanuc", "G98 G0 X60. C0\nG12.1\nG1 X40. F200\nG0 C5.\nG1 C-5.\nG13.1\n"),
+        ("rapid-in-polar", "fanuc", "G98 F200 G0 X60. C0\nG12.1\nG0 X40.\nG0 C5.\nG13.1\n"),
+        ("rapid-in-polar", "fanuc", "G99 G0 X60. C0\nG12.1\nG1 X40. F.2\nG0 C5.\nG1 C-5.\nG13.1\n"),
+        ("stray-character", "fanuc", "G98 G0 X60. C0\nG12.1\nG1 X40. F200\nC5.,5\nG13.1\n"),
+        ("stray-character", "fanuc", "G98 G0 X60. C0\nG12.1\nG1 X40. F200\nC5 &\nG13.1\n"),
         ("rapid-in-polar", "turning-center", "G98 G18 G0 X60. C0\nG12.1\nG18\nG0 X50.\nG1 C5.\nG13.1\n"),
         # G0 is still in force outside the mode.
         ("rapid-in-polar", "turning-center", "G98 G18 G0 X60. C0\nG12.1\nG18\nX50.\nG13.1\nZ50.\n"),

@@ -111,6 +111,7 @@ BEYOND = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", BEYOND)
 def test_a_loop_beyond_all_bounds_is_left_out_alone(case: str) -> None:
     """The other one is judged as if it stood there by itself."""
@@ -220,6 +221,7 @@ def test_a_pass_that_is_written_once_more_deeper_sweeps_nothing_else(monkeypatch
 # ---- the same, with less ----
 
 
+@pytest.mark.slow
 @pytest.mark.one_in(3)
 @pytest.mark.parametrize("family", ["pockets", "bosses", "passes"])
 def test_rings_by_what_they_lie_in_or_one_by_one(family: str, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -414,7 +416,7 @@ class Clock:
 @pytest.mark.parametrize("side", ["", "G42 "])
 @pytest.mark.parametrize(
     "words",
-    [["check", "--part"], ["check", "--format", "html"], ["part"], ["plot", "-o", "a.html"], ["feeds"], ["trace"]],
+    [["feeds"], ["check", "--part"], ["check", "--format", "html"], ["part"], ["plot", "-o", "a.html"], ["trace"]],
     ids=" ".join,
 )
 def test_every_command_ends_in_a_report_when_the_time_runs_out(

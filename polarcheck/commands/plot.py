@@ -8,13 +8,14 @@ from typing import Any
 
 import click
 
-from polarcheck.commands import options, picturing, still_files
+from polarcheck.commands import options, picturing, serving, still_files
 from polarcheck.commands.options import option
 
 
 @click.command(short_help="Draw what a program makes and how the tool runs, as a page.")
 @click.argument("paths", nargs=-1, required=True, metavar="PATH...")
 @options.executing("programs")
+@options.comparing
 @option(
     "-o",
     "--output",
@@ -22,6 +23,7 @@ from polarcheck.commands.options import option
     help="The page; or a folder, for a page of each program and index.html; a picture with the ending .png or .svg.",
 )
 @still_files.options
+@serving.options
 @options.extensions
 @options.exclude
 @options.max_size
@@ -36,6 +38,9 @@ def plot(
     png: str | None,
     svg: str | None,
     chosen: tuple[int, ...],
+    serve: bool,
+    port: int | None,
+    opens: bool,
     extensions: tuple[str, ...],
     max_size: int,
     workers: int,
@@ -49,7 +54,8 @@ def plot(
     path of the tool center, the finished part and the cutter, with the rates of C and X over time; and the findings of
     `check`. It is written to FILE, or to standard output. In FOLDER, one that is there or a new one whose name has no
     ending, each of several programs gets its page, beside an index.html that leads to them. --png and --svg write the
-    face of each section with its findings as a picture for a document.
+    face of each section with its findings as a picture for a document. --serve shows the page in a browser, and shows
+    it anew as soon as a program is saved, until Ctrl-C.
 
     Ends with 0 where all pages were made, whatever was found, 2 if something could not be read or written, 3 for a
     bug.
@@ -65,6 +71,16 @@ def plot(
     from polarcheck.settings.of_programs import OfPrograms, Options
 
     keep_within_memory()
+    serving.refuse(
+        serve,
+        paths,
+        {"-o": output, "--png": png, "--svg": svg, "--section": chosen},
+        {name: options.is_written(ctx, name[2:]) for name in ("--port", "--open")},
+    )
+    if serve:
+        applies = Options(use_config=not no_config, extras=picturing.extras(), **arguments)
+        debug = options.DEBUG in ctx.meta
+        ctx.exit(serving.serve(serving.Wish(paths, applies, extensions, max_size, workers, port or 0, opens, debug)))
     targets, output = still_files.targets(png, svg, output)
     has_page = output is not None or not targets
     applies = Options(use_config=not no_config, extras=picturing.extras(for_page=has_page), **arguments)

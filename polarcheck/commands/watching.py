@@ -136,29 +136,34 @@ def _surroundings(paths: Iterable[str]) -> Iterator[str]:
                 inner_folders[:] = [name for name in inner_folders if not name.startswith(".")]
 
 
-def refuse(paths: Sequence[str], others: Mapping[str, object]) -> None:
-    """Raise UsageError for standard input, and for options that exclude --watch."""
+def refuse(paths: Sequence[str], others: Mapping[str, object], option: str = "--watch") -> None:
+    """Raise UsageError for standard input, and for other options that exclude --watch, or another option like it."""
     if "-" in paths:
-        raise UsageError("--watch: standard input comes once; name a file or folder")
+        raise UsageError(f"{option}: standard input comes once; name a file or folder")
     for name, value in others.items():
         if value:
-            raise UsageError(f"--watch: not with {name}, which is for one look")
+            raise UsageError(f"{option}: not with {name}, which is for one look")
 
 
-def repeatedly(run: Callable[[Seen], int], paths: Sequence[str], outputs: Iterable[tuple[str, Path]] = ()) -> int:
+def repeatedly(
+    run: Callable[[Seen], int], paths: Sequence[str], outputs: Iterable[tuple[str, Path]] = (), *, clears: bool = True
+) -> int:
     """
     Run a check again after each change; Ctrl-C is the normal end, with exit code 0.
 
-    outputs: format and file of the reports that it writes. Raises what the first run raises.
+    outputs: format and file of the reports that it writes.
+    clears: clear a terminal before each run.
+
+    Raises what the first run raises.
     """
     seen = Seen(paths, [path for _, path in outputs])
     try:
-        status = _run(run, seen, ())
+        status = _run(run, seen, (), clears=clears)
         while status < INTERRUPTED:
             say("watching for changes; Ctrl-C ends")
             changed = _next_change(seen)
             try:
-                status = _run(run, seen, changed)
+                status = _run(run, seen, changed, clears=clears)
             except PolarcheckError as error:  # such as a half-written job file
                 say(str(error))
                 seen.accept()
@@ -170,8 +175,8 @@ def repeatedly(run: Callable[[Seen], int], paths: Sequence[str], outputs: Iterab
     return CLEAN if status == INTERRUPTED else status
 
 
-def _run(run: Callable[[Seen], int], seen: Seen, changed: Sequence[str]) -> int:
-    if is_terminal(sys.stdout):
+def _run(run: Callable[[Seen], int], seen: Seen, changed: Sequence[str], *, clears: bool) -> int:
+    if clears and is_terminal(sys.stdout):
         click.clear()
     if changed:
         # A job file beside the programs is seen under two paths: its own, and that of the folder.

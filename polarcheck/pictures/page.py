@@ -24,12 +24,14 @@ from polarcheck.reading.excerpt import visible
 _SCRIPTS = (
     "words",
     "state",
+    "theme",
     "colors",
     "plane",
     "face",
     "rates",
     "moves",
     "legend",
+    "pins",
     "section",
     "workbench",
     "timeline",
@@ -52,6 +54,8 @@ _SCRIPTS = (
     "keys",
     "choosing",
     "printing",
+    "memory",
+    "serving",
     "embedded",
     "start",
 )
@@ -61,6 +65,8 @@ _POLICY = (
     "default-src 'none'; script-src {}; style-src 'unsafe-inline'; img-src data: blob:; base-uri 'none'; "
     "form-action 'none'"
 )
+#: What a page that is served may do beside: hear from its server of the next version.
+CONNECTED = "; connect-src 'self'"
 #: Characters that could end a script in HTML, or that a script must not contain.
 _IN_SCRIPT = str.maketrans({mark: f"\\u{ord(mark):04x}" for mark in "<>&\u2028\u2029"})
 _RANK = {"error": 3, "warning": 2, "note": 1}
@@ -73,6 +79,7 @@ def page(
     beside: str = "",
     notes: Iterable[str] = (),
     sources: str = "'self' file:",
+    version: str = "",
 ) -> str:
     """
     Return the page of one program, or of several one below the other.
@@ -81,16 +88,18 @@ def page(
     beside: without `library`, the name of the file with it in the folder of the page.
     notes: what the page says behind the programs, in a line each.
     sources: without `library`, the sources from which the policy of the page allows to load it.
+    version: of a page that is served; it is loaded anew as soon as the server has another version.
     """
     scripts = "\n".join(_part(f"{name}.js") for name in _SCRIPTS)
     script = f'\n(() => {{\n"use strict";\n{scripts}}})();\n'
     included = library.replace("</script", "<\\/script")
-    allowed = [_hash(script), _hash(included) if included else sources]
+    allowed = [script_hash(script), script_hash(included) if included else sources]
     loaded = f"<script>{included}</script>" if included else f'<script src="{_text(beside)}"></script>'
     return Template(_part("page.html")).substitute(
-        policy=_POLICY.format(" ".join(allowed)),
+        policy=_POLICY.format(" ".join(allowed)) + (CONNECTED if version else ""),
+        served=served(version) if version else "",
         title=_text(", ".join(picture.path for picture in pictures)),
-        style="\n".join(_part(f"{name}.css") for name in _STYLES),
+        style=_style(),
         body="\n".join([*(_program(number, picture) for number, picture in enumerate(pictures)), *map(_note, notes)]),
         data=_data(pictures),
         library=loaded,
@@ -98,11 +107,31 @@ def page(
     )
 
 
+def served(version: str) -> str:
+    """Return the element that holds the version of a page that is served."""
+    return f'<meta name="polarcheck-version" content="{_text(version)}">\n'
+
+
+def script_of_served() -> str:
+    """Return the script for a page that has no other one and is served."""
+    return f'\n(() => {{\n"use strict";\n{_part("serving.js")}\nserved(() => null, () => {{}});\n}})();\n'
+
+
 def _part(name: str) -> str:
     return resources.files("polarcheck.pictures").joinpath("browser", name).read_text("utf-8")
 
 
-def _hash(script: str) -> str:
+def _style() -> str:
+    """Return the style; its dark colours count where the system is dark, and where the switch of the page says so."""
+    dark = _part("dark.css")
+    return (
+        "\n".join(_part(f"{name}.css") for name in _STYLES)
+        + f'\n@media screen and (prefers-color-scheme: dark) {{ :root:not([data-theme="light"]) {{ {dark} }} }}\n'
+        + f'@media screen {{ :root[data-theme="dark"] {{ {dark} }} }}'
+    )
+
+
+def script_hash(script: str) -> str:
     """Return the hash by which the policy of a page allows one script."""
     return f"'sha256-{base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()}'"
 
@@ -265,11 +294,16 @@ def _notes(number: int, section: SectionPicture) -> str:
     return notes
 
 
+def _letter(place: int) -> str:
+    """Return the letter of a mark, as on the drawing: A to Z, then A1."""
+    return chr(ord("A") + place % 26) + (str(place // 26) if place >= 26 else "")
+
+
 def _mark(number: int, place: int, mark: Mark, section: SectionPicture) -> str:
     x, c = mark.place[0] * (2 if section.diameter else 1) / section.scale, mark.place[1] / section.scale
     digits = 4 if section.units == "inch" else 3
     return (
-        f'<tr data-picture="{number}" data-mark="{place}"><td class="line">{place + 1}</td>'
+        f'<tr data-picture="{number}" data-mark="{place}"><td>{_letter(place)}</td>'
         f'<td class="line">{", ".join(map(str, mark.lines))}</td><td>X{x:.{digits}f} C{c:.{digits}f}</td>'
         f"<td>{_text(mark.text)}</td></tr>"
     )

@@ -3,56 +3,71 @@
 from __future__ import annotations
 
 import cmath
+import contextlib
+import enum
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from functools import cached_property
+from typing import Any
 
 import msgspec
 import numpy as np
 
-from polarcheck.arrays import Floats, Points, Rows, States
+from polarcheck.arrays import Points, Rows, States
 from polarcheck.checking import places
 from polarcheck.checking.engine import Listed
-from polarcheck.checking.rule import load_all
+from polarcheck.checking.message import called, measure
+from polarcheck.checking.rule import Rule, load_all
 from polarcheck.checking.tables import Tables
 from polarcheck.columns.trace import Trace
+from polarcheck.errors import TooHardError
 from polarcheck.finding import Finding
 from polarcheck.geometry.plane import arc_sweep
 from polarcheck.geometry.tolerances import ZERO
 from polarcheck.machines.modal import Motion
-from polarcheck.pictures.moves import LENGTH, SectionMoves
+from polarcheck.pictures.moves import SectionMoves
 
 #: The most rows of a finding that get a place, and other lines of it that are listed.
 MOST = 500
+#: Places of a finding that are looked up in the tables of its rule; others are those of their blocks.
+_LOOKED_UP = 50
 #: Values of findings that say how large the fault is, and how many times as wide the window is.
 _SIZES, _OF_SIZE = ("depth", "height", "gap", "difference", "cut_away", "too_much", "largest"), 8.0
 #: The same of distances from the center, of R, and of the way of a block.
-_OF_DISTANCE, _OF_RADIUS, _OF_WAY = 8.0, 6.0, 6.0
+_OF_DISTANCE, _OF_RADIUS, _OF_WAY = 8.0, 6.0, 3.0
 #: Values of findings about ramps, whose scale is R.
 _OF_RAMPS = ("length_needed",)
-#: The narrowest and the widest window [mm].
-_NARROWEST, _WIDEST = 0.05, 1000.0
+#: The narrowest window [mm].
+_NARROWEST = 0.05
 #: The width of a window at the center, if R is not known [mm].
 _AT_CENTER = 5.0
+
+
+#: Subjects of rules (checking/causes.py) that judge the contour as programmed.
+_OF_CONTOUR = ("arc", "side", "compensation", "metal")
+
+
+class Where(enum.Enum):
+    """The part of a block that a finding is about: of the tool path its middle, or its point nearest to the center."""
+
+    MOVE, NEAREST, CONTOUR, END_OF_CONTOUR = range(4)
 
 
 class Spot(msgspec.Struct, frozen=True):
     """
     The place of a finding in its run.
 
-    row: the row at fault, -1 if nothing is executed.
-    rows: all rows that it stands for.
+    rows: the rows that it stands for, the row at fault first; empty if nothing is executed.
+    known: the points of the first of these rows that are known from its values or its rule; NaN for others [mm].
     also: the other lines that it stands for.
-    place: the point that its values give; NaN if they give none [mm].
-    at_nearest: it is about the distance from the center.
+    where: the part of a block that it is about.
     span: as in FindingPicture.
     """
 
-    row: int
-    rows: Rows
+    rows: list[int]
+    known: list[complex]
     also: list[int]
-    place: complex
-    at_nearest: bool
+    where: Where
     span: float | None
 
 
@@ -96,13 +111,35 @@ class Spots:
         """Return the place of a finding of the file."""
         rows, also = self._rows(finding)
         values, rule = finding.values, load_all().get(finding.rule)
-        x, c = values.get("plane_x"), values.get("plane_c")
-        place = complex(x, c) if isinstance(x, float | int) and isinstance(c, float | int) else complex(math.nan)
-        at_nearest = "nearest" in values or (rule is not None and "center" in rule.parameters)
-        row = int(rows[0]) if len(rows) else -1
-        return Spot(row, rows[:MOST], also, place, at_nearest, self._span(finding, row, at_nearest))
+        where = Where.MOVE
+        if "nearest" in values or (rule is not None and "center" in rule.parameters):
+            where = Where.NEAREST
+        elif "end_radius" in values:
+            where = Where.END_OF_CONTOUR
+        elif rule is not None and rule.subject in _OF_CONTOUR:
+            where = Where.CONTOUR
+        span = self._span(finding, rows[0], where) if rows else None
+        return Spot(rows, self._known(finding, rule, rows), also, where, span)
 
-    def _rows(self, finding: Finding) -> tuple[Rows, list[int]]:
+    def _known(self, finding: Finding, rule: Rule | None, rows: Sequence[int]) -> list[complex]:
+        """Return the points that the values of a finding give, and the rule gives for its other rows [mm]."""
+        x, c = finding.values.get("plane_x"), finding.values.get("plane_c")
+        if not isinstance(x, float | int) or not isinstance(c, float | int):
+            return []
+        known = [complex(x, c)]
+        if rule is not None and rule.over == "rows":
+            source = rule.values["plane_x"].removesuffix(".real")
+            function = measure(source, rule.group)
+            for row in rows[1:_LOOKED_UP]:
+                with contextlib.suppress(TooHardError):
+                    found = self.tables.column(source)[row] if function is None else self._called(function, row)
+                    known.append(complex(found))
+        return known
+
+    def _called(self, function: Callable[..., Any], row: int) -> complex:
+        return complex(called(function, self.tables, {"row": row}))
+
+    def _rows(self, finding: Finding) -> tuple[list[int], list[int]]:
         """Return the rows of a finding, those of its line first, and its other lines."""
         trace = self.trace
         order, lines = self._lines
@@ -115,36 +152,32 @@ class Spots:
             of_line = order[:1]
         elements, rule = self._elements.get((finding.rule, finding.line, finding.column)), load_all().get(finding.rule)
         if elements is None or rule is None:
-            return of_line, []
+            return of_line[:MOST].tolist(), []
         row = places.rows(rule.over, self.tables)[elements]
         line = trace.text.blocks.line[places.blocks(rule.over, self.tables)[elements]]
         line[row >= 0] = trace.blocks.line_in_file[row[row >= 0]]
         is_own = line == finding.line
         row = np.concatenate([row[is_own], row[~is_own]])
         also = np.unique(line[~is_own])[:MOST].tolist() if finding.count > 1 else []
-        return (row[row >= 0] if (row >= 0).any() else of_line), also
+        return (row[row >= 0] if (row >= 0).any() else of_line)[:MOST].tolist(), also
 
-    def _span(self, finding: Finding, row: int, at_nearest: bool) -> float | None:
-        if row < 0:
-            return None
+    def _span(self, finding: Finding, row: int, where: Where) -> float | None:
         values = finding.values
         radius = self._number(values.get("radius")) or abs(float(self.trace.compensation.radius_of_move[row]))
         size = max((self._number(values.get(name)) for name in _SIZES), default=0.0)
+        size = size or abs(self._number(values.get("start_radius")) - self._number(values.get("end_radius")))
         if size > 0:
             span = _OF_SIZE * size
-        elif at_nearest:
+        elif where == Where.NEAREST:
             near = self._number(values.get("nearest"))
             span = _OF_DISTANCE * near if near > ZERO else _OF_RADIUS * radius if radius > 0 else _AT_CENTER
         elif any(name in values for name in _OF_RAMPS):
             span = _OF_RADIUS * radius
         else:
-            way = float(self.trace.path.length[row])
-            span = _OF_WAY * way
+            span = _OF_WAY * float(self.trace.path.length[row])
             if radius > 0 and "radius" in values:
                 span = min(span, _OF_RADIUS * radius)
-        if not span > 0:
-            return None
-        return round(min(max(span, _NARROWEST), _WIDEST), LENGTH)
+        return max(span, _NARROWEST) if span > 0 else None
 
     @staticmethod
     def _number(value: object) -> float:
@@ -165,49 +198,52 @@ class Face:
         low, high = np.searchsorted(self._rows, [row, row + 1])
         return self._order[low:high]
 
-    def place(self, row: int, at_nearest: bool) -> complex:
+    def place(self, row: int, where: Where) -> complex:
         """Return the place of a row on its face [mm]; NaN if it is not known."""
-        moves = self._table.moves
-        own = self.moves_of(row)
-        if len(own) and self._table.is_known[move := self.move(row, at_nearest)]:
-            if at_nearest:
-                return _nearest_point(*(column[move] for column in moves.shape))
-            return _middle(*moves.shape, move)
         path = self.trace.path
-        if path.travels[row]:
-            kind = self.trace.axes.motion
-            return _middle(path.start, path.end, np.where(path.is_arc, path.center, np.nan), kind, row)
+        if path.travels[row] and not np.isnan(path.start[row] + path.end[row]):
+            if where == Where.END_OF_CONTOUR:
+                return complex(path.end[row])
+            moves, own = self._table.moves, self.moves_of(row)
+            if where != Where.CONTOUR and len(own) and self._table.is_known[move := self.move(row, where)]:
+                if where == Where.NEAREST:
+                    return _nearest_point(*(column[move] for column in moves.shape))
+                return _middle(*moves.shape, move)
+            center = np.where(path.is_arc, path.center, complex(math.nan, math.nan))
+            return _middle(path.start, path.end, center, self.trace.axes.motion, row)
         return self._standing(row)
 
-    def move(self, row: int, at_nearest: bool) -> int:
+    def move(self, row: int, where: Where) -> int:
         """Return the move of a row that is drawn for it, else the last move before it; -1 if there is none."""
-        own, nearest = self.moves_of(row), self._table.moves.nearest
+        own, moves = self.moves_of(row), self._table.moves
         if not len(own):
             before = int(np.searchsorted(self._rows, row))
             return int(self._order[before - 1]) if before else -1
-        is_nearest = at_nearest and not np.isnan(nearest[own]).all()
-        return int(own[np.nanargmin(nearest[own]) if is_nearest else np.argmax(np.nan_to_num(self._length[own]))])
-
-    @cached_property
-    def _length(self) -> Floats:
-        return self._table.moves.length
+        is_nearest = where == Where.NEAREST and not np.isnan(moves.nearest[own]).all()
+        return int(own[np.nanargmin(moves.nearest[own]) if is_nearest else np.argmax(np.nan_to_num(moves.length[own]))])
 
     def _standing(self, row: int) -> complex:
         """Return where the tool stands behind a row without a move on the plane [mm]."""
         trace, moves = self.trace, self._table.moves
-        section = int(trace.mode.section[row])
-        before = int(np.searchsorted(self._rows, row))
-        if section >= 0:
-            last = int(self._order[before - 1]) if before else -1
-            known = last >= 0 and moves.section[last] == section and self._table.is_known[last]
-            return complex(moves.end[last] if known else trace.path.end[row])
-        near = self.nearest_section(row)
-        if near < 0:
+        section = self.nearest_section(row)
+        known = np.flatnonzero((moves.section == section) & ~np.isnan(moves.start + moves.end))
+        is_inside = trace.mode.section[row] >= 0
+        if is_inside:
+            before = int(np.searchsorted(moves.row[known], row, side="right"))
+            if before:
+                return complex(moves.end[known[before - 1]])
+            place = complex(trace.path.end[row])
+        elif section >= 0:
+            # Where C is not known the tool is drawn on the X axis.
+            turn = float(trace.path.c_angle[row]) - float(trace.path.section_entry[section])
+            place = cmath.rect(float(trace.path.x[row]), math.radians(trace.path.c_axis.sense * np.nan_to_num(turn)))
+        else:
             return complex(math.nan)
-        x, angle = float(trace.path.x[row]), float(trace.path.c_angle[row])
-        turn = trace.path.c_axis.sense * (angle - float(trace.path.section_entry[near]))
-        # Where C is not known the tool is drawn on the X axis.
-        return cmath.rect(x, math.radians(turn)) if math.isfinite(turn) else complex(x)
+        if cmath.isnan(place) and len(known):
+            # Nobody knows where it stands there: where it is known next, or was known last.
+            is_before = row < moves.row[known[0]]
+            place = complex(moves.start[known[0]] if is_before else moves.end[known[-1]])
+        return place
 
     def nearest_section(self, row: int) -> int:
         """Return the section of a row or, outside sections, the nearest one; -1 if there is none."""

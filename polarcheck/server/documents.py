@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 from polarcheck.errors import PolarcheckError
 from polarcheck.server.buffers import Buffer, Buffers
+from polarcheck.server.open_text import path_of
 from polarcheck.server.worker import Worker
 
 if TYPE_CHECKING:
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
     from polarcheck.server.judged import SettingsOf
     from polarcheck.server.open_text import OpenText
     from polarcheck.server.structure.document import Document
+    from polarcheck.server.structure.workspace import Workspace
 
 Result = TypeVar("Result")
 
@@ -43,6 +45,31 @@ class Documents:
         settings = buffer.judged.settings if buffer.judged is not None else None
         return await self.worker.do(self._apply, function, buffer, buffer.text, settings)
 
+    async def ask_of_any(self, uri: str, function: Callable[[Document], Result], none: Result) -> Result:
+        """Apply a function to a document that is open, or that is a file beside those that are open."""
+        path = path_of(uri)
+        if uri in self.buffers.open or path is None:
+            return await self.ask(uri, function, none)
+        folders = [folder for buffer in self.buffers.open.values() for folder in self.folders_of(buffer.path)]
+        known = [document for _, document in self._known.values()]
+        return await self.worker.do(self._apply_to_file, function, path, folders, known, none)
+
+    def _apply_to_file(
+        self,
+        function: Callable[[Document], Result],
+        path: Path,
+        folders: Sequence[Path],
+        known: Sequence[Document],
+        none: Result,
+    ) -> Result:
+        from polarcheck.server.structure.workspace import Workspace
+
+        for document in known:
+            found = Workspace(document, (), folders, self.machine_of).file(path)
+            if found is not None:
+                return function(found)
+        return none
+
     def _apply(
         self, function: Callable[[Document], Result], buffer: Buffer, text: OpenText, settings: Settings | None
     ) -> Result:
@@ -62,6 +89,13 @@ class Documents:
         document = Document(buffer.uri, buffer.path, text, machine, folders)
         self._known[buffer.uri] = settings, document
         return document
+
+    def workspace(self, document: Document) -> Workspace:
+        """Return the files around a document, for one request."""
+        from polarcheck.server.structure.workspace import Opened, Workspace
+
+        opened = [Opened(buffer.uri, buffer.path, buffer.text) for buffer in list(self.buffers.open.values())]
+        return Workspace(document, opened, self.folders_of(document.path), self.machine_of)
 
     def machine_of(self, path: Path, settings: Settings | None = None) -> tuple[Machine, Sequence[str]]:
         """Return the machine of a program and the folders of those it calls; the default if its settings are broken."""

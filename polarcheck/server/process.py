@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import logging
 import os
 import sys
 import threading
 from collections.abc import Callable
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, cast
 
-from pygls.io_ import run_async
+from polarcheck.errors import UsageError
+from polarcheck.server.messages import NoEditorError, handle_all
 
 if TYPE_CHECKING:
+    from polarcheck.server.protocol import Protocol
     from polarcheck.server.session import Server
 
 _CHUNK = 1 << 16
@@ -71,8 +74,11 @@ def serve(server: Server, streams: Streams) -> int:
     """
     Serve the editor until it says `exit` or is gone; return the exit code, 1 if it did not say `shutdown` before.
 
-    Raises KeyboardInterrupt if the process is interrupted or terminated.
+    Raises KeyboardInterrupt if the process is interrupted or terminated, UsageError if nobody speaks the protocol.
     """
+    # What goes wrong is answered or logged at the editor.
+    logging.getLogger("pygls").addHandler(logging.NullHandler())
+    logging.getLogger("pygls").propagate = False
     try:
         asyncio.run(_serve(server, streams))
     except SystemExit as end:  # of the message `exit`
@@ -86,9 +92,11 @@ async def _serve(server: Server, streams: Streams) -> None:
     server.protocol.set_writer(_Sink(streams.sink, reader.feed_eof))
     threading.Thread(target=_feed, args=(streams.source, loop, reader), name="input", daemon=True).start()
     try:
-        # An incomplete or invalid message ends the session, too.
-        with contextlib.suppress(asyncio.IncompleteReadError, ValueError):
-            await run_async(threading.Event(), reader, server.protocol, error_handler=server.report_server_error)
+        # An incomplete message ends the session, too.
+        with contextlib.suppress(asyncio.IncompleteReadError):
+            await handle_all(reader, cast("Protocol", server.protocol))
+    except NoEditorError as error:
+        raise UsageError(f"standard input: {error}: an editor starts the server") from None
     finally:
         server.end()
 

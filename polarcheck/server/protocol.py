@@ -6,6 +6,11 @@ from typing import Any
 from typing import Protocol as Typed
 
 from lsprotocol import types
+from pygls.exceptions import (
+    JsonRpcException,
+    JsonRpcInvalidRequest,
+    JsonRpcServerNotInitialized,
+)
 from pygls.protocol import LanguageServerProtocol, lsp_method
 
 
@@ -23,7 +28,11 @@ class Documents(Typed):
 
 
 class Protocol(LanguageServerProtocol):
-    """The protocol with our own documents: those of pygls end lines where editors do not, as at U+0085."""
+    """
+    The protocol with our own documents: those of pygls end lines where editors do not, as at U+0085.
+
+    It refuses what is not allowed at a time of the session: pygls leaves such requests without an answer.
+    """
 
     @property
     def _documents(self) -> Documents:
@@ -45,3 +54,36 @@ class Protocol(LanguageServerProtocol):
     def lsp_text_document__did_close(self, params: types.DidCloseTextDocumentParams) -> None:
         """Handle a closed document."""
         self._documents.closed(params.text_document.uri)
+
+    # ---- what is allowed ----
+
+    def admit(self, message: dict[str, Any]) -> None:
+        """
+        Raise a JsonRpcException if a request or notification is not allowed now, or not known.
+
+        message: a message with a method, as it was read.
+        """
+        method = message["method"]
+        if method == types.EXIT:
+            return
+        if self._shutdown:
+            raise JsonRpcInvalidRequest("the session is shut down")
+        if (method == types.INITIALIZE) != (self._workspace is None):
+            if method == types.INITIALIZE:
+                raise JsonRpcInvalidRequest("the session is initialized already")
+            raise JsonRpcServerNotInitialized("the session is not initialized")
+        if method != types.CANCEL_REQUEST:
+            self._get_handler(method)  # raises JsonRpcMethodNotFound
+        if self.get_message_type(method) is None:
+            message.setdefault("params", None)
+
+    def refuse(self, error: JsonRpcException, number: int | str | None = None) -> None:
+        """Answer a request with an error. number: that of the request; None if it is not known."""
+        # A dict, since lsprotocol leaves out a number that is null.
+        answer = {"code": error.code, "message": error.message}
+        self._send_data({"jsonrpc": self.VERSION, "id": number, "error": answer})
+
+    def report(self, error: JsonRpcException) -> None:
+        """Log an error in a message that gets no answer."""
+        if self._workspace is not None and not self._shutdown:
+            self._server.report_server_error(error, type(error))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Awaitable, Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -39,6 +39,10 @@ class Server(LanguageServer):
     settings_of: returns the settings of a program; raises a PolarcheckError.
     trusted: folders outside the workspace from which files may be opened, too.
     buffers: the open documents.
+    documents: the same as their machines read them, for answers that need no check.
+    rewritings: return code actions that need no check.
+    options: called with the options that the editor sends first of all.
+    configured: called once the editor is ready, and with its settings whenever they change.
     published: called with each document and the result of its check, once its diagnostics are sent.
     gone: called with the URI of each document that is closed.
     """
@@ -52,6 +56,9 @@ class Server(LanguageServer):
         self._polling: asyncio.Task[None] | None = None
         self.buffers = Buffers(settings_of, self.folders_of, self._publish, self._report_bug)
         self.documents = Documents(self.buffers, settings_of, self.folders_of)
+        self.rewritings: list[Callable[[types.CodeActionParams], Awaitable[list[types.CodeAction]]]] = []
+        self.options: list[Callable[[Any], object]] = []
+        self.configured: list[Callable[..., Awaitable[None]]] = []
         self.published: list[Callable[[Buffer, Judged], None]] = []
         self.gone: list[Callable[[str], None]] = []
 

@@ -1,87 +1,80 @@
-// ---- colors: classes that are told apart by the color-blind and, as light and dark, in black and white ----
+// ---- colors: classes that the color-blind can distinguish and that, as light and dark, print in black and white ----
 
-/** Viridis from light to dark, without its yellow, which is not seen on white. */
-const SHADES = ["#7ad151", "#43bf71", "#22a884", "#21918c", "#2a788e", "#35608d", "#414487", "#440154"];
-const ABOVE = "#d55e00";
-const PLAIN = "#1b3a5c";
-const UNKNOWN = "#767676";
-const INK = "#1a1a1a";
+/** Number of shades: viridis, without the end that is too near to the paper. */
+const SHADES = 8;
+/** Upper bounds of the classes, in percent of a limit: most paths run far below it. */
+const SHARES = [1, 3, 5, 10, 20, 40, 70, 100];
 
-/** What moves are colored by: a value for each, the bounds of its classes, how it is called. */
+/**
+ * What moves are coloured by: values (one per move), bounds (the upper one of each class), title; null for one colour.
+ * isLimited: a value above the last bound is above the limit.
+ */
 function coloringOf(section, name) {
   const { moves } = section;
   const units = unitsOf(section);
   if (name === "load" && moves.share.some((share) => share !== null)) {
-    return { values: moves.share.map((share) => (share === null ? null : 100 * share)), from: 0, to: 100, title: "C, % of its limit" };
+    return { values: moves.share.map((share) => (share === null ? null : 100 * share)), bounds: SHARES, title: "C rate, % of its limit", isLimited: true };
   }
   if (name === "load") {
-    return { values: moves.c_feed, ...bounds(moves.c_feed.filter((_, move) => moves.role[move] !== "positioning"), true), title: "C, deg/min" };
+    const values = moves.c_feed.map((value, move) => (moves.role[move] === "positioning" ? null : value));
+    return { values, bounds: niceBounds(values), title: "C rate, deg/min", isLimited: false };
   }
   if (name === "feed") {
     const values = moves.true_feed.map((feed, move) => {
       const real = feed === null ? moves.feed[move] : feed;
       return real === null || moves.role[move] === "positioning" ? null : real / section.scale;
     });
-    return { values, ...bounds(values, false), title: `F, ${units.name}/min` };
+    return { values, bounds: niceBounds(values), title: `F, ${units.name}/min`, isLimited: false };
   }
   return null;
 }
 
-function bounds(values, fromZero) {
-  let from = fromZero ? 0 : Infinity;
-  let to = -Infinity;
-  for (const value of values) {
-    if (value !== null) {
-      from = Math.min(from, value);
-      to = Math.max(to, value);
-    }
+/** Bounds of at most 8 classes: each value of its own if there are few, else round numbers on a logarithmic scale. */
+function niceBounds(values) {
+  const known = [...new Set(values.filter((value) => value !== null).map((value) => Number(value.toPrecision(4))))].sort((a, b) => a - b);
+  if (known.length <= SHADES) {
+    return known;
   }
-  if (!(to > from)) {
-    to = Number.isFinite(to) ? to : 1;
-    from = to > 0 ? 0 : to - 1;
+  const [low, high] = [Math.max(known[0], known[known.length - 1] / 1e4), known[known.length - 1]];
+  const round = [];
+  for (let decade = Math.floor(Math.log10(low)); decade <= Math.ceil(Math.log10(high)); decade += 1) {
+    round.push(...[1, 2, 5].map((digit) => Number((digit * 10 ** decade).toPrecision(1))));
   }
-  return { from, to };
+  const between = round.filter((bound) => bound > low && bound < high);
+  const every = Math.ceil((between.length + 1) / SHADES);
+  return [...between.filter((_, place) => place % every === every - 1), high].slice(-SHADES);
 }
 
-/** The class of each move: a number of SHADES, "above", or "unknown" where there is nothing to color it by. */
+/** The class of each move: a number from 0, "above", "plain", or "unknown" where there is nothing to colour it by. */
 function classesOf(section, name) {
   const coloring = coloringOf(section, name);
   if (coloring === null) {
     return section.moves.line.map(() => "plain");
   }
-  const { values, from, to } = coloring;
-  const isLimited = coloring.title.includes("%");
+  const { values, bounds, isLimited } = coloring;
   return values.map((value) => {
     if (value === null) {
       return "unknown";
     }
-    if (isLimited && value > to * (1 + 1e-9)) {
-      return "above";
-    }
-    const place = Math.floor(((value - from) / (to - from)) * SHADES.length);
-    return Math.min(Math.max(place, 0), SHADES.length - 1);
+    const place = bounds.findIndex((bound) => value <= bound * (1 + 1e-4));
+    return place >= 0 ? place : isLimited ? "above" : bounds.length - 1;
   });
 }
 
-function colorOf(kind) {
-  return { above: ABOVE, plain: PLAIN, unknown: UNKNOWN }[kind] || SHADES[kind];
+/** The colour of a class, of so many. */
+function colorOf(kind, count) {
+  if (typeof kind !== "number") {
+    return color({ above: "--above", plain: "--path", unknown: "--unknown" }[kind]);
+  }
+  const shade = count < 2 ? SHADES - 3 : Math.round((kind * (SHADES - 1)) / (count - 1));
+  return color(`--shade-${shade + 1}`);
 }
 
-/** A trace without points, for the sake of its bar of colors. */
-function colorBar(section, name) {
-  const coloring = coloringOf(section, name);
-  if (coloring === null) {
-    return [];
+/** What a class holds, in words. */
+function classText(kind, bounds) {
+  if (kind === "above") {
+    return "above";
   }
-  const colorscale = SHADES.flatMap((shade, place) => [
-    [place / SHADES.length, shade],
-    [(place + 1) / SHADES.length, shade],
-  ]);
-  return [{
-    type: "scatter", mode: "markers", x: [null], y: [null], hoverinfo: "skip", showlegend: false,
-    marker: {
-      color: [coloring.from], cmin: coloring.from, cmax: coloring.to, colorscale, showscale: true,
-      colorbar: { title: { text: coloring.title, side: "right" }, thickness: 12, len: 0.9, outlinewidth: 1, nticks: 5 },
-    },
-  }];
+  const text = (value) => (Number.isInteger(value) ? String(value) : rounded(value));
+  return kind === 0 ? `to ${text(bounds[0])}` : `${text(bounds[kind - 1])}\u2013${text(bounds[kind])}`;
 }

@@ -13,17 +13,36 @@ const POINTED = 3000;
 function faceTraces(section, level, coloring, isAsked = true) {
   const units = unitsOf(section);
   return [
+    ...bar(section, units),
     ...parts(section, units, level),
     ...surroundings(section, units),
     ...(isAsked ? askedTraces(section, units) : []),
-    ...(section.needs_radius ? [] : colorBar(section, coloring)),
-    line("programmed contour", section.programmed.x.map(units.x), section.programmed.c.map(units.c), { color: INK, width: 1 }),
+    line("programmed contour", section.programmed.x.map(units.x), section.programmed.c.map(units.c), { color: color("--ink"), width: 1 }),
     ...toolPath(section, units, coloring),
     ...directions(section, units),
+    ...jumps(section),
     ...marks(section, units),
     ...ends(section, units),
     ...toPointAt(section, units),
   ];
+}
+
+/** The bar before milling, below everything. */
+function bar(section, units) {
+  if (!section.bar || !section.bar.length) {
+    return [];
+  }
+  const { x, y } = rings([section.bar], units);
+  return [{ ...line("bar", x, y, { color: color("--bar-edge"), width: 1 }), fill: "toself", fillcolor: color("--bar") }];
+}
+
+/** The center, where a move passes it: C would have to turn at once. */
+function jumps(section) {
+  const move = section.moves.jump.indexOf(true);
+  return move < 0 ? [] : [{
+    type: "scatter", mode: "markers", name: "C would have to turn at once", x: [0], y: [0], hoverinfo: "none", customdata: [{ move }],
+    marker: { symbol: "star-diamond", size: 15, color: color("--above"), line: { color: color("--ink"), width: 1 } },
+  }];
 }
 
 function line(name, x, y, style, more = {}) {
@@ -54,8 +73,8 @@ function turnOf(ring) {
 
 function parts(section, units, level) {
   return section.parts.filter((part, place) => place === level && part.polygons.length).map((part) => ({
-    ...line("finished part", ...Object.values(rings(part.polygons, units)), { color: "#9db0c2", width: part.known_outside ? 1 : 0 }),
-    fill: "toself", fillcolor: "#dde6ee",
+    ...line("finished part", ...Object.values(rings(part.polygons, units)), { color: color("--part-edge"), width: part.known_outside ? 1 : 0 }),
+    fill: "toself", fillcolor: color("--part"),
   }));
 }
 
@@ -66,39 +85,34 @@ function circle(radius, units) {
 
 /** Stock, keep-out, the center of the spindle, and the ray from there on which C is 0. */
 function surroundings(section, units) {
-  const found = [];
-  if (section.stock !== null) {
-    found.push(line("stock", ...circle(section.stock / 2, units), { color: "#8a6d3b", width: 1.5, dash: "6px,3px" }));
+  const shapes = [];
+  if (section.stock !== null && !(section.bar && section.bar.length)) {
+    shapes.push(line("stock", ...circle(section.stock / 2, units), { color: color("--bar-edge"), width: 1.5, dash: "6px,3px" }));
   }
   if (section.keep_out !== null) {
-    found.push(line("keep-out", ...circle(section.keep_out, units), { color: ABOVE, width: 1, dash: "dot" }, { fill: "toself", fillcolor: "rgba(213,94,0,0.15)" }));
+    shapes.push(line("keep-out", ...circle(section.keep_out, units), { color: color("--above"), width: 1, dash: "dot" }, { fill: "toself", fillcolor: "rgba(213,94,0,0.15)" }));
   }
-  const reach = 1.12 * reachOf(section);
-  found.push({
-    ...line("C = 0", [0, units.x(reach)], [0, 0], { color: "#595959", width: 1, dash: "longdashdot" }, { showlegend: false }),
-    mode: "lines+text", text: ["", "C = 0"], textposition: "middle right", textfont: { color: "#444", size: 11 },
+  const reach = reachOf(section);
+  shapes.push({
+    ...line("C = 0", [0, units.x(0.8 * reach), units.x(reach)], [0, 0, 0], { color: color("--axis"), width: 1, dash: "longdashdot" }, { showlegend: false }),
+    mode: "lines+text", text: ["", "C = 0", ""], textposition: "bottom center", textfont: { color: color("--quiet"), size: 11 },
   });
-  found.push({
+  shapes.push({
     type: "scatter", mode: "markers", name: "spindle center", x: [0], y: [0], hoverinfo: "skip",
-    marker: { symbol: "cross-thin", size: 18, line: { color: INK, width: 1.5 } },
+    marker: { symbol: "cross-thin", size: 18, line: { color: color("--ink"), width: 1.5 } },
   });
-  return found;
+  return shapes;
 }
 
-/** How far from the center anything is drawn. */
-function reachOf(section) {
-  let reach = section.stock === null ? 0 : section.stock / 2;
-  for (const path of [section.programmed, section.tool]) {
-    path.x.forEach((x, place) => {
-      reach = x === null ? reach : Math.max(reach, Math.hypot(x, path.c[place]));
-    });
-  }
-  return reach || 1;
+/** How far the ray of C = 0 is drawn [mm]: to the right of the frame. */
+function reachOf({ frame }) {
+  return Math.max(frame[2] - 0.02 * (frame[2] - frame[0]), 0.2 * (frame[2] - frame[0]));
 }
 
 /** The path of the tool center, a trace for each kind of move and class of color. */
 function toolPath(section, units, coloring) {
   const classes = classesOf(section, coloring);
+  const count = (coloringOf(section, coloring) || { bounds: [] }).bounds.length;
   const { tool, moves } = section;
   const groups = new Map();
   for (let place = 1; place < tool.x.length; place += 1) {
@@ -123,14 +137,14 @@ function toolPath(section, units, coloring) {
   }
   const named = new Set();
   const limited = [...groups.values()].some(({ kind }) => kind === "above")
-    ? [line("above the limit of C", [null], [null], { color: ABOVE, width: 5 })] : [];
+    ? [line("above the limit of C", [null], [null], { color: color("--above"), width: 5 })] : [];
   return [...limited, ...[...groups.values()].map(({ role, kind, x, y }) => {
     const name = nameOf(role);
     const isFirst = !named.has(name);
     named.add(name);
     const isCut = role === "cut" || role === "corner";
     const width = kind === "above" ? 5 : isCut ? 3 : role === "positioning" ? 1.3 : 2.2;
-    const style = { color: role === "unknown" ? UNKNOWN : colorOf(kind), width, dash: DASHES[role] || "solid" };
+    const style = { color: role === "unknown" ? color("--unknown") : colorOf(kind, count), width, dash: DASHES[role] || "solid" };
     return line(name, x, y, style, { legendgroup: name, showlegend: isFirst });
   })];
 }
@@ -182,36 +196,42 @@ function arrows(places, symbol, size) {
   return {
     type: "scatter", mode: "markers", x: places.map((place) => place[0]), y: places.map((place) => place[1]),
     hoverinfo: "skip", showlegend: false,
-    marker: { symbol, size, angle: places.map((place) => place[2]), color: INK, line: { color: INK, width: 1.5 } },
+    marker: { symbol, size, angle: places.map((place) => place[2]), color: color("--ink"), line: { color: color("--ink"), width: 1.5 } },
   };
 }
 
 const MARKED = {
-  overcut: { name: "cut too much", color: ABOVE, shape: "/" },
-  left: { name: "left standing", color: "#0072b2", shape: "\\" },
+  overcut: { name: "cut too much", property: "--above", shape: "/" },
+  left: { name: "left standing", property: "--left", shape: "\\" },
 };
 
 /** What is cut too much or left standing: hatched, with its number in the table at its place. */
 function marks(section, units) {
-  return Object.entries(MARKED).flatMap(([kind, { name, color, shape }]) => {
-    const own = section.marks.map((mark, place) => ({ ...mark, number: place + 1 })).filter((mark) => mark.kind === kind);
-    if (!own.length) {
+  return Object.entries(MARKED).flatMap(([kind, { name, property, shape }]) => {
+    const ink = color(property);
+    const hits = section.marks.map((mark, place) => ({ ...mark, number: place + 1 })).filter((mark) => mark.kind === kind);
+    if (!hits.length) {
       return [];
     }
-    const areas = rings(own.map((mark) => mark.rings).filter((some) => some.length), units);
+    const areas = rings(hits.map((mark) => mark.rings).filter((ring) => ring.length), units);
     const hatched = {
-      ...line(name, areas.x, areas.y, { color, width: 1 }, { legendgroup: name, showlegend: false }),
-      fill: "toself", fillcolor: "rgba(255,255,255,0)", fillpattern: { shape, fgcolor: color, bgcolor: "rgba(255,255,255,0.3)", size: 6, solidity: 0.35 },
+      ...line(name, areas.x, areas.y, { color: ink, width: 1 }, { legendgroup: name, showlegend: false }),
+      fill: "toself", fillcolor: "rgba(255,255,255,0)", fillpattern: { shape, fgcolor: ink, bgcolor: "rgba(0,0,0,0)", size: 6, solidity: 0.35 },
     };
     const places = {
       type: "scatter", mode: "markers+text", name, legendgroup: name, hoverinfo: "none",
-      x: own.map((mark) => units.x(mark.place[0])), y: own.map((mark) => units.c(mark.place[1])),
-      text: own.map((mark) => String(mark.number)), textposition: "top right", textfont: { color, size: 13 },
-      customdata: own.map((mark) => ({ mark: mark.number - 1 })),
-      marker: { symbol: kind === "overcut" ? "x-thin" : "star-triangle-down-open", size: 10, color, line: { color, width: 2 } },
+      x: hits.map((mark) => units.x(mark.place[0])), y: hits.map((mark) => units.c(mark.place[1])),
+      text: hits.map((mark) => letterOf(mark.number - 1)), textposition: "bottom right", textfont: { color: ink, size: 13 },
+      customdata: hits.map((mark) => ({ mark: mark.number - 1 })),
+      marker: { symbol: kind === "overcut" ? "x-thin" : "star-triangle-dhits-open", size: 10, color: ink, line: { color: ink, width: 2 } },
     };
     return areas.x.length ? [hatched, places] : [places];
   });
+}
+
+/** The letter of a mark, as in its table: A to Z, then A1. */
+function letterOf(place) {
+  return String.fromCharCode(65 + (place % 26)) + (place >= 26 ? Math.floor(place / 26) : "");
 }
 
 /** Where the path begins and ends. */
@@ -221,11 +241,13 @@ function ends(section, units) {
   if (!known.length) {
     return [];
   }
-  return [[known[0], "start", "top right", "circle-open"], [known[known.length - 1], "end", "bottom right", "square-open"]].map(
+  // The text stands towards the middle, where there is room for it.
+  const side = (place) => (path.x[place] > (section.frame[0] + section.frame[2]) / 2 ? "left" : "right");
+  return [[known[0], "start", `top ${side(known[0])}`, "circle-open"], [known[known.length - 1], "end", `bottom ${side(known[known.length - 1])}`, "square-open"]].map(
     ([place, text, textposition, symbol]) => ({
       type: "scatter", mode: "markers+text", x: [units.x(path.x[place])], y: [units.c(path.c[place])],
-      text: [text], textposition, hoverinfo: "skip", showlegend: false, textfont: { color: INK, size: 12 },
-      marker: { symbol, size: text === "start" ? 12 : 9, color: INK, line: { color: INK, width: 2 } },
+      text: [text], textposition, hoverinfo: "skip", showlegend: false, textfont: { color: color("--ink"), size: 12 },
+      marker: { symbol, size: text === "start" ? 12 : 9, color: color("--ink"), line: { color: color("--ink"), width: 2 } },
     }),
   );
 }
@@ -239,7 +261,7 @@ function toPointAt(section, units) {
       total += Math.hypot(path.x[place] - path.x[place - 1], path.c[place] - path.c[place - 1]);
     }
   }
-  const found = { x: [], y: [], move: [] };
+  const points = { x: [], y: [], move: [] };
   for (let place = 1; place < path.x.length; place += 1) {
     if (path.x[place] === null || path.x[place - 1] === null) {
       continue;
@@ -248,37 +270,37 @@ function toPointAt(section, units) {
     const count = Math.max(Math.ceil((Math.hypot(dx, dc) / total) * POINTED) || 1, 1);
     for (let part = 0; part < count; part += 1) {
       const along = (part + 0.5) / count;
-      found.x.push(units.x(path.x[place - 1] + along * dx));
-      found.y.push(units.c(path.c[place - 1] + along * dc));
-      found.move.push(path.move[place]);
+      points.x.push(units.x(path.x[place - 1] + along * dx));
+      points.y.push(units.c(path.c[place - 1] + along * dc));
+      points.move.push(path.move[place]);
     }
   }
-  return [line("", found.x, found.y, { width: 0, color: "rgba(0,0,0,0)" }, {
-    hoverinfo: "none", showlegend: false, customdata: found.move.map((move) => ({ move })),
+  return [line("", points.x, points.y, { width: 0, color: "rgba(0,0,0,0)" }, {
+    hoverinfo: "none", showlegend: false, customdata: points.move.map((move) => ({ move })),
   })];
 }
 
 /** The chosen move and the cutter at its end, as shapes: these alone are drawn again where another one is chosen. */
-function chosenOnFace(section, move) {
+function chosenOnFace(section, move, hasCutter) {
   if (move === null) {
     return [];
   }
   const units = unitsOf(section);
   const way = wayOf(section, move).map(([x, c]) => [units.x(x), units.c(c)]);
   const path = way.map(([x, y], place) => `${place ? "L" : "M"}${x},${y}`).join(" ");
-  const found = way.length > 1 ? [
-    { type: "path", path, line: { color: "#fff", width: 9 }, layer: "above" },
-    { type: "path", path, line: { color: "#000", width: 4.5 }, layer: "above" },
+  const shapes = way.length > 1 ? [
+    { type: "path", path, line: { color: color("--halo"), width: 9 }, layer: "above" },
+    { type: "path", path, line: { color: color("--ink"), width: 4.5 }, layer: "above" },
   ] : [];
   const [x, c] = section.moves.end[move];
   const radius = section.radius;
-  if (x !== null && c !== null && radius !== null && section.moves.role[move] !== "unknown") {
-    found.push({
+  if (hasCutter && x !== null && c !== null && radius !== null && section.moves.role[move] !== "unknown") {
+    shapes.push({
       type: "circle", x0: units.x(x - radius), x1: units.x(x + radius), y0: units.c(c - radius), y1: units.c(c + radius),
-      line: { color: "#000", width: 1.5 }, fillcolor: "rgba(230,159,0,0.22)", layer: "above",
+      line: { color: color("--ink"), width: 1.5 }, fillcolor: color("--cutter"), layer: "above",
     });
   }
-  return found;
+  return shapes;
 }
 
 /** The points of a move; where thinning has left none of it, its ends. */
@@ -318,15 +340,27 @@ function firstAt(column, value) {
   return low;
 }
 
+/** The ranges of the axes that show all that is drawn. */
+function wholeFace(section) {
+  const units = unitsOf(section);
+  const [x0, c0, x1, c1] = section.frame;
+  return { "xaxis.range": [units.x(x0), units.x(x1)], "yaxis.range": [units.c(c0), units.c(c1)] };
+}
+
 function faceLayout(section) {
   const units = unitsOf(section);
-  const axis = { showgrid: true, gridcolor: "#e4e4e4", zeroline: true, zerolinecolor: "#9a9a9a", showline: true, linecolor: "#888", mirror: true, ticks: "outside", nticks: 11 };
+  const isNarrow = document.documentElement.clientWidth < 600;
+  const axis = {
+    showgrid: true, gridcolor: color("--grid"), zeroline: true, zerolinecolor: color("--axis"), showline: true, linecolor: color("--axis"),
+    mirror: true, ticks: "outside", tickcolor: color("--axis"), nticks: isNarrow ? 6 : 11, constrain: "range",
+  };
+  const { "xaxis.range": x, "yaxis.range": y } = wholeFace(section);
   return {
-    margin: { l: 62, r: 12, t: 30, b: 48 }, paper_bgcolor: "#fff", plot_bgcolor: "#fff", hovermode: "closest", hoverdistance: 24,
-    font: { family: "system-ui, sans-serif", size: 12, color: INK }, dragmode: "pan",
-    legend: { orientation: "h", x: 0, y: -0.13, yanchor: "top", xanchor: "left", font: { size: 11 } },
-    xaxis: { ...axis, title: { text: `X [${units.name}, ${section.diameter ? "diameter" : "radius"}]`, standoff: 8 } },
-    yaxis: { ...axis, title: { text: `C [${units.name}]`, standoff: 8 }, scaleanchor: "x", scaleratio: units.ratio },
+    margin: isNarrow ? { l: 44, r: 6, t: 6, b: 38 } : { l: 56, r: 10, t: 10, b: 42 }, paper_bgcolor: color("--paper"), plot_bgcolor: color("--paper"),
+    hovermode: "closest", hoverdistance: 24, font: { family: "system-ui, sans-serif", size: isNarrow ? 10 : 12, color: color("--ink") }, dragmode: "pan",
+    modebar: { bgcolor: "rgba(0,0,0,0)", color: color("--quiet"), activecolor: color("--ink") }, showlegend: false,
+    xaxis: { ...axis, range: x, title: { text: `X [${units.name}, ${section.diameter ? "diameter" : "radius"}]`, standoff: 6 } },
+    yaxis: { ...axis, range: y, title: { text: `C [${units.name}]`, standoff: 4 }, scaleanchor: "x", scaleratio: units.ratio },
     shapes: [],
   };
 }

@@ -114,12 +114,13 @@ function measuringView(root, picture, state, program, sections, hand) {
     const { root: place } = box;
     place.addEventListener("pointermove", (event) => {
       if (isOn && event.pointerType !== "touch" && !(event.buttons & 1)) {
+        box.giveWay(event.clientX, event.clientY);
         pointAt(event);
         show();
       }
     });
     place.addEventListener("pointerdown", (event) => {
-      downAt = isOn && event.isPrimary && event.button === 0 && !event.target.closest(".measured, .modebar") ? [event.clientX, event.clientY] : null;
+      downAt = isOn && event.isPrimary && event.button === 0 && !event.target.closest("button, .modebar") ? [event.clientX, event.clientY] : null;
     }, true);
     // Plotly covers the page while the button is down: the window sees where it goes up.
     window.addEventListener("pointerup", (event) => {
@@ -260,8 +261,18 @@ function measuringBox(root) {
     buttons.hidden = !first;
   }
 
+  /** The panel goes out of the way of the pointer. */
+  function giveWay(clientX, clientY) {
+    const { left, right, top, bottom } = panel.getBoundingClientRect();
+    const buttonsAt = buttons.getBoundingClientRect();
+    const isOver = clientX > left - 12 && clientX < right + 12 && clientY > top - 12 && clientY < bottom + 12;
+    if (isOver && (buttons.hidden || clientY < buttonsAt.top - 4)) {
+      panel.classList.toggle("at-right");
+    }
+  }
+
   const text = () => [...words.querySelectorAll("dd")].map((value) => `${value.previousSibling.textContent} ${value.textContent}`.trim()).join("\n");
-  return { root, switchOn, show, copy, clear, text };
+  return { root, switchOn, show, giveWay, copy, clear, text };
 }
 
 /** Label and text of what is measured, in the units of the program. */

@@ -1,8 +1,9 @@
 // ---- player: the clock of a section; it moves the tool in the view onto the face and in that of the machine ----
 
 const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 5, 10];
-/** Numbers and the chosen move follow so often while it plays [ms]. */
+/** While it plays the numbers follow so often, and the chosen move of the page [ms]. */
 const READ_EVERY = 100;
+const REPORT_EVERY = 200;
 /** The longest time between two frames that counts as time [ms]: a page in the background stands still. */
 const LONGEST_FRAME = 250;
 /** A step by key [s], at speed 1. */
@@ -59,6 +60,7 @@ function playerView(root, program, place, section, state, next) {
   let frame = 0;
   let lastFrame = 0;
   let lastRead = 0;
+  let lastReport = 0;
   let sent = null;
 
   /** The timeline and the views, made at the first call. */
@@ -152,9 +154,12 @@ function playerView(root, program, place, section, state, next) {
     } else if (now - lastRead >= READ_EVERY) {
       lastRead = now;
       read();
-      report();
     } else {
       views.gauges.show(moment, false);
+    }
+    if (isPlaying && now - lastReport >= REPORT_EVERY) {
+      lastReport = now;
+      report();
     }
   }
 
@@ -170,6 +175,7 @@ function playerView(root, program, place, section, state, next) {
     isShown = true;
     lastFrame = performance.now();
     lastRead = lastFrame;
+    lastReport = lastFrame;
     control.setPlaying(true);
     read();
     report();
@@ -263,7 +269,7 @@ function playerView(root, program, place, section, state, next) {
     }
   }
 
-  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", recolor);
+  onTheme(recolor);
   return {
     play,
     /** Draw what is in sight. */

@@ -1,7 +1,8 @@
 // ---- rates: C, X and F over the time of a section, with the limits of the machine ----
 
-/** Below this share of its limit a curve would be flattened by the line of the limit, which is then told only. */
+/** Below this share of its limit a curve would be flattened by the line of the limit, which then stands as words. */
 const NEAR_LIMIT = 0.3;
+const RATE_OPTIONS = { displaylogo: false, responsive: true, displayModeBar: false, doubleClick: "reset+autosize" };
 
 function rateRows(section) {
   const units = unitsOf(section);
@@ -9,9 +10,9 @@ function rateRows(section) {
   const inUnits = (column) => column.map((value) => (value === null ? null : value / section.scale));
   const limit = (value, scale) => (value === null ? null : value / scale);
   return [
-    { label: "C", unit: "deg/min", values: rates.c_feed, limit: limit(section.c_limit, 1), axis: "y", domain: [0.7, 1], color: "#414487" },
-    { label: "X", unit: `${units.name}/min`, values: inUnits(rates.x_feed), limit: limit(section.x_limit, section.scale), axis: "y2", domain: [0.36, 0.64], color: "#00795b" },
-    { label: "F", unit: `${units.name}/min`, values: inUnits(rates.feed), limit: limit(section.feed_limit, section.scale), axis: "y3", domain: [0, 0.3], color: "#8f4a00" },
+    { label: "C", unit: "deg/min", values: rates.c_feed, limit: limit(section.c_limit, 1), axis: "y", domain: [0.7, 1], color: color("--rate-c") },
+    { label: "X", unit: `${units.name}/min`, values: inUnits(rates.x_feed), limit: limit(section.x_limit, section.scale), axis: "y2", domain: [0.36, 0.64], color: color("--rate-x") },
+    { label: "F", unit: `${units.name}/min`, values: inUnits(rates.feed), limit: limit(section.feed_limit, section.scale), axis: "y3", domain: [0, 0.3], color: color("--rate-f") },
   ];
 }
 
@@ -33,28 +34,28 @@ function limitsOf(section) {
   const annotations = [];
   for (const row of rateRows(section)) {
     const isNear = row.limit !== null && highest(row.values) >= NEAR_LIMIT * row.limit;
-    const told = row.limit === null ? "no limit given" : `limit ${rounded(row.limit)}`;
+    const text = row.limit === null ? "no limit given" : `limit ${rounded(row.limit)}`;
     const hasBoth = row.values.some((value) => value < 0);
     for (const side of isNear ? [1, -1].slice(0, hasBoth ? 2 : 1) : []) {
       shapes.push({
         type: "line", xref: "paper", x0: 0, x1: 1, yref: row.axis, y0: side * row.limit, y1: side * row.limit,
-        line: { color: ABOVE, width: 1.5, dash: "dash" },
+        line: { color: color("--above"), width: 1.5, dash: "dash" },
       });
     }
     annotations.push({
       xref: "paper", x: 1, xanchor: "right", yref: `${row.axis} domain`, y: 1, yanchor: "bottom", showarrow: false,
-      text: isNear ? `- - ${told}` : told, font: { size: 10, color: isNear ? "#a34700" : "#555" },
+      text: isNear ? `- - ${text}` : text, font: { size: 10, color: isNear ? color("--above-text") : color("--quiet") },
     });
   }
   return { shapes, annotations };
 }
 
 function rateLayout(section) {
-  const axis = { gridcolor: "#e4e4e4", zerolinecolor: "#9a9a9a", showline: true, linecolor: "#888", mirror: true, ticks: "outside" };
+  const axis = { gridcolor: color("--grid"), zerolinecolor: color("--axis"), showline: true, linecolor: color("--axis"), mirror: true, ticks: "outside" };
   const { shapes, annotations } = limitsOf(section);
   const layout = {
-    margin: { l: 78, r: 12, t: 16, b: 40 }, paper_bgcolor: "#fff", plot_bgcolor: "#fff", hovermode: "x", hoverdistance: -1,
-    font: { family: "system-ui, sans-serif", size: 11, color: INK }, dragmode: "zoom", shapes, annotations,
+    margin: { l: 78, r: 12, t: 16, b: 40 }, paper_bgcolor: color("--paper"), plot_bgcolor: color("--paper"), hovermode: "x", hoverdistance: -1,
+    font: { family: "system-ui, sans-serif", size: 11, color: color("--ink") }, dragmode: "zoom", shapes, annotations,
     xaxis: { ...axis, title: { text: "time [s]", standoff: 4 }, anchor: "y3", rangemode: "tozero" },
   };
   rateRows(section).forEach((row, place) => {
@@ -82,6 +83,6 @@ function chosenInRates(section, move) {
   }
   return [...shapes, {
     type: "rect", xref: "x", x0: begin, x1: begin + (section.moves.time[move] || 0), yref: "paper", y0: 0, y1: 1,
-    fillcolor: "rgba(230,159,0,0.3)", line: { color: "#000", width: 1 }, layer: "below",
+    fillcolor: color("--band"), line: { color: color("--ink"), width: 1 }, layer: "below",
   }];
 }

@@ -1,22 +1,32 @@
 // ---- section: the pictures of one section, drawn when they come into sight ----
 
 /**
- * The pictures of a section. root: its element; state: that of the page; program, place: its numbers.
+ * The pictures of a section. root: its element; picture: that of its program; state: that of the page; program, place:
+ * its numbers.
  *
  * draw(): draws what is not drawn yet; plots(): the elements that are drawn by Plotly; closeUp(points, width): a window
  * of at least this width [mm] around points of the plane; whole(): all of it; back(): the window before closeUp, or
  * false without one.
  */
-function sectionView(root, section, state, program, place) {
+function sectionView(root, picture, state, program, place) {
+  const section = picture.sections[place];
   const [face, rates] = [".face", ".rates"].map((name) => root.querySelector(name));
   const hasRates = section.rates.t.length > 1;
   const coloring = { name: "load", level: section.parts.length - 1 };
   const windows = [];
+  const hidden = new Set();
   let isDrawn = false;
+  let showLegend = () => {};
+  let showPins = () => {};
   face.ofSection = section;
 
   function layoutOfFace() {
-    return { ...faceLayout(section), shapes: chosenOnFace(section, moveHere()) };
+    return { ...faceLayout(section), shapes: shapesOnFace() };
+  }
+
+  /** The chosen move; the player draws it, and the cutter at a time, on its canvas. */
+  function shapesOnFace() {
+    return state.chosen.playing ? [] : chosenOnFace(section, moveHere(), state.chosen.time === null);
   }
 
   function moveHere() {
@@ -24,10 +34,30 @@ function sectionView(root, section, state, program, place) {
     return chosen.program === program && chosen.section === place ? chosen.move : null;
   }
 
+  function traces() {
+    return faceTraces(section, coloring.level, coloring.name, coloring.isAsked).map((trace) =>
+      (hidden.has(trace.legendgroup || trace.name) ? { ...trace, visible: "legendonly" } : trace));
+  }
+
+  /** All of it again, in the window as it is: with other colours, or with other things drawn. */
   function redraw() {
-    if (isDrawn) {
-      Plotly.react(face, faceTraces(section, coloring.level, coloring.name, coloring.isAsked), face.layout, OPTIONS);
+    if (!isDrawn) {
+      return;
     }
+    const layout = layoutOfFace();
+    const { "xaxis.range": x, "yaxis.range": y } = windowOf();
+    Object.assign(layout.xaxis, { range: x });
+    Object.assign(layout.yaxis, { range: y });
+    Plotly.react(face, traces(), layout, OPTIONS);
+    showLegend();
+    if (hasRates) {
+      Plotly.react(rates, rateTraces(section), { ...rateLayout(section), shapes: chosenInRates(section, moveHere()) }, RATE_OPTIONS);
+    }
+  }
+
+  function toggle(name) {
+    hidden[hidden.has(name) ? "delete" : "add"](name);
+    redraw();
   }
 
   function draw() {
@@ -35,10 +65,13 @@ function sectionView(root, section, state, program, place) {
       return;
     }
     isDrawn = true;
-    Plotly.newPlot(face, faceTraces(section, coloring.level, coloring.name, coloring.isAsked), layoutOfFace(), OPTIONS);
+    Plotly.newPlot(face, traces(), layoutOfFace(), OPTIONS);
     listen(face);
+    showLegend();
+    planeTransform(face).onChange(showPins);
+    showPins();
     if (hasRates) {
-      Plotly.newPlot(rates, rateTraces(section), { ...rateLayout(section), shapes: chosenInRates(section, moveHere()) }, { ...OPTIONS, displayModeBar: false, scrollZoom: false, doubleClick: "reset+autosize" });
+      Plotly.newPlot(rates, rateTraces(section), { ...rateLayout(section), shapes: chosenInRates(section, moveHere()) }, RATE_OPTIONS);
       listen(rates);
     }
   }
@@ -59,10 +92,10 @@ function sectionView(root, section, state, program, place) {
   }
 
   function showChosen() {
-    if (isDrawn && !root.hidden && !state.chosen.playing) {
-      Plotly.relayout(face, { shapes: chosenOnFace(section, moveHere()) });
+    if (isDrawn && !root.hidden) {
+      Plotly.relayout(face, { shapes: shapesOnFace() });
       if (hasRates) {
-        Plotly.relayout(rates, { shapes: chosenInRates(section, moveHere()) });
+        Plotly.relayout(rates, { shapes: chosenInRates(section, state.chosen.playing ? null : moveHere()) });
       }
     }
   }
@@ -78,16 +111,26 @@ function sectionView(root, section, state, program, place) {
     const [x, c] = [0, 1].map((axis) => points.map((point) => point[axis]));
     const middle = [x, c].map((values) => (Math.min(...values) + Math.max(...values)) / 2);
     const half = Math.max(...[x, c].map((values) => 1.2 * (Math.max(...values) - Math.min(...values))), width) / 2;
-    windows.push(windowOf());
+    if (!windows.length) {
+      windows.push(windowOf());
+    }
     Plotly.relayout(face, {
       "xaxis.range": [units.x(middle[0] - half), units.x(middle[0] + half)],
       "yaxis.range": [units.c(middle[1] - half), units.c(middle[1] + half)],
     });
   }
 
+  /** A window around a finding at its own scale. */
+  function zoomTo({ places, span, move }) {
+    const points = places.length ? places.slice(0, 1) : move === null ? [] : wayOf(section, move);
+    if (points.length) {
+      closeUp(points, span || Math.max(4 * (section.radius || 0), 0.1 * (section.frame[2] - section.frame[0])));
+    }
+  }
+
   function whole() {
     windows.length = 0;
-    Plotly.relayout(face, { "xaxis.autorange": true, "yaxis.autorange": true });
+    Plotly.relayout(face, wholeFace(section));
   }
 
   function back() {
@@ -108,15 +151,23 @@ function sectionView(root, section, state, program, place) {
   rates.hidden = !hasRates;
   root.querySelector(".drawings").hidden = false;
   state.subscribe((chosen, before) => {
-    if (["program", "section", "move", "playing"].some((name) => chosen[name] !== before[name])) {
+    // One change of a plot takes longer than a frame of the player has.
+    const goesOn = chosen.playing && before.playing;
+    if (!goesOn && ["program", "section", "move", "finding", "time", "playing"].some((name) => chosen[name] !== before[name])) {
       showChosen();
+    }
+    if (chosen.view !== before.view && isDrawn && !root.hidden) {
+      Plotly.Plots.resize(face);
     }
   });
   const view = {
-    root, section, face, draw, redraw, coloring, closeUp, whole, back,
+    root, section, face, draw, redraw, toggle, coloring, closeUp, zoomTo, whole, back,
+    hasBack: () => windows.length > 0,
     isDrawn: () => isDrawn, plots: () => (hasRates ? [face, rates] : [face]),
   };
-  legend(root.querySelector(".legend"), section, view);
+  showLegend = legend(root.querySelector(".legend"), section, view);
+  showPins = pinsOf(root.querySelector(".face-box"), picture, state, program, place, (finding) => state.choose({ program, finding }));
+  onTheme(redraw);
   return view;
 }
 

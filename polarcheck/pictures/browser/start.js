@@ -33,6 +33,8 @@ function start() {
     state.choose({ program: 0, section: 0 });
   }
   linked(pictures, state, ({ program }) => programs[program].root.scrollIntoView({ block: "start" }));
+  const memory = pageMemory(pictures, state, programs);
+  served(memory.keep, memory.restore);
 }
 
 start();

@@ -14,6 +14,8 @@ function unitsOf(section) {
     ratio: section.diameter ? 2 : 1,
     length,
     point: ([x, c]) => `X${length(x === null ? null : x * factor * scale)} C${length(c)}`,
+    /** A length along X as the program writes X, a diameter or a radius. */
+    onX: (value) => length(value * factor * scale),
     feed: (value) => (value === null ? "not known" : `${rounded(value / scale)} ${units}/min`),
     span: ([from, to]) => (from === to ? length(to) : `${length(from)} to ${length(to)}`),
   };
@@ -29,7 +31,7 @@ function rateOfC(value) {
   return value === null ? "not known" : `${rounded(value)} deg/min`;
 }
 
-/** Label and text of all that is known of a move. */
+/** Label and text of all that is known of a move: the same words beside the pointer and in the box of the chosen move. */
 function factsOf(section, move) {
   const { moves } = section;
   const units = unitsOf(section);
@@ -40,14 +42,36 @@ function factsOf(section, move) {
     ["line", moves.number[move] ? `${moves.line[move]}, ${moves.number[move]}` : String(moves.line[move])],
     ["block", moves.block[move]],
     ["move", moves.role[move]],
-    ["to", units.point(moves.end[move])],
+    ["to, part", `${units.point(moves.end[move])} (tool center)`],
+    ["to, machine", machinePoint(section, move)],
     ["Z", units.span(moves.z[move])],
     ["F", real === null || real === moves.feed[move] ? feed : `${feed}, in truth ${units.feed(real)}`],
-    ["nearest", `${units.length(moves.nearest[move])} ${units.name}`],
-    ["C", rateOfC(moves.c_feed[move]) + (share === null ? "" : `, ${Math.round(100 * share)} % of its limit`)],
-    ["X", units.feed(moves.x_feed[move])],
+    ["nearest", `${units.length(moves.nearest[move])} ${units.name} from the center`],
+    ["C rate", rateText(section, move) + (share === null ? "" : `, ${percent(share)} of its limit`)],
+    ["X rate", units.feed(moves.x_feed[move])],
     ["time", timeOf(moves.begin[move], moves.time[move])],
-  ];
+  ].filter(([label, text]) => label !== "nearest" || !text.startsWith("not known"));
+}
+
+/** Where the axes of the machine stand at the end of a move. */
+function machinePoint(section, move) {
+  const [x, c] = section.moves.end[move];
+  const angle = section.moves.angle[move][1];
+  if (x === null || c === null) {
+    return "not known";
+  }
+  const units = unitsOf(section);
+  const side = section.rates.machine_x.some((value) => value !== null && value < -1e-6) ? -1 : 1;
+  const turned = angle === null ? "C angle not known" : `C angle ${angle.toFixed(3)} deg${section.entry_known ? "" : " (C taken as 0 at the start)"}`;
+  return `X axis ${units.onX(side * Math.hypot(x, c))}, ${turned}`;
+}
+
+function rateText(section, move) {
+  return section.moves.jump[move] ? "C would have to turn 180 deg at once at the center" : rateOfC(section.moves.c_feed[move]);
+}
+
+function percent(share) {
+  return `${share < 0.1 ? (100 * share).toPrecision(1) : Math.round(100 * share)} %`;
 }
 
 function timeOf(begin, time) {

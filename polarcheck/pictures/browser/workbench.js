@@ -3,7 +3,7 @@
 /** The views of all sections of a program. root: the element of the program. */
 function sectionsView(root, picture, state, program) {
   const articles = [...root.querySelectorAll(".polar")];
-  const views = picture.sections.map((section, place) => sectionView(articles[place], section, state, program, place));
+  const views = picture.sections.map((_, place) => sectionView(articles[place], picture, state, program, place));
   const tabs = root.querySelector(".tabs");
   let shown = 0;
 
@@ -19,13 +19,32 @@ function sectionsView(root, picture, state, program) {
   }
 
   picture.sections.forEach((section, place) => {
-    const tab = button(section.title, () => state.choose({ program, section: place }));
-    tabs.append(tab);
+    const count = picture.findings.filter((finding) => finding.section === place && !finding.silenced).length;
+    const text = count ? `${section.title} (${count})` : section.title;
+    tabs.append(button(text, () => state.choose({ program, section: place })));
   });
   tabs.hidden = views.length < 2;
   root.querySelector(".bar").hidden = !views.length;
   root.querySelector(".aside").hidden = false;
   viewSwitch(root, articles, state, program);
+  root.querySelector(".windows").append(
+    button("To move", () => {
+      const { section, move } = state.chosen;
+      if (move !== null && state.chosen.program === program) {
+        const way = wayOf(picture.sections[section], move);
+        views[section].closeUp(way, 2 * (picture.sections[section].radius || 0.5));
+      }
+    }),
+    button("Back", () => views[shown].back()),
+    button("Whole", () => views[shown].whole()),
+  );
+  const titles = ["Zoom to the chosen move", "The window before the zoom", "The whole face"];
+  [...root.querySelector(".windows").children].forEach((made, number) => {
+    made.title = titles[number];
+  });
+  if (program === 0) {
+    root.querySelector("header").append(themeSwitch());
+  }
   if (views.length) {
     show(0);
     new IntersectionObserver((entries) => entries.some((entry) => entry.isIntersecting) && views[shown].draw(), { rootMargin: "400px" })

@@ -50,12 +50,7 @@ function zoomWindow(view, factor, about = null) {
 /** Zoom of all faces of a program. */
 function zoomView(root, picture, state, program, sections, hand) {
   sections.views.forEach((view) => {
-    const { face } = view;
-    face.addEventListener("dblclick", (event) => {
-      if (!event.target.closest(".modebar, .measured") && !face.classList.contains("is-measuring")) {
-        view.whole();
-      }
-    });
+    whenDrawn(view, () => view.face.on("plotly_doubleclick", () => !view.face.classList.contains("is-measuring") && view.whole()));
     pinched(view);
   });
   const act = (change) => () => {

@@ -95,7 +95,7 @@ def draw_face(axes: Axes, section: SectionPicture, window: Window, entries: Sequ
         _draw_mark(axes, mark)
     if not small:
         _draw_ends(axes, section)
-    _draw_labels(axes, window, entries)
+    _draw_labels(axes, window, entries, () if small else _ends(section))
 
 
 def legend(section: SectionPicture) -> list[Artist]:
@@ -170,9 +170,9 @@ def _formatter(factor: float, digits: int) -> Callable[[float, int | None], str]
 
 def _step(span: float, count: int) -> float:
     """Return a round distance of ticks, of which about `count` lie in a span."""
-    least = max(span, 1e-9) / count
-    power = 10.0 ** np.floor(np.log10(least))
-    return float(next(step * power for step in _STEPS if step * power >= least * (1 - 1e-9)))
+    wanted = max(span, 1e-9) / count
+    power = 10.0 ** np.floor(np.log10(wanted))
+    return float(min((step * power for step in _STEPS), key=lambda step: abs(np.log(step / wanted))))
 
 
 # ---- what is drawn ----
@@ -235,8 +235,8 @@ def _stretches(section: SectionPicture) -> Iterator[tuple[str, str, list[tuple[f
     """Yield role, color and points of each stretch of the path that is drawn alike."""
     tool, moves = section.tool, section.moves
     colors = [
-        UNKNOWN if role == "unknown" else color_of_share(share, role == "positioning")
-        for role, share in zip(moves.role, moves.share, strict=True)
+        UNKNOWN if role == "unknown" else ABOVE if jumps else color_of_share(share, role == "positioning")
+        for role, share, jumps in zip(moves.role, moves.share, moves.jump, strict=True)
     ]
     line: list[tuple[float, float]] = []
     style = ("", "")
@@ -263,17 +263,20 @@ def _draw_mark(axes: Axes, mark: Mark) -> None:
         )
 
 
-def _draw_ends(axes: Axes, section: SectionPicture) -> None:
+def _ends(section: SectionPicture) -> list[tuple[float, float]]:
+    """Return the first and the last point of the path; nothing if it is not known."""
     path = section.tool if section.tool.x else section.programmed
     known = [(x, c) for x, c in zip(path.x, path.c, strict=True) if x is not None and c is not None]
-    if not known:
-        return
-    for place, text, marker, down in ((known[0], "start", "o", 4), (known[-1], "end", "s", -9)):
+    return [known[0], known[-1]] if known else []
+
+
+def _draw_ends(axes: Axes, section: SectionPicture) -> None:
+    for place, (text, marker, down) in zip(_ends(section), (("start", "o", 4), ("end", "s", -9)), strict=False):
         axes.plot(*place, marker=marker, markersize=5, markerfacecolor="none", markeredgecolor=INK, zorder=7)
         axes.annotate(text, place, (4, down), textcoords="offset points", fontsize=7, color=INK, zorder=8)
 
 
-def _draw_labels(axes: Axes, window: Window, entries: Sequence[Entry]) -> None:
+def _draw_labels(axes: Axes, window: Window, entries: Sequence[Entry], ends: Sequence[tuple[float, float]]) -> None:
     """Draw a cross at each place of a finding, and its number beside it, away from the middle."""
     shown = [entry._replace(places=[place for place in entry.places if _is_within(place, window)]) for entry in entries]
     middle = complex(window.x0 + window.x1, window.c0 + window.c1) / 2
@@ -281,6 +284,8 @@ def _draw_labels(axes: Axes, window: Window, entries: Sequence[Entry]) -> None:
         color = SEVERITIES.get(kind, LEFT)
         away = complex(x, c) - middle
         away = away / abs(away) if abs(away) > 2 * window.scale else complex(0.7, 0.7)
+        if any(abs(complex(x, c) - complex(*end)) < 6 * window.scale for end in ends):
+            away = complex(-0.7, 0.7)  # their words are on the right
         axes.plot([x], [c], marker="x", markersize=6, markeredgewidth=1.6, color=color, zorder=9)
         axes.annotate(
             text, (x, c), (13 * away.real, 13 * away.imag), textcoords="offset points", fontsize=7.5, color="white",

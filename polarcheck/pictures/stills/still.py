@@ -158,7 +158,7 @@ def _add_rest(sheet: _Sheet, picture: Picture, numbers: Sequence[int]) -> None:
 
 def _add_more(sheet: _Sheet, more: int) -> None:
     if more:
-        sheet.text(f"and {more} more findings", 7, indent=5.5)
+        sheet.text(f"and {more} more", 7, indent=5.5)
 
 
 def _add_entry(sheet: _Sheet, entry: Entry, label: str) -> None:
@@ -290,12 +290,16 @@ def _add_details(sheet: _Sheet, section: SectionPicture, frame: _Frame, listed: 
     window = frame.window
     small = _SMALL * (window.c1 - window.c0)
     details: list[tuple[str, Window]] = []
+    shown: set[str] = set()
     for entry in listed:
         if entry.span is None or not 0 < entry.span < small or not entry.places or len(details) == _DETAILS:
             continue
+        if entry.rule and entry.rule in shown:
+            continue  # others of the rule look alike
         near = _window(entry.places[0], _DETAIL, _DETAIL, entry.span / _DETAIL)
         if any(abs(near.x0 - other.x0) + abs(near.c0 - other.c0) < near.x1 - near.x0 for _, other in details):
             continue
+        shown.add(entry.rule)
         details.append((f"{entry.number}, enlarged {window.scale / near.scale:.3g} times", near))
     if details:
         sheet.add(_DETAIL + 9, lambda figure, top, total: _draw_details(figure, section, listed, details, top, total))

@@ -80,18 +80,30 @@ def page_names(paths: Iterable[str]) -> list[str]:
     return names
 
 
-def index(entries: Sequence[Entry], notes: Iterable[str] = ()) -> str:
-    """Return the page, in the order of the programs; it has no scripts. notes: lines behind the table."""
+def index(entries: Sequence[Entry], notes: Iterable[str] = (), version: str = "") -> str:
+    """
+    Return the page, in the order of the programs.
+
+    notes: lines behind the table.
+    version: of a page that is served, as in `page`; else it has no scripts.
+    """
+    from polarcheck.pictures.page import CONNECTED, script_hash, script_of_served, served
+
+    script = script_of_served() if version else ""
+    policy = f"; script-src {script_hash(script)}{CONNECTED}" if version else ""
     heads = "".join(f'<th scope="col">{head}</th>' for head in _HEADS)
     rows = "\n".join(map(_row, entries))
     below = "".join(f"<p>{escape(visible(note))}</p>\n" for note in notes)
     return (
         '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
-        "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'\">\n"
+        "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'"
+        f'{policy}">\n{served(version) if version else ""}'
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
         f"<title>polarcheck: {counted(len(entries), 'program')}</title>\n<style>{_STYLE}</style>\n</head>\n"
         f"<body>\n<h1>{counted(len(entries), 'program')}</h1>\n<table>\n<thead><tr>{heads}</tr></thead>\n"
-        f"<tbody>\n{rows}\n</tbody>\n</table>\n{below}</body>\n</html>\n"
+        f"<tbody>\n{rows}\n</tbody>\n</table>\n{below}"
+        + (f"<script>{script}</script>\n" if script else "")
+        + "</body>\n</html>\n"
     )
 
 

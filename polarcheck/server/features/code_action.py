@@ -23,17 +23,25 @@ def _quick_fixes(
 #: Each takes the result of a check, the document with its version, a selection, and True if edits may name a version.
 _FUNCTIONS = ((types.CodeActionKind.QuickFix, _quick_fixes),)
 
+#: The kind of those that need no check.
+_REWRITES = types.CodeActionKind.RefactorRewrite
+
 
 def register(server: Server) -> None:
     """Register the feature."""
 
     @server.feature(
-        types.TEXT_DOCUMENT_CODE_ACTION, types.CodeActionOptions(code_action_kinds=[kind for kind, _ in _FUNCTIONS])
+        types.TEXT_DOCUMENT_CODE_ACTION,
+        types.CodeActionOptions(
+            code_action_kinds=[*(kind for kind, _ in _FUNCTIONS), _REWRITES], resolve_provider=True
+        ),
     )
     async def code_action(params: types.CodeActionParams) -> list[types.CodeAction]:
         functions = [function for kind, function in _FUNCTIONS if _is_wanted(kind, params.context.only)]
+        rewrites = _is_wanted(_REWRITES, params.context.only)
+        rewritten = [action for offered in server.rewritings if rewrites for action in await offered(params)]
         if not functions:
-            return []
+            return rewritten
         uri = params.text_document.uri
         buffer = server.buffers.open.get(uri)
         version = buffer.version if buffer is not None else None
@@ -48,7 +56,8 @@ def register(server: Server) -> None:
                 for action in function(judged, uri, version, params.range, with_versions)
             ]
 
-        return await server.ask(uri, find, [], soon=True)
+        none: list[types.CodeAction] = []
+        return [*await server.ask(uri, find, none, soon=True), *rewritten]
 
 
 def _is_wanted(kind: types.CodeActionKind, only: Iterable[types.CodeActionKind | str] | None) -> bool:

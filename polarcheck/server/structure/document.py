@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
+from typing import Any, TypeVar
 
 import numpy as np
 from lsprotocol import types
@@ -17,6 +18,8 @@ from polarcheck.reading.channels import channels
 from polarcheck.reading.source import read_source
 from polarcheck.reading.words import Text
 from polarcheck.server.open_text import OpenText
+
+Result = TypeVar("Result")
 
 #: Statements that define names.
 _DEFINES = re.compile(rb"DEF|PROC|FOR", re.IGNORECASE)
@@ -35,6 +38,7 @@ class Document:
     def __init__(self, uri: str, path: Path, text: OpenText, machine: Machine, folders: Iterable[str] = ()) -> None:
         self.uri, self.path, self.text, self.machine = uri, path, text, machine
         self.folders = tuple(folders)
+        self._cached: dict[str, Any] = {}
 
     @cached_property
     def listings(self) -> list[Listing]:
@@ -43,6 +47,13 @@ class Document:
         source = read_source(self.text.data, self.path.name)
         parts = channels(source, control.channel_mark, control.line_comments)
         return [_listing(read_text(part, self.machine), self.machine) for part in parts]
+
+    def cached(self, name: str, make: Callable[[], Result]) -> Result:
+        """Return what is made of the document once; name: of it."""
+        if name not in self._cached:
+            self._cached[name] = make()
+        result: Result = self._cached[name]
+        return result
 
     def range(self, start: int, end: int) -> types.Range:
         """Return the range of the characters of a table from start to end."""

@@ -18,6 +18,7 @@ from polarcheck.execution.programs import LABEL, SEQUENCE_NUMBER, Program, Progr
 from polarcheck.execution.run import begins_program, is_code
 from polarcheck.execution.statement import Kind as StatementKind
 from polarcheck.execution.statement import Statement, Word
+from polarcheck.server.structure.document import Document
 from polarcheck.server.structure.lexing import Token, tokens
 
 _NUMBER_LIMIT = 1e15
@@ -105,6 +106,7 @@ class Computed(NamedTuple):
 
     kind: Kind
     block: int
+    into: Into = Into.OWN
 
 
 class Mentions:
@@ -296,7 +298,7 @@ class Mentions:
             return
         digits = _DIGITS.search(written, word.start, word.end)
         if word.written is None or digits is None:
-            self.computed.append(Computed(Kind.SEQUENCE, block))
+            self.computed.append(Computed(Kind.SEQUENCE, block, into))
             return
         span = start + digits.start(), start + digits.end()
         mention = self._mention(Kind.SEQUENCE, Role.REFERS, int(digits[0][:18]), span, block, start + word.start)
@@ -387,3 +389,8 @@ def _place_of_name(written: str, word: Word, called: ProgramName) -> tuple[int, 
     )
     match = re.compile(pattern, re.IGNORECASE).search(written, word.start, max(word.end, word.start + 1))
     return match.span() if match else None
+
+
+def mentions_of(document: Document) -> list[Mentions]:
+    """Return the mentions of each channel of a document; found once for each state of its text."""
+    return document.cached("mentions", lambda: [Mentions(listing) for listing in document.listings])

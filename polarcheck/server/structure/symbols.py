@@ -16,7 +16,7 @@ from polarcheck.reading.words import Spans
 from polarcheck.server.outline import sections_by_line, summary
 from polarcheck.server.structure import stretches
 from polarcheck.server.structure.document import Document, is_written
-from polarcheck.server.structure.mentions import Kind, Mentions, Role
+from polarcheck.server.structure.mentions import Kind, Role, mentions_of
 
 #: The most N blocks and labels of a program; and the longest name [characters].
 _MOST, _LONGEST = 2_000, 80
@@ -91,7 +91,7 @@ def _sections(
 
 def _numbered(document: Document, listing: Listing, program: Program) -> Iterator[types.DocumentSymbol]:
     """Yield the N blocks with a comment, those that something leads to, and all of them where they are few; labels."""
-    mentions = Mentions(listing)
+    mentions = next(one for one in mentions_of(document) if one.listing is listing)
     heads = [one for one in mentions.of_program(program) if one.role is Role.DEFINES]
     numbers = [one for one in heads if one.kind is Kind.SEQUENCE]
     led_to = {one.name for one in mentions.of_program(program) if one.role is Role.REFERS and one.kind is Kind.SEQUENCE}

@@ -1,0 +1,51 @@
+from __future__ import annotations
+
+import numpy as np
+
+from polarcheck.checking.repair import Mended, repair
+from polarcheck.reading.words import Text
+from polarcheck.table.written import Written
+
+_COMMA, _ZERO, _NINE = b",09"
+
+
+@repair()
+def stray_character(text: Text, written: Written, index: int) -> Mended | None:
+    """
+    A decimal comma becomes a decimal point.
+
+    Safe: the word is read so anyway. Where one finding stands for several commas, all of them are mended. For other
+    characters there is no fix.
+
+    Bad:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. F200
+        C8,660
+        X60. C-8,660
+        C0
+        G13.1
+
+    Good:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. F200
+        C8.660
+        X60. C-8.660
+        C0
+        G13.1
+    """
+    code, starts = text.source.code, text.strays.start
+    # A character between two others: text does not begin or end with a comma of a number.
+    inner = np.clip(starts, 1, max(len(code) - 2, 1))
+    is_digit = (code >= _ZERO) & (code <= _NINE)
+    is_decimal = (inner == starts) & (code[starts] == _COMMA)
+    is_decimal &= ~text.blocks.is_macro[text.strays.block]
+    is_decimal[is_decimal] = is_digit[starts[is_decimal] - 1] & is_digit[starts[is_decimal] + 1]
+    if not is_decimal[index]:
+        return None
+    if written.stray_count[index] == 1:
+        is_decimal &= text.strays.block == text.strays.block[index]
+    return Mended("Write a decimal point", True, tuple((at, at + 1, ".") for at in starts[is_decimal].tolist()))

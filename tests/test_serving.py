@@ -1,0 +1,350 @@
+"""`plot --serve`: what is served to whom, what makes the pages anew, and a browser that shows them."""
+
+from __future__ import annotations
+
+import http.client
+import json
+import re
+import signal
+import socket
+import threading
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+from urllib.parse import urlsplit
+
+import pytest
+from test_cli import call, make, process
+from test_page_in_browser import CHROMIUM, browser
+from test_pictures import GROOVE, HEXAGON
+from test_plot import PLOTLY, RADIUS
+
+from polarcheck.commands import serving, watching
+from polarcheck.pictures import library
+from polarcheck.pictures import serving as served
+
+pytestmark = pytest.mark.usefixtures("own_folder")
+__all__ = ["browser"]  # a fixture
+
+
+class Visitor:
+    """A browser that asks for pages, and hears of new versions."""
+
+    def __init__(self) -> None:
+        self.address = ""
+
+    def ask(self, path: str = "", host: str = "", method: str = "GET", below_token: bool = True) -> tuple[int, str]:
+        """Status and content; the path is below the token."""
+        with self.answer(path, host, method, below_token) as answer:
+            return answer.status, answer.read().decode()
+
+    def answer(self, path: str, host: str = "", method: str = "GET", below_token: bool = True) -> Any:
+        parts = urlsplit(self.address)
+        connection = http.client.HTTPConnection(parts.netloc, timeout=10)
+        headers = {"Host": host} if host else {}
+        connection.request(method, (parts.path if below_token else "/") + path, headers=headers)
+        return connection.getresponse()
+
+    def event(self, name: str = "") -> dict[str, str]:
+        """Version and notice of a page."""
+        with self.answer(f"events/{name}") as answer:
+            event: dict[str, str] = json.loads(answer.readline().removeprefix(b"data: "))
+        return event
+
+
+@pytest.fixture
+def visitor(monkeypatch: pytest.MonkeyPatch) -> Visitor:
+    """Hears the address; plotly is short."""
+    visitor = Visitor()
+
+    def show(text: str) -> bool:
+        visitor.address = text.strip()
+        return True
+
+    monkeypatch.setattr(serving, "show", show)
+    monkeypatch.setattr(library, "library", lambda: PLOTLY)
+    return visitor
+
+
+@pytest.fixture
+def between(monkeypatch: pytest.MonkeyPatch) -> Callable[..., None]:
+    """Sets what is done between the runs: each returns the changed files; behind the last one is Ctrl-C."""
+
+    def set_steps(*steps: Callable[[], object]) -> None:
+        rest = iter(steps)
+
+        def next_change(seen: watching.Seen) -> list[str]:
+            step = next(rest, None)
+            if step is None:
+                raise KeyboardInterrupt
+            step()
+            assert seen.changed() or step.__name__.startswith("look")
+            return ["a.nc"]
+
+        monkeypatch.setattr(watching, "_next_change", next_change)
+
+    return set_steps
+
+
+def test_a_saved_program_is_a_new_version_and_a_broken_one_keeps_the_last(
+    visitor: Visitor, between: Callable[..., None]
+) -> None:
+    make(a__nc=GROOVE)
+    versions: list[str] = []
+
+    def first() -> None:
+        status, page = visitor.ask()
+        assert status == 200
+        assert "1 error" in page
+        assert "connect-src 'self'" in page
+        versions.append(visitor.event()["version"])
+        assert f'content="{versions[0]}"' in page
+        assert visitor.ask("plotly.min.js") == (200, PLOTLY)
+        make(a__nc=HEXAGON)
+
+    def second() -> None:
+        assert "no findings" in visitor.ask()[1]
+        versions.append(visitor.event()["version"])
+        make(a__nc="")
+
+    def empty() -> None:
+        assert "no findings" in visitor.ask()[1]
+        assert visitor.event() == {
+            "version": versions[1],
+            "notice": "a.nc: the program is empty. This is the last state that could be read.",
+        }
+        Path("a.nc").unlink()
+
+    def deleted() -> None:
+        assert "No such file" in visitor.event()["notice"]
+        assert visitor.event()["version"] == versions[1]
+        make(a__nc=HEXAGON)
+
+    def the_same_again() -> None:
+        assert visitor.event() == {"version": versions[1], "notice": ""}
+        make(polarcheck__toml="machine = 7\n")
+
+    def broken_job() -> None:
+        assert "polarcheck.toml" in visitor.event()["notice"]
+        make(polarcheck__toml='machine = "fanuc-30i"\n')
+
+    def other_machine() -> None:
+        assert visitor.event()["notice"] == ""
+        assert "(fanuc-30i)" in visitor.ask()[1]
+        Path("polarcheck.toml").unlink()
+
+    between(first, second, empty, deleted, the_same_again, broken_job, other_machine)
+    result = call("plot", "--serve", "a.nc", *RADIUS)
+    assert result.exit_code == 0, result.output
+    assert versions[0] != versions[1]
+    assert "watching for changes; Ctrl-C ends" in result.stderr
+    with pytest.raises(OSError, match=r"refused|Connection"):
+        visitor.ask()
+
+
+def test_a_folder_has_an_index_and_new_programs_come_to_it(visitor: Visitor, between: Callable[..., None]) -> None:
+    Path("f").mkdir()
+    make(**{"f/a__nc": HEXAGON, "f/b__nc": GROOVE})
+    versions: list[str] = []
+
+    def first() -> None:
+        assert re.findall('href="([^"]*)"', visitor.ask()[1]) == ["a.nc.html", "b.nc.html"]
+        assert "1 error" in visitor.ask("b.nc.html")[1]
+        assert "default-src 'none'" in visitor.ask()[1]
+        versions.extend(visitor.event(name)["version"] for name in ("", "a.nc.html", "b.nc.html"))
+        Path("f/A").mkdir()
+        make(**{"f/A/b__nc": HEXAGON})
+
+    def another() -> None:
+        # Names stay as they are, whatever comes before them.
+        assert re.findall('href="([^"]*)"', visitor.ask()[1]) == ["b.nc-2.html", "a.nc.html", "b.nc.html"]
+        assert [visitor.event(name)["version"] for name in ("a.nc.html", "b.nc.html")] == versions[1:]
+        assert visitor.event()["version"] != versions[0]
+        Path("f/a.nc").unlink()
+
+    def deleted() -> None:
+        assert visitor.event("a.nc.html")["notice"].startswith("f/a.nc: the program is not there.")
+        assert visitor.event("b.nc.html")["notice"] == ""
+        Path("f/new.nc").write_bytes(b"")
+
+    between(first, another, deleted)
+    assert call("plot", "--serve", "f", *RADIUS, "-j", "1").exit_code == 0
+
+
+def test_nobody_else_gets_anything(visitor: Visitor, between: Callable[..., None]) -> None:
+    make(a__nc=HEXAGON, b__nc=HEXAGON)
+
+    def look() -> None:
+        for host in ("evil.example", "evil.example:80", "127.0.0.1.evil.example", "[::1]:80", "a@localhost:1:2"):
+            assert visitor.ask(host=host)[0] == 421
+        for host in ("localhost", "localhost:8000", "127.0.0.1:1"):
+            assert visitor.ask(host=host)[0] == 200
+        for path in ("", "a.nc", "plotly.min.js", "x" * 22 + "/"):
+            assert visitor.ask(path, below_token=False)[0] == 404
+        for path in ("a.nc", "b.nc", "../a.nc", "%2e%2e/a.nc", "first.html", "events/a.nc", "<script>", "events/../"):
+            status, answer = visitor.ask(path)
+            assert status == 404
+            assert "script" not in answer
+        for method in ("POST", "PUT", "DELETE", "OPTIONS", "CONNECT"):
+            assert visitor.ask(method=method)[0] == 501
+        assert visitor.ask(method="HEAD") == (200, "")
+        assert visitor.ask("events/", method="HEAD") == (200, "")
+        answer = visitor.answer("")
+        assert answer.getheader("Access-Control-Allow-Origin") is None
+        assert answer.getheader("Cross-Origin-Resource-Policy") == "same-origin"
+        answer.close()
+
+    between(look)
+    assert call("plot", "--serve", "a.nc", *RADIUS).exit_code == 0
+
+
+def test_connections_are_few_and_bytes_of_any_kind_end_nothing(
+    visitor: Visitor, between: Callable[..., None], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    make(a__nc=HEXAGON)
+    monkeypatch.setattr(served, "_CONNECTIONS", 3)
+
+    def look() -> None:
+        where = ("127.0.0.1", urlsplit(visitor.address).port or 0)
+        for data in (
+            b"\x00\xff" * 50 + b"\r\n\r\n",
+            b"GET\r\n\r\n",
+            b"GET / HTTP/9.9\r\n\r\n",
+            b"GET /" + b"a" * 70000,
+            b"",
+        ):
+            with socket.create_connection(where, 10) as connection:
+                connection.sendall(data)
+        idle = [socket.create_connection(where, 10) for _ in range(3)]
+        with socket.create_connection(where, 10) as refused:
+            assert refused.recv(10) == b""
+        for connection in idle:
+            connection.close()
+        for _ in range(100):
+            try:
+                assert visitor.ask()[0] == 200
+                break
+            except OSError:  # the threads of those that have gone are not yet free
+                continue
+        else:
+            pytest.fail("no connection is free again")
+
+    between(look)
+    result = call("plot", "--serve", "a.nc", *RADIUS)
+    assert result.exit_code == 0
+    assert "Traceback" not in result.stderr
+
+
+def test_a_bug_in_an_answer_is_one_line(capsys: pytest.CaptureFixture[str]) -> None:
+    said: list[str] = []
+    site = served.Site()
+
+    def fail() -> bytes:
+        raise RuntimeError("no bytes")
+
+    site.put("", served.Served(fail, "text/html", "1"))
+    with served.Server(site, 0, lambda error: said.append(str(error))) as server:
+        server.start()
+        visitor = Visitor()
+        visitor.address = server.address
+        with pytest.raises(http.client.RemoteDisconnected):
+            visitor.ask()
+    assert said == ["no bytes"]
+
+
+def test_events_tell_of_changes_and_end_with_the_site(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(served, "_BEAT", 0.01)
+    site = served.Site()
+    site.notice("x", "is not there")
+    assert site.get("x") is None
+    site.put("x", served.Served(bytes, "", "1"))
+    events = site.events("x")
+    assert next(events) == ("1", "")
+    assert next(events) is None
+    site.notice("x", "gone")
+    assert next(events) == ("1", "gone")
+    site.put("x", served.Served(bytes, "", "2"))
+    assert next(events) == ("2", "")
+    monkeypatch.setattr(served, "_BEAT", 60.0)
+    threading.Timer(0.05, site.close).start()
+    assert list(events) == []
+
+
+def test_the_browser_is_opened_where_that_is_asked_for(
+    visitor: Visitor, between: Callable[..., None], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    make(a__nc=HEXAGON)
+    opened: list[str] = []
+    monkeypatch.setattr("webbrowser.open", opened.append)
+    between()
+    assert call("plot", "--serve", "--open", "a.nc", *RADIUS).exit_code == 0
+    assert opened == [visitor.address]
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("--serve", "-"), "--serve: standard input comes once; name a file or folder"),
+        (("--serve", "a.nc", "-o", "x.html"), "--serve: not with -o, which is for one look"),
+        (("--serve", "a.nc", "--png", "x.png"), "--serve: not with --png, which is for one look"),
+        (("a.nc", "--port", "0"), "--port: only with --serve"),
+        (("a.nc", "--open"), "--open: only with --serve"),
+        (("--serve", "gone.nc"), "gone.nc: No such file or directory"),
+        (("--serve", "gone", "--extensions", ".x"), "gone: No such file or directory"),
+    ],
+)
+def test_options_that_do_not_fit_are_one_line(words: tuple[str, ...], said: str, visitor: Visitor) -> None:
+    make(a__nc=HEXAGON)
+    result = call("plot", *words)
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert result.stderr == f"polarcheck: {said}\n"
+
+
+def test_a_port_that_is_taken_is_one_line(visitor: Visitor) -> None:
+    make(a__nc=HEXAGON)
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        port = taken.getsockname()[1]
+        result = call("plot", "--serve", "a.nc", "--port", str(port))
+    assert result.exit_code == 2
+    assert result.stderr == f"polarcheck: --port {port}: Address already in use\n"
+
+
+@pytest.mark.slow
+@pytest.mark.xdist_group("browser")
+@pytest.mark.skipif(CHROMIUM is None, reason="there is no chromium here")
+def test_a_browser_shows_what_is_saved_and_keeps_what_is_chosen(browser: Any) -> None:
+    make(a__nc=GROOVE)
+    running = process("plot", "--serve", "a.nc", *RADIUS, stderr=None)
+    try:
+        assert running.stdout is not None
+        address = running.stdout.readline().strip()
+        page = browser.new_page(viewport={"width": 1280, "height": 900})
+        errors: list[str] = []
+        page.on("pageerror", lambda error: errors.append(str(error)))
+        page.goto(f"{address}#L8")
+        page.locator(".face .main-svg").first.wait_for()
+        face = "document.querySelector('.face')"
+        page.evaluate(f"Plotly.relayout({face}, {{'xaxis.range': [0, 40], 'yaxis.range': [-10, 10]}})")
+        window = page.evaluate(f"{face}._fullLayout.xaxis.range")
+
+        make(a__nc=GROOVE.replace("G12.1", "(NEW)\n(LINES)\nG12.1"))
+        page.get_by_text("lines 5 to 17").first.wait_for(timeout=30000)
+        page.locator(".face .main-svg").first.wait_for()
+        page.wait_for_url("**/#L10")
+        assert page.evaluate(f"{face}._fullLayout.xaxis.range") == pytest.approx(window)
+
+        Path("a.nc").unlink()
+        notice = page.get_by_text("a.nc: No such file or directory. This is the last state")
+        notice.wait_for(timeout=30000)
+        make(a__nc=HEXAGON)
+        notice.wait_for(state="hidden", timeout=30000)
+        page.get_by_text("no findings").first.wait_for()
+
+        running.send_signal(signal.SIGINT)
+        assert running.wait(20) == 0
+        page.get_by_text("polarcheck does not serve this page any more").wait_for(timeout=30000)
+        assert errors == []
+        page.close()
+    finally:
+        running.kill()
+        running.communicate()
