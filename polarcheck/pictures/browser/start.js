@@ -5,7 +5,6 @@ const VIEWS = [
   chosenView,
   movesView,
   playersView,
-  embeddedView,
 ];
 
 function start() {
@@ -35,6 +34,7 @@ function start() {
   linked(pictures, state, ({ program }) => programs[program].root.scrollIntoView({ block: "start" }));
   const memory = pageMemory(pictures, state, programs);
   served(memory.keep, memory.restore);
+  embedded(state, memory);
 }
 
 start();
