@@ -330,7 +330,7 @@ def test_sections_side_by_side_the_drawing_and_the_list_of_keys(use: Opened) -> 
     page = use.page
     page.keyboard.press("b")
     columns = page.locator("#p0 .sides .column")
-    assert columns.locator("h3").all_text_contents() == ["1", "2"]
+    assert columns.locator("strong").all_text_contents() == ["channel 1", "channel 2"]
     columns.nth(1).locator("button").click()
     assert columns.nth(1).locator("button").get_attribute("aria-pressed") == "true"
     assert page.locator("#p0s1").is_visible()

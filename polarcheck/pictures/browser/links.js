@@ -46,7 +46,11 @@ function linked(pictures, state, shown) {
     timer = null;
     const link = linkOf(pictures, state.chosen);
     if (link !== location.hash && (link || LINK.test(location.hash))) {
-      history.replaceState(null, "", link || `${location.pathname}${location.search}`);
+      try {
+        history.replaceState(null, "", link || `${location.pathname}${location.search}`);
+      } catch {
+        // A page within another one, as in an editor, may have no address that could change.
+      }
     }
   }
 
