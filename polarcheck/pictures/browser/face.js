@@ -252,7 +252,7 @@ function ends(section, units) {
   }
   const [x0, , x1] = section.frame;
   const [[startX, startC], [endX, endC]] = points;
-  const isOne = Math.hypot(startX - endX, startC - endC) < 0.08 * (x1 - x0);
+  const isOne = Math.hypot(startX - endX, startC - endC) < 0.05 * (x1 - x0);
   const texts = isOne ? ["start, end", ""] : ["start", "end"];
   return points.map(([x, c], place) => ({
     type: "scatter", mode: "markers+text", x: [units.x(x)], y: [units.c(c)],
