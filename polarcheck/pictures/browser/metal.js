@@ -20,8 +20,9 @@ function barOf(section, line) {
       reach = Math.max(reach, Math.hypot(x, c));
     });
   }
-  if (reach || section.stock !== null) {
-    return { radius: reach || section.stock / 2, isKnown: true };
+  reach = reach || (section.stock || 0) / 2;
+  if (reach > 0) {
+    return { radius: reach, isKnown: true };
   }
   const { role } = section.moves;
   const cuts = ["cut", "corner", "unknown"].some((name) => role.includes(name)) ? ["cut", "corner", "unknown"] : ["start up", "cancel", "positioning"];
