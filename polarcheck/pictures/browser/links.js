@@ -58,7 +58,8 @@ function linked(pictures, state, shown) {
   window.addEventListener("hashchange", go);
   // Browsers refuse many changes of the address in a short time.
   state.subscribe((now, before) => {
-    if (timer === null && !now.playing && (now.line !== before.line || now.program !== before.program || now.section !== before.section)) {
+    const isOther = ["line", "program", "section", "playing"].some((name) => now[name] !== before[name]);
+    if (timer === null && !now.playing && isOther) {
       timer = setTimeout(write, 150);
     }
   });

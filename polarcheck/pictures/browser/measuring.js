@@ -61,6 +61,9 @@ function measuringView(root, picture, state, program, sections, hand) {
     if (!view) {
       return;
     }
+    if (state.chosen.view === "machine") {
+      state.choose({ program, view: "face" });
+    }
     view.draw();
     isOn = true;
     toggle.setAttribute("aria-pressed", "true");
