@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import cmath
 import contextlib
+import math
 from collections.abc import Callable, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, NamedTuple, TypeVar
@@ -53,7 +54,8 @@ def drawn(report: FileReport, runs: Sequence[tuple[str, Tables]]) -> FileReport:
     sections: list[_Section] = []
     for run, tables in enumerate(channels):
         try:
-            sections += _sections(run, tables, wanted, remarks)
+            own = [spot for of_run, spot in spots.values() if of_run == run]
+            sections += _sections(run, tables, own, wanted, remarks)
         except TooHardError as error:
             remarks.append(f"not drawn: {error}")
     sections.sort(key=lambda section: section.picture.line)
@@ -135,11 +137,12 @@ def _place(run: int, spot: Spot, sections: Sequence[_Section]) -> Place:
     )
 
 
-def _sections(run: int, tables: Tables, lines: Rows, remarks: list[str]) -> list[_Section]:
+def _sections(run: int, tables: Tables, spots: Sequence[Spot], lines: Rows, remarks: list[str]) -> list[_Section]:
     """
     Return the pictures of one run.
 
     run: its number.
+    spots: the places of its findings.
     lines: the lines with findings.
     remarks: takes a line for each thing that is not drawn.
     """
@@ -172,6 +175,12 @@ def _sections(run: int, tables: Tables, lines: Rows, remarks: list[str]) -> list
     with contextlib.suppress(TooHardError):  # `makes` says so
         depths = depths_of(tables)
 
+    windows: dict[int, float] = {}
+    for spot in spots:
+        if spot.rows and spot.span is not None:
+            number = int(trace.mode.section[spot.rows[0]])
+            windows[number] = min(spot.span, windows.get(number, math.inf))
+
     def parts_of(section: PolarSection, number: int, tolerance: float) -> list[PartPicture]:
         own = [level for level in (*levels, *meant) if level.section == number]
         made = [shape for shape in makes if _is_of(shape, section)]
@@ -198,6 +207,7 @@ def _sections(run: int, tables: Tables, lines: Rows, remarks: list[str]) -> list
                     makes=list(dict.fromkeys(_in_words(shape) for shape in makes if _is_of(shape, section))),
                     bar=bar,
                     face=float(tables["bar"].known.face),
+                    window=windows.get(number, math.inf),
                 ),
             ),
             face,

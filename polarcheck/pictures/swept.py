@@ -54,10 +54,11 @@ def swept_parts(
     # What is cleared at one depth is cleared above it, too.
     for z in sorted(own, key=lambda z: (np.isnan(z), z)):
         depth = own[z]
+        swept = shapely.simplify(depth.swept, tolerance / 2)
         above = gone is not None and not np.isnan(z)
-        gone = areas.union_all([gone, depth.swept], grid_size=GRID) if above else depth.swept
+        gone = areas.union_all([gone, swept], grid_size=GRID) if above else swept
         standing, is_known = _standing(gone, depth, bar)
-        shown = turned(shapely.simplify(standing, tolerance), -float(np.radians(entry)))
+        shown = turned(shapely.simplify(standing, tolerance / 2), -float(np.radians(entry)))
         polygons = [rings(polygon) for polygon in polygons_of(shown)]
         if polygons:
             found[z] = PartPicture(
