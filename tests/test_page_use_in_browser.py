@@ -304,6 +304,9 @@ def test_measuring_with_the_pointer(use: Opened) -> None:
     assert "diameter 60.000 mm" in page.evaluate("navigator.clipboard.readText()")
     page.keyboard.press("Escape")
     assert "Click two" in measured(use)[""]
+    page.touchscreen.tap(*use.at(HALF, 3))
+    assert measured(use)["length"] == "17.321 mm"
+    page.keyboard.press("Escape")
     page.keyboard.press("Escape")
     assert page.locator(".measured:visible").count() == 0
     assert chosen_line(use) == "2"
@@ -362,6 +365,7 @@ def test_sections_side_by_side_the_drawing_and_the_list_of_keys(use: Opened) -> 
     columns.nth(1).locator("button").click()
     assert columns.nth(1).locator("button").get_attribute("aria-pressed") == "true"
     assert page.locator("#p0s1").is_visible()
+    assert page.locator("#p0s1 .face .ytitle").text_content() == "Y [inch, from the center of C]"
     columns.nth(0).locator("button").click()
     page.keyboard.press("b")
     assert not columns.nth(0).is_visible()

@@ -370,8 +370,8 @@ function faceLayout(section) {
     margin: isNarrow ? { l: 44, r: 6, t: 6, b: 38 } : { l: 56, r: 10, t: 10, b: 42 }, paper_bgcolor: color("--paper"), plot_bgcolor: color("--paper"),
     hovermode: "closest", hoverdistance: 24, font: { family: "system-ui, sans-serif", size: isNarrow ? 10 : 12, color: color("--ink") }, dragmode: "pan",
     modebar: { bgcolor: "rgba(0,0,0,0)", color: color("--quiet"), activecolor: color("--ink") }, showlegend: false,
-    xaxis: { ...axis, range: x, title: { text: `${axisName(section.writing.linear)} [${units.name}, ${section.diameter ? "diameter" : "radius"}]`, standoff: 6 } },
-    yaxis: { ...axis, range: y, title: { text: `${axisName(section.writing.virtual)} [${units.name}]`, standoff: 4 }, scaleanchor: "x", scaleratio: units.ratio },
+    xaxis: { ...axis, range: x, title: { text: `${axisName(section.writing.linear)} [${units.name}, ${section.diameter ? "diameter" : "radius"}${scaleNote(section)}]`, standoff: 6 } },
+    yaxis: { ...axis, range: y, title: { text: `${axisName(section.writing.virtual)} [${units.name}${scaleNote(section)}]`, standoff: 4 }, scaleanchor: "x", scaleratio: units.ratio },
     shapes: [],
   };
 }
