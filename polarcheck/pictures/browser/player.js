@@ -290,7 +290,7 @@ function whyNot(section) {
   if (section.radius === null) {
     told.push("R of the cutter is not known: the programmed point alone moves, and no metal is taken away.");
   } else if (section.stock === null && !section.bar.length) {
-    told.push("The diameter of the stock is not known; the bar is drawn as far as the tool reaches.");
+    told.push("The diameter of the stock is not known: the bar ends where the cuts do.");
   }
   return told.map((text) => Object.assign(element("p", text), { className: "remark" }));
 }
