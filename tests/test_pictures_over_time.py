@@ -165,7 +165,7 @@ def test_where_c_is_held_its_rate_is_the_slope_of_its_angle() -> None:
 
 
 def test_many_points_are_left_out_where_the_curves_are_straight() -> None:
-    count = 3000
+    count = 700
     zeros = np.zeros(count)
     angle = np.linspace(0, 90, count)
     curves = rates.Samples(
@@ -179,10 +179,10 @@ def test_many_points_are_left_out_where_the_curves_are_straight() -> None:
         angle=angle,
     )
     keep = np.zeros(count, bool)
-    keep[1234] = True
+    keep[234] = True
     chosen, off = rates.thinned(curves, keep, 100)
     assert len(chosen.move) <= 110
-    assert 1234 in chosen.move
+    assert 234 in chosen.move
     assert off < 0.02
     assert rates.thinned(curves, keep, count) == (curves, 0.0)
     # What is not straight stays by its highest and lowest values.

@@ -22,7 +22,7 @@ from polarcheck.parts.part_report import depths_of, made_by
 from polarcheck.pictures.listing import listing
 from polarcheck.pictures.moves import LENGTH, SectionMoves
 from polarcheck.pictures.picture import Drawn, Key, Mark, PartPicture, Place, SectionPicture, key_of
-from polarcheck.pictures.places import Face, Spot, Spots, with_followers
+from polarcheck.pictures.places import Face, Spot, Spots, Wanted, with_followers
 
 if TYPE_CHECKING:
     from polarcheck.parts.made_depths import Depth
@@ -49,8 +49,9 @@ def drawn(report: FileReport, runs: Sequence[tuple[str, Tables]]) -> FileReport:
     channels = [tables for _, tables in first_runs(runs)]
     remarks: list[str] = []
     spots = _spots(report, [Spots(tables) for tables in channels])
-    lines = {line for _, spot in spots.values() for line in spot.also} | {key[1] for key in spots}
-    wanted = np.array(sorted(lines), np.int64)
+    lines = {key[1] for key in spots}
+    also = {line for _, spot in spots.values() for line in spot.also}
+    wanted = Wanted(*(np.array(sorted(each), np.int64) for each in (lines, also)))
     sections: list[_Section] = []
     for run, tables in enumerate(channels):
         try:
@@ -137,13 +138,13 @@ def _place(run: int, spot: Spot, sections: Sequence[_Section]) -> Place:
     )
 
 
-def _sections(run: int, tables: Tables, spots: Sequence[Spot], lines: Rows, remarks: list[str]) -> list[_Section]:
+def _sections(run: int, tables: Tables, spots: Sequence[Spot], wanted: Wanted, remarks: list[str]) -> list[_Section]:
     """
     Return the pictures of one run.
 
     run: its number.
     spots: the places of its findings.
-    lines: the lines with findings.
+    wanted: the lines with findings.
     remarks: takes a line for each thing that is not drawn.
     """
     trace: Trace = tables["trace"]
@@ -199,7 +200,7 @@ def _sections(run: int, tables: Tables, spots: Sequence[Spot], lines: Rows, rema
                 programmed,
                 section,
                 number,
-                lines,
+                wanted,
                 Extras(
                     parts=partial(parts_of, section, number),
                     asked=partial(asked_parts, tables, number),

@@ -30,7 +30,8 @@ def samples(path: Segments, held_at: float, sense: int, most: int) -> Samples:
     """
     ways = _Ways(path)
     of, share = ways.first_shares()
-    of, share = ways.refined(of, share, _ADDED * most)
+    if len(of) <= _ADDED * most:
+        of, share = ways.refined(of, share, _ADDED * most)
     # In the center C jumps, or turns while the tool waits: two points, before and behind it.
     at_center = path.jumps[of] & (share == ways.ahead[of])
     count = 1 + at_center

@@ -16,6 +16,8 @@ from polarcheck.pictures.moves import SectionMoves
 _NEAR, _NEAR_ANGLE, _SHARE = 0.002, 0.02, 0.002
 #: How often every second point is tried.
 _ROUNDS = 16
+#: Of more points than this many times those that may remain, no single ones are tried.
+_FAR_TOO_MANY = 8
 
 
 class Samples(msgspec.Struct, frozen=True):
@@ -134,15 +136,17 @@ def thinned(curves: Samples, keep: Mask, most: int) -> tuple[Samples, float]:
     """
     Return about `most` points at most, and how far the positions between them are off [mm].
 
-    keep: bool[moves], moves whose points all stay.
+    keep: bool[moves], moves whose points all stay, unless these are too many themselves.
 
-    First points go that lie on the curves between their neighbours. If too many are left, the first of each short
-    interval stays, and the highest and lowest of each curve.
+    First points go that lie on the curves between their neighbours. If too many are left, the ends of moves stay, if
+    these are not too many, and of each short interval the first point, and the highest and lowest of each curve.
     """
     if len(curves.move) <= most:
         return curves, 0.0
+    if np.count_nonzero(keep[curves.move]) > most:
+        keep = np.zeros_like(keep)
     rest = np.arange(len(curves.move))
-    for number in range(_ROUNDS):
+    for number in range(_ROUNDS if len(rest) <= _FAR_TOO_MANY * most else 0):
         if len(rest) <= most:
             break
         rest = _without_straight(curves, rest, keep, number % 2)
@@ -174,10 +178,10 @@ def _without_straight(curves: Samples, rest: Rows, keep: Mask, first: int) -> Ro
 
 
 def _extremes(curves: Samples, keep: Mask, most: int) -> Rows:
-    """Return of each short interval the first point, and the highest and lowest of each curve."""
+    """Return the ends of moves, and of each short interval the first point and the highest and lowest of each curve."""
     count = len(curves.move)
     columns: Sequence[Floats] = (curves.c_feed, curves.x_feed, curves.feed)
-    bins = max(most // (2 * len(columns) + 1), 1)
+    bins = max(most // (4 * len(columns)), 1)
     whole = float(curves.t[-1] - curves.t[0])
     # Without any time the points are divided by their number.
     part = (curves.t - curves.t[0]) / whole if whole > 0 else np.arange(count) / count
@@ -191,4 +195,7 @@ def _extremes(curves: Samples, keep: Mask, most: int) -> Rows:
         chosen[order[begins]] = True
         chosen[order[ends]] = True
     chosen[-1] = True
+    is_end = np.append(np.diff(curves.move) != 0, True)
+    if np.count_nonzero(is_end) <= most:
+        chosen |= is_end
     return np.flatnonzero(chosen)

@@ -24,6 +24,7 @@ from polarcheck.pictures.extent import bar_rings, frame
 from polarcheck.pictures.moves import LENGTH, POSITIONING, RATE, TIME, SectionMoves, numbers_of
 from polarcheck.pictures.paths import Chords
 from polarcheck.pictures.picture import DrawnPart, Mark, PartPicture, Points, Rates, SectionPicture
+from polarcheck.pictures.places import Wanted
 from polarcheck.pictures.writing import writing
 from polarcheck.table.moves import Moves
 from polarcheck.table.overcuts import curves_of
@@ -68,7 +69,7 @@ def section_picture(
     programmed: Moves,
     summary: PolarSection,
     section: int,
-    lines: Rows,
+    wanted: Wanted,
     extras: Extras,
 ) -> tuple[SectionPicture, Rows]:
     """
@@ -78,14 +79,15 @@ def section_picture(
     programmed: the programmed path of the program.
     summary: the section in the report.
     section: its number.
-    lines: the lines with findings, whose moves all stay.
+    wanted: the lines with findings, whose moves stay.
     extras: its other content.
     """
     chosen = table.of_section(section)
     moves = table.moves[_mask(chosen, len(table))]
     most = max(min(POINTS, _OF_PROGRAM // len(trace.mode.sections)), _LEAST)
     role, known = table.role[chosen], table.is_known[chosen]
-    keep = np.isin(trace.blocks.line_in_file[moves.row], lines)
+    line = trace.blocks.line_in_file[moves.row]
+    keep = np.isin(line, wanted.findings)
     path_moves = programmed[programmed.section == section]
     unseen = paths.unseen(_shown(moves, role))
     chord = min(unseen / 2, extras.window / _OF_WINDOW)
@@ -101,7 +103,7 @@ def section_picture(
     # The first of the moves of each block.
     first = _first_of(moves.row, path_moves.row[contour.move])
     extremes = (table.c_feed[chosen], table.x_feed[chosen], -moves.nearest)
-    listed = _listed(keep, [tool.move, first, curves.move, *map(_highest, extremes)], most)
+    listed = _listed(keep | np.isin(line, wanted.also), [tool.move, first, curves.move, *map(_highest, extremes)], most)
     enter = int(trace.mode.sections.enter[section])
     limits = trace.machine.limits
     picture = SectionPicture(
