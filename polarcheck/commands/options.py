@@ -143,6 +143,13 @@ def variables(ctx: click.Context) -> dict[str, str]:
     return named
 
 
+def is_written(ctx: click.Context, option: str) -> bool:
+    """Return True if an option stands on the command line, and not in the environment only. option: such as `port`."""
+    flag = f"--{option}"
+    name = next(parameter.name or "" for parameter in ctx.command.params if flag in parameter.opts)
+    return ctx.get_parameter_source(name) is click.core.ParameterSource.COMMANDLINE
+
+
 def _set_debug(ctx: click.Context, parameter: click.Parameter, value: bool) -> None:
     if value:
         ctx.meta[DEBUG] = True

@@ -15,6 +15,7 @@ from polarcheck.commands.options import option
 @click.command(short_help="Draw what a program makes and how the tool runs, as a page.")
 @click.argument("paths", nargs=-1, required=True, metavar="PATH...")
 @options.executing("programs")
+@options.comparing
 @option(
     "-o",
     "--output",
@@ -74,7 +75,7 @@ def plot(
         serve,
         paths,
         {"-o": output, "--png": png, "--svg": svg, "--section": chosen},
-        {"--port": port is not None, "--open": opens},
+        {name: options.is_written(ctx, name[2:]) for name in ("--port", "--open")},
     )
     if serve:
         applies = Options(use_config=not no_config, extras=picturing.extras(), **arguments)

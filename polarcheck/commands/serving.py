@@ -173,6 +173,8 @@ class _Rounds:
             checked = batch.gather(outcomes, faults.failures.append, faults.bug)
         if checked.stopped is not None:
             return signals.exit_status(checked.stopped)[0]
+        if self.count == 1:
+            running.warn_unused(self._wish.applies.tools, checked.called)
         read = {report.path: report for report in checked.files}
         for title, name in self._pages.names.items():
             if title not in read:
@@ -230,7 +232,9 @@ class _Pages(picturing.Pictures):
         assert report is not None
         pictured = picture(report, self._background._replace(drawn={report.path: drawn}))
         version = hashlib.sha256(msgspec.json.encode(pictured)).hexdigest()[:_DIGITS]
-        self._put(self.names[report.path], page([pictured], beside=FILE_NAME, version=version), version)
+        self._put(
+            self.names[report.path], page([pictured], beside=FILE_NAME, version=version, sources="'self'"), version
+        )
 
     def miss(self, report: FileReport) -> None:
         """Keep the page of a program that could not be read or checked."""

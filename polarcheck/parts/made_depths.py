@@ -20,7 +20,8 @@ class Depth(NamedTuple):
     sections: their numbers. z: [mm], NaN where it is not known. radius: R of the cutter [mm], NaN if not known. shapes:
     in the frame of the part; where C is not known at the beginning of the section, as it writes them. needs: as in
     MadeShape. polygon: what is left there, within what is known of it (shapely, mm), or, where is_cleared, what is
-    cleared; None where depths are not compared by it.
+    cleared; None where depths are not compared by it. swept: what the cutter clears, where the path is that of the
+    tool; None elsewhere.
     """
 
     sections: tuple[int, ...]
@@ -30,6 +31,7 @@ class Depth(NamedTuple):
     needs: str | None = None
     polygon: Any = None
     is_cleared: bool = False
+    swept: Any = None
 
 
 def put_together(joined: Depth, single: Sequence[Depth]) -> Iterator[Depth]:

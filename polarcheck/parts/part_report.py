@@ -71,7 +71,7 @@ def in_one_line(tables: Tables) -> str:
     """
     trace: Trace = tables["trace"]
     try:
-        groups = merged(_depths(tables))
+        groups = merged(depths_of(tables))
     except TooHardError:
         return ""
     shapes = [(group, shape) for group in groups for shape in group[0].shapes]
@@ -92,16 +92,20 @@ def _deepest(group: Sequence[Depth], sizes: Sizes) -> str:
     return f"to Z{sizes(min(known))}" if known else "to Z not known"
 
 
-def _depths(tables: Tables) -> list[Depth]:
-    """All depths of all sections; raises TooHardError where that takes too long."""
+def depths_of(tables: Tables) -> list[Depth]:
+    """All depths of all sections, computed once for a run; raises TooHardError where that takes too long."""
     from polarcheck.parts.tool_paths import depths_of_paths
 
-    return [*_of_contours(tables), *depths_of_paths(tables)]
+    known: list[Depth] | None = tables.get("depths")
+    if known is None:
+        known = [*_of_contours(tables), *depths_of_paths(tables)]
+        tables.give("depths", known)
+    return known
 
 
 def _by_section(trace: Trace, tables: Tables) -> list[MadeShape]:
     """The same; raises TooHardError where it takes too long."""
-    depths = _depths(tables)
+    depths = depths_of(tables)
     standing = _ribs_and_strips(tables)
     job: Job = tables["job"]
     by_first: dict[int, list[Depth]] = {}

@@ -76,8 +76,8 @@ def _depth(trace: Trace, moves: Moves, own: Rows, cutter: float) -> Depth:
         for number in sections
     ]
     bar = float(trace.lengths.stock_diameter[row])
-    shapes, polygon, is_cleared = _left(Curves.concatenated(parts), cutter, bar)
-    return Depth(sections, z, cutter, shapes, polygon=polygon, is_cleared=is_cleared)
+    shapes, polygon, is_cleared, swept = _left(Curves.concatenated(parts), cutter, bar)
+    return Depth(sections, z, cutter, shapes, polygon=polygon, is_cleared=is_cleared, swept=swept)
 
 
 def _changes_depth(trace: Trace) -> Mask:
@@ -112,10 +112,10 @@ def _levels(frame: Rows, level: Floats, radius: Floats, chosen: Rows) -> Iterato
     yield from np.split(chosen[order], np.flatnonzero(np.diff(place[order])) + 1)
 
 
-def _left(path: Curves, radius: float, bar: float) -> tuple[list[Shape], Any, bool]:
+def _left(path: Curves, radius: float, bar: float) -> tuple[list[Shape], Any, bool, Any]:
     """
     The shapes that a path makes, and an area by which depths are compared: what stands within the path; else what it
-    clears, True; None for a groove alone, whose ends are those of the ways in and out.
+    clears, True; None for a groove alone, whose ends are those of the ways in and out. At last what it clears.
     """
     from polarcheck.geometry.polygons.cleared import cleared
     from polarcheck.geometry.shapes.grooves import GROOVE, shapes_of_cleared
@@ -124,8 +124,8 @@ def _left(path: Curves, radius: float, bar: float) -> tuple[list[Shape], Any, bo
     shapes = shapes_of_cleared(outline, across, radius, bar)
     standing = within(area)
     if standing.is_empty:
-        return shapes, area if across < GROOVE else None, True
-    return shapes, standing, False
+        return shapes, area if across < GROOVE else None, True, area
+    return shapes, standing, False, area
 
 
 def _needs_radius(trace: Trace, row: int) -> str:

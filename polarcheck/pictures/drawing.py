@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import cmath
+import contextlib
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 import numpy as np
@@ -15,13 +17,14 @@ from polarcheck.checking.tables import Tables
 from polarcheck.columns.trace import Trace
 from polarcheck.errors import TooHardError
 from polarcheck.finding import FileReport, MadeShape, PolarSection
-from polarcheck.parts.part_report import made_by
+from polarcheck.parts.part_report import depths_of, made_by
 from polarcheck.pictures.listing import listing
 from polarcheck.pictures.moves import LENGTH, SectionMoves
-from polarcheck.pictures.picture import Drawn, Key, Mark, Place, SectionPicture, key_of
+from polarcheck.pictures.picture import Drawn, Key, Mark, PartPicture, Place, SectionPicture, key_of
 from polarcheck.pictures.places import Face, Spot, Spots, with_followers
 
 if TYPE_CHECKING:
+    from polarcheck.parts.made_depths import Depth
     from polarcheck.table.bar import Known
 
 #: The most sections of a file that are drawn.
@@ -144,8 +147,11 @@ def _sections(run: int, tables: Tables, lines: Rows, remarks: list[str]) -> list
     sections = polar_sections(tables)
     if not sections:
         return []
+    from polarcheck.pictures.asked import asked_parts
     from polarcheck.pictures.marks import left_marks, overcut_marks
+    from polarcheck.pictures.parts import parts
     from polarcheck.pictures.sections import Extras, section_picture
+    from polarcheck.pictures.swept import swept_parts
     from polarcheck.table.moves import programmed_moves
 
     moves = SectionMoves(trace, tables["dynamics"])
@@ -162,6 +168,18 @@ def _sections(run: int, tables: Tables, lines: Rows, remarks: list[str]) -> list
         ),
     ]
     bar, face = _bar(tables), Face(moves)
+    depths: list[Depth] = []
+    with contextlib.suppress(TooHardError):  # `makes` says so
+        depths = depths_of(tables)
+
+    def parts_of(section: PolarSection, number: int, tolerance: float) -> list[PartPicture]:
+        own = [level for level in (*levels, *meant) if level.section == number]
+        made = [shape for shape in makes if _is_of(shape, section)]
+        found = list(parts(trace, own, tolerance))
+        return found + _unless_too_hard(
+            lambda: list(swept_parts(trace, depths, number, bar, tolerance, made)), "what the cutter leaves", remarks
+        )
+
     return [
         _Section(
             run,
@@ -174,10 +192,12 @@ def _sections(run: int, tables: Tables, lines: Rows, remarks: list[str]) -> list
                 number,
                 lines,
                 Extras(
-                    [level for level in (*levels, *meant) if level.section == number],
-                    [mark for of_section, mark in marks if of_section == number],
-                    list(dict.fromkeys(_in_words(shape) for shape in makes if _is_of(shape, section))),
-                    bar,
+                    parts=partial(parts_of, section, number),
+                    asked=partial(asked_parts, tables, number),
+                    marks=[mark for of_section, mark in marks if of_section == number],
+                    makes=list(dict.fromkeys(_in_words(shape) for shape in makes if _is_of(shape, section))),
+                    bar=bar,
+                    face=float(tables["bar"].known.face),
                 ),
             ),
             face,

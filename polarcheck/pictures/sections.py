@@ -6,7 +6,7 @@ Import late: shapely is slow to import.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import msgspec
 import numpy as np
@@ -22,11 +22,9 @@ from polarcheck.parts.as_meant import as_meant
 from polarcheck.pictures import instants, paths, rates
 from polarcheck.pictures.extent import bar_rings, frame
 from polarcheck.pictures.moves import LENGTH, POSITIONING, RATE, TIME, SectionMoves, numbers_of
-from polarcheck.pictures.parts import parts
 from polarcheck.pictures.paths import Chords
-from polarcheck.pictures.picture import Mark, Points, Rates, SectionPicture
+from polarcheck.pictures.picture import DrawnPart, Mark, PartPicture, Points, Rates, SectionPicture
 from polarcheck.pictures.writing import writing
-from polarcheck.table.finished import Level
 from polarcheck.table.moves import Moves
 from polarcheck.table.overcuts import curves_of
 
@@ -44,16 +42,20 @@ class Extras(msgspec.Struct, frozen=True):
     """
     The content of a section's picture besides its moves.
 
-    levels: the finished part at each depth.
+    parts: returns the part at each depth, within a tolerance [mm].
+    asked: returns what the job asks for, likewise.
     marks: areas that are overcut or left standing.
     makes: the shapes that the section makes, in words.
     bar: the outside diameter of the bar before milling, and of its bore; NaN if unknown [mm].
+    face: Z of the face of the bar; NaN if unknown [mm].
     """
 
-    levels: Sequence[Level]
+    parts: Callable[[float], list[PartPicture]]
+    asked: Callable[[float], list[DrawnPart]]
     marks: Sequence[Mark]
     makes: Sequence[str]
     bar: tuple[float, float]
+    face: float
 
 
 def section_picture(
@@ -130,7 +132,7 @@ def section_picture(
             angle=numbers_of(curves.angle, RATE),
             machine_x=numbers_of(_side_of_x(moves, c_axis.is_fixed) * np.abs(curves.point), LENGTH),
         ),
-        parts=list(parts(trace, extras.levels, unseen)),
+        parts=extras.parts(unseen),
         marks=list(extras.marks),
         makes=list(extras.makes),
         remarks=_remarks(len(chosen), len(listed), as_meant(trace, section)),
@@ -140,6 +142,8 @@ def section_picture(
         sense=c_axis.sense,
         frame=frame(np.concatenate([tool.point, contour.point]), summary.radius, extras.bar[0]),
         bar=bar_rings(*extras.bar),
+        face=rounded(extras.face),
+        drawing=extras.asked(unseen),
     )
     return picture, chosen[listed]
 

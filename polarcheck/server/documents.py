@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 from polarcheck.errors import PolarcheckError
 from polarcheck.server.buffers import Buffer, Buffers
+from polarcheck.server.open_text import path_of
 from polarcheck.server.worker import Worker
 
 if TYPE_CHECKING:
@@ -43,6 +44,31 @@ class Documents:
             return none
         settings = buffer.judged.settings if buffer.judged is not None else None
         return await self.worker.do(self._apply, function, buffer, buffer.text, settings)
+
+    async def ask_of_any(self, uri: str, function: Callable[[Document], Result], none: Result) -> Result:
+        """Apply a function to a document that is open, or that is a file beside those that are open."""
+        path = path_of(uri)
+        if uri in self.buffers.open or path is None:
+            return await self.ask(uri, function, none)
+        folders = [folder for buffer in self.buffers.open.values() for folder in self.folders_of(buffer.path)]
+        known = [document for _, document in self._known.values()]
+        return await self.worker.do(self._apply_to_file, function, path, folders, known, none)
+
+    def _apply_to_file(
+        self,
+        function: Callable[[Document], Result],
+        path: Path,
+        folders: Sequence[Path],
+        known: Sequence[Document],
+        none: Result,
+    ) -> Result:
+        from polarcheck.server.structure.workspace import Workspace
+
+        for document in known:
+            found = Workspace(document, (), folders, self.machine_of).file(path)
+            if found is not None:
+                return function(found)
+        return none
 
     def _apply(
         self, function: Callable[[Document], Result], buffer: Buffer, text: OpenText, settings: Settings | None

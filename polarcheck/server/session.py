@@ -41,6 +41,8 @@ class Server(LanguageServer):
     buffers: the open documents.
     documents: the same as their machines read them, for answers that need no check.
     rewritings: return code actions that need no check.
+    options: called with the options that the editor sends first of all.
+    configured: called once the editor is ready, and with its settings whenever they change.
     published: called with each document and the result of its check, once its diagnostics are sent.
     gone: called with the URI of each document that is closed.
     """
@@ -55,6 +57,8 @@ class Server(LanguageServer):
         self.buffers = Buffers(settings_of, self.folders_of, self._publish, self._report_bug)
         self.documents = Documents(self.buffers, settings_of, self.folders_of)
         self.rewritings: list[Callable[[types.CodeActionParams], Awaitable[list[types.CodeAction]]]] = []
+        self.options: list[Callable[[Any], object]] = []
+        self.configured: list[Callable[..., Awaitable[None]]] = []
         self.published: list[Callable[[Buffer, Judged], None]] = []
         self.gone: list[Callable[[str], None]] = []
 

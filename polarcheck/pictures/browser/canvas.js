@@ -21,7 +21,7 @@ function faceCanvas(canvas, face, section, line, plane) {
     Object.assign(canvas.style, { left: `${face.offsetLeft + left}px`, top: `${face.offsetTop + top}px`, width: `${width}px`, height: `${height}px` });
     canvas.width = Math.round(width * ratio);
     canvas.height = Math.round(height * ratio);
-    palette = paletteOf(face);
+    palette = canvasColors();
     metal = null;
     return ratio;
   }
@@ -80,7 +80,7 @@ function faceCanvas(canvas, face, section, line, plane) {
 
   /** The path of the move that runs. */
   function drawBlock(pen, moment, at) {
-    pen.strokeStyle = palette.cutter;
+    pen.strokeStyle = palette.tool;
     pen.lineWidth = 4;
     pen.beginPath();
     let first = moment.place;

@@ -7,10 +7,10 @@ function gaugesView(box, section, line) {
   const largest = (column) => column.reduce((most, value) => (Math.abs(value) > most ? Math.abs(value) : most), 0);
   const length = (value) => (Number.isFinite(value) ? units.length(value) : "not known");
   const numbers = [
-    ["C axis", "machine C", "deg", (now) => (Number.isFinite(now.angle) ? (now.angle + 0).toFixed(3) : "not known")],
-    ["X axis", "machine X", `${units.name}${section.diameter ? ", diameter" : ", radius"}`, (now) => length(now.machineX * written)],
+    ["C angle", "angle", "deg", (now) => (Number.isFinite(now.angle) ? (now.angle + 0).toFixed(3) : "not known")],
+    ["X axis", "axis", `${units.name}${section.diameter ? ", diameter" : ""}`, (now) => length(now.machineX * written)],
     ["Z", "z", units.name, (now) => length(now.z)],
-    ["program X, C", "program", units.name, (now) => (Number.isFinite(now.x + now.c) ? units.point([now.x, now.c]) : "not known")],
+    ["part", "part", units.name, (now) => (Number.isFinite(now.x + now.c) ? units.point([now.x, now.c]) : "not known")],
   ];
   const bars = [
     ["C rate", "c_feed", "deg/min", 1, section.c_limit, largest(line.cFeed), (now) => now.cFeed],
@@ -30,8 +30,8 @@ function gaugesView(box, section, line) {
     const track = element("span", "", fill);
     track.className = "track";
     const full = limit === null ? highest : limit;
-    const told = limit === null ? "no limit given" : `limit ${rounded(limit / scale)}`;
-    const row = gauge(label, value, unit, track, element("small", told));
+    const row = gauge(label, value, limit === null ? unit : `of ${rounded(limit / scale)} ${unit}`, track);
+    row.title = limit === null ? "No limit is given; the bar is full at the highest rate of the section." : "The mark on the bar is the limit.";
     row.classList.toggle("has-limit", limit !== null);
     box.append(row);
     return {

@@ -5,19 +5,13 @@ const TAIL = 160;
 /** The radius of the view, as a share of the radius of the bar: room for jaws and the ring of degrees. */
 const ROOM = 1.42;
 /** The cutter is drawn up to so many radii of the bar from the center. */
-const FARTHEST = 2.4;
+const FARTHEST = 2;
 
-/** Colors of the canvases, from the properties of the page. */
-function paletteOf(root) {
-  const style = getComputedStyle(root);
-  const color = (name, fallback) => style.getPropertyValue(name).trim() || fallback;
-  return {
-    ink: color("--ink", "#1a1a1a"), quiet: color("--quiet", "#555"), paper: color("--paper", "#fff"),
-    metal: color("--metal", "#c3ccd6"), edge: color("--metal-edge", "#66737f"), jaw: color("--jaw", "#8f8a80"),
-    floors: [1, 2, 3, 4, 5, 6].map((number) => color(`--floor-${number}`, ["#a3afbb", "#93a0ad", "#83919f", "#748391", "#667584", "#596977"][number - 1])),
-    cutter: color("--cutter", "#e69f00"), above: color("--above", "#d55e00"), calm: color("--calm", "#0072b2"),
-    path: color("--path", "#1b3a5c"),
-  };
+/** The colours of the canvases, from the style of the page. */
+function canvasColors() {
+  const names = ["ink", "quiet", "paper", "metal", "jaw", "tool", "above", "calm", "path"];
+  const floors = [1, 2, 3, 4, 5, 6].map((number) => color(`--floor-${number}`));
+  return { ...Object.fromEntries(names.map((name) => [name, color(`--${name}`)])), floors };
 }
 
 /** A canvas of its own size in pixels of the screen, with its pen. */
@@ -46,7 +40,7 @@ function machineView(canvas, section, line) {
   /** Fit the view into its canvas; layers are drawn again. */
   function fit() {
     const next = fitted(canvas);
-    palette = paletteOf(canvas);
+    palette = canvasColors();
     const room = ROOM * bar.radius;
     const cutter = section.radius || 0;
     const farthest = FARTHEST * bar.radius;
@@ -146,7 +140,7 @@ function machineView(canvas, section, line) {
     const isRight = to > 0;
     pen.textAlign = isRight ? "right" : "left";
     pen.textBaseline = "bottom";
-    outlined(pen, `X axis [${units.name}${section.diameter ? ", diameter" : ""}]`, isRight ? to : from, -6, palette);
+    outlined(pen, `X axis [${units.name}${section.diameter ? ", diameter" : ""}]`, isRight ? to : from, -Math.max((section.radius || 0) * size.scale, 6) - 4, palette);
   }
 
   /** An arrow about the bar in the sense in which the part turns, as long as its rate is high. */
@@ -215,8 +209,8 @@ function drawTool(pen, x, y, radius, palette) {
   pen.strokeStyle = palette.ink;
   pen.lineWidth = 1.5;
   if (radius !== null) {
-    pen.globalAlpha = 0.6;
-    pen.fillStyle = palette.cutter;
+    pen.globalAlpha = 0.8;
+    pen.fillStyle = palette.tool;
     pen.beginPath();
     pen.arc(x, y, radius, 0, 2 * Math.PI);
     pen.fill();
@@ -271,6 +265,14 @@ function chuckLayer(see, bar, section, line, palette) {
   pen.strokeStyle = palette.quiet;
   pen.fillStyle = palette.quiet;
   pen.lineWidth = Math.max(radius / 250, 1);
+  if (section.radius === null) {
+    // No layer of metal covers it.
+    pen.setLineDash([radius / 30, radius / 30]);
+    pen.beginPath();
+    pen.arc(0, 0, radius, 0, 2 * Math.PI);
+    pen.stroke();
+    pen.setLineDash([]);
+  }
   const ring = radius * 1.26;
   pen.beginPath();
   pen.arc(0, 0, ring, 0, 2 * Math.PI);

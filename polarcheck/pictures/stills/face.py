@@ -16,7 +16,9 @@ from polarcheck.pictures.picture import Mark, Points, Role, SectionPicture
 from polarcheck.pictures.stills.colors import (
     ABOVE,
     BAR,
+    BAR_EDGE,
     CENTER,
+    DRAWING,
     INK,
     LEFT,
     PART,
@@ -25,7 +27,7 @@ from polarcheck.pictures.stills.colors import (
     SEVERITIES,
     SHADES,
     UNKNOWN,
-    color_of_share,
+    coloring,
 )
 from polarcheck.pictures.stills.numbering import Entry, labels
 
@@ -87,15 +89,15 @@ def draw_face(axes: Axes, section: SectionPicture, window: Window, entries: Sequ
             axes.add_patch(PathPatch(_area(polygon), facecolor=PART, edgecolor=edge, linewidth=0.6, zorder=2))
     _draw_surroundings(axes, section)
     for drawing in section.drawing:
-        for line in drawing.lines:
-            axes.plot(*zip(*line, strict=True), color=LEFT, linewidth=1.8, alpha=0.45, zorder=3)
+        for line in (*([*ring, *ring[:1]] for ring in drawing.rings), *drawing.lines):
+            axes.plot(*zip(*line, strict=True), color=DRAWING, linewidth=1.8, alpha=0.45, zorder=3)
     _draw_path(axes, section.programmed)
     _draw_tool(axes, section)
     for mark in section.marks:
         _draw_mark(axes, mark)
     if not small:
         _draw_ends(axes, section)
-    _draw_labels(axes, window, entries)
+    _draw_labels(axes, window, entries, () if small else _ends(section))
 
 
 def legend(section: SectionPicture) -> list[Artist]:
@@ -106,12 +108,12 @@ def legend(section: SectionPicture) -> list[Artist]:
     if section.bar:
         samples.append(Patch(facecolor=BAR, label="bar"))
     elif section.stock is not None:
-        samples.append(_sample("stock", color="#8a6d3b", dashes=(4, 2)))
+        samples.append(_sample("stock", color=BAR_EDGE, dashes=(4, 2)))
     if section.drawing:
-        samples.append(_sample("part asked for", color=LEFT, width=1.8, alpha=0.45))
+        samples.append(_sample("part asked for", color=DRAWING, width=1.8, alpha=0.45))
     if any(x is not None for x in section.programmed.x):
         samples.append(_sample("programmed contour", width=0.7))
-    usual = SHADES[2] if any(share is not None for share in section.moves.share) else PLAIN
+    usual = SHADES[4] if coloring(section).bounds else PLAIN
     drawn = {section.moves.role[move] for move in section.tool.move if move is not None}
     for role, name in _NAMES.items():
         if role in drawn and name not in [sample.get_label() for sample in samples]:
@@ -170,9 +172,9 @@ def _formatter(factor: float, digits: int) -> Callable[[float, int | None], str]
 
 def _step(span: float, count: int) -> float:
     """Return a round distance of ticks, of which about `count` lie in a span."""
-    least = max(span, 1e-9) / count
-    power = 10.0 ** np.floor(np.log10(least))
-    return float(next(step * power for step in _STEPS if step * power >= least * (1 - 1e-9)))
+    wanted = max(span, 1e-9) / count
+    power = 10.0 ** np.floor(np.log10(wanted))
+    return float(min((step * power for step in _STEPS), key=lambda step: abs(np.log(step / wanted))))
 
 
 # ---- what is drawn ----
@@ -202,7 +204,7 @@ def _draw_surroundings(axes: Axes, section: SectionPicture) -> None:
         dashed = (0, (4, 2))
         axes.add_patch(
             Circle(
-                (0, 0), section.stock / 2, fill=False, edgecolor="#8a6d3b", linewidth=0.9, linestyle=dashed, zorder=2.5
+                (0, 0), section.stock / 2, fill=False, edgecolor=BAR_EDGE, linewidth=0.9, linestyle=dashed, zorder=2.5
             )
         )
     if section.keep_out is not None:
@@ -234,10 +236,7 @@ def _draw_tool(axes: Axes, section: SectionPicture) -> None:
 def _stretches(section: SectionPicture) -> Iterator[tuple[str, str, list[tuple[float, float]]]]:
     """Yield role, color and points of each stretch of the path that is drawn alike."""
     tool, moves = section.tool, section.moves
-    colors = [
-        UNKNOWN if role == "unknown" else color_of_share(share, role == "positioning")
-        for role, share in zip(moves.role, moves.share, strict=True)
-    ]
+    colors = coloring(section).moves
     line: list[tuple[float, float]] = []
     style = ("", "")
     for place in range(1, len(tool.x)):
@@ -263,17 +262,20 @@ def _draw_mark(axes: Axes, mark: Mark) -> None:
         )
 
 
-def _draw_ends(axes: Axes, section: SectionPicture) -> None:
+def _ends(section: SectionPicture) -> list[tuple[float, float]]:
+    """Return the first and the last point of the path; nothing if it is not known."""
     path = section.tool if section.tool.x else section.programmed
     known = [(x, c) for x, c in zip(path.x, path.c, strict=True) if x is not None and c is not None]
-    if not known:
-        return
-    for place, text, marker, down in ((known[0], "start", "o", 4), (known[-1], "end", "s", -9)):
+    return [known[0], known[-1]] if known else []
+
+
+def _draw_ends(axes: Axes, section: SectionPicture) -> None:
+    for place, (text, marker, down) in zip(_ends(section), (("start", "o", 4), ("end", "s", -9)), strict=False):
         axes.plot(*place, marker=marker, markersize=5, markerfacecolor="none", markeredgecolor=INK, zorder=7)
         axes.annotate(text, place, (4, down), textcoords="offset points", fontsize=7, color=INK, zorder=8)
 
 
-def _draw_labels(axes: Axes, window: Window, entries: Sequence[Entry]) -> None:
+def _draw_labels(axes: Axes, window: Window, entries: Sequence[Entry], ends: Sequence[tuple[float, float]]) -> None:
     """Draw a cross at each place of a finding, and its number beside it, away from the middle."""
     shown = [entry._replace(places=[place for place in entry.places if _is_within(place, window)]) for entry in entries]
     middle = complex(window.x0 + window.x1, window.c0 + window.c1) / 2
@@ -281,6 +283,8 @@ def _draw_labels(axes: Axes, window: Window, entries: Sequence[Entry]) -> None:
         color = SEVERITIES.get(kind, LEFT)
         away = complex(x, c) - middle
         away = away / abs(away) if abs(away) > 2 * window.scale else complex(0.7, 0.7)
+        if any(abs(complex(x, c) - complex(*end)) < 6 * window.scale for end in ends):
+            away = complex(-0.7, 0.7)  # their words are on the right
         axes.plot([x], [c], marker="x", markersize=6, markeredgewidth=1.6, color=color, zorder=9)
         axes.annotate(
             text, (x, c), (13 * away.real, 13 * away.imag), textcoords="offset points", fontsize=7.5, color="white",

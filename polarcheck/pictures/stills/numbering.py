@@ -21,6 +21,7 @@ class Entry(NamedTuple):
 
     number: its label on the face, from 1.
     kind: the severity, or the kind of a mark without a finding.
+    rule: of the finding; empty for a mark.
     text: the line in the program and what is wrong there.
     places: where it is on the face [mm]; may be empty.
     span: the width of a window that shows it at its own scale [mm]; None if the whole face shows it.
@@ -28,6 +29,7 @@ class Entry(NamedTuple):
 
     number: int
     kind: str
+    rule: str
     text: str
     places: Sequence[Point]
     span: float | None
@@ -96,7 +98,9 @@ def _rank(severity: str) -> int:
 
 def _of_finding(finding: FindingPicture) -> Entry:
     also = f" (also in {_lines(finding.also)})" if finding.also else ""
-    return Entry(0, finding.severity, f"line {finding.line}: {finding.message}{also}", finding.places, finding.span)
+    return Entry(
+        0, finding.severity, finding.rule, f"line {finding.line}: {finding.message}{also}", finding.places, finding.span
+    )
 
 
 def _lines(lines: Sequence[int]) -> str:
@@ -107,9 +111,13 @@ def _lines(lines: Sequence[int]) -> str:
 
 def _of_mark(mark: Mark) -> Entry:
     kind = "left standing" if mark.kind == "left" else mark.kind
-    return Entry(0, kind, mark.text, [mark.place], 10 * mark.depth or None)
+    return Entry(0, kind, "", mark.text, [mark.place], 10 * mark.depth or None)
 
 
 def _is_reported(mark: Mark, findings: Sequence[FindingPicture]) -> bool:
-    """Return True if one of the findings is about this mark."""
-    return any({finding.line, *finding.also} & set(mark.lines) for finding in findings if finding.places)
+    """Return True if one of the findings is about this mark: at its place, or in both of its blocks."""
+    return any(
+        (len(mark.lines) > 1 and {finding.line, *finding.also} >= set(mark.lines))
+        or any(_distance(place, mark.place) <= mark.depth for place in finding.places)
+        for finding in findings
+    )

@@ -17,10 +17,14 @@ def register(server: Server) -> None:
     @feature(types.INITIALIZE)
     def initialize(params: types.InitializeParams) -> None:
         server.find_roots()
+        for take in server.options:
+            take(params.initialization_options)
 
     @feature(types.INITIALIZED)
     async def initialized(params: types.InitializedParams) -> None:
         await server.begin()
+        for configure in server.configured:
+            await configure()
 
     @feature(types.WORKSPACE_DID_CHANGE_WORKSPACE_FOLDERS)
     def folders_changed(params: types.DidChangeWorkspaceFoldersParams) -> None:
@@ -33,8 +37,10 @@ def register(server: Server) -> None:
         await server.buffers.check_stale()
 
     @feature(types.WORKSPACE_DID_CHANGE_CONFIGURATION)
-    def configured(params: types.DidChangeConfigurationParams) -> None:
-        """Do nothing: settings are in polarcheck.toml and on the command line, never in the editor."""
+    async def configured(params: types.DidChangeConfigurationParams) -> None:
+        """Take what the editor shows; what is checked is in polarcheck.toml and on the command line."""
+        for configure in server.configured:
+            await configure(params.settings)
 
     @feature(types.TEXT_DOCUMENT_DID_SAVE)
     async def saved(params: types.DidSaveTextDocumentParams) -> None:

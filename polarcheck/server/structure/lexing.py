@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import functools
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import Final, NamedTuple
 
 from polarcheck.execution.custom_macro import KEYWORD
@@ -37,9 +38,10 @@ class Token(NamedTuple):
     end: int
 
 
-def tokens(listing: Listing, block: int) -> list[Token]:
-    """Return the tokens of a block, without comments."""
-    written, language = block_text(listing.text, block), listing.macro.language
+def tokens(listing: Listing, block: int, text: str | None = None) -> list[Token]:
+    """Return the tokens of a block, without comments; text: of the block, if it is at hand (programs.block_text)."""
+    written, language = block_text(listing.text, block) if text is None else text, listing.macro.language
+    found: Iterable[Token]
     if language == "high-level" and not is_custom_macro(written):
         found = _high_level(written, listing)
     elif language == "user-task":
@@ -47,7 +49,7 @@ def tokens(listing: Listing, block: int) -> list[Token]:
     else:
         found = _custom_macro(written)
     start = int(listing.text.blocks.start[block])
-    return [token._replace(start=token.start + start, end=token.end + start) for token in found]
+    return [Token(kind, name, begin + start, end + start) for kind, name, begin, end in found]
 
 
 # ---- custom macro ----
@@ -61,9 +63,15 @@ _CUSTOM: Final = re.compile(
 _OPERANDS: Final = ("variable", "number", "system")
 
 
-def _custom_macro(block: str) -> Iterator[Token]:
+@functools.lru_cache(20_000)
+def _custom_macro(block: str) -> tuple[Token, ...]:
+    """Return the tokens of a block; remembered, since a key press changes one block of many."""
+    return tuple(_custom_macro_tokens(block))
+
+
+def _custom_macro_tokens(block: str) -> Iterator[Token]:
     characters = Characters.of_block(block)
-    text, at, last, count = characters.text, 0, "", 0
+    text, places, at, last, count = characters.text, characters.places, 0, "", 0
     while at < len(text) and count < _MOST:
         match = _CUSTOM.match(text, at)
         if match is None:
@@ -76,7 +84,7 @@ def _custom_macro(block: str) -> Iterator[Token]:
             kind, end = ("keyword", keyword.end()) if keyword else ("address", at + 1)
         elif kind == "number" and match[0][0] in "+-" and last in (*_OPERANDS, "]"):
             kind, end = "operator", at + 1
-        start, after = characters.span(at, end)
+        start, after = places[at], places[end - 1] + 1
         if match[0] == "#":
             yield Token("computed", "#", start, after)
         elif kind != "sign":

@@ -89,6 +89,8 @@ class Mention(NamedTuple):
     @property
     def name(self) -> int | str:
         """The number or name; of a program that has both the number."""
+        if len(self.keys) == 1:
+            return self.keys[0]
         return next((key for key in self.keys if isinstance(key, int)), self.keys[0])
 
     @property
@@ -116,7 +118,8 @@ class Mentions:
         self.listing = listing
         self.computed: list[Computed] = []
         found = [*self._numbers(), *self._labels(), *self._heads(), *self._flow(), *self._cycles(), *self._variables()]
-        self.all = sorted(set(found), key=lambda mention: (mention.start, mention.end))
+        distinct = {(mention.start, mention.end, mention.role.value): mention for mention in found}
+        self.all = [distinct[key] for key in sorted(distinct)]
         self._blocks = [mention.block for mention in self.all]
 
     def of_program(self, program: Program) -> list[Mention]:
@@ -160,13 +163,18 @@ class Mentions:
         at = np.flatnonzero((words.address == ord("N")) & (words.value < _NUMBER_LIMIT) & (words.value >= 0))
         columns = (words.start[at].tolist(), words.end[at].tolist(), words.block[at].tolist())
         cycles = self._cycle_blocks if self.listing.macro.language == "user-task" else frozenset()
+        content = text.source.text
         for start, end, block in zip(*columns, strict=True):
-            digits = _DIGITS.search(text.source.excerpt(start, end))
-            if digits:
-                span = start + digits.start(), start + digits.end()
-                is_named = block in cycles and start > self._first_word(block)
-                role = Role.REFERS if is_named else Role.DEFINES
-                yield self._mention(Kind.SEQUENCE, role, int(digits[0]), span, block, start)
+            # Without a search in most words: a program may have a number at each block.
+            first, last, written = start + 1, end, content[start + 1 : end]
+            if not written.isdecimal():
+                digits = _DIGITS.search(written)
+                if digits is None:
+                    continue
+                first, last, written = first + digits.start(), first + digits.end(), digits[0]
+            is_named = block in cycles and start > self._first_word(block)
+            role = Role.REFERS if is_named else Role.DEFINES
+            yield Mention(Kind.SEQUENCE, role, (int(written[:18]),), written, block, first, last, start)
         pattern = re.compile(SEQUENCE_NUMBER, re.IGNORECASE)
         for block, start, written in self._macro_blocks:
             match = pattern.match(written)
@@ -229,7 +237,7 @@ class Mentions:
     # ---- jumps and calls ----
 
     def _flow(self) -> Iterator[Mention]:
-        for block in self.listing.stops:
+        for block in self._flow_blocks():
             statement = self.listing.statement(block)
             written, start = block_text(self.listing.text, block), int(self.listing.text.blocks.start[block])
             parts = (statement, *([statement.then] if statement.then is not None else []), *statement.more)
@@ -241,6 +249,23 @@ class Mentions:
                     yield from self._call(part, block, start, written)
             if labels:
                 yield from self._label_uses(labels, block)
+
+    def _flow_blocks(self) -> list[int]:
+        """Return the blocks that may jump or call: those with a code, keyword or name for it; others are not read."""
+        macro, text = self.listing.macro, self.listing.text
+        codes = sorted(macro.flow_codes)
+        parts = [
+            rb"GO",
+            *(rb"%s[ \t]{0,3}0{0,3}%s(?![0-9])" % (one[:1].encode(), re.escape(one[1:].encode())) for one in codes),
+        ]
+        if macro.language == "high-level":
+            parts += [rb"[A-Z_]{2}", rb"L[0-9]"]
+        elif macro.language == "user-task":
+            parts.append(rb"(?!VC[0-9])[A-Z]{2}")
+        pattern = re.compile(b"|".join(parts), re.IGNORECASE)
+        hits = [match.start() for match in pattern.finditer(text.source.code.tobytes())]
+        blocks = np.unique(np.searchsorted(text.blocks.start, hits, side="right") - 1)
+        return sorted(set(blocks.tolist()) & set(self.listing.stops))
 
     def _jump(self, part: Statement, block: int, start: int, written: str) -> Iterator[Mention]:
         if part.jump is None or part.label or part.kind not in (StatementKind.GOTO, StatementKind.IF_GOTO):
@@ -350,8 +375,8 @@ class Mentions:
     # ---- variables ----
 
     def _variables(self) -> Iterator[Mention]:
-        for block, _, _ in self._macro_blocks:
-            found = tokens(self.listing, block)
+        for block, _, written in self._macro_blocks:
+            found = tokens(self.listing, block, written)
             for token, following in itertools.zip_longest(found, found[1:]):
                 if token.kind == "computed":
                     self.computed.append(Computed(Kind.VARIABLE, block))

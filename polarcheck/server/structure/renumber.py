@@ -34,15 +34,18 @@ def title(document: Document, position: types.Position) -> tuple[str, str] | Non
     owner = _owner_at(Uses(document, _alone(document)), position)
     if owner is None or not _numbers(owner):
         return None
-    reason = ""
-    try:
-        new = _new_numbers(owner)
-        _check(owner, new)
-    except RenumberError as error:
-        reason = str(error)
+    reason = document.cached(f"renumber {owner.key}", lambda: _reason(owner))
     program = owner.program
     name = f"O{program.number:04d}" if program.number is not None else program.name or "the program"
     return f"Renumber the N numbers of {name}", reason
+
+
+def _reason(owner: Owner) -> str:
+    try:
+        _check(owner, _new_numbers(owner))
+    except RenumberError as error:
+        return str(error)
+    return ""
 
 
 def renumber(document: Document, position: types.Position, workspace: Workspace) -> dict[str, list[types.TextEdit]]:

@@ -4,16 +4,22 @@ from __future__ import annotations
 
 import itertools
 import math
+import re
 from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
 
 from polarcheck.execution.listing import Listing
+from polarcheck.execution.loops import find_loops
 from polarcheck.execution.programs import Program
 from polarcheck.execution.run import is_code
+from polarcheck.execution.structures import find_structures
 from polarcheck.server.structure.document import is_written
 from polarcheck.server.structure.lexing import tokens
+
+#: The words of loops and structures, WHILE also as WH and END as EN; only blocks with one of them are read.
+_KEYWORD = re.compile(rb"WH|DO|EN|LOOP|FOR|IF|ELSE|REPEAT|UNTIL", re.IGNORECASE)
 
 
 class Stretch(NamedTuple):
@@ -92,11 +98,16 @@ def polar_sections(listing: Listing, program: Program) -> list[Stretch]:
 
 def loops(listing: Listing, program: Program) -> list[Stretch]:
     """Return the loops and the structures IF .. ELSE .. ENDIF, FOR, REPEAT .. UNTIL of a program."""
-    found = [Stretch(*pair) for pair in listing.loops(program).end.items()]
-    structures = listing.structures(program.first)
-    for head, end in structures.end.items():
+    text = listing.text
+    first, end = int(text.blocks.start[program.first]), int(text.blocks.end[program.end - 1])
+    hits = [match.start() + first for match in _KEYWORD.finditer(text.source.code[first:end].tobytes())]
+    blocks = np.unique(np.searchsorted(text.blocks.start, hits, side="right") - 1)
+    statements = [(block, listing.statement(block)) for block in blocks[text.blocks.is_macro[blocks]].tolist()]
+    found = [Stretch(*pair) for pair in find_loops(statements, listing.macro.loop_levels).end.items()]
+    structures = find_structures(statements)
+    for head, last in structures.end.items():
         between = structures.other.get(head)
-        found.append(Stretch(head, end if between is None else max(between - 1, head)))
+        found.append(Stretch(head, last if between is None else max(between - 1, head)))
     return found
 
 

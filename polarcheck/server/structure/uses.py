@@ -160,7 +160,7 @@ class Uses:
     def callees(self, owner: Owner) -> list[Owner]:
         """Return the programs that a program calls."""
         calls = {
-            mention.keys: _name(mention)
+            mention.keys: called_name(mention)
             for mention in owner.all
             if mention.kind is Kind.PROGRAM and mention.role is Role.REFERS
         }
@@ -184,11 +184,13 @@ class Uses:
             for caller in self.owners(document)
             for mention in caller.all
             if mention.kind is Kind.PROGRAM and mention.role is Role.REFERS and set(mention.keys) & set(keys)
-            if wanted & {one.key for one in self.resolved(caller, _name(mention))}
+            if wanted & {one.key for one in self.resolved(caller, called_name(mention))}
         ]
 
     def _programs(self, use: Use) -> Iterator[Use]:
-        targets = [use.owner] if use.mention.role is Role.DEFINES else self.resolved(use.owner, _name(use.mention))
+        targets = (
+            [use.owner] if use.mention.role is Role.DEFINES else self.resolved(use.owner, called_name(use.mention))
+        )
         for owner in targets:
             for mention in owner.all:
                 if mention.role is Role.DEFINES and mention.kind is Kind.PROGRAM:
@@ -241,7 +243,7 @@ class Uses:
                 and mention.role is Role.REFERS
                 and (not subprograms_only or mention.code in codes)
             ]
-            near = [called for mention in calls for called in self.resolved(one, _name(mention))]
+            near = [called for mention in calls for called in self.resolved(one, called_name(mention))]
             near += [
                 use.owner
                 for use in self.calls_of([one])
@@ -269,7 +271,8 @@ def _defines(owner: Owner, wanted: Mention) -> bool:
     return any(one.mention.role is Role.DEFINES for one in _with_keys([owner], wanted))
 
 
-def _name(mention: Mention) -> ProgramName:
+def called_name(mention: Mention) -> ProgramName:
+    """Return the name by which a block calls a program."""
     name = mention.name
     return (
         ProgramName(name, None)

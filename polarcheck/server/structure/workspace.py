@@ -118,6 +118,17 @@ class Workspace:
             return [self._of_file(place.path, place.data) for place in places]
         return []
 
+    def file(self, path: Path) -> Document | None:
+        """Return the document of a file: one below the folders, or in a folder of called programs."""
+        data = self._read(path)
+        if data is None:
+            folders = [Path(_real(folder)) for folder in self.document.folders]
+            if not any(Path(_real(path)).is_relative_to(folder) for folder in folders):
+                return None
+            with contextlib.suppress(OSError), bounded.only_below(folders):
+                data = bounded.read_file(path, _LARGEST, "")
+        return None if data is None else self._of_file(path, data)
+
     def of_file_name(self, caller: Document, name: ProgramName) -> list[Document]:
         """Return the documents of the workspace whose file has the name of a program, beside the caller first."""
         wanted = names_of(name)
