@@ -261,6 +261,9 @@ def test_an_editor_finds_and_renames_over_files() -> None:
         assert [one["range"]["start"]["line"] for one in found] == [3, 7, 1]
         marked = editor.asks("documentHighlight", program, 5, 4)
         assert [(one["range"]["start"]["line"], one["kind"]) for one in marked] == [(5, 2), (8, 3), (15, 3)]
+        led = editor.asks("definition", program, 5, 4)
+        assert [one["range"]["start"]["line"] for one in led] == [8, 15]
+        assert [one["range"]["start"]["line"] for one in editor.asks("definition", program, 3, 5)] == [11]
         ready = editor.asks("prepareRename", program, 11, 1)
         assert ready == {"range": {"start": place(11, 1), "end": place(11, 2)}, "placeholder": "2"}
         assert editor.asks("prepareRename", program, 2, 5) is None

@@ -42,7 +42,7 @@ class Workspace:
 
     document: the document.
     opened: the open documents.
-    folders: from which files may be opened, with all links resolved.
+    folders: from which files may be opened, with all links resolved; without any the document stands alone.
     machine_of: returns the machine of a file and the folders of the programs that it calls.
     is_complete: False once a file could not be looked at, or time was up.
     """
@@ -111,7 +111,7 @@ class Workspace:
 
     def called(self, caller: Document, name: ProgramName) -> list[Document]:
         """Return the documents in the folders of subprograms that can hold a program."""
-        if not caller.folders:
+        if not caller.folders or not self._folders:
             return []
         with contextlib.suppress(OSError):
             places = Library(caller.folders, caller.machine).places(name)
