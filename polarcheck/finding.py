@@ -155,6 +155,8 @@ class PolarSection(msgspec.Struct, frozen=True, kw_only=True):
     radius_source: command line, job, offset table, program, comment or none.
     nearest: smallest distance of the tool center to the center of C in a cutting move [mm].
     c_feed, c_feed_line, c_feed_limit: highest C rate, its line, the limit of the machine [deg/min].
+    center_line: line of the first cutting move that passes through the center of C, or stops there, where C has no
+        angle and no rate; absent where none does.
     ramp_used: share of a start-up or offset cancel that its radius needs, the largest of the section; 1 at the limit.
     time: of its moves at the F in force, Z moves and dwells included [s].
     time_known: where there is no time, that of the blocks of which it is known [s].
@@ -173,6 +175,7 @@ class PolarSection(msgspec.Struct, frozen=True, kw_only=True):
     c_feed: float | None
     c_feed_line: int | None
     c_feed_limit: float | None
+    center_line: int | UnsetType = UNSET
     ramp_used: float | None
     time: float | None
     time_known: float | UnsetType | None = UNSET

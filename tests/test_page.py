@@ -71,7 +71,7 @@ def test_without_scripts_the_page_tells_the_head_the_findings_and_what_is_made()
     told += ["hexagon, 30.000 across flats", "R 4.000 mm (command line)", "line 3 cuts 1.000 mm into line 6", "OT512"]
     told += ["X28.000 C0.000", "error, silenced (allow)", "C 500 deg/min", "need a browser that runs scripts"]
     assert [text for text in told if text not in read.text] == []
-    assert len(read.named("noscript")) == 1
+    assert len(read.named("noscript")) == 2
 
 
 def test_why_there_is_no_path_of_the_tool_is_told() -> None:

@@ -22,12 +22,8 @@ __all__ = ["browser"]
 
 VIEW = """
 window.sent = [];
-window.stored = { view: "machine" };
-window.acquireVsCodeApi = () => ({
-  postMessage: (message) => window.sent.push(message),
-  getState: () => window.stored,
-  setState: (state) => { window.stored = state; },
-});
+window.acquireVsCodeApi = () => ({ postMessage: (message) => window.sent.push(message) });
+document.addEventListener("DOMContentLoaded", () => document.body.classList.add("vscode-dark"));
 """
 
 
@@ -48,8 +44,10 @@ def test_the_page_follows_the_cursor_and_leads_to_blocks(browser: Any, tmp_path:
         opened.evaluate("(message) => { window.sent = []; window.postMessage(message, '*'); }", message)
         opened.wait_for_timeout(100)
 
-    # The view is as it was before the page was drawn again.
-    assert opened.locator(".polar").first.get_attribute("data-view") == "machine"
+    # It has the colours of the editor.
+    assert opened.locator("html").get_attribute("data-theme") == "dark"
+    opened.evaluate("document.body.className = 'vscode-light'")
+    opened.wait_for_function("document.documentElement.dataset.theme === 'light'")
     # The cursor chooses a block, and is not sent back.
     send({"kind": "line", "line": 4})
     assert chosen().split()[1].startswith("4")
@@ -61,7 +59,16 @@ def test_the_page_follows_the_cursor_and_leads_to_blocks(browser: Any, tmp_path:
     opened.evaluate("window.sent = []")
     opened.locator("[data-finding]:visible").first.click()
     assert opened.evaluate("window.sent") == [{"kind": "line", "line": 2}]
-    opened.get_by_role("button", name="Face").first.click()
-    assert opened.evaluate("window.stored") == {"view": "face"}
+    # What is shown is kept as the page is drawn anew.
+    opened.get_by_role("button", name="Machine").first.click()
+    send({"kind": "keep"})
+    (kept,) = opened.evaluate("window.sent")
+    assert (kept["kind"], kept["kept"]["line"], kept["kept"]["view"]) == ("kept", 2, "machine")
+    opened.reload()
+    opened.wait_for_function("window.sent.some((message) => message.kind === 'ready')")
+    send({"kind": "restore", "kept": kept["kept"]})
+    assert opened.locator(".polar").first.get_attribute("data-view") == "machine"
+    assert chosen().split()[1].startswith("2")
+    assert opened.evaluate("window.sent") == []
     assert errors == []
     opened.close()

@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from importlib import resources
 from typing import Any
 
+import msgspec
 import pytest
-from test_page_in_browser import CHROMIUM, browser
+from pictures_by_hand import HALF, finding, hexagon, picture
+from test_page_in_browser import CHROMIUM, Opened, browser
+
+from polarcheck.pictures.page import page
+from polarcheck.pictures.picture import DrawnPart, Picture, Writing
 
 playwright = pytest.importorskip("playwright.sync_api")
 plotly = pytest.importorskip("plotly.offline")
@@ -75,15 +81,16 @@ def test_what_is_measured(blank: Any, first: str, second: str | None, expected: 
 
 
 def test_arcs_are_read_from_chords_and_polygons_are_not(blank: Any) -> None:
-    """A half circle of R20 in 90 chords with its straight side; a hexagon; a circle; a polygon of 40 flats."""
-    half, hexagon, circle, polygon = blank.evaluate(
+    """A half circle of R20 with its side; a hexagon; a circle; a polygon of 40 flats; a slot with tangent ends."""
+    half, hexagon, circle, polygon, slot = blank.evaluate(
         """() => {
         const around = (count, share) => Array.from({ length: count + 1 }, (_, at) => {
           const angle = (at / count) * share * 2 * Math.PI;
           return [20 * Math.cos(angle) + 3, 20 * Math.sin(angle)].map((value) => Number(value.toFixed(4)));
         });
         const told = ({ kind, radius, center, sweep }) => (kind === "arc" ? [radius, center[0], sweep] : kind);
-        return [around(90, 0.5), around(6, 1), around(180, 1), around(40, 1)].map((ring) =>
+        const slot = [...around(90, 0.5), ...around(90, 0.5).map(([x, c]) => [6 - x, -50 - c])];
+        return [around(90, 0.5), around(6, 1), around(180, 1), around(40, 1), slot].map((ring) =>
           shapesOfRing(ring, "", "").map(told));
         }"""
     )
@@ -91,3 +98,252 @@ def test_arcs_are_read_from_chords_and_polygons_are_not(blank: Any) -> None:
     assert hexagon == ["line"] * 6
     assert circle == [pytest.approx([20, 3, 6.28319], abs=1e-3)]
     assert polygon == ["line"] * 40
+    end = pytest.approx([20, 3, 3.14159], abs=1e-3)
+    assert sorted(slot, key=str) == [end, end, "line", "line"]
+
+
+# ---- the page ----
+
+LINES = 20_000
+
+
+def sections_of_two_channels() -> Picture:
+    """
+    A hexagon in mm with its drawing, and one in inch of another channel, whose virtual axis is Y and whose zero lies
+    beside the center; in a program of many lines with findings inside and outside of its sections.
+    """
+    square = [(14.0, -14.0), (14.0, 14.0), (-14.0, 14.0), (-14.0, -14.0)]
+    asked = DrawnPart(title="part.dxf", z=-5.0, agrees=False, rings=[square], lines=[])
+    first = hexagon(channel="1", drawing=[asked])
+    moves = msgspec.structs.replace(first.moves, line=[line + 10 for line in first.moves.line])
+    inch = hexagon(title="Lines 11 to 16", line=11, end_line=16, channel="2", units="inch", scale=25.4, moves=moves)
+    inch = msgspec.structs.replace(inch, writing=Writing(virtual="Y", origin=(2.54, 0.0)))
+    lines = [f"N{number} G1 X{number / 10} (LINE <{number}>)" for number in range(1, LINES + 1)]
+    found = [finding("too fast", also=[4]), finding("lost", line=15_000, section=None, move=None, severity="warning")]
+    return picture(first, inch, findings=found, source=lines, source_lines=LINES)
+
+
+@pytest.fixture(scope="module")
+def use(browser: Any, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Opened]:
+    """A page with two programs, opened once; a test leaves behind it what it finds."""
+    file = tmp_path_factory.mktemp("page") / "use.html"
+    text = page(
+        [sections_of_two_channels(), picture(hexagon(), source=["N1", "N2"], source_lines=2)], plotly.get_plotlyjs()
+    )
+    file.write_text(text, "utf-8")
+    more = {"has_touch": True, "permissions": ["clipboard-read", "clipboard-write"]}
+    opened = Opened(browser, f"{file.as_uri()}#L4", **more)
+    opened.page.set_viewport_size({"width": 1280, "height": 900})
+    opened.page.wait_for_selector(".face .main-svg")
+    yield opened
+    assert opened.said == []
+    assert {name.partition("#")[0] for name in opened.asked} == {file.as_uri()}
+    opened.page.close()
+
+
+def window(use: Opened) -> list[float]:
+    """Left, right, bottom and top of the window onto the face [program units]."""
+    found: list[float] = use.page.evaluate(
+        "() => { const l = document.querySelector('.face')._fullLayout; return [...l.xaxis.range, ...l.yaxis.range]; }"
+    )
+    return found
+
+
+def chosen_line(use: Opened) -> str:
+    """The line that is chosen in the source."""
+    return str(use.page.locator("#p0 .lines .is-chosen").get_attribute("data-line"))
+
+
+def measured(use: Opened) -> dict[str, str]:
+    """Label and text of what is measured."""
+    texts = use.page.locator(".measured:visible").locator("dt, dd").all_text_contents()
+    return dict(zip(texts[::2], texts[1::2], strict=True))
+
+
+def click(use: Opened, x: float, c: float) -> None:
+    use.page.mouse.move(*use.at(x, c))
+    use.page.mouse.down()
+    use.page.mouse.up()
+
+
+def test_a_link_leads_to_its_line_and_follows_what_is_chosen(use: Opened) -> None:
+    page = use.page
+    assert chosen_line(use) == "4"
+    assert use.fact("line", "#p0 .chosen").startswith("4")
+    page.keyboard.press("ArrowRight")
+    page.wait_for_url("**#p0L5")
+    for link, program, line in [("#p1L2", 1, "2"), ("#p0s1L13", 0, "13"), ("#p0L15000", 0, "15000")]:
+        page.evaluate("(link) => { location.hash = link; }", link)
+        page.locator(f"#p{program} .lines .is-chosen[data-line='{line}']").wait_for()
+    for hostile in ("#p7L1", "#L0", "#L999999", "#L1%22%3E", "#p0s9L2x", "#"):
+        page.evaluate("(link) => { location.hash = link; }", hostile)
+    assert chosen_line(use) == "15000"
+    page.keyboard.press("Escape")
+    page.evaluate("location.hash = '#p0L1'")
+    page.locator("#p0 .lines .is-chosen[data-line='1']").wait_for()
+
+
+def test_the_source_of_many_lines_is_chosen_and_found(use: Opened) -> None:
+    page = use.page
+    page.click("#p0 .lines [data-line='3']")
+    assert use.fact("line", "#p0 .chosen").startswith("3")
+    signs = {line: page.locator(f"#p0 .lines [data-line='{line}'] .sign").text_content() for line in (1, 2, 4)}
+    assert signs == {1: "", 2: "E", 4: "E"}
+    assert page.locator("#p0 .lines .in-polar").count() == 12
+    page.keyboard.press("/")
+    for text, way, line, count in [
+        ("15000", "Enter", "15000", "1 of 1"),
+        ("line <1999", "Enter", "19990", "2 of 11"),
+        ("line <1999", "Shift+Enter", "1999", "1 of 11"),
+        ("20001", "Enter", "1999", "no line 20001"),
+        ("<script>", "Enter", "1999", "not in the program"),
+    ]:
+        page.fill("#p0 .find input", text)
+        page.keyboard.press(way)
+        assert (chosen_line(use), page.locator("#p0 .find output").text_content()) == (line, count)
+    assert page.locator("#p0 .lines .row").count() < 120
+    page.keyboard.press("Escape")
+    for key, line in [("ArrowDown", "2000"), ("End", "20000"), ("PageUp", ""), ("Home", "1"), ("ArrowDown", "2")]:
+        page.keyboard.press(key)
+        assert chosen_line(use).startswith(line)
+    assert "too fast" in (page.locator("#p0 .list .is-chosen").first.text_content() or "")
+
+
+def test_the_wheel_zooms_at_the_pointer_and_the_face_is_dragged(use: Opened) -> None:
+    page = use.page
+    page.keyboard.press("0")
+    whole = window(use)
+    place = use.at(10, 5)
+    page.mouse.move(*place)
+    page.mouse.wheel(0, -400)
+    page.wait_for_function(
+        "(left) => document.querySelector('.face')._fullLayout.xaxis.range[0] > left + 1", arg=whole[0]
+    )
+    page.wait_for_timeout(300)
+    assert use.at(10, 5) == pytest.approx(place, abs=1.5)
+    page.mouse.down()
+    page.mouse.move(place[0] + 70, place[1] + 40, steps=4)
+    page.mouse.up()
+    assert use.at(10, 5) == pytest.approx((place[0] + 70, place[1] + 40), abs=1.5)
+    page.mouse.dblclick(*place)
+    page.wait_for_function(
+        "(left) => Math.abs(document.querySelector('.face')._fullLayout.xaxis.range[0] - left) < 1e-6", arg=whole[0]
+    )
+    for keys in (["+", "-"], ["Shift+ArrowRight", "Shift+ArrowUp", "Shift+ArrowLeft", "Shift+ArrowDown"], ["+", "0"]):
+        for number, key in enumerate(keys):
+            page.keyboard.press(key)
+            assert number + 1 == len(keys) or window(use) != pytest.approx(whole, abs=1e-3), key
+        assert window(use) == pytest.approx(whole, abs=1e-3), keys
+
+
+def test_two_fingers_zoom(use: Opened) -> None:
+    page = use.page
+    page.keyboard.press("0")
+    (x, y), before = use.at(0, 0), window(use)
+    session = page.context.new_cdp_session(page)
+    for kind, apart in [("Start", 20), ("Move", 40), ("Move", 60)]:
+        points = [{"x": x + side * apart, "y": y, "id": number} for number, side in enumerate((-1, 1))]
+        session.send("Input.dispatchTouchEvent", {"type": f"touch{kind}", "touchPoints": points})
+        page.wait_for_timeout(60)
+    session.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
+    after = window(use)
+    assert (before[1] - before[0]) / (after[1] - after[0]) == pytest.approx(3, rel=0.1)
+    assert use.at(0, 0) == pytest.approx((x, y), abs=2)
+    page.keyboard.press("0")
+
+
+def test_measuring_with_the_pointer(use: Opened) -> None:
+    page = use.page
+    page.keyboard.press("0")
+    page.click("#p0 .tools button:has-text('Measure')")
+    click(use, HALF, 3)
+    assert measured(use)["twice that"] == "30.000 mm"
+    click(use, -HALF, -3)
+    told = measured(use)
+    assert told["between the parallel walls"] == "30.000 mm"
+    assert (told["dX"], told["dC"]) == ("-60.000 mm, as a diameter", "0.000 mm")
+    assert (told["from"], told["to"]) == ("contour, line 6", "contour, line 3")
+    click(use, HALF, 8.66)
+    click(use, 0, 17.32)
+    told = measured(use)
+    assert (told["distance"], told["dC"]) == ("17.321 mm", "8.660 mm")
+    assert "X30. C8.66" in told["from"]
+    click(use, 0, 29.97)
+    assert measured(use)["diameter"] == "60.000 mm"
+    # A click that measures chooses nothing; a drag still moves the window.
+    assert chosen_line(use) == "2"
+    page.click("#p0 .measured button:has-text('Copy'):visible")
+    assert "diameter 60.000 mm" in page.evaluate("navigator.clipboard.readText()")
+    page.keyboard.press("Escape")
+    assert "Click two" in measured(use)[""]
+    page.keyboard.press("Escape")
+    assert page.locator(".measured:visible").count() == 0
+    assert chosen_line(use) == "2"
+
+
+def test_measuring_with_the_keys(use: Opened) -> None:
+    page = use.page
+    page.keyboard.press("0")
+    page.mouse.move(5, 5)
+    for key in ("m", "ArrowRight", "ArrowUp", "Enter", "ArrowDown", "Enter"):
+        page.keyboard.press(key)
+    told = measured(use)
+    assert float(told["distance"].split()[0]) > 0
+    for key in ("Escape", "w", "Enter"):
+        page.keyboard.press(key)
+    assert "length" in measured(use)
+    page.keyboard.press("Escape")
+    page.keyboard.press("m")
+    assert page.locator(".measured:visible").count() == 0
+
+
+def test_positions_are_copied_as_words_of_the_program(use: Opened) -> None:
+    page = use.page
+    page.keyboard.press("0")
+    page.mouse.move(5, 5)
+    copied = lambda: page.evaluate("navigator.clipboard.readText()")  # noqa: E731
+    page.evaluate("location.hash = '#p0L5'")
+    page.locator("#p0 .lines .is-chosen[data-line='5']").wait_for()
+    page.keyboard.press("c")
+    page.locator("#p0 .said:has-text('copied')").wait_for()
+    x, c = hexagon().moves.end[4]
+    words = re.fullmatch(r"X(-?[\d.]+) C(-?[\d.]+)", copied())
+    assert words
+    assert [float(word) for word in words.groups()] == pytest.approx([2 * float(x or 0), float(c or 0)], abs=5e-4)
+    # Another channel in inch: Y, and a zero 0.1 inch beside the center; where the browser gives no clipboard.
+    page.evaluate("() => { navigator.clipboard.writeText = () => Promise.reject(new Error('no')); }")
+    page.evaluate("location.hash = '#p0L15'")
+    page.locator("#p0 .lines .is-chosen[data-line='15']").wait_for()
+    page.keyboard.press("c")
+    page.locator("#p0 .said:has-text('Y')").wait_for()
+    words = re.fullmatch(r"X(-?[\d.]+) Y(-?[\d.]+)", copied())
+    assert words
+    assert [float(word) for word in words.groups()] == pytest.approx(
+        [2 * (float(x or 0) - 2.54) / 25.4, float(c or 0) / 25.4], abs=5e-5
+    )
+    page.keyboard.press("l")
+    page.locator("#p0 .said:has-text('#p0L15')").wait_for()
+    assert copied() == page.url
+
+
+def test_sections_side_by_side_the_drawing_and_the_list_of_keys(use: Opened) -> None:
+    page = use.page
+    page.keyboard.press("b")
+    columns = page.locator("#p0 .sides .column")
+    assert columns.locator("h3").all_text_contents() == ["1", "2"]
+    columns.nth(1).locator("button").click()
+    assert columns.nth(1).locator("button").get_attribute("aria-pressed") == "true"
+    assert page.locator("#p0s1").is_visible()
+    columns.nth(0).locator("button").click()
+    page.keyboard.press("b")
+    assert not columns.nth(0).is_visible()
+    shown = "document.querySelector('#p0s0 .face').data.some((trace) => (trace.name || '').includes('part.dxf'))"
+    assert page.evaluate(shown)
+    page.keyboard.press("d")
+    assert not page.evaluate(shown)
+    page.keyboard.press("d")
+    assert page.evaluate(shown)
+    page.keyboard.press("?")
+    assert page.locator("#keys").is_visible()
+    page.keyboard.press("Escape")
+    assert not page.locator("#keys").is_visible()

@@ -300,6 +300,18 @@ def test_options_that_do_not_fit_are_one_line(words: tuple[str, ...], said: str,
     assert result.stderr == f"polarcheck: {said}\n"
 
 
+def test_a_port_in_the_environment_stops_no_other_plot() -> None:
+    make(a__nc="G0 X10.\nM30\n")
+    assert call("plot", "a.nc", "-o", "a.html", POLARCHECK_PORT="8000", POLARCHECK_OPEN="1").exit_code == 0
+
+
+def test_an_empty_folder_is_nothing_to_serve() -> None:
+    Path("f").mkdir()
+    result = call("plot", "--serve", "f")
+    assert result.exit_code == 2
+    assert result.stderr.count("\n") <= 2
+
+
 def test_a_port_that_is_taken_is_one_line(visitor: Visitor) -> None:
     make(a__nc=HEXAGON)
     with socket.create_server(("127.0.0.1", 0)) as taken:

@@ -3,18 +3,25 @@
 from __future__ import annotations
 
 import importlib.util
+import re
 import struct
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
+import msgspec
 import pytest
+from pictures_by_hand import finding as by_hand
+from pictures_by_hand import hexagon, notch, picture
 from test_cli import call, make
 from test_pictures import GROOVE, HEXAGON
 from test_plot import RADIUS, names_in
 
-from polarcheck.pictures.picture import FindingPicture
+from polarcheck.pictures.picture import DrawnPart, FindingPicture, Mark
+from polarcheck.pictures.stills import still as stills
+from polarcheck.pictures.stills.colors import ABOVE, PLAIN, SHADES, coloring, round_bounds
 from polarcheck.pictures.stills.numbering import entries, labels
+from polarcheck.pictures.stills.still import still
 from polarcheck.pictures.stills.text import printable, wrapped
 
 pytestmark = pytest.mark.usefixtures("own_folder")
@@ -26,8 +33,12 @@ TWO = HEXAGON.replace("M30\n", "") + HEXAGON.replace("G12.1", "G777\nG12.1")
 
 def svg(path: str) -> tuple[ElementTree.Element, str]:
     """The picture as XML, and all text on it, which matplotlib leaves as comments beside its outlines."""
+    return read(Path(path).read_bytes())
+
+
+def read(data: bytes) -> tuple[ElementTree.Element, str]:
     parser = ElementTree.XMLParser(target=ElementTree.TreeBuilder(insert_comments=True))  # noqa: S314
-    root = ElementTree.fromstring(Path(path).read_bytes(), parser)  # noqa: S314
+    root = ElementTree.fromstring(data, parser)  # noqa: S314
     return root, "\n".join(node.text or "" for node in root.iter() if not isinstance(node.tag, str))
 
 
@@ -112,6 +123,91 @@ def test_hostile_names_and_words_are_text() -> None:
     assert not [node for node in root.iter() if isinstance(node.tag, str) and "script" in node.tag.lower()]
     assert "$x^$" in text
     assert "\x1b" not in text
+
+
+def colors(root: ElementTree.Element) -> set[str]:
+    """The colors of all lines."""
+    return {match for node in root.iter() for match in re.findall("stroke: (#[0-9a-f]{6})", node.get("style", ""))}
+
+
+def test_all_that_is_known_of_a_section_is_drawn() -> None:
+    moves = msgspec.structs.replace(
+        hexagon().moves,
+        share=[0.005, 0.02, 0.05, 0.2, 0.5, 1.01],
+        jump=[True, *[False] * 5],
+        role=[*["cut"] * 5, "corner"],
+    )
+    drawing = DrawnPart(
+        title="part.dxf",
+        z=None,
+        agrees=True,
+        rings=[[(15.0, 0.0), (0.0, 15.0), (-15.0, 0.0)]],
+        lines=[[(-15.0, 0.0), (15.0, 0.0)]],
+    )
+    left = Mark(kind="left", text="a rib", lines=[2], place=(0.0, 16.0), depth=0.1, rings=[[(0.0, 15.0), (1.0, 16.0)]])
+    whole = hexagon(moves=moves, drawing=[drawing], marks=[notch(), left], channel="2", units="inch", scale=25.4)
+    found = [
+        by_hand("too fast", places=[(16.0, 0.0)], span=1.0),
+        by_hand("too fast as well", places=[(-16.0, 0.0)], span=1.0),
+        by_hand("too deep", line=3, rule="overcut", places=[(14.0, 0.0)], span=0.5),
+        by_hand("elsewhere", line=9, section=None, move=None),
+    ]
+    head = [("machine", "a lathe"), ("not drawn", "the rest")]
+    root, text = read(still(picture(whole, findings=found, head=head, not_evaluated=["no feed"]), "svg"))
+    for words in (
+        "Lines 1 to 6, offset 1, channel 2", "cutter R 0.1575 inch (command line)", "stock 2.3622 inch across",
+        "limit of C 500 deg/min", "X [inch, diameter]", "part asked for", "bar", "C rate, % of its limit",
+        "error, line 3: too deep", "left standing, a rib", "Outside the polar sections", "error, line 9: elsewhere",
+        "not evaluated: no feed", "not drawn: the rest",
+    ):  # fmt: skip
+        assert words in text
+    # The first of a rule and another one are shown from near by.
+    assert re.findall(r"(\d), enlarged", text) == ["1", "3", "4"]
+    assert {ABOVE, SHADES[1], SHADES[2], SHADES[4], SHADES[6]} <= colors(root)
+    assert SHADES[0] not in re.findall(
+        "stroke: (#[0-9a-f]{6})[^}]*?stroke-width: 1.6", ElementTree.tostring(root, "unicode")
+    )
+
+
+def test_colors_are_those_of_the_page() -> None:
+    """At a bound a value is not above it; without a limit the classes are round, or each value has its own."""
+    whole = hexagon()
+    share = [0.01, 0.0100011, 0.05, 1.0, 1.01, None]
+    roles: Any = ["cut", "cut", "cut", "cut", "positioning", "cut"]
+    shown = coloring(
+        msgspec.structs.replace(whole, moves=msgspec.structs.replace(whole.moves, share=share, role=roles))
+    )
+    assert list(shown.moves) == [SHADES[0], SHADES[1], SHADES[2], SHADES[7], PLAIN, PLAIN]
+    assert (shown.title, shown.has_limit) == ("C rate, % of its limit", True)
+    free = msgspec.structs.replace(whole.moves, share=[None] * 6, c_feed=[10.0, 10.0, 20.0, 30.0, None, 0.0])
+    shown = coloring(msgspec.structs.replace(whole, moves=free))
+    assert (list(shown.bounds), shown.title) == ([0.0, 10.0, 20.0, 30.0], "C rate, deg/min")
+    assert list(shown.moves) == [SHADES[2], SHADES[2], SHADES[5], SHADES[7], PLAIN, SHADES[0]]
+    assert round_bounds([float(number) for number in range(3, 500)]) == [5, 10, 20, 50, 100, 200, 499]
+    assert coloring(msgspec.structs.replace(whole, moves=msgspec.structs.replace(free, c_feed=[7.0] * 6))).shades == [
+        SHADES[5]
+    ]
+
+
+def test_without_r_of_the_cutter_the_picture_says_what_to_give() -> None:
+    moves = msgspec.structs.replace(hexagon().moves, role=["unknown"] * 6, share=[None] * 6)
+    bare = {"radius": None, "stock": None, "keep_out": None, "c_limit": None, "time": None, "parts": [], "bar": []}
+    unknown = hexagon(moves=moves, needs_radius="give --tool 8:radius=5", makes=["hexagon"], **bare)
+    _, text = read(still(picture(unknown), "svg"))
+    assert "give - -tool 8:radius=5" in text  # as a comment of XML can hold it
+    assert "path, cutter not known" in text
+    assert "% of its limit" not in text
+    empty = msgspec.structs.replace(unknown.tool, x=[], c=[], move=[])
+    assert b"start" not in still(picture(hexagon(tool=empty, programmed=empty)), "svg")
+
+
+def test_of_very_many_sections_the_first_are_drawn(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(stills, "MOST", 1)
+    make(a__nc=TWO)
+    result = call("plot", "a.nc", *RADIUS, "--svg", "a.svg")
+    assert result.exit_code == 0
+    assert result.stderr == "polarcheck: warning: a.nc: the picture has 1 of 2 sections; --section N chooses others\n"
+    assert "Drawn: section 1 of 2." in svg("a.svg")[1]
 
 
 def finding(line: int, severity: str = "error", **more: Any) -> FindingPicture:

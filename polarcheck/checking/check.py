@@ -309,6 +309,7 @@ def _worse(one: PolarSection, other: PolarSection) -> PolarSection:
     return msgspec.structs.replace(
         fastest,
         nearest=_fold(min, one.nearest, other.nearest),
+        center_line=one.center_line or other.center_line,
         ramp_used=max((used for used in (one.ramp_used, other.ramp_used) if used is not None), default=None),
         time=_fold(max, one.time, other.time),
         time_known=known if reasons else msgspec.UNSET,

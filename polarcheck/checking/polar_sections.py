@@ -67,6 +67,8 @@ def _polar_sections(trace: Trace, dynamics: Dynamics, center: Center, ramps: Ram
     c_feed = np.where(center.cuts_off_center, tool_center.c_feed, -np.inf)
     highest = _of_sections(sections, c_feed, np.maximum, -np.inf)
     fastest = _fastest(trace, c_feed, highest)
+    meets = np.flatnonzero(trace.path.cuts & center.meets_center)
+    met = dict(zip(trace.mode.section[meets[::-1]].tolist(), meets[::-1].tolist(), strict=True))
     at_entry = _offset_rows(trace)
     nearest = _of_sections(sections, np.where(trace.path.cuts, tool_center.nearest, np.inf), np.minimum, np.inf)
     ramp = _ramp_used(trace, ramps)
@@ -88,6 +90,7 @@ def _polar_sections(trace: Trace, dynamics: Dynamics, center: Center, ramps: Ram
                 c_feed=rounded(highest[index]),
                 c_feed_line=int(trace.blocks.line_in_file[fast]) if fast >= 0 else None,
                 c_feed_limit=limit,
+                center_line=int(trace.blocks.line_in_file[met[index]]) if index in met else UNSET,
                 ramp_used=rounded(ramp[index]),
                 time=rounded(time),
                 rotary=UNSET if rotary == "C" else rotary,

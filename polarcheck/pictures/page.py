@@ -289,7 +289,7 @@ def _notes(number: int, section: SectionPicture) -> str:
     notes += "".join(f'<p class="remark">{_text(remark)}</p>\n' for remark in section.remarks)
     if section.marks:
         rows = "".join(_mark(number, place, mark, section) for place, mark in enumerate(section.marks))
-        heads = "".join(f'<th scope="col">{head}</th>' for head in ("", "Lines", "Where", "By how much"))
+        heads = "".join(f'<th scope="col">{head}</th>' for head in ("Mark", "Lines", "Where", "By how much"))
         notes += f'<div class="marks"><table><thead><tr>{heads}</tr></thead><tbody>{rows}</tbody></table></div>\n'
     return notes
 

@@ -27,6 +27,8 @@ from polarcheck.time_limit import time_limit
 #: The time limit of a hover, which may need tables that no rule has used [s].
 _PATIENCE = 5.0
 _UNKNOWN = "not known"
+#: The rate of C in a move through its center.
+_AT_ONCE = "would have to turn by 180 deg at once, at the center"
 _SIDES = {Side.LEFT: "G41, to the left", Side.RIGHT: "G42, to the right"}
 _MOTIONS = {
     Motion.RAPID: "rapid traverse",
@@ -191,7 +193,8 @@ def _of_tool_center(tool_center: ToolCenter, trace: Trace, row: int) -> Iterator
     c_feed = float(tool_center.c_feed[row])
     limit = trace.machine.limits.c_feed
     of_limit = f" of {limit:.0f}" if math.isfinite(limit) else ""
-    yield "C axis", f"{c_feed:.0f}{of_limit} deg/min" if math.isfinite(c_feed) else _UNKNOWN
+    rate = _AT_ONCE if math.isinf(c_feed) else _UNKNOWN
+    yield "C axis", f"{c_feed:.0f}{of_limit} deg/min" if math.isfinite(c_feed) else rate
     yield "nearest to the center", _shown(in_row(float(tool_center.nearest[row]), trace.lengths, row), "length")
     allowed = in_row(float(tool_center.feed_allowed[row]), trace.lengths, row)
     if of_limit and np.isfinite(allowed.value):

@@ -44,6 +44,8 @@ def summary(section: PolarSection, runs: int = 1) -> str:
     limit = f" of {section.c_feed_limit:.0f}" if section.c_feed_limit is not None else ""
     at = f" in line {section.c_feed_line}" if section.c_feed_line is not None else ""
     rate = "rate of C not known" if section.c_feed is None else f"C {section.c_feed:.0f}{limit} deg/min{at}"
+    if section.center_line:
+        rate += f", no angle at the center in line {section.center_line}"
     time = "time not known" if section.time is None else f"{section.time:.1f} s"
     if section.time_not_known:
         known = f"{section.time_known:.1f} s without" if section.time_known else "time not known:"

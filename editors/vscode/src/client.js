@@ -4,20 +4,35 @@
 
 const { spawn } = require("node:child_process");
 const vscode = require("vscode");
-const { CloseAction, ErrorAction, LanguageClient } = require("vscode-languageclient/node");
+const { CloseAction, ErrorAction, LanguageClient, State: ClientState } = require("vscode-languageclient/node");
 const { advice, commandLine } = require("./options");
 
 /** A server that ends within this time after its start is not started again [ms]. */
 const SHORTEST_LIFE = 10_000;
 const MOST_RESTARTS = 3;
+/** How long a process that no longer answers may take to end before the message about it [ms]. */
+const LONGEST_END = 2_000;
 
 /** @typedef {import("./verdict").Verdict} Verdict */
+/** @typedef {{ code: number | null, said: string, ended: Promise<void> }} Left */
+/** @typedef {"starting" | "running" | "ended"} State */
+
+/** It writes into the log alone: the messages that people see are ours. */
+class Connection extends LanguageClient {
+  /**
+   * @param {string} message
+   * @param {any} [data]
+   */
+  error(message, data) {
+    super.error(message, data, false);
+  }
+}
 
 class Client {
   /**
    * @param {vscode.LogOutputChannel} log
    * @param {(verdict: Verdict) => void} judged called with the verdict of each checked program
-   * @param {(isRunning: boolean) => void} changed called when the server is ready, and when it has ended
+   * @param {(state: State) => void} changed called when the server begins to start, is ready, and has ended
    */
   constructor(log, judged, changed) {
     this.log = log;
@@ -79,10 +94,18 @@ class Client {
   async start() {
     const line = this.line;
     this.key = JSON.stringify([line, this.languages]);
-    /** What the process has left behind. @type {{ code: number | null, said: string }} */
-    const left = { code: null, said: "" };
+    /** What the process has left behind; ended: once it has. @type {Left} */
+    const left = { code: null, said: "", ended: Promise.resolve() };
     const begun = Date.now();
-    const client = new LanguageClient("polarcheck", "polarcheck", () => this.spawned(line, left), {
+    let hasComplained = false;
+    const fail = async () => {
+      if (!hasComplained) {
+        hasComplained = true;
+        await Promise.race([left.ended, new Promise((resolve) => setTimeout(resolve, LONGEST_END))]);
+        this.complain(advice(line.command, left.code, left.said));
+      }
+    };
+    const client = new Connection("polarcheck", "polarcheck", () => this.spawned(line, left), {
       documentSelector: this.languages.flatMap((language) => [
         { scheme: "file", language },
         { scheme: "untitled", language },
@@ -97,17 +120,19 @@ class Client {
           if (client !== this.client) {
             return { action: CloseAction.DoNotRestart, handled: true };
           }
-          this.changed(false);
+          this.changed("ended");
           if (Date.now() - begun > SHORTEST_LIFE && this.restarts < MOST_RESTARTS) {
             this.restarts += 1;
             this.log.warn(`polarcheck has ended with ${left.code}, and is started again`);
             return { action: CloseAction.Restart, handled: true };
           }
+          fail();
           return { action: CloseAction.DoNotRestart, handled: true };
         },
       },
     });
     this.client = client;
+    this.changed("starting");
     client.registerFeature({
       fillClientCapabilities: (capabilities) => {
         capabilities.experimental = { ...capabilities.experimental, polarcheck: { verdict: true } };
@@ -118,21 +143,25 @@ class Client {
     });
     client.onNotification("polarcheck/verdict", (verdict) => this.judged(verdict));
     try {
+      client.onDidChangeState(({ newState }) => {
+        if (newState === ClientState.Running && client === this.client) {
+          this.changed("running");
+        }
+      });
       await client.start();
-      this.changed(true);
     } catch (error) {
       this.log.error(error instanceof Error ? error.message : String(error));
       this.client = undefined;
-      this.changed(false);
+      this.changed("ended");
       // Not awaited: the message stays until somebody closes it.
-      this.complain(advice(line.command, left.code, left.said));
+      fail();
     }
   }
 
   /**
    * The process of the server, once it runs.
    * @param {{ command: string, args: string[], folder: string }} line
-   * @param {{ code: number | null, said: string }} left
+   * @param {Left} left
    * @returns {Promise<import("node:child_process").ChildProcess>}
    */
   spawned({ command, args, folder }, left) {
@@ -141,8 +170,12 @@ class Client {
       const child = spawn(command, args, { cwd: folder || undefined, env: { ...process.env, PYTHONUTF8: "1" } });
       child.once("spawn", () => resolve(child));
       child.once("error", reject);
-      child.once("exit", (code) => {
-        left.code = code ?? -1;
+      left.ended = new Promise((ended) => {
+        // "close" comes once all is read that it has said; -1: ended by a signal.
+        child.once("close", (code) => {
+          left.code = child.pid === undefined ? null : code ?? -1;
+          ended();
+        });
       });
       child.stderr.setEncoding("utf8").on("data", (text) => {
         left.said = text.trim().split("\n").at(-1)?.trim() || left.said;
@@ -168,6 +201,7 @@ class Client {
    * @returns {Promise<any>}
    */
   async request(method, params, token) {
+    await this.queue;
     if (!this.client?.isRunning()) {
       throw new Error("polarcheck is not running: its log says why.");
     }
@@ -177,7 +211,7 @@ class Client {
   async end() {
     const client = this.client;
     this.client = undefined;
-    this.changed(false);
+    this.changed("ended");
     if (client?.needsStop()) {
       await client.stop().catch((error) => this.log.warn(String(error)));
     }

@@ -17,9 +17,12 @@ function activate(context) {
   const log = vscode.window.createOutputChannel("polarcheck", { log: true });
   const bar = vscode.window.createStatusBarItem("polarcheck.verdict", vscode.StatusBarAlignment.Left, 50);
   bar.name = "polarcheck: verdict";
+  /** Programs whose encoding is in doubt. @type {Set<string>} */
+  const warned = new Set();
   /** By URI, the verdict of each open program. @type {Map<string, Verdict>} */
   const verdicts = new Map();
-  let isRunning = false;
+  /** @type {import("./client").State} */
+  let state = "starting";
   /** @type {Picture | undefined} */
   let picture;
 
@@ -40,10 +43,10 @@ function activate(context) {
     const tooltip = new vscode.MarkdownString("", true);
     tooltip.isTrusted = { enabledCommands: ["polarcheck.showPicture", "polarcheck.restart", "polarcheck.showLog"] };
     const links = "[Show Picture](command:polarcheck.showPicture) | [Show Log](command:polarcheck.showLog) | [Restart](command:polarcheck.restart)";
-    if (isRunning) {
+    if (state !== "ended") {
       bar.text = text(verdict);
       bar.command = "workbench.actions.view.problems";
-      (verdict ? details(verdict) : ["The program is checked."]).forEach((line) => tooltip.appendText(line).appendMarkdown("  \n"));
+      (verdict ? details(verdict) : [state === "starting" ? "polarcheck is starting." : "The program is being checked."]).forEach((line) => tooltip.appendText(line).appendMarkdown("  \n"));
     } else {
       bar.text = "$(circle-slash) polarcheck is not running";
       bar.command = "polarcheck.showLog";
@@ -65,12 +68,13 @@ function activate(context) {
       }
       show();
     },
-    (ready) => {
-      isRunning = ready;
-      if (!ready) {
-        verdicts.clear();
-      }
+    (changed) => {
+      state = changed;
+      verdicts.clear();
       show();
+      if (state === "ended") {
+        picture?.ended();
+      }
     },
   );
   client = started;
@@ -79,6 +83,27 @@ function activate(context) {
   const start = (document) => {
     if (isProgram(document)) {
       started.begin();
+      warn(document);
+    }
+  };
+
+  /**
+   * Bytes that are no UTF-8 are lost once a program is saved that was read as UTF-8: say so before.
+   * @param {vscode.TextDocument} document
+   */
+  const warn = async (document) => {
+    const name = document.uri.toString();
+    if (warned.has(name) || !document.getText().includes("\ufffd")) {
+      return;
+    }
+    warned.add(name);
+    const chosen = await vscode.window.showWarningMessage(
+      `${document.fileName.split(/[\\/]/).at(-1)} has characters that are not in its encoding; saving it would lose them. Reopen it as Western (ISO 8859-1), or in the encoding of the control.`,
+      "Change Encoding",
+    );
+    if (chosen) {
+      await vscode.window.showTextDocument(document);
+      await vscode.commands.executeCommand("workbench.action.editor.changeEncoding");
     }
   };
 

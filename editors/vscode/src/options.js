@@ -55,10 +55,14 @@ function advice(command, code, said) {
   if (code === null) {
     return `polarcheck is not installed, or not on the PATH (${command}). Install it, in a checkout with: pip install ".[server,plot]" - or name its executable in the setting polarcheck.path.`;
   }
-  if (/No such command/.test(said)) {
-    return `${command} is too old, or another program: it has no command "server". The setting polarcheck.path names the executable.`;
+  if (!said) {
+    return `polarcheck is not running: ${command} ended with ${code}.`;
   }
-  return said ? `polarcheck does not start: ${said}` : `polarcheck does not start: ${command} ended with ${code}.`;
+  // Its messages begin with its name; a bug ends with the name of an error.
+  if (!/^polarcheck\b|^\w*Error\b/.test(said) || said.includes("No such command")) {
+    return `${command} is another program, or a polarcheck that is too old: it ended with "${said.slice(0, 200)}". The setting polarcheck.path names the executable.`;
+  }
+  return `polarcheck is not running: ${said.replace(/^polarcheck: /, "")}`;
 }
 
 module.exports = { advice, commandLine, expanded };

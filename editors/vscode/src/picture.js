@@ -8,6 +8,8 @@ const vscode = require("vscode");
 /** How long the picture waits for the next check, and for the cursor to rest [ms]. */
 const PAUSE = 200;
 const CURSOR_PAUSE = 30;
+/** How long the page may take to say what is to be kept of it [ms]. */
+const LONGEST_KEEP = 300;
 
 /**
  * @typedef {object} Asked
@@ -27,6 +29,12 @@ class Picture {
     /** The line that editor and picture both show, from 1; 0 for none. */
     this.line = 0;
     this.isStale = true;
+    /** The page of the program is there, and answers. */
+    this.isReady = false;
+    /** @type {any} */
+    this.kept = undefined;
+    /** @type {(kept: any) => void} */
+    this.answer = () => undefined;
     /** @type {ReturnType<typeof setTimeout> | undefined} */
     this.waiting = undefined;
     /** @type {ReturnType<typeof setTimeout> | undefined} */
@@ -61,6 +69,8 @@ class Picture {
   show(uri) {
     this.uri = uri;
     this.line = 0;
+    this.isReady = false;
+    this.kept = undefined;
     this.panel.title = `Picture of ${path.posix.basename(uri.path)}`;
     this.refresh(0);
   }
@@ -83,6 +93,12 @@ class Picture {
     this.refresh(PAUSE);
   }
 
+  /** The server has ended; another one may have another library. */
+  ended() {
+    this.library = "";
+    this.refresh(0);
+  }
+
   async ask() {
     const asking = (this.asking = new vscode.CancellationTokenSource());
     const { webview } = this.panel;
@@ -96,8 +112,11 @@ class Picture {
       }
       const params = { uri, library: this.library, sources: webview.cspSource };
       const { html } = await this.client.request("polarcheck/picture", params, asking.token);
+      const kept = await this.keep();
       if (asking === this.asking && !asking.token.isCancellationRequested) {
         this.isStale = false;
+        this.kept = kept;
+        this.isReady = false;
         webview.html = html;
       }
     } catch (error) {
@@ -105,9 +124,25 @@ class Picture {
       const code = error instanceof Error && "code" in error ? error.code : 0;
       if (asking === this.asking && !asking.token.isCancellationRequested && code !== -32801 && code !== -32800) {
         this.isStale = false;
+        this.isReady = false;
         webview.html = reason(error instanceof Error ? error.message : String(error));
       }
     }
+  }
+
+  /**
+   * What is to be kept of the page as it is drawn anew: its window, what is chosen and how it is shown.
+   * @returns {Promise<any>}
+   */
+  keep() {
+    if (!this.isReady) {
+      return Promise.resolve(this.kept);
+    }
+    this.panel.webview.postMessage({ kind: "keep" });
+    return new Promise((resolve) => {
+      this.answer = resolve;
+      setTimeout(() => resolve(this.kept), LONGEST_KEEP);
+    });
   }
 
   /**
@@ -115,7 +150,13 @@ class Picture {
    * @param {any} message
    */
   received(message) {
-    if (message?.kind === "ready") {
+    if (message?.kind === "kept") {
+      this.answer(message.kept);
+    } else if (message?.kind === "ready") {
+      this.isReady = true;
+      if (this.kept) {
+        this.panel.webview.postMessage({ kind: "restore", kept: this.kept });
+      }
       this.line = 0;
       const editor = this.editor();
       if (editor) {

@@ -57,10 +57,12 @@ test("settings become a command line, each entry one word of it", () => {
 
 test("where it does not start, one line says what to do", () => {
   assert.match(advice("polarcheck", null, ""), /not installed, or not on the PATH .* pip install .* polarcheck\.path/);
-  assert.match(advice("git", 2, "Error: No such command 'server'."), /no command "server"/);
-  const { status } = spawnSync(PYTHON, ["-m", "polarcheck", "server", "--machine", "no-such"], { encoding: "utf8", input: "" });
-  assert.strictEqual(status, 1);
-  assert.strictEqual(advice("x", 1, ""), "polarcheck does not start: x ended with 1.");
+  assert.match(advice("git", 1, "revert"), /^git is another program, .* ended with "revert"/);
+  assert.match(advice("polarcheck", 2, "polarcheck: No such command 'server'."), /too old/);
+  assert.match(advice("polarcheck", 1, "ModuleNotFoundError: No module named 'polarcheck'"), /not running: ModuleNotFoundError/);
+  const { status, stderr } = spawnSync(PYTHON, ["-m", "polarcheck", "server", "--nonsense"], { encoding: "utf8", input: "" });
+  assert.match(advice("polarcheck", status, stderr.trim().split("\n").at(-1) ?? ""), /^polarcheck is not running: No such option '--nonsense'/);
+  assert.strictEqual(advice("x", 1, ""), "polarcheck is not running: x ended with 1.");
 });
 
 test("the status bar and its tooltip say the verdict in words", () => {

@@ -95,15 +95,19 @@ test("a line of any characters is colored in time that grows with its length", a
     const grammar = await registry.loadGrammar(`source.${language}`);
     assert(grammar);
     for (const piece of pieces) {
-      /** @param {number} length */
+      /** The best of three [ms]: other processes take their time, too. @param {number} length */
       const time = (length) => {
-        const begun = performance.now();
-        grammar.tokenizeLine(piece.repeat(Math.ceil(length / piece.length)), INITIAL);
-        return performance.now() - begun;
+        const line = piece.repeat(Math.ceil(length / piece.length));
+        const times = [1, 2, 3].map(() => {
+          const begun = performance.now();
+          grammar.tokenizeLine(line, INITIAL);
+          return performance.now() - begun;
+        });
+        return Math.min(...times);
       };
       time(200);
       // 16 times the length: a square would take 256 times as long.
-      const [short, long] = [time(500), time(8000)];
+      const [short, long] = [time(150), time(2400)];
       assert(long < 200 || long < 80 * short, `${language}: ${JSON.stringify(piece)} ${short} ms, ${long} ms`);
     }
   }

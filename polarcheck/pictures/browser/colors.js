@@ -72,8 +72,8 @@ function colorOf(kind, count) {
 
 /** What a class holds, in words. */
 function classText(kind, bounds) {
-  if (kind === "above") {
-    return "above";
+  if (typeof kind !== "number") {
+    return { above: "above", unknown: "not known" }[kind];
   }
   const text = (value) => (Number.isInteger(value) ? String(value) : rounded(value));
   return kind === 0 ? `to ${text(bounds[0])}` : `${text(bounds[kind - 1])}\u2013${text(bounds[kind])}`;

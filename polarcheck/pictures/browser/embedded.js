@@ -1,40 +1,53 @@
 // ---- embedded: the page in a view of an editor, where it follows the cursor and leads to blocks ----
 
 /**
- * In a browser it does nothing. The editor sends { kind: "line", line } as its cursor moves; the page sends the same as
- * something is chosen on it, and { kind: "ready" } once it can follow.
+ * In a browser it does nothing. Messages of the editor: { kind: "line", line } as its cursor moves; { kind: "keep" }
+ * before it draws the page anew, { kind: "restore", kept } after it. Those of the page: { kind: "ready" };
+ * { kind: "line", line } as something is chosen on it; { kind: "kept", kept }.
  */
-function embeddedView(root, picture, state, program) {
-  if (typeof acquireVsCodeApi !== "function" || program > 0) {
+function embedded(state, memory) {
+  if (typeof acquireVsCodeApi !== "function") {
     return;
   }
   const editor = acquireVsCodeApi();
-  const kept = editor.getState() || {};
   let isFollowing = false;
 
+  function follow(change) {
+    isFollowing = true;
+    try {
+      change();
+    } finally {
+      isFollowing = false;
+    }
+  }
+
+  /** The colours of the editor, which puts them into the class of the body. */
+  function dress() {
+    const { classList } = document.body;
+    const isLight = classList.contains("vscode-light") || classList.contains("vscode-high-contrast-light");
+    theme(isLight ? "light" : "dark");
+  }
+
   window.addEventListener("message", ({ data }) => {
-    if (data && data.kind === "line" && Number.isInteger(data.line) && data.line !== state.chosen.line) {
-      isFollowing = true;
-      try {
-        state.choose({ program, line: data.line });
-      } finally {
-        isFollowing = false;
-      }
+    if (!data) {
+      return;
+    }
+    if (data.kind === "line" && Number.isInteger(data.line) && data.line !== state.chosen.line) {
+      follow(() => state.choose({ program: 0, line: data.line }));
+    } else if (data.kind === "keep") {
+      editor.postMessage({ kind: "kept", kept: memory.keep() });
+    } else if (data.kind === "restore") {
+      follow(() => memory.restore(data.kept));
     }
   });
   state.subscribe((chosen, before) => {
-    if (chosen.view !== before.view) {
-      editor.setState({ view: chosen.view });
-    }
     if (!isFollowing && chosen.line !== null && chosen.line !== before.line) {
       editor.postMessage({ kind: "line", line: chosen.line });
     }
   });
-  // After the first choice of the page itself.
-  setTimeout(() => {
-    if (["face", "machine", "both"].includes(kept.view)) {
-      state.choose({ view: kept.view });
-    }
-    editor.postMessage({ kind: "ready" });
-  });
+  // The editor chooses the colours.
+  document.querySelectorAll("button.theme").forEach((made) => made.remove());
+  dress();
+  new MutationObserver(dress).observe(document.body, { attributeFilter: ["class"] });
+  editor.postMessage({ kind: "ready" });
 }

@@ -93,8 +93,11 @@ function surroundings(section, units) {
     shapes.push(line("keep-out", ...circle(section.keep_out, units), { color: color("--above"), width: 1, dash: "dot" }, { fill: "toself", fillcolor: "rgba(213,94,0,0.15)" }));
   }
   const reach = reachOf(section);
+  // The name of the ray stands away from both ends of the path.
+  const away = (share) => Math.min(...pathEnds(section).map(([x, c]) => Math.hypot(x - share * reach, c)), reach);
+  const named = [0.85, 0.6, 0.35].sort((one, other) => away(other) - away(one))[0] * reach;
   shapes.push({
-    ...line("C = 0", [0, units.x(0.8 * reach), units.x(reach)], [0, 0, 0], { color: color("--axis"), width: 1, dash: "longdashdot" }, { showlegend: false }),
+    ...line("C = 0", [0, units.x(named), units.x(reach)], [0, 0, 0], { color: color("--axis"), width: 1, dash: "longdashdot" }, { showlegend: false }),
     mode: "lines+text", text: ["", "C = 0", ""], textposition: "bottom center", textfont: { color: color("--quiet"), size: 11 },
   });
   shapes.push({
@@ -234,22 +237,30 @@ function letterOf(place) {
   return String.fromCharCode(65 + (place % 26)) + (place >= 26 ? Math.floor(place / 26) : "");
 }
 
-/** Where the path begins and ends. */
-function ends(section, units) {
+/** Where the path begins and ends: places in its columns, none without a path. */
+function pathEnds(section) {
   const path = section.tool.x.length ? section.tool : section.programmed;
   const known = path.x.map((_, place) => place).filter((place) => path.x[place] !== null);
-  if (!known.length) {
+  return (known.length ? [known[0], known[known.length - 1]] : []).map((place) => [path.x[place], path.c[place]]);
+}
+
+/** The marks of both ends: one word where they are as good as at one place. */
+function ends(section, units) {
+  const points = pathEnds(section);
+  if (!points.length) {
     return [];
   }
-  // The text stands towards the middle, where there is room for it.
-  const side = (place) => (path.x[place] > (section.frame[0] + section.frame[2]) / 2 ? "left" : "right");
-  return [[known[0], "start", `top ${side(known[0])}`, "circle-open"], [known[known.length - 1], "end", `bottom ${side(known[known.length - 1])}`, "square-open"]].map(
-    ([place, text, textposition, symbol]) => ({
-      type: "scatter", mode: "markers+text", x: [units.x(path.x[place])], y: [units.c(path.c[place])],
-      text: [text], textposition, hoverinfo: "skip", showlegend: false, textfont: { color: color("--ink"), size: 12 },
-      marker: { symbol, size: text === "start" ? 12 : 9, color: color("--ink"), line: { color: color("--ink"), width: 2 } },
-    }),
-  );
+  const [x0, , x1] = section.frame;
+  const [[startX, startC], [endX, endC]] = points;
+  const isOne = Math.hypot(startX - endX, startC - endC) < 0.08 * (x1 - x0);
+  const texts = isOne ? ["start, end", ""] : ["start", "end"];
+  return points.map(([x, c], place) => ({
+    type: "scatter", mode: "markers+text", x: [units.x(x)], y: [units.c(c)],
+    // The text stands towards the middle, where there is room for it, and below: pins stand above.
+    text: [texts[place]], textposition: `bottom ${x > (x0 + x1) / 2 ? "left" : "right"}`,
+    hoverinfo: "skip", showlegend: false, textfont: { color: color("--ink"), size: 12 },
+    marker: { symbol: ["circle-open", "square-open"][place], size: [12, 9][place], color: color("--ink"), line: { color: color("--ink"), width: 2 } },
+  }));
 }
 
 /** Points along the path that the pointer finds; nothing is seen of them. */
@@ -359,8 +370,8 @@ function faceLayout(section) {
     margin: isNarrow ? { l: 44, r: 6, t: 6, b: 38 } : { l: 56, r: 10, t: 10, b: 42 }, paper_bgcolor: color("--paper"), plot_bgcolor: color("--paper"),
     hovermode: "closest", hoverdistance: 24, font: { family: "system-ui, sans-serif", size: isNarrow ? 10 : 12, color: color("--ink") }, dragmode: "pan",
     modebar: { bgcolor: "rgba(0,0,0,0)", color: color("--quiet"), activecolor: color("--ink") }, showlegend: false,
-    xaxis: { ...axis, range: x, title: { text: `X [${units.name}, ${section.diameter ? "diameter" : "radius"}]`, standoff: 6 } },
-    yaxis: { ...axis, range: y, title: { text: `C [${units.name}]`, standoff: 4 }, scaleanchor: "x", scaleratio: units.ratio },
+    xaxis: { ...axis, range: x, title: { text: `${axisName(section.writing.linear)} [${units.name}, ${section.diameter ? "diameter" : "radius"}]`, standoff: 6 } },
+    yaxis: { ...axis, range: y, title: { text: `${axisName(section.writing.virtual)} [${units.name}]`, standoff: 4 }, scaleanchor: "x", scaleratio: units.ratio },
     shapes: [],
   };
 }

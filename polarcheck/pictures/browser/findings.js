@@ -39,6 +39,9 @@ function findingsView(root, picture, state, program, sections) {
     list.append(entry);
   }
   place.append(element("h2", countsOf(findings)), list);
+  // The messages begin below each other.
+  const digits = findings.reduce((most, { line }) => Math.max(most, String(line).length), 1);
+  place.style.setProperty("--where", `${digits + 4.5}ch`);
   let open = null;
   state.subscribe((chosen) => {
     const now = chosen.program === program ? chosen.finding : null;
@@ -104,23 +107,22 @@ function unfolded(finding, chooseLine, sections) {
 /** The box of the chosen move: its facts, and the findings at its line. */
 function chosenView(root, picture, state, program) {
   const box = root.querySelector(".chosen");
-  const hint = "Point at the path, or choose a move, a finding, or a place in time.";
   function show(chosen) {
-    if (chosen.program !== program) {
+    const { section, move, line } = chosen;
+    root.querySelector(".box").hidden = chosen.program !== program || line === null;
+    if (chosen.program !== program || line === null) {
       return;
     }
-    const { section, move, line } = chosen;
     const at = move === null ? [["line", String(line)]] : factsOf(picture.sections[section], move);
     const hits = picture.order.filter((number) => {
       const finding = picture.findings[number];
-      return line !== null && (finding.line === line || finding.also.includes(line));
+      return finding.line === line || finding.also.includes(line);
     });
     box.replaceChildren(
-      ...pairs(line === null ? [["", hint]] : at),
+      ...pairs(at),
       ...(hits.length ? pairs([[hits.length > 1 ? "findings" : "finding", hits.map((number) => picture.numbers[number]).join(", ")]]) : []),
     );
   }
-  root.querySelector(".box").hidden = !picture.sections.length;
   show(state.chosen);
   state.subscribe(show);
 }

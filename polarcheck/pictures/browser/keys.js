@@ -47,7 +47,8 @@ function keysDialog() {
     }
     table.append(element("tr", "", element("td", "", element("kbd", keys)), element("td", does)));
   }
-  dialog.append(title, table, button("Close", () => dialog.close()));
+  title.append(button("Close", () => dialog.close()));
+  dialog.append(title, table);
   dialog.addEventListener("click", (event) => {
     if (event.target === dialog) {
       dialog.close();
@@ -72,6 +73,9 @@ function toolKeys(hands, state) {
   document.addEventListener("keydown", (event) => {
     const { target } = event;
     const isWritten = target instanceof Element && target.closest("input:not([type=range], [type=checkbox]), select, textarea");
+    if (dialog.open) {
+      event.stopPropagation();
+    }
     if (event.ctrlKey || event.altKey || event.metaKey || isWritten || dialog.open) {
       return;
     }
@@ -83,12 +87,12 @@ function toolKeys(hands, state) {
     }
   }, true);
 
-  function actionOf({ key, shiftKey, target }) {
+  function actionOf({ key, shiftKey }) {
     if (key === "Escape") {
       return here().isMeasuring() ? () => here().letGo() : undefined;
     }
     if (shiftKey && key in shifted) {
-      return target instanceof Element && target.closest(".lines") ? undefined : () => here().zoom[shifted[key]]();
+      return () => here().zoom[shifted[key]]();
     }
     return actions[shiftKey && key.length === 1 && key !== "?" && key !== "+" && key !== "/" ? "" : key];
   }

@@ -50,7 +50,7 @@ function showClasses(place, section, name) {
   const { role, start, end } = section.moves;
   const isDrawn = (move) => role[move] !== "positioning" && String(start[move]) !== String(end[move]);
   const counts = new Set(classesOf(section, name).filter((kind, move) => kind === "above" || isDrawn(move) || section.moves.center[move] !== null));
-  const kinds = [...coloring.bounds.keys(), "above"].filter((kind) => counts.has(kind));
+  const kinds = [...coloring.bounds.keys(), "above", "unknown"].filter((kind) => counts.has(kind));
   const made = kinds.map((kind) => {
     const text = element("span", classText(kind, coloring.bounds));
     text.className = "class";

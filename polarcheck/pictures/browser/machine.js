@@ -5,7 +5,7 @@ const TAIL = 160;
 /** The radius of the view, as a share of the radius of the bar: room for jaws and the ring of degrees. */
 const ROOM = 1.42;
 /** The cutter is drawn up to so many radii of the bar from the center. */
-const FARTHEST = 2.4;
+const FARTHEST = 2;
 
 /** The colours of the canvases, from the style of the page. */
 function canvasColors() {
@@ -265,6 +265,14 @@ function chuckLayer(see, bar, section, line, palette) {
   pen.strokeStyle = palette.quiet;
   pen.fillStyle = palette.quiet;
   pen.lineWidth = Math.max(radius / 250, 1);
+  if (section.radius === null) {
+    // No layer of metal covers it.
+    pen.setLineDash([radius / 30, radius / 30]);
+    pen.beginPath();
+    pen.arc(0, 0, radius, 0, 2 * Math.PI);
+    pen.stroke();
+    pen.setLineDash([]);
+  }
   const ring = radius * 1.26;
   pen.beginPath();
   pen.arc(0, 0, ring, 0, 2 * Math.PI);

@@ -9,28 +9,27 @@ const MEASURE_HINT = "Click two corners, walls or points; one arc for its radius
 
 /** What can be pointed at in a section, at the level of the part that is shown; with what it was made for. */
 function targetsOf(section, level, hasDrawing) {
-  const walls = [...shapesOfPath(section.programmed, section.moves, "programmed path", "programmed")];
+  const walls = [...shapesOfPath(section.programmed, section.moves, "contour", "programmed")];
   if (hasDrawing) {
-    section.drawing.forEach((drawn) => drawn.lines.forEach((line) => walls.push(...shapesOfRing(line, drawn.title, "drawing", isClosedLine(line)))));
+    section.drawing.forEach((drawn) => {
+      drawn.rings.forEach((ring) => walls.push(...shapesOfRing(ring, drawn.title, "drawing")));
+      drawn.lines.forEach((line) => walls.push(...shapesOfRing(line, drawn.title, "drawing", false)));
+    });
   }
   section.marks.forEach((mark, place) => mark.rings.forEach((ring) => walls.push(...shapesOfRing(ring, `area ${place + 1}`, "mark"))));
   (section.parts[level] ? section.parts[level].polygons : []).forEach((rings) => rings.forEach((ring) => walls.push(...shapesOfRing(ring, "finished part", "part"))));
   if (!section.needs_radius) {
     walls.push(...shapesOfPath(section.tool, section.moves, "tool center", "tool"));
   }
-  section.bar.forEach((ring) => walls.push(...shapesOfRing(ring, "bar", "bar")));
-  if (section.stock !== null && !section.bar.length) {
+  if (section.stock !== null) {
     walls.push(circleShape(section.stock / 2, "stock", "bar"));
   }
+  section.bar.slice(section.stock === null ? 0 : 1).forEach((ring) => walls.push(...shapesOfRing(ring, "bar", "bar")));
   if (section.keep_out !== null) {
     walls.push(circleShape(section.keep_out, "keep-out", "bar"));
   }
   walls.forEach(boxed);
   return { walls, points: [pointShape([0, 0], "center of C", "center"), ...pointsOf(walls)] };
-}
-
-function isClosedLine(line) {
-  return line.length > 2 && distanceOf(line[0], line[line.length - 1]) < 1e-6;
 }
 
 /** The measuring of a program. say: tells a line in words. Returns whether it is on, and what switches it. */
@@ -42,6 +41,7 @@ function measuringView(root, picture, state, program, sections, hand) {
   let taken = [];
   let cursor = null;
   let downAt = null;
+  let isByKeys = false;
 
   const placeOf = () => sections.views.indexOf(sections.shown());
   const here = () => boxes[placeOf()];
@@ -106,6 +106,7 @@ function measuringView(root, picture, state, program, sections, hand) {
     const plane = planeTransform(sections.shown().face);
     const place = plane.toPlane(event.clientX - left, event.clientY - top);
     const { points, walls } = targets();
+    isByKeys = false;
     const hit = event.altKey ? null : nearestShape(points, walls, place, REACH / plane.scale);
     cursor = hit === null ? { shape: pointShape(place, "free point", "free"), at: place } : hit;
   }
@@ -114,8 +115,13 @@ function measuringView(root, picture, state, program, sections, hand) {
     const { root: place } = box;
     place.addEventListener("pointermove", (event) => {
       if (isOn && event.pointerType !== "touch" && !(event.buttons & 1)) {
-        box.giveWay(event.clientX, event.clientY);
         pointAt(event);
+        show();
+      }
+    });
+    place.addEventListener("pointerleave", () => {
+      if (isOn && cursor !== null && !isByKeys) {
+        cursor = null;
         show();
       }
     });
@@ -159,7 +165,7 @@ function measuringView(root, picture, state, program, sections, hand) {
     const from = cursor === null ? plane.toPlane(plane.left + plane.width / 2, plane.top + plane.height / 2) : cursor.at;
     const next = nextPoint(points, from, way);
     if (next !== null) {
-      cursor = { shape: next, at: next.at };
+      [cursor, isByKeys] = [{ shape: next, at: next.at }, true];
       const [px, py] = plane.toPx(...next.at);
       if (px < plane.left || py < plane.top || px > plane.left + plane.width || py > plane.top + plane.height) {
         moveWindow(view, plane, [px - plane.left - plane.width / 2, py - plane.top - plane.height / 2]);
@@ -226,7 +232,8 @@ function measuringBox(root) {
   const buttons = element("div", "", copy, clear);
   buttons.className = "buttons";
   panel.append(words, buttons);
-  root.append(svg, panel);
+  root.append(svg);
+  root.parentElement.before(panel);
 
   function switchOn(isOn) {
     root.classList.toggle("is-measuring", isOn);
@@ -259,31 +266,24 @@ function measuringBox(root) {
     }
     words.replaceChildren(...pairs(wordsOfMeasure(view.section, first, other, cursor, result)));
     buttons.hidden = !first;
-  }
-
-  /** The panel goes out of the way of the pointer. */
-  function giveWay(clientX, clientY) {
-    const { left, right, top, bottom } = panel.getBoundingClientRect();
-    const buttonsAt = buttons.getBoundingClientRect();
-    const isOver = clientX > left - 12 && clientX < right + 12 && clientY > top - 12 && clientY < bottom + 12;
-    if (isOver && (buttons.hidden || clientY < buttonsAt.top - 4)) {
-      panel.classList.toggle("at-right");
+    if (first) {
+      words.querySelector("dd").className = "result";
     }
   }
 
   const text = () => [...words.querySelectorAll("dd")].map((value) => `${value.previousSibling.textContent} ${value.textContent}`.trim()).join("\n");
-  return { root, switchOn, show, giveWay, copy, clear, text };
+  return { root, switchOn, show, copy, clear, text };
 }
 
-/** Label and text of what is measured, in the units of the program. */
+/** Label and text of what is measured, in the units of the program; the result first. */
 function wordsOfMeasure(section, first, other, cursor, result) {
   const named = (one) => (one.shape.kind === "point" ? `${one.shape.name}, ${wordsAt(section, one.at)}` : one.shape.name);
   if (!first) {
     return cursor === null ? [["", MEASURE_HINT]] : [["here", named(cursor)], ["", MEASURE_HINT]];
   }
   return [
-    ["from", named(first)], ...(other ? [["to", named(other)]] : []),
     ...result.rows.flatMap(([label, kind, value]) => measureInWords(section, label, kind, value)),
+    ["from", named(first)], ...(other ? [["to", named(other)]] : []),
   ];
 }
 
@@ -300,7 +300,7 @@ function measureInWords(section, label, kind, value) {
     return [[label, wordsAt(section, value)]];
   }
   const digits = units.name === "inch" ? 4 : 3;
-  const names = [section.writing.linear, section.writing.virtual].map((address) => address.replace("=", ""));
+  const names = [section.writing.linear, section.writing.virtual].map(axisName);
   const sizes = coordinates(section, value, true).map((size) => size.toFixed(digits).replace(/^-(0\.0*)$/, "$1"));
   return names.map((name, axis) => {
     const isDiameter = axis ? section.writing.virtual_diameter : section.diameter;

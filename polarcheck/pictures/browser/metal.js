@@ -13,6 +13,7 @@ const MOST_PIXELS = 1100;
 
 /** The radius of the bar, and whether it is known or only what the tool reaches [mm]. */
 function barOf(section, line) {
+  const face = faceOf(section);
   let reach = 0;
   for (const ring of section.bar) {
     ring.forEach(([x, c]) => {
@@ -22,8 +23,10 @@ function barOf(section, line) {
   if (reach || section.stock !== null) {
     return { radius: reach || section.stock / 2, isKnown: true };
   }
+  const { role } = section.moves;
+  const cuts = ["cut", "corner", "unknown"].some((name) => role.includes(name)) ? ["cut", "corner", "unknown"] : ["start up", "cancel", "positioning"];
   for (let place = 0; place < line.count; place += 1) {
-    if (isKnownBelow(line.z[place], faceOf(section)) && section.moves.role[line.move[place]] !== "positioning") {
+    if (isKnownBelow(line.z[place], face) && cuts.includes(role[line.move[place]])) {
       reach = Math.max(reach, Math.hypot(line.x[place], line.c[place]));
     }
   }

@@ -47,7 +47,7 @@ function movesView(root, picture, state, program) {
   find("move-list").hidden = !picture.sections.length;
   state.subscribe(show);
   if (picture.sections.length) {
-    show({ program, section: 0, move: null });
+    show({ program, section: firstSection(picture), move: null });
   }
 }
 

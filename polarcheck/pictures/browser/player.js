@@ -55,7 +55,7 @@ function playerView(root, program, place, section, state, next) {
   const moment = { place: 1, play: 0, move: -1, kind: STEADY };
   let views = null;
   let isPlaying = false;
-  /** True once a move or a time of the section is chosen: until then nothing covers the face. */
+  /** True at a time of the section, while it plays or by the slider: else nothing covers the face. */
   let isShown = false;
   let frame = 0;
   let lastFrame = 0;
@@ -109,7 +109,7 @@ function playerView(root, program, place, section, state, next) {
   /** Write the numbers of the moment. */
   function read() {
     const { line, gauges, canvas } = views;
-    control.setTime(moment.play, `${clockOf(moment.time || 0)} of ${clockOf(line.duration || 0)}`);
+    control.setTime(moment.play, timeText(line, moment.time));
     gauges.show(moment, true);
     control.setBlock(blockText(section, moment), noteText(section, line, moment));
     if (!isPlaying) {
@@ -214,17 +214,17 @@ function playerView(root, program, place, section, state, next) {
     stop();
     open();
     sent = { ...chosen };
-    if (chosen.move === null) {
-      isShown = false;
-      if (views.over) {
-        views.over.clear();
-      }
-      seek(0);
-      return;
-    }
-    isShown = true;
     const hasTime = chosen.time !== null && chosen.time !== undefined;
-    seek(hasTime ? playAtTime(views.line, chosen.time) : playAtEndOf(views.line, chosen.move));
+    // The end of a chosen move is marked in the plot itself.
+    isShown = hasTime;
+    if (!hasTime && views.over) {
+      views.over.clear();
+    }
+    if (chosen.move === null) {
+      seek(0);
+    } else {
+      seek(hasTime ? playAtTime(views.line, chosen.time) : playAtEndOf(views.line, chosen.move));
+    }
   }
 
   /** Stand still for the sake of another choice. */
@@ -288,11 +288,19 @@ const TAKES_SPACE = "select, textarea, input:not(.clock), button, summary, a, [r
 function whyNot(section) {
   const told = [];
   if (section.radius === null) {
-    told.push("R of the cutter is not known, so that no metal is taken away: the point alone moves.");
+    told.push("R of the cutter is not known: the programmed point alone moves, and no metal is taken away.");
   } else if (section.stock === null && !section.bar.length) {
     told.push("The diameter of the stock is not known; the bar is drawn as far as the tool reaches.");
   }
   return told.map((text) => Object.assign(element("p", text), { className: "remark" }));
+}
+
+/** The time of the section, as 0:12.5 of 1:02.0. */
+function timeText({ duration, isAssumed }, time) {
+  if (!(duration > 0)) {
+    return isAssumed ? "time not known" : clockOf(0);
+  }
+  return `${clockOf(time)} of ${isAssumed ? "at least " : ""}${clockOf(duration)}`;
 }
 
 /** The block that runs, as one line. */
@@ -314,9 +322,9 @@ function noteText(section, line, { move, kind, feed, play }) {
 
 /** The controls of a player in their place. */
 function playerControls(bar, hasNext) {
-  const button = (name, text, label) => Object.assign(element("button", text), { type: "button", className: name, ariaLabel: label, title: label });
-  const toggle = button("play", "\u25b6", "Play (space)");
-  const next = button("next", "\u23ed", "Next section (n)");
+  const made = (name, text, title) => Object.assign(element("button", text), { type: "button", className: name, title });
+  const toggle = made("play", "Play", "Space");
+  const next = made("next", "Next section", "n");
   next.hidden = !hasNext;
   const slider = Object.assign(element("input"), { type: "range", className: "clock", min: "0", max: "0", step: "any", value: "0", ariaLabel: "Time in the section" });
   const time = Object.assign(element("output", "0:00.0"), { className: "time" });
@@ -351,9 +359,7 @@ function playerControls(bar, hasNext) {
       write(note, remark);
     },
     setPlaying(isPlaying) {
-      toggle.textContent = isPlaying ? "\u23f8" : "\u25b6";
-      toggle.ariaLabel = isPlaying ? "Pause (space)" : "Play (space)";
-      toggle.title = toggle.ariaLabel;
+      write(toggle, isPlaying ? "Pause" : "Play");
       bar.classList.toggle("is-playing", isPlaying);
     },
     onPlay: (action) => toggle.addEventListener("click", action),

@@ -17,6 +17,11 @@ function coordinates(section, point, isWay = false) {
   ];
 }
 
+/** The name of an axis: C2 for C2=. */
+function axisName(address) {
+  return address.replace("=", "");
+}
+
 /** A number as a program writes it, always with its point: 24.5, -3.2, 40. */
 function writtenNumber(value, digits) {
   const text = value.toFixed(digits).replace(/0+$/, "");
@@ -34,13 +39,6 @@ function wordsAt(section, point) {
 /** Why the words of a point may not be those of the program; empty if they are. */
 function doubtOfWords(section) {
   return section.writing.origin === null ? "counted from the center: this section moves its zero" : "";
-}
-
-/** What the program writes on its axes: X as a diameter. */
-function meansOf(section) {
-  const { linear, virtual } = section.writing;
-  const means = (address, isDiameter) => `${address.replace("=", "")} as a ${isDiameter ? "diameter" : "radius"}`;
-  return section.writing.virtual_diameter ? `${means(linear, section.diameter)}, ${means(virtual, true)}` : means(linear, section.diameter);
 }
 
 /** Copies a text, and says so; where the browser does not let it, shows the text to be copied by hand. */

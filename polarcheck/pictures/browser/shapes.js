@@ -12,6 +12,8 @@ const SAG_LEAST = 0.03;
 const SAG = 5e-4;
 /** Points are taken within this share of the reach: walls between near corners can be taken, too. */
 const POINT_REACH = 0.75;
+/** The chords of an arc are at most so many times as long as its first ones. */
+const CHORDS = 1.6;
 /** Blocks of straight moves, at least, of which an arc is read. */
 const BLOCKS_OF_ARC = 6;
 
@@ -67,6 +69,9 @@ function pointsOf(shapes) {
 }
 
 function endsOf(shape) {
+  if (shape.ends) {
+    return shape.ends;
+  }
   if (shape.kind === "line") {
     return [shape.from, shape.to];
   }
@@ -106,18 +111,27 @@ function shapesOfPath(path, moves, name, layer) {
       if (center !== null) {
         flush();
         shapes.push(arcThrough(points, center, `${name}, line ${moves.line[move]}`, layer));
+      } else if (points.length === 2) {
+        if (distanceOf(points[0], points[1]) > 0) {
+          chords.push({ from: points[0], to: points[1], line: moves.line[move] });
+        }
       } else {
-        points.slice(1).forEach((to, at) => {
-          if (distanceOf(points[at], to) > 0) {
-            chords.push({ from: points[at], to, line: moves.line[move] });
-          }
-        });
+        flush();
+        shapes.push(...chordsOfMove(points, `${name}, line ${moves.line[move]}`, layer));
       }
     }
     place += 1;
   }
   flush();
   return shapes;
+}
+
+/** The chords of a move that is no arc about one center, as where G2 ends beside its circle; its ends are its corners. */
+function chordsOfMove(points, name, layer) {
+  return points.slice(1).map((to, at) => ({
+    ...lineShape(points[at], to, name, layer),
+    ends: [...(at === 0 ? [points[0]] : []), ...(at + 2 === points.length ? [to] : [])],
+  }));
 }
 
 /** Lines that lead on from each other as shapes. */
@@ -215,8 +229,14 @@ function endOfArc(way, place) {
     const [before, after] = [minus(way[at], way[at - 1]), minus(way[at + 1], way[at])];
     return Math.atan2(cross(before, after), dot(before, after));
   };
-  const sense = place + 2 < way.length ? Math.sign(turnAt(place + 1)) : 0;
-  while (last + 1 < way.length && sense * turnAt(last) > 0 && Math.abs(turnAt(last)) <= ARC_TURN && isOneArc(way, place, last + 1)) {
+  const chord = (at) => distanceOf(way[at], way[at - 1]);
+  // The line before an arc is no chord of it, nor is the line behind it.
+  if (place + 2 >= way.length || chord(place + 1) > CHORDS * chord(place + 2)) {
+    return last;
+  }
+  const longest = CHORDS * Math.max(chord(place + 1), chord(place + 2));
+  const sense = Math.sign(turnAt(place + 1));
+  while (last + 1 < way.length && chord(last + 1) <= longest && sense * turnAt(last) > 0 && Math.abs(turnAt(last)) <= ARC_TURN && isOneArc(way, place, last + 1)) {
     last += 1;
   }
   return last;
@@ -242,10 +262,14 @@ function isOneArc(way, first, last) {
   );
 }
 
-/** The first, a middle and the last point between two places; of a closed ring the last one but one. */
+/** The first, a middle and the last point between two places; where these come near each other again, thirds. */
 function threeOf(way, first, last) {
-  const end = distanceOf(way[first], way[last]) < 1e-9 ? last - 1 : last;
-  return [way[first], way[(first + end) >> 1], way[end]];
+  const middle = (first + last) >> 1;
+  if (distanceOf(way[first], way[last]) > distanceOf(way[first], way[middle])) {
+    return [way[first], way[middle], way[last]];
+  }
+  const third = Math.floor((last - first) / 3);
+  return [way[first], way[first + third], way[first + 2 * third]];
 }
 
 /** The center of the circle through three points; null if they lie on a line. */

@@ -20,6 +20,7 @@ function sidesView(root, picture, state, program, sections, hand) {
   const small = new Map();
 
   function make() {
+    const longest = Math.max(...picture.sections.map((section) => section.time || 0));
     for (const channel of channels) {
       const column = element("div");
       column.className = "column";
@@ -30,7 +31,7 @@ function sidesView(root, picture, state, program, sections, hand) {
       row.className = "faces";
       picture.sections.forEach((section, place) => {
         if (section.channel === channel) {
-          const face = smallFace(section, picture.findings.filter((finding) => finding.section === place && !finding.silenced));
+          const face = smallFace(section, longest, picture.findings.filter((finding) => finding.section === place && !finding.silenced));
           face.addEventListener("click", () => state.choose({ program, section: place }));
           small.set(place, face);
           row.append(face);
@@ -69,8 +70,8 @@ function sidesView(root, picture, state, program, sections, hand) {
   return { toggle: () => switchTo(grid.hidden), isOffered: true };
 }
 
-/** A button with the face of a section: the part, the path, and where findings are. */
-function smallFace(section, findings) {
+/** A button with the face of a section: the part, the path, where findings are, and its time beside the longest [s]. */
+function smallFace(section, longest, findings) {
   const face = button("", () => {});
   face.className = "small-face";
   const [x0, c0, x1, c1] = section.frame;
@@ -93,7 +94,9 @@ function smallFace(section, findings) {
   const time = section.time === null ? "" : `, ${section.time.toFixed(1)} s`;
   const faults = findings.length ? `, ${findings.length} finding${findings.length > 1 ? "s" : ""}` : "";
   const label = element("span", `${section.title}${time}${faults}`);
-  face.append(svg, label);
+  const bar = element("i");
+  bar.style.width = `${longest > 0 ? (100 * (section.time || 0)) / longest : 0}%`;
+  face.append(svg, bar, label);
   return face;
 }
 

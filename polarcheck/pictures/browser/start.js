@@ -5,7 +5,6 @@ const VIEWS = [
   chosenView,
   movesView,
   playersView,
-  embeddedView,
 ];
 
 function start() {
@@ -30,11 +29,12 @@ function start() {
   chooser(programs, state);
   printable(programs.flatMap((program) => program.sections.views));
   if (pictures[0].sections.length) {
-    state.choose({ program: 0, section: 0 });
+    state.choose({ program: 0, section: firstSection(pictures[0]) });
   }
   linked(pictures, state, ({ program }) => programs[program].root.scrollIntoView({ block: "start" }));
   const memory = pageMemory(pictures, state, programs);
   served(memory.keep, memory.restore);
+  embedded(state, memory);
 }
 
 start();

@@ -33,7 +33,7 @@ function timelineOf(section) {
     line.move[place] = row.move;
     line.kind[place] = row.kind;
   });
-  fillTurns(line);
+  fillTurns(line, section.entry_known ? section.entry : NaN);
   line.length = count ? line.play[count - 1] : 0;
   line.duration = count ? line.time[count - 1] : 0;
   line.isAssumed = line.kind.includes(ASSUMED);
@@ -140,9 +140,10 @@ function assumedRows(section, move, path = [], before) {
 
 /**
  * Fill the turn of the tool about the center. It follows from the place on the plane and, where that is the center,
- * from the angle of C. Where the axes are not known, they are continued along the path.
+ * from the angle of C. Where the axes are not known, they are continued along the path. entry: C where the tool is on
+ * the x of the plane [deg].
  */
-function fillTurns(line) {
+function fillTurns(line, entry) {
   const { count, x, c, angle, machineX, turn } = line;
   const { sense } = line;
   let before = 0;
@@ -157,8 +158,9 @@ function fillTurns(line) {
     if (Number.isNaN(machineX[place])) {
       machineX[place] = side * away;
     }
-    if (Number.isNaN(angle[place]) && !Number.isNaN(lastAngle)) {
-      angle[place] = lastAngle + (sense * (turn[place] - before) * 180) / Math.PI;
+    if (Number.isNaN(angle[place])) {
+      const [from, since] = Number.isNaN(lastAngle) ? [entry, 0] : [lastAngle, before];
+      angle[place] = from + (sense * (turn[place] - since) * 180) / Math.PI;
     }
     lastAngle = angle[place];
     before = turn[place];

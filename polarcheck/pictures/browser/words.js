@@ -13,7 +13,12 @@ function unitsOf(section) {
     /** How many times as long one unit of C is as one of X: what equal scales need. */
     ratio: section.diameter ? 2 : 1,
     length,
-    point: ([x, c]) => `X${length(x === null ? null : x * factor * scale)} C${length(c)}`,
+    /** A point in the words of the program, with all digits. */
+    point: (place) => {
+      const { linear, virtual } = section.writing;
+      const words = place.includes(null) ? null : coordinates(section, place).map((value) => value.toFixed(digits).replace(/^-(0\.0*)$/, "$1"));
+      return words === null ? "not known" : `${linear}${words[0]} ${virtual}${words[1]}`;
+    },
     /** A length along X as the program writes X, a diameter or a radius. */
     onX: (value) => length(value * factor * scale),
     feed: (value) => (value === null ? "not known" : `${rounded(value / scale)} ${units}/min`),

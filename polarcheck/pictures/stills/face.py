@@ -16,7 +16,9 @@ from polarcheck.pictures.picture import Mark, Points, Role, SectionPicture
 from polarcheck.pictures.stills.colors import (
     ABOVE,
     BAR,
+    BAR_EDGE,
     CENTER,
+    DRAWING,
     INK,
     LEFT,
     PART,
@@ -25,7 +27,7 @@ from polarcheck.pictures.stills.colors import (
     SEVERITIES,
     SHADES,
     UNKNOWN,
-    color_of_share,
+    coloring,
 )
 from polarcheck.pictures.stills.numbering import Entry, labels
 
@@ -87,8 +89,8 @@ def draw_face(axes: Axes, section: SectionPicture, window: Window, entries: Sequ
             axes.add_patch(PathPatch(_area(polygon), facecolor=PART, edgecolor=edge, linewidth=0.6, zorder=2))
     _draw_surroundings(axes, section)
     for drawing in section.drawing:
-        for line in drawing.lines:
-            axes.plot(*zip(*line, strict=True), color=LEFT, linewidth=1.8, alpha=0.45, zorder=3)
+        for line in (*([*ring, *ring[:1]] for ring in drawing.rings), *drawing.lines):
+            axes.plot(*zip(*line, strict=True), color=DRAWING, linewidth=1.8, alpha=0.45, zorder=3)
     _draw_path(axes, section.programmed)
     _draw_tool(axes, section)
     for mark in section.marks:
@@ -106,12 +108,12 @@ def legend(section: SectionPicture) -> list[Artist]:
     if section.bar:
         samples.append(Patch(facecolor=BAR, label="bar"))
     elif section.stock is not None:
-        samples.append(_sample("stock", color="#8a6d3b", dashes=(4, 2)))
+        samples.append(_sample("stock", color=BAR_EDGE, dashes=(4, 2)))
     if section.drawing:
-        samples.append(_sample("part asked for", color=LEFT, width=1.8, alpha=0.45))
+        samples.append(_sample("part asked for", color=DRAWING, width=1.8, alpha=0.45))
     if any(x is not None for x in section.programmed.x):
         samples.append(_sample("programmed contour", width=0.7))
-    usual = SHADES[2] if any(share is not None for share in section.moves.share) else PLAIN
+    usual = SHADES[4] if coloring(section).bounds else PLAIN
     drawn = {section.moves.role[move] for move in section.tool.move if move is not None}
     for role, name in _NAMES.items():
         if role in drawn and name not in [sample.get_label() for sample in samples]:
@@ -202,7 +204,7 @@ def _draw_surroundings(axes: Axes, section: SectionPicture) -> None:
         dashed = (0, (4, 2))
         axes.add_patch(
             Circle(
-                (0, 0), section.stock / 2, fill=False, edgecolor="#8a6d3b", linewidth=0.9, linestyle=dashed, zorder=2.5
+                (0, 0), section.stock / 2, fill=False, edgecolor=BAR_EDGE, linewidth=0.9, linestyle=dashed, zorder=2.5
             )
         )
     if section.keep_out is not None:
@@ -234,10 +236,7 @@ def _draw_tool(axes: Axes, section: SectionPicture) -> None:
 def _stretches(section: SectionPicture) -> Iterator[tuple[str, str, list[tuple[float, float]]]]:
     """Yield role, color and points of each stretch of the path that is drawn alike."""
     tool, moves = section.tool, section.moves
-    colors = [
-        UNKNOWN if role == "unknown" else ABOVE if jumps else color_of_share(share, role == "positioning")
-        for role, share, jumps in zip(moves.role, moves.share, moves.jump, strict=True)
-    ]
+    colors = coloring(section).moves
     line: list[tuple[float, float]] = []
     style = ("", "")
     for place in range(1, len(tool.x)):

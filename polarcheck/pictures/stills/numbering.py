@@ -115,5 +115,9 @@ def _of_mark(mark: Mark) -> Entry:
 
 
 def _is_reported(mark: Mark, findings: Sequence[FindingPicture]) -> bool:
-    """Return True if one of the findings is about this mark."""
-    return any({finding.line, *finding.also} & set(mark.lines) for finding in findings if finding.places)
+    """Return True if one of the findings is about this mark: at its place, or in both of its blocks."""
+    return any(
+        (len(mark.lines) > 1 and {finding.line, *finding.also} >= set(mark.lines))
+        or any(_distance(place, mark.place) <= mark.depth for place in finding.places)
+        for finding in findings
+    )

@@ -17,7 +17,7 @@ from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 
 from polarcheck.pictures.picture import Picture, SectionPicture
-from polarcheck.pictures.stills.colors import ABOVE, BOUNDS, CENTER, INK, SEVERITIES, SHADES
+from polarcheck.pictures.stills.colors import ABOVE, CENTER, INK, SEVERITIES, Coloring, coloring
 from polarcheck.pictures.stills.face import Window, draw_face, legend
 from polarcheck.pictures.stills.numbering import Entry, entries, outside
 from polarcheck.pictures.stills.text import FONT, wrapped
@@ -250,24 +250,24 @@ def _draw_section(
     left, across = _MARGIN + _LEFT, WIDTH - 2 * _MARGIN - _LEFT - _RIGHT
     place = (left / WIDTH, (top - 1.5 - frame.height) / total, across / WIDTH, frame.height / total)
     draw_face(figure.add_axes(place), section, frame.window, listed, small=False)
-    if any(share is not None for share in section.moves.share):
-        _draw_colors(figure, (left + across + 2.5) / WIDTH, place[1], 2.5 / WIDTH, place[3])
+    key = coloring(section)
+    if key.bounds:
+        _draw_colors(figure, key, ((left + across + 2.5) / WIDTH, place[1], 2.5 / WIDTH, place[3]))
 
 
-def _draw_colors(figure: Figure, x: float, y: float, width: float, height: float) -> None:
+def _draw_colors(figure: Figure, key: Coloring, place: tuple[float, float, float, float]) -> None:
     """Draw the key of the colors of the path."""
-    axes = figure.add_axes((x, y, width, height))
-    colors = [*SHADES, ABOVE]
+    axes = figure.add_axes(place)
+    colors = [*key.shades, *([ABOVE] if key.has_limit else [])]
     axes.set_xlim(0, 1)
     axes.set_ylim(0, len(colors))
-    for place, color in enumerate(colors):
-        axes.axhspan(place, place + 1, color=color, linewidth=0)
-    bounds = [f"{100 * bound:.0f}" for bound in (*BOUNDS, 1.0)]
-    axes.set_yticks(range(1, len(colors)), bounds, fontsize=7)
+    for number, color in enumerate(colors):
+        axes.axhspan(number, number + 1, color=color, linewidth=0)
+    axes.set_yticks(range(1, len(key.bounds) + 1), [f"{bound:.4g}" for bound in key.bounds], fontsize=7)
     axes.yaxis.tick_right()
     axes.tick_params(length=2, width=0.5, pad=1)
     axes.set_xticks([])
-    axes.set_ylabel("rate of C, % of its limit", fontsize=7, labelpad=2)
+    axes.set_ylabel(key.title, fontsize=7, labelpad=2)
     axes.yaxis.set_label_position("right")
     for spine in axes.spines.values():
         spine.set_linewidth(0.5)

@@ -98,9 +98,11 @@ def _rate(section: PolarSection) -> str:
     rotary = section.rotary or "C"
     if section.c_feed is None:
         return f"rate of {rotary} not known ({limit})"
+    at_center = f"no angle at the center, in line {section.center_line}" if section.center_line else ""
     if section.c_feed_line is None:
-        return f"{rotary} does not turn ({limit})"
-    return f"{rotary} at most {section.c_feed:.0f} deg/min in line {section.c_feed_line} ({limit})"
+        return f"{rotary} has {at_center} ({limit})" if at_center else f"{rotary} does not turn ({limit})"
+    beside = f", and {at_center}" if at_center else ""
+    return f"{rotary} at most {section.c_feed:.0f} deg/min in line {section.c_feed_line}{beside} ({limit})"
 
 
 def _length(value: float, section: PolarSection) -> str:
