@@ -22,6 +22,8 @@ from polarcheck.finding import Edit, FileReport, Fix
 from polarcheck.server import actions, allowing, definition, diagnostics, hover, markdown, outline
 from polarcheck.server.judged import Judged, judge
 from polarcheck.server.open_text import OpenText, path_of
+from polarcheck.server.structure.document import Document
+from polarcheck.server.words.completions import completions
 
 pytestmark = pytest.mark.usefixtures("own_folder")
 
@@ -426,6 +428,10 @@ def test_what_is_typed_is_replaced_and_the_page_comes_later() -> None:
                 "$1",
                 "O",
                 "WHILE[#1",
+                "#1=#2+G1",
+                "GOTO",
+                "T=",
+                "M98 P",
                 "\0",
                 "\u2028G0",
                 "",
@@ -447,6 +453,9 @@ def test_any_text_gives_answers(lines: list[str], machine: str) -> None:
             definition.definition(judged, URI, at)
             actions.actions(judged, URI, 1, types.Range(at, at), True)
             allowing.completions(judged.text, at, judged)
+            assert judged.settings is not None
+            document = Document(URI, judged.path, judged.text, judged.settings.machine)
+            completions(document, judged.settings, at)
 
 
 def test_a_stopped_check_has_no_outcome() -> None:

@@ -11,6 +11,7 @@ from lsprotocol import types
 
 from polarcheck.commands import server as command
 from polarcheck.machines import profiles
+from polarcheck.server import actions
 from polarcheck.server.hover import hover
 from polarcheck.server.judged import Judged, judge
 from polarcheck.server.open_text import OpenText
@@ -229,6 +230,28 @@ def test_variables_of_the_program_and_of_the_settings_are_offered() -> None:
     assert found["#101"] == "#101=5.: common variable, vacant at power-on"
     assert found["#3000"] == "system variable: ends the program with an alarm"
     assert list(offered("R1=5\nR12=R1\nG0 X=R1|\n", "siemens-transmit")) == ["R1", "R12"]
+
+
+@pytest.mark.parametrize(
+    ("program", "line", "title", "block"),
+    [
+        ("G98 G0 X60. C0\nG12.1\nG1 X40. F200\nC8,660\nX60. C0\nG13.1\nM30\n", 3, "Write a decimal point", "C8.660"),
+        ("G98 G0 X60. C0\nG12.1\nG1 X40. F200\nG0 C5.\nG13.1\nM30\n", 3, "Write G1, with the F in force", "G1 C5."),
+        ("G98 G0 X60. C0\nG12.1\nX50.\nG1 X40. F200\nG13.1\nM30\n", 2, "Write G1 with F200", "G1 X50. F200"),
+        ("G98 G0 X60. C0\nG12.1 M8\nG1 X40. F200\nX60.\nG13.1\nM30\n", 1, "Write G12.1 in a block of its own", "G12.1"),
+    ],
+)
+def test_an_editor_offers_the_fixes_of_the_command_line(program: str, line: int, title: str, block: str) -> None:
+    judged = judged_of(program, machine="fanuc-30i")
+    selected = types.Range(types.Position(line, 0), types.Position(line, 20))
+    offered_here = actions.actions(judged, "file:///w/O1.NC", 1, selected, False)
+    (edit,) = (one.edit for one in offered_here if one.title.partition(" (moves")[0] == title)
+    assert edit is not None
+    assert edit.changes is not None
+    text = judged.text
+    for change in sorted(edit.changes["file:///w/O1.NC"], key=lambda one: -text.offset(one.range.start)):
+        text = text.changed([types.TextDocumentContentChangePartial(change.range, change.new_text)])
+    assert text.text.split("\n")[line] == block
 
 
 def test_an_editor_gets_words_and_their_lists() -> None:

@@ -10,7 +10,7 @@ import numpy as np
 from lsprotocol import types
 
 from polarcheck.execution.listing import Listing
-from polarcheck.reading.words import Text
+from polarcheck.reading.words import Spans, Text
 from polarcheck.server.judged import Judged
 from polarcheck.server.structure.lexing import Token, tokens
 
@@ -50,7 +50,7 @@ def word_at(judged: Judged, position: types.Position) -> CursorWord | None:
     character = judged.text.character_of(position)
     for text in judged.texts:
         block = block_of(text, character)
-        if block is None or _is_in(character, text.comments, block):
+        if block is None or is_in(character, text.comments, block):
             continue
         words = list(_words(text, block, judged))
         # Between two words without a blank the cursor stands before the second one.
@@ -70,13 +70,10 @@ def block_of(text: Text, character: int) -> int | None:
     return None if parts and int(text.blocks.line[block]) >= parts[0].first_line else block
 
 
-def _is_in(character: int, spans: object, block: int) -> bool:
+def is_in(character: int, spans: Spans, block: int) -> bool:
     """Return True for a character within one of the spans of a block."""
-    low, high = np.searchsorted(spans.block, (block, block + 1)).tolist()  # type: ignore[attr-defined]
-    return any(
-        spans.start[index] < character < spans.end[index]  # type: ignore[attr-defined]
-        for index in range(low, high)
-    )
+    low, high = np.searchsorted(spans.block, (block, block + 1)).tolist()
+    return any(spans.start[index] < character < spans.end[index] for index in range(low, high))
 
 
 def _words(text: Text, block: int, judged: Judged) -> Iterator[CursorWord]:

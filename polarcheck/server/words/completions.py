@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 from collections.abc import Callable, Iterable, Iterator
 from typing import NamedTuple
@@ -17,12 +18,18 @@ from polarcheck.reading.excerpt import shortened, visible
 from polarcheck.server.open_text import OpenText
 from polarcheck.server.structure.document import Document, block_at
 from polarcheck.server.words import called_files, codes, variables
+from polarcheck.server.words.at_cursor import is_in
 
 #: The most items of a list; beyond them the editor asks again.
 _MOST = 500
 #: What stands beside an item [characters].
 _LONGEST = 60
-_NUMBERS = re.compile(r"#\d{1,8}(?!\d)|\b(?:R|VC)\d{1,5}(?!\d)", re.ASCII | re.IGNORECASE)
+_VARIABLES = re.compile(r"#\d{1,8}(?!\d)|\b(?:R|VC)\d{1,5}(?!\d)", re.ASCII | re.IGNORECASE)
+#: A block with an N number, up to a comment.
+_NUMBERED = re.compile(
+    r"(?:^|(?<=[\n\r;]))[ \t]{0,9}(?:/\d?[ \t]{0,9})?N[ \t]{0,9}0{0,9}(\d{1,9})(?!\d)[^\n\r;(]{0,80}",
+    re.ASCII | re.IGNORECASE,
+)
 
 
 class Item(NamedTuple):
@@ -70,7 +77,8 @@ def completions(document: Document, settings: Settings | None, position: types.P
             listing, block = next(iter(document.at(position)))
             if listing.programs.programs:
                 program = listing.programs.around(block_at(listing, document.text.character_of(position)))
-                found = list(find(Place(document, listing, block, program, settings), match[1]))
+                place_of_cursor = Place(document, listing, block, program, settings)
+                found = list(itertools.islice(find(place_of_cursor, match[1]), _MOST + 1))
             typed = match[1]
             break
     offset = document.text.offset(position)
@@ -185,18 +193,24 @@ def _comment(listing: Listing, block: int) -> str:
 
 def _sequence_numbers(place: Place, typed: str) -> Iterator[Item]:
     """Yield the N numbers of the program, with what stands behind them."""
-    listing = place.listing
-    found = listing.programs.targets(place.program)
+    text, program = place.listing.text, place.program
+    begin, end = int(text.blocks.start[program.first]), int(text.blocks.end[program.end - 1])
+    found: dict[int, str] = {}
+    # By the characters: no answer at a key waits for the statements of a long program.
+    for match in _NUMBERED.finditer(text.source.text, begin, end):
+        if match[1].startswith(typed):
+            found.setdefault(int(match[1]), match[0])
     for number in sorted(found):
-        if str(number).startswith(typed):
-            yield Item(str(number), _shown(listing, found[number][0]), types.CompletionItemKind.Reference)
+        yield Item(str(number), " ".join(found[number].split()), types.CompletionItemKind.Reference)
 
 
 def _labels(place: Place, typed: str) -> Iterator[Item]:
     """Yield the labels of the program, then its N numbers."""
-    for name, blocks in sorted(place.listing.programs.labels(place.program).items()):
+    has_labels = place.document.machine.macro.language != "custom-macro"
+    labels = place.listing.programs.labels(place.program) if has_labels else {}
+    for name, blocks in sorted(labels.items()):
         yield Item(name, _shown(place.listing, blocks[0]), types.CompletionItemKind.Reference)
-    prefix = "N" if place.document.machine.macro.language != "custom-macro" else ""
+    prefix = "N" if has_labels else ""
     for item in _sequence_numbers(place, typed.upper().removeprefix("N")):
         yield item._replace(label=f"{prefix}{item.label}")
 
@@ -225,15 +239,9 @@ def _programs(place: Place, typed: str) -> Iterator[Item]:
 def _variables(place: Place, typed: str) -> Iterator[Item]:
     """Yield the variables of the program, those with a value from the settings, and those that act by themselves."""
     machine, first = place.document.machine, typed[0].upper()
-    blocks = np.flatnonzero(place.listing.text.blocks.is_macro)
-    used: dict[str, int] = {}
-    for block in blocks.tolist():
-        for match in _NUMBERS.finditer(block_text(place.listing.text, block)):
-            used.setdefault(match[0].upper(), block)
-    current = typed.upper()
+    used = _used_variables(place, first, typed.upper())
     for name, block in sorted(used.items(), key=lambda found: (len(found[0]), found[0])):
-        if name[0] == first and (name != current or block != place.block):
-            yield Item(name, _of_variable(name, machine, _shown(place.listing, block)), _VARIABLE)
+        yield Item(name, _of_variable(name, machine, _shown(place.listing, block)), _VARIABLE)
     if first == "#":
         macro = machine.macro
         given = {**macro.given, **(place.settings.job.run.variables if place.settings is not None else {})}
@@ -241,6 +249,21 @@ def _variables(place: Place, typed: str) -> Iterator[Item]:
             if f"#{number}" not in used:
                 value = f"= {given[number]:g}" if number in given else ""
                 yield Item(f"#{number}", _of_variable(f"#{number}", machine, value), _VARIABLE)
+
+
+def _used_variables(place: Place, first: str, current: str) -> dict[str, int]:
+    """Return the first block of each variable that the program uses, but for the one that is being typed."""
+    text = place.listing.text
+    used: dict[str, int] = {}
+    for match in _VARIABLES.finditer(text.source.text):
+        name = match[0].upper()
+        if name in used or name[0] != first:
+            continue
+        block = block_at(place.listing, match.start())
+        is_new = name == current and block == place.block
+        if text.blocks.is_macro[block] and not is_new and not is_in(match.start(), text.comments, block):
+            used[name] = block
+    return used
 
 
 _VARIABLE = types.CompletionItemKind.Variable
