@@ -125,8 +125,8 @@ def test_the_configuration_of_helix_starts_the_server() -> None:
 def test_neovim_shows_findings_with_the_configuration_of_the_page() -> None:
     programs, new, old = re.findall(r"```lua\n(.*?)```", (PAGES / "neovim.md").read_text("utf-8"), re.DOTALL)
     is_new = "vim.lsp.config" in subprocess.run(
-        ["nvim", "--headless", "-u", "NONE", "-c", "lua io.write(vim.lsp.config and 'vim.lsp.config' or '')", "-c", "q"],
-        capture_output=True, text=True, timeout=60,
+        ["nvim", "--headless", "-u", "NONE", "-c", "lua print(vim.lsp.config and 'vim.lsp.config' or '')", "-c", "q"],
+        stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=60,
     ).stdout  # fmt: skip
     command = json.dumps([sys.executable, "-m", "polarcheck", "server"]).replace("[", "{").replace("]", "}")
     init = (new if is_new else f"vim.g.do_filetype_lua = 1\n{old}").replace('{ "polarcheck", "server" }', command)
