@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 import pytest
-from programs import job_of, machine_of
+from programs import job_of, machine_of, report_of
 from test_pictures import CORNERS, END, GROOVE, HEAD, HEXAGON
 
 from polarcheck.checking import check
@@ -17,6 +17,8 @@ from polarcheck.pictures.listing import listing
 from polarcheck.pictures.picture import Drawn, Place, key_of
 from polarcheck.pictures.places import with_followers
 from polarcheck.reading.source import read_source
+from polarcheck.reports.pages.resting import resting
+from polarcheck.server.outline import summary
 
 
 def pictured(program: str, *tools: str, **changes: Any) -> tuple[dict[str, Place], Drawn]:
@@ -244,3 +246,20 @@ def test_very_long_files_are_shown_in_part(monkeypatch: pytest.MonkeyPatch) -> N
     assert 2500 < sum(map(len, lines)) <= 3000
     (long,), _, _ = listing(read_source(b"(" + b"A" * 100_000 + b")"), [1])
     assert len(long) < 410
+
+
+# ---- the center, in words ----
+
+
+@pytest.mark.parametrize(
+    ("blocks", "said"),
+    [
+        ("G1 X40. F200\nX-40.\n", "C has no angle at the center, in line 5 (no limit given)"),
+        ("G1 X40. C5. F200\nX0 C0\nC5.\n", "and no angle at the center, in line 5 (no limit given)"),
+        ("G1 X40. F200\n", "C does not turn (no limit given)"),
+    ],
+)
+def test_at_the_center_c_has_no_angle(blocks: str, said: str) -> None:
+    report = report_of(f"{HEAD}{blocks}G13.1\nM30\n")
+    assert any(said in line for line in resting(report))
+    assert ("no angle at the center in line 5" in summary(report.polar_sections[0])) == ("no angle" in said)
