@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import json
 import re
+import shutil
+import subprocess
 import sys
+import tomllib
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +19,7 @@ from test_cli import RAPID, call
 
 from polarcheck.batch import tasks as batch
 from polarcheck.commands import main
+from polarcheck.reading.walking import EXTENSIONS
 from polarcheck.reports import Background, render
 
 pytestmark = pytest.mark.usefixtures("own_folder")
@@ -102,6 +106,41 @@ def test_the_masks_of_notepad_match_each_severity() -> None:
     for line, found in zip(lines, findings, strict=True):
         (match,) = [match for pattern in patterns if (match := re.fullmatch(pattern, line))]
         assert match.groups() == ("C:/shop/O1.NC", str(found.line), str(found.column))
+
+
+def test_the_configuration_of_helix_starts_the_server() -> None:
+    (block,) = re.findall(r"```toml\n(.*?)```", (PAGES / "helix.md").read_text("utf-8"), re.DOTALL)
+    written = tomllib.loads(block)
+    (language,) = written["language"]
+    (server,) = (written["language-server"][name] for name in language["language-servers"])
+    assert server["command"] == "polarcheck"
+    assert server["args"][0] in main.commands
+    endings = {f".{kind}" for kind in language["file-types"] if isinstance(kind, str)}
+    assert endings <= set(EXTENSIONS)
+
+
+@pytest.mark.skipif(shutil.which("nvim") is None, reason="there is no Neovim here")
+@pytest.mark.slow
+@pytest.mark.skipif(sys.platform == "win32", reason="the page names the executable as Unix does")
+def test_neovim_shows_findings_with_the_configuration_of_the_page() -> None:
+    programs, new, old = re.findall(r"```lua\n(.*?)```", (PAGES / "neovim.md").read_text("utf-8"), re.DOTALL)
+    is_new = "vim.lsp.config" in subprocess.run(
+        ["nvim", "--headless", "-u", "NONE", "-c", "lua print(vim.lsp.config and 'vim.lsp.config' or '')", "-c", "q"],
+        stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=60,
+    ).stdout  # fmt: skip
+    command = json.dumps([sys.executable, "-m", "polarcheck", "server"]).replace("[", "{").replace("]", "}")
+    init = (new if is_new else f"vim.g.do_filetype_lua = 1\n{old}").replace('{ "polarcheck", "server" }', command)
+    Path("init.lua").write_text(programs + init, "utf-8")
+    Path("O0001.nc").write_text(RAPID, "utf-8")
+    script = (
+        "lua vim.wait(60000, function() return #vim.diagnostic.get(0) > 0 end, 50) "
+        "for _, mark in ipairs(vim.diagnostic.get(0)) do io.write(mark.code .. ' ') end"
+    )
+    shown = subprocess.run(
+        ["nvim", "--headless", "-u", "init.lua", "O0001.nc", "-c", script, "-c", "qa!"],
+        capture_output=True, text=True, timeout=120,
+    ).stdout  # fmt: skip
+    assert "rapid-in-polar" in shown
 
 
 @pytest.mark.parametrize("page", sorted(PAGES.glob("*.md")), ids=lambda page: page.stem)

@@ -9,6 +9,7 @@ import sys
 from collections.abc import Callable, Mapping
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
+from threading import RLock
 from types import MappingProxyType, ModuleType
 from typing import TYPE_CHECKING, Any
 
@@ -315,6 +316,10 @@ def rule_files() -> list[str]:
     return sorted(path for path in map(str, FOLDER.glob("*/*.py")) if not path.endswith(other_files))
 
 
+#: Two threads that load the rules at the same time would find modules that are not complete yet.
+_LOADING = RLock()
+
+
 @functools.cache
 def load_all() -> dict[str, Rule]:
     """
@@ -323,12 +328,13 @@ def load_all() -> dict[str, Rule]:
     Raises RuleError for a file in rules/ that defines no rule with the name of the file.
     """
     rules = {}
-    for path in rule_files():
-        group, stem = path.removesuffix(".py").split(os.sep)[-2:]  # noqa: PTH206
-        loaded = getattr(_module(f"polarcheck.rules.{group}.{stem}", path), stem, None)
-        if not isinstance(loaded, Rule):
-            raise RuleError(f"rules/{group}/{stem}.py: no rule named {stem}")
-        rules[loaded.name] = loaded
+    with _LOADING:
+        for path in rule_files():
+            group, stem = path.removesuffix(".py").split(os.sep)[-2:]  # noqa: PTH206
+            loaded = getattr(_module(f"polarcheck.rules.{group}.{stem}", path), stem, None)
+            if not isinstance(loaded, Rule):
+                raise RuleError(f"rules/{group}/{stem}.py: no rule named {stem}")
+            rules[loaded.name] = loaded
     return rules
 
 
