@@ -30,6 +30,7 @@ from polarcheck.reading import language_blocks, languages, surroundings, transla
 from polarcheck.reading.globs import Globs
 from polarcheck.reading.source import read_source
 from polarcheck.server.structure import mentions, workspace
+from polarcheck.server.words import completions
 
 pytestmark = [pytest.mark.slow, pytest.mark.uncounted]
 
@@ -77,6 +78,7 @@ def build_every_pattern() -> None:
         with_tool(Job(), "8:radius=x")
     report_of("O1\nG0 X1.\n#1=1\nO2\nM30\n", "fanuc")
     importlib.reload(part_comments)
+    importlib.reload(completions)
     report_of("(BAR DIA 28)\nT0101\nG98 G0 X60. Z2. C0\nG12.1\nG1 X50. F200\nG13.1", "fanuc")
 
 
