@@ -29,6 +29,8 @@ from polarcheck.machines.machine import Machine
 from polarcheck.reading import language_blocks, languages, surroundings, translation, walking
 from polarcheck.reading.globs import Globs
 from polarcheck.reading.source import read_source
+from polarcheck.server.structure import mentions, workspace
+from polarcheck.server.words import completions
 
 pytestmark = [pytest.mark.slow, pytest.mark.uncounted]
 
@@ -53,6 +55,7 @@ def build_every_pattern() -> None:
             translation.spans(read_source(codes.tobytes()), words[0][0])
         if listed := tuple(machine.macro.statements.items()):
             spoken_block._patterns.__wrapped__(listed)
+        mentions._flow_pattern(machine.macro)
     spoken_block._patterns.__wrapped__(STATEMENTS)
     translation.spans(read_source(b""), " G17  X C ")
     for language in languages.LANGUAGES:
@@ -68,10 +71,14 @@ def build_every_pattern() -> None:
     Globs("/programs", GLOBS)
     for head in (walking._HEAD, walking._STRICT_HEAD):
         walking._reads_as_program("", head)
+    workspace.naming([1234, "OFACE"])
+    for variable in (500, "R5", "#_UFO"):
+        workspace.writing(variable)
     with contextlib.suppress(UsageError):
         with_tool(Job(), "8:radius=x")
     report_of("O1\nG0 X1.\n#1=1\nO2\nM30\n", "fanuc")
     importlib.reload(part_comments)
+    importlib.reload(completions)
     report_of("(BAR DIA 28)\nT0101\nG98 G0 X60. Z2. C0\nG12.1\nG1 X50. F200\nG13.1", "fanuc")
 
 

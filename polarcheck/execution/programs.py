@@ -26,9 +26,9 @@ from polarcheck.reading.words import Text, read_words
 _NUMBER_LIMIT = 1e15
 _DECIMAL_COMMA = re.compile(r"(?<=[0-9]),(?=[0-9])")
 #: Compiled where they are looked for, since most programs jump nowhere.
-SEQUENCE_NUMBER = r"[\s/]*(?:/\s*\d\s*)?(?:[O:]\s*\d+\s*)?N\s*(\d+)"
+_SEQUENCE_NUMBER = r"[\s/]*(?:/\s*\d\s*)?(?:[O:]\s*\d+\s*)?N\s*(\d+)"
 #: A label: ANF: at the head of a block or behind its number, or a sequence name, N with letters.
-LABEL = (
+_LABEL = (
     r"[\s/]*(?:/\s*\d\s*)?(?:N\s*\d+\s*)?(?:([A-Z_][A-Z0-9_]+)\s*:(?!=)|(N(?!OEX\b)[A-Z][A-Z0-9]{0,3})(?![A-Z0-9=]))"
 )
 
@@ -131,7 +131,7 @@ class Programs:
         names = self.text.labels
         columns = (names.block.tolist(), names.start.tolist(), names.end.tolist())
         places = [(block, self.text.source.excerpt(*place).upper()) for block, *place in zip(*columns, strict=True)]
-        pattern = re.compile(LABEL, re.IGNORECASE)
+        pattern = re.compile(_LABEL, re.IGNORECASE)
         for block in np.flatnonzero(self.text.blocks.is_macro).tolist():
             match = pattern.match(block_text(self.text, block))
             if match:
@@ -163,7 +163,7 @@ class Programs:
             for block, value in zip(text.words.block[numbered], text.words.value[numbered], strict=True)
             if value < _NUMBER_LIMIT
         ]
-        pattern = re.compile(SEQUENCE_NUMBER, re.IGNORECASE)
+        pattern = re.compile(_SEQUENCE_NUMBER, re.IGNORECASE)
         for block in np.flatnonzero(text.blocks.is_macro).tolist():
             match = pattern.match(block_text(text, block))
             if match and len(match[1]) < 10:
@@ -172,6 +172,16 @@ class Programs:
         for block, number in sorted(places):
             targets.setdefault(self._first_of(block), {}).setdefault(number, []).append(block)
         return targets
+
+
+def sequence_number_in(written: str) -> re.Match[str] | None:
+    """Return the match of the N number at the head of a block (block_text), its digits in group 1."""
+    return re.compile(_SEQUENCE_NUMBER, re.IGNORECASE).match(written)
+
+
+def label_in(written: str) -> re.Match[str] | None:
+    """Return the match of the label at the head of a block (block_text), its name in group 1 or 2."""
+    return re.compile(_LABEL, re.IGNORECASE).match(written)
 
 
 def _found(targets: Sequence[int], block: int, search: Search) -> int | None:

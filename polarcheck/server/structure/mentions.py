@@ -15,10 +15,19 @@ import numpy as np
 from polarcheck.arrays import cached_property
 from polarcheck.execution.listing import Listing
 from polarcheck.execution.macro import VariableKind, Variables
-from polarcheck.execution.programs import LABEL, SEQUENCE_NUMBER, Program, ProgramName, block_text, name_at_head
+from polarcheck.execution.macro_tokens import in_capitals
+from polarcheck.execution.programs import (
+    Program,
+    ProgramName,
+    block_text,
+    label_in,
+    name_at_head,
+    sequence_number_in,
+)
 from polarcheck.execution.run import begins_program, is_code
 from polarcheck.execution.statement import Kind as StatementKind
 from polarcheck.execution.statement import Statement, Word
+from polarcheck.machines.macro_keys import Macro
 from polarcheck.server.structure.document import Document
 from polarcheck.server.structure.lexing import Token, tokens
 
@@ -181,9 +190,8 @@ class Mentions:
             is_named = block in cycles and start > self._first_word(block)
             role = Role.REFERS if is_named else Role.DEFINES
             yield Mention(Kind.SEQUENCE, role, (int(written[:18]),), written, block, first, last, start)
-        pattern = re.compile(SEQUENCE_NUMBER, re.IGNORECASE)
         for block, start, written in self._macro_blocks:
-            match = pattern.match(written)
+            match = sequence_number_in(written)
             if match and len(match[1]) < 10:
                 span = start + match.start(1), start + match.end(1)
                 begin = start + written.upper().rindex("N", 0, match.start(1))
@@ -205,9 +213,8 @@ class Mentions:
         for start, end, block in zip(names.start.tolist(), names.end.tolist(), names.block.tolist(), strict=True):
             name = self.listing.text.source.excerpt(start, end).upper()
             yield self._mention(Kind.LABEL, Role.DEFINES, name, (start, end), block, start)
-        pattern = re.compile(LABEL, re.IGNORECASE)
         for block, start, written in self._macro_blocks:
-            match = pattern.match(written)
+            match = label_in(written)
             group = 1 if match and match[1] else 2
             if match and self.listing.macro.language != "custom-macro":
                 span = start + match.start(group), start + match.end(group)
@@ -261,16 +268,7 @@ class Mentions:
         macro, text = self.listing.macro, self.listing.text
         if len(self.listing.stops) <= _MANY:
             return self.listing.stops
-        codes = sorted(macro.flow_codes)
-        parts = [
-            rb"GO",
-            *(rb"%s[ \t]{0,3}0{0,3}%s(?![0-9])" % (one[:1].encode(), re.escape(one[1:].encode())) for one in codes),
-        ]
-        if macro.language == "high-level":
-            parts += [rb"[A-Z_]{2}", rb"L[0-9]"]
-        elif macro.language == "user-task":
-            parts.append(rb"(?!VC[0-9])[A-Z]{2}")
-        pattern = re.compile(b"|".join(parts), re.IGNORECASE)
+        pattern = _flow_pattern(macro)
         hits = [match.start() for match in pattern.finditer(text.source.code.tobytes())]
         blocks = np.unique(np.searchsorted(text.blocks.start, hits, side="right") - 1)
         return sorted(set(blocks.tolist()) & set(self.listing.stops))
@@ -395,6 +393,17 @@ class Mentions:
                     yield self._mention(Kind.VARIABLE, role, variable_name(token), span, block, token.start)
 
 
+def _flow_pattern(macro: Macro) -> re.Pattern[bytes]:
+    """Return a pattern of the codes, keywords and names without which no block jumps or calls."""
+    codes = [(one[:1].encode(), re.escape(one[1:].encode())) for one in sorted(macro.flow_codes)]
+    parts = [rb"GO", *(rb"%s[ \t]{0,3}0{0,3}%s(?![0-9])" % code for code in codes)]
+    if macro.language == "high-level":
+        parts += [rb"[A-Z_]{2}", rb"L[0-9]"]
+    elif macro.language == "user-task":
+        parts.append(rb"(?!VC[0-9])[A-Z]{2}")
+    return re.compile(b"|".join(parts), re.IGNORECASE)
+
+
 def variable_name(token: Token) -> int | str:
     """Return the name of a variable: 100 of #0100, R5 of R05, WIDTH."""
     match = re.fullmatch(r"(#|R|V|VC)(\d+)", token.text)
@@ -414,14 +423,16 @@ def _place_of_name(written: str, word: Word, called: ProgramName) -> tuple[int, 
         digits = _DIGITS.search(written, word.start, word.end)
         return digits.span() if digits else None
     name = called.name or ""
-    is_numbered = name[:1] == "L" and name[1:].isdecimal()
-    pattern = (
-        rf"L\s*{name[1:]}(?!\d)"
-        if is_numbered
-        else rf"(?<![A-Z0-9]){re.escape(name)}(?![A-Z0-9_])|{re.escape(name)}(?=_[MS]PF)"
-    )
-    match = re.compile(pattern, re.IGNORECASE).search(written, word.start, max(word.end, word.start + 1))
-    return match.span() if match else None
+    capitals, wanted = in_capitals(written), in_capitals(name)
+    at = capitals.find(wanted, word.start) if wanted else -1
+    while at >= 0:
+        end = at + len(wanted)
+        after = capitals[end : end + 1]
+        is_whole = not (after.isalnum() or after == "_") or capitals[end : end + 4] in ("_SPF", "_MPF")
+        if is_whole and not capitals[at - 1 : at].isalnum():
+            return at, end
+        at = capitals.find(wanted, at + 1)
+    return None
 
 
 def mentions_of(document: Document) -> list[Mentions]:

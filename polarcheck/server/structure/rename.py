@@ -23,7 +23,10 @@ from polarcheck.server.structure.workspace import Workspace
 
 #: The longest new name that a message shows [characters].
 _SHOWN = 40
-_LARGEST_NUMBER = 99_999_999
+#: A number with or without its letter, a label of a user task, and any other name.
+_TYPED = re.compile(r"(N|#|O|R|VC?)?\s{0,4}([0-9]{1,8})", re.IGNORECASE | re.ASCII)
+_TASK_LABEL = re.compile(r"N[A-Z][A-Z0-9]{0,3}", re.IGNORECASE | re.ASCII)
+_NAME = re.compile(r"[A-Z_][A-Z_][A-Z0-9_]{0,30}", re.IGNORECASE | re.ASCII)
 _KINDS = {
     VariableKind.LOCAL: "local",
     VariableKind.COMMON: "common",
@@ -110,18 +113,17 @@ class _Renaming:
         return RenameError(f"{visible(shortened(self.new, _SHOWN))!r}: expected {expected}")
 
     def _digits(self, letters: str, example: str) -> int:
-        match = re.fullmatch(rf"(?:{letters})?\s*([0-9]{{1,8}})", self.new, re.IGNORECASE | re.ASCII)
-        if match is None:
+        match = _TYPED.fullmatch(self.new)
+        if match is None or (match[1] or letters).upper() != letters:
             raise self._wrong(f"a number of up to eight digits, as {example}")
-        return int(match[1])
+        return int(match[2])
 
     def _number(self) -> int | str:
         return self._digits("N", "N100")
 
     def _label(self) -> int | str:
         language = self.use.owner.mentions.listing.macro.language
-        pattern = r"N[A-Z][A-Z0-9]{0,3}" if language == "user-task" else r"[A-Z_][A-Z_][A-Z0-9_]{0,30}"
-        if not re.fullmatch(pattern, self.new, re.IGNORECASE | re.ASCII):
+        if not (_TASK_LABEL if language == "user-task" else _NAME).fullmatch(self.new):
             is_task = language == "user-task"
             raise self._wrong("N and up to four letters and digits, as NLAP1" if is_task else "a name, as ENDE")
         return self.new.upper()
@@ -133,7 +135,7 @@ class _Renaming:
         numbered = re.fullmatch(r"(R|VC?)\d+", name)
         if numbered:
             return f"{numbered[1]}{self._digits(numbered[1], name)}"
-        if not re.fullmatch(r"[A-Z_][A-Z_][A-Z0-9_]{0,30}", self.new, re.IGNORECASE | re.ASCII):
+        if not _NAME.fullmatch(self.new):
             raise self._wrong("a name that begins with two letters, as WIDTH")
         return self.new.upper()
 

@@ -10,7 +10,7 @@ from polarcheck.execution.macro import VariableKind
 from polarcheck.execution.programs import Program, ProgramName
 from polarcheck.server.structure.document import Document
 from polarcheck.server.structure.mentions import Into, Kind, Mention, Mentions, Role, mentions_of
-from polarcheck.server.structure.workspace import Workspace, naming
+from polarcheck.server.structure.workspace import Workspace, naming, writing
 
 #: Variables that every program shares: beside those that call each other, all of the workspace count.
 _SHARED = (VariableKind.RETAINED, VariableKind.SYSTEM, VariableKind.CLOCK, VariableKind.READ_ONLY)
@@ -243,10 +243,7 @@ class Uses:
         """
         kind = self.kind_of(use)
         if kind in _SHARED:
-            written = str(use.mention.name).upper().lstrip("#").encode()
-            pattern = re.compile(rb"(?<![0-9A-Z_])" + re.escape(written).replace(b"R", b"R0*") + rb"(?![0-9])", re.I)
-            if isinstance(use.mention.name, int):
-                pattern = re.compile(rb"#[ \t]{0,3}0{0,8}%d(?![0-9])" % use.mention.name)
+            pattern = writing(use.mention.name)
             return [one for document in self.workspace.matching(pattern) for one in self.owners(document)]
         is_local = kind is VariableKind.LOCAL
         if is_local and use.owner.mentions.listing.macro.language != "custom-macro":

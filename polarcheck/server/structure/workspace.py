@@ -175,3 +175,12 @@ def naming(keys: Sequence[int | str]) -> re.Pattern[bytes]:
         else:
             parts.append(re.escape(key.encode("utf-8", "replace")))
     return re.compile(b"|".join(parts), re.IGNORECASE)
+
+
+def writing(variable: int | str) -> re.Pattern[bytes]:
+    """Return a pattern of bytes that every file matches that writes a variable: 500 for #500, R5, #_NAME."""
+    digits = str(variable).lstrip("RVC")
+    if digits.isdecimal():
+        letters = b"#" if isinstance(variable, int) else variable[:1].encode()
+        return re.compile(rb"%s[ \t]{0,3}0{0,8}%s(?![0-9])" % (letters, digits.encode()), re.IGNORECASE)
+    return re.compile(re.escape(str(variable).encode()), re.IGNORECASE)
