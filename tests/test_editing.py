@@ -43,7 +43,7 @@ def test_all_that_an_editor_asks_is_answered() -> None:
         )
         (edit,) = allow["edit"]["changes"][program]
         assert edit["newText"] == " (POLARCHECK ALLOW RAPID-IN-POLAR )"
-        others = {"diagnostics": [], "only": ["refactor"]}
+        others = {"diagnostics": [], "only": ["refactor.extract"]}
         assert editor.asks("codeAction", program, range=mark["range"], context=others) == []
         editor.change(program, 2, "G0 C5. (POLARCHECK ALLOW ", (3, 0, 6))
         items = editor.asks("completion", program, 3, 25)

@@ -22,6 +22,8 @@ from polarcheck.finding import Edit, FileReport, Fix
 from polarcheck.server import actions, allowing, definition, diagnostics, hover, markdown, outline
 from polarcheck.server.judged import Judged, judge
 from polarcheck.server.open_text import OpenText, path_of
+from polarcheck.server.structure.document import Document
+from polarcheck.server.words.completions import completions
 
 pytestmark = pytest.mark.usefixtures("own_folder")
 
@@ -72,6 +74,11 @@ def shown(judged: Judged, line: int, character: int = 0, with_markdown: bool = F
         return ""
     assert isinstance(found.contents, types.MarkupContent)
     return found.contents.value
+
+
+def state_at(judged: Judged, line: int, character: int = 0) -> str:
+    """The state of the block, which stands below the meaning of the word."""
+    return shown(judged, line, character).rpartition("\n\n")[2]
 
 
 def edited(judged: Judged, edit: types.WorkspaceEdit | None) -> str:
@@ -152,13 +159,13 @@ def test_a_finding_shows_its_manual_page() -> None:
     page = shown(judged, 4, 1, True)
     assert page.startswith("**rapid-in-polar**, alarm PS0146\n\n")
     assert "\n    G12.1\n" in page
-    assert shown(judged, 4, 4).startswith("Rapid traverse, in the polar mode since line 2\n")
+    assert state_at(judged, 4, 4).startswith("Rapid traverse, in the polar mode since line 2\n")
 
 
 def test_a_block_shows_what_is_in_force() -> None:
     judged = judged_of(COMPENSATED, tools=["1:radius=4"], changes=["limits.c_feed=3600"])
-    assert shown(judged, 5, 6).startswith("Straight line, in the polar mode since line 3\n")
-    facts = dict(line.split(": ", 1) for line in shown(judged, 5, 6).splitlines()[1:])
+    assert state_at(judged, 5, 6).startswith("Straight line, in the polar mode since line 3\n")
+    facts = dict(line.split(": ", 1) for line in state_at(judged, 5, 6).splitlines()[1:])
     assert (facts["tool offset"], facts["feed"]) == ("1, R 4 mm (command line)", "F 200 mm/min")
     assert facts["compensation"] == "G41, to the left"
     assert facts["position behind it"].startswith("X 40 mm (diameter), C -10 mm (length), Z not known, C axis -")
@@ -170,14 +177,14 @@ def test_a_block_shows_what_is_in_force() -> None:
 def test_a_block_is_shown_in_the_units_of_the_program() -> None:
     inch = "G20 T0101\nG98 G0 X2. C0 Z.5\nG12.1\nG1 X1. F10.\nC.2\nG13.1\nG99 F.004\nM30\n"
     judged = judged_of(inch, tools=["1:radius=0.25"])
-    facts = dict(line.split(": ", 1) for line in shown(judged, 5, 1).splitlines()[1:])
+    facts = dict(line.split(": ", 1) for line in state_at(judged, 5, 1).splitlines()[1:])
     assert facts["position behind it"].startswith("X 1 inch (diameter), C 0.2 inch (length), Z 0.5 inch, C axis ")
     assert facts["tool offset"] == "1, R 0.25 inch (command line)"
     assert facts["feed"] == "F 10 inch/min"
     assert "feed: F 0.004 inch/rev" in shown(judged, 7)
-    assert shown(judged, 3).startswith("The polar mode begins\n")
-    assert shown(judged, 6).startswith("The polar mode ends\n")
-    assert shown(judged, 8).startswith("No movement, outside the polar mode\n")
+    assert state_at(judged, 3).startswith("The polar mode begins\n")
+    assert state_at(judged, 6).startswith("The polar mode ends\n")
+    assert state_at(judged, 8).startswith("No movement, outside the polar mode\n")
 
 
 def test_a_block_that_runs_several_times_says_so() -> None:
@@ -268,7 +275,7 @@ def test_a_call_leads_to_the_file_in_the_folders_of_subprograms(text: str) -> No
 
 def test_allowing_writes_the_comment_at_the_end_of_the_block() -> None:
     judged = judged_of(RAPID.replace("G0 C5.", "G0 C5. (SLOT)  "), select=["rapid-in-polar"])
-    (action,) = actions.actions(judged, URI, 3, types.Range(place(4, 1), place(4, 1)), False)
+    *_, action = actions.actions(judged, URI, 3, types.Range(place(4, 1), place(4, 1)), False)
     assert action.title == "Allow rapid-in-polar here"
     assert action.is_preferred is None
     assert "\nG0 C5. (SLOT) (POLARCHECK ALLOW RAPID-IN-POLAR )  \n" in edited(judged, action.edit)
@@ -277,7 +284,7 @@ def test_allowing_writes_the_comment_at_the_end_of_the_block() -> None:
 @pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
 def test_allowing_goes_before_a_comment_that_is_not_closed(end: str) -> None:
     judged = judged_of(RAPID.replace("G0 C5.", "G0 C5. (SLOT").replace("\n", end), select=["rapid-in-polar"])
-    (action,) = actions.actions(judged, URI, 3, types.Range(place(4, 1), place(4, 1)), False)
+    *_, action = actions.actions(judged, URI, 3, types.Range(place(4, 1), place(4, 1)), False)
     assert f"{end}(POLARCHECK ALLOW RAPID-IN-POLAR ){end}G0 C5. (SLOT{end}" in edited(judged, action.edit)
 
 
@@ -290,7 +297,7 @@ def test_allowing_goes_before_a_comment_that_is_not_closed(end: str) -> None:
 )
 def test_allowing_is_written_as_the_control_writes_comments(block: str, written: str) -> None:
     judged = judged_of(RAPID.replace("G0 C5.", block), machine="siemens-iso", select=["rapid-in-polar"])
-    (action,) = actions.actions(judged, URI, 3, types.Range(place(4, 1), place(4, 1)), False)
+    *_, action = actions.actions(judged, URI, 3, types.Range(place(4, 1), place(4, 1)), False)
     assert written in edited(judged, action.edit)
 
 
@@ -421,6 +428,10 @@ def test_what_is_typed_is_replaced_and_the_page_comes_later() -> None:
                 "$1",
                 "O",
                 "WHILE[#1",
+                "#1=#2+G1",
+                "GOTO",
+                "T=",
+                "M98 P",
                 "\0",
                 "\u2028G0",
                 "",
@@ -442,6 +453,9 @@ def test_any_text_gives_answers(lines: list[str], machine: str) -> None:
             definition.definition(judged, URI, at)
             actions.actions(judged, URI, 1, types.Range(at, at), True)
             allowing.completions(judged.text, at, judged)
+            assert judged.settings is not None
+            document = Document(URI, judged.path, judged.text, judged.settings.machine)
+            completions(document, judged.settings, at)
 
 
 def test_a_stopped_check_has_no_outcome() -> None:

@@ -8,6 +8,8 @@ from typing import Any
 
 import pytest
 from editor import Editor, place
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 
 from polarcheck.errors import PolarcheckError
 from polarcheck.machines import profiles
@@ -144,6 +146,11 @@ def test_uses_are_found_in_other_files() -> None:
 
 # ---- rename ----
 
+_LINES = [
+    *("N10 X1.", "N20 (N10 \U0001f600) G71 P10 Q20", "GOTO 10", "IF[#100EQ#2]GOTO20", "#100=#100+#2", "M98 P2", "O2"),
+    *("M99 P10", "M99", "G65 P2 A1.", "#2=1", "M30", "/N30 GOTO10", "O3", "M98 P3", "WHILE[#2LT5]DO1", "END1"),
+]
+
 
 @pytest.mark.parametrize(
     ("where", "new", "changes"),
@@ -181,6 +188,7 @@ def test_a_rename_changes_other_files_and_keeps_their_line_ends() -> None:
         (at("O2\n"), "3", "O0003 is there already, in line 14"),
         (at("O2\n"), "12345", "line 4: P has the repeats before the last four digits, so expected four at most"),
         (at("O2\n"), "0", "expected a number from 1 on"),
+        ("O1\nM98 P^2\nO2\nO2\n", "3", "O0002 is in line 4, too: it is not known which of them is called"),
         (at("#1="), "#2", None),
         (at("#1=", MAIN.replace("A1.", "A1. B2.")), "#2", "line 5 gives #1 its value by A: change the call first"),
         (at("#101"), "#102", "#102 is there already, in line 9"),
@@ -214,6 +222,24 @@ def test_what_would_change_the_program_is_refused(text: str, new: str, reason: s
 def test_labels_are_refused_in_their_language(machine: str, text: str, new: str, reason: str) -> None:
     with pytest.raises(PolarcheckError, match=reason):
         renamed(text, new, machine)
+
+
+@settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(st.lists(st.sampled_from(_LINES), min_size=1, max_size=12), st.sampled_from(["\n", "\r\n"]), st.data())
+def test_a_rename_back_gives_the_same_program(lines: list[str], end: str, data: Any) -> None:
+    """And in between all that was named is named, and nothing else."""
+    text = end.join(["O1", *lines, ""])
+    hits = list(re.finditer(r"(?<=[NPQO#])\d+|(?<=GOTO)\d+", text))
+    hit = data.draw(st.sampled_from(hits))
+    marked = text[: hit.start()] + "^" + text[hit.start() :]
+    try:
+        after = renamed(marked, "7" * len(hit[0]))
+    except PolarcheckError:
+        return
+    changed = after["O1.NC"]
+    again = changed[: hit.start()] + "^" + changed[hit.start() :]
+    assert used(again) == used(marked)
+    assert renamed(again, hit[0])["O1.NC"] == text
 
 
 def test_two_programs_of_a_number_cannot_be_told_apart() -> None:
@@ -261,6 +287,9 @@ def test_an_editor_finds_and_renames_over_files() -> None:
         assert [one["range"]["start"]["line"] for one in found] == [3, 7, 1]
         marked = editor.asks("documentHighlight", program, 5, 4)
         assert [(one["range"]["start"]["line"], one["kind"]) for one in marked] == [(5, 2), (8, 3), (15, 3)]
+        led = editor.asks("definition", program, 5, 4)
+        assert [one["range"]["start"]["line"] for one in led] == [8, 15]
+        assert [one["range"]["start"]["line"] for one in editor.asks("definition", program, 3, 5)] == [11]
         ready = editor.asks("prepareRename", program, 11, 1)
         assert ready == {"range": {"start": place(11, 1), "end": place(11, 2)}, "placeholder": "2"}
         assert editor.asks("prepareRename", program, 2, 5) is None

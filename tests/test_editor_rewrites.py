@@ -192,6 +192,7 @@ def test_the_action_says_beforehand_why_not() -> None:
         "line 2 computes the number that it goes to",
     )
     assert title("X1.\n") is None
+    assert title("N10 X1.\nN20 X2.\n") is None
 
 
 # ---- with an editor ----

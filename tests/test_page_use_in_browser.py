@@ -44,7 +44,7 @@ def blank(browser: Any) -> Iterator[Any]:
     """A page with the scripts that measure alone."""
     opened = browser.new_page()
     folder = resources.files("polarcheck.pictures").joinpath("browser")
-    scripts = [folder.joinpath(f"{name}.js").read_text("utf-8") for name in ("shapes", "distances")]
+    scripts = [folder.joinpath(f"{name}.js").read_text("utf-8") for name in ("positions", "shapes", "distances")]
     opened.add_script_tag(content="\n".join([*scripts, SHAPES]))
     yield opened
     opened.close()
@@ -78,6 +78,33 @@ def test_what_is_measured(blank: Any, first: str, second: str | None, expected: 
     assert set(found) == set(expected)
     for label, value in expected.items():
         assert found[label] == pytest.approx(value, abs=2e-4), label
+
+
+@pytest.mark.parametrize(
+    ("point", "words", "section", "writing"),
+    [
+        ([12.25, -3.2], "X24.5 C-3.2", {}, {}),
+        ([12.25, -3.2], "X12.25 Y-3.2", {"diameter": False}, {"virtual": "Y"}),
+        ([20, -0.00004], "X40. C2=0.", {}, {"virtual": "C2="}),
+        ([12.7, 25.4], "X1. C1.", {"units": "inch", "scale": 25.4}, {}),
+        (
+            [-0.00254, 2.53873],
+            "X-0.0002 A0.1999",
+            {"units": "inch", "scale": 25.4},
+            {"virtual": "A", "virtual_diameter": True},
+        ),
+        ([10, 14], "X20. Y4.", {}, {"virtual": "Y", "origin": [0, 10]}),
+        ([8, 14], "X10. Y0.", {"diameter": False}, {"virtual": "Y", "origin": [8, 4], "turn": 90}),
+        ([8, 14], "X16. Y14.", {}, {"virtual": "Y", "origin": None}),
+    ],
+    ids=["diameter", "radius", "C2", "inch", "both diameters", "zero", "frame", "zero not known"],
+)
+def test_a_position_in_the_words_of_the_program(
+    blank: Any, point: list[float], words: str, section: dict[str, Any], writing: dict[str, Any]
+) -> None:
+    plain = {"linear": "X", "virtual": "C", "virtual_diameter": False, "origin": [0, 0], "turn": 0}
+    whole = {"units": "mm", "scale": 1, "diameter": True, **section, "writing": {**plain, **writing}}
+    assert blank.evaluate("([section, point]) => wordsAt(section, point)", [whole, point]) == words
 
 
 def test_arcs_are_read_from_chords_and_polygons_are_not(blank: Any) -> None:
@@ -255,6 +282,7 @@ def test_two_fingers_zoom(use: Opened) -> None:
 def test_measuring_with_the_pointer(use: Opened) -> None:
     page = use.page
     page.keyboard.press("0")
+    page.click("#p0 .view-switch button:has-text('Machine')")
     page.click("#p0 .tools button:has-text('Measure')")
     click(use, HALF, 3)
     assert measured(use)["twice that"] == "30.000 mm"
@@ -276,6 +304,9 @@ def test_measuring_with_the_pointer(use: Opened) -> None:
     assert "diameter 60.000 mm" in page.evaluate("navigator.clipboard.readText()")
     page.keyboard.press("Escape")
     assert "Click two" in measured(use)[""]
+    page.touchscreen.tap(*use.at(HALF, 3))
+    assert measured(use)["length"] == "17.321 mm"
+    page.keyboard.press("Escape")
     page.keyboard.press("Escape")
     assert page.locator(".measured:visible").count() == 0
     assert chosen_line(use) == "2"
@@ -330,10 +361,11 @@ def test_sections_side_by_side_the_drawing_and_the_list_of_keys(use: Opened) -> 
     page = use.page
     page.keyboard.press("b")
     columns = page.locator("#p0 .sides .column")
-    assert columns.locator("h3").all_text_contents() == ["1", "2"]
+    assert columns.locator("strong").all_text_contents() == ["channel 1", "channel 2"]
     columns.nth(1).locator("button").click()
     assert columns.nth(1).locator("button").get_attribute("aria-pressed") == "true"
     assert page.locator("#p0s1").is_visible()
+    assert page.locator("#p0s1 .face .ytitle").text_content() == "Y [inch, from the center of C]"
     columns.nth(0).locator("button").click()
     page.keyboard.press("b")
     assert not columns.nth(0).is_visible()

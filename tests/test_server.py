@@ -210,7 +210,7 @@ async def test_changes_of_settings_are_taken() -> None:
         # A document of settings is no program.
         job = Document(client, "polarcheck.toml", "[tools.1]\nradius = 4.0\n", "toml")
         assert await job.hover(0, 1) == ""
-        assert job.uri not in client.diagnostics
+        assert not client.diagnostics.get(job.uri)
 
 
 # ---- what nobody vouches for ----

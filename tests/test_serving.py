@@ -15,6 +15,7 @@ from urllib.parse import urlsplit
 
 import pytest
 from test_cli import call, make, process
+from test_drawing_options import dxf
 from test_page_in_browser import CHROMIUM, browser
 from test_pictures import GROOVE, HEXAGON
 from test_plot import PLOTLY, RADIUS
@@ -169,6 +170,34 @@ def test_a_folder_has_an_index_and_new_programs_come_to_it(visitor: Visitor, bet
 
     between(first, another, deleted)
     assert call("plot", "--serve", "f", *RADIUS, "-j", "1").exit_code == 0
+
+
+def test_a_page_depends_on_drawing_offsets_and_subprograms(visitor: Visitor, between: Callable[..., None]) -> None:
+    Path("subs").mkdir()
+    make(a__nc=HEXAGON.replace("G40 X80.", "M98 P100\nG40 X80."), **{"subs/O0100__nc": "O0100\nM99\n"})
+    make(offsets__txt="%\nG10 P8 X0 Z0 R4. Q0\n%\n")
+    dxf(Path("part.dxf"), {"0": [15, 15j, -15]})
+    versions: list[str] = []
+
+    def change_drawing() -> None:
+        versions.append(visitor.event()["version"])
+        dxf(Path("part.dxf"), {"0": [15, 15j, -15, -15j]})
+
+    def change_offsets() -> None:
+        versions.append(visitor.event()["version"])
+        make(offsets__txt="%\nG10 P8 X0 Z0 R5. Q0\n%\n")
+
+    def change_subprogram() -> None:
+        versions.append(visitor.event()["version"])
+        make(**{"subs/O0100__nc": "O0100\nG1 C2.\nM99\n"})
+
+    def look() -> None:
+        versions.append(visitor.event()["version"])
+
+    between(change_drawing, change_offsets, change_subprogram, look)
+    words = ("--offsets", "offsets.txt", "--drawing", "part.dxf", "--subprograms", "subs")
+    assert call("plot", "--serve", "a.nc", *words).exit_code == 0
+    assert len({*versions}) == 4
 
 
 def test_nobody_else_gets_anything(visitor: Visitor, between: Callable[..., None]) -> None:
@@ -342,7 +371,11 @@ def test_a_browser_shows_what_is_saved_and_keeps_what_is_chosen(browser: Any) ->
         make(a__nc=GROOVE.replace("G12.1", "(NEW)\n(LINES)\nG12.1"))
         page.get_by_text("lines 5 to 17").first.wait_for(timeout=30000)
         page.locator(".face .main-svg").first.wait_for()
-        page.wait_for_url("**/#L10")
+        for _ in range(400):  # not `page.url`, which sometimes misses a changed address
+            if page.evaluate("location.hash") == "#L10":
+                break
+            page.wait_for_timeout(50)
+        assert page.evaluate("location.hash") == "#L10"
         assert page.evaluate(f"{face}._fullLayout.xaxis.range") == pytest.approx(window)
 
         Path("a.nc").unlink()

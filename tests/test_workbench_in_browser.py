@@ -60,13 +60,20 @@ def address(tmp_path_factory: pytest.TempPathFactory) -> str:
 class Screen:
     """A page at a size and in a color scheme, and what it complained of."""
 
-    def __init__(self, browser: Any, address: str, size: tuple[int, int] = (1280, 720), scheme: str = "light") -> None:
+    def __init__(
+        self,
+        browser: Any,
+        address: str,
+        size: tuple[int, int] = (1280, 720),
+        scheme: str = "light",
+        drawn: str = ".face .main-svg",
+    ) -> None:
         self.page = browser.new_page(viewport={"width": size[0], "height": size[1]}, color_scheme=scheme)
         self.complaints: list[str] = []
         self.page.on("console", lambda message: self.complaints.append(message.text))
         self.page.on("pageerror", lambda error: self.complaints.append(str(error)))
         self.page.goto(address)
-        self.page.wait_for_selector(".face .main-svg")
+        self.page.wait_for_selector(drawn)
 
     def box(self, selector: str) -> dict[str, float]:
         found: dict[str, float] = self.page.locator(selector).first.bounding_box()
@@ -196,6 +203,22 @@ def test_one_page_of_a4_has_the_picture(browser: Any, address: str, tmp_path: Pa
     screen.page.emulate_media(media="screen")
     screen.page.evaluate("window.dispatchEvent(new Event('afterprint'))")
     assert screen.page.evaluate("document.querySelector('.face')._fullLayout.paper_bgcolor") == "#16181c"
+    assert screen.complaints == []
+    screen.page.close()
+
+
+def test_a_program_that_is_not_drawn_has_its_findings_beside_its_source(browser: Any, tmp_path: Path) -> None:
+    found = [finding("C too fast", line=line, section=None, move=None, is_beside=True) for line in range(1, 13)]
+    reason = ("not drawn", "the check of this file takes too long")
+    whole = picture(findings=found, source=[f"N{line}" for line in range(1, 40)], source_lines=39, head=[reason])
+    path = tmp_path / "plain.html"
+    path.write_text(page([whole]), "utf-8")
+    screen = Screen(browser, path.as_uri(), drawn=".list li")
+    screen.page.locator(".list li > button").nth(2).click()
+    assert screen.page.locator(".lines .is-chosen").inner_text().split() == ["3", "E", "N3"]
+    assert screen.page.locator(".missing").inner_text() == reason[1]
+    assert screen.box(".lines")["x"] > screen.box(".list")["x"] + screen.box(".list")["width"]
+    assert screen.violations() == []
     assert screen.complaints == []
     screen.page.close()
 

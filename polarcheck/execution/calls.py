@@ -157,6 +157,8 @@ def enter_program(
     state.stack.append(level)
     if arguments is not None:
         state.variables.enter(arguments)
+        for number, value in arguments.items():
+            state.rows.note_value(back - 1, number, value, state.variables.depth)
         state.changes += 1
     if repeats > state.settings.max_blocks:
         level.repeats, level.changes = 1, state.changes

@@ -196,6 +196,8 @@ def _assign(state: State, statement: Statement, block: int) -> None:
     state.add(assign(statement, state.variables, arithmetic), block)
     after = state.variables.value(number) if number is not None and state.variables.exists(number) else None
     state.changes += before != after or number is None or number != number
+    if number is not None:
+        state.rows.note_value(block, number, after, state.variables.depth)
     if is_of_offset:
         value = step if step == step else UNKNOWN if after is None else after
         state.rows.add_assigned(block, Assigned(round(number or 0), value, step == step), state.depth)

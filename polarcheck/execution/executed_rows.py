@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from polarcheck.arrays import Mask, Rows, different, is_among, stretch
-from polarcheck.execution.run import Assigned, FlowFault, Remark, Run, is_code
+from polarcheck.execution.run import Assigned, FlowFault, Remark, Run, ValueSet, is_code
 from polarcheck.execution.statement import Statement, Word
 from polarcheck.machines.axes import AXIS_LETTERS
 from polarcheck.machines.machine import Machine
@@ -18,6 +18,10 @@ from polarcheck.reading.words import Blocks, Text, Words
 
 #: Rows kept of a program that was broken off, beside as many as the file has blocks: enough turns to judge its loop.
 _KEPT_ROWS = 10_000
+#: Values of variables that are noted.
+_MOST_VALUES = 20_000
+#: No variable has a larger number, names included.
+_LARGEST_NUMBER = 1e9
 
 
 class _Range(msgspec.Struct, frozen=True):
@@ -58,6 +62,7 @@ class ExecutedRows:
         self.broken_off: list[int] = []
         self.computed: list[tuple[int, Word, float]] = []
         self.assigned: dict[int, Assigned] = {}
+        self.values: list[ValueSet] = []
         self.count = 0
 
     def __len__(self) -> int:
@@ -139,6 +144,11 @@ class ExecutedRows:
         self.assigned[self.count] = assigned
         self.add_computed(block, (), depth)
 
+    def note_value(self, block: int, number: float, value: float | None, level: int) -> None:
+        """Note a value that a variable has got, for what an editor shows; the first ones of a long run will do."""
+        if len(self.values) < _MOST_VALUES and -1 < number < _LARGEST_NUMBER:
+            self.values.append(ValueSet(self.count, block, round(number), value, level))
+
     def add_call(self, block: int, statement: Statement, depth: int, has_arguments: bool) -> None:
         """A block with a call: its words, but those that are arguments belong to the macro."""
         if self.text.blocks.is_macro[block]:
@@ -188,6 +198,7 @@ class ExecutedRows:
             self._distance(index),
             names or {},
             broken_off if self.broken_off else None,
+            self.values,
         )
 
     def _mask_of(self, rows: Sequence[int]) -> Mask:

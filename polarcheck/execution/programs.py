@@ -112,7 +112,11 @@ class Programs:
 
     def labelled(self, program: Program, label: str, block: int, search: Search) -> int | None:
         """The block of a label of a program, in capitals, from another block on; None where there is none."""
-        return _found(self._labels.get(self._first_of(program.first), {}).get(label, []), block, search)
+        return _found(self.labels(program).get(label, []), block, search)
+
+    def labels(self, program: Program) -> dict[str, list[int]]:
+        """The blocks of each label of a program, in capitals."""
+        return self._labels.get(self._first_of(program.first), {})
 
     @cached_property
     def with_labels(self) -> frozenset[int]:

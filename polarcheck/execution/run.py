@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from typing import NamedTuple
 
 import msgspec
 import numpy as np
@@ -62,6 +63,24 @@ class Assigned(msgspec.Struct, frozen=True):
         return f"#{self.variable}"
 
 
+class ValueSet(NamedTuple):
+    """
+    A variable that has got a value.
+
+    row: how many rows had been executed before.
+    block: that sets it; of an argument that of the call.
+    number: of the variable.
+    value: None for vacant, NaN for unknown.
+    level: how many macro calls deep.
+    """
+
+    row: int
+    block: int
+    number: int
+    value: float | None
+    level: int
+
+
 class Beside(msgspec.Struct, frozen=True):
     """
     The other channels of a file: their texts, whose programs can be called; and what they call, by numbers and names.
@@ -80,7 +99,8 @@ class Run(msgspec.Struct, frozen=True):
     depth: of calls. faults: what macro and flow found. remarks: what was not evaluated. assigned: row -> the variable
     of an offset that it assigns, with its value. distance: per word what it says of itself (modal.Distance), 0 where it
     says nothing; None where no word does. names: of tools that T calls by name, by the number that stands for them.
-    broken_off: rows at which a bound of the check has ended a program; None where it has ended none.
+    broken_off: rows at which a bound of the check has ended a program; None where it has ended none. values: the
+    values that variables have got, in order, up to a bound.
     """
 
     text: Text
@@ -96,6 +116,7 @@ class Run(msgspec.Struct, frozen=True):
     distance: NDArray[np.int16] | None = None
     names: Mapping[int, str] = {}
     broken_off: Mask | None = None
+    values: Sequence[ValueSet] = ()
 
     def __len__(self) -> int:
         return len(self.block)

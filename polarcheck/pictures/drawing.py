@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import cmath
 import contextlib
+import math
 from collections.abc import Callable, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, NamedTuple, TypeVar
@@ -21,7 +22,7 @@ from polarcheck.parts.part_report import depths_of, made_by
 from polarcheck.pictures.listing import listing
 from polarcheck.pictures.moves import LENGTH, SectionMoves
 from polarcheck.pictures.picture import Drawn, Key, Mark, PartPicture, Place, SectionPicture, key_of
-from polarcheck.pictures.places import Face, Spot, Spots, with_followers
+from polarcheck.pictures.places import Face, Spot, Spots, Wanted, with_followers
 
 if TYPE_CHECKING:
     from polarcheck.parts.made_depths import Depth
@@ -48,12 +49,14 @@ def drawn(report: FileReport, runs: Sequence[tuple[str, Tables]]) -> FileReport:
     channels = [tables for _, tables in first_runs(runs)]
     remarks: list[str] = []
     spots = _spots(report, [Spots(tables) for tables in channels])
-    lines = {line for _, spot in spots.values() for line in spot.also} | {key[1] for key in spots}
-    wanted = np.array(sorted(lines), np.int64)
+    lines = {key[1] for key in spots}
+    also = {line for _, spot in spots.values() for line in spot.also}
+    wanted = Wanted(*(np.array(sorted(each), np.int64) for each in (lines, also)))
     sections: list[_Section] = []
     for run, tables in enumerate(channels):
         try:
-            sections += _sections(run, tables, wanted, remarks)
+            own = [spot for of_run, spot in spots.values() if of_run == run]
+            sections += _sections(run, tables, own, wanted, remarks)
         except TooHardError as error:
             remarks.append(f"not drawn: {error}")
     sections.sort(key=lambda section: section.picture.line)
@@ -135,12 +138,13 @@ def _place(run: int, spot: Spot, sections: Sequence[_Section]) -> Place:
     )
 
 
-def _sections(run: int, tables: Tables, lines: Rows, remarks: list[str]) -> list[_Section]:
+def _sections(run: int, tables: Tables, spots: Sequence[Spot], wanted: Wanted, remarks: list[str]) -> list[_Section]:
     """
     Return the pictures of one run.
 
     run: its number.
-    lines: the lines with findings.
+    spots: the places of its findings.
+    wanted: the lines with findings.
     remarks: takes a line for each thing that is not drawn.
     """
     trace: Trace = tables["trace"]
@@ -172,6 +176,12 @@ def _sections(run: int, tables: Tables, lines: Rows, remarks: list[str]) -> list
     with contextlib.suppress(TooHardError):  # `makes` says so
         depths = depths_of(tables)
 
+    windows: dict[int, float] = {}
+    for spot in spots:
+        if spot.rows and spot.span is not None:
+            number = int(trace.mode.section[spot.rows[0]])
+            windows[number] = min(spot.span, windows.get(number, math.inf))
+
     def parts_of(section: PolarSection, number: int, tolerance: float) -> list[PartPicture]:
         own = [level for level in (*levels, *meant) if level.section == number]
         made = [shape for shape in makes if _is_of(shape, section)]
@@ -190,7 +200,7 @@ def _sections(run: int, tables: Tables, lines: Rows, remarks: list[str]) -> list
                 programmed,
                 section,
                 number,
-                lines,
+                wanted,
                 Extras(
                     parts=partial(parts_of, section, number),
                     asked=partial(asked_parts, tables, number),
@@ -198,6 +208,7 @@ def _sections(run: int, tables: Tables, lines: Rows, remarks: list[str]) -> list
                     makes=list(dict.fromkeys(_in_words(shape) for shape in makes if _is_of(shape, section))),
                     bar=bar,
                     face=float(tables["bar"].known.face),
+                    window=windows.get(number, math.inf),
                 ),
             ),
             face,

@@ -30,7 +30,8 @@ def samples(path: Segments, held_at: float, sense: int, most: int) -> Samples:
     """
     ways = _Ways(path)
     of, share = ways.first_shares()
-    of, share = ways.refined(of, share, _ADDED * most)
+    if len(of) <= _ADDED * most:
+        of, share = ways.refined(of, share, _ADDED * most)
     # In the center C jumps, or turns while the tool waits: two points, before and behind it.
     at_center = path.jumps[of] & (share == ways.ahead[of])
     count = 1 + at_center
@@ -40,7 +41,7 @@ def samples(path: Segments, held_at: float, sense: int, most: int) -> Samples:
     of, share, at_center = (np.repeat(column, count) for column in (of, share, at_center))
     point, along = ways.at(of, share)
     point = np.where(at_center, 0, point)
-    toward = _seen(point, along, share, is_behind)
+    toward = _seen(point, along, share, is_behind | (path.jumps[of] & (share > ways.ahead[of])))
     far = np.abs(point)
     stands = along == 0
     per_way = np.where(stands, 0.0, np.degrees(cross(point, along) / far**2))
@@ -150,10 +151,14 @@ class _Ways:
         of_line = (self._offset[of] * np.tan(seen) - self._foot[of]) / self._long[of]
         of_arc = (_turned(seen, self._narrow[of]) - self._first[of]) / np.abs(self._sweep[of])
         by_turn = np.where(is_arc[of], of_arc, np.where(self._offset[of] > 0, of_line, share))
+        # Through the center all of the turn is in one point.
+        by_turn = np.where(self.path.jumps[of], share, by_turn)
         share = np.clip(np.where(evenly | ~np.isfinite(by_turn), share, by_turn), 0.0, 1.0)
         share = np.where(place == 2 * count[of], self.ahead[of], share)
         order = np.lexsort((share, of))
-        return of[order], share[order]
+        of, share = of[order], share[order]
+        differs = np.append(True, (np.diff(of) != 0) | (np.diff(share) != 0))[: len(of)]
+        return of[differs], share[differs]
 
     def refined(self, of: Rows, share: Floats, most: int) -> tuple[Rows, Floats]:
         """Return the points with others between them, where a straight line is off; at most about `most` more."""
@@ -179,12 +184,12 @@ class _Ways:
         """Return where the line between two points is off in the middle."""
         ends = [self.at(of, share) for share in (low, middle, high)]
         first, between, last = (point for point, _ in ends)
-        behind = low == self.ahead[of]
+        behind = low >= self.ahead[of]
         seen = [
             _seen(point, along, share, behind) for (point, along), share in zip(ends, (low, middle, high), strict=True)
         ]
         # The center itself lies behind the first of two points, before the last.
-        begin = self.time(of, low, self.path.jumps[of] & behind)
+        begin = self.time(of, low, self.path.jumps[of] & (low == self.ahead[of]))
         time = self.time(of, high) - begin
         part = np.where(time > 0, (self.time(of, middle) - begin) / time, 0.5)
         off = np.abs(between - first - part * (last - first))

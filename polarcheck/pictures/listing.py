@@ -19,22 +19,26 @@ def listing(source: Source, wanted: Iterable[int]) -> tuple[list[str], int, int]
 
     wanted: the lines with findings and sections; if not all lines are shown, these begin shortly before the first one.
     """
+    is_whole = len(source.code) <= _CHARACTERS
+    text = source.text if is_whole else ""
     count = source.parts[0].first_line - 1 if source.parts else len(source.line_starts)
     first = 1
-    if count > _LINES or len(source.code) > _CHARACTERS:
+    if count > _LINES or not is_whole:
         first = max(1, min((line for line in wanted if line > 0), default=1) - _BEFORE)
     lines: list[str] = []
     left = _CHARACTERS
     for line in range(first, min(first + _LINES, count + 1)):
-        text = _line(source, line)
-        left -= len(text)
+        shown = _line(source, line, text)
+        left -= len(shown)
         if left < 0:
             break
-        lines.append(text)
+        lines.append(shown)
     return lines, first, count
 
 
-def _line(source: Source, line: int) -> str:
+def _line(source: Source, line: int, text: str) -> str:
+    """Return a line. text: all of the file, or nothing if it is long."""
     start = int(source.line_starts[line - 1])
     end = int(source.line_starts[line]) if line < len(source.line_starts) else len(source.code)
-    return shortened(source.excerpt(start, min(end, start + 2 * _WIDE)).rstrip("\r\n"), _WIDE)
+    end = min(end, start + 2 * _WIDE)
+    return shortened((text[start:end] if text else source.excerpt(start, end)).rstrip("\r\n"), _WIDE)

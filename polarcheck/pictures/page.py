@@ -94,7 +94,9 @@ def page(
     script = f'\n(() => {{\n"use strict";\n{scripts}}})();\n'
     included = library.replace("</script", "<\\/script")
     allowed = [script_hash(script), script_hash(included) if included else sources]
-    loaded = f"<script>{included}</script>" if included else f'<script src="{_text(beside)}"></script>'
+    loaded = f"<script>{included}</script>" if included else ""
+    if beside and not included:
+        loaded = f'<script src="{_text(beside)}"></script>'
     return Template(_part("page.html")).substitute(
         policy=_POLICY.format(" ".join(allowed)) + (CONNECTED if version else ""),
         served=served(version) if version else "",
@@ -188,6 +190,7 @@ def _program(number: int, picture: Picture) -> str:
         no_scripts=_NO_SCRIPTS,
         shape="" if picture.sections else " is-plain",
         sections=sections,
+        absent="".join(f'<p class="missing">{_text(text)}</p>' for label, text in picture.head if label == "not drawn"),
         findings=_findings(number, picture.findings),
         lacking=f'<h2>Not evaluated</h2>\n<ul class="lacking">{lacking}</ul>' if lacking else "",
         head=_pairs(picture.head),

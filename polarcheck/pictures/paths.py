@@ -80,7 +80,7 @@ def thinned(path: Chords, keep: Mask, look: States, tolerance: float, most: int)
     """
     Return the path with at most `most` points besides those that must stay, and its deviation [mm].
 
-    keep: bool[moves], moves whose points all stay.
+    keep: bool[moves], moves whose points all stay, unless these are too many themselves.
     look: int16[moves], how each move is drawn; a point where this changes stays.
 
     The tolerance [mm] is doubled until the points are few enough. A path with few points stays as it is.
@@ -91,6 +91,8 @@ def thinned(path: Chords, keep: Mask, look: States, tolerance: float, most: int)
     if len(path) <= most:
         return path, 0.0
     stays = keep[path.move]
+    if np.count_nonzero(stays) > most:
+        stays = np.zeros_like(stays)
     # The last point of a connected piece, and each point where the look changes.
     ends = np.append(path.begins[1:], True)
     differs = np.append((np.diff(look[path.move]) != 0) | (np.diff(stays) != 0), False)

@@ -8,7 +8,7 @@ import enum
 import math
 from collections.abc import Callable, Iterator, Sequence
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import msgspec
 import numpy as np
@@ -45,6 +45,18 @@ _AT_CENTER = 5.0
 
 #: Subjects of rules (checking/causes.py) that judge the contour as programmed.
 _OF_CONTOUR = ("arc", "side", "compensation", "metal")
+
+
+class Wanted(NamedTuple):
+    """
+    Lines of a file whose moves stay on the page however many there are.
+
+    findings: the lines with findings; all points of their moves stay.
+    also: the other lines that findings stand for; their moves stay in the table.
+    """
+
+    findings: Rows
+    also: Rows
 
 
 class Where(enum.Enum):

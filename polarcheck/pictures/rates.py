@@ -12,6 +12,13 @@ from polarcheck.geometry import polar
 from polarcheck.geometry import rates as of_moves
 from polarcheck.pictures.moves import SectionMoves
 
+#: How far a point may lie from the curves between its neighbours to be left out [mm], [deg], as a share of rates.
+_NEAR, _NEAR_ANGLE, _SHARE = 0.002, 0.02, 0.002
+#: How often every second point is tried.
+_ROUNDS = 16
+#: Of more points than this many times those that may remain, no single ones are tried.
+_FAR_TOO_MANY = 8
+
 
 class Samples(msgspec.Struct, frozen=True):
     """
@@ -125,17 +132,56 @@ def path_segments(table: SectionMoves, chosen: Rows) -> Segments:
     )
 
 
-def thinned(curves: Samples, keep: Mask, most: int) -> Samples:
+def thinned(curves: Samples, keep: Mask, most: int) -> tuple[Samples, float]:
     """
-    Return about `most` points at most: of each short interval the first, and the highest and lowest of each curve.
+    Return about `most` points at most, and how far the positions between them are off [mm].
 
-    keep: bool[moves], moves whose points all stay.
+    keep: bool[moves], moves whose points all stay, unless these are too many themselves.
+
+    First points go that lie on the curves between their neighbours. If too many are left, the ends of moves stay, if
+    these are not too many, and of each short interval the first point, and the highest and lowest of each curve.
     """
+    if len(curves.move) <= most:
+        return curves, 0.0
+    if np.count_nonzero(keep[curves.move]) > most:
+        keep = np.zeros_like(keep)
+    rest = np.arange(len(curves.move))
+    for number in range(_ROUNDS if len(rest) <= _FAR_TOO_MANY * most else 0):
+        if len(rest) <= most:
+            break
+        rest = _without_straight(curves, rest, keep, number % 2)
+    if len(rest) > most:
+        rest = rest[_extremes(curves.chosen(rest), keep, most)]
+    chosen = curves.chosen(rest)
+    between = np.interp(curves.t, chosen.t, chosen.point.real) + 1j * np.interp(curves.t, chosen.t, chosen.point.imag)
+    return chosen, float(np.abs(between - curves.point).max(initial=0.0))
+
+
+def _without_straight(curves: Samples, rest: Rows, keep: Mask, first: int) -> Rows:
+    """Return the points without every second one, if it lies on the curves between its neighbours."""
+    middle = np.arange(1 + first, len(rest) - 1, 2)
+    low, at, high = rest[middle - 1], rest[middle], rest[middle + 1]
+    time = curves.t[high] - curves.t[low]
+    part = np.divide(curves.t[at] - curves.t[low], time, out=np.full(len(at), 0.5), where=time > 0)
+
+    def off(column: Floats | Points) -> Floats:
+        return np.asarray(np.abs(column[at] - column[low] - part * (column[high] - column[low])))
+
+    near = (off(curves.point) <= _NEAR) & (off(np.abs(curves.point)) <= _NEAR) & (off(curves.angle) <= _NEAR_ANGLE)
+    near &= ~(off(curves.z) > _NEAR)
+    for column in (curves.c_feed, curves.x_feed, curves.feed):
+        finite = np.abs(column[np.isfinite(column)])
+        near &= off(column) <= _SHARE * float(finite.max(initial=0.0))
+    goes = np.zeros(len(rest), bool)
+    goes[middle] = near & ~keep[curves.move[at]]
+    return rest[~goes]
+
+
+def _extremes(curves: Samples, keep: Mask, most: int) -> Rows:
+    """Return the ends of moves, and of each short interval the first point and the highest and lowest of each curve."""
     count = len(curves.move)
-    if count <= most:
-        return curves
     columns: Sequence[Floats] = (curves.c_feed, curves.x_feed, curves.feed)
-    bins = max(most // (2 * len(columns) + 1), 1)
+    bins = max(most // (4 * len(columns)), 1)
     whole = float(curves.t[-1] - curves.t[0])
     # Without any time the points are divided by their number.
     part = (curves.t - curves.t[0]) / whole if whole > 0 else np.arange(count) / count
@@ -149,4 +195,7 @@ def thinned(curves: Samples, keep: Mask, most: int) -> Samples:
         chosen[order[begins]] = True
         chosen[order[ends]] = True
     chosen[-1] = True
-    return curves.chosen(np.flatnonzero(chosen))
+    is_end = np.append(np.diff(curves.move) != 0, True)
+    if np.count_nonzero(is_end) <= most:
+        chosen |= is_end
+    return np.flatnonzero(chosen)

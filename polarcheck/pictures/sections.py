@@ -24,6 +24,7 @@ from polarcheck.pictures.extent import bar_rings, frame
 from polarcheck.pictures.moves import LENGTH, POSITIONING, RATE, TIME, SectionMoves, numbers_of
 from polarcheck.pictures.paths import Chords
 from polarcheck.pictures.picture import DrawnPart, Mark, PartPicture, Points, Rates, SectionPicture
+from polarcheck.pictures.places import Wanted
 from polarcheck.pictures.writing import writing
 from polarcheck.table.moves import Moves
 from polarcheck.table.overcuts import curves_of
@@ -34,6 +35,8 @@ POINTS, MOVES = 20_000, 20_000
 _OF_PROGRAM, _LEAST = 60_000, 200
 #: Chords computed for each point that may remain.
 _CHORDS = 20
+#: A chord lies no farther from its arc than this share of the narrowest window.
+_OF_WINDOW = 400
 #: The first tolerance of thinning, as a share of the largest invisible deviation.
 _FINEST = 1 / 16
 
@@ -48,6 +51,7 @@ class Extras(msgspec.Struct, frozen=True):
     makes: the shapes that the section makes, in words.
     bar: the outside diameter of the bar before milling, and of its bore; NaN if unknown [mm].
     face: Z of the face of the bar; NaN if unknown [mm].
+    window: the narrowest window in which a finding of it is shown; inf if none has one [mm].
     """
 
     parts: Callable[[float], list[PartPicture]]
@@ -56,6 +60,7 @@ class Extras(msgspec.Struct, frozen=True):
     makes: Sequence[str]
     bar: tuple[float, float]
     face: float
+    window: float
 
 
 def section_picture(
@@ -64,7 +69,7 @@ def section_picture(
     programmed: Moves,
     summary: PolarSection,
     section: int,
-    lines: Rows,
+    wanted: Wanted,
     extras: Extras,
 ) -> tuple[SectionPicture, Rows]:
     """
@@ -74,28 +79,31 @@ def section_picture(
     programmed: the programmed path of the program.
     summary: the section in the report.
     section: its number.
-    lines: the lines with findings, whose moves all stay.
+    wanted: the lines with findings, whose moves stay.
     extras: its other content.
     """
     chosen = table.of_section(section)
     moves = table.moves[_mask(chosen, len(table))]
     most = max(min(POINTS, _OF_PROGRAM // len(trace.mode.sections)), _LEAST)
     role, known = table.role[chosen], table.is_known[chosen]
-    keep = np.isin(trace.blocks.line_in_file[moves.row], lines)
+    line = trace.blocks.line_in_file[moves.row]
+    keep = np.isin(line, wanted.findings)
     path_moves = programmed[programmed.section == section]
     unseen = paths.unseen(_shown(moves, role))
-    tool, off = _path(moves, known, keep, role, unseen, most)
+    chord = min(unseen / 2, extras.window / _OF_WINDOW)
+    tool, off = _path(moves, known, keep, role, chord, unseen, most)
     contour, off_contour = _path(
-        path_moves, path_moves.known, np.isin(path_moves.row, moves.row[keep]), path_moves.phase, unseen, most
+        path_moves, path_moves.known, np.isin(path_moves.row, moves.row[keep]), path_moves.phase, chord, unseen, most
     )
     path = rates.path_segments(table, chosen)
     path = msgspec.structs.replace(path, move=np.searchsorted(chosen, path.move))
     c_axis = trace.path.c_axis
-    curves = rates.thinned(instants.samples(path, table.dynamics.c_limit, c_axis.sense, most), keep, most)
+    every = instants.samples(path, table.dynamics.c_limit, c_axis.sense, most)
+    curves, off_time = rates.thinned(every, keep, most)
     # The first of the moves of each block.
     first = _first_of(moves.row, path_moves.row[contour.move])
     extremes = (table.c_feed[chosen], table.x_feed[chosen], -moves.nearest)
-    listed = _listed(keep, [tool.move, first, curves.move, *map(_highest, extremes)], most)
+    listed = _listed(keep | np.isin(line, wanted.also), [tool.move, first, curves.move, *map(_highest, extremes)], most)
     enter = int(trace.mode.sections.enter[section])
     limits = trace.machine.limits
     picture = SectionPicture(
@@ -114,7 +122,7 @@ def section_picture(
         x_limit=rounded(limits.x_feed),
         feed_limit=rounded(limits.polar_feed),
         needs_radius=_why_unknown(trace, table.moves, chosen),
-        thinned=round(max(off, off_contour), LENGTH),
+        thinned=round(max(off, off_contour, off_time), LENGTH),
         time=summary.time,
         programmed=_points(contour, _place(listed, first)),
         tool=_points(tool, _place(listed, tool.move)),
@@ -167,10 +175,12 @@ def _shown(moves: Moves, role: States) -> PlanePoints:
     return np.concatenate([moves.start[chosen], moves.end[chosen], np.zeros(1, complex)])
 
 
-def _path(moves: Moves, known: Mask, keep: Mask, look: States, unseen: float, most: int) -> tuple[Chords, float]:
+def _path(
+    moves: Moves, known: Mask, keep: Mask, look: States, chord: float, unseen: float, most: int
+) -> tuple[Chords, float]:
     """Return the path of the known moves, and its largest deviation [mm]."""
     curves = curves_of(moves, np.zeros(len(moves), np.int64), known)
-    path, off = paths.chords(curves, unseen / 2, _CHORDS * most)
+    path, off = paths.chords(curves, chord, _CHORDS * most)
     path = Chords(path.point, np.flatnonzero(known)[path.move], path.begins)
     path, more = paths.thinned(path, keep, look, _FINEST * unseen, most)
     return path, off + more

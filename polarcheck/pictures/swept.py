@@ -21,7 +21,7 @@ from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.parts.made_depths import Depth
 from polarcheck.pictures.extent import bar_rings
 from polarcheck.pictures.moves import LENGTH
-from polarcheck.pictures.parts import polygons_of, rings
+from polarcheck.pictures.parts import Ring, polygons_of, rings
 from polarcheck.pictures.picture import PartPicture
 
 #: How far metal is shown beyond what is cleared, as a share of its extent.
@@ -50,15 +50,22 @@ def swept_parts(
             own.setdefault(depth.z, depth)
     entry = trace.path.section_entry[section] if trace.path.knows_section_entry[section] else 0.0
     gone: Any = None
+    before: Any = None
+    polygons: list[list[Ring]] = []
+    is_known = True
     found: dict[float, PartPicture] = {}
     # What is cleared at one depth is cleared above it, too.
     for z in sorted(own, key=lambda z: (np.isnan(z), z)):
         depth = own[z]
-        above = gone is not None and not np.isnan(z)
-        gone = areas.union_all([gone, depth.swept], grid_size=GRID) if above else depth.swept
-        standing, is_known = _standing(gone, depth, bar)
-        shown = turned(shapely.simplify(standing, tolerance), -float(np.radians(entry)))
-        polygons = [rings(polygon) for polygon in polygons_of(shown)]
+        # Most passes clear the same as the pass below them.
+        if before is None or np.isnan(z) or not shapely.equals_exact(before, depth.swept, ROUNDING):
+            swept = shapely.simplify(depth.swept, tolerance)
+            above = gone is not None and not np.isnan(z)
+            gone = areas.union_all([gone, swept], grid_size=GRID) if above else swept
+            standing, is_known = _standing(gone, depth, bar)
+            turn = -float(np.radians(entry))
+            polygons = [rings(polygon) for polygon in polygons_of(turned(standing, turn))]
+        before = depth.swept
         if polygons:
             found[z] = PartPicture(
                 z=None if np.isnan(z) else round(z, LENGTH),

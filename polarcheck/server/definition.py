@@ -6,7 +6,6 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
-import numpy as np
 from lsprotocol import types
 
 from polarcheck.execution.library import Library
@@ -18,6 +17,7 @@ from polarcheck.reading import source
 from polarcheck.reading.words import Text
 from polarcheck.server.judged import Judged
 from polarcheck.server.open_text import OpenText
+from polarcheck.server.words.at_cursor import block_of
 
 #: A reference to the sequence number of a block: GOTO 100, M99 P100, G71 P10 Q20.
 _NUMBER = re.compile(r"(?:\bGOTO[FBC]?\s*|[PQ]\s*)(\d{1,9})", re.IGNORECASE)
@@ -31,7 +31,7 @@ def definition(judged: Judged, uri: str, position: types.Position) -> list[types
     machine = judged.settings.machine
     character = judged.text.character_of(position)
     for text in judged.texts:
-        block = _block_at(text, character)
+        block = block_of(text, character)
         if block is None:
             continue
         # The listing of the document alone: called programs are located in their own files.
@@ -45,15 +45,6 @@ def definition(judged: Judged, uri: str, position: types.Position) -> list[types
         if targets:
             return [_at_block(judged.text, uri, listing.text, target) for target in dict.fromkeys(targets)]
     return []
-
-
-def _block_at(text: Text, character: int) -> int | None:
-    """Return the block at a character, or None if it is not in the document itself."""
-    block = int(np.searchsorted(text.blocks.start, character, side="right")) - 1
-    if block < 0 or character > int(text.blocks.end[block]) + 1:
-        return None
-    parts = text.source.parts
-    return None if parts and int(text.blocks.line[block]) >= parts[0].first_line else block
 
 
 def _of_program(called: ProgramName, listing: Listing, judged: Judged, uri: str) -> list[types.Location]:

@@ -1,4 +1,4 @@
-"""The hover of a block: the manual pages of its findings, else the state of the control after it."""
+"""The hover: pages of findings, the meaning of the word at the cursor, and the state behind its block."""
 
 from __future__ import annotations
 
@@ -21,6 +21,9 @@ from polarcheck.machines.modal import FeedMode, Motion, Side
 from polarcheck.reports.pages import manual
 from polarcheck.server.judged import Judged
 from polarcheck.server.markdown import page, plain
+from polarcheck.server.words.at_cursor import CursorWord, word_at
+from polarcheck.server.words.explained import explained
+from polarcheck.server.words.in_force import codes_in_force
 from polarcheck.table.tool_center import ToolCenter
 from polarcheck.time_limit import time_limit
 
@@ -41,25 +44,47 @@ _FEED_MODES = {FeedMode.PER_MINUTE: "/min", FeedMode.PER_REVOLUTION: "/rev", Fee
 
 
 def hover(judged: Judged, position: types.Position, with_markdown: bool) -> types.Hover | None:
-    """Return the pages of the findings at a position, or the state of its block; None if there is nothing to show."""
-    findings = at(judged, position)
+    """Return the pages of the findings at a position, its word, and the state of its block; None without any."""
+    if judged.report is None:
+        return None
+    findings, word = at(judged, position), word_at(judged, position)
+    parts: list[str] = []
+    line = judged.text.line_of(position)
+    place = judged.text.line_range(line)
+    if word is not None:
+        place = judged.text.range(judged.text.place_of(word.start), judged.text.place_of(word.end))
     if findings:
-        text = _pages(judged, findings, with_markdown)
+        parts.append(_pages(judged, findings, with_markdown))
         first = findings[0]
         place = judged.text.range_of(first.line, first.column, first.end_line, first.end_column)
-    else:
-        line = judged.text.line_of(position)
-        try:
-            with time_limit(_PATIENCE):
-                title, facts = state(judged, line)
-        except TooHardError as error:
-            title, facts = "", [("not evaluated", str(error))]
-        if not facts:
-            return None
-        text = _listed(title, facts, with_markdown)
-        place = judged.text.line_range(line)
+    try:
+        with time_limit(_PATIENCE):
+            parts += [_listed(title, facts, with_markdown) for title, facts in _facts_at(judged, line, word, findings)]
+    except TooHardError as error:
+        parts.append(_listed("", [("not evaluated", str(error))], with_markdown))
+    if not parts:
+        return None
+    text = ("\n\n---\n\n" if with_markdown else "\n\n").join(parts)
     kind = types.MarkupKind.Markdown if with_markdown else types.MarkupKind.PlainText
     return types.Hover(types.MarkupContent(kind, text), place)
+
+
+def _facts_at(
+    judged: Judged, line: int, word: CursorWord | None, findings: list[Finding]
+) -> Iterator[tuple[str, list[tuple[str, str]]]]:
+    """Yield the title and the facts of a word, then those of its block; beside findings the word alone."""
+    execution = judged.row_of(line)
+    if word is not None:
+        trace, row = (execution[0]["trace"], execution[1]) if execution is not None else (None, None)
+        if trace is None and judged.runs:
+            trace = judged.runs[0][1]["trace"]
+        title, facts = explained(word, judged, trace, row)
+        if title:
+            yield title, facts
+    if not findings:
+        title, facts = state(judged, line)
+        if facts:
+            yield title, facts
 
 
 def at(judged: Judged, position: types.Position) -> list[Finding]:
@@ -93,8 +118,9 @@ def _pages(judged: Judged, findings: list[Finding], with_markdown: bool) -> str:
 
 def _listed(title: str, facts: list[tuple[str, str]], with_markdown: bool) -> str:
     if with_markdown:
-        return "\n".join([f"**{plain(title)}**\n", *(f"- {plain(name)}: {plain(fact)}" for name, fact in facts)])
-    return "\n".join([title, *(f"{name}: {fact}" for name, fact in facts)])
+        head = [f"**{plain(title)}**\n"] if title else []
+        return "\n".join([*head, *(f"- {plain(name)}: {plain(fact)}" for name, fact in facts)])
+    return "\n".join([*([title] if title else []), *(f"{name}: {fact}" for name, fact in facts)])
 
 
 def state(judged: Judged, line: int) -> tuple[str, list[tuple[str, str]]]:
@@ -110,6 +136,9 @@ def state(judged: Judged, line: int) -> tuple[str, list[tuple[str, str]]]:
     trace: Trace = tables["trace"]
     title = _title(trace, row)
     facts = list(_facts(tables, trace, row))
+    codes = codes_in_force(trace, row)
+    if codes:
+        facts.append(("in force", " ".join(codes)))
     if count > 1:
         facts.append(("runs", f"{count} times; this is the first"))
     return title, facts

@@ -252,7 +252,7 @@ function ends(section, units) {
   }
   const [x0, , x1] = section.frame;
   const [[startX, startC], [endX, endC]] = points;
-  const isOne = Math.hypot(startX - endX, startC - endC) < 0.08 * (x1 - x0);
+  const isOne = Math.hypot(startX - endX, startC - endC) < 0.05 * (x1 - x0);
   const texts = isOne ? ["start, end", ""] : ["start", "end"];
   return points.map(([x, c], place) => ({
     type: "scatter", mode: "markers+text", x: [units.x(x)], y: [units.c(c)],
@@ -370,8 +370,8 @@ function faceLayout(section) {
     margin: isNarrow ? { l: 44, r: 6, t: 6, b: 38 } : { l: 56, r: 10, t: 10, b: 42 }, paper_bgcolor: color("--paper"), plot_bgcolor: color("--paper"),
     hovermode: "closest", hoverdistance: 24, font: { family: "system-ui, sans-serif", size: isNarrow ? 10 : 12, color: color("--ink") }, dragmode: "pan",
     modebar: { bgcolor: "rgba(0,0,0,0)", color: color("--quiet"), activecolor: color("--ink") }, showlegend: false,
-    xaxis: { ...axis, range: x, title: { text: `${axisName(section.writing.linear)} [${units.name}, ${section.diameter ? "diameter" : "radius"}]`, standoff: 6 } },
-    yaxis: { ...axis, range: y, title: { text: `${axisName(section.writing.virtual)} [${units.name}]`, standoff: 4 }, scaleanchor: "x", scaleratio: units.ratio },
+    xaxis: { ...axis, range: x, title: { text: `${axisName(section.writing.linear)} [${units.name}, ${section.diameter ? "diameter" : "radius"}${scaleNote(section)}]`, standoff: 6 } },
+    yaxis: { ...axis, range: y, title: { text: `${axisName(section.writing.virtual)} [${units.name}${scaleNote(section)}]`, standoff: 4 }, scaleanchor: "x", scaleratio: units.ratio },
     shapes: [],
   };
 }

@@ -42,6 +42,7 @@ function findingsView(root, picture, state, program, sections) {
   // The messages begin below each other.
   const digits = findings.reduce((most, { line }) => Math.max(most, String(line).length), 1);
   place.style.setProperty("--where", `${digits + 4.5}ch`);
+  place.style.setProperty("--badge", `${String(findings.length).length * 8 + 9}px`);
   let open = null;
   state.subscribe((chosen) => {
     const now = chosen.program === program ? chosen.finding : null;

@@ -58,6 +58,9 @@ function gaugesView(box, section, line) {
 }
 
 function gauge(label, value, unit, ...more) {
+  // Numbers that change in each frame are read out only when they are asked for.
+  value.setAttribute("aria-live", "off");
+  value.setAttribute("aria-label", label);
   const row = element("div", "", element("span", label), value, element("span", unit), ...more);
   row.className = "gauge";
   return row;

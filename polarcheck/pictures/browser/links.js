@@ -46,7 +46,11 @@ function linked(pictures, state, shown) {
     timer = null;
     const link = linkOf(pictures, state.chosen);
     if (link !== location.hash && (link || LINK.test(location.hash))) {
-      history.replaceState(null, "", link || `${location.pathname}${location.search}`);
+      try {
+        history.replaceState(null, "", link || `${location.pathname}${location.search}`);
+      } catch {
+        // A page within another one, as in an editor, may have no address that could change.
+      }
     }
   }
 
@@ -54,7 +58,8 @@ function linked(pictures, state, shown) {
   window.addEventListener("hashchange", go);
   // Browsers refuse many changes of the address in a short time.
   state.subscribe((now, before) => {
-    if (timer === null && !now.playing && (now.line !== before.line || now.program !== before.program || now.section !== before.section)) {
+    const isOther = ["line", "program", "section", "playing"].some((name) => now[name] !== before[name]);
+    if (timer === null && !now.playing && isOther) {
       timer = setTimeout(write, 150);
     }
   });

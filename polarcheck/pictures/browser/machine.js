@@ -277,7 +277,7 @@ function chuckLayer(see, bar, section, line, palette) {
   pen.beginPath();
   pen.arc(0, 0, ring, 0, 2 * Math.PI);
   pen.stroke();
-  const font = Math.max(radius * 0.065, 9);
+  const font = Math.min(Math.max(radius * 0.065, 9), radius * 0.11);
   pen.font = `${font}px system-ui, sans-serif`;
   pen.textAlign = "center";
   pen.textBaseline = "middle";

@@ -61,12 +61,16 @@ function measuringView(root, picture, state, program, sections, hand) {
     if (!view) {
       return;
     }
+    if (state.chosen.view === "machine") {
+      state.choose({ program, view: "face" });
+    }
     view.draw();
     isOn = true;
     toggle.setAttribute("aria-pressed", "true");
     boxes.forEach((box) => box.switchOn(true));
-    here().root.focus({ preventScroll: true });
     show();
+    here().panel.scrollIntoView({ block: "nearest" });
+    here().root.focus({ preventScroll: true });
   }
 
   function end() {
@@ -227,11 +231,12 @@ function measuringBox(root) {
   panel.className = "measured";
   panel.hidden = true;
   const words = element("dl");
-  words.setAttribute("role", "status");
+  const spoken = element("div", "", words);
+  spoken.setAttribute("aria-live", "polite");
   const [copy, clear] = [button("Copy", () => {}), button("Clear", () => {})];
   const buttons = element("div", "", copy, clear);
   buttons.className = "buttons";
-  panel.append(words, buttons);
+  panel.append(spoken, buttons);
   root.append(svg);
   root.parentElement.before(panel);
 
@@ -272,7 +277,7 @@ function measuringBox(root) {
   }
 
   const text = () => [...words.querySelectorAll("dd")].map((value) => `${value.previousSibling.textContent} ${value.textContent}`.trim()).join("\n");
-  return { root, switchOn, show, copy, clear, text };
+  return { root, panel, switchOn, show, copy, clear, text };
 }
 
 /** Label and text of what is measured, in the units of the program; the result first. */

@@ -20,13 +20,14 @@ function barOf(section, line) {
       reach = Math.max(reach, Math.hypot(x, c));
     });
   }
-  if (reach || section.stock !== null) {
-    return { radius: reach || section.stock / 2, isKnown: true };
+  reach = reach || (section.stock || 0) / 2;
+  if (reach > 0) {
+    return { radius: reach, isKnown: true };
   }
   const { role } = section.moves;
   const cuts = ["cut", "corner", "unknown"].some((name) => role.includes(name)) ? ["cut", "corner", "unknown"] : ["start up", "cancel", "positioning"];
-  for (let place = 0; place < line.count; place += 1) {
-    if (isKnownBelow(line.z[place], face) && cuts.includes(role[line.move[place]])) {
+  for (let place = 1; place < line.count; place += 1) {
+    if (cutsAt(section, line, place, face) && cuts.includes(role[line.move[place]])) {
       reach = Math.max(reach, Math.hypot(line.x[place], line.c[place]));
     }
   }
@@ -38,28 +39,36 @@ function barOf(section, line) {
   return { radius: (reach || 10) * 1.02, isKnown: false };
 }
 
-/** Z of the face of the bar: where nothing says another one at Z0 or, if no cut is below, at the highest Z [mm]. */
+/**
+ * Z of the face of the bar [mm]: where nothing says another one Z0 or, if no move goes below, the highest Z; Infinity
+ * if all moves have one Z, so that it does not say which of them cut.
+ */
 function faceOf(section) {
   if (typeof section.face === "number") {
     return section.face;
   }
-  let highest = -Infinity;
-  for (const [from, to] of section.moves.z) {
-    if ((from !== null && from < -CLEARANCE) || (to !== null && to < -CLEARANCE)) {
-      return 0;
+  let [lowest, highest] = [Infinity, -Infinity];
+  for (const z of section.moves.z.flat()) {
+    if (z !== null) {
+      lowest = Math.min(lowest, z);
+      highest = Math.max(highest, z);
     }
-    highest = Math.max(highest, from === null ? -Infinity : from, to === null ? -Infinity : to);
   }
-  return highest;
+  if (lowest < -CLEARANCE) {
+    return 0;
+  }
+  return lowest < highest - CLEARANCE ? highest : Infinity;
 }
 
-function isKnownBelow(z, face) {
-  return z < face - CLEARANCE;
+/** True where metal is taken in the interval that ends at a point; where Z does not say it, by the role of the move. */
+function cutsAt(section, line, place, face) {
+  const z = Math.min(line.z[place - 1], line.z[place]);
+  return Number.isFinite(z) && Number.isFinite(face) ? z < face - CLEARANCE : section.moves.role[line.move[place]] !== "positioning";
 }
 
 /** The depths of cut, from the face down, at most six of them; what is deeper is darker. */
 function shadeOf(z, face, deepest, palette) {
-  const depth = deepest < face ? Math.min(Math.max((face - z) / (face - deepest), 0), 1) : 1;
+  const depth = Number.isFinite(face) && deepest < face && z <= face ? Math.min((face - z) / (face - deepest), 1) : 1;
   return palette.floors[Math.min(Math.floor(depth * palette.floors.length), palette.floors.length - 1)];
 }
 
@@ -119,7 +128,7 @@ function metalLayer(section, line, see, palette, hasFloors) {
       const [begin, end] = [line.play[place - 1], line.play[place]];
       const to = Math.min(play, end);
       const z = Math.min(line.z[place - 1], line.z[place]);
-      const next = isKnownBelow(z, face) ? shadeOf(z, face, deepest, palette) : null;
+      const next = cutsAt(section, line, place, face) ? shadeOf(z, face, deepest, palette) : null;
       if (shade !== null && (next !== shade || inStroke >= PER_STROKE)) {
         stroke(shade);
         shade = null;

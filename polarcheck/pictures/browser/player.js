@@ -290,7 +290,7 @@ function whyNot(section) {
   if (section.radius === null) {
     told.push("R of the cutter is not known: the programmed point alone moves, and no metal is taken away.");
   } else if (section.stock === null && !section.bar.length) {
-    told.push("The diameter of the stock is not known; the bar is drawn as far as the tool reaches.");
+    told.push("The diameter of the stock is not known: the bar ends where the cuts do.");
   }
   return told.map((text) => Object.assign(element("p", text), { className: "remark" }));
 }
@@ -328,6 +328,8 @@ function playerControls(bar, hasNext) {
   next.hidden = !hasNext;
   const slider = Object.assign(element("input"), { type: "range", className: "clock", min: "0", max: "0", step: "any", value: "0", ariaLabel: "Time in the section" });
   const time = Object.assign(element("output", "0:00.0"), { className: "time" });
+  time.setAttribute("aria-live", "off");
+  time.setAttribute("aria-label", "Time");
   const speed = Object.assign(element("select"), { className: "speed", ariaLabel: "Speed", title: "Speed (< and >)" });
   speed.append(...SPEEDS.map((each) => Object.assign(element("option", `${each}\u00d7`), { value: String(each) })));
   speed.value = "1";

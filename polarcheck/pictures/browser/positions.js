@@ -22,6 +22,11 @@ function axisName(address) {
   return address.replace("=", "");
 }
 
+/** What a scale that counts from the center says where the program counts from elsewhere. */
+function scaleNote({ writing: { origin, turn } }) {
+  return origin !== null && origin[0] === 0 && origin[1] === 0 && turn === 0 ? "" : ", from the center of C";
+}
+
 /** A number as a program writes it, always with its point: 24.5, -3.2, 40. */
 function writtenNumber(value, digits) {
   const text = value.toFixed(digits).replace(/0+$/, "");

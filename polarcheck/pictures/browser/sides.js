@@ -25,7 +25,7 @@ function sidesView(root, picture, state, program, sections, hand) {
       const column = element("div");
       column.className = "column";
       if (channels.length > 1) {
-        column.append(element("h3", channel || "one channel"));
+        column.append(element("strong", channel ? `channel ${channel}` : "one channel"));
       }
       const row = element("div");
       row.className = "faces";

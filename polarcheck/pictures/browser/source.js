@@ -173,9 +173,10 @@ function sourceView(root, picture, state, program) {
   }
 
   function findForm() {
-    const form = element("form");
+    const form = element("div");
     form.className = "find";
-    form.setAttribute("role", "search");
+    form.setAttribute("role", "group");
+    form.setAttribute("aria-label", "Find in the program");
     const field = element("input");
     Object.entries({ type: "search", placeholder: "Text or line number", "aria-label": "Find in the program: text, or a line number", autocomplete: "off" })
       .forEach(([name, value]) => field.setAttribute(name, value));
@@ -184,7 +185,6 @@ function sourceView(root, picture, state, program) {
     before.setAttribute("aria-label", "Hit before");
     next.setAttribute("aria-label", "Next hit");
     form.append(field, before, next, count);
-    form.addEventListener("submit", (event) => event.preventDefault());
     field.addEventListener("keydown", (event) => {
       if (event.key === "Enter") {
         event.preventDefault();

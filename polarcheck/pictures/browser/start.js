@@ -8,15 +8,15 @@ const VIEWS = [
 ];
 
 function start() {
-  if (typeof Plotly === "undefined") {
-    document.querySelector("main").prepend(element("p", "The library that draws is missing beside this page."));
-    return;
-  }
   const hover = element("dl");
   hover.id = "hover";
   hover.hidden = true;
   document.body.append(hover);
   const pictures = JSON.parse(document.getElementById("data").textContent);
+  if (typeof Plotly === "undefined" && pictures.some(({ sections }) => sections.length)) {
+    document.querySelector("main").prepend(element("p", "The library that draws is missing beside this page."));
+    return;
+  }
   const state = pageState(pictures);
   const programs = pictures.map((picture, program) => {
     const root = document.getElementById(`p${program}`);

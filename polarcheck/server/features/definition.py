@@ -9,6 +9,7 @@ from lsprotocol import types
 if TYPE_CHECKING:
     from polarcheck.server.judged import Judged
     from polarcheck.server.session import Server
+    from polarcheck.server.structure.document import Document
 
 
 def register(server: Server) -> None:
@@ -21,4 +22,11 @@ def register(server: Server) -> None:
 
             return definition(judged, params.text_document.uri, params.position)
 
-        return await server.ask(params.text_document.uri, find, [], soon=True)
+        def find_assignments(document: Document) -> list[types.Location]:
+            from polarcheck.server.structure.references import assignments
+
+            return assignments(document, params.position, server.documents.workspace(document))
+
+        uri = params.text_document.uri
+        found: list[types.Location] = await server.documents.ask(uri, find_assignments, [])
+        return found or await server.ask(uri, find, [], soon=True)

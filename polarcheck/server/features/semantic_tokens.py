@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from polarcheck.server.structure.document import Document
 
 #: The answers to which a difference can be asked for.
-_MOST_REMEMBERED = 8
+_MOST_REMEMBERED = 4
 
 
 def register(server: Server) -> None:

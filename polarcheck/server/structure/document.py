@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import re
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
@@ -84,6 +85,7 @@ def block_at(listing: Listing, character: int) -> int:
     return max(int(np.searchsorted(listing.text.blocks.start, character, side="right")) - 1, 0)
 
 
+@functools.lru_cache(4)
 def is_written(listing: Listing) -> Mask:
     """Return per block: it has words, statements, or a name."""
     text = listing.text

@@ -5,6 +5,7 @@ from __future__ import annotations
 import bisect
 import enum
 import itertools
+import operator
 import re
 from collections.abc import Iterator
 from typing import NamedTuple
@@ -103,6 +104,11 @@ class Mention(NamedTuple):
         return f"#{self.name}" if isinstance(self.name, int) else self.name
 
 
+_PLACE = operator.itemgetter(Mention._fields.index("start"), Mention._fields.index("end"))
+#: Where the flow can turn at more blocks, those that have no word for it are told from the others first.
+_MANY = 500
+
+
 class Computed(NamedTuple):
     """A block that names something by a value: which one is not known."""
 
@@ -118,8 +124,8 @@ class Mentions:
         self.listing = listing
         self.computed: list[Computed] = []
         found = [*self._numbers(), *self._labels(), *self._heads(), *self._flow(), *self._cycles(), *self._variables()]
-        distinct = {(mention.start, mention.end, mention.role.value): mention for mention in found}
-        self.all = [distinct[key] for key in sorted(distinct)]
+        found.sort(key=_PLACE)
+        self.all = [one for one, before in zip(found, [None, *found], strict=False) if one != before]
         self._blocks = [mention.block for mention in self.all]
 
     def of_program(self, program: Program) -> list[Mention]:
@@ -253,6 +259,8 @@ class Mentions:
     def _flow_blocks(self) -> list[int]:
         """Return the blocks that may jump or call: those with a code, keyword or name for it; others are not read."""
         macro, text = self.listing.macro, self.listing.text
+        if len(self.listing.stops) <= _MANY:
+            return self.listing.stops
         codes = sorted(macro.flow_codes)
         parts = [
             rb"GO",

@@ -27,6 +27,15 @@ def references(
     return [location(one) for one in found if with_declaration or one.mention.role is not Role.DEFINES][:_MOST]
 
 
+def assignments(document: Document, position: types.Position, workspace: Workspace) -> list[types.Location]:
+    """Return where the variable at a position takes a value."""
+    uses = Uses(document, workspace)
+    use = uses.at(document.text.character_of(position))
+    if use is None or use.mention.kind is not Kind.VARIABLE:
+        return []
+    return [location(one) for one in uses.same(use) if one.mention.role is Role.ASSIGNS][:_MOST]
+
+
 def highlights(document: Document, position: types.Position) -> list[types.DocumentHighlight]:
     """Return the places in the document that name what stands at a position; no other file is opened for them."""
     uses = Uses(document, Workspace(document, (), (), lambda _: (document.machine, ())))

@@ -235,9 +235,10 @@ class _Renaming:
         for owner in self.uses.defining(key):
             raise RenameError(f"{probe.shown} is there already, in {self._line(owner, owner.program.first)}")
         self._refuse_computed(self.uses.owners(self.uses.document), Kind.PROGRAM, "computes the program that it calls")
-        definitions = [one for one in found if one.mention.role is Role.DEFINES]
-        if len(definitions) > 1:
-            place = self._line(definitions[1].owner, definitions[1].mention.block)
+        same = {owner.key: owner for name in self.mention.keys for owner in self.uses.defining(name)}
+        if len(same) > 1:
+            second = list(same.values())[1]
+            place = self._line(second, second.program.first)
             raise RenameError(f"{self.mention.shown} is in {place}, too: it is not known which of them is called")
         for one in found:
             width = len(str(key))

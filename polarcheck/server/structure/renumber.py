@@ -29,15 +29,21 @@ def title(document: Document, position: types.Position) -> tuple[str, str] | Non
     """
     Return the title of the action for the program at a position, and why it is refused, or "".
 
-    None for a program without N numbers. No other file is opened.
+    None for a program without N numbers, or with even ones. No other file is opened.
     """
     owner = _owner_at(Uses(document, _alone(document)), position)
-    if owner is None or not _numbers(owner):
+    if owner is None or document.cached(f"even {owner.key}", lambda: _is_even(owner)):
         return None
     reason = document.cached(f"renumber {owner.key}", lambda: _reason(owner))
     program = owner.program
     name = f"O{program.number:04d}" if program.number is not None else program.name or "the program"
     return f"Renumber the N numbers of {name}", reason
+
+
+def _is_even(owner: Owner) -> bool:
+    """Return True if the numbers of a program are those that it would get."""
+    numbers = _numbers(owner)
+    return numbers == [index * _STEPS[0] for index in range(1, len(numbers) + 1)]
 
 
 def _reason(owner: Owner) -> str:

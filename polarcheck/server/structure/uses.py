@@ -58,11 +58,34 @@ class Uses:
 
     def owners(self, document: Document) -> list[Owner]:
         """Return the programs of a document."""
+        return document.cached(
+            "owners",
+            lambda: [
+                Owner(document, mentions, program)
+                for mentions in mentions_of(document)
+                for program in mentions.listing.programs.programs
+            ],
+        )
+
+    def _named(self, document: Document, called: ProgramName) -> list[Owner]:
+        """Return the programs of a document that have one of the names of a call."""
         return [
             Owner(document, mentions, program)
             for mentions in mentions_of(document)
-            for program in mentions.listing.programs.programs
+            for program in mentions.listing.programs.named(called)
         ]
+
+    def _calls(self, document: Document) -> list[Use]:
+        """Return the calls of a document."""
+        return document.cached(
+            "calls",
+            lambda: [
+                Use(owner, mention)
+                for owner in self.owners(document)
+                for mention in owner.all
+                if mention.kind is Kind.PROGRAM and mention.role is Role.REFERS
+            ],
+        )
 
     def at(self, character: int) -> Use | None:
         """Return the mention at a character of the document; of several channels the first that has one."""
@@ -126,13 +149,14 @@ class Uses:
         return self._resolved[key]
 
     def _resolve(self, caller: Owner, called: ProgramName) -> list[Owner]:
-        own = [one for one in self.owners(caller.document) if set(one.program.keys) & set(called.keys)]
+        own = self._named(caller.document, called)
         same_channel = [one for one in own if one.mentions is caller.mentions]
         if own:
             return same_channel or own
         places = self.workspace.called, self._naming_in, self.workspace.of_file_name
         for documents in (place(caller.document, called) for place in places):
-            found = [one for document in documents for one in _called_in(self.owners(document), called)]
+            # A file that names no program of that name is that program from its head on.
+            found = [one for each in documents for one in self._named(each, called) or self.owners(each)[:1]]
             if found:
                 return found
         return []
@@ -179,12 +203,11 @@ class Uses:
         if not keys:
             return []
         return [
-            Use(caller, mention)
+            use
             for document in self.workspace.matching(naming(keys))
-            for caller in self.owners(document)
-            for mention in caller.all
-            if mention.kind is Kind.PROGRAM and mention.role is Role.REFERS and set(mention.keys) & set(keys)
-            if wanted & {one.key for one in self.resolved(caller, called_name(mention))}
+            for use in self._calls(document)
+            if set(use.mention.keys) & set(keys)
+            if wanted & {one.key for one in self.resolved(use.owner, called_name(use.mention))}
         ]
 
     def _programs(self, use: Use) -> Iterator[Use]:
@@ -233,7 +256,7 @@ class Uses:
     def _connected(self, owner: Owner, *, subprograms_only: bool) -> list[Owner]:
         found = {owner.key: owner}
         left = [owner]
-        while left and len(found) < _MOST:
+        while left and len(found) < _MOST and self.workspace.has_time():
             one = left.pop()
             codes = set(one.mentions.listing.macro.subprogram_calls)
             calls = [
@@ -289,12 +312,6 @@ def _keys(owner: Owner) -> list[int | str]:
     stem = owner.document.path.stem.upper()
     digits = re.fullmatch(r"O?0*(\d{1,8})", stem)
     return [int(digits[1])] if digits else [stem]
-
-
-def _called_in(owners: Sequence[Owner], called: ProgramName) -> list[Owner]:
-    """Return the programs of a file that a call means; the first one if the file names none of that name."""
-    named = [one for one in owners if set(one.program.keys) & set(called.keys)]
-    return named or list(owners[:1])
 
 
 def _once(owners: Iterable[Owner]) -> list[Owner]:

@@ -42,7 +42,7 @@ class Workspace:
 
     document: the document.
     opened: the open documents.
-    folders: from which files may be opened, with all links resolved.
+    folders: from which files may be opened, with all links resolved; without any the document stands alone.
     machine_of: returns the machine of a file and the folders of the programs that it calls.
     is_complete: False once a file could not be looked at, or time was up.
     """
@@ -71,8 +71,7 @@ class Workspace:
             if pattern.search(one.text.data):
                 yield self._of_open(real, one)
         for path in self._listed():
-            if time.monotonic() > self._ends or len(self._documents) > _MOST_READ:
-                self.is_complete = False
+            if not self.has_time():
                 return
             real = _real(path)
             if real in seen:
@@ -86,6 +85,12 @@ class Workspace:
             data = self._data[path]
             if data is not None and pattern.search(data):
                 yield self._of_file(Path(real), data)
+
+    def has_time(self) -> bool:
+        """Return True while there is time for more files, and room; else what is found is not complete."""
+        has_time = time.monotonic() <= self._ends and len(self._documents) <= _MOST_READ
+        self.is_complete &= has_time
+        return has_time
 
     def _listed(self) -> list[str]:
         """Return the programs in the folders, up to a limit."""
@@ -111,7 +116,7 @@ class Workspace:
 
     def called(self, caller: Document, name: ProgramName) -> list[Document]:
         """Return the documents in the folders of subprograms that can hold a program."""
-        if not caller.folders:
+        if not caller.folders or not self._folders:
             return []
         with contextlib.suppress(OSError):
             places = Library(caller.folders, caller.machine).places(name)
