@@ -107,7 +107,7 @@ test("a line of any characters is colored in time that grows with its length", a
       };
       time(200);
       // 16 times the length: a square would take 256 times as long.
-      const [short, long] = [time(150), time(2400)];
+      const [short, long] = [time(100), time(1600)];
       assert(long < 200 || long < 80 * short, `${language}: ${JSON.stringify(piece)} ${short} ms, ${long} ms`);
     }
   }
