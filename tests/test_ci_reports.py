@@ -585,14 +585,14 @@ def test_statistics_stand_in_place_of_the_findings() -> None:
     assert result.stdout == (
         """\
 findings  files  fixable  severity  rule
-       3      2        0  error     rapid-in-polar
+       3      2        3  error     rapid-in-polar
 
 3 files checked for fanuc: 2 fail, 1 unverified; 3 errors
 """
     )
     quiet = check("a.nc", "b.nc", "c.nc", *RAPID_ONLY, "--statistics", "-q").stdout
     assert quiet == "".join(result.stdout.splitlines(keepends=True)[:2])
-    one = {"rule": "rapid-in-polar", "severity": "error", "findings": 3, "files": 2, "fixable": 0, "silenced": 0}
+    one = {"rule": "rapid-in-polar", "severity": "error", "findings": 3, "files": 2, "fixable": 3, "silenced": 0}
     told = {
         form: check("a.nc", "b.nc", *RAPID_ONLY, "--statistics", "--format", form).stdout for form in ("json", "jsonl")
     }

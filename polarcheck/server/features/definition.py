@@ -25,6 +25,9 @@ def register(server: Server) -> None:
         def find_assignments(document: Document) -> list[types.Location]:
             from polarcheck.server.structure.references import assignments
 
+            # Variables stand in macro blocks alone; elsewhere the text need not be searched for them.
+            if not any(listing.text.blocks.is_macro[block] for listing, block in document.at(params.position)):
+                return []
             return assignments(document, params.position, server.documents.workspace(document))
 
         uri = params.text_document.uri
