@@ -16,7 +16,6 @@ from polarcheck.commands import picturing, running, watching
 from polarcheck.commands.options import option
 from polarcheck.commands.output import bug_lines, say_lines, show
 from polarcheck.errors import PolarcheckError, UsageError
-from polarcheck.reading.excerpt import visible
 from polarcheck.reading.files import size, write
 
 if TYPE_CHECKING:
@@ -242,6 +241,8 @@ class _Pages(picturing.Pictures):
 
     def keep(self, name: str, reason: str) -> None:
         """Say on a page why it is that of an earlier state."""
+        from polarcheck.reading.excerpt import visible
+
         self._site.notice(name, f"{visible(reason)}. This is the last state that could be read.")
 
     def put_index(self, reports: Sequence[FileReport]) -> None:
