@@ -151,8 +151,8 @@ def _sections(run: int, tables: Tables, spots: Sequence[Spot], wanted: Wanted, r
     sections = polar_sections(tables)
     if not sections:
         return []
-    from polarcheck.pictures.asked import asked_parts
     from polarcheck.pictures.marks import left_marks, overcut_marks
+    from polarcheck.pictures.nominal import drawn_parts
     from polarcheck.pictures.parts import parts
     from polarcheck.pictures.sections import Extras, section_picture
     from polarcheck.pictures.swept import swept_parts
@@ -203,7 +203,7 @@ def _sections(run: int, tables: Tables, spots: Sequence[Spot], wanted: Wanted, r
                 wanted,
                 Extras(
                     parts=partial(parts_of, section, number),
-                    asked=partial(asked_parts, tables, number),
+                    nominal=partial(drawn_parts, tables, number),
                     marks=[mark for of_section, mark in marks if of_section == number],
                     makes=list(dict.fromkeys(_in_words(shape) for shape in makes if _is_of(shape, section))),
                     bar=bar,

@@ -49,7 +49,7 @@ _SCRIPTS = (
     "zoom",
     "source",
     "measuring",
-    "asked",
+    "nominal",
     "sides",
     "links",
     "tools",

@@ -46,7 +46,7 @@ class Extras(msgspec.Struct, frozen=True):
     The content of a section's picture besides its moves.
 
     parts: returns the part at each depth, within a tolerance [mm].
-    asked: returns what the job asks for, likewise.
+    nominal: returns the part of the job, likewise.
     marks: areas that are overcut or left standing.
     makes: the shapes that the section makes, in words.
     bar: the outside diameter of the bar before milling, and of its bore; NaN if unknown [mm].
@@ -55,7 +55,7 @@ class Extras(msgspec.Struct, frozen=True):
     """
 
     parts: Callable[[float], list[PartPicture]]
-    asked: Callable[[float], list[DrawnPart]]
+    nominal: Callable[[float], list[DrawnPart]]
     marks: Sequence[Mark]
     makes: Sequence[str]
     bar: tuple[float, float]
@@ -151,7 +151,7 @@ def section_picture(
         frame=frame(np.concatenate([tool.point, contour.point]), summary.radius, extras.bar[0]),
         bar=bar_rings(*extras.bar),
         face=rounded(extras.face),
-        drawing=extras.asked(unseen),
+        drawing=extras.nominal(unseen),
     )
     return picture, chosen[listed]
 

@@ -10,13 +10,13 @@ const ARROWS = 14;
 const POINTED = 3000;
 
 /** All that is drawn of a section, but for what is chosen. */
-function faceTraces(section, level, coloring, isAsked = true) {
+function faceTraces(section, level, coloring, hasNominal = true) {
   const units = unitsOf(section);
   return [
     ...bar(section, units),
     ...parts(section, units, level),
     ...surroundings(section, units),
-    ...(isAsked ? askedTraces(section, units) : []),
+    ...(hasNominal ? nominalTraces(section, units) : []),
     line("programmed contour", section.programmed.x.map(units.x), section.programmed.c.map(units.c), { color: color("--ink"), width: 1 }),
     ...toolPath(section, units, coloring),
     ...directions(section, units),

@@ -32,8 +32,8 @@ function targetsOf(section, level, hasDrawing) {
   return { walls, points: [pointShape([0, 0], "center of C", "center"), ...pointsOf(walls)] };
 }
 
-/** The measuring of a program. say: tells a line in words. Returns whether it is on, and what switches it. */
-function measuringView(root, picture, state, program, sections, hand) {
+/** The measuring of a program. Returns whether it is on, and what switches it. */
+function measuringView(state, program, sections, hand) {
   const toggle = hand.toggle("Measure", "m", () => (isOn ? end() : begin()));
   const boxes = sections.views.map((view) => measuringBox(view.face.parentElement));
   const cache = new Map();
@@ -172,7 +172,7 @@ function measuringView(root, picture, state, program, sections, hand) {
       [cursor, isByKeys] = [{ shape: next, at: next.at }, true];
       const [px, py] = plane.toPx(...next.at);
       if (px < plane.left || py < plane.top || px > plane.left + plane.width || py > plane.top + plane.height) {
-        moveWindow(view, plane, [px - plane.left - plane.width / 2, py - plane.top - plane.height / 2]);
+        moveWindow(view, [px - plane.left - plane.width / 2, py - plane.top - plane.height / 2]);
       }
       show();
     }

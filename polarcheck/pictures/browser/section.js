@@ -35,7 +35,7 @@ function sectionView(root, picture, state, program, place) {
   }
 
   function traces() {
-    return faceTraces(section, coloring.level, coloring.name, coloring.isAsked).map((trace) =>
+    return faceTraces(section, coloring.level, coloring.name, coloring.hasNominal).map((trace) =>
       (hidden.has(trace.legendgroup || trace.name) ? { ...trace, visible: "legendonly" } : trace));
   }
 

@@ -29,31 +29,31 @@ function toolsView(root, picture, state, program, sections, pictures) {
       made.setAttribute("aria-pressed", "false");
       return made;
     },
-    hasDrawing: () => !sections.views.length || sections.shown().coloring.isAsked !== false,
+    hasDrawing: () => !sections.views.length || sections.shown().coloring.hasNominal !== false,
   };
   const source = sourceView(root, picture, state, program);
-  const zoom = zoomView(root, picture, state, program, sections, hand);
+  const zoom = zoomView(sections);
   [["+", "in", "Zoom in"], ["\u2212", "out", "Zoom out"]].forEach(([text, act, title]) => {
     named(text, text, title, () => zoom[act]()).setAttribute("aria-label", title);
   });
-  const measure = measuringView(root, picture, state, program, sections, hand);
+  const measure = measuringView(state, program, sections, hand);
   const sides = sidesView(root, picture, state, program, sections, hand);
 
   /** The drawing is shown or hidden in all sections. */
   const hasDrawing = picture.sections.some((section) => section.drawing.length);
   const drawing = () => {
     if (hasDrawing) {
-      const isAsked = !hand.hasDrawing();
-      asked.setAttribute("aria-pressed", String(isAsked));
+      const hasNominal = !hand.hasDrawing();
+      toggle.setAttribute("aria-pressed", String(hasNominal));
       sections.views.forEach((view) => {
-        view.coloring.isAsked = isAsked;
+        view.coloring.hasNominal = hasNominal;
         view.redraw();
       });
     }
   };
-  const asked = hasDrawing ? hand.toggle("Drawing", "d", drawing) : null;
-  if (asked) {
-    asked.setAttribute("aria-pressed", "true");
+  const toggle = hasDrawing ? hand.toggle("Drawing", "d", drawing) : null;
+  if (toggle) {
+    toggle.setAttribute("aria-pressed", "true");
   }
 
   /** What is copied: the cursor of measuring, the pointer on the face, or the end of the chosen move. */

@@ -35,7 +35,7 @@ function windowOf(view, [dx, dy], factor = 1, about = null) {
   return { "xaxis.range": [left, right], "yaxis.range": [bottom, top] };
 }
 
-function moveWindow(view, plane, way) {
+function moveWindow(view, way) {
   return Plotly.relayout(view.face, windowOf(view, way));
 }
 
@@ -48,7 +48,7 @@ function zoomWindow(view, factor, about = null) {
 }
 
 /** Zoom of all faces of a program. */
-function zoomView(root, picture, state, program, sections, hand) {
+function zoomView(sections) {
   sections.views.forEach((view) => {
     whenDrawn(view, () => view.face.on("plotly_doubleclick", () => !view.face.classList.contains("is-measuring") && view.whole()));
     pinched(view);
@@ -60,7 +60,7 @@ function zoomView(root, picture, state, program, sections, hand) {
       change(view, planeTransform(view.face));
     }
   };
-  const move = (dx, dy) => act((view, plane) => moveWindow(view, plane, [dx * MOVE_STEP * plane.width, dy * MOVE_STEP * plane.height]));
+  const move = (dx, dy) => act((view, plane) => moveWindow(view, [dx * MOVE_STEP * plane.width, dy * MOVE_STEP * plane.height]));
   const actions = {
     in: act((view) => zoomWindow(view, ZOOM_STEP)), out: act((view) => zoomWindow(view, 1 / ZOOM_STEP)), whole: act((view) => view.whole()),
     right: move(1, 0), left: move(-1, 0), up: move(0, -1), down: move(0, 1),

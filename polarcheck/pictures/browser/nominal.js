@@ -1,7 +1,7 @@
-// ---- asked: what the drawing asks for, under the path ----
+// ---- nominal: the part of the job, as drawings and shapes give it, under the path ----
 
-/** The lines of the drawing as traces of the face. */
-function askedTraces(section, units) {
+/** The lines of drawings and shapes as traces of the face. */
+function nominalTraces(section, units) {
   return section.drawing.map((drawn) => {
     const x = pathsOf(drawn).flatMap((path) => [...path.map((point) => units.x(point[0])), null]);
     const y = pathsOf(drawn).flatMap((path) => [...path.map((point) => units.c(point[1])), null]);

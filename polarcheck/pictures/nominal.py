@@ -26,7 +26,7 @@ from polarcheck.pictures.picture import DrawnPart
 _MOST = 20_000
 
 
-def asked_parts(tables: Tables, section: int, tolerance: float) -> list[DrawnPart]:
+def drawn_parts(tables: Tables, section: int, tolerance: float) -> list[DrawnPart]:
     """
     Return what the job asks for in a section, as its section writes it, within a tolerance [mm].
 
