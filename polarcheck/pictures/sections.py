@@ -29,8 +29,8 @@ from polarcheck.pictures.writing import writing
 from polarcheck.table.moves import Moves
 from polarcheck.table.overcuts import curves_of
 
-#: The most points of each path and curve of a section, and moves in its table, not counting those with findings.
-POINTS, MOVES = 20_000, 20_000
+#: The most points of each path and curve of a section, not counting those with findings.
+POINTS = 20_000
 #: The same for all sections of a program together; each section has at least _LEAST.
 _OF_PROGRAM, _LEAST = 60_000, 200
 #: Chords computed for each point that may remain.

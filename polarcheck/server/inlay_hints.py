@@ -16,7 +16,6 @@ from polarcheck.time_limit import time_limit
 
 #: What is shown, as the settings of the editor name it.
 OFF, C_ANGLE, HIGHEST_FEED = "off", "c_angle", "highest_feed"
-CHOICES = (OFF, C_ANGLE, HIGHEST_FEED)
 #: The time limit, since hints may need tables that no rule has used [s].
 _PATIENCE = 5.0
 #: The most hints of an answer.
@@ -24,7 +23,7 @@ _MOST = 5_000
 
 
 def inlay_hints(judged: Judged, shown: types.Range, what: str) -> list[types.InlayHint]:
-    """Return the hints of the lines of a range; what: one of CHOICES. Unknown values are left out."""
+    """Return the hints of the lines of a range; what: C_ANGLE or HIGHEST_FEED. Unknown values are left out."""
     if what not in (C_ANGLE, HIGHEST_FEED):
         return []
     first, last = judged.text.line_of(shown.start), judged.text.line_of(shown.end)

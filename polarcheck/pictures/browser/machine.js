@@ -179,7 +179,7 @@ function machineView(canvas, section, line) {
     }
     const x = moment.machineX * size.scale;
     const shown = Math.min(Math.max(x, 20 - size.x), size.width - size.x - 20);
-    drawTool(pen, shown, 0, section.radius === null ? null : section.radius * size.scale, palette, 0);
+    drawTool(pen, shown, 0, section.radius === null ? null : section.radius * size.scale, palette);
     const text = `X${units.length(moment.machineX * (section.diameter ? 2 : 1))}`;
     pen.font = "bold 12px system-ui, sans-serif";
     pen.textAlign = "center";

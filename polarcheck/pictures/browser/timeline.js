@@ -172,16 +172,11 @@ function nearestTurn(value, to) {
   return value + 2 * Math.PI * Math.round((to - value) / (2 * Math.PI));
 }
 
-/** The number of the point that ends the interval with this time on the slider, at least 1. */
-function intervalAt(line, play, guess = 1) {
-  if (guess >= 1 && guess < line.count && line.play[guess - 1] < play && play <= line.play[guess]) {
-    return guess;
-  }
-  let low = 1;
-  let high = line.count - 1;
+/** The first number from low to high whose value in a rising column is not below this one; high where none is. */
+function firstFrom(column, value, low, high) {
   while (low < high) {
     const middle = (low + high) >> 1;
-    if (line.play[middle] >= play) {
+    if (column[middle] >= value) {
       high = middle;
     } else {
       low = middle + 1;
@@ -190,18 +185,17 @@ function intervalAt(line, play, guess = 1) {
   return low;
 }
 
+/** The number of the point that ends the interval with this time on the slider, at least 1. */
+function intervalAt(line, play, guess = 1) {
+  if (guess >= 1 && guess < line.count && line.play[guess - 1] < play && play <= line.play[guess]) {
+    return guess;
+  }
+  return firstFrom(line.play, play, 1, line.count - 1);
+}
+
 /** The time on the slider at a time of the machine. */
 function playAtTime(line, time) {
-  let low = 0;
-  let high = line.count - 1;
-  while (low < high) {
-    const middle = (low + high) >> 1;
-    if (line.time[middle] >= time) {
-      high = middle;
-    } else {
-      low = middle + 1;
-    }
-  }
+  const low = firstFrom(line.time, time, 0, line.count - 1);
   const before = Math.max(low - 1, 0);
   const span = line.time[low] - line.time[before];
   const share = span > 0 ? Math.min(Math.max((time - line.time[before]) / span, 0), 1) : 1;
