@@ -278,6 +278,8 @@ def _facts(section: SectionPicture) -> Iterator[tuple[str, str]]:
         yield "time", f"{section.time:.1f} s"
     if section.thinned > 0:
         yield "drawn", f"within {_length(section.thinned, section)} of the path"
+    if section.played > section.thinned:
+        yield "played", f"within {_length(section.played, section)} of the path"
 
 
 def _length(value: float, section: SectionPicture) -> str:

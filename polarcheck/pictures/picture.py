@@ -223,6 +223,7 @@ class SectionPicture(msgspec.Struct, frozen=True, kw_only=True):
     c_limit, x_limit, feed_limit: the limits of the machine [deg/min], [mm/min], [mm/min].
     needs_radius: why no tool path is drawn, empty if one is.
     thinned: the largest deviation of the drawn paths [mm].
+    played: the largest deviation of the positions over time [mm].
     time: [s].
     programmed, tool: the paths.
     moves: the moves of the tool center; some are left out if there are very many.
@@ -266,6 +267,7 @@ class SectionPicture(msgspec.Struct, frozen=True, kw_only=True):
     parts: list[PartPicture]
     marks: list[Mark]
     move_count: int = 0
+    played: float = 0.0
     makes: list[str] = []
     remarks: list[str] = []
     writing: Writing = Writing()
