@@ -34,9 +34,9 @@ def register(server: Server) -> None:
         section = settings.get(_SECTION) if isinstance(settings, dict) else None
         of_workspace = server.client_capabilities.workspace
         if section is None and of_workspace is not None and of_workspace.configuration:
-            asked = types.ConfigurationParams([types.ConfigurationItem(section=_SECTION)])
+            wanted = types.ConfigurationParams([types.ConfigurationItem(section=_SECTION)])
             with contextlib.suppress(Exception):  # an editor that does not answer has no settings
-                section = next(iter(await server.workspace_configuration_async(asked)), None)
+                section = next(iter(await server.workspace_configuration_async(wanted)), None)
         if choose(section):
             refresh()
 

@@ -9,7 +9,7 @@ from lsprotocol import types
 from polarcheck.reading.excerpt import visible
 from polarcheck.server.structure import stretches
 from polarcheck.server.structure.document import Document
-from polarcheck.server.structure.mentions import Kind, Mention, Role
+from polarcheck.server.structure.mention import Kind, Mention, Role
 from polarcheck.server.structure.uses import Owner, Use, Uses, called_name
 from polarcheck.server.structure.workspace import Workspace
 

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from lsprotocol import types
 
 from polarcheck.server.structure.document import Document
-from polarcheck.server.structure.mentions import Kind, Role
+from polarcheck.server.structure.mention import Kind, Role
 from polarcheck.server.structure.uses import Use, Uses
 from polarcheck.server.structure.workspace import Workspace
 

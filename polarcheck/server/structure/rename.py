@@ -16,7 +16,7 @@ from polarcheck.errors import PolarcheckError
 from polarcheck.execution.macro import ARGUMENTS, VariableKind
 from polarcheck.reading.excerpt import shortened, visible
 from polarcheck.server.structure.document import Document
-from polarcheck.server.structure.mentions import Into, Kind, Mention, Role
+from polarcheck.server.structure.mention import Into, Kind, Mention, Role
 from polarcheck.server.structure.references import by_document
 from polarcheck.server.structure.uses import Owner, Use, Uses
 from polarcheck.server.structure.workspace import Workspace
@@ -229,8 +229,8 @@ class _Renaming:
                     repeats = number > max(ARGUMENTS.values()) or (letter or "") in "IJK"
                     if letter in addresses or (repeats and addresses & set("IJK")):
                         place = self._line(call.owner, call.mention.block)
-                        given = f"#{number} its value by {letter or 'I, J, K'}"
-                        raise RenameError(f"{place} gives {given}: change the call first")
+                        value = f"#{number} its value by {letter or 'I, J, K'}"
+                        raise RenameError(f"{place} gives {value}: change the call first")
 
     def _check_program(self, key: int | str, found: list[Use]) -> None:
         probe = self._renamed(key)

@@ -12,7 +12,7 @@ from lsprotocol import types
 
 from polarcheck.errors import PolarcheckError
 from polarcheck.server.structure.document import Document
-from polarcheck.server.structure.mentions import Into, Kind, Role
+from polarcheck.server.structure.mention import Into, Kind, Role
 from polarcheck.server.structure.references import by_document
 from polarcheck.server.structure.uses import Owner, Use, Uses
 from polarcheck.server.structure.workspace import Workspace

@@ -16,7 +16,8 @@ from polarcheck.reading.words import Spans
 from polarcheck.server.outline import sections_by_line, summary
 from polarcheck.server.structure import stretches
 from polarcheck.server.structure.document import Document, is_written
-from polarcheck.server.structure.mentions import Kind, Role, mentions_of
+from polarcheck.server.structure.mention import Kind, Role
+from polarcheck.server.structure.mentions import mentions_of
 
 #: The most N blocks and labels of a program; and the longest name [characters].
 _MOST, _LONGEST = 2_000, 80

@@ -9,7 +9,8 @@ from typing import NamedTuple
 from polarcheck.execution.macro import VariableKind
 from polarcheck.execution.programs import Program, ProgramName
 from polarcheck.server.structure.document import Document
-from polarcheck.server.structure.mentions import Into, Kind, Mention, Mentions, Role, mentions_of
+from polarcheck.server.structure.mention import Into, Kind, Mention, Role
+from polarcheck.server.structure.mentions import Mentions, mentions_of
 from polarcheck.server.structure.workspace import Workspace, naming, writing
 
 #: Variables that every program shares: beside those that call each other, all of the workspace count.
