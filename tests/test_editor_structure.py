@@ -1,4 +1,4 @@
-"""What an editor shows of the structure of a program: outline, folding, colours."""
+"""What an editor shows of the structure of a program: outline, folding, colors."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from hypothesis import strategies as st
 from lsprotocol import types
 
 from polarcheck.machines import profiles
-from polarcheck.server.colour_names import KINDS, MODIFIERS
+from polarcheck.server.color_names import KINDS, MODIFIERS
 from polarcheck.server.open_text import OpenText
-from polarcheck.server.structure import colours, folding, symbols
+from polarcheck.server.structure import colors, folding, symbols
 from polarcheck.server.structure.document import Document
 
 pytestmark = pytest.mark.usefixtures("own_folder")
@@ -137,12 +137,12 @@ def test_structures_of_a_high_level_language_fold() -> None:
     assert found == [(1, 13), (1, 2), (3, 6), (7, 9), (10, 12)]
 
 
-# ---- colours ----
+# ---- colors ----
 
 
-def colours_of(made: Document, data: list[int] | None = None) -> list[tuple[int, str, str]]:
+def colors_of(made: Document, data: list[int] | None = None) -> list[tuple[int, str, str]]:
     """Line, characters and kind of each token, with its modifiers behind."""
-    numbers = colours.full(made) if data is None else data
+    numbers = colors.full(made) if data is None else data
     lines = made.text.text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
     line = character = 0
     found = []
@@ -158,9 +158,9 @@ def colours_of(made: Document, data: list[int] | None = None) -> list[tuple[int,
 
 
 @pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
-def test_each_word_has_the_colour_of_what_it_is(end: str) -> None:
+def test_each_word_has_the_color_of_what_it_is(end: str) -> None:
     text = "O1 (\U0001f600)\nN10 G1 X-6.5 ,C2 M8\n/T0101 S500\n#100=SIN[#_UOFST]\nIF[#1EQ2]GOTO10\nG65 P#3\n"
-    found = colours_of(document(text.replace("\n", end)))
+    found = colors_of(document(text.replace("\n", end)))
     assert found == [
         *((1, "O1", "namespace declaration"), (1, "(\U0001f600)", "comment")),
         *((2, "N10", "label declaration"), (2, "G1", "function"), (2, "X", "property"), (2, "-6.5", "number")),
@@ -191,30 +191,30 @@ def test_each_word_has_the_colour_of_what_it_is(end: str) -> None:
         ),
     ],
 )
-def test_colours_are_those_of_the_language(machine: str, text: str, expected: str) -> None:
-    found = [f"{characters} {kind}" for _, characters, kind in colours_of(document(text, machine))]
+def test_colors_are_those_of_the_language(machine: str, text: str, expected: str) -> None:
+    found = [f"{characters} {kind}" for _, characters, kind in colors_of(document(text, machine))]
     assert ",".join(one for one in found if "declaration" not in one) == expected
 
 
-def test_colours_of_lines_and_differences_are_those_of_the_whole() -> None:
+def test_colors_of_lines_and_differences_are_those_of_the_whole() -> None:
     before = document(MILLED)
-    whole = colours_of(before)
-    shown = colours.within(before, types.Range(types.Position(7, 3), types.Position(9, 1)))
-    assert colours_of(before, shown) == [one for one in whole if 8 <= one[0] <= 10]
+    whole = colors_of(before)
+    shown = colors.within(before, types.Range(types.Position(7, 3), types.Position(9, 1)))
+    assert colors_of(before, shown) == [one for one in whole if 8 <= one[0] <= 10]
     after = document(MILLED.replace("G1 X5.", "G1 X5. C2."))
-    old, new = colours.full(before), colours.full(after)
-    (edit,) = colours.difference(old, new)
+    old, new = colors.full(before), colors.full(after)
+    (edit,) = colors.difference(old, new)
     assert [*old[: edit.start], *(edit.data or []), *old[edit.start + edit.delete_count :]] == new
     assert len(edit.data or []) <= 15
-    assert colours.difference(old, old) == []
-    assert colours.difference([], new)[0].data == new
+    assert colors.difference(old, old) == []
+    assert colors.difference([], new)[0].data == new
 
 
 @settings(max_examples=60, deadline=None)
 @given(st.text(st.sampled_from("%ON0123456789GXT#[]=()/;.\n\r\"':RIFGOTDW \U0001f600\u2013"), max_size=80), st.data())
 def test_no_text_is_too_strange(text: str, data: Any) -> None:
     made = document(text, data.draw(st.sampled_from(["fanuc", "siemens-transmit", "okuma-osp", "citizen"])))
-    numbers = colours.full(made)
+    numbers = colors.full(made)
     assert all(length > 0 for length in numbers[2::5])
     lines_of(symbols.symbols(made))
     folding.folding_ranges(made)

@@ -44,7 +44,7 @@ def test_the_page_follows_the_cursor_and_leads_to_blocks(browser: Any, tmp_path:
         opened.evaluate("(message) => { window.sent = []; window.postMessage(message, '*'); }", message)
         opened.wait_for_timeout(100)
 
-    # It has the colours of the editor.
+    # It has the colors of the editor.
     assert opened.locator("html").get_attribute("data-theme") == "dark"
     opened.evaluate("document.body.className = 'vscode-light'")
     opened.wait_for_function("document.documentElement.dataset.theme === 'light'")

@@ -126,7 +126,7 @@ def _part(name: str) -> str:
 
 
 def _style() -> str:
-    """Return the style; its dark colours count where the system is dark, and where the switch of the page says so."""
+    """Return the style; its dark colors count where the system is dark, and where the switch of the page says so."""
     dark = _part("dark.css")
     return (
         "\n".join(_part(f"{name}.css") for name in _STYLES)

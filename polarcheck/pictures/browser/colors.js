@@ -6,7 +6,7 @@ const SHADES = 8;
 const SHARES = [1, 3, 5, 10, 20, 40, 70, 100];
 
 /**
- * What moves are coloured by: values (one per move), bounds (the upper one of each class), title; null for one colour.
+ * What moves are colored by: values (one per move), bounds (the upper one of each class), title; null for one color.
  * isLimited: a value above the last bound is above the limit.
  */
 function coloringOf(section, name) {
@@ -45,7 +45,7 @@ function niceBounds(values) {
   return [...between.filter((_, place) => place % every === every - 1), high].slice(-SHADES);
 }
 
-/** The class of each move: a number from 0, "above", "plain", or "unknown" where there is nothing to colour it by. */
+/** The class of each move: a number from 0, "above", "plain", or "unknown" where there is nothing to color it by. */
 function classesOf(section, name) {
   const coloring = coloringOf(section, name);
   if (coloring === null) {
@@ -61,7 +61,7 @@ function classesOf(section, name) {
   });
 }
 
-/** The colour of a class, of so many. */
+/** The color of a class, of so many. */
 function colorOf(kind, count) {
   if (typeof kind !== "number") {
     return color({ above: "--above", plain: "--path", unknown: "--unknown" }[kind]);

@@ -21,7 +21,7 @@ function embedded(state, memory) {
     }
   }
 
-  /** The colours of the editor, which puts them into the class of the body. */
+  /** The colors of the editor, which puts them into the class of the body. */
   function dress() {
     const { classList } = document.body;
     const isLight = classList.contains("vscode-light") || classList.contains("vscode-high-contrast-light");
@@ -45,7 +45,7 @@ function embedded(state, memory) {
       editor.postMessage({ kind: "line", line: chosen.line });
     }
   });
-  // The editor chooses the colours.
+  // The editor chooses the colors.
   document.querySelectorAll("button.theme").forEach((made) => made.remove());
   dress();
   new MutationObserver(dress).observe(document.body, { attributeFilter: ["class"] });

@@ -7,7 +7,7 @@ const ROOM = 1.42;
 /** The cutter is drawn up to so many radii of the bar from the center. */
 const FARTHEST = 2;
 
-/** The colours of the canvases, from the style of the page. */
+/** The colors of the canvases, from the style of the page. */
 function canvasColors() {
   const names = ["ink", "quiet", "paper", "metal", "jaw", "tool", "above", "calm", "path"];
   const floors = [1, 2, 3, 4, 5, 6].map((number) => color(`--floor-${number}`));

@@ -1,9 +1,9 @@
-// ---- theme: light or dark, as the system has it or as chosen; drawings read their colours from the style ----
+// ---- theme: light or dark, as the system has it or as chosen; drawings read their colors from the style ----
 
 const THEME_NAMES = { "": "system", light: "light", dark: "dark" };
 const themeViews = [];
 
-/** The colour of a custom property of the style, as "--ink". */
+/** The color of a custom property of the style, as "--ink". */
 function color(name) {
   return getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 }
@@ -18,7 +18,7 @@ function theme(name) {
   themeViews.forEach((view) => view());
 }
 
-/** Call view() after each change of colours. */
+/** Call view() after each change of colors. */
 function onTheme(view) {
   themeViews.push(view);
 }

@@ -1,4 +1,4 @@
-// ---- words: how values are told, in the units of the program ----
+// ---- words: values as text, in the units of the program ----
 
 /** What turns mm of the polar plane into what stands in the program, and into words. */
 function unitsOf(section) {

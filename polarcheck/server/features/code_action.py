@@ -62,5 +62,5 @@ def register(server: Server) -> None:
 
 def _is_wanted(kind: types.CodeActionKind, only: Iterable[types.CodeActionKind | str] | None) -> bool:
     """Return True if the editor asks for this kind: `source` means `source.fixAll`, too."""
-    values = [str(kind.value) if isinstance(kind, types.CodeActionKind) else kind for kind in only or ()]
+    values = [str(wanted.value) if isinstance(wanted, types.CodeActionKind) else wanted for wanted in only or ()]
     return not values or any(f"{kind.value}.".startswith(f"{value}.") or not value for value in values)

@@ -1,4 +1,4 @@
-"""Semantic colours, of a whole document or of the lines that are shown."""
+"""Semantic colors, of a whole document or of the lines that are shown."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _MOST_REMEMBERED = 4
 
 def register(server: Server) -> None:
     """Register the feature."""
-    from polarcheck.server.colour_names import LEGEND
+    from polarcheck.server.color_names import LEGEND
 
     answers: OrderedDict[str, list[int]] = OrderedDict()
     count = 0
@@ -31,9 +31,9 @@ def register(server: Server) -> None:
         return str(count)
 
     def full(document: Document) -> list[int]:
-        from polarcheck.server.structure import colours
+        from polarcheck.server.structure import colors
 
-        return colours.full(document)
+        return colors.full(document)
 
     @server.feature(types.TEXT_DOCUMENT_SEMANTIC_TOKENS_FULL, LEGEND)
     async def semantic_tokens_full(params: types.SemanticTokensParams) -> types.SemanticTokens:
@@ -49,15 +49,15 @@ def register(server: Server) -> None:
         number = remember(data)
         if before is None:
             return types.SemanticTokens(data, number)
-        from polarcheck.server.structure import colours
+        from polarcheck.server.structure import colors
 
-        return types.SemanticTokensDelta(colours.difference(before, data), number)
+        return types.SemanticTokensDelta(colors.difference(before, data), number)
 
     @server.feature(types.TEXT_DOCUMENT_SEMANTIC_TOKENS_RANGE, LEGEND)
     async def semantic_tokens_range(params: types.SemanticTokensRangeParams) -> types.SemanticTokens:
         def find(document: Document) -> list[int]:
-            from polarcheck.server.structure import colours
+            from polarcheck.server.structure import colors
 
-            return colours.within(document, params.range)
+            return colors.within(document, params.range)
 
         return types.SemanticTokens(await server.documents.ask(params.text_document.uri, find, []))

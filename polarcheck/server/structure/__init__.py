@@ -1,1 +1,1 @@
-"""The structure of programs for editors: names and their uses, colours, folding, calls. It needs no check."""
+"""The structure of programs for editors: names and their uses, colors, folding, calls. It needs no check."""

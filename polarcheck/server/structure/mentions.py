@@ -39,7 +39,7 @@ _REPEATED = 10_000
 
 #: Where a mention stands.
 _PLACE = operator.itemgetter(Mention._fields.index("start"), Mention._fields.index("end"))
-#: Where the flow can turn at more blocks, those that have no word for it are told from the others first.
+#: With more blocks at which the flow can turn, a search first drops those without a word for it.
 _MANY = 500
 
 
@@ -264,7 +264,7 @@ class Mentions:
         """
         The first and last block of a contour: G71 P10 Q20, G85 NLAP1.
 
-        P and Q of other cycles are depths. They are told from N numbers by the axis words beside them, and because no
+        P and Q of other cycles are depths: axis words stand beside them, or no
         block has these numbers.
         """
         text = self.listing.text

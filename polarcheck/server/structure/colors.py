@@ -1,4 +1,4 @@
-"""Semantic colours: what each word of a program is, as the control of the machine reads it."""
+"""Semantic colors: what each word of a program is, as the control of the machine reads it."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from polarcheck.execution.listing import Listing
 from polarcheck.reading.words import Spans, Text
-from polarcheck.server.colour_names import KINDS
+from polarcheck.server.color_names import KINDS
 from polarcheck.server.structure.document import Document, block_at
 from polarcheck.server.structure.lexing import Token, tokens
 
@@ -31,7 +31,7 @@ _OF_LEXING = {
     "name": "namespace",
     **{name: name for name in ("number", "variable", "keyword", "operator", "function", "string", "label")},
 }
-#: A function of an expression is coloured as a keyword: the kind "function" is that of G codes.
+#: A function of an expression is colored as a keyword: the kind "function" is that of G codes.
 _OF_LEXING["function"] = "keyword"
 
 

@@ -1,10 +1,10 @@
-"""The names of semantic colours; apart from what finds them, since the editor is told them first of all."""
+"""The names of semantic colors; apart from what finds them: the editor needs them as it starts."""
 
 from __future__ import annotations
 
 from lsprotocol import types
 
-#: The kinds of tokens, which are those of the protocol, so that every theme has colours for them.
+#: The kinds of tokens, which are those of the protocol, so that every theme has colors for them.
 KINDS = (
     *("function", "method", "property", "number", "variable", "comment", "label", "keyword", "namespace"),
     *("string", "operator", "parameter", "enumMember"),
