@@ -57,6 +57,12 @@ def test_the_package_is_built_from_checked_types(tmp_path: Path) -> None:
     assert ".test.js" not in names
 
 
+def test_what_npm_makes_stays_out_of_the_source_distribution() -> None:
+    # hatchling reads the .gitignore of the root alone.
+    patterns = [set((folder / ".gitignore").read_text("utf-8").split()) for folder in (EXTENSION, ROOT)]
+    assert patterns[0] <= patterns[1]
+
+
 def test_programs_of_check_are_programs_of_the_editor() -> None:
     declared = {ending for language in CONTRIBUTED["languages"] for ending in language["extensions"]}
     assert set(EXTENSIONS) <= declared
