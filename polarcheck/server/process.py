@@ -8,8 +8,8 @@ import logging
 import os
 import sys
 import threading
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, NamedTuple, cast
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING, Any, NamedTuple, SupportsIndex, cast
 
 from polarcheck.errors import UsageError
 from polarcheck.server.messages import NoEditorError, handle_all
@@ -79,7 +79,7 @@ class _Input(asyncio.StreamReader):
         self._is_ended = True
         super().feed_eof()
 
-    def feed_data(self, data: bytes) -> None:
+    def feed_data(self, data: Iterable[SupportsIndex]) -> None:
         if not self._is_ended:
             super().feed_data(data)
 
