@@ -15,6 +15,8 @@ from polarcheck.server.words.at_cursor import CursorWord
 _AS_EVER = frozenset("NOGMTS/")
 #: Lists of codes whose words are numbers of their own, and no end point of a move.
 _OF_CYCLE = ("repetitive_cycle", "data_input", "axis_words_no_move", "work_offset_extended")
+#: Lists of codes whose F is the lead of a thread.
+_THREADS = ("thread_cutting", "threading_cycle", "feed_is_lead")
 
 
 def meaning_of(word: CursorWord, machine: Machine) -> str:
@@ -40,6 +42,10 @@ def _codes_of(word: CursorWord) -> Iterator[str]:
 
 
 def _of_list(letter: str, code: str, name: str, machine: Machine) -> str:
+    if letter == "F" and name in _THREADS:
+        return "lead of the thread"
+    if letter == "H" and name == "tool_length_offset":
+        return "number of the tool offset"
     if letter == "F" and name not in ("macro_calls", "modal_macro_calls"):
         return ""
     if name in ("macro_calls", "modal_macro_calls"):
