@@ -144,7 +144,7 @@ function sourceView(root, picture, state, program) {
   }
 
   function reveal(line) {
-    if (line !== null && line >= first && line <= last) {
+    if (height && line !== null && line >= first && line <= last) {
       const top = (line - first) * SOURCE_ROW;
       if (top < scrolled || top > scrolled + height - 2 * SOURCE_ROW) {
         scrolled = Math.min(Math.max(top - height / 2, 0), Math.max(source.length * SOURCE_ROW - height, 0));
@@ -153,14 +153,12 @@ function sourceView(root, picture, state, program) {
     }
   }
 
-  /** The first time that the lines have a height: the line of the worst finding is seen before anything is chosen. */
+  /** The chosen line stays in sight; the first time that the lines have a height, that of the worst finding is. */
   function resized() {
     height = box.clientHeight;
     scrolled = box.scrollTop;
-    if (!wasSeen && height) {
-      wasSeen = true;
-      reveal(chosen === null && picture.order.length ? findings[picture.order[0]].line : chosen);
-    }
+    reveal(chosen === null && !wasSeen && picture.order.length ? findings[picture.order[0]].line : chosen);
+    wasSeen = wasSeen || height > 0;
     fill();
   }
 
