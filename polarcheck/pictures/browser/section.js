@@ -79,6 +79,9 @@ function sectionView(root, picture, state, program, place) {
 
   function listen(plot) {
     plot.on("plotly_hover", (event) => {
+      if (plot.classList.contains("is-measuring")) {
+        return;
+      }
       const { move, mark } = event.points[0].customdata;
       showHover(mark === undefined ? factsOf(section, move) : markFacts(section, mark), event.event);
     });
