@@ -20,7 +20,7 @@ from polarcheck.server.open_text import OpenText
 from polarcheck.server.words.at_cursor import block_of
 
 #: A reference to the sequence number of a block: GOTO 100, GOTO N100, M99 P100, G71 P10 Q20.
-_NUMBER = re.compile(r"(?:\bGOTO[FBC]?\s*N?\s*|[PQ]\s*)(\d{1,9})", re.IGNORECASE)
+_NUMBER = re.compile(r"(?:\bGOTO[FBC]?\s*+(?:N\s*+)?|[PQ]\s*+)(\d{1,9})", re.IGNORECASE)
 #: What a block is called by: its number, its label, the head of a program.
 _HEAD = re.compile(r"\s*+(?:/\d?\s*+)?(?:[NO]\s*+\d{1,9}|[A-Z_]\w{0,60}+:)", re.IGNORECASE)
 _JUMPS = (Kind.GOTO, Kind.IF_GOTO)
