@@ -244,7 +244,10 @@ def lines_led_to(judged: Judged, line: int, character: int = 0) -> list[int]:
         (7, 9, [5]),
         (8, 5, []),
         (14, 5, [3]),
-        (3, 2, []),
+        (3, 2, [3]),
+        (3, 6, []),
+        (5, 1, [5]),
+        (10, 1, [10]),
         (1, 0, []),
     ],
 )
@@ -257,6 +260,12 @@ def test_labels_lead_to_their_blocks() -> None:
     judged = judged_of(program, machine="siemens-transmit")
     assert lines_led_to(judged, 4, 18) == [6]
     assert lines_led_to(judged, 5, 7) == [2]
+    assert lines_led_to(judged, 2, 1) == [2]
+
+
+def test_a_number_with_its_letter_leads_to_its_block() -> None:
+    judged = judged_of("$A.MIN%\nGOTO N3\nN2 G0 X10\nN3 M02\n", machine="okuma-osp")
+    assert lines_led_to(judged, 2, 5) == lines_led_to(judged, 2, 6) == [4]
 
 
 @pytest.mark.parametrize("text", ["O77(SUB)\nG0 X1.\nM99\n", "%\r\n(HEAD)\r\nO0077\r\nM99\r\n", "G0 X1.\nM99\n"])

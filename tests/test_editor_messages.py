@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import json
+import os
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
@@ -13,7 +15,7 @@ from editor import Editor
 from test_cli import RAPID
 
 from polarcheck.commands.server import _Settings
-from polarcheck.server import features
+from polarcheck.server import features, process
 from polarcheck.server.messages import NoEditorError, handle_all
 from polarcheck.server.session import Server
 
@@ -183,3 +185,32 @@ def test_a_request_can_be_cancelled() -> None:
             pass
         assert answer["error"]["code"] == -32800
         assert editor.asks("codeLens", program)
+
+
+@pytest.mark.parametrize("late", [b"", b"more"])
+def test_the_end_of_a_session_prints_nothing(late: bytes, caplog: pytest.LogCaptureFixture) -> None:
+    """Neither what the editor has left unanswered, nor what comes after the end of the server's output."""
+    Path("O1.NC").write_text(RAPID, "utf-8")
+    wanted = {"workspace": {"configuration": True, "didChangeWatchedFiles": {"dynamicRegistration": True}}}
+
+    async def run() -> None:
+        server = Server(_Settings(True, {}))
+        features.register(server)
+        source, to_server = os.pipe()
+        from_server, sink = os.pipe()
+        begin = {**BEGIN, "params": {**INITIALIZE, "capabilities": wanted}}
+        os.write(to_server, wire(begin, {"method": "initialized", "params": {}}))
+        serving = asyncio.ensure_future(process._serve(server, process.Streams(source, sink)))
+        while b"client/registerCapability" not in await asyncio.to_thread(os.read, from_server, 1 << 16):
+            pass
+        if late:
+            os.close(from_server)
+            os.write(to_server, wire({**HOVER, "params": None}) * 2)
+            await asyncio.sleep(0.05)
+            with contextlib.suppress(OSError):
+                os.write(to_server, late)
+        os.close(to_server)
+        await serving
+
+    asyncio.run(run())
+    assert [record.getMessage() for record in caplog.records if record.name == "asyncio"] == []

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import re
 from pathlib import Path
 from typing import Any
@@ -11,9 +12,12 @@ from editor import Editor, place
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from polarcheck.commands.server import _Settings
 from polarcheck.errors import PolarcheckError
 from polarcheck.machines import profiles
+from polarcheck.server.buffers import Buffer
 from polarcheck.server.open_text import OpenText
+from polarcheck.server.session import Server
 from polarcheck.server.structure import references, rename
 from polarcheck.server.structure.document import Document
 from polarcheck.server.structure.workspace import Opened, Workspace
@@ -299,3 +303,24 @@ def test_an_editor_finds_and_renames_over_files() -> None:
         refused = editor.asks("rename", program, 2, 1, newName="20")
         assert (refused["code"], refused["message"]) == (-32803, "N20 is there already, in line 5")
         assert editor.capabilities["renameProvider"] == {"prepareProvider": True}
+
+
+# ---- in time ----
+
+
+def test_names_are_read_before_somebody_asks() -> None:
+    """Once nobody has typed for a moment; of two keys the second counts."""
+
+    async def run() -> list[str]:
+        server = Server(_Settings(True, {}))
+        buffer = Buffer("file:///w/O1.NC", Path("/w/O1.NC"), OpenText("O1\nN5 GOTO5\n"), 1)
+        server.buffers.open[buffer.uri] = buffer
+        server.documents.read_ahead(buffer.uri)
+        server.documents.read_ahead(buffer.uri)
+        reading = server.documents._reading
+        assert reading is not None
+        await reading
+        server.end()
+        return [one.shown for one in server.documents._known[buffer.uri][1]._cached["mentions"][0].all]
+
+    assert asyncio.run(run()) == ["O0001", "N5", "N5"]

@@ -96,7 +96,7 @@ def test_programs_tools_sections_and_blocks_are_the_outline() -> None:
             ["O0001 |  | 2-7", " NLAP1 | START | 3-3", " G137 C0 |  | 4-6", "<OFACE> |  | 8-9"],
             id="okuma",
         ),
-        pytest.param("fanuc", "G0 X1.\nN5 X2.\n", ["program without a number |  | 1-2", " N5 |  | 2-2"], id="no head"),
+        pytest.param("fanuc", "G0 X1.\nN5 X2.\n", ["O1.NC |  | 1-2", " N5 |  | 2-2"], id="no head"),
         pytest.param("fanuc", "", [], id="nothing"),
     ],
 )

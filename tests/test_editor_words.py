@@ -81,7 +81,21 @@ FANUC = {"machine": "fanuc-30i", "tools": ["1:radius=4"]}
         ("|O1\nG0 X1.\n", "O: program number", []),
         (HEAD + "G12.1\nG2 X40. C0 |R5. F100\n", "R: radius of an arc", []),
         (HEAD + "G12.1\nG2 X40. C0 |I5. J0 F100\n", "I: center of an arc", []),
-        (HEAD + "G4 |P500\n", "P: number of a program", []),
+        (HEAD + "G4 |P500\n", "P: time of the dwell\n", []),
+        (HEAD + "G4 |X2.\n", "X: time of the dwell\n", []),
+        (HEAD + "G71 |U2. R.5\n", "U: a number for G71, which says what it means", []),
+        (HEAD + "G32 Z-5. |F1.5\n", "F: lead of the thread\n", []),
+        (HEAD + "G76 X50. Z-20. P1200 Q300 |F1.5\n", "F: lead of the thread\n", []),
+        (HEAD + "G43 |H1\n", "H: number of the tool offset\n", []),
+        (HEAD + "G83 X5. |R2. Q1.\n", "R: a number for G83", []),
+        (HEAD + "G83 |X5. R2. Q1.\n", "X: X axis, a diameter", []),
+        (HEAD + "G65 P2 |A1. F3.\nM30\nO2\nM99\n", "A: argument of the macro, #1 there", []),
+        (HEAD + "G65 P2 A1. |F3.\nM30\nO2\nM99\n", "F: argument of the macro, #9 there", []),
+        (HEAD + "G65 P2 |I1.\nM30\nO2\nM99\n", "I: argument of the macro\n", []),
+        (HEAD + "M98 |P2\nM30\nO2\nM99\n", "P: number of the program that is called", []),
+        (HEAD + "M98 P2\nM30\nO2\nM99 |P10\n", "P: number of the block of the caller", []),
+        (HEAD + "G5|0 S2500\n", "G50: sets the coordinates of the present position or, with S alone", []),
+        (HEAD + "M|0\n", "M0: program stop; the control does not read ahead", []),
         (HEAD + "G0 ,|C5.\n", "", []),
     ],
 )
@@ -110,12 +124,22 @@ def test_where_there_is_no_word_none_is_shown(text: str) -> None:
         ("O1\n#100=|#2001\nM30\n", ["system variable: tool offset"]),
         ("O1\n|#3000=1(WRONG)\nM30\n", ["ends the program with an alarm"]),
         ("O1\n#1=|#0\nM30\n", ["always vacant"]),
+        (
+            "O1\n#101=2\nWHILE[|#101GT0]DO1\n#101=#101-1\nEND1\nM30\n",
+            ["behind the first run of line 2: 2, set in line 2"],
+        ),
+        ("O1\n#101=2\nG0 X5.\nIF[|#101GT0]GOTO5\nN5 M30\n", ["behind the first run of line 3: 2, set in line 2"]),
+        ("O1\n#101=30\nGOTO|#101\nN30 M30\n", ["behind the first run of line 2: 30"]),
     ],
 )
 def test_a_variable_shows_what_it_holds(text: str, facts: list[str]) -> None:
     found = shown(text, machine="fanuc-30i")
     assert found.startswith("#")
     assert all(fact in found for fact in facts), found
+
+
+def test_a_code_that_counts_for_its_block_is_not_in_force() -> None:
+    assert "G50" not in shown(HEAD + "G50 S2500\nG0 X|50.\nM30\n", **FANUC)
 
 
 def test_a_value_of_a_caller_is_no_value_of_the_macro() -> None:

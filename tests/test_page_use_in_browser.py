@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from importlib import resources
+from pathlib import Path
 from typing import Any
 
 import msgspec
@@ -379,3 +380,27 @@ def test_sections_side_by_side_the_drawing_and_the_list_of_keys(use: Opened) -> 
     assert page.locator("#keys").is_visible()
     page.keyboard.press("Escape")
     assert not page.locator("#keys").is_visible()
+
+
+def test_the_line_of_the_worst_finding_is_in_sight_and_remains_there(browser: Any, tmp_path: Path) -> None:
+    """Before anything is chosen, and where what is known of the chosen finding leaves less room for the program."""
+    found = [finding("too fast", line=300, move=3, why="It cannot turn so fast. " * 12)]
+    whole = picture(hexagon(), findings=found, source=["N1"] * 400, source_lines=400)
+    (tmp_path / "one.html").write_text(page([whole], plotly.get_plotlyjs()), "utf-8")
+    opened = Opened(browser, (tmp_path / "one.html").as_uri())
+    is_within = """([inner, outer, covered]) => {
+      const [part, box] = [inner, outer].map((name) => document.querySelector(name)?.getBoundingClientRect());
+      if (!part || !box) { return false; }
+      const head = document.querySelector(covered);
+      const top = box.top + (head ? head.offsetHeight : 0) - 1;
+      return part.top >= top && part.top + 15 <= Math.min(box.bottom, innerHeight);
+    }"""
+    line = ["div.lines [data-line='300']", "div.lines", ".no-heading"]
+    opened.page.set_viewport_size({"width": 1280, "height": 720})
+    opened.page.reload()
+    opened.page.wait_for_function(is_within, arg=line)
+    opened.page.click(".list li button")
+    opened.page.wait_for_function(is_within, arg=["div.lines .is-chosen", *line[1:]])
+    opened.page.wait_for_function(is_within, arg=[".list li.is-chosen .where", ".list", ".list h2"])
+    assert opened.said == []
+    opened.page.close()

@@ -19,8 +19,10 @@ from polarcheck.server.judged import Judged
 from polarcheck.server.open_text import OpenText
 from polarcheck.server.words.at_cursor import block_of
 
-#: A reference to the sequence number of a block: GOTO 100, M99 P100, G71 P10 Q20.
-_NUMBER = re.compile(r"(?:\bGOTO[FBC]?\s*|[PQ]\s*)(\d{1,9})", re.IGNORECASE)
+#: A reference to the sequence number of a block: GOTO 100, GOTO N100, M99 P100, G71 P10 Q20.
+_NUMBER = re.compile(r"(?:\bGOTO[FBC]?\s*N?\s*|[PQ]\s*)(\d{1,9})", re.IGNORECASE)
+#: What a block is called by: its number, its label, the head of a program.
+_HEAD = re.compile(r"\s*+(?:/\d?\s*+)?(?:[NO]\s*+\d{1,9}|[A-Z_]\w{0,60}+:)", re.IGNORECASE)
 _JUMPS = (Kind.GOTO, Kind.IF_GOTO)
 
 
@@ -38,10 +40,15 @@ def definition(judged: Judged, uri: str, position: types.Position) -> list[types
         listing = Listing([read_text(text.source, machine)] if text.source.parts else [text], machine)
         if block >= len(listing.text.blocks):
             continue
+        at = character - int(listing.text.blocks.start[block])
+        head = _HEAD.match(block_text(listing.text, block))
+        if head is not None and at <= head.end():
+            # An editor that is led to where it is shows the references.
+            return [_at_block(judged.text, uri, listing.text, block)]
         called = listing.called_in(block)
         if called is not None:
             return _of_program(called, listing, judged, uri)
-        targets = list(_targets(listing, block, character - int(listing.text.blocks.start[block])))
+        targets = list(_targets(listing, block, at))
         if targets:
             return [_at_block(judged.text, uri, listing.text, target) for target in dict.fromkeys(targets)]
     return []

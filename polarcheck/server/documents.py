@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
@@ -21,6 +22,9 @@ if TYPE_CHECKING:
 
 Result = TypeVar("Result")
 
+#: The pause after a key before the names of a text are read ahead; shorter than that before a check [s].
+_PAUSE = 0.2
+
 
 class Documents:
     """
@@ -36,6 +40,7 @@ class Documents:
         self.buffers, self.settings_of, self.folders_of = buffers, settings_of, folders_of
         self.worker = Worker()
         self._known: dict[str, tuple[Settings | None, Document]] = {}
+        self._reading: asyncio.Task[None] | None = None
 
     async def ask(self, uri: str, function: Callable[[Document], Result], none: Result) -> Result:
         """Apply a function to the present text of a document; return `none` if there is no such document."""
@@ -44,6 +49,16 @@ class Documents:
             return none
         settings = buffer.judged.settings if buffer.judged is not None else None
         return await self.worker.do(self._apply, function, buffer, buffer.text, settings)
+
+    def read_ahead(self, uri: str) -> None:
+        """Read the names of a text once nobody has typed for a moment, so that the first answer about them is quick."""
+        if self._reading is not None:
+            self._reading.cancel()
+        self._reading = asyncio.create_task(self._read_ahead(uri))
+
+    async def _read_ahead(self, uri: str) -> None:
+        await asyncio.sleep(_PAUSE)
+        await self.ask(uri, _read_names, None)
 
     async def ask_of_any(self, uri: str, function: Callable[[Document], Result], none: Result) -> Result:
         """Apply a function to a document that is open, or that is a file beside those that are open."""
@@ -112,4 +127,12 @@ class Documents:
 
     def end(self) -> None:
         """End the thread."""
+        if self._reading is not None:
+            self._reading.cancel()
         self.worker.end()
+
+
+def _read_names(document: Document) -> None:
+    from polarcheck.server.structure.mentions import mentions_of
+
+    mentions_of(document)

@@ -8,8 +8,8 @@ import logging
 import os
 import sys
 import threading
-from collections.abc import Callable
-from typing import TYPE_CHECKING, NamedTuple, cast
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING, Any, NamedTuple, SupportsIndex, cast
 
 from polarcheck.errors import UsageError
 from polarcheck.server.messages import NoEditorError, handle_all
@@ -70,6 +70,20 @@ class _Sink:
             os.close(self._sink)
 
 
+class _Input(asyncio.StreamReader):
+    """Holds what the editor has sent; drops what comes after the end."""
+
+    _is_ended = False
+
+    def feed_eof(self) -> None:
+        self._is_ended = True
+        super().feed_eof()
+
+    def feed_data(self, data: Iterable[SupportsIndex]) -> None:
+        if not self._is_ended:
+            super().feed_data(data)
+
+
 def serve(server: Server, streams: Streams) -> int:
     """
     Serve the editor until it says `exit` or is gone; return the exit code, 1 if it did not say `shutdown` before.
@@ -88,7 +102,8 @@ def serve(server: Server, streams: Streams) -> int:
 
 async def _serve(server: Server, streams: Streams) -> None:
     loop = asyncio.get_running_loop()
-    reader = asyncio.StreamReader(_LONGEST_HEADER)
+    loop.set_exception_handler(_log)
+    reader = _Input(_LONGEST_HEADER)
     server.protocol.set_writer(_Sink(streams.sink, reader.feed_eof))
     threading.Thread(target=_feed, args=(streams.source, loop, reader), name="input", daemon=True).start()
     try:
@@ -99,6 +114,12 @@ async def _serve(server: Server, streams: Streams) -> None:
         raise UsageError(f"standard input: {error}: an editor starts the server") from None
     finally:
         server.end()
+
+
+def _log(loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
+    """Log what went wrong in a callback; that a request is cancelled as the session ends is no fault."""
+    if not isinstance(context.get("exception"), asyncio.CancelledError):
+        loop.default_exception_handler(context)
 
 
 def _feed(source: int, loop: asyncio.AbstractEventLoop, reader: asyncio.StreamReader) -> None:

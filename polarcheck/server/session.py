@@ -100,6 +100,7 @@ class Server(LanguageServer):
         buffer = self.buffers.open.get(params.text_document.uri)
         if buffer is not None:
             self.buffers.change(buffer, buffer.text.changed(params.content_changes), params.text_document.version)
+            self.documents.read_ahead(buffer.uri)
 
     def closed(self, uri: str) -> None:
         """Remove the diagnostics of a closed document."""
@@ -187,7 +188,12 @@ class Server(LanguageServer):
 
 def _load() -> None:
     """Import and load in advance what takes time at the first check."""
+    import gc
+
     from polarcheck.checking.rule import load_all
     from polarcheck.server import judged  # noqa: F401
+    from polarcheck.server.structure import references  # noqa: F401
 
     load_all()
+    # What is loaded stays: looking through it for garbage would double the time of answers about a long program.
+    gc.freeze()

@@ -98,7 +98,8 @@ function surroundings(section, units) {
   const named = [0.85, 0.6, 0.35].sort((one, other) => away(other) - away(one))[0] * reach;
   shapes.push({
     ...line("C = 0", [0, units.x(named), units.x(reach)], [0, 0, 0], { color: color("--axis"), width: 1, dash: "longdashdot" }, { showlegend: false }),
-    mode: "lines+text", text: ["", "C = 0", ""], textposition: "bottom center", textfont: { color: color("--quiet"), size: 11 },
+    // A marker that is not seen keeps the text off the ray.
+    mode: "lines+markers+text", marker: { size: 10, opacity: 0 }, text: ["", "C = 0", ""], textposition: "bottom center", textfont: { color: color("--quiet"), size: 11 },
   });
   shapes.push({
     type: "scatter", mode: "markers", name: "spindle center", x: [0], y: [0], hoverinfo: "skip",
@@ -254,13 +255,19 @@ function ends(section, units) {
   const [[startX, startC], [endX, endC]] = points;
   const isOne = Math.hypot(startX - endX, startC - endC) < 0.05 * (x1 - x0);
   const texts = isOne ? ["start, end", ""] : ["start", "end"];
-  return points.map(([x, c], place) => ({
-    type: "scatter", mode: "markers+text", x: [units.x(x)], y: [units.c(c)],
-    // The text stands towards the middle, where there is room for it, and below: pins stand above.
+  const common = { type: "scatter", hoverinfo: "skip", showlegend: false };
+  const named = points.map(([x, c], place) => ({
+    ...common, mode: "markers+text", x: [units.x(x)], y: [units.c(c)],
+    // The text stands towards the middle, where there is room for it, and below: pins stand above. A marker that is not
+    // seen keeps it off the ramps and their arrows.
     text: [texts[place]], textposition: `bottom ${x > (x0 + x1) / 2 ? "left" : "right"}`,
-    hoverinfo: "skip", showlegend: false, textfont: { color: color("--ink"), size: 12 },
+    textfont: { color: color("--ink"), size: 12 }, marker: { size: 24, opacity: 0 },
+  }));
+  const marked = points.map(([x, c], place) => ({
+    ...common, mode: "markers", x: [units.x(x)], y: [units.c(c)],
     marker: { symbol: ["circle-open", "square-open"][place], size: [12, 9][place], color: color("--ink"), line: { color: color("--ink"), width: 2 } },
   }));
+  return [...named, ...marked];
 }
 
 /** Points along the path that the pointer finds; nothing is seen of them. */
@@ -367,7 +374,7 @@ function faceLayout(section) {
   };
   const { "xaxis.range": x, "yaxis.range": y } = wholeFace(section);
   return {
-    margin: isNarrow ? { l: 44, r: 6, t: 6, b: 38 } : { l: 56, r: 10, t: 10, b: 42 }, paper_bgcolor: color("--paper"), plot_bgcolor: color("--paper"),
+    margin: isNarrow ? { l: 52, r: 6, t: 6, b: 38 } : { l: 68, r: 10, t: 10, b: 42 }, paper_bgcolor: color("--paper"), plot_bgcolor: color("--paper"),
     hovermode: "closest", hoverdistance: 24, font: { family: "system-ui, sans-serif", size: isNarrow ? 10 : 12, color: color("--ink") }, dragmode: "pan",
     modebar: { bgcolor: "rgba(0,0,0,0)", color: color("--quiet"), activecolor: color("--ink") }, showlegend: false,
     xaxis: { ...axis, range: x, title: { text: `${axisName(section.writing.linear)} [${units.name}, ${section.diameter ? "diameter" : "radius"}${scaleNote(section)}]`, standoff: 6 } },

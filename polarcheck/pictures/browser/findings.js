@@ -67,8 +67,11 @@ function findingsView(root, picture, state, program, sections) {
 /** Scroll a box, but not the page, so that an element of it is seen from its top. */
 function showWithin(box, part) {
   const [outer, inner] = [box.getBoundingClientRect(), part.getBoundingClientRect()];
-  if (inner.top < outer.top || inner.height > outer.height) {
-    box.scrollTop += inner.top - outer.top;
+  const head = box.querySelector("h2");
+  // The heading stays at the top, above what is scrolled.
+  const top = outer.top + (head === null ? 0 : head.offsetHeight);
+  if (inner.top < top || inner.height > outer.bottom - top) {
+    box.scrollTop += inner.top - top;
   } else if (inner.bottom > outer.bottom) {
     box.scrollTop += inner.bottom - outer.bottom;
   }

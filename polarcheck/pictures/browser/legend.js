@@ -22,7 +22,7 @@ function legend(place, section, view) {
   const levels = section.parts.map((part, level) => [String(level), part.z === null ? "Z not known" : `Z${unitsOf(section).length(part.z)}`]);
   const choices = element("div");
   choices.className = "choices";
-  if (!section.needs_radius) {
+  if (section.tool.x.length) {
     choices.append(select("coloring", "Path", Object.entries(COLORINGS), view.coloring.name, (name) => {
       view.coloring.name = name;
     }));
@@ -42,7 +42,7 @@ function legend(place, section, view) {
 
 /** The classes of the colours that occur. */
 function showClasses(place, section, name) {
-  const coloring = section.needs_radius ? null : coloringOf(section, name);
+  const coloring = section.tool.x.length ? coloringOf(section, name) : null;
   if (coloring === null) {
     place.replaceChildren();
     return;

@@ -9,7 +9,7 @@ function movesView(root, picture, state, program) {
   const find = (name) => root.querySelector(`.${name}`);
   const slider = find("step");
   let section = null;
-  let showRow = () => {};
+  let table = { show: () => {}, resized: () => {} };
   const choose = (move) => state.choose({ program, section, move });
   const count = () => picture.sections[section].moves.line.length;
 
@@ -19,12 +19,12 @@ function movesView(root, picture, state, program) {
     }
     if (chosen.section !== section) {
       section = chosen.section;
-      showRow = moveTable(find("moves"), picture.sections[section], choose, picture.findings.filter((finding) => !finding.silenced));
+      table = moveTable(find("moves"), picture.sections[section], choose, picture.findings.filter((finding) => !finding.silenced));
       slider.max = String(Math.max(count() - 1, 0));
     }
     slider.value = String(chosen.move === null ? 0 : chosen.move);
     find("count").textContent = chosen.move === null ? `${count()} moves` : `${chosen.move + 1} of ${count()}`;
-    showRow(chosen.move);
+    table.show(chosen.move);
   }
 
   let isRequested = false;
@@ -44,6 +44,7 @@ function movesView(root, picture, state, program) {
   };
   find("back").addEventListener("click", () => step(-1));
   find("on").addEventListener("click", () => step(1));
+  new ResizeObserver(() => table.resized()).observe(find("moves"));
   find("move-list").hidden = !picture.sections.length;
   state.subscribe(show);
   if (picture.sections.length) {
@@ -74,6 +75,9 @@ function moveTable(box, section, choose, findings) {
   table.setAttribute("aria-rowcount", String(count + 1));
   box.replaceChildren(table);
   let chosen = null;
+  let filled = "";
+  // To ask for it makes the browser lay out the page: not five times a second while it plays.
+  let height = box.clientHeight;
 
   const number = (value, text) => (value === null ? "" : text(value));
   function row(move) {
@@ -99,8 +103,17 @@ function moveTable(box, section, choose, findings) {
   }
 
   function fill() {
+    // The table is hidden while the program is shown in its place.
+    if (!height) {
+      return;
+    }
     const first = Math.max(Math.floor(box.scrollTop / ROW) - SPARE, 0);
-    const last = Math.min(first + Math.ceil((box.clientHeight || 400) / ROW) + 2 * SPARE, count);
+    const last = Math.min(first + Math.ceil(height / ROW) + 2 * SPARE, count);
+    if (filled === `${first} ${last}`) {
+      body.querySelectorAll("tr[data-move]").forEach((made) => made.classList.toggle("is-chosen", Number(made.dataset.move) === chosen));
+      return;
+    }
+    filled = `${first} ${last}`;
     const rows = [];
     for (let move = first; move < last; move += 1) {
       rows.push(row(move));
@@ -110,13 +123,17 @@ function moveTable(box, section, choose, findings) {
 
   function show(move) {
     chosen = move;
-    if (move !== null) {
-      const room = box.clientHeight - 2 * ROW;
-      if (move * ROW < box.scrollTop || move * ROW > box.scrollTop + room) {
-        box.scrollTop = Math.max(move * ROW - room / 2, 0);
+    reveal();
+    fill();
+  }
+
+  function reveal() {
+    if (chosen !== null && height) {
+      const room = height - 2 * ROW;
+      if (chosen * ROW < box.scrollTop || chosen * ROW > box.scrollTop + room) {
+        box.scrollTop = Math.max(chosen * ROW - room / 2, 0);
       }
     }
-    fill();
   }
 
   box.onscroll = () => requestAnimationFrame(fill);
@@ -128,5 +145,10 @@ function moveTable(box, section, choose, findings) {
   });
   box.scrollTop = 0;
   fill();
-  return show;
+  function resized() {
+    height = box.clientHeight;
+    show(chosen);
+  }
+
+  return { show, resized };
 }

@@ -16,6 +16,7 @@ function sectionView(root, picture, state, program, place) {
   const windows = [];
   const hidden = new Set();
   let isDrawn = false;
+  let asked = null;
   let showLegend = () => {};
   let showPins = () => {};
   face.ofSection = section;
@@ -78,6 +79,9 @@ function sectionView(root, picture, state, program, place) {
 
   function listen(plot) {
     plot.on("plotly_hover", (event) => {
+      if (plot.classList.contains("is-measuring")) {
+        return;
+      }
       const { move, mark } = event.points[0].customdata;
       showHover(mark === undefined ? factsOf(section, move) : markFacts(section, mark), event.event);
     });
@@ -91,9 +95,22 @@ function sectionView(root, picture, state, program, place) {
     });
   }
 
+  /** Change the layout of the face. What one action changes is drawn once: a choice, and the window that follows it. */
+  function change(layout) {
+    if (asked === null) {
+      asked = {};
+      queueMicrotask(() => {
+        const all = asked;
+        asked = null;
+        Plotly.relayout(face, all);
+      });
+    }
+    Object.assign(asked, layout);
+  }
+
   function showChosen() {
     if (isDrawn && !root.hidden) {
-      Plotly.relayout(face, { shapes: shapesOnFace() });
+      change({ shapes: shapesOnFace() });
       if (hasRates) {
         Plotly.relayout(rates, { shapes: chosenInRates(section, state.chosen.playing ? null : moveHere()) });
       }
@@ -114,7 +131,7 @@ function sectionView(root, picture, state, program, place) {
     if (!windows.length) {
       windows.push(windowOf());
     }
-    Plotly.relayout(face, {
+    change({
       "xaxis.range": [units.x(middle[0] - half), units.x(middle[0] + half)],
       "yaxis.range": [units.c(middle[1] - half), units.c(middle[1] + half)],
     });

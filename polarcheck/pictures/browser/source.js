@@ -1,7 +1,7 @@
 // ---- source: the whole program beside the picture, of which only the rows in sight are made ----
 
 const SOURCE_ROW = 20;
-const SOURCE_SPARE = 20;
+const SOURCE_SPARE = 10;
 const SEVERITIES = { error: "E", warning: "W", note: "N" };
 
 /** The findings of each line, also of those that a finding names beside its own: the numbers of the findings. */
@@ -77,6 +77,9 @@ function sourceView(root, picture, state, program) {
   let hits = [];
   let isHit = new Set();
   let filled = "";
+  let wasSeen = false;
+  // To ask for them makes the browser lay out the page: not five times a second while it plays.
+  let [height, scrolled] = [0, 0];
 
   function shortened() {
     const isWhole = first === 1 && source.length >= picture.source_lines;
@@ -109,14 +112,19 @@ function sourceView(root, picture, state, program) {
   }
 
   function fill() {
-    const from = Math.max(Math.floor(box.scrollTop / SOURCE_ROW) - SOURCE_SPARE, 0);
-    const to = Math.min(from + Math.ceil((box.clientHeight || 400) / SOURCE_ROW) + 2 * SOURCE_SPARE, source.length);
-    const key = `${from} ${to} ${chosen}`;
+    const from = Math.max(Math.floor(scrolled / SOURCE_ROW) - SOURCE_SPARE, 0);
+    const to = Math.min(from + Math.ceil((height || 400) / SOURCE_ROW) + 2 * SOURCE_SPARE, source.length);
+    const key = `${from} ${to}`;
     if (key === filled) {
-      return;
+      body.querySelectorAll('[aria-selected="true"]').forEach((made) => select(made, false));
+      const now = chosen === null ? null : body.querySelector(`[data-line="${chosen}"]`);
+      if (now !== null) {
+        select(now, true);
+      }
+    } else {
+      filled = key;
+      body.replaceChildren(...Array.from({ length: to - from }, (_, at) => row(first + from + at)));
     }
-    filled = key;
-    body.replaceChildren(...Array.from({ length: to - from }, (_, at) => row(first + from + at)));
     if (chosen !== null && chosen - first >= from && chosen - first < to) {
       box.setAttribute("aria-activedescendant", `p${program}source${chosen}`);
     } else {
@@ -124,14 +132,33 @@ function sourceView(root, picture, state, program) {
     }
   }
 
+  function select(made, isChosen) {
+    made.classList.toggle("is-chosen", isChosen);
+    made.setAttribute("aria-selected", String(isChosen));
+  }
+
   function show(line) {
     chosen = line;
-    if (line !== null && line >= first && line <= last) {
+    reveal(line);
+    fill();
+  }
+
+  function reveal(line) {
+    if (height && line !== null && line >= first && line <= last) {
       const top = (line - first) * SOURCE_ROW;
-      if (top < box.scrollTop || top > box.scrollTop + box.clientHeight - 2 * SOURCE_ROW) {
-        box.scrollTop = Math.max(top - box.clientHeight / 2, 0);
+      if (top < scrolled || top > scrolled + height - 2 * SOURCE_ROW) {
+        scrolled = Math.min(Math.max(top - height / 2, 0), Math.max(source.length * SOURCE_ROW - height, 0));
+        box.scrollTop = scrolled;
       }
     }
+  }
+
+  /** The chosen line stays in sight; the first time that the lines have a height, that of the worst finding is. */
+  function resized() {
+    height = box.clientHeight;
+    scrolled = box.scrollTop;
+    reveal(chosen === null && !wasSeen && picture.order.length ? findings[picture.order[0]].line : chosen);
+    wasSeen = wasSeen || height > 0;
     fill();
   }
 
@@ -197,7 +224,10 @@ function sourceView(root, picture, state, program) {
     return { form, field, count };
   }
 
-  box.addEventListener("scroll", () => requestAnimationFrame(fill));
+  box.addEventListener("scroll", () => requestAnimationFrame(() => {
+    scrolled = box.scrollTop;
+    fill();
+  }));
   body.addEventListener("click", (event) => {
     const hit = event.target.closest("[data-line]");
     if (hit && !String(getSelection())) {
@@ -214,7 +244,7 @@ function sourceView(root, picture, state, program) {
       state.choose({ program, line: Math.min(Math.max(to, first), last) });
     }
   });
-  new ResizeObserver(fill).observe(box);
+  new ResizeObserver(resized).observe(box);
   state.subscribe((now, before) => {
     const line = now.program === program ? now.line : null;
     if (line !== chosen || now.program !== before.program) {

@@ -39,7 +39,7 @@ def _of_program(
     document: Document, listing: Listing, program: Program, sections: Sequence[PolarSection]
 ) -> types.DocumentSymbol:
     text = listing.text
-    name = f"O{program.number:04d}" if program.number is not None else _name_of(program)
+    name = f"O{program.number:04d}" if program.number is not None else _name_of(program, document)
     channel = f"{text.source.channel}: " if text.source.channel else ""
     last = stretches.last_written(listing, program)
     comment = _comment(listing, program.first) if program.has_head else ""
@@ -50,8 +50,8 @@ def _of_program(
     return symbol
 
 
-def _name_of(program: Program) -> str:
-    return f"<{program.name}>" if program.name else "program without a number"
+def _name_of(program: Program, document: Document) -> str:
+    return f"<{program.name}>" if program.name else document.path.name
 
 
 def _symbol(

@@ -23,6 +23,26 @@ _OF_POLAR = {
     "planes_not_simulated": "selects another plane in the polar mode, which is not simulated",
     "off_of_other_modes": "begins another mode, which is not simulated",
 }
+#: What the profile says of these lists is about the list; here it is what a code does.
+_OF_KEYS = {
+    "g_codes.scaling_off": "scaling off",
+    "g_codes.rotation_off": "coordinate system rotation off",
+    "g_codes.mirror_image_off": "mirror image off",
+    "g_codes.c_axis_reference": "with C or H it takes the C axis to its reference point, the zero of its angle",
+    "g_codes.constant_surface_speed_ended_by": "ends the constant surface speed, too",
+    "g_codes.axis_words_no_move": "axis words beside it are no end point of a move",
+    "g_codes.dwell": "dwell",
+    "g_codes.feed_as_machine": "F is along what it is along on this machine without such codes",
+    "g_codes.work_offset": "work coordinate system",
+    "g_codes.work_offset_extended": "further work coordinate system, selected by the word beside it",
+    "g_codes.sub_spindle": "the program is for the sub-spindle from here on",
+    "g_codes.sub_spindle_off": "the program is for the main spindle from here on",
+    "g_codes.motion_not_followed": "a way that is not simulated: an involute, a spline, a thread",
+    "g_codes.feed_is_lead": "F is the lead of a thread, and no feed for later blocks",
+    "m_codes.optional_stop": "optional stop",
+    "m_codes.stops_reading_ahead": "the control does not read ahead of it",
+    "macro.modal_macro_calls_each_block": "each block calls the macro, its words are the arguments, G codes too",
+}
 _PLURAL = re.compile(r"^(?:further )?codes that (call|end|return|begin)\b")
 _CODES = re.compile(r"^codes (?:after|behind|beyond) which ")
 
@@ -87,6 +107,8 @@ def _index(machine: Machine) -> Mapping[str, list[Meaning]]:
 def _indexed(machine: Machine) -> dict[str, list[Meaning]]:
     found: dict[str, list[Meaning]] = {}
     for code, meaning in _listed(machine):
+        if meaning.key == "g_codes.scaling_off" and code in machine.codes("coordinate_setting"):
+            continue
         of_code = found.setdefault(code, [])
         if meaning not in of_code:
             of_code.append(meaning)
@@ -100,6 +122,7 @@ def _listed(machine: Machine) -> Iterator[tuple[str, Meaning]]:
         texts = meanings(of_class)
         # What the group is about comes before what else a code does.
         keys = sorted(texts, key=lambda key: not any(key in states for states in STATES.values()))
+        keys.sort(key=lambda key: key in ("constant_surface_speed_ended_by", "axis_words_no_move", "feed_is_lead"))
         for key in keys:
             if key not in FRAME_LISTS or getattr(getattr(machine, table), key):
                 yield from _each(getattr(getattr(machine, table), key), f"{table}.{key}", texts[key])
@@ -111,7 +134,11 @@ def _listed(machine: Machine) -> Iterator[tuple[str, Meaning]]:
 
 
 def _each(codes: Iterable[object], key: str, text: str) -> Iterator[tuple[str, Meaning]]:
+    table, _, name = key.partition(".")
+    table = "g_codes" if table.startswith("g_code_") else table
+    text = _OF_KEYS.get(f"{table}.{name}", text)
     shown = _CODES.sub("", _PLURAL.sub(lambda match: f"{match[1]}s", text))
     for code in expanded(code for code in codes if isinstance(code, str)):
         if code[:1] in ("G", "M"):
-            yield code.split(" ")[0], Meaning(key, shown)
+            stop = "program stop; " if (code, name) == ("M0", "stops_reading_ahead") else ""
+            yield code.split(" ")[0], Meaning(key, stop + shown)

@@ -13,7 +13,7 @@ from polarcheck.machines.code_lists import expanded
 from polarcheck.machines.machine import Machine
 from polarcheck.machines.modal import FeedMode, Units
 from polarcheck.server.judged import Judged
-from polarcheck.server.words import codes, in_force, variables
+from polarcheck.server.words import beside, codes, in_force, variables
 from polarcheck.server.words.at_cursor import CursorWord
 
 Facts = list[tuple[str, str]]
@@ -45,7 +45,7 @@ def explained(word: CursorWord, judged: Judged, trace: Trace | None, row: int | 
             name = code if written.startswith(word.letter) else f"{written} ({code})"
             title = f"{name}: {known}" if known else name
             return title, list(_of_code(code, judged, trace, row))
-    title = _title(word, machine, trace, row)
+    title = beside.meaning_of(word, machine) or _title(word, machine, trace, row)
     return (f"{word.letter}: {title}" if title else ""), list(_more(word, trace, row))
 
 

@@ -32,10 +32,17 @@ _TITLES = {
 
 def group_of(word: str, machine: Machine) -> str:
     """Return the modal group of a code; empty if it has none."""
+    if _acts_once(word, machine):
+        return ""
     names, groups, _ = modal_tables(machine)
     number = code(word)
     group = int(groups[number]) if 0 <= number < len(groups) else 0
     return names[group - 1] if group else ""
+
+
+def _acts_once(word: str, machine: Machine) -> bool:
+    """Return True for a code that ends scaling elsewhere, and here counts for its own block: G50 S2500."""
+    return word in machine.codes("coordinate_setting")
 
 
 def title_of(group: str) -> str:
@@ -54,7 +61,7 @@ def code_in_force(trace: Trace, group: str, row: int) -> str:
 def codes_in_force(trace: Trace, row: int) -> list[str]:
     """Return the codes in force behind a row, in the order of their groups."""
     found = (code_in_force(trace, group, row) for group in _SHOWN)
-    return [word for word in dict.fromkeys(found) if word]
+    return [word for word in dict.fromkeys(found) if word and not _acts_once(word, trace.machine)]
 
 
 def _is_set(trace: Trace, group: str, row: int) -> bool:

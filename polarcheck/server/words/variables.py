@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
+
+import numpy as np
 
 from polarcheck.columns.trace import Trace
 from polarcheck.execution.macro import VariableKind, Variables
+from polarcheck.execution.run import ValueSet
 from polarcheck.machines.machine import Machine
 from polarcheck.server.judged import Judged
 from polarcheck.server.words.at_cursor import CursorWord
@@ -72,15 +75,14 @@ def facts_of(word: CursorWord, judged: Judged, row: int | None, trace: Trace | N
 def _held(number: int, word: CursorWord, row: int | None, trace: Trace) -> Iterator[tuple[str, str]]:
     """Yield the value behind the first run of the block, and the line that has set it."""
     values = trace.run.values
-    own = next((index for index, one in enumerate(values) if one.block == word.block), None)
-    last: int | None = None
-    if own is not None:
-        # What the block assigns itself, in its first run.
-        last = own
-        while last + 1 < len(values) and values[last + 1].block == word.block and values[last].number != number:
-            last += 1
-    elif row is not None:
-        last = next((index for index, one in enumerate(values) if one.row > row), len(values)) - 1
+    last, when = _last_behind(word.block, row, number, values), "at its first run"
+    for block in range(word.block - 1, max(word.block - _MOST_BEFORE, 0) - 1, -1) if last is None else ():
+        # A jump or the head of a loop has no row: what the block before it left is known.
+        rows = np.flatnonzero(trace.run.block == block)
+        last = _last_behind(block, int(rows[0]) if len(rows) else None, None, values)
+        if last is not None:
+            when = f"behind the first run of line {int(trace.run.text.blocks.line[block])}"
+            break
     if last is None or last < 0:
         return
     level = values[last].level
@@ -92,10 +94,26 @@ def _held(number: int, word: CursorWord, row: int | None, trace: Trace) -> Itera
         if one.number == number and (not is_local or one.level == level):
             line = int(trace.run.text.blocks.line[one.block]) if one.block >= 0 else 0
             at = f", set in line {line}" if line and one.block != word.block else ", set here" if line else ""
-            yield "value at its first run", f"{_shown(one.value)}{at}"
+            yield f"value {when}", f"{_shown(one.value)}{at}"
             return
 
 
+def _last_behind(block: int, row: int | None, number: int | None, values: Sequence[ValueSet]) -> int | None:
+    """Return the last value set in the first run of a block, or of a variable in it; None if it is not known."""
+    own = next((index for index, one in enumerate(values) if one.block == block), None)
+    if own is None:
+        return None if row is None else next((i for i, one in enumerate(values) if one.row > row), len(values)) - 1
+    # What the block assigns itself, in its first run.
+    last = own
+    while last + 1 < len(values) and values[last + 1].block == block and values[last].number != number:
+        if number is None and values[last + 1].number == values[own].number:
+            break
+        last += 1
+    return last
+
+
+#: How many blocks before a jump are looked at for the last one that was executed.
+_MOST_BEFORE = 20
 #: Lower numbers are local variables on any control.
 _FIRST_COMMON = 100
 
