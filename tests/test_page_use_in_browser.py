@@ -337,7 +337,7 @@ def test_positions_are_copied_as_words_of_the_program(use: Opened) -> None:
     page.evaluate("location.hash = '#p0L5'")
     page.locator("#p0 .lines .is-chosen[data-line='5']").wait_for()
     page.keyboard.press("c")
-    page.locator("#p0 .said:has-text('copied')").wait_for()
+    page.locator("#p0 .message:has-text('copied')").wait_for()
     x, c = hexagon().moves.end[4]
     words = re.fullmatch(r"X(-?[\d.]+) C(-?[\d.]+)", copied())
     assert words
@@ -347,14 +347,14 @@ def test_positions_are_copied_as_words_of_the_program(use: Opened) -> None:
     page.evaluate("location.hash = '#p0L15'")
     page.locator("#p0 .lines .is-chosen[data-line='15']").wait_for()
     page.keyboard.press("c")
-    page.locator("#p0 .said:has-text('Y')").wait_for()
+    page.locator("#p0 .message:has-text('Y')").wait_for()
     words = re.fullmatch(r"X(-?[\d.]+) Y(-?[\d.]+)", copied())
     assert words
     assert [float(word) for word in words.groups()] == pytest.approx(
         [2 * (float(x or 0) - 2.54) / 25.4, float(c or 0) / 25.4], abs=5e-5
     )
     page.keyboard.press("l")
-    page.locator("#p0 .said:has-text('#p0L15')").wait_for()
+    page.locator("#p0 .message:has-text('#p0L15')").wait_for()
     assert copied() == page.url
 
 

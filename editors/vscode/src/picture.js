@@ -12,13 +12,13 @@ const CURSOR_PAUSE = 30;
 const LONGEST_KEEP = 300;
 
 /**
- * @typedef {object} Asked
+ * @typedef {object} Client
  * @property {(method: string, params: object, token?: vscode.CancellationToken) => Promise<any>} request
  */
 
 class Picture {
   /**
-   * @param {Asked} client
+   * @param {Client} client
    * @param {vscode.Uri} uri of the program
    * @param {() => void} closed called once the view is closed
    */

@@ -3,17 +3,17 @@
 /** The tools of a program: what the keys call. */
 function toolsView(root, picture, state, program, sections, pictures) {
   const place = root.querySelector(".tools");
-  const said = element("output");
-  said.className = "said";
-  said.setAttribute("role", "status");
+  const message = element("output");
+  message.className = "message";
+  message.setAttribute("role", "status");
   let timer = null;
   let pointed = null;
 
   const say = (text) => {
-    said.textContent = text;
+    message.textContent = text;
     clearTimeout(timer);
     timer = setTimeout(() => {
-      said.textContent = "";
+      message.textContent = "";
     }, 6000);
   };
   const named = (text, key, title, act) => {
@@ -86,7 +86,7 @@ function toolsView(root, picture, state, program, sections, pictures) {
   named("Copy position", "c", "Copy the position of the pointer, or the end of the move", copy);
   named("Copy link", "l", "Copy a link to the line", link);
   named("?", "?", "Keys", () => document.getElementById("keys").showModal()).setAttribute("aria-label", "Keys");
-  place.append(said);
+  place.append(message);
 
   sections.views.forEach((view) => {
     const readout = element("output");
