@@ -365,17 +365,19 @@ def test_a_browser_shows_what_is_saved_and_keeps_what_is_chosen(browser: Any) ->
         page.goto(f"{address}#L8")
         page.locator(".face .main-svg").first.wait_for()
         face = "document.querySelector('.face')"
+        page.wait_for_timeout(500)  # until the face has its height
         page.evaluate(f"Plotly.relayout({face}, {{'xaxis.range': [0, 40], 'yaxis.range': [-10, 10]}})")
         window = page.evaluate(f"{face}._fullLayout.xaxis.range")
 
         make(a__nc=GROOVE.replace("G12.1", "(NEW)\n(LINES)\nG12.1"))
-        page.get_by_text("lines 5 to 17").first.wait_for(timeout=30000)
+        page.locator(".polar h2:has-text('lines 5 to 17')").wait_for(timeout=30000)
         page.locator(".face .main-svg").first.wait_for()
         for _ in range(400):  # not `page.url`, which sometimes misses a changed address
             if page.evaluate("location.hash") == "#L10":
                 break
             page.wait_for_timeout(50)
         assert page.evaluate("location.hash") == "#L10"
+        page.wait_for_timeout(500)
         assert page.evaluate(f"{face}._fullLayout.xaxis.range") == pytest.approx(window)
 
         Path("a.nc").unlink()

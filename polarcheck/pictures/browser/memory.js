@@ -52,7 +52,10 @@ function pageMemory(pictures, state, programs) {
     }
     const { views } = programs[program].sections;
     if (ranges !== null && views[section]) {
-      whenDrawn(views[section], () => Plotly.relayout(views[section].face, { "xaxis.range": ranges[0], "yaxis.range": ranges[1] }));
+      const { face } = views[section];
+      const seen = () => Plotly.relayout(face, { "xaxis.range": ranges[0], "yaxis.range": ranges[1] });
+      // The face gets its height a moment after it is drawn; a window that is set before would grow with it.
+      whenDrawn(views[section], () => requestAnimationFrame(() => requestAnimationFrame(() => Plotly.Plots.resize(face).then(seen))));
     }
     window.scrollTo(...scroll);
   }

@@ -1,6 +1,6 @@
 // ---- printing: all pictures are drawn, as wide as a page of A4 or Letter leaves room, dark on white ----
 
-const PAPER = { width: 690, face: 430, rates: 225 };
+const PAPER = { width: 690, face: 320, rates: 175 };
 
 /** views: those of all sections; each is shown and drawn as the page is printed. */
 function printable(views) {
