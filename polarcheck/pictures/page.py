@@ -17,6 +17,7 @@ from typing import Any
 
 import msgspec
 
+from polarcheck.finding import SEVERITIES
 from polarcheck.pictures.picture import FindingPicture, Mark, Picture, SectionPicture
 from polarcheck.reading.excerpt import visible
 
@@ -71,7 +72,6 @@ _POLICY = (
 CONNECTED = "; connect-src 'self'"
 #: Characters that could end a script in HTML, or that a script must not contain.
 _IN_SCRIPT = str.maketrans({mark: f"\\u{ord(mark):04x}" for mark in "<>&\u2028\u2029"})
-_RANK = {"error": 3, "warning": 2, "note": 1}
 _NO_SCRIPTS = "The pictures need a browser that runs scripts; all findings are in the table."
 
 
@@ -203,7 +203,7 @@ def _order(findings: Sequence[FindingPicture]) -> list[int]:
     """Return the places of the findings as they are listed: the worst first, silenced ones last."""
     return sorted(
         range(len(findings)),
-        key=lambda place: (bool(findings[place].silenced), -_RANK.get(findings[place].severity, 0), place),
+        key=lambda place: (bool(findings[place].silenced), -SEVERITIES.get(findings[place].severity, -1), place),
     )
 
 

@@ -62,7 +62,6 @@ function playerControls(bar, hasNext) {
   const note = Object.assign(element("p"), { className: "player-note" });
   note.setAttribute("role", "status");
   bar.replaceChildren(toggle, next, slider, time, speed, element("label", "", metal, " metal"), block, note);
-  let isDue = false;
   return {
     speed: () => Number(speed.value),
     hasMetal: () => metal.checked,
@@ -91,17 +90,6 @@ function playerControls(bar, hasNext) {
     onPlay: (action) => toggle.addEventListener("click", action),
     onNext: (action) => next.addEventListener("click", action),
     onMetal: (action) => metal.addEventListener("change", action),
-    onSeek(action) {
-      // A slider moves more often than is drawn.
-      slider.addEventListener("input", () => {
-        if (!isDue) {
-          isDue = true;
-          requestAnimationFrame(() => {
-            isDue = false;
-            action(Number(slider.value));
-          });
-        }
-      });
-    },
+    onSeek: (action) => onSlider(slider, action),
   };
 }

@@ -27,17 +27,7 @@ function movesView(root, picture, state, program) {
     table.show(chosen.move);
   }
 
-  let isRequested = false;
-  slider.addEventListener("input", () => {
-    // A slider moves faster than pictures are drawn.
-    if (!isRequested) {
-      isRequested = true;
-      requestAnimationFrame(() => {
-        isRequested = false;
-        choose(Number(slider.value));
-      });
-    }
-  });
+  onSlider(slider, choose);
   const step = (way) => {
     const from = state.chosen.move === null ? (way > 0 ? -1 : count()) : state.chosen.move;
     choose(Math.min(Math.max(from + way, 0), count() - 1));

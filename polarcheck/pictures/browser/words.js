@@ -94,6 +94,20 @@ function element(name, text = "", ...children) {
   return made;
 }
 
+/** Call an action with the value of a slider, once per frame: a slider moves more often than is drawn. */
+function onSlider(slider, action) {
+  let isDue = false;
+  slider.addEventListener("input", () => {
+    if (!isDue) {
+      isDue = true;
+      requestAnimationFrame(() => {
+        isDue = false;
+        action(Number(slider.value));
+      });
+    }
+  });
+}
+
 /** Pairs of label and text as the entries of a list of definitions. */
 function pairs(facts) {
   return facts.flatMap(([label, text]) => [element("dt", label), element("dd", text)]);

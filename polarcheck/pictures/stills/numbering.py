@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
+from polarcheck.finding import SEVERITIES
 from polarcheck.pictures.picture import FindingPicture, Mark, SectionPicture
 
-#: The order of severities in the list.
-_SEVERITIES = ("error", "warning", "note")
 #: The most entries of a list.
 _MOST = 15
 
@@ -42,7 +41,7 @@ def entries(section: SectionPicture, findings: Sequence[FindingPicture]) -> tupl
     findings: those of the section; silenced ones have no entry.
     """
     reported = [finding for finding in findings if not finding.silenced]
-    reported.sort(key=lambda finding: (_rank(finding.severity), finding.line))
+    reported.sort(key=_gravest_first)
     all_entries = [
         *(_of_finding(finding) for finding in reported),
         *(_of_mark(mark) for mark in section.marks if not _is_reported(mark, reported)),
@@ -54,7 +53,7 @@ def entries(section: SectionPicture, findings: Sequence[FindingPicture]) -> tupl
 def outside(findings: Sequence[FindingPicture]) -> tuple[list[Entry], int]:
     """Return the entries of findings that no section shows, and how many more there are."""
     found, more = [finding for finding in findings if finding.section is None and not finding.silenced], 0
-    found.sort(key=lambda finding: (_rank(finding.severity), finding.line))
+    found.sort(key=_gravest_first)
     found, more = found[:_MOST], max(len(found) - _MOST, 0)
     return [_of_finding(finding)._replace(places=()) for finding in found], more
 
@@ -92,8 +91,8 @@ def _as_ranges(numbers: Sequence[int]) -> str:
     return ", ".join(f"{run[0]}-{run[-1]}" if len(run) > 2 else ", ".join(map(str, run)) for run in ranges)
 
 
-def _rank(severity: str) -> int:
-    return _SEVERITIES.index(severity) if severity in _SEVERITIES else len(_SEVERITIES)
+def _gravest_first(finding: FindingPicture) -> tuple[int, int]:
+    return -SEVERITIES.get(finding.severity, -1), finding.line
 
 
 def _of_finding(finding: FindingPicture) -> Entry:
