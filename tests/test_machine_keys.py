@@ -20,12 +20,16 @@ from polarcheck.reports.pages import executed
 TABLES = {
     field.name: [key.name for key in msgspec.structs.fields(field.type)]
     for field in msgspec.structs.fields(Machine)
-    if isinstance(field.type, type) and issubclass(field.type, msgspec.Struct) and field.name != "macro"
+    if isinstance(field.type, type)
+    and issubclass(field.type, msgspec.Struct)
+    and field.name not in ("macro", "writing")
 }
 
 #: Keys that no check reads, and why.
 NOT_CHECKED = {
     "macro": "each of its keys has its program in test_macro_keys",
+    "writing": "no check reads how programs are written: test_pen",
+    "feed.with_rotary": "no check reads F outside of the mode: test_unroll",
     "alarm_codes": "test_an_alarm_is_shown_at_codes_that_its_text_names",
     "notes": "text for `polarcheck machines` and the page of controls",
     "known_parameters": "read where the profile is loaded; with [parameters] it is used below",

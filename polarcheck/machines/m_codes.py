@@ -14,6 +14,8 @@ SWITCHED = (
     ("sub_c_axis_clamp", "sub_c_axis_unclamp"),
     ("sub_spindle_on", "sub_spindle_off"),
 )
+#: Stops, ends, coolant and the tool change have these numbers everywhere (ISO 6983).
+OF_EVERY_LATHE = ("M0-M2", "M6-M9", "M30", "M98", "M99")
 #: Lists of M codes that end a program or a block by themselves, whatever stands beside them.
 PLAIN_M_CODES = ("tool_change", "optional_stop", "program_end", "stops_reading_ahead")
 

@@ -14,6 +14,7 @@ import msgspec
 from polarcheck.errors import RuleError
 from polarcheck.machines.axes import INCREMENTS, MOST_NAMED, address_number, axis_of, check_axes
 from polarcheck.machines.code_lists import GCodes, GCodeSystem, expanded, is_code
+from polarcheck.machines.feed_keys import WithRotary
 from polarcheck.machines.fitting import MOST
 from polarcheck.machines.frames import Frames
 from polarcheck.machines.m_codes import MCodes, PowerOn
@@ -37,6 +38,7 @@ from polarcheck.machines.values import (
     SwitchWord,
     ascend,
 )
+from polarcheck.machines.writing_keys import Writing
 
 
 def meanings(table: type) -> dict[str, str]:
@@ -242,6 +244,7 @@ class Feed(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     carried_into_polar: F from before G12.1 that holds behind it: any (modal) or none per revolution (per-minute-only)
     dwell_words: word of a dwell -> seconds, hundredths, thousandths, thousandths-or-seconds, as-lengths or turns
     dwell_per_revolution: what these words count where feed per revolution is in force: times, or turns of the spindle
+    with_rotary: what F can be where X and C move together outside the mode, the first by itself; none if not known
     """
 
     cutting_minimum: NotNegative = math.nan
@@ -251,6 +254,7 @@ class Feed(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     carried_into_polar: Literal["modal", "per-minute-only"] = "modal"
     dwell_words: dict[Address, DwellUnit]
     dwell_per_revolution: Literal["times", "turns"]
+    with_rotary: list[WithRotary] = []
 
     def __post_init__(self) -> None:
         ascend(self, ("cutting_minimum", "cutting_maximum"), ("positioning_minimum", "positioning_maximum"))
@@ -285,6 +289,7 @@ class Machine(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     macro: Macro
     offsets: Offsets
     frames: Frames
+    writing: Writing
     alarms: dict[str, str] = {}
     alarm_codes: dict[str, list[str]] = {}
     severities: dict[str, Literal["error", "warning", "note", "off"]] = {}
