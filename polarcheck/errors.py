@@ -8,6 +8,7 @@ What can go wrong on our side. What is wrong in a program is a finding, never an
     |-- MachineError      a machine profile: unknown machine, key, type
     |-- JobError          polarcheck.toml, pyproject.toml, an offset table
     |-- StoppedError      the check was cancelled
+    |-- RefusedError      a program that is not rewritten, since the result would not be the same
     |-- BaselineError     a file of known findings
     |-- ClusterError      a cluster that cannot check
     |-- TooHardError      a table that would exceed its limit of time or size
@@ -18,6 +19,7 @@ What can go wrong on our side. What is wrong in a program is a finding, never an
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import NamedTuple
 
 #: The fewest letters of a partial name for which a suggestion is made.
 _LEAST = 3
@@ -61,6 +63,27 @@ class JobError(PolarcheckError):
 
 class StoppedError(PolarcheckError):
     """A check that was cancelled, since nobody waits for its result any more."""
+
+
+class Refusal(NamedTuple):
+    """Why a program is not rewritten. line: in the original, from 1; 0 for the whole program. text: what it says."""
+
+    line: int
+    text: str
+
+
+class RefusedError(PolarcheckError):
+    """
+    A program that is not rewritten as it was asked for, since the result would not be the same.
+
+    refusals: the reasons.
+    """
+
+    def __init__(self, refusals: Iterable[Refusal]) -> None:
+        self.refusals = tuple(refusals)
+        super().__init__(
+            "; ".join(f"line {each.line}: {each.text}" if each.line else each.text for each in self.refusals)
+        )
 
 
 class BaselineError(PolarcheckError):

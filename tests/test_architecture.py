@@ -23,6 +23,7 @@ ORDER = (
     ("api",),
     ("reports",),
     ("pictures",),
+    ("conversion",),
     ("batch",),
     ("settings",),
     ("fixes",),

@@ -587,7 +587,8 @@ def test_options_come_from_the_environment_too() -> None:
     assert call("rules", POLARCHECK_FORMAT="concise").exit_code == 0
     # POLARCHECK_PART is the flag of check; that of init names programs. POLARCHECK_TOLERANCE is of drawings, and would
     # let compare pass by what a part may deviate.
-    without = ("fix", "unsafe_fixes", "parts", "update", "same_up_to")
+    # Nothing of it overwrites programs.
+    without = ("fix", "unsafe_fixes", "parts", "update", "same_up_to", "within", "out", "in_place", "force")
     for command in main.commands.values():
         for option in command.params:
             if isinstance(option, click.Option) and option.name not in without:
@@ -825,7 +826,7 @@ def test_the_version_is_shown() -> None:
 # ---- schemas ----
 
 
-@pytest.mark.parametrize("name", ["report", "job", "machine", "feeds", "trace", "comparison"])
+@pytest.mark.parametrize("name", ["report", "job", "machine", "feeds", "trace", "comparison", "rewriting"])
 def test_schemas_are_valid_and_say_what_they_are(name: str) -> None:
     shown = json.loads(call("schema", name).stdout, parse_constant=pytest.fail)
     jsonschema.Draft202012Validator.check_schema(shown)

@@ -503,7 +503,7 @@ def test_the_old_program_is_kept_where_that_is_asked_for() -> None:
     assert text_of("a.nc.orig") == BOTH
     result = check("a.nc", "--fix", "--unsafe-fixes", "--backup")
     assert result.exit_code == 2
-    assert "polarcheck: a.nc: not fixed: a.nc.orig is there already, and differs; move it away\n" in result.stderr
+    assert "polarcheck: a.nc: not written: a.nc.orig is there already, and differs; move it away\n" in result.stderr
     assert text_of("a.nc.orig") == BOTH
     assert text_of("a.nc") == BOTH.replace("–", "-")
     make(a__nc=BOTH)
@@ -560,9 +560,7 @@ def test_a_program_that_would_change_its_owner_is_not_written(
             if is_fixed:
                 rewriting.rewrite(str(path), DASH.encode(), MINUS.encode(), keep=keep)
             else:
-                said = (
-                    f"a.nc: not fixed: it belongs to user {owner}, group {group}, to whom you cannot give the new file"
-                )
+                said = f"not written: it belongs to user {owner}, group {group}, to whom you cannot give the new file"
                 with pytest.raises(OutputError, match=said):
                     rewriting.rewrite(str(path), DASH.encode(), MINUS.encode(), keep=keep)
         assert path.read_bytes() == (MINUS if is_fixed else DASH).encode()
@@ -604,7 +602,7 @@ def test_a_file_with_another_name_is_not_written() -> None:
     Path("b.nc").hardlink_to("a.nc")
     result = check("a.nc", "--fix")
     assert result.exit_code == 2
-    assert "a.nc: not fixed: it has another name (hard link), which would keep the old program\n" in result.stderr
+    assert "a.nc: not written: it has another name (hard link), which would keep the old program\n" in result.stderr
     assert text_of("a.nc") == text_of("b.nc") == DASH
     assert "1 fixed" not in result.stdout
 
@@ -614,7 +612,7 @@ def test_a_read_only_file_is_not_written() -> None:
     Path("a.nc").chmod(0o444)
     result = check("a.nc", "--fix")
     assert result.exit_code == 2
-    assert "polarcheck: a.nc: not fixed: it is read-only\n" in result.stderr
+    assert "polarcheck: a.nc: not written: it is read-only\n" in result.stderr
     assert text_of("a.nc") == DASH
     Path("a.nc").chmod(0o644)
 
@@ -636,7 +634,7 @@ def test_a_file_that_was_changed_meanwhile_is_not_written(
     monkeypatch.setattr(fixing, "with_fixes", slow)
     result = check("a.nc", "--fix")
     assert result.exit_code == 2
-    assert "a.nc: not fixed: " in result.stderr
+    assert "a.nc: not written: " in result.stderr
     assert not Path("a.nc").exists() or text_of("a.nc") != MINUS
 
 

@@ -95,7 +95,7 @@ def line_end(source: Source, line: int) -> str:
     return "\n"
 
 
-def _content(text: Text, block: int) -> tuple[int, int]:
+def content_of(text: Text, block: int) -> tuple[int, int]:
     """The characters of a block without the blanks and line ends around it."""
     blocks = text.blocks
     start, end = int(blocks.start[block]), int(blocks.end[block])
@@ -111,12 +111,12 @@ def _ends_with_sign(text: Text, block: int) -> bool:
 
 
 def _line_of(text: Text, block: int) -> int:
-    return text.source.line_of(_content(text, block)[0])
+    return text.source.line_of(content_of(text, block)[0])
 
 
 def blocks_before(text: Text, block: int, texts: Sequence[str]) -> Replace:
     """New blocks before one, each on a line of its own; before a block in the middle of a line beside it."""
-    source, (start, _) = text.source, _content(text, block)
+    source, (start, _) = text.source, content_of(text, block)
     line = source.line_of(start)
     first = int(source.line_starts[line - 1])
     while first < start and source.code[first] == CR:
@@ -129,12 +129,12 @@ def blocks_before(text: Text, block: int, texts: Sequence[str]) -> Replace:
 
 def blocks_behind(text: Text, block: int, texts: Sequence[str]) -> Replace:
     """New blocks behind one, each on a line of its own."""
-    end = _content(text, block)[1]
-    parting = _parting(text, block)
-    return end, end, "".join(f"{parting}{content}" for content in texts)
+    end = content_of(text, block)[1]
+    sign = parting(text, block)
+    return end, end, "".join(f"{sign}{content}" for content in texts)
 
 
-def _parting(text: Text, block: int) -> str:
+def parting(text: Text, block: int) -> str:
     """What parts a block into two."""
     return ";" * _ends_with_sign(text, block) + line_end(text.source, _line_of(text, block))
 
@@ -146,7 +146,7 @@ def parted(run: Run, row: int, index: int) -> Replace:
     start, begin = int(words.start[index]), int(run.text.blocks.start[block])
     before = source.excerpt(begin, start)
     blanks = len(before) - len(before.rstrip(_BLANKS))
-    return start - blanks, start, _parting(run.text, block) + skip_sign(run, row)
+    return start - blanks, start, parting(run.text, block) + skip_sign(run, row)
 
 
 def with_word(run: Run, row: int, text: str) -> Replace:
@@ -165,7 +165,7 @@ def without(run: Run, row: int, removed: Iterable[int]) -> list[Replace]:
     """The block of a row without some of its words; where nothing is left of it, without its line."""
     words, source = run.words, run.text.source
     block = int(run.block[row])
-    begin, end = _content(run.text, block)
+    begin, end = content_of(run.text, block)
     text = source.excerpt(begin, end)
     gone: list[tuple[int, int]] = []
     for index in sorted(removed, key=lambda index: int(words.start[index])):
@@ -176,7 +176,7 @@ def without(run: Run, row: int, removed: Iterable[int]) -> list[Replace]:
             gone.append((first, last))
     kept = [0, *(place for span in gone for place in span), len(text)]
     if not "".join(text[first:last] for first, last in zip(kept[::2], kept[1::2], strict=True)).strip(_BLANKS + "/"):
-        return [_line_without(run.text.source, begin, end)]
+        return [line_without(run.text.source, begin, end)]
     return [(begin + first, begin + last, "") for first, last in (_with_blanks(text, *span) for span in gone)]
 
 
@@ -187,7 +187,7 @@ def _with_blanks(text: str, first: int, last: int) -> tuple[int, int]:
     return (len(text[:first].rstrip(_BLANKS)), last) if last == len(text) else (first, last)
 
 
-def _line_without(source: Source, begin: int, end: int) -> Replace:
+def line_without(source: Source, begin: int, end: int) -> Replace:
     """A block that goes as a whole: with its line, where nothing else stands on that."""
     line = source.line_of(begin)
     first = int(source.line_starts[line - 1])

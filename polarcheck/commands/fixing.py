@@ -14,7 +14,7 @@ import click
 
 from polarcheck.commands.exit_codes import BUG, CLEAN, COULD_NOT_RUN, FINDINGS
 from polarcheck.commands.options import option
-from polarcheck.commands.output import bug_lines, say, say_lines, show, warn
+from polarcheck.commands.output import bug_lines, say, say_lines, show, show_diff, warn
 from polarcheck.errors import OutputError, PolarcheckError, SourceError, TooHardError, UsageError
 
 if TYPE_CHECKING:
@@ -24,7 +24,6 @@ if TYPE_CHECKING:
 
 #: The most fixes of a file that are listed.
 _LISTED = 20
-_COLORS = {"-": "31", "+": "32", "@": "36"}
 #: The options of fixes, which are left out of a command that repeats a report.
 NAMES = ("fix", "unsafe_fixes", "diff", "backup")
 
@@ -232,11 +231,7 @@ class _Work:
 
         if outcome is None:
             return
-        lines = difference(task.title, old, outcome.data, outcome.origin, task.settings.encoding)
-        if self.shown.color:
-            lines = [f"\x1b[{_COLORS[line[0]]}m{line}\x1b[0m" if line[0] in _COLORS else line for line in lines]
-        if lines:
-            show("".join(f"{line}\n" for line in lines).encode(), self.shown.color or None)
+        show_diff(difference(task.title, old, outcome.data, outcome.origin, task.settings.encoding), self.shown.color)
 
     def _count(self, outcome: Outcome, path: str) -> None:
         """List the applied and the refused fixes, with lines of the original file."""

@@ -273,12 +273,13 @@ def _all(*decorators: Decorator) -> Decorator:
     return decorated
 
 
-def executing(what: str, *, both: bool = True) -> Decorator:
+def executing(what: str, *, both: bool = True, machine: Decorator = machine) -> Decorator:
     """
     Return the options that decide how a program is read and executed, for every command that reads programs.
 
     what: `program` or `programs`, for the help.
     both: a program may be run with block skip both on and off.
+    machine: the option --machine.
     """
     each = (machine, changes, tools, offsets, units, config, no_config, _block_skip if both else _single_block_skip)
     more = (subprograms, _max_blocks, _max_statements, _max_seconds, radius_from_comments, encoding(what))

@@ -6,7 +6,7 @@ import contextlib
 import errno
 import os
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import TextIO
 
 import click
@@ -20,6 +20,8 @@ COLUMNS = 100
 _LONGEST_ERROR = 200
 #: A longer line on standard error is cut in the middle, since its end says what is wrong [characters].
 _LONGEST, _HEAD, _TAIL = 1000, 300, 500
+#: The colors of the lines of a diff, by their signs.
+_OF_DIFF = {"-": "31", "+": "32", "@": "36"}
 
 
 def show(text: str | bytes, color: bool | None = None, to_error: bool = False) -> bool:
@@ -49,6 +51,14 @@ def show(text: str | bytes, color: bool | None = None, to_error: bool = False) -
             return False
         raise OutputError(f"standard output: {error.strerror or error}") from None
     return True
+
+
+def show_diff(lines: Sequence[str], color: bool) -> None:
+    """Write the lines of a unified diff to standard output, if there are any. Raises OutputError as `show` does."""
+    if color:
+        lines = [f"\x1b[{_OF_DIFF[line[0]]}m{line}\x1b[0m" if line[0] in _OF_DIFF else line for line in lines]
+    if lines:
+        show("".join(f"{line}\n" for line in lines).encode(), color or None)
 
 
 def nobody_reads(error: OSError) -> bool:

@@ -1,4 +1,4 @@
-"""Refuses reports that would overwrite a program, or any other file that the run reads."""
+"""Refuses outputs that would overwrite a program, or any other file that the run reads."""
 
 from __future__ import annotations
 
@@ -12,6 +12,33 @@ from polarcheck.errors import OutputError
 from polarcheck.reading import files
 
 
+class Inputs:
+    """What a run reads: its programs, and the files of their settings."""
+
+    def __init__(self, tasks: Sequence[Task]) -> None:
+        inputs: dict[str, str] = {}
+        self._folders: dict[str, str] = {}
+        for task in tasks:
+            path = task.place
+            if path != files.STANDARD_INPUT:
+                inputs[_real(path)] = path
+            inputs |= {_real(path): str(path) for path in task.settings.read}
+            self._folders |= {_real(folder): folder for folder in task.settings.job.run.subprograms}
+        self._inputs = inputs
+        self._same = {_identity(path): path for path in inputs.values()}
+
+    def refuse(self, output: Path, named: str) -> None:
+        """Raise OutputError for an output that would overwrite one of these files, or a called program."""
+        target, shown = _real(output), files.shown(str(output))
+        identity = _identity(output)
+        source = self._inputs.get(target) or (self._same.get(identity) if identity else None)
+        if source is not None:
+            raise OutputError(f"{named}: {_beside(source, shown)}is read by this run; name another file")
+        folder = self._folders.get(str(Path(target).parent))
+        if folder is not None and Path(target).exists():
+            raise OutputError(f"{named}: a file in {files.shown(folder)}, a folder of subprograms; name another one")
+
+
 def refuse(outputs: Sequence[Path], tasks: Sequence[Task], options: Mapping[Path, str] | None = None) -> None:
     """
     Raise OutputError, before anything is checked or written, for a report that would overwrite a file of this run, a
@@ -23,26 +50,12 @@ def refuse(outputs: Sequence[Path], tasks: Sequence[Task], options: Mapping[Path
         return
     from polarcheck.reading import walking
 
-    inputs: dict[str, str] = {}
-    folders: dict[str, str] = {}
-    for task in tasks:
-        path = task.place
-        if path != files.STANDARD_INPUT:
-            inputs[_real(path)] = path
-        inputs |= {_real(path): str(path) for path in task.settings.read}
-        folders |= {_real(folder): folder for folder in task.settings.job.run.subprograms}
-    same = {_identity(path): path for path in inputs.values()}
+    inputs = Inputs(tasks)
     written: set[str] = set()
     for output in outputs:
-        target, shown = _real(output), files.shown(str(output))
-        named = f"{(options or {}).get(output, '-o')} {shown}"
-        identity = _identity(output)
-        source = inputs.get(target) or (same.get(identity) if identity else None)
-        if source is not None:
-            raise OutputError(f"{named}: {_beside(source, shown)}is read by this run; name another file")
-        folder = folders.get(str(Path(target).parent))
-        if folder is not None and Path(target).exists():
-            raise OutputError(f"{named}: a file in {files.shown(folder)}, a folder of subprograms; name another one")
+        target = _real(output)
+        named = f"{(options or {}).get(output, '-o')} {files.shown(str(output))}"
+        inputs.refuse(output, named)
         if walking.has_name_of_program(target, walking.EXTENSIONS) or target.endswith(".toml"):
             raise OutputError(f"{named}: this is the name of a program or of a job file; give the report another")
         if target in written:

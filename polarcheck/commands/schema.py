@@ -7,7 +7,7 @@ import click
 from polarcheck.commands import options
 from polarcheck.commands.output import show
 
-_NAMES = ("report", "job", "machine", "feeds", "trace", "comparison", "manifest", "certificate")
+_NAMES = ("report", "job", "machine", "feeds", "trace", "comparison", "rewriting", "manifest", "certificate")
 
 
 @click.command(short_help="Show the JSON Schema of a report, the job, a machine, feed table, trace, ...")
@@ -15,8 +15,8 @@ _NAMES = ("report", "job", "machine", "feeds", "trace", "comparison", "manifest"
 @options.debug
 def schema(name: str) -> None:
     """
-    Show a JSON Schema: of a report, polarcheck.toml (job), a machine profile, a feed table, a trace, a comparison, or
-    the manifest and the certificate of a post.
+    Show a JSON Schema: of a report, polarcheck.toml (job), a machine profile, a feed table, a trace, a comparison,
+    what comes of rewriting a program, or the manifest and the certificate of a post.
     """
     from polarcheck.reports.pages import schema as schemas
 

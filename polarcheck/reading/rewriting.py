@@ -37,23 +37,23 @@ def rewrite(path: str, old: bytes, new: bytes, *, keep: bool = False) -> None:
 
         files.write(target, new, finish)
     except (OSError, ValueError) as error:
-        raise OutputError(f"{name}: not fixed: {getattr(error, 'strerror', None) or error}") from None
+        raise OutputError(f"{name}: not written: {getattr(error, 'strerror', None) or error}") from None
 
 
 def _refuse(target: Path, name: str, old: bytes) -> None:
     status = target.stat()
     if not stat.S_ISREG(status.st_mode):
-        raise OutputError(f"{name}: not fixed: it is no file that could be written anew")
+        raise OutputError(f"{name}: not written: it is no file that could be written anew")
     if not status.st_mode & (stat.S_IWUSR | stat.S_IWGRP | stat.S_IWOTH) or not os.access(target, os.W_OK):
-        raise OutputError(f"{name}: not fixed: it is read-only")
+        raise OutputError(f"{name}: not written: it is read-only")
     if status.st_nlink > 1:
-        raise OutputError(f"{name}: not fixed: it has another name (hard link), which would keep the old program")
+        raise OutputError(f"{name}: not written: it has another name (hard link), which would keep the old program")
     try:
         is_same = files.read_program(str(target), len(old) + 1) == old
     except SourceError:
         is_same = False
     if not is_same:
-        raise OutputError(f"{name}: not fixed: it was changed since it was read")
+        raise OutputError(f"{name}: not written: it was changed since it was read")
 
 
 def _keep(path: Path, name: str, old: bytes, status: os.stat_result) -> None:
@@ -62,7 +62,7 @@ def _keep(path: Path, name: str, old: bytes, status: os.stat_result) -> None:
     if copy.exists() and copy.is_file() and copy.read_bytes() == old:
         return
     if os.path.lexists(copy):
-        raise OutputError(f"{name}: not fixed: {files.shown(str(copy))} is there already, and differs; move it away")
+        raise OutputError(f"{name}: not written: {files.shown(str(copy))} is there already, and differs; move it away")
     files.write(copy, old, lambda written: _hand_over(written, status, name))
 
 
@@ -75,6 +75,6 @@ def _hand_over(written: Path, status: os.stat_result, name: str) -> None:
         except OSError:
             owner = f"user {status.st_uid}, group {status.st_gid}"
             raise OutputError(
-                f"{name}: not fixed: it belongs to {owner}, to whom you cannot give the new file"
+                f"{name}: not written: it belongs to {owner}, to whom you cannot give the new file"
             ) from None
     written.chmod(stat.S_IMODE(status.st_mode))

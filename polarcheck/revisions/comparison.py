@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from typing import NamedTuple, TypeVar
 
 import msgspec
@@ -34,7 +34,7 @@ from polarcheck.revisions.report import (
 )
 from polarcheck.revisions.same_words import has_same_words
 from polarcheck.revisions.steps import not_comparable, steps
-from polarcheck.revisions.stretches import Stretch, of_sections, outside
+from polarcheck.revisions.stretches import Stretch, of_sections, outside, without
 from polarcheck.time_limit import keep_time
 
 Item = TypeVar("Item")
@@ -66,10 +66,18 @@ def default_tolerance(old: Revision, new: Revision) -> float:
     return max(*steps_of, 1e-6)
 
 
-def compared(old: Revision, new: Revision, tolerance: float) -> Comparison:
-    """Compare two revisions. tolerance: lengths that differ by no more are the same [mm]."""
+def compared(
+    old: Revision, new: Revision, tolerance: float, left_out: Collection[int] = (), *, is_feed_on_plane: bool = False
+) -> Comparison:
+    """
+    Compare two revisions.
+
+    tolerance: lengths that differ by no more are the same [mm]. left_out: lines of the old file whose moves and orders
+    outside of sections are not compared. is_feed_on_plane: of sections the speed of the tool center on the plane is
+    compared, and not F as it is programmed.
+    """
     is_same_machine = old.trace.machine == new.trace.machine
-    runs = [_Runs(*pair, tolerance, is_same_machine) for pair in _pairs_of_runs(old, new)]
+    runs = [_Runs(*pair, tolerance, is_same_machine, left_out, is_feed_on_plane) for pair in _pairs_of_runs(old, new)]
     sections = [section for run in runs for section in run.sections()]
     between = [difference for run in runs for difference in run.outside()]
     missing = sorted(
@@ -134,14 +142,23 @@ def _by_channel(revision: Revision) -> dict[str, dict[str, Tables]]:
 class _Runs:
     """One run of each revision, compared."""
 
-    def __init__(self, old: Tables, new: Tables, tolerance: float, is_same_machine: bool) -> None:
+    def __init__(
+        self,
+        old: Tables,
+        new: Tables,
+        tolerance: float,
+        is_same_machine: bool,
+        left_out: Collection[int],
+        is_feed_on_plane: bool,
+    ) -> None:
         self._tables = old, new
+        self._left_out = left_out
         self._tolerance = tolerance
         self._is_same_machine = is_same_machine
         self._traces: tuple[Trace, Trace] = old["trace"], new["trace"]
         self._steps = tuple(steps(trace, is_same_machine=is_same_machine) for trace in self._traces)
         self._old, self._new = (
-            of_sections(trace, tables["tool_center"], steps)
+            of_sections(trace, tables["tool_center"], steps, is_feed_on_plane=is_feed_on_plane)
             for trace, tables, steps in zip(self._traces, self._tables, self._steps, strict=True)
         )
         self._partner, self._ordered = paired(self._old, self._new)
@@ -266,6 +283,7 @@ class _Runs:
         ):
             keep_time()
             old = self._outside(0, low, high)
+            old = Part(old.trace, without(old.stretch, old.trace, self._left_out)) if self._left_out else old
             new = _turned_to(old, self._outside(1, new_low, new_high))
             why = next(
                 (f"{name}: {part.stretch.needs}" for name, part in (("old", old), ("new", new)) if part.stretch.needs),

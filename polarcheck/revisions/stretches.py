@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
 import msgspec
 import numpy as np
@@ -49,8 +49,15 @@ class Stretch(msgspec.Struct, frozen=True):
     as_programmed: str = ""
 
 
-def of_sections(trace: Trace, tool_center: ToolCenter, steps: Sequence[Step]) -> list[Stretch]:
-    """Return the polar sections in order."""
+def of_sections(
+    trace: Trace, tool_center: ToolCenter, steps: Sequence[Step], *, is_feed_on_plane: bool = False
+) -> list[Stretch]:
+    """
+    Return the polar sections in order.
+
+    is_feed_on_plane: F is that with which the tool center moves on the plane, and not the one that is programmed: they
+    differ where F is along the contour, or along X, C and Z.
+    """
     if not len(trace.mode.sections):
         return []
     of_tool = _with_z_alone(trace, tool_center.moves)
@@ -74,7 +81,8 @@ def of_sections(trace: Trace, tool_center: ToolCenter, steps: Sequence[Step]) ->
             needs = f"a position of line {line} is not known"
         rows = np.flatnonzero(trace.mode.section == number)
         section = _stretch(trace, number, rows, path, moves.row, steps_of.get(number, ()), needs)
-        result.append(msgspec.structs.replace(section, as_programmed=as_programmed, knows_z=knows_z))
+        feed = section.feed * moves.plane_share if is_feed_on_plane else section.feed
+        result.append(msgspec.structs.replace(section, as_programmed=as_programmed, knows_z=knows_z, feed=feed))
     return result
 
 
@@ -94,6 +102,8 @@ def _stretch(
     steps: Sequence[Step],
     needs: str = "",
 ) -> Stretch:
+    per_minute = trace.feedrate.feed_mode[row] == FeedMode.PER_MINUTE
+    feed = np.where(per_minute, trace.feedrate.feed[row], trace.feedrate.feed_number[row])
     return Stretch(
         section=section,
         rows=rows,
@@ -101,11 +111,7 @@ def _stretch(
         row=row,
         rapid=trace.axes.motion[row] == Motion.RAPID,
         feed_mode=trace.feedrate.feed_mode[row],
-        feed=np.where(
-            trace.feedrate.feed_mode[row] == FeedMode.PER_MINUTE,
-            trace.feedrate.feed[row],
-            trace.feedrate.feed_number[row],
-        ),
+        feed=feed,
         steps=steps,
         needs=needs,
     )
@@ -197,6 +203,25 @@ def outside(trace: Trace, tolerance: float, steps: Sequence[Step], first: int, u
     own = set(rows.tolist())
     stretch = _stretch(trace, -1, rows, of_stretch, row, [step for step in steps if step.row in own], needs)
     return msgspec.structs.replace(stretch, c_scale=scale)
+
+
+def without(stretch: Stretch, trace: Trace, lines: Collection[int]) -> Stretch:
+    """Return a stretch outside of sections without the moves and orders of some lines; the moves behind follow on."""
+    stays = ~np.isin(trace.blocks.line_in_file[stretch.row], list(lines))
+    steps = [step for step in stretch.steps if int(trace.blocks.line_in_file[step.row]) not in lines]
+    path = stretch.path[stays]
+    behind = np.flatnonzero(np.diff(np.flatnonzero(stays)) > 1) + 1
+    start, z_start = path.start.copy(), path.z_start.copy()
+    start[behind], z_start[behind] = path.end[behind - 1], path.z_end[behind - 1]
+    return msgspec.structs.replace(
+        stretch,
+        path=msgspec.structs.replace(path, start=start, z_start=z_start),
+        row=stretch.row[stays],
+        rapid=stretch.rapid[stays],
+        feed_mode=stretch.feed_mode[stays],
+        feed=stretch.feed[stays],
+        steps=steps,
+    )
 
 
 def _without_unknown(start: Floats, end: Floats) -> tuple[Floats, Floats]:

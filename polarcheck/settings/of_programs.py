@@ -492,3 +492,20 @@ def default_machine(machine: str | None) -> tuple[str, Machine]:
 def profile_of(machine: str) -> profiles.Profile:
     """Return the profile of a name or file, unchanged. Raises MachineError if it cannot be used."""
     return _profile(machine, (), load_all())
+
+
+def on_machine(settings: Settings, machine: str) -> Settings:
+    """
+    Return the settings of a program on another lathe: its tools and its bar, with the rules of that lathe.
+
+    [limits] of its job file and --set are those of the lathe that it was written for, and do not apply to the other.
+
+    machine: name of a built-in lathe, or the path of a TOML file. Raises MachineError if it cannot be used.
+    """
+    other = OfPrograms(Options(machine=machine, use_config=False))("")
+    return msgspec.structs.replace(
+        other,
+        job=msgspec.structs.replace(settings.job, machine=machine),
+        encoding=settings.encoding,
+        read=settings.read,
+    )

@@ -10,9 +10,7 @@ from polarcheck.columns.filling import before, happened
 from polarcheck.columns.trace import Trace
 from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.machines.codes import NO_CODE
-
-#: Stops, ends, coolant and the tool change have these numbers everywhere (ISO 6983).
-_OF_EVERY_LATHE = ("M0-M2", "M6-M9", "M30", "M98", "M99")
+from polarcheck.machines.m_codes import OF_EVERY_LATHE
 
 
 class Spindles:
@@ -97,7 +95,7 @@ class Spindles:
         listed += [
             word for word in (*machine.macro.flow_codes, *machine.polar.on, *machine.polar.off) if word[0] == "M"
         ]
-        known = trace.blocks.words_at(trace.blocks.code_indices(*_OF_EVERY_LATHE, *listed))
+        known = trace.blocks.words_at(trace.blocks.code_indices(*OF_EVERY_LATHE, *listed))
         return np.asarray(trace.blocks.m_words[~known[trace.blocks.m_words] & (trace.blocks.m_codes != NO_CODE)])
 
     # ---- the spindle itself ----

@@ -27,9 +27,9 @@ _TYPES: dict[Kind | None, str | list[str]] = {
 
 
 def schema(name: str) -> Schema:
-    """Return the schema of `report`, `job`, `machine`, `feeds`, `trace` or `comparison`."""
+    """Return the schema of `report`, `job`, `machine`, `feeds`, `trace`, `comparison` or `rewriting`."""
     makers = {"report": _report, "job": _job, "machine": _machine, "feeds": _feeds, "trace": _trace}
-    content = {**makers, "comparison": _comparison}[name]()
+    content = {**makers, "comparison": _comparison, "rewriting": _rewriting}[name]()
     number = SCHEMA if name == "report" else 1
     return {"$schema": DIALECT, "$id": f"urn:polarcheck:{name}:{number}", **content}
 
@@ -86,6 +86,18 @@ def _comparison() -> Schema:
     content["$defs"]["ComparisonReport"]["properties"]["schema"] = {"const": 1}
     content["$defs"]["Comparison"]["properties"]["verdict"] = {"enum": list(VERDICTS)}
     content["$defs"]["SectionPair"]["properties"]["change"] = {"enum": list(CHANGES)}
+    return content
+
+
+def _rewriting() -> Schema:
+    from polarcheck.conversion.report import COMMANDS, RewritingReport
+
+    content: Schema = msgspec.json.schema(RewritingReport)
+    properties = content["$defs"]["RewritingReport"]["properties"]
+    properties["schema"] = {"const": 1}
+    properties["command"] = {"enum": list(COMMANDS)}
+    # What is not known is NaN, which JSON writes as null.
+    content["$defs"]["Figure"]["properties"]["value"] = {"type": ["number", "null"]}
     return content
 
 

@@ -1,0 +1,177 @@
+"""Where new programs go: a file, a folder, over the original, or standard output; nothing is overwritten by mistake."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+import click
+
+from polarcheck.commands.options import Decorator, narrower, option
+from polarcheck.commands.output import is_terminal, show, warn
+from polarcheck.errors import OutputError, UsageError
+
+if TYPE_CHECKING:
+    from polarcheck.batch.tasks import Task
+
+_FOLDER_ENDS = ("/", os.sep)
+
+
+class Wanted(NamedTuple):
+    """
+    The options on what becomes of new programs.
+
+    out: their file, or a folder; None for standard output.
+    force: existing files are replaced.
+    in_place: they replace the originals.
+    backup: the originals stay as FILE.orig.
+    diff: what would change is shown, and nothing is written.
+    form: text or json.
+    color: auto, always or never.
+    quiet: only what somebody has to do is said.
+    """
+
+    out: str | None
+    force: bool
+    in_place: bool
+    backup: bool
+    diff: bool
+    form: str
+    color: str
+    quiet: bool
+
+
+#: The options of Wanted. The environment sets nothing that decides what is overwritten.
+OPTIONS: Sequence[Decorator] = (
+    click.option("-o", "--output", "out", metavar="FILE", help="The new program, or its folder; else standard output."),
+    click.option("--force", is_flag=True, help="With -o, replace files that are there already."),
+    click.option("--in-place", is_flag=True, help="Write the new program over the original; needs --backup."),
+    option("--backup", is_flag=True, help="With --in-place, keep the original as FILE.orig."),
+    option("--diff", is_flag=True, help="Show what would change, and write nothing."),
+    narrower(
+        "--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True,
+        help="json: on standard output what comes of it, in place of the program, which -o writes.",
+    ),
+    option("--color", type=click.Choice(["auto", "always", "never"]), default="auto", show_default=True),
+    option("-q", "--quiet", is_flag=True, help="Say only what is to be decided, or why it is refused."),
+)  # fmt: skip
+
+
+def refuse(wanted: Wanted, paths: Sequence[str]) -> None:
+    """Raise UsageError for options that exclude each other; warn of those without effect."""
+    from polarcheck.reading import files
+
+    if wanted.diff:
+        others = {"-o": wanted.out, "--in-place": wanted.in_place, "--format json": wanted.form == "json"}
+        for name, is_set in others.items():
+            if is_set:
+                raise UsageError(f"--diff shows what would change, and writes nothing: leave out {name}")
+    if wanted.in_place and wanted.out is not None:
+        raise UsageError("--in-place writes over the program: leave out -o")
+    if wanted.in_place and any(map(files.is_standard_input, paths)):
+        raise UsageError("--in-place: expected a file, found standard input")
+    if wanted.in_place and not wanted.backup:
+        raise UsageError("--in-place writes over the program: give --backup, too, which keeps it as FILE.orig")
+    if wanted.out == "":
+        raise UsageError("-o: expected the name of a file or folder")
+    if wanted.force and wanted.out is None:
+        warn("--force does nothing without -o")
+
+
+def outputs(wanted: Wanted, tasks: Sequence[Task], paths: Sequence[str]) -> Mapping[str, Path]:
+    """
+    Return the file of each new program by the place of its task; empty without -o.
+
+    Programs of a folder have the same path in the folder that -o names.
+
+    paths: the arguments, from which the tasks come.
+
+    Raises OutputError or UsageError, before anything is computed, for a file that is there already or that the run
+    reads, and for one file for several programs.
+    """
+    from polarcheck.commands.overwriting import Inputs
+    from polarcheck.reading import files
+
+    several = len(tasks) > 1 or len(paths) > 1 or any(map(os.path.isdir, paths))
+    if wanted.out is None:
+        if several and not (wanted.in_place or wanted.diff or wanted.form == "json"):
+            raise UsageError("several programs: expected -o FOLDER, --in-place or --diff")
+        return {}
+    shown = files.shown(wanted.out)
+    is_folder = wanted.out.endswith(_FOLDER_ENDS) or os.path.isdir(wanted.out)  # noqa: PTH112  Path.is_dir raises for some names
+    if several and not is_folder and os.path.exists(wanted.out):  # noqa: PTH110
+        raise UsageError(f"-o {shown}: expected a folder for several programs, found a file")
+    inputs = Inputs(tasks)
+    found: dict[str, Path] = {}
+    for task in tasks:
+        output = Path(wanted.out)
+        if is_folder or several:
+            if files.is_standard_input(task.place):
+                raise UsageError(f"-o {shown}: a folder; name the file, or give --stdin-filename")
+            output /= _name_in_folder(task.place, paths)
+        named = f"-o {files.shown(str(output))}"
+        if output in found.values():
+            raise UsageError(f"{named}: two programs would be written to this file")
+        inputs.refuse(output, named)
+        if not wanted.force:
+            _refuse_existing(output)
+        found[task.place] = output
+    return found
+
+
+def _name_in_folder(path: str, paths: Sequence[str]) -> str:
+    """Return the path of a program in the folder that was walked, or its name if it was named itself."""
+    folders = [folder for folder in paths if os.path.isdir(folder) and Path(path).is_relative_to(folder)]  # noqa: PTH112
+    return os.path.relpath(path, max(folders, key=len)) if folders else Path(path).name
+
+
+def _refuse_existing(output: Path) -> None:
+    from polarcheck.reading import files
+
+    if output.is_file():
+        raise OutputError(f"-o {files.shown(str(output))}: it is there already; --force replaces it")
+
+
+def write(wanted: Wanted, task: Task, old: bytes, new: bytes, output: Path | None) -> str | None:
+    """
+    Write a new program into its file; return the file. None if it goes to standard output, or nowhere.
+
+    Raises OutputError if it cannot be written; then the file is as it was.
+    """
+    from polarcheck.reading import files, rewriting
+
+    if wanted.in_place:
+        if new != old:
+            rewriting.rewrite(task.path, old, new, keep=True)
+        return task.title
+    if output is None or wanted.diff:
+        return None
+
+    def refuse_new(written: Path) -> None:
+        """Raise OutputError if somebody else has written the file meanwhile."""
+        if not wanted.force:
+            _refuse_existing(output)
+
+    try:
+        output.parent.mkdir(parents=True, exist_ok=True)
+    except (OSError, ValueError) as error:
+        said = getattr(error, "strerror", None) or error
+        raise OutputError(f"{files.shown(str(output.parent))}: {said}") from None
+    files.write(output, new, refuse_new)
+    return files.shown(str(output))
+
+
+def print_program(data: bytes, path: str, encoding: str | None) -> None:
+    """Write a program to standard output: its bytes, but to a terminal no character that controls it."""
+    from polarcheck.reading.excerpt import visible
+    from polarcheck.reading.source import read_source
+
+    if not is_terminal(sys.stdout):
+        show(data)
+        return
+    source = read_source(data, path, encoding)
+    lines = (source.line_text(line).strip("\r") for line in range(1, len(source.line_starts) + 1))
+    show("".join(f"{visible(line)}\n" for line in lines))

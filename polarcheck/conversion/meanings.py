@@ -1,0 +1,108 @@
+"""What a program orders beside its moves, by what its codes mean in the lists of its machine and not by their names."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator
+from difflib import SequenceMatcher
+
+import msgspec
+import numpy as np
+
+from polarcheck.columns.trace import Trace
+from polarcheck.conversion.outcome import Refusal
+from polarcheck.machines.m_codes import SWITCHED
+from polarcheck.table.dwells import time_of_dwells
+
+#: Lists of G codes; what the others do is compared as paths, feeds and states.
+_G_LISTS = (
+    *("dwell", "work_offset", "work_offset_extended", "drilling_cycle", "drilling_cycle_off", "scaling", "scaling_off"),
+    *("rotation", "rotation_off", "mirror_image", "mirror_image_off", "tool_length_offset", "tool_length_offset_off"),
+    *("data_input", "reference_check", "reference_return", "machine_coordinates", "cylindrical_interpolation"),
+    *("thread_cutting", "turning_cycle", "threading_cycle", "facing_cycle", "repetitive_cycle", "local_shift"),
+    *("coordinate_setting", "coordinate_preset", "constant_surface_speed", "constant_surface_speed_off"),
+)
+#: Lists of M codes.
+_M_LISTS = (*(name for pair in SWITCHED for name in pair), "spindle_orientation", "optional_stop", "program_end")
+#: Dwells that differ by no more are the same [s]: a control counts thousandths.
+_SAME_TIME = 1e-3
+#: More differences than this are not listed.
+_LISTED = 20
+#: More orders than this, between those that are equal at both ends, are not paired.
+_PAIRED = 2000
+
+
+class Order(msgspec.Struct, frozen=True):
+    """
+    An order.
+
+    row: of the trace. name: the list of the machine that its code stands in. code: as `M8`.
+    """
+
+    row: int
+    name: str
+    code: str
+
+
+def lost_orders(old: Trace, new: Trace, decided: Collection[int]) -> Iterator[Refusal]:
+    """
+    Yield the orders of the old program that the new one does not have at their place in the order.
+
+    decided: lines of the old file that are comments in the new one, for somebody to decide.
+    """
+    lines = old.blocks.line_in_file
+    ordered = [order for order in orders(old) if int(lines[order.row]) not in decided]
+    pairs, missing = _paired(ordered, list(orders(new)))
+    for order in missing[:_LISTED]:
+        yield Refusal(int(lines[order.row]), f"{order.code} ({order.name.replace('_', ' ')}) would be missing")
+    if len(missing) > _LISTED:
+        yield Refusal(0, f"and {len(missing) - _LISTED} other codes would be missing")
+    yield from _dwells(old, new, pairs)
+
+
+def orders(trace: Trace) -> Iterator[Order]:
+    """Yield the orders of a program in the order in which they run."""
+    found: list[tuple[int, str]] = []
+    machine = trace.machine
+    listed = {name: machine.codes(name) for name in _G_LISTS}
+    listed |= {name: list(getattr(machine.m_codes, name)) for name in _M_LISTS}
+    for name, codes in listed.items():
+        found += [(index, name) for index in trace.blocks.code_indices(*codes).tolist()] if codes else []
+    words = trace.run.words
+    for index, name in sorted(found):
+        yield Order(int(trace.run.row[index]), name, f"{chr(int(words.address[index]))}{float(words.value[index]):g}")
+
+
+def _paired(old: list[Order], new: list[Order]) -> tuple[list[tuple[Order, Order]], list[Order]]:
+    """Orders that both have in the same order, and those of the old program that are left over."""
+    names = [[order.name for order in each] for each in (old, new)]
+    # Equal ends are cut off: what is left is short.
+    head = next((at for at, (one, other) in enumerate(zip(*names, strict=False)) if one != other), min(map(len, names)))
+    most = min(map(len, names)) - head
+    backwards = zip(reversed(names[0]), reversed(names[1]), strict=False)
+    tail = min(next((at for at, (one, other) in enumerate(backwards) if one != other), most), most)
+    pairs = [*zip(old[:head], new[:head], strict=True)]
+    left, right = old[head : len(old) - tail], new[head : len(new) - tail]
+    missing: list[Order] = []
+    if max(len(left), len(right)) > _PAIRED:
+        missing = left
+    else:
+        matcher = SequenceMatcher(None, names[0][head : len(old) - tail], names[1][head : len(new) - tail], False)
+        for kind, low, high, new_low, new_high in matcher.get_opcodes():
+            if kind == "equal":
+                pairs += zip(left[low:high], right[new_low:new_high], strict=True)
+            else:
+                missing += left[low:high]
+    pairs += zip(old[len(old) - tail :], new[len(new) - tail :], strict=True)
+    return pairs, missing
+
+
+def _dwells(old: Trace, new: Trace, pairs: list[tuple[Order, Order]]) -> Iterator[Refusal]:
+    rows = [(first.row, second.row) for first, second in pairs if first.name == "dwell"]
+    if not rows:
+        return
+    times = time_of_dwells(old), time_of_dwells(new)
+    for first, second in rows:
+        was, is_now = float(times[0][first]), float(times[1][second])
+        if not (abs(was - is_now) <= _SAME_TIME or (np.isnan(was) and np.isnan(is_now))):
+            line = int(old.blocks.line_in_file[first])
+            yield Refusal(line, f"the dwell of {was:g} s would be one of {is_now:g} s")

@@ -1,0 +1,173 @@
+"""The new program read as its control would, and compared with the original before anything is written."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Collection, Iterator, Sequence
+
+import msgspec
+import numpy as np
+
+from polarcheck.checking.check import check_runs
+from polarcheck.checking.rule import load_all
+from polarcheck.checking.settings import Settings
+from polarcheck.conversion.meanings import lost_orders
+from polarcheck.conversion.original import Original, read
+from polarcheck.conversion.outcome import Refusal, RefusedError
+from polarcheck.conversion.part_paths import CHORD, path_on_part
+from polarcheck.finding import SEVERITIES, Finding, Severity
+from polarcheck.geometry.comparison.paths import path_deviation
+from polarcheck.revisions.comparison import Revision, compared, default_tolerance
+from polarcheck.revisions.report import Comparison, Difference, SectionPair
+
+#: Times of a section that differ by less than this share, or by less than this [s], are the same.
+_SAME_SHARE, _SAME_TIME = 2e-3, 0.02
+#: Further differences than this are not listed.
+_LISTED = 20
+
+
+class ReadBack(msgspec.Struct, frozen=True):
+    """
+    What the new program does beside the original.
+
+    new: the program as it is read. differences: what differs, with lines of the original; none where it may be written.
+    deviation: the largest distance of the tool center paths [mm]. notes: what could not be compared and does not
+    matter, and warnings of a check that the original does not have.
+    """
+
+    new: Original
+    differences: list[Refusal]
+    deviation: float
+    notes: list[str]
+
+
+def read_back(
+    original: Original, data: bytes, settings: Settings, origin: Sequence[int], decided: Collection[int] = ()
+) -> ReadBack:
+    """
+    Compare a program that has its polar sections on another control, or on the same one, with the original.
+
+    Compared are, up to the least increment, the path of the tool center on the part with Z, its order, F, C, the state
+    at the beginning of each section, the time of each section, the moves outside of sections, dwells, and what codes
+    mean by the lists of both profiles. A check finds no error that the original does not have.
+
+    settings: of the new program. origin: for each of its lines the line in the original, from 1.
+    decided: lines of the original that are comments in the new program, for somebody to decide. Their moves and orders
+    are not compared, but where the new program moves in their place.
+
+    Raises RefusedError where the new program cannot be run once, TooHardError.
+    """
+    new = read(original.path, data, settings)
+    old_side, new_side = (Revision(each.path, each.settings.name, [("", each.tables)]) for each in (original, new))
+    tolerance = default_tolerance(old_side, new_side)
+    left_out = _without_moves(new, origin, decided)
+    result = compared(old_side, new_side, tolerance, left_out, is_feed_on_plane=True)
+    differences = [*_of_comparison(result, decided), *_times(result)]
+    if original.settings.machine != settings.machine:
+        differences += lost_orders(original.trace, new.trace, decided)
+    differences += _errors(original, new, origin)
+    notes = [reason.reason for reason in result.not_compared if not reason.matters]
+    return ReadBack(new, differences[:_LISTED], result.deviation or 0.0, notes)
+
+
+def read_back_on_part(
+    original: Original, data: bytes, settings: Settings, origin: Sequence[int], tolerance: float, chord: float = CHORD
+) -> ReadBack:
+    """
+    Compare a program whose sections have another form with the original: with the mode or without it, compensated or
+    not, divided into moves otherwise.
+
+    Compared are the way of the tool on the part in and outside of sections, with Z and its order, what codes mean, and
+    the findings of a check. F is the caller's to compare. The deviation holds that of chords in the place of the true
+    path of X and C.
+
+    settings: of the new program. origin: for each of its lines the line in the original, from 1. tolerance: how far the
+    ways may be apart [mm]. chord: how far chords may leave the true path [mm].
+
+    Raises RefusedError where a position of the original is not known, or the new program cannot be run once.
+    """
+    new = read(original.path, data, settings)
+    old_path, new_path = (path_on_part(each.tables, chord=chord) for each in (original, new))
+    deviation = path_deviation(old_path, new_path, tolerance)
+    largest = deviation.largest + deviation.rounding + chord
+    differences = []
+    if largest > tolerance:
+        lines = [each.trace.blocks.line_in_file for each in (original, new)]
+        line = new_line = 0
+        if deviation.place is not None:
+            line = int(lines[0][old_path.row[deviation.place.old_move]])
+            new_line = int(lines[1][new_path.row[deviation.place.new_move]])
+        text = f"the tool would be {largest:.4f} mm away from its path, above {tolerance:g} mm"
+        differences.append(Refusal(line, f"{text} (line {new_line} of the result)"))
+    differences += lost_orders(original.trace, new.trace, ())
+    differences += _errors(original, new, origin)
+    return ReadBack(new, differences[:_LISTED], largest, [])
+
+
+def require_equal(result: ReadBack) -> None:
+    """Raise RefusedError if the new program differs from the original."""
+    if result.differences:
+        raise RefusedError(result.differences)
+
+
+def _without_moves(new: Original, origin: Sequence[int], decided: Collection[int]) -> set[int]:
+    """The decided lines in whose place the new program does not move."""
+    trace = new.trace
+    lines = trace.blocks.line_in_file[np.flatnonzero(trace.axes.moves)].tolist()
+    moving = {origin[line - 1] for line in lines if 0 < line <= len(origin)}
+    return set(decided) - moving
+
+
+def _of_comparison(result: Comparison, decided: Collection[int]) -> Iterator[Refusal]:
+    for section in result.sections:
+        for each in section.differences:
+            yield _refusal(each, section)
+    for each in result.outside:
+        if each.what != "order" or each.old_line not in decided:
+            yield _refusal(each)
+    for reason in result.not_compared:
+        if reason.matters:
+            yield Refusal(0, f"not comparable: {reason.reason}")
+
+
+def _refusal(difference: Difference, section: SectionPair | None = None) -> Refusal:
+    line = difference.old_line or (section.old.line if section is not None and section.old is not None else 0)
+    where = f" (line {difference.new_line} of the result)" if difference.new_line else ""
+    return Refusal(line, f"{difference.text}{where}")
+
+
+def _times(result: Comparison) -> Iterator[Refusal]:
+    """Sections that would take another time: F along an arc, or beside Z, means something else."""
+    for section in result.sections:
+        if section.old is None or section.new is None:
+            continue
+        was, is_now = section.old.time, section.new.time
+        if was is not None and is_now is not None and abs(was - is_now) > max(_SAME_TIME, _SAME_SHARE * was):
+            yield Refusal(section.old.line, f"the section takes {was:.2f} s, and would take {is_now:.2f} s")
+
+
+def _errors(original: Original, new: Original, origin: Sequence[int]) -> Iterator[Refusal]:
+    """Errors of a check that the original does not have."""
+    before, after = (_errors_of(each) for each in (original, new))
+    known = Counter(finding.rule for finding in before)
+    lines = {(finding.rule, finding.line) for finding in before}
+    of_rule: dict[str, list[Finding]] = {}
+    for finding in after:
+        of_rule.setdefault(finding.rule, []).append(finding)
+    for rule, findings in of_rule.items():
+        added = [each for each in findings if (rule, _line(origin, each.line)) not in lines]
+        for finding in added[: max(len(findings) - known[rule], 0)]:
+            yield Refusal(
+                _line(origin, finding.line), f"{finding.rule} in line {finding.line} of the result: {finding.message}"
+            )
+
+
+def _line(origin: Sequence[int], line: int) -> int:
+    return origin[line - 1] if 0 < line <= len(origin) else 0
+
+
+def _errors_of(program: Original) -> list[Finding]:
+    settings = program.settings
+    report = check_runs([("", program.tables)], list(load_all().values()), settings.severities, settings.inline)
+    findings = [each for finding in report.findings for each in (finding, *finding.follows)]
+    return [finding for finding in findings if SEVERITIES[finding.severity] >= Severity.ERROR]
