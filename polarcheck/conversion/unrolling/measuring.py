@@ -1,0 +1,255 @@
+"""What the new program does, read back: how far the tool center is from its path, and how fast C and X move."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import msgspec
+import numpy as np
+from numpy.typing import NDArray
+
+from polarcheck.arrays import Floats, Mask, Rows, is_among
+from polarcheck.columns.trace import Trace
+from polarcheck.conversion.original import Original
+from polarcheck.conversion.outcome import Figure, Refusal
+from polarcheck.conversion.rotary_feed import block_times
+from polarcheck.conversion.unrolling.rates import method_of
+from polarcheck.conversion.unrolling.steps import Steps, x_factor
+from polarcheck.geometry.plane import arc_sweep
+from polarcheck.geometry.straight_axes.pieces import along, distances
+from polarcheck.machines.modal import MM_PER_INCH, FeedMode, Motion
+from polarcheck.table.moves import Moves
+from polarcheck.table.tool_center import ToolCenter
+from polarcheck.time_limit import keep_time
+
+#: How many differences are listed.
+_LISTED = 10
+#: Places on a block at which it is measured, and how many blocks at once.
+_PLACES = np.linspace(0, 1, 14)[None, :]
+_TOGETHER = 20_000
+#: F may be above that of the section, or a rate above its limit, by this share: rounding of F, C and X.
+_SHARE = 1e-3
+_SAME = 1e-6
+
+
+class Measured(msgspec.Struct, frozen=True):
+    """What was found: what differs from the original, and the figures that are told."""
+
+    differences: list[Refusal]
+    figures: list[Figure]
+
+
+def beyond_travel(trace: Trace, steps: Steps) -> list[Refusal]:
+    """Blocks beyond the travel of X, the first in each direction."""
+    limits = trace.machine.limits
+    scale = (x_factor(trace) * trace.lengths.least_step)[steps.row]
+    radius = steps.x * scale
+    reasons = []
+    for hits, name, limit in (
+        (radius < limits.x_minimum - _SAME, "below", limits.x_minimum),
+        (radius > limits.x_maximum + _SAME, "above", limits.x_maximum),
+    ):
+        if hits.any():
+            line = int(trace.blocks.line_in_file[steps.row[np.argmax(hits)]])
+            reasons.append(Refusal(line, f"X would go {name} its travel limit of {limit:g} mm as a radius"))
+    return reasons
+
+
+def measured(
+    original: Original, new: Original, spans: Sequence[tuple[int, int]], steps: Steps, chord_error: float, feed: str
+) -> Measured:
+    """
+    Read the new program as the control would, and compare it with the original.
+
+    spans: the characters of the sections in the new text.
+    """
+    old, after = original.trace, new.trace
+    if len(after.mode.sections):
+        return Measured([Refusal(0, "the result still has a polar section")], [])
+    within = _within(after, spans)
+    rotary = after.machine.polar.rotary_address
+    rows = np.flatnonzero(within & after.blocks.has("X", rotary) & after.modal.uses_axes)
+    if len(rows) != len(steps):
+        return Measured([Refusal(0, f"the result has {len(rows)} blocks of X and C, not {len(steps)}")], [])
+    differences = [*_outside(old, after, ~within), *_depths(old, after, within)]
+    center: ToolCenter = original.tables["tool_center"]
+    run = _Run(after, rows, method_of(old, feed))
+    differences += _places(old, run, steps)
+    distance, allowed = _distance(old, center.moves, run, steps), chord_error + _rounding(old, steps)
+    far = np.flatnonzero(~(distance <= allowed))
+    if len(far):
+        worst = int(far[np.argmax(distance[far])])
+        text = f"the tool would be {distance[worst]:.4f} mm away from its path, above {allowed:.4f} mm"
+        differences.append(Refusal(_line(old, steps, worst), text))
+    differences += _speeds(old, run, steps)
+    return Measured(differences[:_LISTED], _figures(old, run, float(distance.max(initial=0.0))))
+
+
+def _line(trace: Trace, steps: Steps, index: int) -> int:
+    return int(trace.blocks.line_in_file[steps.row[index]])
+
+
+def _within(trace: Trace, spans: Sequence[tuple[int, int]]) -> Mask:
+    """Rows whose blocks stand in these characters of the text."""
+    start = trace.text.blocks.end[trace.run.block]
+    begins = np.array([begin for begin, _ in spans], np.int64)
+    ends = np.array([end for _, end in spans], np.int64)
+    at = np.searchsorted(begins, start, side="left") - 1
+    return np.asarray((at >= 0) & (start <= ends[np.maximum(at, 0)]))
+
+
+def _outside(old: Trace, new: Trace, rows: Mask) -> Iterator[Refusal]:
+    """What differs in blocks outside of sections, which are the same text in both."""
+    before, after = np.flatnonzero(old.mode.whole_section < 0), np.flatnonzero(rows)
+    if len(before) != len(after):
+        yield Refusal(0, "the result runs other blocks outside of the sections")
+        return
+    arcs = is_among(old.axes.motion, (Motion.CW, Motion.CCW))
+    columns: dict[str, tuple[NDArray[Any], NDArray[Any]]] = {
+        "X": (old.path.x, new.path.x),
+        "Z": (old.path.z, new.path.z),
+        "C": (_within_turn(old.path.c_angle), _within_turn(new.path.c_angle)),
+        "G code of motion": (old.axes.motion, new.axes.motion),
+        "feed mode": (old.feedrate.modal_feed_mode, new.feedrate.modal_feed_mode),
+        "F": (old.feedrate.feed_number, new.feedrate.feed_number),
+        "plane": (np.where(arcs, old.modal.state("plane"), 0), new.modal.state("plane")),
+        "distances": (old.modal.state("distance"), new.modal.state("distance")),
+    }
+    tolerance = max(old.machine.control.least_increment, old.machine.control.least_increment_inch * MM_PER_INCH)
+    for name, (was, is_now) in columns.items():
+        first, second = was[before].astype(np.float64), is_now[after].astype(np.float64)
+        if name == "plane":
+            second = np.where(first == 0, 0, second)
+        if name == "C":
+            second = first + (second - first + 180) % 360 - 180
+        limit = 1e-3 * np.abs(first) if name == "F" else tolerance
+        differs = ~(np.abs(first - second) <= limit) & ~(np.isnan(first) & np.isnan(second))
+        if differs.any():
+            yield Refusal(int(old.blocks.line_in_file[before[np.argmax(differs)]]), f"{name} would differ from here on")
+
+
+def _within_turn(angle: Floats) -> Floats:
+    return np.asarray(angle % 360)
+
+
+def _depths(old: Trace, new: Trace, within: Mask) -> Iterator[Refusal]:
+    """Blocks with Z alone in the sections, in order."""
+    alone = np.zeros(len(old), bool)
+    alone[old.path.moves_z & (old.mode.section >= 0)] = True
+    on_plane = old.path.travels
+    before = np.flatnonzero(alone & ~on_plane)
+    rotary = new.machine.polar.rotary_address
+    after = np.flatnonzero(within & new.path.moves_z & ~new.blocks.has("X", rotary))
+    if len(before) != len(after):
+        yield Refusal(0, f"the result has {len(after)} blocks with Z alone, not {len(before)}")
+        return
+    tolerance = old.lengths.least_step[before]
+    differs = ~(np.abs(old.path.z[before] - new.path.z[after]) <= tolerance)
+    differs |= old.axes.motion[before] != new.axes.motion[after]
+    feeds = old.feedrate.feed[before], new.feedrate.feed[after]
+    differs |= (old.axes.motion[before] != Motion.RAPID) & ~(np.abs(feeds[0] - feeds[1]) <= 1e-3 * feeds[0])
+    for index in np.flatnonzero(differs)[:1].tolist():
+        yield Refusal(int(old.blocks.line_in_file[before[index]]), "Z or its F would differ")
+
+
+class _Run:
+    """The blocks of X and C of the new program as the control runs them: way and time of each."""
+
+    def __init__(self, trace: Trace, rows: Rows, method: str) -> None:
+        path = trace.path
+        self.x_before, self.x = path.x_before[rows], path.x[rows]
+        self.c = path.c_angle[rows]
+        self.turn = path.c_turn_from(path.c_angle_before[rows], rows)
+        self.z = path.z[rows]
+        self.rise = np.abs(np.nan_to_num(path.z[rows] - path.z_before[rows]))
+        self.is_rapid = trace.axes.motion[rows] == Motion.RAPID
+        unit = trace.lengths.feed_scale[rows]
+        feed = trace.feedrate.written_feed[rows] / unit
+        mode = trace.feedrate.modal_feed_mode[rows]
+        step = self.x - self.x_before
+        time = 60 * block_times(method, step, self.turn, self.rise, feed, unit)
+        known = mode == (FeedMode.INVERSE_TIME if method == "inverse-time" else FeedMode.PER_MINUTE)
+        self.time = np.where(self.is_rapid | ~known, np.nan, time)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            self.c_rate = np.where(self.is_rapid | (self.turn == 0), 0.0, 60 * np.abs(self.turn) / self.time)
+            self.x_rate = np.where(self.is_rapid | (step == 0), 0.0, 60 * np.abs(step) / self.time)
+
+
+def _places(old: Trace, run: _Run, steps: Steps) -> Iterator[Refusal]:
+    """Blocks that do not lead where they were meant to."""
+    scale = (x_factor(old) * old.lengths.least_step)[steps.row]
+    differs = ~(np.abs(run.x - steps.x * scale) <= _SAME) | ~(np.abs(run.turn - steps.turn) <= _SAME)
+    z = steps.z * old.lengths.least_step[steps.row]
+    differs |= ~np.isnan(z) & ~(np.abs(run.z - z) <= _SAME)
+    differs |= run.is_rapid != steps.is_rapid
+    for index in np.flatnonzero(differs)[:1].tolist():
+        yield Refusal(_line(old, steps, index), "X, C or Z would not be where the tool center goes")
+
+
+def _rounding(old: Trace, steps: Steps) -> float:
+    """What rounding of X and C may add to the chord error [mm]."""
+    scale = (x_factor(old) * old.lengths.least_step)[steps.row]
+    radius = steps.x * scale
+    least = np.radians(old.machine.control.least_increment)
+    return float(np.max(scale / 2 + radius * least / 2, initial=0.0)) + _SAME
+
+
+def _distance(old: Trace, moves: Moves, run: _Run, steps: Steps) -> Floats:
+    """How far the tool center is from its path in each block [mm], by the place where C is, not by its division."""
+    runs = np.flatnonzero(steps.move >= 0)
+    distance = np.zeros(len(steps))
+    of_move = steps.move[runs]
+    sweep = arc_sweep(*moves.shape)
+    center = np.where(sweep == 0, complex("nan+nanj"), moves.center)
+    c_from, c_to = moves.c_angles
+    sense = moves.c_axis.sense
+    is_far = np.abs(moves.start) >= np.abs(moves.end)
+    seen = np.where(is_far, moves.start, moves.end)
+    # C of the machine at which the first axis of the plane points, by the end of each move that is farther out.
+    zero = np.where(is_far, c_from, c_to) - sense * np.degrees(np.angle(seen))
+    angle = sense * np.radians(run.c[runs] - zero[of_move])
+    turn = sense * np.radians(run.turn[runs])
+    for first in range(0, len(runs), _TOGETHER):
+        keep_time()
+        part = slice(first, first + _TOGETHER)
+        own = of_move[part]
+        points = along(run.x_before[runs][part], run.x[runs][part], (angle - turn)[part], angle[part], _PLACES)
+        far = distances(points, moves.start[own], moves.end[own], center[own], sweep[own])
+        distance[runs[part]] = far.max(axis=1)
+    # The last block of a move leads to its end.
+    last = np.append(np.diff(steps.move[runs]) != 0, True)[: len(runs)]
+    ends = run.x[runs][last] * np.exp(1j * angle[last])
+    distance[runs[last]] = np.maximum(distance[runs[last]], np.abs(ends - moves.end[of_move[last]]))
+    return distance
+
+
+def _speeds(old: Trace, run: _Run, steps: Steps) -> Iterator[Refusal]:
+    """Blocks in which the tool would be faster than the F of the section, or an axis faster than its limit."""
+    limits = old.machine.limits
+    checks = (
+        (~run.is_rapid & ~(run.time > 0), "how long this takes is not known"),
+        (run.time < steps.time * (1 - _SHARE), "the tool would be faster than in the mode"),
+        (run.c_rate > limits.c_feed * (1 + _SHARE), "C would be above its limit"),
+        (run.x_rate > limits.x_feed * (1 + _SHARE), "X would be above its limit"),
+    )
+    for hits, text in checks:
+        for index in np.flatnonzero(hits)[:1].tolist():
+            yield Refusal(_line(old, steps, index), text)
+
+
+def _figures(old: Trace, run: _Run, distance: float) -> list[Figure]:
+    times = run.time[~np.isnan(run.time)]
+    figures = [
+        Figure("largest distance of the tool center from its path", distance, "mm"),
+        Figure("blocks of X and C", len(run.time)),
+        Figure("shortest block", float(times.min(initial=np.inf)) if len(times) else 0.0, "s"),
+    ]
+    if not np.isnan(old.machine.limits.block_time):
+        figures.append(Figure("shortest block that the control runs", old.machine.limits.block_time, "s"))
+    return [
+        *figures,
+        Figure("largest rate of C", float(run.c_rate.max(initial=0.0)), "deg/min"),
+        Figure("largest rate of X, as a radius", float(run.x_rate.max(initial=0.0)), "mm/min"),
+        Figure("time of the blocks at feed", float(times.sum()), "s"),
+    ]

@@ -1,0 +1,112 @@
+"""F of blocks in which X and C move together outside of the mode, so that the tool runs as fast as it did in it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from polarcheck.arrays import Floats, Mask, Rows
+from polarcheck.columns.trace import Trace
+from polarcheck.conversion.outcome import Refusal, RefusedError
+from polarcheck.conversion.rotary_feed import block_feeds
+from polarcheck.conversion.unrolling.steps import Steps
+from polarcheck.machines.feed_keys import WITH_ROTARY
+from polarcheck.machines.modal import FeedMode
+
+#: What --feed may be: what F is, and stepwise: as the machine has it per minute, with an F for several blocks.
+FEEDS = (*WITH_ROTARY, "stepwise")
+#: F of several blocks is lower than that of any of them by no more than this share.
+_STEP = 0.1
+#: Largest F that is written; where it would be larger, the block takes longer.
+_LARGEST = 99999.0
+#: Digits of F that count.
+_DIGITS = 5
+
+
+def chosen(trace: Trace, feed: str) -> str:
+    """
+    What F is to be; feed: as the option says, empty for what the machine has.
+
+    Raises RefusedError where that is not known.
+    """
+    known: Sequence[str] = trace.machine.feed.with_rotary
+    per_minute = [name for name in known if name != "inverse-time"]
+    if feed == "stepwise" and not per_minute:
+        why = "how X and C share F per minute is not known"
+    elif not feed and not known:
+        why = "what F is where X and C move together is not known"
+    else:
+        return feed or known[0]
+    raise RefusedError(
+        [Refusal(0, f"{why} of {trace.machine.title}: feed.with_rotary of a machine file says it, or --feed for once")]
+    )
+
+
+def method_of(trace: Trace, feed: str) -> str:
+    """What F is, of WITH_ROTARY."""
+    if feed != "stepwise":
+        return feed
+    return next(name for name in trace.machine.feed.with_rotary if name != "inverse-time")
+
+
+def times(trace: Trace, steps: Steps) -> Floats:
+    """
+    How long each block takes [s], NaN in rapid traverse: by the F of the section, or longer where C or X would be too
+    fast.
+    """
+    limits = trace.machine.limits
+    share = min(limits.override_share, 100) / 100 if limits.automatic_override else 1.0
+    # Where nobody knows how fast C may turn, it turns on the spot as fast as on every lathe.
+    spot = np.where(steps.move < 0, limits.c_feed_harmless, np.inf)
+    c_feed = np.fmin(limits.c_feed * share, spot)
+    longest = np.fmax(steps.time, 60 * np.abs(steps.turn) / c_feed)
+    longest = np.fmax(longest, np.nan_to_num(60 * np.abs(steps.radius_step) / limits.x_feed))
+    return np.where(steps.is_rapid, np.nan, longest)
+
+
+def feeds(trace: Trace, steps: Steps, time: Floats, feed: str) -> Floats:
+    """F of each block as it is written, in the units of the program; NaN in rapid traverse."""
+    unit = trace.lengths.feed_scale[steps.row]
+    exact = block_feeds(method_of(trace, feed), steps.radius_step, steps.turn, steps.rise, time / 60, unit)
+    exact = np.minimum(exact, _LARGEST)
+    if feed == "stepwise":
+        exact = _stepwise(exact, steps)
+    return _rounded(exact)
+
+
+def mode_of(feed: str) -> FeedMode:
+    return FeedMode.INVERSE_TIME if feed == "inverse-time" else FeedMode.PER_MINUTE
+
+
+def _rounded(feed: Floats) -> Floats:
+    """Five digits, and no more than four behind the point: never more than it was by half of the last one."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        digits = np.clip(_DIGITS - 1 - np.floor(np.log10(feed)), 0, 4)
+    scale = 10.0 ** np.nan_to_num(digits, nan=0.0, posinf=4.0)
+    # Down, so that no limit is passed; F0 would not move.
+    return np.where(feed > 0, np.maximum(np.floor(feed * scale * (1 + 1e-12)), 1) / scale, feed)
+
+
+def _stepwise(feed: Floats, steps: Steps) -> Floats:
+    """An F for as many blocks as it is the lowest of and no more than a tenth below any of them."""
+    values = feed.tolist()
+    begin = 0
+    while begin < len(values):
+        lowest = highest = values[begin]
+        end = begin + 1
+        while end < len(values):
+            low, high = min(lowest, values[end]), max(highest, values[end])
+            if values[end] != values[end] or not low >= high * (1 - _STEP):  # rapid traverse ends a stretch, too
+                break
+            lowest, highest, end = low, high, end + 1
+        values[begin:end] = [lowest] * (end - begin)
+        begin = end
+    return np.array(values, np.float64)
+
+
+def slowed(steps: Steps, time: Floats) -> tuple[Mask, Rows]:
+    """Blocks that take longer than the F of the section says, and their rows in the trace."""
+    slow = time > steps.time * (1 + 1e-9)
+    slow &= steps.move >= 0
+    return slow, steps.row[slow]

@@ -1,0 +1,188 @@
+"""The blocks of X and C that take the place of the moves of the tool center, as numbers."""
+
+from __future__ import annotations
+
+import msgspec
+import numpy as np
+
+from polarcheck.arrays import Floats, Mask, Points, Rows, Table
+from polarcheck.columns.lengths import RADIUS_FACTOR
+from polarcheck.columns.trace import Trace
+from polarcheck.conversion.outcome import Refusal, RefusedError
+from polarcheck.geometry.plane import angle_between
+from polarcheck.geometry.straight_axes.division import Pieces, divide
+from polarcheck.geometry.straight_axes.spans import Spans, spans_of
+from polarcheck.geometry.tolerances import ZERO
+from polarcheck.machines.modal import Motion
+from polarcheck.table.moves import Moves, z_along
+
+#: Most blocks of a new program.
+MOST = 1_000_000
+#: Largest turn of C in one block [deg]; where C reaches an angle the shorter way, it must be less than half a turn.
+_HALF, _ROLLING = 180.0, 120.0
+#: A path that comes so near to the center goes through it, where no increment says more [mm].
+_NOTHING = 1e-6
+
+
+class Steps(Table, frozen=True):
+    """
+    One element per new block of X and C, in order.
+
+    row: the row of the trace that it stands for. move: the move of the tool center, -1 where C turns on the spot.
+    x: the X word in least increments. c: C after the block in least increments, counted on over full turns.
+    z: the Z word in least increments, NaN where Z does not move. rise: way of Z [mm].
+    radius_step: way of X as a radius [mm]; turn: way of C [deg]; both as they are rounded.
+    length: way of the tool center on the plane [mm].
+    time: by the F of the section [s]; NaN in rapid traverse. is_rapid: in rapid traverse.
+    """
+
+    row: Rows
+    move: Rows
+    x: Rows
+    c: Rows
+    z: Floats
+    rise: Floats
+    radius_step: Floats
+    turn: Floats
+    length: Floats
+    time: Floats
+    is_rapid: Mask
+
+
+def x_factor(trace: Trace) -> Floats:
+    """Radius per written X in each row as it would be outside of the mode."""
+    outside = np.where(trace.mode.section < 0, trace.lengths.x_factor, np.nan)
+    for enter, last in zip(trace.mode.sections.enter.tolist(), trace.mode.sections.last.tolist(), strict=True):
+        before = outside[enter - 1] if enter and not trace.blocks.starts[enter] else np.nan
+        outside[enter : last + 1] = RADIUS_FACTOR[trace.machine.control.x] if np.isnan(before) else before
+    return outside
+
+
+def steps_of(trace: Trace, moves: Moves, chord_error: float) -> Steps:
+    """
+    Divide the moves of the tool center [mm].
+
+    Raises RefusedError where Z is not known; TooHardError for too many blocks.
+    """
+    x_step = (x_factor(trace) * trace.lengths.least_step)[moves.row]
+    c_step = trace.machine.control.least_increment
+    spans = spans_of(*moves.shape, float(np.max(x_step, initial=_NOTHING)) / 2)
+    largest = _ROLLING if trace.machine.control.rotary_rolls_over else _HALF
+    pieces = divide(spans, chord_error, np.radians(largest), MOST)
+    move = spans.move[pieces.span]
+    begin, end = spans.share(pieces.span, pieces.first), spans.share(pieces.span, pieces.last)
+    c, z = _c_after(trace, moves, spans, pieces), _z_after(trace, moves, move, begin, end)
+    scale, share = x_step[move], end - begin
+    x_before, x_after = np.rint(np.abs(pieces.start) / scale), np.rint(np.abs(pieces.end) / scale)
+    c_before, c_after = np.rint((c.after - c.turn) / c_step), np.rint(c.after / c_step)
+    is_rapid = moves.kind[move] == Motion.RAPID
+    runs = Steps(
+        row=moves.row[move],
+        move=move,
+        x=x_after.astype(np.int64),
+        c=c_after.astype(np.int64),
+        z=np.rint(z.after / trace.lengths.least_step[moves.row[move]]),
+        rise=z.way,
+        radius_step=(x_after - x_before) * scale,
+        turn=(c_after - c_before) * c_step,
+        length=moves.length[move] * share,
+        time=np.where(is_rapid, np.nan, moves.time[move] * share),
+        is_rapid=is_rapid,
+    )
+    # Where C turns on the spot, a block of its own stands before the piece that it leads to.
+    at = np.flatnonzero(np.abs(c.jump) > c_step / 2)
+    c_first = np.rint((c.after - c.turn - c.jump) / c_step)
+    none = np.zeros(len(at))
+    spots = msgspec.structs.replace(
+        runs[at],
+        move=np.full(len(at), -1),
+        x=x_before[at].astype(np.int64),
+        c=c_before[at].astype(np.int64),
+        z=none * np.nan,
+        rise=none,
+        radius_step=none,
+        turn=(c_before - c_first)[at] * c_step,
+        length=none,
+        time=np.where(is_rapid[at], np.nan, 0.0),
+    )
+    order = np.argsort(np.append(np.arange(len(move)), at - 0.5), kind="stable")
+    return _without_nothing(Steps.concatenated((runs, spots))[order])
+
+
+class _Turns(Table, frozen=True):
+    """Per piece C after it and how far it turns, and what C turns on the spot before it [deg]."""
+
+    after: Floats
+    turn: Floats
+    jump: Floats
+
+
+def _c_after(trace: Trace, moves: Moves, spans: Spans, pieces: Pieces) -> _Turns:
+    """C of the machine, counted on from where it stands before the section."""
+    sense, move = moves.c_axis.sense, spans.move[pieces.span]
+    turn = sense * np.degrees(pieces.turn)
+    ways = spans[pieces.span]
+    leaves = _seen(pieces.start, ways.directions(pieces.first[:, None])[:, 0])
+    arrives = _seen(pieces.end, -ways.directions(pieces.last[:, None])[:, 0])
+    jump = np.zeros(len(turn))
+    jump[1:] = sense * np.degrees(angle_between(arrives[:-1], leaves[1:]))
+    section = moves.section[move]
+    begins = np.flatnonzero(np.append(True, np.diff(section) != 0)[: len(section)])
+    c_from, _ = moves.c_angles
+    jump[begins] = 0
+    total = np.cumsum(turn + jump)
+    base = np.zeros(len(turn))
+    if len(begins):
+        first = c_from[move[begins]]
+        stands = stands_at(trace)[section[begins]]
+        # The path knows C but for full turns.
+        first = first + 360 * np.round((stands - first) / 360)
+        jump[begins] = first - stands
+        offset = first - (total - turn)[begins]
+        base = np.repeat(offset, np.diff(np.append(begins, len(turn))))
+    return _Turns(base + total, turn, jump)
+
+
+def stands_at(trace: Trace) -> Floats:
+    """C of the machine before each section [deg]; where nobody says it, that at which the section begins."""
+    enter = trace.mode.sections.enter
+    before = trace.path.c_angle_before[enter]
+    return np.where(np.isnan(before), trace.path.c_angle[enter], before)
+
+
+def _seen(point: Points, direction: Points) -> Points:
+    return np.where(point == 0, direction, point)
+
+
+class _Depths(Table, frozen=True):
+    """Per piece Z after it [mm], NaN where it does not move, and its way."""
+
+    after: Floats
+    way: Floats
+
+
+def _z_after(trace: Trace, moves: Moves, move: Rows, begin: Floats, end: Floats) -> _Depths:
+    z_from, z_to = z_along(trace, moves)
+    lost = np.isnan(z_from) & ~np.isnan(z_to)
+    if lost.any():
+        line = int(trace.blocks.line_in_file[moves.row[np.argmax(lost)]])
+        raise RefusedError([Refusal(line, "Z moves beside X and C from a place that is not known")])
+    way = np.nan_to_num(z_to - z_from)
+    after = np.where(np.abs(way[move]) <= ZERO, np.nan, z_from[move] + way[move] * end)
+    return _Depths(after, np.abs(way[move]) * (end - begin))
+
+
+def _without_nothing(steps: Steps) -> Steps:
+    """
+    Without blocks that rounding leaves without a way: their way and time are those of the next block.
+
+    Those behind the last block with a way count in that.
+    """
+    has_way = (steps.radius_step != 0) | (steps.turn != 0) | ~np.isnan(steps.z)
+    count = int(np.count_nonzero(has_way))
+    if has_way.all() or not count:
+        return steps[has_way]
+    group = np.minimum(np.cumsum(has_way) - has_way, count - 1)
+    length, time = (np.bincount(group, np.nan_to_num(each), count) for each in (steps.length, steps.time))
+    remaining = steps[has_way]
+    return msgspec.structs.replace(remaining, length=length, time=np.where(remaining.is_rapid, np.nan, time))

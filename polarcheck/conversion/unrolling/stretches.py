@@ -1,0 +1,143 @@
+"""Where polar sections stand in the text, and why some cannot be written as plain moves."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import msgspec
+import numpy as np
+
+from polarcheck.arrays import Mask
+from polarcheck.checking.tables import Tables
+from polarcheck.columns.trace import Trace
+from polarcheck.conversion.outcome import Refusal
+from polarcheck.machines.modal import FeedMode, Motion, Side
+from polarcheck.table.tool_center import ToolCenter
+
+
+class Stretch(msgspec.Struct, frozen=True):
+    """
+    A polar section in the text.
+
+    section: its number. enter, leave: the rows that switch the mode on and off. first, last: their blocks.
+    runs_in_order: each of its blocks runs once, one after the other, so that blocks can be replaced one by one; else
+    what runs is written in the order in which it runs.
+    """
+
+    section: int
+    enter: int
+    leave: int
+    first: int
+    last: int
+    runs_in_order: bool
+
+
+def stretches(trace: Trace) -> list[Stretch]:
+    """The polar sections; of one that runs several times each time."""
+    found = []
+    sections = trace.mode.sections
+    for section, (enter, leave) in enumerate(zip(sections.enter.tolist(), sections.leave.tolist(), strict=True)):
+        end = min(leave, len(trace) - 1)
+        blocks = trace.run.block[enter : end + 1]
+        in_order = (
+            bool(np.all(np.diff(blocks) > 0)) and not trace.text.blocks.is_macro[blocks[0] : blocks[-1] + 1].any()
+        )
+        in_order &= len(np.unique(trace.run.depth[enter : end + 1])) == 1
+        found.append(Stretch(section, enter, leave, int(blocks[0]), int(blocks[-1]), in_order))
+    return found
+
+
+def refusals(tables: Tables, found: list[Stretch]) -> list[Refusal]:
+    """Why these sections cannot be unrolled, each reason once a line."""
+    trace: Trace = tables["trace"]
+    reasons = [Refusal(_line(trace, row), text) for row, text in _of_rows(tables)]
+    for each in found:
+        reasons += _of_stretch(trace, each, found)
+    return list(dict.fromkeys(sorted(reasons, key=lambda reason: reason.line)))
+
+
+def _line(trace: Trace, row: int) -> int:
+    return int(trace.blocks.line_in_file[row])
+
+
+def _of_rows(tables: Tables) -> Iterator[tuple[int, str]]:
+    """Rows that cannot be unrolled, the first of each reason in a section."""
+    trace: Trace = tables["trace"]
+    center: ToolCenter = tables["tool_center"]
+    moves, mode, path = center.moves, trace.mode, trace.path
+    within = mode.in_polar
+    unknown = np.zeros(len(trace), bool)
+    unknown[moves.row[~moves.known | np.isnan(moves.length)]] = True
+    without_feed = np.zeros(len(trace), bool)
+    without_feed[moves.row[(moves.kind != Motion.RAPID) & ~(moves.feed > 0)]] = True
+    alone = path.moves_z & within & (trace.axes.motion != Motion.RAPID) & ~(trace.feedrate.feed > 0)
+    per_minute = trace.feedrate.per_minute | (trace.feedrate.feed_mode == FeedMode.PER_MINUTE)
+    order = np.append(False, np.diff(moves.row) < 0)[: len(moves)]
+    backwards = np.zeros(len(trace), bool)
+    backwards[moves.row[order]] = True
+    infeed = trace.blocks.has(trace.machine.polar.infeed_word) & mode.enters
+    off_circle = np.zeros(len(trace), bool)
+    off_by = np.abs(np.abs(moves.start - moves.center) - np.abs(moves.end - moves.center))
+    off_circle[moves.row[(moves.kind != Motion.LINE) & (off_by > trace.machine.arcs.tolerance)]] = True
+    checks: list[tuple[Mask, str]] = [
+        (infeed | backwards, "the passes of an infeed cycle are not unrolled"),
+        (trace.run.unknown & within, "what this block does is not known"),
+        (within & ~mode.rotary_is_followed, "the axes of this section are not followed"),
+        (within & (trace.axes.linear_axis != ord("X")), "the linear axis of this section is not X"),
+        (trace.modal.on_sub_spindle & mode.enters & (trace.machine.polar.sub_spindle_plane != "as-main"),
+         "which way C turns on the sub-spindle is not known"),
+        (np.abs(path.center_shift) > 0, "the center of C is not at X0 of the program"),
+        (within & trace.modal.in_cycle & trace.axes.moves, "a cycle in the mode is not unrolled"),
+        ((trace.modal.state("modal_call") != 0) & within, "a program that is called after each move is not unrolled"),
+        (center.interferes, "the tool center would run against the program"),
+        (center.no_intersection, "the paths of the tool center do not meet"),
+        (center.movement_missing, "the control does not know the next move in time"),
+        (center.inside_arc_too_small, "the cutter does not fit into this arc"),
+        ((trace.compensation.side != Side.OFF) & mode.enters, "cutter compensation is in force before the mode"),
+        (off_circle, "this arc does not end on its circle"),
+        (unknown, "where the tool center goes is not known"),
+        ((without_feed | alone) & ~per_minute, "F is not per minute, so that the speed of the tool is not known"),
+        (without_feed | alone, "F is missing"),
+    ]  # fmt: skip
+    for hits, text in checks:
+        rows = np.flatnonzero(hits)
+        section = mode.section[rows]
+        for row in rows[np.append(True, np.diff(section) != 0)[: len(rows)]].tolist():
+            yield row, text
+
+
+def _of_stretch(trace: Trace, each: Stretch, found: list[Stretch]) -> Iterator[Refusal]:
+    line, sections = _line(trace, each.enter), trace.mode.sections
+    if not sections.left[each.section] or sections.returned[each.section] or each.leave >= len(trace):
+        yield Refusal(line, "the polar mode is never left")
+        return
+    if trace.compensation.side[each.leave] != Side.OFF:
+        yield Refusal(_line(trace, each.leave), "cutter compensation is in force behind the mode")
+    if np.isnan(trace.path.c_angle[each.enter]):
+        yield Refusal(line, "C is not known where the mode begins: position it before, as C0")
+    if np.isnan(trace.path.x_before[each.enter]):
+        yield Refusal(line, "X is not known where the mode begins")
+    if sections.again[(sections.again > each.enter) & (sections.again < each.leave)].size:
+        yield Refusal(line, "the polar mode is switched on again within")
+    depth = trace.run.depth[each.enter : each.leave + 1]
+    if depth[0] != depth[-1] or depth.min() < depth[0] or each.last < each.first:
+        yield Refusal(line, "the polar mode is switched on in one program and left in another")
+        return
+    source = trace.text.source
+    part = source.part_of(int(trace.blocks.line[each.enter]))
+    if part is not None and not source.is_own(part):
+        yield Refusal(line, "the section stands in another file")
+    if each.runs_in_order:
+        return
+    own = trace.run.block[each.enter : each.leave + 1][depth == depth[0]]
+    if own.min() < each.first or own.max() > each.last:
+        yield Refusal(line, "a jump leads out of the section")
+    behind = trace.run.block[each.leave + 1 :]
+    outside = np.flatnonzero(trace.text.blocks.is_macro)
+    outside = outside[(outside > each.last) & np.isin(outside, behind)]
+    if any(value.row >= each.enter and value.row <= each.leave for value in trace.run.values) and len(outside):
+        yield Refusal(_line_of_block(trace, int(outside[0])), "a variable that the section sets may be read here")
+
+
+def _line_of_block(trace: Trace, block: int) -> int:
+    return int(trace.text.blocks.line[block])

@@ -1,0 +1,134 @@
+"""Lines and arcs of the polar plane divided into pieces along which X and C move evenly, within a chord error."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from polarcheck.arrays import Floats, Points, Rows, Table
+from polarcheck.errors import TooHardError
+from polarcheck.geometry.plane import angle_between, cross, quiet
+from polarcheck.geometry.straight_axes.pieces import SHARES, distances
+from polarcheck.geometry.straight_axes.spans import Spans, places
+from polarcheck.time_limit import keep_time
+
+#: Turn of C in a piece along which X changes by more than _EVEN [rad].
+_TURN = np.radians(5.0)
+_EVEN = 0.02
+#: Spans that are divided at once.
+_TOGETHER = 4096
+#: The estimate of the chord error is right within that; what it leaves too large is divided again.
+_AIM = 0.95
+_ROUNDS = 12
+
+
+class Pieces(Table, frozen=True):
+    """
+    One element per piece, in order: X and C move evenly from its start to its end.
+
+    span: the span that it belongs to. first, last: its share of the way of the span. start, end: plane points, 0 at the
+    center. turn: what the angle of the plane point grows by [rad]; at the center the direction of travel counts.
+    """
+
+    span: Rows
+    first: Floats
+    last: Floats
+    start: Points
+    end: Points
+    turn: Floats
+
+
+def divide(spans: Spans, chord_error: float, largest_turn: float, most: int) -> Pieces:
+    """
+    Divide spans so that the pieces leave them by no more than the chord error [mm].
+
+    largest_turn: of C in one piece [rad]; where X changes along a piece it turns by no more than 5 deg, so that the
+    speed of the tool stays even. most: of the pieces.
+    Raises TooHardError where there would be more.
+
+    The way of a piece for a chord error is sqrt(8 error / |kappa - (sin a / r)(1 + cos^2 a)|), with kappa the curvature
+    of the path and a its angle against the radius (controls_2.md 4). Where the expression vanishes it says too much: so
+    all pieces are measured, and divided again where they are too long.
+    """
+    parts = []
+    count = 0
+    for first in range(0, len(spans), _TOGETHER):
+        keep_time()
+        part = _divided(spans[first : first + _TOGETHER], chord_error, largest_turn, most - count)
+        count += len(part.span)
+        parts.append(Pieces(part.span + first, part.first, part.last, part.start, part.end, part.turn))
+    return Pieces.concatenated(parts) if parts else Pieces(*_nothing())
+
+
+def _nothing() -> tuple[Rows, Floats, Floats, Points, Points, Floats]:
+    none, points = np.zeros(0), np.zeros(0, np.complex128)
+    return np.zeros(0, np.int64), none, none, points, points, none
+
+
+@quiet
+def _divided(spans: Spans, chord_error: float, largest_turn: float, most: int) -> Pieces:
+    at = places(spans)
+    need = _needed(spans, at, chord_error, largest_turn)
+    total = need[:, -1]
+    wanted = np.maximum(np.ceil(total - 1e-9), 1)
+    for _ in range(_ROUNDS):
+        if not wanted.sum() <= most:
+            raise TooHardError(f"more than {most} blocks: use a larger chord error")
+        pieces = _placed(spans, at, need, wanted.astype(np.int64))
+        error = np.zeros(len(spans))
+        np.maximum.at(error, pieces.span, np.max(deviations(spans, pieces), axis=1, initial=0.0))
+        turn = np.zeros(len(spans))
+        np.maximum.at(turn, pieces.span, np.abs(pieces.turn))
+        more = np.maximum(np.sqrt(error / chord_error), turn / (largest_turn * (1 + 1e-9)))
+        if not np.any(more > 1):
+            return pieces
+        wanted = np.where(more > 1, np.maximum(np.ceil(wanted * np.minimum(more, 16)), wanted + 1), wanted)
+    raise TooHardError("no division keeps the chord error")
+
+
+def _needed(spans: Spans, at: Floats, chord_error: float, largest_turn: float) -> Floats:
+    """How many pieces the way up to each place asks for, float64[spans, places], rising."""
+    point, direction = spans.points(at), spans.directions(at)
+    r = np.abs(point)
+    sine = cross(point, direction) / np.maximum(r, 1e-12) ** 2 * r
+    turn = np.abs(np.where(r > 0, sine / r, 0.0))
+    chord = np.abs(spans.bend[:, None] - np.where(r > 0, sine / r, 0.0) * (2 - np.minimum(sine**2, 1.0)))
+    near, far = r.min(axis=1), r.max(axis=1)
+    most_turn = np.where(far > near * (1 + _EVEN), min(_TURN, largest_turn), largest_turn)
+    density = np.maximum(np.sqrt(chord / (8 * chord_error * _AIM)), turn / most_turn[:, None])
+    step = np.diff(at, axis=1) * spans.length[:, None]
+    # At the center itself the turn of an arc is finite, and that of a line nothing.
+    density = np.where(np.isfinite(density), density, 0.0)
+    need = np.cumsum((density[:, 1:] + density[:, :-1]) / 2 * step, axis=1)
+    return np.concatenate((np.zeros((len(spans), 1)), need), axis=1)
+
+
+def _placed(spans: Spans, at: Floats, need: Floats, count: Rows) -> Pieces:
+    """Pieces of equal need, so many of each span."""
+    number = np.arange(len(spans), dtype=np.float64)
+    # What asks for nothing is divided by its way; a little of the way makes the need rise everywhere.
+    total = need[:, -1:]
+    share = np.where(total > 0, need / np.where(total > 0, total, 1.0), at) * (1 - 1e-6) + at * 1e-6
+    span = np.repeat(np.arange(len(spans)), count)
+    index = np.arange(len(span)) - np.repeat(np.cumsum(count) - count, count)
+    of = count[span]
+    cuts = np.interp(number[span] + index / of, (number[:, None] + share).ravel(), at.ravel())
+    first = np.where(index == 0, 0.0, cuts)
+    last = np.where(index == of - 1, 1.0, np.append(first[1:], 1.0))
+    own = spans[span]
+    ends = own.points(np.stack((first, (first + last) / 2, last), axis=1))
+    ways = own.directions(np.stack((first, last), axis=1))
+    begins = np.where(ends[:, 0] == 0, ways[:, 0], ends[:, 0])
+    arrives = np.where(ends[:, 2] == 0, -ways[:, 1], ends[:, 2])
+    turn = angle_between(begins, ends[:, 1]) + angle_between(ends[:, 1], arrives)
+    return Pieces(span, first, last, ends[:, 0], ends[:, 2], turn)
+
+
+def deviations(spans: Spans, pieces: Pieces) -> Floats:
+    """How far each piece is from its span [mm], float64[pieces, places between its ends]."""
+    own = spans[pieces.span]
+    r = np.abs(pieces.start)[:, None] + (np.abs(pieces.end) - np.abs(pieces.start))[:, None] * SHARES
+    ways = own.directions(pieces.first[:, None])[:, 0]
+    first = np.angle(np.where(pieces.start == 0, ways, pieces.start))[:, None]
+    return distances(
+        r * np.exp(1j * (first + pieces.turn[:, None] * SHARES)), own.start, own.end, own.center, own.sweep
+    )
