@@ -1,0 +1,116 @@
+"""The fewest lines and arcs along a way, each as long as the tolerance allows, with joints at programmed places."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+
+import numpy as np
+
+from polarcheck.arrays import Rows
+from polarcheck.geometry.fitted_curves.bends import bend, error
+from polarcheck.geometry.fitted_curves.spirals import Samples
+from polarcheck.time_limit import keep_time
+
+#: A line is taken where an arc would reach no farther than this many times as far.
+_ARC_GAIN = 1.25
+#: A joint is looked for up to so many places away from where the longest element ends.
+_FARTHEST_JOINT = 64
+
+#: First and last place, and u as in bends.py.
+Element = tuple[int, int, float]
+
+
+def longest_elements(samples: Samples, tolerance: float, most: float = math.inf) -> list[Element] | None:
+    """
+    Return lines and arcs that pass all places within the tolerance [mm], one behind the other; None above `most`.
+
+    Each is as long as possible by doubling and halving, so that the time grows as n log n; then joints move to where
+    both elements beside them fit best: the longest one reaches beyond a tangent joint by what the tolerance hides.
+    """
+    joints = np.flatnonzero(samples.joint)
+    elements: list[Element] = []
+    at, guess = 0, 8
+    while at < len(joints) - 1:
+        keep_time()
+        if len(elements) >= most:
+            return None
+        first = int(joints[at])
+
+        def arc(to: int, first: int = first) -> float | None:
+            return bend(samples, first, int(joints[to]), tolerance)
+
+        def line(to: int, first: int = first) -> float | None:
+            return bend(samples, first, int(joints[to]), tolerance, straight=True)
+
+        end = _longest(arc, at, len(joints) - 1, guess)
+        straight = end if line(end) is not None else _longest(line, at, end, max((end - at) // 2, 1))
+        far, near = (abs(samples.point[joints[to]] - samples.point[first]) for to in (end, straight))
+        is_line = far <= _ARC_GAIN * near or end == at + 1
+        end = straight if is_line else end
+        u = 0.0 if is_line else arc(end) or 0.0
+        elements.append((first, int(joints[end]), u))
+        guess, at = max(end - at, 2), end
+    return _joined_best(samples, tolerance, elements, joints)
+
+
+def _longest(fits: Callable[[int], float | None], at: int, last: int, guess: int) -> int:
+    """Return the farthest joint up to which an element fits, at least the next one; by doubling, then by halving."""
+    good, step = at + 1, max(guess, 1)
+    bad = last + 1
+    while good < last:
+        to = min(at + step, last)
+        if to <= good:
+            to = good + 1
+        if fits(to) is None:
+            bad = to
+            break
+        good, step = to, 2 * (to - at)
+    while bad - good > 1:
+        middle = (good + bad) // 2
+        if fits(middle) is None:
+            bad = middle
+        else:
+            good = middle
+    return good
+
+
+def _joined_best(samples: Samples, tolerance: float, elements: list[Element], joints: Rows) -> list[Element]:
+    """Move each joint to where the squares of the distances along both of its elements are least."""
+    ordinal = np.zeros(len(samples), np.int64)
+    ordinal[joints] = np.arange(len(joints))
+    result = list(elements)
+    for k in range(1, len(result)):
+        keep_time()
+        (first, at, u), (_, last, v) = result[k - 1], result[k]
+        if u == 0 and v == 0:
+            continue  # a corner: the line ends there
+
+        def both(joint: int, first: int = first, last: int = last, u: float = u, v: float = v) -> float:
+            return error(samples, first, joint, tolerance, straight=u == 0) + error(
+                samples, joint, last, tolerance, straight=v == 0
+            )
+
+        best, least = at, both(at)
+        for step in _steps(at, first, last, ordinal):
+            for to in (ordinal[best] - step, ordinal[best] + step):
+                if ordinal[first] < to < ordinal[last]:
+                    joint = int(joints[to])
+                    here = both(joint)
+                    if here < least:
+                        best, least = joint, here
+        if best != at:
+            new_u = bend(samples, first, best, tolerance, straight=u == 0)
+            new_v = bend(samples, best, last, tolerance, straight=v == 0)
+            result[k - 1], result[k] = (first, best, new_u or 0.0), (best, last, new_v or 0.0)
+    return result
+
+
+def _steps(at: int, first: int, last: int, ordinal: Rows) -> Iterator[int]:
+    """Yield how far to look for a better joint: halves, then one place several times."""
+    widest = int(min(ordinal[last] - ordinal[at], ordinal[at] - ordinal[first], _FARTHEST_JOINT))
+    step = widest // 2
+    while step > 1:
+        yield step
+        step //= 2
+    yield from (1, 1, 1)
