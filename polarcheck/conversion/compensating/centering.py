@@ -1,0 +1,116 @@
+"""Contours with G41 or G42 written out as paths of the tool center, for a control without compensation in the mode."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from polarcheck.arrays import Mask
+from polarcheck.checking.phrases.offsets import called_tool, to_give
+from polarcheck.columns.trace import Trace
+from polarcheck.conversion.blocks import NewBlock, edit_before, edits_of, with_edits
+from polarcheck.conversion.compensating.moves import of_section
+from polarcheck.conversion.compensating.writing import Stroke, Strokes, new_blocks
+from polarcheck.conversion.original import Original
+from polarcheck.conversion.outcome import Figure, Outcome, Refusal, RefusedError
+from polarcheck.conversion.reading_back import read_back_on_part, require_equal
+from polarcheck.conversion.style_of import style_of
+from polarcheck.geometry.cutter_compensation.compensation import Phase
+from polarcheck.table.moves import Moves
+from polarcheck.table.tool_center import ToolCenter
+
+#: What rounding to the least increment and chords may shift the path by, in least increments.
+_INCREMENTS = 1.5
+
+
+def centered(original: Original) -> Outcome:
+    """
+    Return the program with the path of the tool center in the place of its contours, without G41, G42 and G40.
+
+    The result is read back: its tool center runs as that of the original does.
+    Raises RefusedError where a path is not known or the control would object to it; TooHardError.
+    """
+    trace = original.trace
+    tool_center: ToolCenter = original.tables["tool_center"]
+    compensated = trace.mode.anywhere_in_section(trace.compensation.compensates)
+    sections = np.unique(trace.mode.section[compensated & trace.mode.in_polar]).tolist()
+    if not sections:
+        raise RefusedError([Refusal(0, "no polar section has G41 or G42: its path is that of the tool center already")])
+    _require_path(trace, tool_center, compensated)
+    style, machine = style_of(trace), original.settings.machine
+    strokes = _strokes(trace, tool_center.moves, compensated)
+    blocks = new_blocks(trace, strokes, style)
+    remarks = list(_remarks(trace, sections))
+    edits = edits_of(original, blocks, style, machine)
+    first = {int(trace.run.block[trace.mode.sections.enter[section]]): remark for section, remark in remarks}
+    edits += [edit_before(original, block, [NewBlock(comment=text)], style, machine) for block, text in first.items()]
+    data, origin = with_edits(original, sorted(edits))
+    step = float(np.max(trace.lengths.least_step))
+    result = read_back_on_part(original, data, original.settings, origin, _INCREMENTS * step + 1e-3)
+    require_equal(result)
+    figures = [
+        Figure("sections written as the path of the tool center", len(sections)),
+        Figure("largest distance of the path from that of the original", result.deviation, "mm"),
+    ]
+    notes = [f"{text.lower()}: another R in the offset table changes nothing any more" for _, text in remarks]
+    return Outcome(data, origin, [], figures, list(dict.fromkeys(notes)))
+
+
+def _require_path(trace: Trace, tool_center: ToolCenter, compensated: Mask) -> None:
+    """Raise RefusedError where the path of the tool center is not known, or not that of the contour."""
+    moves, lines = tool_center.moves, trace.blocks.line_in_file
+    unknown = np.flatnonzero(trace.compensation.compensates & trace.path.travels & np.isnan(trace.compensation.radius))
+    if len(unknown):
+        row = int(unknown[0])
+        missing = to_give(trace.tools, trace.machine, row, "radius")
+        raise RefusedError([Refusal(int(lines[row]), f"R of {called_tool(trace.tools, row)} is not known: {missing}")])
+    objections = {
+        "the tool does not fit into this arc": tool_center.inside_arc_too_small,
+        "the tool center would run against the program": tool_center.interferes,
+        "the paths of the tool center do not meet at its end": tool_center.no_intersection,
+        "the control does not know the next move in time": tool_center.movement_missing,
+        "the center of the arc is its start or its end": tool_center.arc_center_on_path,
+    }
+    refusals = [
+        Refusal(int(lines[row]), f"{text}: there the path is wrong already")
+        for text, rows in objections.items()
+        for row in np.flatnonzero(rows & compensated)[:5].tolist()
+    ]
+    rows = moves.row[~moves.known & compensated[moves.row]]
+    refusals += [Refusal(int(lines[row]), "where the tool center runs is not known") for row in rows[:1].tolist()]
+    if moves.allowance.any():
+        row = int(moves.row[np.argmax(moves.allowance != 0)])
+        refusals.append(Refusal(int(lines[row]), "an infeed cycle makes the passes of its section"))
+    if refusals:
+        raise RefusedError(sorted(refusals, key=lambda refusal: refusal.line))
+
+
+def _strokes(trace: Trace, moves: Moves, compensated: Mask) -> Strokes:
+    """The moves of all rows whose path is another than the programmed one, and rows with codes that are left out."""
+    writes = trace.compensation.writes_side | trace.compensation.writes_cancel
+    result: dict[int, list[Stroke]] = {row: [] for row in np.flatnonzero(writes & compensated).tolist()}
+    changed = np.zeros(len(trace), bool)
+    changed[moves.row[moves.phase != Phase.CANCELLED]] = True
+    share = moves.arc_share
+    for row in np.flatnonzero(changed & compensated & trace.path.on_plane).tolist():
+        result.setdefault(row, [])
+    for section in np.unique(trace.mode.section[list(result)]).tolist():
+        own = np.flatnonzero((moves.section == section) & ~np.isnan(moves.start + moves.end))
+        for move, index in zip(of_section(trace, moves, section), own.tolist(), strict=True):
+            if move.row not in result:
+                continue
+            feed = float(moves.feed[index] * share[index]) if share[index] != 1 else None
+            result[move.row].append(Stroke(move.piece, z=None if move.is_level else move.ends, feed=feed))
+    return dict(sorted(result.items()))
+
+
+def _remarks(trace: Trace, sections: list[int]) -> Iterator[tuple[int, str]]:
+    """A comment for each section that says which tool and R its path is for."""
+    for section in sections:
+        rows = np.flatnonzero((trace.mode.section == section) & trace.compensation.compensates & trace.path.travels)
+        if not len(rows):
+            continue
+        row = int(rows[0])
+        radius = abs(float(trace.compensation.radius[row])) / float(trace.lengths.scale[row])
+        yield section, f"TOOL CENTER PATH OF {called_tool(trace.tools, row)} WITH R{radius:.4f}".rstrip("0")

@@ -1,0 +1,130 @@
+"""Lines and arcs of the polar plane one by one; plane points are complex, x + 1j*c [mm, radius]."""
+
+from __future__ import annotations
+
+import cmath
+import math
+
+import msgspec
+
+from polarcheck.geometry.tolerances import ZERO
+
+#: Lines whose directions differ by less meet nowhere [rad].
+_PARALLEL = 1e-12
+
+
+class Piece(msgspec.Struct, frozen=True):
+    """
+    A line or an arc.
+
+    start, end: plane points [mm]. center: of an arc; None for a line. turning: 1 counterclockwise, -1 clockwise, 0 for
+    a line. is_full: a full circle. move: the number of the move that it comes from.
+    """
+
+    start: complex
+    end: complex
+    center: complex | None = None
+    turning: int = 0
+    is_full: bool = False
+    move: int = -1
+
+    @property
+    def radius(self) -> float:
+        """R of an arc [mm]; inf for a line."""
+        return math.inf if self.center is None else abs(self.start - self.center)
+
+    @property
+    def leaving(self) -> complex:
+        """Unit tangent at the start."""
+        return self._tangent(self.start)
+
+    @property
+    def arriving(self) -> complex:
+        """Unit tangent at the end."""
+        return self._tangent(self.end)
+
+    def _tangent(self, point: complex) -> complex:
+        if self.center is None:
+            way = self.end - self.start
+            return way / (abs(way) or 1.0)
+        spoke = point - self.center
+        return 1j * self.turning * spoke / (abs(spoke) or 1.0)
+
+    @property
+    def sweep(self) -> float:
+        """Angle of an arc [rad], above 0; 0 for a line."""
+        if self.center is None:
+            return 0.0
+        if self.is_full:
+            return math.tau
+        return (self.turning * cmath.phase((self.end - self.center) / (self.start - self.center))) % math.tau
+
+    @property
+    def length(self) -> float:
+        """[mm]."""
+        return abs(self.end - self.start) if self.center is None else self.radius * self.sweep
+
+    def at(self, share: float) -> complex:
+        """The point at a share of the piece, 0 to 1; on an arc whose end is off the circle on a spiral."""
+        if self.center is None:
+            return self.start + share * (self.end - self.start)
+        first, last = self.start - self.center, abs(self.end - self.center)
+        spoke = cmath.rect(abs(first) + share * (last - abs(first)), cmath.phase(first))
+        return self.center + spoke * cmath.exp(1j * self.turning * self.sweep * share)
+
+    def replaced(self, start: complex | None = None, end: complex | None = None) -> Piece:
+        """The piece with another start or end on the same line or circle."""
+        piece = msgspec.structs.replace(
+            self, start=self.start if start is None else start, end=self.end if end is None else end
+        )
+        full = piece.is_full and abs(piece.start - piece.end) <= ZERO
+        return piece if full == piece.is_full else msgspec.structs.replace(piece, is_full=full)
+
+
+def moved_aside(piece: Piece, aside: float) -> Piece | None:
+    """
+    Return the piece parallel to itself, `aside` [mm] to its left; None for an arc of which nothing is left there.
+    """
+    start, end = piece.start + 1j * aside * piece.leaving, piece.end + 1j * aside * piece.arriving
+    if piece.center is not None and piece.radius - piece.turning * aside <= ZERO:
+        return None
+    return msgspec.structs.replace(piece, start=start, end=end)
+
+
+def meeting_points(first: Piece, second: Piece) -> list[complex]:
+    """Return where the lines or circles of two pieces meet, beyond their ends, too: none, one or two points."""
+    if first.center is None:
+        return _of_lines(first, second) if second.center is None else _of_line(first, second.center, second.radius)
+    if second.center is None:
+        return _of_line(second, first.center, first.radius)
+    return _of_circles(first.center, first.radius, second.center, second.radius)
+
+
+def _of_lines(first: Piece, second: Piece) -> list[complex]:
+    one, other = first.leaving, second.leaving
+    slope = _cross(one, other)
+    return [first.start + one * (_cross(second.start - first.start, other) / slope)] if abs(slope) > _PARALLEL else []
+
+
+def _cross(one: complex, other: complex) -> float:
+    return (one.conjugate() * other).imag
+
+
+def _of_line(line: Piece, center: complex, radius: float) -> list[complex]:
+    """Where a line meets a circle."""
+    along = line.leaving
+    foot = line.start + along * ((center - line.start) * along.conjugate()).real
+    square = radius**2 - abs(foot - center) ** 2
+    return [foot - math.sqrt(square) * along, foot + math.sqrt(square) * along] if square >= 0 else []
+
+
+def _of_circles(center: complex, radius: float, other_center: complex, other_radius: float) -> list[complex]:
+    way = other_center - center
+    apart = abs(way)
+    if apart <= ZERO:
+        return []
+    toward = (apart**2 + radius**2 - other_radius**2) / (2 * apart)
+    square = radius**2 - toward**2
+    aside = 1j * way / apart * math.sqrt(max(square, 0.0))
+    foot = center + way / apart * toward
+    return [foot - aside, foot + aside] if square >= 0 else []

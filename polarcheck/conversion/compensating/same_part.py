@@ -1,0 +1,99 @@
+"""A program with G41 or G42 read back: the part is the one that the path of the tool center has made."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import msgspec
+import numpy as np
+
+from polarcheck.arrays import Floats, Points
+from polarcheck.conversion.compensating.contours import Section
+from polarcheck.conversion.compensating.pieces import Piece
+from polarcheck.conversion.compensating.ramps import Contour, Ramped
+from polarcheck.conversion.compensating.sides import Swept
+from polarcheck.conversion.original import Original
+from polarcheck.conversion.outcome import Refusal, RefusedError
+from polarcheck.conversion.reading_back import read_back_on_part
+from polarcheck.table.milled import Milled
+from polarcheck.table.moves import Moves
+
+#: Points of each contour that are looked at, and those near its corners, as shares of its pieces.
+_POINTS, _NEAR_CORNERS = 400, (0.0, 0.02, 0.1, 0.9, 0.98)
+#: What a wall may differ by: least increments, and the chords of arcs [mm].
+_INCREMENTS, _CHORDS = 2.0, 5e-4
+#: The tool center goes round an acute corner up to this far from the path, in R.
+_FARTHEST = 3.0
+
+
+class Made(msgspec.Struct, frozen=True):
+    """A contour of a section with its ramps."""
+
+    section: Section
+    contour: Contour
+    ramped: Ramped
+
+
+class Proof(NamedTuple):
+    """
+    What differs [mm].
+
+    part: of the walls. path: of the way of the tool center.
+    """
+
+    part: float
+    path: float
+
+
+def require_same_part(
+    original: Original, swept: Swept, data: bytes, origin: Sequence[int], made: Sequence[Made]
+) -> Proof:
+    """
+    Return what the part and the way of the tool center differ by, with G41 and G42 and without.
+
+    swept: what the cutters of the original clear. origin: for each line of the new program that of the original.
+    Raises RefusedError where the walls along a contour would be others, or the control would object; TooHardError.
+    """
+    trace = original.trace
+    radius = max(each.section.radius for each in made)
+    step = float(np.max(trace.lengths.least_step))
+    result = read_back_on_part(original, data, original.settings, origin, _FARTHEST * radius)
+    if result.differences:
+        raise RefusedError(result.differences)
+    new_moves: Moves = result.new.tables["tool_center"].moves
+    new_milled: Milled = result.new.tables["milled"]
+    now = Swept(result.new.trace, new_moves, new_milled.radius[new_moves.row])
+    tolerance = _INCREMENTS * step + _CHORDS
+    largest = 0.0
+    for each in made:
+        moves, section = each.section.moves, each.section
+        numbers, points = _points(each.ramped.contour)
+        z = min(moves[number].ends for number in range(each.contour.first, each.contour.last + 1))
+        was, becomes = (way.distance(points, section.number, z) for way in (swept, now))
+        # What other moves take away is no wall.
+        differs = np.where(was > -tolerance, np.abs(becomes - was), 0.0)
+        worst = int(np.argmax(differs))
+        largest = max(largest, float(differs[worst]))
+        if differs[worst] > tolerance:
+            line = int(trace.blocks.line_in_file[moves[numbers[worst]].row])
+            raise RefusedError([Refusal(line, _text(was, becomes, worst))])
+    return Proof(largest, result.deviation)
+
+
+def _text(was: Floats, becomes: Floats, worst: int) -> str:
+    away = "cut" if becomes[worst] < was[worst] else "left standing"
+    return f"with G41 or G42 {abs(becomes[worst] - was[worst]):.4f} mm would be {away} beside this path"
+
+
+def _points(contour: Sequence[Piece]) -> tuple[list[int], Points]:
+    """Points along a contour, more of them near its corners, and the number of the move of each."""
+    whole = sum(piece.length for piece in contour) or 1.0
+    numbers: list[int] = []
+    points: list[complex] = []
+    for piece in contour:
+        count = max(1, int(_POINTS * piece.length / whole))
+        shares = [*_NEAR_CORNERS, *((number + 0.5) / count for number in range(count))]
+        points += [piece.at(share) for share in shares]
+        numbers += [piece.move] * len(shares)
+    return numbers, np.array(points)

@@ -1,0 +1,93 @@
+"""On which side of a path of the tool center the part is: by what else the cutter takes away there."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from polarcheck.arrays import Floats, Mask, Points
+from polarcheck.columns.trace import Trace
+from polarcheck.conversion.compensating.pieces import Piece
+from polarcheck.geometry.segments import Curves, segments
+from polarcheck.table.moves import Moves, z_along
+
+#: Sagitta of the chords of paths [mm], and what a cutter must cut into a wall to take it away.
+_TOLERANCE, _DEEP = 1e-3, 0.01
+#: Points of a contour that are looked at.
+_POINTS = 400
+
+
+class Swept:
+    """
+    What cutters clear at feed, in the frame of the part.
+
+    trace, moves: of the tool center. radius: R of each move [mm]; NaN where it is not known.
+    """
+
+    def __init__(self, trace: Trace, moves: Moves, radius: Floats) -> None:
+        known = trace.path.knows_section_entry[moves.section]
+        entry = np.where(known, moves.entry[moves.section], 0.0)
+        self.turn = np.exp(1j * np.radians(entry))
+        #: A section at whose beginning C is not known is alone in its frame.
+        self.frame = np.where(known, -1, moves.section)
+        begins, ends = z_along(trace, moves)
+        self.top = np.fmax(begins, ends)
+        usable = trace.path.cuts[moves.row] & ~np.isnan(radius) & ~np.isnan(moves.start + moves.end) & moves.is_of_tool
+        self.usable, self.moves, self.radius = usable, moves, radius
+
+    def distance(self, points: Points, section: int, z: float) -> Floats:
+        """
+        How far points at a depth are from all paths there [mm], beyond R of their cutters; below 0 they are cleared.
+
+        points: on the plane of a section [mm]. A path clears all depths at which it runs and those above.
+        """
+        import shapely  # type: ignore[import-untyped]
+
+        from polarcheck.geometry.polygons.faces import coordinates, lines_of
+
+        own = np.flatnonzero(self.moves.section == section)
+        frame, turn = int(self.frame[own[0]]), complex(self.turn[own[0]])
+        in_reach = ~(self.top > z + _TOLERANCE) | (math.isnan(z) & (self.moves.section == section))
+        chosen = np.flatnonzero(self.usable & (self.frame == frame) & in_reach)
+        distance = np.full(len(points), np.inf)
+        places = shapely.points(coordinates(points * turn))
+        for size in np.unique(self.radius[chosen]).tolist():
+            with_size = chosen[self.radius[chosen] == size]
+            chords = segments(self._curves(with_size), _TOLERANCE)
+            tree = shapely.STRtree(lines_of(chords.start, chords.end))
+            (at, _), far = tree.query_nearest(places, return_distance=True, all_matches=False)
+            distance[at] = np.minimum(distance[at], far - size)
+        return distance
+
+    def _curves(self, chosen: np.ndarray) -> Curves:
+        moves, turn = self.moves, self.turn[chosen]
+        center = np.where(np.isnan(moves.center[chosen]), np.nan, moves.center[chosen] * turn)
+        start, end = moves.start[chosen] * turn, moves.end[chosen] * turn
+        return Curves(start, end, center, moves.kind[chosen], np.zeros(len(chosen), int), chosen)
+
+
+def points_along(contour: Sequence[Piece], count: int = _POINTS) -> Points:
+    """Return points along a contour, some on each of its pieces, without its corners."""
+    whole = sum(piece.length for piece in contour) or 1.0
+    result: list[complex] = []
+    for piece in contour:
+        each = max(2, math.ceil(count * piece.length / whole))
+        result += [piece.at((number + 0.5) / each) for number in range(each)]
+    return np.array(result)
+
+
+def stands(swept: Swept, contour: Sequence[Piece], section: int, z: float, bar: float) -> bool:
+    """
+    Return True where nothing takes a contour away, and it lies in the bar at least in part.
+
+    bar: diameter beyond which there is no material [mm]; NaN where it is not known.
+    """
+    points = points_along(contour)
+    if not math.isnan(bar):
+        points = points[np.abs(points) < bar / 2 - _DEEP]
+    if not len(points):
+        return False
+    untouched: Mask = swept.distance(points, section, z) > -_DEEP
+    return bool(untouched.all())
