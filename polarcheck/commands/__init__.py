@@ -38,6 +38,7 @@ NAMES = (
     "compare",
     "completion",
     "config",
+    "convert",
     "explain",
     "feeds",
     "init",

@@ -161,6 +161,10 @@ debug = option(
 machine = option(
     "--machine", metavar="NAME|FILE", help="The lathe: one of `polarcheck machines`, or a TOML file of your own."
 )
+machine_from = option(
+    "--from", "machine", metavar="NAME|FILE",
+    help="The lathe that the program is for: one of `polarcheck machines`, or a TOML file of your own.",
+)  # fmt: skip
 changes = option(
     "--set", "changes", multiple=True, metavar="KEY=VALUE", help="A value of the machine: limits.c_feed=3600."
 )

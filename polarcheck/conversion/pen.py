@@ -52,6 +52,11 @@ class Pen:
         """Where the words that are written lead to: `at`, rounded to the least increment [mm]."""
         return self._point(*self._rounded(self.at))
 
+    @property
+    def feed_word(self) -> str:
+        """The F word that was written last; empty before the first."""
+        return self._feed
+
     def enter(self, at: complex, z: float = math.nan, direction: float = 0.0) -> list[NewBlock]:
         """
         The blocks that switch the mode on.

@@ -22,6 +22,14 @@ from polarcheck.revisions.report import Comparison, Difference, SectionPair
 
 #: Times of a section that differ by less than this share, or by less than this [s], are the same.
 _SAME_SHARE, _SAME_TIME = 2e-3, 0.02
+#: Rules about orders to spindles, the C axis and tools: where some of these are left to be decided, so is this.
+_OF_ORDERS = frozenset(
+    (
+        *("c-axis-clamped-in-polar", "c-axis-not-engaged", "c-axis-not-referenced", "live-tool-never-stopped"),
+        *("live-tool-stopped-in-cut", "live-tool-without-speed", "main-spindle-running-at-entry"),
+        *("no-tool-offset-at-entry", "spindle-code-in-polar"),
+    )
+)
 #: Further differences than this are not listed.
 _LISTED = 20
 
@@ -42,7 +50,14 @@ class ReadBack(msgspec.Struct, frozen=True):
 
 
 def read_back(
-    original: Original, data: bytes, settings: Settings, origin: Sequence[int], decided: Collection[int] = ()
+    original: Original,
+    data: bytes,
+    settings: Settings,
+    origin: Sequence[int],
+    decided: Collection[int] = (),
+    *,
+    rapid_as_line: bool = False,
+    other_states: Collection[str] = (),
 ) -> ReadBack:
     """
     Compare a program that has its polar sections on another control, or on the same one, with the original.
@@ -54,6 +69,8 @@ def read_back(
     settings: of the new program. origin: for each of its lines the line in the original, from 1.
     decided: lines of the original that are comments in the new program, for somebody to decide. Their moves and orders
     are not compared, but where the new program moves in their place.
+    rapid_as_line: moves in rapid traverse in sections are lines in the new program, whose F and time are its own.
+    other_states: states at the beginning of sections that are others on that machine, as `spindle`.
 
     Raises RefusedError where the new program cannot be run once, TooHardError.
     """
@@ -61,12 +78,16 @@ def read_back(
     old_side, new_side = (Revision(each.path, each.settings.name, [("", each.tables)]) for each in (original, new))
     tolerance = default_tolerance(old_side, new_side)
     left_out = _without_moves(new, origin, decided)
-    result = compared(old_side, new_side, tolerance, left_out, is_feed_on_plane=True)
-    differences = [*_of_comparison(result, decided), *_times(result)]
+    result = compared(old_side, new_side, tolerance, left_out, is_rewritten=True)
+    differences = [*_of_comparison(result, decided, rapid_as_line, other_states)]
+    differences += [] if rapid_as_line else _times(result)
     if original.settings.machine != settings.machine:
         differences += lost_orders(original.trace, new.trace, decided)
-    differences += _errors(original, new, origin)
+    errors = list(_errors(original, new, origin))
+    open_orders = [error for error in errors if decided and error.text.partition(" ")[0] in _OF_ORDERS]
+    differences += [error for error in errors if error not in open_orders]
     notes = [reason.reason for reason in result.not_compared if not reason.matters]
+    notes += [f"as long as that is not decided: {error.text}" for error in open_orders]
     return ReadBack(new, differences[:_LISTED], result.deviation or 0.0, notes)
 
 
@@ -118,10 +139,14 @@ def _without_moves(new: Original, origin: Sequence[int], decided: Collection[int
     return set(decided) - moving
 
 
-def _of_comparison(result: Comparison, decided: Collection[int]) -> Iterator[Refusal]:
+def _of_comparison(
+    result: Comparison, decided: Collection[int], rapid_as_line: bool, other_states: Collection[str]
+) -> Iterator[Refusal]:
     for section in result.sections:
         for each in section.differences:
-            yield _refusal(each, section)
+            is_rapid = rapid_as_line and each.what == "feed" and each.old == "rapid traverse"
+            if not is_rapid and each.what not in other_states:
+                yield _refusal(each, section)
     for each in result.outside:
         if each.what != "order" or each.old_line not in decided:
             yield _refusal(each)

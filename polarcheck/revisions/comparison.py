@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Iterator, Sequence
 from typing import NamedTuple, TypeVar
 
@@ -34,7 +35,7 @@ from polarcheck.revisions.report import (
 )
 from polarcheck.revisions.same_words import has_same_words
 from polarcheck.revisions.steps import not_comparable, steps
-from polarcheck.revisions.stretches import Stretch, of_sections, outside, without
+from polarcheck.revisions.stretches import ANGLE, Stretch, of_sections, outside, without
 from polarcheck.time_limit import keep_time
 
 Item = TypeVar("Item")
@@ -67,17 +68,18 @@ def default_tolerance(old: Revision, new: Revision) -> float:
 
 
 def compared(
-    old: Revision, new: Revision, tolerance: float, left_out: Collection[int] = (), *, is_feed_on_plane: bool = False
+    old: Revision, new: Revision, tolerance: float, left_out: Collection[int] = (), *, is_rewritten: bool = False
 ) -> Comparison:
     """
     Compare two revisions.
 
     tolerance: lengths that differ by no more are the same [mm]. left_out: lines of the old file whose moves and orders
-    outside of sections are not compared. is_feed_on_plane: of sections the speed of the tool center on the plane is
-    compared, and not F as it is programmed.
+    outside of sections are not compared. is_rewritten: the new program is the old one for another control. Of sections
+    the speed of the tool center on the plane is compared then, and not F as it is programmed; behind them C is the same
+    up to what rounding of the last point comes to.
     """
     is_same_machine = old.trace.machine == new.trace.machine
-    runs = [_Runs(*pair, tolerance, is_same_machine, left_out, is_feed_on_plane) for pair in _pairs_of_runs(old, new)]
+    runs = [_Runs(*pair, tolerance, is_same_machine, left_out, is_rewritten) for pair in _pairs_of_runs(old, new)]
     sections = [section for run in runs for section in run.sections()]
     between = [difference for run in runs for difference in run.outside()]
     missing = sorted(
@@ -149,16 +151,17 @@ class _Runs:
         tolerance: float,
         is_same_machine: bool,
         left_out: Collection[int],
-        is_feed_on_plane: bool,
+        is_rewritten: bool,
     ) -> None:
         self._tables = old, new
         self._left_out = left_out
+        self._is_rewritten = is_rewritten
         self._tolerance = tolerance
         self._is_same_machine = is_same_machine
         self._traces: tuple[Trace, Trace] = old["trace"], new["trace"]
         self._steps = tuple(steps(trace, is_same_machine=is_same_machine) for trace in self._traces)
         self._old, self._new = (
-            of_sections(trace, tables["tool_center"], steps, is_feed_on_plane=is_feed_on_plane)
+            of_sections(trace, tables["tool_center"], steps, is_feed_on_plane=is_rewritten)
             for trace, tables, steps in zip(self._traces, self._tables, self._steps, strict=True)
         )
         self._partner, self._ordered = paired(self._old, self._new)
@@ -282,9 +285,10 @@ class _Runs:
             _gaps(self._traces[0], self._ordered), _gaps(self._traces[1], partners), strict=True
         ):
             keep_time()
-            old = self._outside(0, low, high)
+            angle = self._angle_behind(low)
+            old = self._outside(0, low, high, angle)
             old = Part(old.trace, without(old.stretch, old.trace, self._left_out)) if self._left_out else old
-            new = _turned_to(old, self._outside(1, new_low, new_high))
+            new = _turned_to(old, self._outside(1, new_low, new_high, angle))
             why = next(
                 (f"{name}: {part.stretch.needs}" for name, part in (("old", old), ("new", new)) if part.stretch.needs),
                 "",
@@ -296,9 +300,17 @@ class _Runs:
                 self.not_compared.append(NotCompared(f"outside of sections: {why}"))
         return differences
 
-    def _outside(self, side: int, first: int, until: int) -> Part:
+    def _angle_behind(self, row: int) -> float:
+        """What C may differ by behind the section that a row ends [deg]."""
+        trace = self._traces[0]
+        radius = abs(float(trace.path.x_before[row])) if 0 < row < len(trace) else 0.0
+        if not self._is_rewritten or not radius > self._tolerance:
+            return ANGLE
+        return max(ANGLE, math.degrees(2 * self._tolerance / radius))
+
+    def _outside(self, side: int, first: int, until: int, angle: float) -> Part:
         trace = self._traces[side]
-        return Part(trace, outside(trace, self._tolerance, self._steps[side], first, until))
+        return Part(trace, outside(trace, self._tolerance, self._steps[side], first, until, angle))
 
 
 def _left_open(old: Part, new: Part) -> Iterator[Difference]:

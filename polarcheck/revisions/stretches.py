@@ -171,11 +171,13 @@ def _turned(trace: Trace, moves: Moves, section: int) -> tuple[SpacePath, bool]:
     return SpacePath(moves.start * turn, moves.end * turn, moves.center * turn, moves.kind, z_from, z_to), knows_z
 
 
-def outside(trace: Trace, tolerance: float, steps: Sequence[Step], first: int, until: int) -> Stretch:
+def outside(
+    trace: Trace, tolerance: float, steps: Sequence[Step], first: int, until: int, angle: float = ANGLE
+) -> Stretch:
     """
     Return what lies outside of sections between two rows.
 
-    tolerance: of lengths [mm]; C is scaled so that ANGLE is as much. until: the row behind the last.
+    tolerance: of lengths [mm]; C is scaled so that `angle` [deg] is as much. until: the row behind the last.
     """
     rows = np.arange(first, until)
     rows = rows[trace.mode.section[rows] < 0]
@@ -194,7 +196,7 @@ def outside(trace: Trace, tolerance: float, steps: Sequence[Step], first: int, u
     (x_from, x_to), (z_from, z_to) = (_without_unknown(*column) for column in columns[:2])
     c_from, c_to = _continuous(*_without_unknown(*columns[2]), path.c_turn[row])
     # C counts in the sense of the plane, which is not that of C on each lathe.
-    scale = tolerance / ANGLE * trace.path.c_axis.sense
+    scale = tolerance / angle * trace.path.c_axis.sense
     start, end = z_from + 1j * x_from, z_to + 1j * x_to
     kind = trace.axes.motion[row].astype(np.int16)
     center = _centers(trace, row, start, end, kind)
@@ -207,10 +209,12 @@ def outside(trace: Trace, tolerance: float, steps: Sequence[Step], first: int, u
 
 def without(stretch: Stretch, trace: Trace, lines: Collection[int]) -> Stretch:
     """Return a stretch outside of sections without the moves and orders of some lines; the moves behind follow on."""
-    stays = ~np.isin(trace.blocks.line_in_file[stretch.row], list(lines))
+    is_left_out = np.isin(trace.blocks.line_in_file, list(lines))
+    stays = ~is_left_out[stretch.row]
     steps = [step for step in stretch.steps if int(trace.blocks.line_in_file[step.row]) not in lines]
     path = stretch.path[stays]
-    behind = np.flatnonzero(np.diff(np.flatnonzero(stays)) > 1) + 1
+    # A line without a move of its own, as a cycle, may have led elsewhere.
+    behind = np.flatnonzero(np.diff(np.cumsum(is_left_out)[stretch.row[stays]]) > 0) + 1
     start, z_start = path.start.copy(), path.z_start.copy()
     start[behind], z_start[behind] = path.end[behind - 1], path.z_end[behind - 1]
     return msgspec.structs.replace(

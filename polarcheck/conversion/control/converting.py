@@ -1,0 +1,69 @@
+"""A program for another control: `converted` writes it anew by the facts of both profiles, and reads it back."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from msgspec.structs import replace
+
+from polarcheck.checking.settings import Settings
+from polarcheck.conversion.blocks import edit_before, edit_behind, edits_of, edits_of_signs, with_edits
+from polarcheck.conversion.control.around import around
+from polarcheck.conversion.control.sections import sections
+from polarcheck.conversion.control.translating import Translation
+from polarcheck.conversion.original import Original
+from polarcheck.conversion.outcome import Figure, Outcome
+from polarcheck.conversion.reading_back import read_back, require_equal
+from polarcheck.conversion.style_of import style_of
+from polarcheck.machines.job import Job
+from polarcheck.machines.modal import Units
+
+
+def converted(original: Original, target: Settings) -> Outcome:
+    """
+    Return a program as the machine of `target` reads it: its polar sections, and as much around them as both profiles
+    know. The others are comments in it, and decisions of the outcome.
+
+    target: machine, job and encoding of the new program; offsets of the job are those that the original calls.
+
+    Raises RefusedError where the new program would not do the same, or cannot be written; TooHardError.
+    """
+    trace = original.trace
+    translation = Translation(original, target)
+    style = style_of(trace)
+    inside = sections(original, target.machine, style, translation)
+    outside = around(original, target, translation, inside.taken)
+    edits = edits_of(original, {**outside.blocks, **inside.blocks}, style, target.machine)
+    edits += [edit_before(original, block, new, style, target.machine) for block, new in outside.before.items()]
+    edits += [edit_behind(original, block, new, style, target.machine) for block, new in outside.behind.items()]
+    edits += [*outside.edits, *edits_of_signs(original, target.machine)]
+    data, origin = with_edits(original, edits)
+    settings = replace(target, job=_job(original, target, translation))
+    decided = outside.decided | inside.decided
+    states = {"spindle", "live_tool"} if translation.roles.of_live_tool.any() else set()
+    states |= {"spindle", "live_tool", "speed"} if decided else set()
+    result = read_back(
+        original, data, settings, origin, decided, rapid_as_line=inside.rapid_as_line, other_states=states
+    )
+    require_equal(result)
+    decisions = sorted({*outside.decisions, *inside.decisions}, key=lambda decision: decision.line)
+    figures = [
+        Figure("blocks before", float(len(trace.text.blocks))),
+        Figure("blocks after", float(len(result.new.trace.text.blocks))),
+        Figure("largest distance of the tool center paths", result.deviation, "mm"),
+    ]
+    return Outcome(data, origin, decisions, figures, [*_notes(translation.notes), *inside.notes, *result.notes])
+
+
+def _job(original: Original, target: Settings, translation: Translation) -> Job:
+    """The job of the new program: lengths in the units of the original, offsets as the new T words call them."""
+    job = translation.tools.job(target.job)
+    if job.units or not len(original.trace):
+        return job
+    # Lengths of a job are in the units of the program: those in force at its end.
+    is_inch = bool(original.trace.lengths.units[-1] == Units.INCH)
+    return replace(job, units="inch" if is_inch else "mm")
+
+
+def _notes(notes: Mapping[str, int]) -> list[str]:
+    return [f"line {line}: {text}" for text, line in notes.items()]

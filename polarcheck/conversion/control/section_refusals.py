@@ -1,0 +1,77 @@
+"""Why polar sections cannot be written for another machine."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from polarcheck.arrays import Mask
+from polarcheck.columns.trace import Trace
+from polarcheck.conversion.original import Original
+from polarcheck.conversion.outcome import Refusal
+from polarcheck.machines.modal import FeedMode
+
+
+def refusals(original: Original, is_same: bool) -> list[Refusal]:
+    """
+    Return the reasons, each once a section, in the order of lines.
+
+    is_same: the words of sections stay as they are, so that it does not matter what they come to.
+    """
+    trace = original.trace
+    reasons = [*_of_ends(trace)]
+    if not is_same:
+        reasons += _of_rows(trace)
+        reasons += _of_words(trace)
+    return sorted(dict.fromkeys(reasons), key=lambda reason: reason.line)
+
+
+def _of_ends(trace: Trace) -> Iterator[Refusal]:
+    sections = trace.mode.sections
+    for number, (enter, leave) in enumerate(zip(sections.enter.tolist(), sections.leave.tolist(), strict=True)):
+        line = _line(trace, enter)
+        if not sections.left[number] or sections.returned[number] or leave >= len(trace):
+            yield Refusal(line, "the polar mode is never left")
+        if ((sections.again > enter) & (sections.again < leave)).any():
+            yield Refusal(line, "the polar mode is switched on again within")
+
+
+def _of_rows(trace: Trace) -> Iterator[Refusal]:
+    path, mode = trace.path, trace.mode
+    inside = mode.in_polar
+    polar = trace.machine.polar
+    moving = path.travels & inside
+    unknown = moving & (np.isnan(path.end) | np.isnan(path.start))
+    on_sub_spindle = trace.modal.on_sub_spindle & mode.enters
+    feed_mode = trace.feedrate.modal_feed_mode
+    checks: list[tuple[Mask, str]] = [
+        (on_sub_spindle, "the sub-spindle turns the plane, Z and G41 round by builder: convert its sections by hand"),
+        (inside & ~mode.is_followed, "the axes of this section are not followed"),
+        (inside & (trace.axes.linear_axis != ord("X")), "the linear axis of this section is not X"),
+        (trace.run.unknown & inside, "what this block does is not known"),
+        (trace.blocks.has(polar.infeed_word) & mode.enters, "the passes of an infeed cycle are not converted"),
+        (trace.modal.in_cycle & trace.axes.moves & inside, "a cycle in the mode is not converted"),
+        (unknown, "where the tool goes is not known"),
+        (path.is_arc & moving & np.isnan(path.center), "the center of this arc is not known"),
+        ((feed_mode == FeedMode.INVERSE_TIME) & moving, "inverse time in the mode is not converted"),
+    ]
+    for hits, text in checks:
+        rows = np.flatnonzero(hits)
+        numbers = mode.section[rows]
+        for row in rows[np.append(True, np.diff(numbers) != 0)[: len(rows)]].tolist():
+            yield Refusal(_line(trace, row), text)
+
+
+def _of_words(trace: Trace) -> Iterator[Refusal]:
+    rows = np.flatnonzero(trace.mode.whole_section >= 0)
+    if len(rows) and trace.path.frames is not None:
+        yield Refusal(_line(trace, int(rows[0])), "the program shifts or turns its coordinates by frames")
+    computed = rows[trace.text.blocks.is_macro[trace.run.block[rows]] & np.isin(rows, trace.run.row)]
+    _, first = np.unique(trace.mode.whole_section[computed], return_index=True)
+    for row in computed[first].tolist():
+        yield Refusal(_line(trace, row), "its words are computed, and have to be others there: write numbers")
+
+
+def _line(trace: Trace, row: int) -> int:
+    return int(trace.blocks.line_in_file[row])
