@@ -145,6 +145,22 @@ class Pen:
             return [NewBlock((*codes, self._code("G4"), address + text))]
         raise RefusedError([self._refusal("the words of a dwell there are not known")])
 
+    def written(
+        self, words: Sequence[str], motion: str, end: complex, z: float, feed: float | None, codes: Sequence[str] = ()
+    ) -> list[NewBlock]:
+        """
+        A block whose axis words somebody else has written, such as X[#1+2.].
+
+        motion: its code, as G1. end, z: where it leads to [mm]. feed: as in `line`; None where it is among the words.
+        """
+        own_feed = next((word for word in words if word.startswith("F")), "")
+        if own_feed:
+            self._wanted_feed = self._feed = own_feed
+        block = self._block(codes, motion, words, feed, motion == "G0")
+        self.at, self.z = end, z
+        self._written = [None, None, None]
+        return [block] if block.words else []
+
     # ---- words ----
 
     def _straight(

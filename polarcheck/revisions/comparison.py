@@ -35,7 +35,7 @@ from polarcheck.revisions.report import (
 )
 from polarcheck.revisions.same_words import has_same_words
 from polarcheck.revisions.steps import not_comparable, steps
-from polarcheck.revisions.stretches import ANGLE, Stretch, of_sections, outside, without
+from polarcheck.revisions.stretches import ANGLE, Rewritten, Stretch, of_sections, outside
 from polarcheck.time_limit import keep_time
 
 Item = TypeVar("Item")
@@ -285,10 +285,9 @@ class _Runs:
             _gaps(self._traces[0], self._ordered), _gaps(self._traces[1], partners), strict=True
         ):
             keep_time()
-            angle = self._angle_behind(low)
-            old = self._outside(0, low, high, angle)
-            old = Part(old.trace, without(old.stretch, old.trace, self._left_out)) if self._left_out else old
-            new = _turned_to(old, self._outside(1, new_low, new_high, angle))
+            rewritten = self._rewritten(low)
+            old = self._outside(0, low, high, rewritten)
+            new = _turned_to(old, self._outside(1, new_low, new_high, rewritten))
             why = next(
                 (f"{name}: {part.stretch.needs}" for name, part in (("old", old), ("new", new)) if part.stretch.needs),
                 "",
@@ -300,17 +299,20 @@ class _Runs:
                 self.not_compared.append(NotCompared(f"outside of sections: {why}"))
         return differences
 
-    def _angle_behind(self, row: int) -> float:
-        """What C may differ by behind the section that a row ends [deg]."""
+    def _rewritten(self, row: int) -> Rewritten | None:
+        """How moves are compared behind the section that ends above a row of the old program."""
+        if not self._is_rewritten:
+            return None
         trace = self._traces[0]
         radius = abs(float(trace.path.x_before[row])) if 0 < row < len(trace) else 0.0
-        if not self._is_rewritten or not radius > self._tolerance:
-            return ANGLE
-        return max(ANGLE, math.degrees(2 * self._tolerance / radius))
+        angle = math.degrees(2 * self._tolerance / radius) if radius > self._tolerance else 0.0
+        return Rewritten(self._left_out, max(ANGLE, angle))
 
-    def _outside(self, side: int, first: int, until: int, angle: float) -> Part:
+    def _outside(self, side: int, first: int, until: int, rewritten: Rewritten | None) -> Part:
         trace = self._traces[side]
-        return Part(trace, outside(trace, self._tolerance, self._steps[side], first, until, angle))
+        if rewritten is not None and side:
+            rewritten = Rewritten((), rewritten.angle)
+        return Part(trace, outside(trace, self._tolerance, self._steps[side], first, until, rewritten))
 
 
 def _left_open(old: Part, new: Part) -> Iterator[Difference]:

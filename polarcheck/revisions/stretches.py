@@ -20,6 +20,8 @@ from polarcheck.table.tool_center import ToolCenter
 
 #: Outside sections C is compared up to this angle [deg], whatever the tolerance of lengths is.
 ANGLE = 0.001
+#: Half turns that differ by less are the same one, backwards [deg].
+_HALF_TURN = 0.01
 NOWHERE = complex("nan+nanj")
 
 
@@ -171,20 +173,34 @@ def _turned(trace: Trace, moves: Moves, section: int) -> tuple[SpacePath, bool]:
     return SpacePath(moves.start * turn, moves.end * turn, moves.center * turn, moves.kind, z_from, z_to), knows_z
 
 
+class Rewritten(msgspec.Struct, frozen=True):
+    """
+    How a program is compared with the one for another control that is made of it.
+
+    left_out: lines of the file whose moves and orders outside of sections do not count; moves behind them follow on.
+    angle: what C may differ by behind a section [deg].
+    """
+
+    left_out: Collection[int] = ()
+    angle: float = ANGLE
+
+
 def outside(
-    trace: Trace, tolerance: float, steps: Sequence[Step], first: int, until: int, angle: float = ANGLE
+    trace: Trace, tolerance: float, steps: Sequence[Step], first: int, until: int, rewritten: Rewritten | None = None
 ) -> Stretch:
     """
     Return what lies outside of sections between two rows.
 
-    tolerance: of lengths [mm]; C is scaled so that `angle` [deg] is as much. until: the row behind the last.
+    tolerance: of lengths [mm]; C is scaled so that ANGLE, or that of `rewritten`, is as much. until: the row behind the
+    last.
     """
     rows = np.arange(first, until)
     rows = rows[trace.mode.section[rows] < 0]
     at_work = np.isin(trace.axes.motion[rows], (Motion.RAPID, Motion.LINE, Motion.CW, Motion.CCW))
     moving = at_work & trace.path.moves[rows] & ~trace.modal.in_cycle[rows] & trace.modal.uses_axes[rows]
     moving &= ~special_rows(trace)[rows]
-    row = rows[moving]
+    is_left_out = np.isin(trace.blocks.line_in_file[rows], list(rewritten.left_out if rewritten else ()))
+    row = rows[moving & ~is_left_out]
     starts, path = trace.blocks.starts, trace.path
     columns = [(before(column, starts, np.nan)[row], column[row]) for column in (path.x, path.z, path.c_angle)]
     needs = ""
@@ -193,39 +209,26 @@ def outside(
         lost = np.isnan(after) & trace.blocks.has(*words)[row]
         if lost.any() and not needs:
             needs = f"{words[0]} of line {int(trace.blocks.line_in_file[row[np.argmax(lost)]])} is not known"
+    if rewritten is not None and len(rows):
+        at = [before(column, starts, np.nan)[rows[0]] for column in (path.x, path.z, path.c_angle)]
+        columns = [_following_on(here, *column) for here, column in zip(at, columns, strict=True)]
     (x_from, x_to), (z_from, z_to) = (_without_unknown(*column) for column in columns[:2])
-    c_from, c_to = _continuous(*_without_unknown(*columns[2]), path.c_turn[row])
+    turn = path.c_turn[row]
+    if rewritten is not None:
+        # How many turns C counts is a matter of the control, where the tool is in the air.
+        is_rapid = trace.axes.motion[row] == Motion.RAPID
+        turn = np.where(is_rapid, turn - 360 * np.floor((turn + 180 + _HALF_TURN) / 360), turn)
+    c_from, c_to = _continuous(*_without_unknown(*columns[2]), turn)
     # C counts in the sense of the plane, which is not that of C on each lathe.
-    scale = tolerance / angle * trace.path.c_axis.sense
+    scale = tolerance / (rewritten.angle if rewritten else ANGLE) * trace.path.c_axis.sense
     start, end = z_from + 1j * x_from, z_to + 1j * x_to
     kind = trace.axes.motion[row].astype(np.int16)
     center = _centers(trace, row, start, end, kind)
     kind = np.where(np.isnan(center), Motion.LINE, kind).astype(np.int16)
     of_stretch = SpacePath(start, end, center, kind, c_from * scale, c_to * scale)
-    own = set(rows.tolist())
+    own = set(rows[~is_left_out].tolist())
     stretch = _stretch(trace, -1, rows, of_stretch, row, [step for step in steps if step.row in own], needs)
     return msgspec.structs.replace(stretch, c_scale=scale)
-
-
-def without(stretch: Stretch, trace: Trace, lines: Collection[int]) -> Stretch:
-    """Return a stretch outside of sections without the moves and orders of some lines; the moves behind follow on."""
-    is_left_out = np.isin(trace.blocks.line_in_file, list(lines))
-    stays = ~is_left_out[stretch.row]
-    steps = [step for step in stretch.steps if int(trace.blocks.line_in_file[step.row]) not in lines]
-    path = stretch.path[stays]
-    # A line without a move of its own, as a cycle, may have led elsewhere.
-    behind = np.flatnonzero(np.diff(np.cumsum(is_left_out)[stretch.row[stays]]) > 0) + 1
-    start, z_start = path.start.copy(), path.z_start.copy()
-    start[behind], z_start[behind] = path.end[behind - 1], path.z_end[behind - 1]
-    return msgspec.structs.replace(
-        stretch,
-        path=msgspec.structs.replace(path, start=start, z_start=z_start),
-        row=stretch.row[stays],
-        rapid=stretch.rapid[stays],
-        feed_mode=stretch.feed_mode[stays],
-        feed=stretch.feed[stays],
-        steps=steps,
-    )
 
 
 def _without_unknown(start: Floats, end: Floats) -> tuple[Floats, Floats]:
@@ -237,6 +240,19 @@ def _without_unknown(start: Floats, end: Floats) -> tuple[Floats, Floats]:
     following = known[np.minimum(np.searchsorted(known, np.arange(len(values))), len(known) - 1)]
     filled = values[following]
     return filled[::2], filled[1::2]
+
+
+def _following_on(here: float, start: Floats, end: Floats) -> tuple[Floats, Floats]:
+    """
+    Each move begins where the one before has ended; an axis that is not known stands where it was known last.
+
+    here: where the axis stands before all of them; NaN where that is not known.
+    """
+    known = np.flatnonzero(~np.isnan(end))
+    if len(known):
+        last = np.searchsorted(known, np.arange(len(end)), side="right") - 1
+        end = np.where(last < 0, here, end[known[np.maximum(last, 0)]])
+    return np.append(here, end)[: len(end)], end
 
 
 def _continuous(start: Floats, end: Floats, turn: Floats) -> tuple[Floats, Floats]:

@@ -195,7 +195,7 @@ class _Writer:
         new = [NewBlock(tuple(result.words), _comment(comment) if comment else "")]
         if result.behind and not self._says_absolute(block):
             new.append(NewBlock(tuple(result.behind)))
-        stays = new[0].words or comment or self.texts.has_comment(block) or self.texts.is_jump_target(block)
+        stays = new[0].words or comment or self.texts.has_comment(block)
         self.blocks[block] = new if stays else new[1:]
 
     def _says_absolute(self, block: int) -> bool:

@@ -34,7 +34,6 @@ class BlockTexts:
         others = (self.text.prose, self.text.outside, self.text.dots)
         self._texts = {block for spans in others for block in spans.block.tolist()}
         is_n = words.address == ord("N")
-        self._n_words = set(words.block[is_n].tolist())
         self._by_number = dict(zip(words.value[is_n].tolist(), words.block[is_n].tolist(), strict=True))
 
     def _block_at(self, place: int) -> int:
@@ -63,10 +62,6 @@ class BlockTexts:
     def is_text(self, block: int) -> bool:
         """The block is text outside of the programs, or without words."""
         return block in self._texts or block not in self._words
-
-    def is_jump_target(self, block: int) -> bool:
-        """The block has an N word: something may lead there."""
-        return block in self._n_words
 
     def block_numbered(self, number: float) -> int | None:
         """The block with an N word; None where there is none."""

@@ -12,8 +12,8 @@ from polarcheck.conversion.control.around import around
 from polarcheck.conversion.control.sections import sections
 from polarcheck.conversion.control.translating import Translation
 from polarcheck.conversion.original import Original
-from polarcheck.conversion.outcome import Figure, Outcome
-from polarcheck.conversion.reading_back import read_back, require_equal
+from polarcheck.conversion.outcome import Figure, Outcome, Refusal, RefusedError
+from polarcheck.conversion.reading_back import ReadBack, read_back, require_equal
 from polarcheck.conversion.style_of import style_of
 from polarcheck.machines.job import Job
 from polarcheck.machines.modal import Units
@@ -45,7 +45,7 @@ def converted(original: Original, target: Settings) -> Outcome:
     result = read_back(
         original, data, settings, origin, decided, rapid_as_line=inside.rapid_as_line, other_states=states
     )
-    require_equal(result)
+    _require_equal(result, original, target)
     decisions = sorted({*outside.decisions, *inside.decisions}, key=lambda decision: decision.line)
     figures = [
         Figure("blocks before", float(len(trace.text.blocks))),
@@ -53,6 +53,17 @@ def converted(original: Original, target: Settings) -> Outcome:
         Figure("largest distance of the tool center paths", result.deviation, "mm"),
     ]
     return Outcome(data, origin, decisions, figures, [*_notes(translation.notes), *inside.notes, *result.notes])
+
+
+def _require_equal(result: ReadBack, original: Original, target: Settings) -> None:
+    """Raise RefusedError if the new program differs; with what helps where only the way round corners does."""
+    ours, theirs = original.settings.machine, target.machine
+    differs_in_path = any("path differs" in difference.text for difference in result.differences)
+    is_compensated = bool(original.trace.compensation.compensates.any())
+    if differs_in_path and is_compensated and ours.compensation.corner != theirs.compensation.corner:
+        how = "goes round outer corners otherwise: `polarcheck compensate --center` writes the path of the tool center,"
+        raise RefusedError([*result.differences, Refusal(0, f"{theirs.title} {how} which can be converted")])
+    require_equal(result)
 
 
 def _job(original: Original, target: Settings, translation: Translation) -> Job:

@@ -67,10 +67,6 @@ def _of_words(trace: Trace) -> Iterator[Refusal]:
     rows = np.flatnonzero(trace.mode.whole_section >= 0)
     if len(rows) and trace.path.frames is not None:
         yield Refusal(_line(trace, int(rows[0])), "the program shifts or turns its coordinates by frames")
-    computed = rows[trace.text.blocks.is_macro[trace.run.block[rows]] & np.isin(rows, trace.run.row)]
-    _, first = np.unique(trace.mode.whole_section[computed], return_index=True)
-    for row in computed[first].tolist():
-        yield Refusal(_line(trace, row), "its words are computed, and have to be others there: write numbers")
 
 
 def _line(trace: Trace, row: int) -> int:

@@ -18,7 +18,7 @@ _OF_GEOMETRY = (
 #: Keys of the profile by which the geometry of sections is written.
 _OF_CONTROL = (
     *("least_increment", "least_increment_inch", "number_without_point", "motion_codes", "native_words"),
-    *("line_comments", "parentheses_are_comments", "digit_limit", "g_code_system"),
+    *("line_comments", "parentheses_are_comments", "g_code_system"),
 )
 _OF_POLAR = (
     *("x", "virtual_axis", "virtual_axis_incremental", "virtual_axis_programming", "zero_angle", "direction_word"),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import cmath
+import itertools
 import math
 from collections.abc import Sequence
 
@@ -12,6 +13,7 @@ import numpy as np
 from polarcheck.checking.editing import is_plain
 from polarcheck.conversion.blocks import NewBlock
 from polarcheck.conversion.control.block_texts import BlockTexts
+from polarcheck.conversion.control.computed_blocks import ComputedBlocks
 from polarcheck.conversion.control.corners import Corners
 from polarcheck.conversion.control.section_feeds import SectionFeeds
 from polarcheck.conversion.control.section_refusals import refusals
@@ -70,6 +72,7 @@ class _Writer:
         self.texts = BlockTexts(self.trace)
         self.words = SectionWords(self.trace, target)
         self.feeds = SectionFeeds(self.trace, original.tables["tool_center"].moves, target)
+        self.computed = ComputedBlocks(self.trace, target, translation.measures, self.words)
         self.corners = Corners(self.trace, target)
         self.is_same = self.words.is_same
         self.blocks: dict[int, list[NewBlock]] = {}
@@ -108,12 +111,10 @@ class _Writer:
             return
         pen, turn = self._pen(enter), self._turn(enter)
         self._take_out_around(enter, leave)
-        depth = int(trace.run.depth[enter])
+        targets = self._targets(rows)
         for row in rows:
             pen.numbers.line = self._line(row)
-            if int(trace.run.depth[row]) != depth:
-                # A subprogram that runs several times is the same blocks each time.
-                depth = int(trace.run.depth[row])
+            if int(trace.run.block[row]) in targets:
                 pen.forget()
             self._put(row, self._row(row, enter, leave, pen, turn))
         self._feed_behind(leave, pen)
@@ -124,6 +125,19 @@ class _Writer:
         rows: list[int] = np.unique(self.trace.run.row[first:behind]).tolist()
         # The head of a subprogram is written with those of all programs.
         return [row for row in rows if not self.texts.has_program_number(int(self.trace.run.block[row]))]
+
+    def _targets(self, rows: Sequence[int]) -> set[int]:
+        """
+        Blocks that do not always follow the same one: the first of a subprogram or of a loop, and those behind them.
+
+        What they write may not rest on what was in force before.
+        """
+        block, depth = self.trace.run.block, self.trace.run.depth
+        return {
+            int(block[row])
+            for before, row in itertools.pairwise(rows)
+            if depth[row] != depth[before] or block[row] <= block[before]
+        }
 
     def _pen(self, enter: int) -> Pen:
         trace = self.trace
@@ -180,7 +194,10 @@ class _Writer:
         if row == leave:
             return _without_empty(NewBlock(tuple(words)), *pen.leave(), self.corners.behind(row))
         codes = [*front, *self._sides(geometry)]
-        moves = self._moves(row, pen, turn, codes)
+        if self.computed.is_computed(row):
+            moves = self._computed_block(row, geometry, pen, turn, codes)
+        else:
+            moves = self._moves(row, pen, turn, codes)
         if not moves:
             return [NewBlock((*codes, *behind))] if codes or behind else []
         return [*moves[:-1], NewBlock((*moves[-1].words, *behind), moves[-1].comment)]
@@ -198,7 +215,7 @@ class _Writer:
         if trace.axes.motion[row] == Motion.RAPID:
             self.rapid_rows.append(row)
             return pen.rapid(end, z, codes)
-        feed = self.feeds.of_row(row)
+        feed = None if self.computed.has_computed_feed(row) else self.feeds.of_row(row)
         if end is None or not bool(path.is_arc[row]):
             return pen.line(end, z, feed, codes)
         is_ccw = bool(trace.axes.motion[row] == Motion.CCW)
@@ -206,6 +223,20 @@ class _Writer:
         if len(blocks) > 1:
             self.divided_rows.append(row)
         return blocks
+
+    def _computed_block(
+        self, row: int, geometry: Sequence[int], pen: Pen, turn: complex, codes: Sequence[str]
+    ) -> list[NewBlock]:
+        if turn != 1:
+            raise RefusedError([Refusal(self._line(row), "its words are computed, and the plane lies otherwise there")])
+        path = self.trace.path
+        words = self.computed.written(row, geometry, pen)
+        feed = None if self._has_feed_word(words) or self.computed.has_computed_feed(row) else self.feeds.of_row(row)
+        end, z = complex(path.end[row]), float(path.z[row])
+        return pen.written(words, self.computed.motion(row) if words else "", end, z, feed, codes)
+
+    def _has_feed_word(self, words: Sequence[str]) -> bool:
+        return any(word.startswith("F") for word in words)
 
     def _sides(self, geometry: Sequence[int]) -> list[str]:
         """The codes of cutter compensation in a block, as the other machine has them."""
