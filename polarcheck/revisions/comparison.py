@@ -164,7 +164,9 @@ class _Runs:
             of_sections(trace, tables["tool_center"], steps, is_feed_on_plane=is_rewritten)
             for trace, tables, steps in zip(self._traces, self._tables, self._steps, strict=True)
         )
-        self._partner, self._ordered = paired(self._old, self._new)
+        is_in_order = is_rewritten and len(self._old) == len(self._new)
+        numbers = np.arange(len(self._old))
+        self._partner, self._ordered = (numbers, numbers) if is_in_order else paired(self._old, self._new)
         #: Largest deviations [mm], and whether they are exact.
         self.measured: list[tuple[float, bool]] = []
         self.not_compared: list[NotCompared] = list(self._missing())

@@ -288,4 +288,5 @@ def _where(part: Part, row: int) -> tuple[float, float, float]:
     if part.stretch.section >= 0:
         point = complex(path.start[row]) * turn_of(part.trace, part.stretch.section)
         return point.real, point.imag, z
-    return z, float(path.x_before[row]), float(path.c_angle_before[row]) * part.stretch.c_scale
+    c = 0.0 if part.stretch.is_rewritten else float(path.c_angle_before[row]) * part.stretch.c_scale
+    return z, float(path.x_before[row]), c

@@ -20,8 +20,8 @@ from polarcheck.table.tool_center import ToolCenter
 
 #: Outside sections C is compared up to this angle [deg], whatever the tolerance of lengths is.
 ANGLE = 0.001
-#: Half turns that differ by less are the same one, backwards [deg].
-_HALF_TURN = 0.01
+#: Angles that are below a full turn by less are 0 [deg].
+_NEAR_TURN = 0.01
 NOWHERE = complex("nan+nanj")
 
 
@@ -33,7 +33,7 @@ class Stretch(msgspec.Struct, frozen=True):
     path: inside a section plane points on the part with Z; outside Z + 1j*X, with C in the place of Z. row: of each
     move. rapid: moves in rapid traverse. feed_mode: FeedMode of each move. feed: F [mm per min or revolution].
     steps: what is ordered beside the moves. knows_z: Z is written anywhere; outside always True.
-    c_scale: outside sections what stands for a degree of C in the path.
+    c_scale: outside sections what stands for a degree of C in the path. is_rewritten: C counts at feed alone there.
     needs: why the path is not known; empty where it is. as_programmed: the path is the programmed one, for want of R.
     """
 
@@ -47,6 +47,7 @@ class Stretch(msgspec.Struct, frozen=True):
     steps: Sequence[Step]
     knows_z: bool = True
     c_scale: float = 1.0
+    is_rewritten: bool = False
     needs: str = ""
     as_programmed: str = ""
 
@@ -213,12 +214,13 @@ def outside(
         at = [before(column, starts, np.nan)[rows[0]] for column in (path.x, path.z, path.c_angle)]
         columns = [_following_on(here, *column) for here, column in zip(at, columns, strict=True)]
     (x_from, x_to), (z_from, z_to) = (_without_unknown(*column) for column in columns[:2])
-    turn = path.c_turn[row]
+    c_from, c_to = _without_unknown(*columns[2])
     if rewritten is not None:
-        # How many turns C counts is a matter of the control, where the tool is in the air.
-        is_rapid = trace.axes.motion[row] == Motion.RAPID
-        turn = np.where(is_rapid, turn - 360 * np.floor((turn + 180 + _HALF_TURN) / 360), turn)
-    c_from, c_to = _continuous(*_without_unknown(*columns[2]), turn)
+        turn = c_to - c_from
+        turn -= 360 * np.round((turn - np.nan_to_num(path.c_turn[row])) / 360)
+        c_from, c_to = _at_feed_alone(trace, row, c_from, c_from + turn)
+    else:
+        c_from, c_to = _continuous(c_from, c_to, path.c_turn[row])
     # C counts in the sense of the plane, which is not that of C on each lathe.
     scale = tolerance / (rewritten.angle if rewritten else ANGLE) * trace.path.c_axis.sense
     start, end = z_from + 1j * x_from, z_to + 1j * x_to
@@ -228,7 +230,7 @@ def outside(
     of_stretch = SpacePath(start, end, center, kind, c_from * scale, c_to * scale)
     own = set(rows[~is_left_out].tolist())
     stretch = _stretch(trace, -1, rows, of_stretch, row, [step for step in steps if step.row in own], needs)
-    return msgspec.structs.replace(stretch, c_scale=scale)
+    return msgspec.structs.replace(stretch, c_scale=scale, is_rewritten=rewritten is not None)
 
 
 def _without_unknown(start: Floats, end: Floats) -> tuple[Floats, Floats]:
@@ -253,6 +255,27 @@ def _following_on(here: float, start: Floats, end: Floats) -> tuple[Floats, Floa
         last = np.searchsorted(known, np.arange(len(end)), side="right") - 1
         end = np.where(last < 0, here, end[known[np.maximum(last, 0)]])
     return np.append(here, end)[: len(end)], end
+
+
+def _at_feed_alone(trace: Trace, row: Rows, start: Floats, end: Floats) -> tuple[Floats, Floats]:
+    """
+    C within a turn; where several moves in rapid traverse follow each other, all of them have that of the last.
+
+    Which of them turns C, and over how many full turns, is a matter of the control.
+    """
+    sense = trace.path.c_axis.sense
+    begin = (sense * start + _NEAR_TURN) % 360 - _NEAR_TURN
+    finish = begin + sense * (end - start)
+    stops = np.append(trace.axes.motion[row] != Motion.RAPID, True)[: len(row)]
+    stops[-1:] = True
+    cycles = np.cumsum(trace.modal.in_cycle)
+    stops[:-1] |= np.diff(cycles[row]) > 0
+    last = np.flatnonzero(stops)[np.searchsorted(np.flatnonzero(stops), np.arange(len(row)))] if len(row) else row
+    is_rapid = trace.axes.motion[row] == Motion.RAPID
+    # A run of rapid traverse that ends with a move at feed has the C with which that begins.
+    angle = np.where(is_rapid[last], finish[last], begin[last])
+    angle = (angle + _NEAR_TURN) % 360 - _NEAR_TURN
+    return sense * np.where(is_rapid, angle, begin), sense * np.where(is_rapid, angle, finish)
 
 
 def _continuous(start: Floats, end: Floats, turn: Floats) -> tuple[Floats, Floats]:
