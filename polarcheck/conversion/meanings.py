@@ -23,6 +23,9 @@ _G_LISTS = (
 )
 #: Lists of M codes.
 _M_LISTS = (*(name for pair in SWITCHED for name in pair), "spindle_orientation", "optional_stop", "program_end")
+#: M5 stops whichever spindle runs, and M3 starts a live tool without codes of its own: which one turns where a section
+#: begins is compared there.
+_ANY_SPINDLE = {"live_tool_on": "spindle_on", "live_tool_off": "spindle_off"}
 #: Dwells that differ by no more are the same [s]: a control counts thousandths.
 _SAME_TIME = 1e-3
 #: More differences than this are not listed.
@@ -61,14 +64,15 @@ def lost_orders(old: Trace, new: Trace, decided: Collection[int]) -> Iterator[Re
 
 def orders(trace: Trace) -> Iterator[Order]:
     """Yield the orders of a program in the order in which they run."""
-    found: list[tuple[int, str]] = []
+    listed_words: set[tuple[int, str]] = set()
     machine = trace.machine
     listed = {name: machine.codes(name) for name in _G_LISTS}
     listed |= {name: list(getattr(machine.m_codes, name)) for name in _M_LISTS}
     for name, codes in listed.items():
-        found += [(index, name) for index in trace.blocks.code_indices(*codes).tolist()] if codes else []
+        name = _ANY_SPINDLE.get(name, name)
+        listed_words |= {(index, name) for index in trace.blocks.code_indices(*codes).tolist()} if codes else set()
     words = trace.run.words
-    for index, name in sorted(found):
+    for index, name in sorted(listed_words):
         yield Order(int(trace.run.row[index]), name, f"{chr(int(words.address[index]))}{float(words.value[index]):g}")
 
 

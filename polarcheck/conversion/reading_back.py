@@ -86,7 +86,7 @@ def read_back(
     errors = list(_errors(original, new, origin))
     open_orders = [error for error in errors if decided and error.text.partition(" ")[0] in _OF_ORDERS]
     differences += [error for error in errors if error not in open_orders]
-    notes = [reason.reason for reason in result.not_compared if not reason.matters]
+    notes = [reason.reason for reason in result.not_compared if not reason.matters and "as programmed" in reason.reason]
     notes += [f"as long as that is not decided: {error.text}" for error in open_orders]
     return ReadBack(new, differences[:_LISTED], result.deviation or 0.0, notes)
 

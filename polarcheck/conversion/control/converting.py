@@ -42,6 +42,8 @@ def converted(original: Original, target: Settings) -> Outcome:
     decided = outside.decided | inside.decided
     states = {"spindle", "live_tool"} if translation.roles.of_live_tool.any() else set()
     states |= {"spindle", "live_tool", "speed"} if decided else set()
+    # P beside M133 is no S, and S of before stays in force.
+    states |= {"speed"} if "P" in (each.writing.live_tool_speed for each in (trace.machine, target.machine)) else set()
     result = read_back(
         original, data, settings, origin, decided, rapid_as_line=inside.rapid_as_line, other_states=states
     )

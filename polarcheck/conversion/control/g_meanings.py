@@ -54,6 +54,11 @@ _OF_ONE_MEANING = (
     "absolute",
     "incremental",
 )
+#: Lists whose codes say what is compared, and where it is compared without them: another control needs none.
+_COMPARED = (
+    *("corner_by_arc", "corner_by_intersection", "feed_on_plane", "feed_in_space", "feed_as_machine"),
+    *("feed_at_center", "feed_at_contour", "feed_at_inner_contour"),
+)
 #: Lists whose codes mean that with other words beside them, and something else alone.
 _WITH_WORDS = ("coordinate_setting",)
 #: What ends a state: nothing is left out where the other machine has no code that begins that state -> that list.
@@ -94,6 +99,8 @@ class GMeanings:
                 self._keys.setdefault(code(word), (key, place))
                 if key in _WITH_WORDS:
                     self._with_words[code(word)] = (key, place)
+        for name, meant in source.control.motion_codes.items():
+            self._keys[code(name)] = self._keys[code(meant)]
         self._has_same_codes = (
             source.control.known_codes == target.control.known_codes
             and source.control.g_code_system == target.control.g_code_system
@@ -130,6 +137,11 @@ class GMeanings:
             return Meaning((self.named(theirs[place]),), key=key)
         if key in _ENDS and not self.target.codes(_ENDS[key]):
             return Meaning(note=f"it ends what {self.target.title} cannot begin", key=key)
+        if key in _COMPARED:
+            return Meaning(
+                note=f"{self.target.title} has no code for it, and moves the tool as fast and along the same path",
+                key=key,
+            )
         return Meaning(reason=f"the profile of {self.target.title} has no code that does the same", key=key)
 
     def named(self, word: str) -> str:

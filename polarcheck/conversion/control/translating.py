@@ -61,6 +61,8 @@ _CYCLES = (
     "motion_not_followed",
     "thread_cutting",
 )
+#: Cycles whose words are the same on all controls that have them.
+_PLAIN_CYCLES = ("turning_cycle", "threading_cycle", "facing_cycle", "drilling_cycle")
 _OF_UNITS = ("inch", "mm")
 _OF_DISTANCE = ("absolute", "incremental")
 
@@ -232,8 +234,8 @@ class Translation:
             return "its lengths are in other units there"
         if self.measures.x_ratio(row) != 1 and self.trace.blocks.has("X", "U")[row]:
             return "X counts otherwise there: diameter or radius"
-        if not self.measures.pointless_is_same:
-            return "numbers without a decimal point count otherwise there"
+        if not self.measures.pointless_is_same and not self._has_points(row):
+            return "nothing says that its words mean the same there"
         if ours.polar.rotary_words != theirs.polar.rotary_words:
             return "the rotary axis has another address there"
         systems = ours.control.g_code_system, theirs.control.g_code_system
@@ -241,6 +243,17 @@ class Translation:
         if systems[0] != systems[1] and (has_steps or self.trace.modal.incremental[row]):
             return "U, V, W and H are other words there"
         return ""
+
+    def _has_points(self, row: int) -> bool:
+        """A plain cycle whose numbers have points, so that every control reads them alike."""
+        is_plain = self.trace.blocks.listed(*_PLAIN_CYCLES)[row] or self.trace.modal.in_cycle[row]
+        if not is_plain or self._is_repetitive[row]:
+            return False
+        others = (index for index in self.words_of(row) if self._letter(index) not in "GMST")
+        return all(
+            "." in written or not written.strip("ABCDEFHIJKLPQRUVWXYZ0")
+            for written in map(self.measures.written, others)
+        )
 
     # ---- words ----
 
