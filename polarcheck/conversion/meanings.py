@@ -69,11 +69,29 @@ def orders(trace: Trace) -> Iterator[Order]:
     listed = {name: machine.codes(name) for name in _G_LISTS}
     listed |= {name: list(getattr(machine.m_codes, name)) for name in _M_LISTS}
     for name, codes in listed.items():
-        name = _ANY_SPINDLE.get(name, name)
         listed_words |= {(index, name) for index in trace.blocks.code_indices(*codes).tolist()} if codes else set()
     words = trace.run.words
-    for index, name in sorted(listed_words):
+    for index, name in _of_one_meaning(trace, listed_words):
         yield Order(int(trace.run.row[index]), name, f"{chr(int(words.address[index]))}{float(words.value[index]):g}")
+
+
+def _of_one_meaning(trace: Trace, listed_words: Collection[tuple[int, str]]) -> list[tuple[int, str]]:
+    """
+    Words with their lists in order. A code that stops the live tool and does something else stops it if it runs.
+
+    On the lathe of the builder's guide M35 engages the C axis and stops the live tool.
+    """
+    names: dict[int, list[str]] = {}
+    for index, name in sorted(listed_words):
+        names.setdefault(index, []).append(name)
+    result = set()
+    for index, listed in names.items():
+        row = int(trace.run.row[index])
+        runs = row > 0 and bool(trace.modal.live_tool[row - 1])
+        if len(listed) > 1 and "live_tool_off" in listed:
+            listed = ["live_tool_off"] if runs else [name for name in listed if name != "live_tool_off"]
+        result |= {(index, _ANY_SPINDLE.get(name, name)) for name in listed}
+    return sorted(result)
 
 
 def _paired(old: list[Order], new: list[Order]) -> tuple[list[tuple[Order, Order]], list[Order]]:

@@ -16,6 +16,7 @@ from polarcheck.conversion.outcome import Figure, Outcome, Refusal, RefusedError
 from polarcheck.conversion.reading_back import ReadBack, read_back, require_equal
 from polarcheck.conversion.style_of import style_of
 from polarcheck.machines.job import Job
+from polarcheck.machines.machine import Machine
 from polarcheck.machines.modal import Units
 
 
@@ -42,8 +43,7 @@ def converted(original: Original, target: Settings) -> Outcome:
     decided = outside.decided | inside.decided
     states = {"spindle", "live_tool"} if translation.roles.of_live_tool.any() else set()
     states |= {"spindle", "live_tool", "speed"} if decided else set()
-    # P beside M133 is no S, and S of before stays in force.
-    states |= {"speed"} if "P" in (each.writing.live_tool_speed for each in (trace.machine, target.machine)) else set()
+    states |= set() if all(_live_tool_has_s(each) for each in (trace.machine, target.machine)) else {"speed"}
     result = read_back(
         original, data, settings, origin, decided, rapid_as_line=inside.rapid_as_line, other_states=states
     )
@@ -66,6 +66,11 @@ def _require_equal(result: ReadBack, original: Original, target: Settings) -> No
         how = "goes round outer corners otherwise: `polarcheck compensate --center` writes the path of the tool center,"
         raise RefusedError([*result.differences, Refusal(0, f"{theirs.title} {how} which can be converted")])
     require_equal(result)
+
+
+def _live_tool_has_s(machine: Machine) -> bool:
+    """The speed of the live tool is an S that is followed. P beside M133 is none, and S of before stays in force."""
+    return machine.writing.live_tool_speed.rstrip("=") in ("S", *machine.control.spindle_words)
 
 
 def _job(original: Original, target: Settings, translation: Translation) -> Job:
