@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+import itertools
+from collections.abc import Collection, Iterator, Sequence
 from difflib import SequenceMatcher
 
 import msgspec
@@ -60,6 +61,34 @@ def lost_orders(old: Trace, new: Trace, decided: Collection[int]) -> Iterator[Re
     if len(missing) > _LISTED:
         yield Refusal(0, f"and {len(missing) - _LISTED} other codes would be missing")
     yield from _dwells(old, new, pairs)
+
+
+def other_speeds(old: Trace, new: Trace, decided: Collection[int], origin: Sequence[int]) -> Iterator[Refusal]:
+    """
+    Yield the first spindle speed that differs, whichever words name it: S, SB=, or P beside M133.
+
+    decided: lines of the old file that somebody has to decide. origin: of each new line the line in the old file.
+    """
+    of_decided = {number for number, line in enumerate(origin, 1) if line in decided}
+    speeds = _speeds(old, decided), _speeds(new, of_decided)
+    for (line, speed), (new_line, other) in itertools.zip_longest(*speeds, fillvalue=(0, 0.0)):
+        if speed != other and not (np.isnan(speed) and np.isnan(other)):
+            where = f" (line {new_line} of the result)" if new_line else ""
+            yield Refusal(line, f"the spindle speed {speed:g} would be {other:g}{where}")
+            return
+
+
+def _speeds(trace: Trace, left_out: Collection[int]) -> list[tuple[int, float]]:
+    """The speeds of a program in order, with their lines."""
+    machine, words = trace.machine, trace.run.words
+    addresses = [machine.address_number(word) for word in ("S", *machine.control.spindle_words)]
+    is_speed = np.isin(words.address, addresses)
+    if machine.writing.live_tool_speed == "P":
+        starts = trace.blocks.codes(*machine.m_codes.live_tool_on)
+        is_speed |= (words.address == ord("P")) & starts[trace.run.row]
+    lines = trace.blocks.line_in_file[trace.run.row[is_speed]].tolist()
+    pairs = zip(lines, words.value[is_speed].tolist(), strict=True)
+    return [(line, speed) for line, speed in pairs if line not in left_out]
 
 
 def orders(trace: Trace) -> Iterator[Order]:

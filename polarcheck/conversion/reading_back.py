@@ -11,7 +11,7 @@ import numpy as np
 from polarcheck.checking.check import check_runs
 from polarcheck.checking.rule import load_all
 from polarcheck.checking.settings import Settings
-from polarcheck.conversion.meanings import lost_orders
+from polarcheck.conversion.meanings import lost_orders, other_speeds
 from polarcheck.conversion.original import Original, read
 from polarcheck.conversion.outcome import Refusal, RefusedError
 from polarcheck.conversion.part_paths import CHORD, path_on_part
@@ -39,7 +39,8 @@ class ReadBack(msgspec.Struct, frozen=True):
     What the new program does beside the original.
 
     new: the program as it is read. differences: what differs, with lines of the original; none where it may be written.
-    deviation: the largest distance of the tool center paths [mm]. notes: what could not be compared and does not
+    deviation: the largest distance of the tool center paths [mm]. open_orders: errors about spindles, the C axis or
+    tools, which somebody has to decide. notes: what could not be compared and does not
     matter, and warnings of a check that the original does not have.
     """
 
@@ -47,6 +48,7 @@ class ReadBack(msgspec.Struct, frozen=True):
     differences: list[Refusal]
     deviation: float
     notes: list[str]
+    open_orders: list[Refusal] = []
 
 
 def read_back(
@@ -83,12 +85,14 @@ def read_back(
     differences += [] if rapid_as_line else _times(result)
     if original.settings.machine != settings.machine:
         differences += lost_orders(original.trace, new.trace, decided)
+        differences += other_speeds(original.trace, new.trace, decided, origin)
     errors = list(_errors(original, new, origin))
-    open_orders = [error for error in errors if decided and error.text.partition(" ")[0] in _OF_ORDERS]
+    # The original may start a live tool by a code that its profile does not name.
+    is_open = bool(decided) or not original.trace.machine.m_codes.live_tool_on
+    open_orders = [error for error in errors if is_open and error.text.partition(" ")[0] in _OF_ORDERS]
     differences += [error for error in errors if error not in open_orders]
     notes = [reason.reason for reason in result.not_compared if not reason.matters and "as programmed" in reason.reason]
-    notes += [f"as long as that is not decided: {error.text}" for error in open_orders]
-    return ReadBack(new, differences[:_LISTED], result.deviation or 0.0, notes)
+    return ReadBack(new, differences[:_LISTED], result.deviation or 0.0, notes, open_orders)
 
 
 def read_back_on_part(

@@ -107,7 +107,7 @@ class _Writer:
                 if content and not self._taken[block] and self.texts.line(block) not in self.decided:
                     text = f"{content}: it is the contour of the cycle in line {line}"
                     self._decide(self.texts.line(block), text)
-                    self.blocks[block] = [NewBlock((), _comment(text))]
+                    self.blocks[block] = [NewBlock((), decision_comment(text))]
 
     # ---- one block ----
 
@@ -185,14 +185,14 @@ class _Writer:
         if result.whole:
             content = self.texts.content(block)
             self._decide(line, f"{content}: {result.whole}")
-            self.blocks[block] = [NewBlock((), _comment(f"{content}: {result.whole}"))]
+            self.blocks[block] = [NewBlock((), decision_comment(f"{content}: {result.whole}"))]
             return
         for text in result.decisions:
             self._decide(line, text)
         comment = "; ".join(result.decisions)
         if not (result.changed or comment or (self._resigns and self.texts.has_comment(block))):
             return
-        new = [NewBlock(tuple(result.words), _comment(comment) if comment else "")]
+        new = [NewBlock(tuple(result.words), decision_comment(comment) if comment else "")]
         if result.behind and not self._says_absolute(block):
             new.append(NewBlock(tuple(result.behind)))
         stays = new[0].words or comment or self.texts.has_comment(block)
@@ -238,10 +238,10 @@ class _Writer:
         else:
             self._decide(line, f"{content}: {reason}")
         self._reported = reason.startswith("it is never")
-        self.blocks[block] = [NewBlock((), _comment(f"{content}: {reason}"))]
+        self.blocks[block] = [NewBlock((), decision_comment(f"{content}: {reason}"))]
 
 
-def _comment(text: str) -> str:
+def decision_comment(text: str) -> str:
     """A comment that says what is to be decided, in characters that every control has."""
     plain = text.upper().translate(str.maketrans("()[];%", "      "))
     return "DECIDE: " + " ".join("".join(sign for sign in plain if " " <= sign <= "~").split())

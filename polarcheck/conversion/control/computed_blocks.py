@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from fractions import Fraction
 
+from polarcheck.arrays import stretch
 from polarcheck.columns.trace import Trace
 from polarcheck.conversion.control.measures import Measures, fraction
+from polarcheck.conversion.control.number_text import number_of
 from polarcheck.conversion.control.section_words import SectionWords
 from polarcheck.conversion.outcome import Refusal, RefusedError
 from polarcheck.conversion.pen import Pen
 from polarcheck.machines.machine import Machine
 from polarcheck.machines.modal import Motion
 
+_PLAIN_FEED = re.compile(r"F\s*=?\s*[\d.]", re.IGNORECASE)
 _MOTIONS = {Motion.RAPID: "G0", Motion.LINE: "G1", Motion.CW: "G2", Motion.CCW: "G3"}
 
 
@@ -28,8 +32,12 @@ class ComputedBlocks:
         self.source = trace.machine
 
     def is_computed(self, row: int) -> bool:
-        """A word of the block is computed."""
-        return bool(self.trace.text.blocks.is_macro[self.trace.run.block[row]])
+        """A word of the block that says where the tool goes is computed."""
+        if not self.trace.text.blocks.is_macro[self.trace.run.block[row]]:
+            return False
+        low, high = stretch(self.trace.run.row, row, row + 1)
+        geometry, _ = self.words.divided(row, range(low, high), is_switch=False)
+        return any(number_of(self.measures.written(index)) is None for index in geometry)
 
     def has_computed_feed(self, row: int) -> bool:
         """F in force in a row is computed."""
@@ -38,7 +46,8 @@ class ComputedBlocks:
             return False
         blocks = self.trace.text.blocks
         block = int(blocks.start.searchsorted(place, side="right")) - 1
-        return bool(blocks.is_macro[block])
+        text = self.trace.text.source.excerpt(place, int(blocks.end[block]))
+        return bool(blocks.is_macro[block]) and not _PLAIN_FEED.match(text)
 
     def motion(self, row: int) -> str:
         """The code of the motion of a row: G1."""

@@ -2,21 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 
+import numpy as np
 from msgspec.structs import replace
 
+from polarcheck.checking.editing import Replace
 from polarcheck.checking.settings import Settings
-from polarcheck.conversion.blocks import edit_before, edit_behind, edits_of, edits_of_signs, with_edits
-from polarcheck.conversion.control.around import around
+from polarcheck.conversion.blocks import NewBlock, edit_before, edit_behind, edits_of, edits_of_signs, with_edits
+from polarcheck.conversion.control.around import around, decision_comment
 from polarcheck.conversion.control.sections import sections
 from polarcheck.conversion.control.translating import Translation
 from polarcheck.conversion.original import Original
-from polarcheck.conversion.outcome import Figure, Outcome, Refusal, RefusedError
+from polarcheck.conversion.outcome import Decision, Figure, Outcome, Refusal, RefusedError
 from polarcheck.conversion.reading_back import ReadBack, read_back, require_equal
+from polarcheck.conversion.style import Style
 from polarcheck.conversion.style_of import style_of
 from polarcheck.machines.job import Job
-from polarcheck.machines.machine import Machine
 from polarcheck.machines.modal import Units
 
 
@@ -41,20 +43,34 @@ def converted(original: Original, target: Settings) -> Outcome:
     data, origin = with_edits(original, edits)
     settings = replace(target, job=_job(original, target, translation))
     decided = outside.decided | inside.decided
-    states = {"spindle", "live_tool"} if translation.roles.of_live_tool.any() else set()
-    states |= {"spindle", "live_tool", "speed"} if decided else set()
-    states |= set() if all(_live_tool_has_s(each) for each in (trace.machine, target.machine)) else {"speed"}
+    # Speeds are compared word by word: S of before stays in force beside P of M133.
+    is_other_spindle = bool(decided) or bool(translation.roles.of_live_tool.any())
+    states = {"speed", *(("spindle", "live_tool") if is_other_spindle else ())}
     result = read_back(
         original, data, settings, origin, decided, rapid_as_line=inside.rapid_as_line, other_states=states
     )
     _require_equal(result, original, target)
+    if result.open_orders:
+        edits += _remarks(original, target, style, result.open_orders)
+        data, origin = with_edits(original, edits)
     decisions = sorted({*outside.decisions, *inside.decisions}, key=lambda decision: decision.line)
+    decisions += [Decision(error.line, error.text) for error in result.open_orders]
     figures = [
         Figure("blocks before", float(len(trace.text.blocks))),
         Figure("blocks after", float(len(result.new.trace.text.blocks))),
         Figure("largest distance of the tool center paths", result.deviation, "mm"),
     ]
     return Outcome(data, origin, decisions, figures, [*_notes(translation.notes), *inside.notes, *result.notes])
+
+
+def _remarks(original: Original, target: Settings, style: Style, open_orders: Sequence[Refusal]) -> Iterator[Replace]:
+    """Yield edits that put comments on orders that are to be decided before the blocks that need them."""
+    blocks = original.trace.text.blocks
+    for order in open_orders:
+        block = int(np.searchsorted(blocks.line, order.line))
+        text, _, _ = order.text.partition(" in line ")
+        remark = NewBlock((), decision_comment(f"{text.replace('-', ' ')} behind this block"))
+        yield edit_before(original, min(block, len(blocks) - 1), [remark], style, target.machine)
 
 
 def _require_equal(result: ReadBack, original: Original, target: Settings) -> None:
@@ -66,11 +82,6 @@ def _require_equal(result: ReadBack, original: Original, target: Settings) -> No
         how = "goes round outer corners otherwise: `polarcheck compensate --center` writes the path of the tool center,"
         raise RefusedError([*result.differences, Refusal(0, f"{theirs.title} {how} which can be converted")])
     require_equal(result)
-
-
-def _live_tool_has_s(machine: Machine) -> bool:
-    """The speed of the live tool is an S that is followed. P beside M133 is none, and S of before stays in force."""
-    return machine.writing.live_tool_speed.rstrip("=") in ("S", *machine.control.spindle_words)
 
 
 def _job(original: Original, target: Settings, translation: Translation) -> Job:

@@ -135,8 +135,8 @@ def head_words(trace: Trace, target: Machine, measures: Measures) -> list[str]:
         of_lengths_alone = target.control.units_of_lengths_alone
         if codes:
             words.append(next((code for code in codes if code not in of_lengths_alone), codes[0]))
-    has_letters = target.control.g_code_system == "A"
-    if not has_letters and target.codes("absolute") and not trace.modal.sets("distance").any():
+    systems = trace.machine.control.g_code_system, target.control.g_code_system
+    if systems[0] == "A" != systems[1] and target.codes("absolute") and not trace.modal.sets("distance").any():
         words.append(target.codes("absolute")[0])
     control = target.control
     if control.x_without_words and control.x_diameter_words and control.x == "diameter":

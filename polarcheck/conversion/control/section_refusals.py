@@ -42,7 +42,10 @@ def _of_rows(trace: Trace) -> Iterator[Refusal]:
     inside = mode.in_polar
     polar = trace.machine.polar
     moving = path.travels & inside
-    unknown = moving & (np.isnan(path.end) | np.isnan(path.start))
+    # Where the tool stands before a line does not matter: posts of some controls position it behind the switch.
+    unknown = moving & (np.isnan(path.end) | (path.is_arc & np.isnan(path.start)))
+    off_by = np.abs(np.abs(path.start - path.center) - np.abs(path.end - path.center))
+    off_circle = path.is_arc & moving & (off_by > trace.machine.arcs.tolerance)
     on_sub_spindle = trace.modal.on_sub_spindle & mode.enters
     feed_mode = trace.feedrate.modal_feed_mode
     checks: list[tuple[Mask, str]] = [
@@ -53,6 +56,7 @@ def _of_rows(trace: Trace) -> Iterator[Refusal]:
         (trace.blocks.has(polar.infeed_word) & mode.enters, "the passes of an infeed cycle are not converted"),
         (trace.modal.in_cycle & trace.axes.moves & inside, "a cycle in the mode is not converted"),
         (unknown, "where the tool goes is not known"),
+        (off_circle, "this arc does not end on its circle"),
         (path.is_arc & moving & np.isnan(path.center), "the center of this arc is not known"),
         ((feed_mode == FeedMode.INVERSE_TIME) & moving, "inverse time in the mode is not converted"),
     ]
