@@ -49,7 +49,10 @@ class Numbers:
 
     def of_increments(self, count: int) -> str:
         """A length of so many least increments as it is written."""
-        return self._checked(_fixed(count * self.least, self.least), self.style.decimals, self.style.point)
+        style = self.style
+        is_fraction = not float(count * self.least).is_integer()
+        decimals = style.fraction_decimals if is_fraction and style.decimals is None else style.decimals
+        return self._checked(_fixed(count * self.least, self.least), decimals, style.point)
 
     def angle(self, degrees: float) -> str:
         """An angle [deg] as it is written."""

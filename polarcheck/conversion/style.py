@@ -15,6 +15,7 @@ class Style(msgspec.Struct, frozen=True):
     lower_case: letters are small.
     code_digits: least digits of a G or M code, 2 for G01.
     decimals: digits behind the point of each length, zeros at the end included; None where these are left out.
+    fraction_decimals: the same of lengths that are not whole: C8.660 beside X30.
     point: a whole number has a point, as in X10.
     zero_point: so has zero, as in X0.
     leading_zero: X0.5, not X.5.
@@ -32,6 +33,7 @@ class Style(msgspec.Struct, frozen=True):
     lower_case: bool = False
     code_digits: int = 1
     decimals: int | None = None
+    fraction_decimals: int | None = None
     point: bool = True
     zero_point: bool = False
     leading_zero: bool = True

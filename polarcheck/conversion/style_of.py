@@ -35,6 +35,7 @@ def style_of(trace: Trace) -> Style:
         lower_case=_is_lower(text),
         code_digits=_code_digits(text),
         decimals=lengths[0],
+        fraction_decimals=_fraction_decimals(text, _of(text, _LENGTHS)) if lengths[0] is None else None,
         point=lengths[1],
         zero_point=lengths[2],
         leading_zero=_leading_zero(text),
@@ -89,6 +90,17 @@ def _decimals(text: Text, words: Rows) -> tuple[int | None, bool, bool]:
     if most and len(words) > 2 and ends_with_zero.any() and np.mean(decimals[~zero] == most) >= _NEARLY_ALL:
         count = most
     return count, _is_usual(points[whole & ~zero], True), _is_usual(points[zero], False)
+
+
+def _fraction_decimals(text: Text, words: Rows) -> int | None:
+    """All decimals of a number that is not whole, or None where zeros are left out."""
+    values, decimals = text.words.value[words], text.words.decimals[words]
+    fractions = values != np.round(values)
+    most = int(decimals[fractions].max(initial=0))
+    if np.count_nonzero(fractions) < 3 or not most:
+        return None
+    ends_with_zero = text.source.code[text.words.end[words[fractions]] - 1] == ord("0")
+    return most if ends_with_zero.any() and np.mean(decimals[fractions] == most) >= _NEARLY_ALL else None
 
 
 def _is_usual(mask: Mask, otherwise: bool) -> bool:

@@ -50,11 +50,12 @@ def converted(original: Original, target: Settings) -> Outcome:
         original, data, settings, origin, decided, rapid_as_line=inside.rapid_as_line, other_states=states
     )
     _require_equal(result, original, target)
-    if result.open_orders:
+    decisions = sorted({*outside.decisions, *inside.decisions}, key=lambda decision: decision.line)
+    # What an M code is that is to be decided says whether the live tool runs.
+    if result.open_orders and not any(decision.text.startswith("M") for decision in decisions):
         edits += _remarks(original, target, style, result.open_orders)
         data, origin = with_edits(original, edits)
-    decisions = sorted({*outside.decisions, *inside.decisions}, key=lambda decision: decision.line)
-    decisions += [Decision(error.line, error.text) for error in result.open_orders]
+        decisions += [Decision(error.line, error.text) for error in result.open_orders]
     figures = [
         Figure("blocks before", float(len(trace.text.blocks))),
         Figure("blocks after", float(len(result.new.trace.text.blocks))),
