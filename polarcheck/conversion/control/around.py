@@ -99,7 +99,8 @@ class _Writer:
         blocks = self.trace.blocks
         for row in np.flatnonzero(blocks.listed("repetitive_cycle")).tolist():
             line = int(blocks.line_in_file[row])
-            first, last = (self.texts.block_numbered(float(blocks.word(word)[row])) for word in "PQ")
+            cycle = int(self.trace.run.block[row])
+            first, last = (self.texts.block_numbered(float(blocks.word(word)[row]), cycle) for word in "PQ")
             if line not in self.decided or first is None or last is None:
                 continue
             for block in range(first, last + 1):

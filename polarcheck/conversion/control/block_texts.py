@@ -34,7 +34,7 @@ class BlockTexts:
         others = (self.text.prose, self.text.outside, self.text.dots)
         self._texts = {block for spans in others for block in spans.block.tolist()}
         is_n = words.address == ord("N")
-        self._by_number = dict(zip(words.value[is_n].tolist(), words.block[is_n].tolist(), strict=True))
+        self._numbers = words.value[is_n], words.block[is_n]
 
     def _block_at(self, place: int) -> int:
         return int(np.searchsorted(self.text.blocks.start, place, side="right")) - 1
@@ -63,10 +63,11 @@ class BlockTexts:
         """The block is text outside of the programs, or without words."""
         return block in self._texts or block not in self._words
 
-    def block_numbered(self, number: float) -> int | None:
-        """The block with an N word; None where there is none."""
-        block: int | None = self._by_number.get(number)
-        return block
+    def block_numbered(self, number: float, behind: int) -> int | None:
+        """The first block with an N word behind a block; None where there is none."""
+        values, blocks = self._numbers
+        hits = blocks[(values == number) & (blocks > behind)]
+        return int(hits[0]) if len(hits) else None
 
     def comments(self, block: int) -> list[str]:
         """The comments of a block, without the signs around them."""

@@ -21,9 +21,14 @@ class Calls:
         self._call = _pattern(writing.subprogram_call, writing.subprogram_repeats)
         self._return = "".join(writing.subprogram_return.split()).upper()
         ours, theirs = self.source.macro, target.macro
-        self.is_same = ours.language == theirs.language and all(
-            getattr(ours, key) == getattr(theirs, key)
-            for key in ("subprogram_calls", "program_returns", "local_calls", "sequence_word", "repeats_in_p")
+        has_calls = bool(target.writing.subprogram_call)
+        self.is_same = (
+            has_calls
+            and ours.language == theirs.language
+            and all(
+                getattr(ours, key) == getattr(theirs, key)
+                for key in ("subprogram_calls", "program_returns", "local_calls", "sequence_word", "repeats_in_p")
+            )
         )
         self._flow = trace.blocks.codes(*self.source.macro.flow_codes)
 
