@@ -151,10 +151,8 @@ _KINDS = (
     ("path differs", "the path of the tool center would differ: outer corners in cutter compensation"),
     ("is a statement of a language", "a macro statement for a control with another language"),
     ("computed", "a computed word that counts otherwise there"),
-    (
-        "runs several times",
-        "a block runs several times and would be another one each time: the plane lies otherwise there",
-    ),
+    ("runs several times", "a block that would be another one each time that it runs, since the plane lies otherwise"),
+    ("Z cannot move in an arc", "a helix for a control whose arcs have no Z"),
     ("how .* writes that is not known", "a subprogram for a control whose calls are not known"),
 )
 

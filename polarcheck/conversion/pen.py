@@ -122,7 +122,7 @@ class Pen:
         if z is not None and self.numbers.increments(z) == self._z_written(z) and z == self.z:
             z = None
         if z is not None and not self.machine.writing.helices:
-            raise RefusedError([self._refusal("Z cannot move in an arc there")])
+            raise RefusedError([self._refusal("Z cannot move in an arc (a helix)")])
         blocks: list[NewBlock] = []
         count = self._parts(arc)
         from_z = self.z
