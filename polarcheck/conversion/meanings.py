@@ -69,6 +69,9 @@ def other_speeds(old: Trace, new: Trace, decided: Collection[int], origin: Seque
 
     decided: lines of the old file that somebody has to decide. origin: of each new line the line in the old file.
     """
+    for machine in (old.machine, new.machine):
+        if machine.writing.live_tool_speed.rstrip("=") not in ("S", "P", *machine.control.spindle_words):
+            return  # S3= is not read there
     of_decided = {number for number, line in enumerate(origin, 1) if line in decided}
     speeds = _speeds(old, decided), _speeds(new, of_decided)
     for (line, speed), (new_line, other) in itertools.zip_longest(*speeds, fillvalue=(0, 0.0)):

@@ -200,7 +200,8 @@ def outside(
     at_work = np.isin(trace.axes.motion[rows], (Motion.RAPID, Motion.LINE, Motion.CW, Motion.CCW))
     moving = at_work & trace.path.moves[rows] & ~trace.modal.in_cycle[rows] & trace.modal.uses_axes[rows]
     moving &= ~special_rows(trace)[rows]
-    is_left_out = np.isin(trace.blocks.line_in_file[rows], list(rewritten.left_out if rewritten else ()))
+    left_out = np.isin(trace.blocks.line_in_file, list(rewritten.left_out if rewritten else ()))
+    is_left_out = left_out[rows]
     row = rows[moving & ~is_left_out]
     starts, path = trace.blocks.starts, trace.path
     columns = [(before(column, starts, np.nan)[row], column[row]) for column in (path.x, path.z, path.c_angle)]
@@ -218,7 +219,7 @@ def outside(
     if rewritten is not None:
         turn = c_to - c_from
         turn -= 360 * np.round((turn - np.nan_to_num(path.c_turn[row])) / 360)
-        c_from, c_to = _at_feed_alone(trace, row, c_from, c_from + turn)
+        c_from, c_to = _at_feed_alone(trace, row, left_out, c_from, c_from + turn)
     else:
         c_from, c_to = _continuous(c_from, c_to, path.c_turn[row])
     # C counts in the sense of the plane, which is not that of C on each lathe.
@@ -257,7 +258,7 @@ def _following_on(here: float, start: Floats, end: Floats) -> tuple[Floats, Floa
     return np.append(here, end)[: len(end)], end
 
 
-def _at_feed_alone(trace: Trace, row: Rows, start: Floats, end: Floats) -> tuple[Floats, Floats]:
+def _at_feed_alone(trace: Trace, row: Rows, left_out: Mask, start: Floats, end: Floats) -> tuple[Floats, Floats]:
     """
     C within a turn; where several moves in rapid traverse follow each other, all of them have that of the last.
 
@@ -268,7 +269,7 @@ def _at_feed_alone(trace: Trace, row: Rows, start: Floats, end: Floats) -> tuple
     finish = begin + sense * (end - start)
     stops = np.append(trace.axes.motion[row] != Motion.RAPID, True)[: len(row)]
     stops[-1:] = True
-    cycles = np.cumsum(trace.modal.in_cycle)
+    cycles = np.cumsum(trace.modal.in_cycle & ~left_out)
     stops[:-1] |= np.diff(cycles[row]) > 0
     last = np.flatnonzero(stops)[np.searchsorted(np.flatnonzero(stops), np.arange(len(row)))] if len(row) else row
     is_rapid = trace.axes.motion[row] == Motion.RAPID

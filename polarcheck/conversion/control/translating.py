@@ -208,6 +208,10 @@ class Translation:
             else:
                 result.words.append(self.measures.written(index))
         result.whole = result.whole or self._why_no_cycle(row) or self._why_other_arguments(row)
+        at = int(self._cycle_word[row])
+        if at >= 0 and bool(self.trace.modal.in_cycle[row]):
+            # Without the block that calls it the cycle does not go on.
+            result.whole = result.whole or self._why_other_arguments(int(self.trace.run.row[at]))
 
     def _why_no_cycle(self, row: int) -> str:
         """The code of the cycle in force has no counterpart."""
