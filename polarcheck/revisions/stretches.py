@@ -213,7 +213,11 @@ def outside(
             needs = f"{words[0]} of line {int(trace.blocks.line_in_file[row[np.argmax(lost)]])} is not known"
     if rewritten is not None and len(rows):
         at = [before(column, starts, np.nan)[rows[0]] for column in (path.x, path.z, path.c_angle)]
-        columns = [_following_on(here, *column) for here, column in zip(at, columns, strict=True)]
+        named = [trace.blocks.has(*words)[row] for words in written]
+        columns = [
+            _following_on(here, start, np.where(names, end, np.nan))
+            for here, (start, end), names in zip(at, columns, named, strict=True)
+        ]
     (x_from, x_to), (z_from, z_to) = (_without_unknown(*column) for column in columns[:2])
     c_from, c_to = _without_unknown(*columns[2])
     if rewritten is not None:
@@ -247,7 +251,7 @@ def _without_unknown(start: Floats, end: Floats) -> tuple[Floats, Floats]:
 
 def _following_on(here: float, start: Floats, end: Floats) -> tuple[Floats, Floats]:
     """
-    Each move begins where the one before has ended; an axis that is not known stands where it was known last.
+    Each move begins where the one before has ended; an axis that it does not name stands where it was named last.
 
     here: where the axis stands before all of them; NaN where that is not known.
     """
