@@ -61,7 +61,7 @@ def comment_text(comment: str, machine: Machine) -> str:
 def block_text(block: NewBlock, style: Style, machine: Machine) -> str:
     """A block as it is written."""
     text = last = ""
-    for word in block.words:
+    for word in (word.lower() for word in block.words) if style.lower_case else block.words:
         # Only words of a letter and a number part themselves.
         part = style.blank if _PLAIN_WORD.fullmatch(word) and _PLAIN_WORD.fullmatch(last) else " "
         text, last = f"{text}{part}{word}" if text else word, word

@@ -275,7 +275,7 @@ class Pen:
         if text:
             self._feed = text
         own = (*codes, *([motion] if motion and not left_out else []), *words, *([text] if has_feed else []))
-        return NewBlock(tuple(word.lower() for word in own) if self.style.lower_case else own)
+        return NewBlock(own)
 
     def _code(self, code: str) -> str:
         return self.numbers.code(self._codes.get(code, code))

@@ -65,13 +65,15 @@ def converted(original: Original, target: Settings) -> Outcome:
 
 
 def _remarks(original: Original, target: Settings, style: Style, open_orders: Sequence[Refusal]) -> Iterator[Replace]:
-    """Yield edits that put comments on orders that are to be decided before the blocks that need them."""
-    blocks = original.trace.text.blocks
+    """Yield edits that put comments on orders that are to be decided before the sections that need them."""
+    trace = original.trace
     for order in open_orders:
-        block = int(np.searchsorted(blocks.line, order.line))
-        text, _, _ = order.text.partition(" in line ")
-        remark = NewBlock((), decision_comment(f"{text.replace('-', ' ')} behind this block"))
-        yield edit_before(original, min(block, len(blocks) - 1), [remark], style, target.machine)
+        row = int(np.argmax(trace.blocks.line_in_file == order.line))
+        section = int(trace.mode.whole_section[row])
+        row = int(trace.mode.sections.enter[section]) if section >= 0 else row
+        _, _, text = order.text.partition(" of the result: ")
+        remark = NewBlock((), decision_comment(text.replace("this cutting move", "the section")))
+        yield edit_before(original, int(trace.run.block[row]), [remark], style, target.machine)
 
 
 def _require_equal(result: ReadBack, original: Original, target: Settings) -> None:

@@ -337,7 +337,7 @@ class Translation:
         alone = bool(self.trace.lengths.feed_units[row] != self.trace.lengths.units[row])
         of_lengths_alone = self.target.control.units_of_lengths_alone
         chosen = [code for code in codes if (code in of_lengths_alone) == alone] or codes
-        result.words.append(written if written in chosen else chosen[0])
+        result.words.append(written if written.upper() in chosen else chosen[0])
 
     def _m_word(self, row: int, index: int, result: Translated) -> None:
         number, written = self._code(index), self.measures.written(index)

@@ -1,0 +1,519 @@
+"""Programs for another control: their words, their path by a reading of its own, what is refused or to decide."""
+
+from __future__ import annotations
+
+import cmath
+import math
+import re
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import shapely
+from click.testing import CliRunner, Result
+from programs import CORPUS
+from setter_programs import FAMILIES, drawn
+from test_every_machine import HANDS
+from twin_sections import CONTROLS, OUT, Section, written
+from twin_sections import drawn as drawn_sections
+
+from polarcheck.commands import main
+from polarcheck.conversion.control import converting
+from polarcheck.conversion.control.converting import converted
+from polarcheck.conversion.outcome import Outcome, RefusedError
+from polarcheck.conversion.pen import Pen
+from polarcheck.conversion.rewriting import rewritten
+from polarcheck.settings.of_programs import OfPrograms, Options, on_machine
+
+#: A hexagon with an arc, in compensation, as a post for a Takisawa writes it.
+HEXAGON = """\
+%
+O42 (HEXAGON 36)
+N10 G21 G98 G40
+N20 T0303
+N30 M76
+N40 G28 H0
+N50 G97 S2500 M70
+N60 G0 X60. Z2. C0
+N70 G12.1
+N80 G1 X56. F1000
+N90 Z-4. F200
+N100 G42 X36. C0 F150
+N110 C10.392
+N120 X0 C20.785
+N130 G3 X-36. C-10.392 I0 J-20.785
+N140 G1 X0 C-20.785 M8
+N150 X36. C-10.392
+N160 C0
+N170 G40 X56.
+N180 Z2. F1000
+N190 G13.1
+N200 G0 X100. Z50.
+N210 M72
+N215 M75
+N220 M30
+%
+"""
+OKUMA = """\
+O42 (HEXAGON 36)
+G90
+N10 G94 G40
+N20 T0303
+N30 M110
+N50 G97 SB=2500 M13
+N60 G0 X60. Z2. C0
+N70 G137 C0
+N75 G17
+N80 G101 X28. Y0 F1000
+N90 Z-4. F200
+N100 G42 X18. F150
+N110 Y10.392
+N120 X0 Y20.785
+N130 G103 X-18. Y10.392 L20.784
+N135 X-18. Y-10.392 L20.784
+N140 G101 X0 Y-20.785 M8
+N150 X18. Y-10.392
+N160 Y0
+N170 G40 X28.
+N180 Z2. F1000
+N190 G136
+N200 G0 X100. Z50.
+N210 M12
+N215 M109
+N220 M30
+"""
+#: The machine of `section`: it has codes for its C axis and its live tool.
+SOURCE = "takisawa"
+LINE, ARC = Pen.line, Pen.arc
+HAAS = (
+    HEXAGON.replace("M76", "M154")
+    .replace("M75", "M155")
+    .replace("S2500 M70", "P2500 M133")
+    .replace("M72", "M135")
+    .replace("N70 G12.1\nN80 G1 X56. F1000", "N70 G17\nN75 G112\nN80 G1 X28. Y0 F1000")
+    .replace("N190 G13.1", "N190 G113\nN195 G18")
+    .replace("N100 G42 X36. C0", "N100 G42 X18.")
+    .replace("N170 G40 X56.", "N170 G40 X28.")
+    .replace("X36.", "X18.")
+    .replace("X-36.", "X-18.")
+    .replace(" C10.392", " Y10.392")
+    .replace(" C-10.392", " Y-10.392")
+    .replace(" C20.785", " Y20.785")
+    .replace(" C-20.785", " Y-20.785")
+    .replace("N160 C0", "N160 Y0")
+)
+
+
+REMARK = "(DECIDE: THE LIVE TOOL IS NOT RUNNING IN THE SECTION M133 OR M134 IS MISSING)\r\n"
+
+
+def convert(program: str | bytes, source: str, target: str, *tools: str) -> Outcome:
+    settings = OfPrograms(Options(machine=source, tools=tools, use_config=False))("")
+    data = program.encode() if isinstance(program, str) else program
+    return rewritten("a.nc", data, settings, partial(converted, target=on_machine(settings, target)))
+
+
+def refused(program: str, source: str, target: str, *tools: str) -> list[tuple[int, str]]:
+    with pytest.raises(RefusedError) as error:
+        convert(program, source, target, *tools)
+    return [(refusal.line, refusal.text) for refusal in error.value.refusals]
+
+
+def section(*blocks: str, head: str = "G21 G98 G40", c: str = "C0") -> str:
+    """A program for SOURCE."""
+    body = "\n".join(blocks)
+    return f"%\nO1\n{head}\nM76\nG97 S2500 M70\nT0101\nG0 X60. Z2. {c}\nG12.1\n{body}\nG13.1\nG0 Z50.\nM30\n%\n"
+
+
+# ---- the words ----
+
+
+@pytest.mark.parametrize(("target", "expected"), [("okuma-osp", OKUMA), ("haas-lathe", HAAS)])
+def test_a_program_is_written_in_the_words_of_the_other_control(target: str, expected: str) -> None:
+    """The words of the facts: G137, G101 and L, arcs up to 90 deg; G17 and G112, Y as a radius."""
+    outcome = convert(HEXAGON, "takisawa", target, "3:radius=4")
+    assert outcome.data.decode() == expected
+
+
+def test_siemens_has_its_words_around_the_section() -> None:
+    program = section("G1 X40. C5. F200", "G3 X20. C15. R10.", "G1 X60. C0").replace("M76\nG97 S2500 M70\n", "")
+    assert convert(program, "fanuc-30i", "siemens-transmit").data.decode() == (
+        "; O1\nG90 DIAMON\nG710 G94 G40\nT1 D1\nG0 X60. Z2. C0\nDIAMOF\nTRANSMIT\nG17\n"
+        "G1 X20. Y5. F200\nG3 X10. Y15. CR=10.\nG1 X30. Y0\nTRAFOOF\nDIAMON\nG0 Z50.\nM30\n"
+    )
+
+
+def test_a_control_of_the_same_words_gets_the_same_bytes() -> None:
+    program = section("#1=5.", "G1 X40. C#1 F200", "WHILE[#1 GT 1]DO1", "G1 Z-[#1]", "#1=#1-1", "END1", "Z2.")
+    data = (
+        program.replace("M76\nG97 S2500 M70\n", "")
+        .replace("\n", "\r\n")
+        .replace("O1", "O1 (FL\u00c4CHE)")
+        .encode("latin-1")
+    )
+    assert convert(data, "fanuc-30i", "fanuc-16i").data == data
+
+
+def test_blanks_line_ends_letters_and_comments_stay() -> None:
+    program = (
+        "%\r\no1 (Fl\u00e4che)\r\ng21g98g40\r\n/g0x60.z2.c0\r\ng12.1\r\ng1x40.c5.f200 (a)\r\ng13.1\r\nm30\r\n%\r\n"
+    )
+    settings = OfPrograms(Options(machine="fanuc-30i", block_skip="off", use_config=False))("")
+    outcome = rewritten(
+        "a.nc", program.encode("latin-1"), settings, partial(converted, target=on_machine(settings, "haas-lathe"))
+    )
+    assert outcome.data.decode("latin-1") == program.replace(
+        "g12.1\r\ng1x40.", f"{REMARK}g17\r\ng112\r\ng1x20."
+    ).replace("c5.", "y5.").replace("g13.1", "g113\r\ng18")
+
+
+def test_there_and_back_gives_the_same_words() -> None:
+    """But for those of the first move in the mode, which are all written, and arcs that were divided."""
+    program = HEXAGON.replace("N80 G1 X56. F1000", "N80 G1 X56. C0 F1000").replace("C0 F150", "F150")
+    program = program.replace("G3 X-36. C-10.392 I0 J-20.785", "G3 X-36. C10.392 R20.785")
+    there = convert(program, "takisawa", "okuma-osp", "3:radius=4")
+    back = convert(there.data, "okuma-osp", "takisawa", "3:radius=4")
+    lines = [line for line in program.splitlines() if "G28" not in line and not line.startswith("N10 ")]
+    assert [line for line in back.data.decode().splitlines() if not line.startswith("N10 ")] == lines
+
+
+# ---- the path, by a reading of its own ----
+
+#: The blocks that switch the mode on and off, as the facts have them.
+SWITCHES = {
+    "haas-lathe": ("G112", "G113"),
+    "okuma-osp": ("G137", "G136"),
+    "siemens-transmit": ("TRANSMIT", "TRAFOOF"),
+    "hurco": ("G101", "G109"),
+    "fagor-8055t": ("G16", "G18"),
+}
+
+
+def part_path(program: str, machine: str, angles: list[float]) -> list[complex]:
+    """
+    Points on the part along the sections of a program, by a reader of a few lines that knows the words of one machine.
+
+    angles: C of the machine at the beginning of each section [deg].
+    """
+    hand, (on, off) = HANDS[machine], SWITCHES.get(machine, ("G12.1", "G13.1"))
+    points: list[complex] = []
+    sections_left, is_inside, here, code, turn = list(angles), False, 0j, 0, 1 + 0j
+    for line in program.splitlines():
+        first = line.split()[0]
+        if first in (on, off) and len(line.split()) < 4 and is_inside != (first == on):
+            is_inside = first == on
+            if is_inside:
+                here, turn = _entry(machine, sections_left.pop(0))
+            continue
+        if is_inside:
+            words = dict(re.findall(r"(CR=|[A-Z])(-?[\d.]+)", line))
+            code = next((at for at, word in enumerate(hand.codes) if word in line.split()), code)
+            x, c = words.get("X"), words.get(hand.axis)
+            end = complex(here.real if x is None else float(x) / hand.factor, here.imag if c is None else float(c))
+            if end != here:
+                points += [point * turn for point in _along(here, end, code, words, hand.arc)]
+            here = end
+    return points
+
+
+def _entry(machine: str, angle: float) -> tuple[complex, complex]:
+    """Where the tool stands on the plane, and how the plane lies on the part."""
+    hand = HANDS[machine]
+    direction = cmath.rect(1, hand.sense * math.radians(angle))
+    return (OUT + 0j, direction) if hand.turns else (OUT * direction, 1 + 0j)
+
+
+def _along(start: complex, end: complex, kind: int, words: dict[str, str], arc: str) -> list[complex]:
+    shares = np.linspace(0, 1, 300)
+    if not kind:
+        return list(start + (end - start) * shares)
+    sense = 1 if kind == 2 else -1
+    if arc in words:
+        chord = end - start
+        height = math.sqrt(max(float(words[arc]) ** 2 - abs(chord) ** 2 / 4, 0))
+        center = (start + end) / 2 + sense * 1j * chord / abs(chord) * height
+    else:
+        center = start + complex(float(words["I"]), float(words["J"]))
+    sweep = sense * ((sense * cmath.phase((end - center) / (start - center))) % math.tau)
+    return list(center + (start - center) * np.exp(1j * sweep * shares))
+
+
+def planned_path(plan: list[Section], machine: str) -> list[complex]:
+    points: list[complex] = []
+    for each in plan:
+        here, turn = _entry(machine, each.angle)
+        for block in each.blocks:
+            if block.kind:
+                words = {"R": str(block.radius)}
+                points += [point * turn for point in _along(here, block.end, block.kind - 1, words, "R")]
+            here = block.end
+    return points
+
+
+def without_helices(plan: list[Section]) -> list[Section]:
+    """Z moves with lines alone."""
+    result = []
+    for each in plan:
+        blocks, z = [], 5.0
+        for block in each.blocks:
+            z = z if block.kind > 1 else block.z
+            blocks.append(block._replace(z=z))
+        result.append(replace(each, blocks=tuple(blocks)))
+    return result
+
+
+@pytest.mark.parametrize("source", ["haas-lathe", "fanuc", "hurco", "siemens-transmit"])
+@pytest.mark.parametrize("target", CONTROLS)
+def test_the_path_on_the_part_is_that_of_the_plan(source: str, target: str) -> None:
+    """Sections at several angles of C, with lines, arcs and ramps, read again by a few lines of test code."""
+    if source == target:
+        pytest.skip("the same control")
+    for seed in (3, 4):
+        plan = without_helices(drawn_sections(seed))
+        program = written(plan, source).replace("O1\nG17", "O1\nG21 G17")
+        outcome = convert(program, source, target, "1:radius=3,nose=0")
+        senses = HANDS[source].sense * HANDS[target].sense
+        new = part_path(outcome.data.decode(), target, [senses * each.angle for each in plan])
+        old = planned_path(plan, source)
+        for path, points in ((new, old), (old, new)):
+            line = shapely.linestrings(np.array(path).view(float).reshape(-1, 2))
+            distance = shapely.distance(line, shapely.points(np.array(points).view(float).reshape(-1, 2)))
+            assert distance.max() < 0.003
+
+
+def test_a_helix_needs_a_control_that_has_one() -> None:
+    program = section("G1 X40. C0 F200", "G3 X-40. C0 I-20. J0 Z-1.").replace("G12.1", "G112").replace("G13.1", "G113")
+    haas = (
+        program.replace("X40. C0 F", "X20. Y0 F")
+        .replace("X-40. C0", "X-20. Y0")
+        .replace("G40\nM76\nG97 S2500 M70\n", "G40 G17\nM154\nG97 P2500 M133\n")
+    )
+    assert "G3 X-20. Y0 Z-1. I-20. J0" in convert(haas, "haas-lathe", "siemens-transmit").data.decode()
+    assert refused(haas, "haas-lathe", "okuma-osp") == [
+        (10, "Z cannot move in an arc (a helix): Okuma OSP lathe control")
+    ]
+
+
+# ---- what is around the geometry ----
+
+
+def test_f_is_that_of_the_way_that_the_control_measures() -> None:
+    """Haas measures X, Y and Z: sqrt(3^2 + 4^2) of 4 on the plane, so that 200 there is 250 along the way."""
+    program = section("G1 X60. C4. Z-1. F200", "G1 X40. C4.", "G13.1")
+    program = program.replace("G13.1\nG13.1", "G13.1")
+    assert "G1 X30. Y4. Z-1. F250\n" in convert(program, SOURCE, "haas-lathe").data.decode()
+
+
+def test_rapid_traverse_is_a_line_where_the_mode_has_none_and_f_of_before_is_written_again() -> None:
+    haas = (
+        "%\nO1\nG21 G98 G40 G17\nT101\nG0 X60. Z2. C0\nG112\nG1 X20. Y5. F200\nG0 X30. Y0\nG113\nG18\nG1 Z5.\nM30\n%\n"
+    )
+    outcome = convert(haas, "haas-lathe", "fanuc-30i")
+    text = outcome.data.decode()
+    assert "G1 X40. C5. F200\nX60. C0 F1500\nG13.1\nF200\nG1 Z5.\n" in text.replace("G18\n", "")
+    assert "1 move in rapid traverse in the mode: a line with F1500 mm/min there" in outcome.notes
+
+
+def test_units_that_the_other_control_lacks_are_converted() -> None:
+    program = section("G1 X2. C.5 F10.", head="G20 G98 G40").replace("X60. Z2.", "X3. Z.1").replace("Z50.", "Z2.")
+    text = convert(program, SOURCE, "okuma-osp").data.decode()
+    assert "G0 X76.2 Z2.54 C0\nG137 C0\nG17\nG101 X25.4 Y12.7 F254.\nG136\nG0 Z50.8\n" in text
+
+
+def test_distances_become_coordinates() -> None:
+    program = section("G1 U-20. H5. F200", "W-3.", "G3 U-10. H5. R5.", "G1 X60. C0")
+    text = convert(program, SOURCE, "okuma-osp").data.decode()
+    assert "G101 X20. Y5. F200\nZ-1.\nG103 X15. Y10. L5.\nG101 X30. Y0\n" in text
+
+
+def test_a_plane_that_lies_otherwise_is_turned() -> None:
+    """C90 at G12.1 is the plane turned by 90 deg; TRANSMIT lays it at C0, and C turns back."""
+    outcome = convert(section("G1 X40. C5. F200", c="C90."), SOURCE, "siemens-transmit")
+    assert "G0 X60. Z2. C-90.\n" in outcome.data.decode()
+    assert "G1 X-5. Y20. F200\n" in outcome.data.decode()
+    assert outcome.notes[-1] == "line 8: the plane is turned by 90.000 deg: it lies otherwise there"
+
+
+def test_outer_corners_need_a_code_and_acute_ones_the_path_of_the_center() -> None:
+    square = section("G42 G1 X40. C0 F200", "C20.", "X-40.", "C-20.", "X40.", "C0", "G40 X60.")
+    text = convert(square, SOURCE, "siemens-transmit", "1:radius=4").data.decode()
+    assert "TRANSMIT\nG17\nG451\nG42 G1 X20. Y0 F200\n" in text
+    assert "TRAFOOF\nDIAMON\nG450\n" in text
+    triangle = section("G42 G1 X40. C0 F200", "X40. C10.", "X-20. C0", "X40. C-10.", "C0", "G40 X60.")
+    reasons = refused(triangle, SOURCE, "siemens-transmit", "1:radius=4")
+    assert reasons[0][1].startswith("the path differs by ")
+    assert "`polarcheck compensate --center`" in reasons[-1][1]
+
+
+def test_macros_stay_where_their_words_count_alike() -> None:
+    program = section(
+        "G1 X50. C0 F200", "#1=0", "WHILE[#1 LT 3]DO1", "#1=#1+1", "G1 Z[-2.*#1] F100", "G1 X40. C5. F200",
+        "X50. C0", "END1", "Z2.",
+    )  # fmt: skip
+    text = convert(program, SOURCE, "haas-lathe").data.decode()
+    assert "WHILE[#1 LT 3]DO1\n#1=#1+1\nG1 Z[-2.*#1] F100\nX20. Y5. F200\nX25. Y0\nEND1\nZ2.\n" in text
+    assert "X[#1+39.] is computed, and has to be another number there: write numbers" in str(
+        refused(program.replace("X40.", "X[#1+39.]"), SOURCE, "haas-lathe")
+    )
+    assert "is a statement of a language that Okuma" in str(refused(program, SOURCE, "okuma-osp"))
+
+
+def test_a_subprogram_is_called_as_the_other_control_calls_it() -> None:
+    program = section("G1 Z-2. F200", "M98 P7", "G1 Z-4.", "M98 P7", "G1 Z2.")[:-2]
+    program += "O7\nG42 G1 X40. C0 F100\nC10.\nX-40.\nC-10.\nX40.\nC0\nG40 X60.\nM99\n%\n"
+    text = convert(program, SOURCE, "okuma-osp", "1:radius=4").data.decode()
+    assert text.count("CALL O7\n") == 2
+    assert text.endswith("O7\nG42 G101 X20. Y0 F100\nY10.\nX-20.\nY-10.\nX20.\nY0\nG40 X30.\nRTS\n")
+
+
+# ---- what is to be decided, and what is refused ----
+
+
+def test_what_no_profile_knows_is_a_comment_to_decide() -> None:
+    program = HEXAGON.replace("M70", "M70 M77").replace("N200 G0", "N195 G71 U1.5 R.5\nN200 G0")
+    outcome = convert(program, "takisawa", "okuma-osp", "3:radius=4")
+    text = outcome.data.decode()
+    assert "N50 G97 SB=2500 M13 (DECIDE: M77: THE PROFILE OF TAKISAWA" in text
+    assert "(DECIDE: G71 U1.5 R.5: G71: THE PROFILE OF OKUMA OSP LATHE CONTROL HAS NO CODE THAT DOES THE SAME)" in text
+    assert [decision.line for decision in outcome.decisions] == [7, 22]
+
+
+def test_the_contour_of_a_cycle_goes_with_it_and_so_do_its_further_blocks() -> None:
+    turning = "G0 X50. Z2.\nG71 P100 Q200 U0.5 W0.1 F.2\nN100 G0 X39.\nG1 Z-17.5\nN200 X47.\nG90 X45. Z-5 F.2\nX44.\n"
+    program = section("G1 X40. C5. F200").replace("T0101\n", "T0101\n" + turning)
+    text = convert(program, SOURCE, "haas-lathe").data.decode()
+    assert text.count("(DECIDE:") == 6
+    assert "N100 (DECIDE: G0 X39.: IT IS THE CONTOUR OF THE CYCLE IN LINE 8)" in text
+    assert "(DECIDE: X44.: NOTHING SAYS THAT ITS WORDS MEAN THE SAME THERE)" in text
+
+
+@pytest.mark.parametrize(
+    ("program", "target", "expected"),
+    [
+        (section("G1 X40. F200").replace("G13.1\n", ""), "okuma-osp", "polar mode is never left"),
+        (section("G1 X40. C5. F200").replace(" C0", ""), "okuma-osp", "C is not known where the mode begins"),
+        (section("G1 X40. C5. F200", "G3 X20. C15. I3. J0"), "okuma-osp", "this arc does not end on its circle"),
+        (section("G1 X40. C5. F200", "G93 G1 X30. F5."), "haas-lathe", "inverse time in the mode is not converted"),
+    ],
+)
+def test_what_cannot_be_converted_is_refused_with_the_reason(program: str, target: str, expected: str) -> None:
+    assert expected in str(refused(program, SOURCE, target))
+
+
+def test_the_sub_spindle_is_refused() -> None:
+    program = section("G1 X40. C5. F200").replace("T0101", "T0101\nM135")
+    assert "the sub-spindle turns the plane" in str(refused(program, "doosan", "okuma-osp"))
+
+
+@pytest.mark.parametrize(
+    ("name", "broken"),
+    [
+        ("line", lambda self, end=None, *rest: LINE(self, None if end is None else end + 0.01, *rest)),
+        ("rapid", lambda self, end=None, z=None, codes=(): LINE(self, end, z, None, codes)),
+        ("arc", lambda self, end, center, ccw, *rest: ARC(self, end, 2 * end - center, not ccw, *rest)),
+    ],
+)  # fmt: skip
+def test_a_wrong_move_is_found_when_the_program_is_read_back(
+    name: str, broken: Callable[..., Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A fault of the writer writes nothing: each of its parts is made wrong once."""
+    haas = "%\nO1\nG21 G98 G40 G17\nT101\nG0 X60. Z2. C0\nG112\nG0 X20. Y5.\nG1 Y8. F200\nG3 X10. Y18. R10."
+    haas += "\nG113\nM30\n%\n"
+    assert convert(haas, "haas-lathe", "siemens-transmit").data
+    monkeypatch.setattr(Pen, name, broken)
+    assert refused(haas, "haas-lathe", "siemens-transmit")
+
+
+@pytest.mark.parametrize("what", ["feed", "side", "code", "z"])
+def test_a_wrong_word_is_found_when_the_program_is_read_back(what: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    changes = {"feed": (b"F150", b"F160"), "side": (b"G42", b"G41"), "code": (b"M8", b"M9"), "z": (b"Z-4.", b"Z-4.01")}
+    real = converting.with_edits
+
+    def wrong(*arguments: Any) -> tuple[bytes, list[int]]:
+        data, origin = real(*arguments)
+        assert changes[what][0] in data
+        return data.replace(*changes[what]), origin
+
+    monkeypatch.setattr(converting, "with_edits", wrong)
+    assert refused(HEXAGON, "takisawa", "okuma-osp", "3:radius=4")
+
+
+# ---- programs of setters, the corpus, the command ----
+
+#: Why a sound program of a setter may be refused.
+REASONS = (
+    "the path differs by",
+    "is a statement of a language that",
+    "is computed, and has to be another number there",
+    "the block runs several times, and would be another one each time",
+    "writes that is not known",
+    "Z cannot move in an arc (a helix)",
+    "not comparable",
+)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("target", [SOURCE, "okuma-osp", "siemens-transmit", "haas-lathe", "mitsubishi-m700", "hurco"])
+@pytest.mark.parametrize("source", ["doosan", "haas-lathe", "okuma-osp", "siemens-transmit"])
+def test_programs_of_setters_are_converted(source: str, target: str) -> None:
+    results = []
+    for seed in range(1, 7):
+        program = drawn(seed, source, FAMILIES[(11 * seed) % len(FAMILIES)])
+        settings = OfPrograms(Options(machine=source, tools=tuple(program.tools()), use_config=False))("")
+        work = partial(converted, target=on_machine(settings, target))
+        try:
+            results.append(bool(rewritten("a.nc", program.text().encode(), settings, work).data))
+        except RefusedError as error:
+            results.append(False)
+            if not any(reason in error.refusals[0].text for reason in REASONS):
+                pytest.fail(f"{program.family}: {error}")
+    assert sum(results) >= 3
+
+
+@pytest.mark.corpus
+@pytest.mark.slow
+@pytest.mark.skipif(not CORPUS.is_dir(), reason="the corpus is not there")
+@pytest.mark.parametrize("target", ["haas-lathe", "okuma-osp", "siemens-transmit"])
+def test_real_programs_are_converted_or_refused(target: str) -> None:
+    done = refusals = 0
+    paths = sorted((CORPUS / "polar").glob("*.nc"))
+    for path in paths:
+        try:
+            done += bool(convert(path.read_bytes(), "fanuc", target).data)
+        except RefusedError as error:
+            refusals += len(error.refusals) > 0
+    assert done >= 7
+    assert done + refusals == len(paths)
+
+
+def call(*arguments: str) -> Result:
+    return CliRunner().invoke(main, ["convert", *arguments])
+
+
+@pytest.mark.usefixtures("own_folder")
+def test_the_command_writes_says_what_is_to_be_decided_and_ends_with_its_code() -> None:
+    Path("a.nc").write_text(HEXAGON)
+    done = call("a.nc", "--from", "takisawa", "--to", "okuma-osp", "--tool", "3:radius=4", "-o", "b.nc")
+    assert (done.exit_code, Path("b.nc").read_text()) == (0, OKUMA)
+    assert "polarcheck: a.nc: converted for Okuma OSP lathe control, 26 lines of 26: b.nc\n" in done.stderr
+    Path("c.nc").write_text(HEXAGON.replace("M70", "M70 M77"))
+    open_ = call("c.nc", "--from", "takisawa", "--to", "okuma-osp", "--tool", "3:radius=4", "-o", "d.nc")
+    assert open_.exit_code == 1
+    assert "c.nc:7: to decide: M77: the profile of Takisawa" in open_.stderr
+    assert Path("d.nc").exists()
+    Path("e.nc").write_text(HEXAGON.replace("N190 G13.1\n", ""))
+    no = call("e.nc", "--from", "takisawa", "--to", "okuma-osp", "-o", "f.nc")
+    assert no.exit_code == 2
+    assert not Path("f.nc").exists()
+    assert "not converted for Okuma OSP lathe control: nothing is written" in no.stderr
+
+
+@pytest.mark.usefixtures("own_folder")
+def test_a_machine_that_there_is_not_is_named() -> None:
+    Path("a.nc").write_text(HEXAGON)
+    assert "--to" in call("a.nc").stderr
+    assert "okuma" in call("a.nc", "--to", "okum").stderr
