@@ -139,6 +139,7 @@ def head_words(trace: Trace, target: Machine, measures: Measures) -> list[str]:
     if systems[0] == "A" != systems[1] and target.codes("absolute") and not trace.modal.sets("distance").any():
         words.append(target.codes("absolute")[0])
     control = target.control
-    if control.x_without_words and control.x_diameter_words and control.x == "diameter":
+    is_switched = trace.machine.control.x_diameter_words == control.x_diameter_words
+    if not is_switched and control.x_without_words and control.x_diameter_words and control.x == "diameter":
         words.append(shown(control.native_words, control.x_diameter_words[0]))
     return words

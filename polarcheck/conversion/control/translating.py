@@ -108,6 +108,11 @@ class Translation:
         control = self.source.control
         switches = (*control.x_radius_words, *control.x_diameter_words, *control.x_absolute_diameter_words)
         self._x_switches = {number for word in switches for number in numbers([word.partition(" ")[0]])}
+        #: Radius and diameter are switched as on the other machine.
+        self.same_switches = all(
+            getattr(control, key) == getattr(self.target.control, key)
+            for key in ("x", "x_radius_words", "x_diameter_words", "x_absolute_diameter_words", "x_without_words")
+        )
         self._polar_off = set(numbers([*self.source.polar.off, *self.source.polar.ended_by]))
         self._speeds = {self.source.address_number(word): role for word, role in control.spindle_words.items()}
         blocks = self.trace.blocks
@@ -289,6 +294,9 @@ class Translation:
             self._feed(row, index, result)
         elif letter in "IJKR" or letter == self.source.arcs.radius_word:
             self._axes.of_arc(row, index, letter, result)
+        elif letter == "@" and self.source.control.native_words == self.target.control.native_words:
+            # A word of the control's own language, as SETMS(2), on a control of the same language.
+            result.words.append(written)
         elif letter == "H" and bool(self.trace.blocks.switches_length_offset[row]):
             result.words.append(written)
         elif self._beside_m_code(row, letter) or self._beside_x_switch(row):
@@ -301,6 +309,7 @@ class Translation:
         has_words = any(self._letter(other) not in "GMTF" for other in self.words_of(row))
         key = self._g.key(number, has_words)
         if number in self._x_switches:
+            result.words += [written] if self.same_switches else []
             return
         if number in self._polar_off:
             result.words += self.target.writing.end.split()
@@ -336,6 +345,10 @@ class Translation:
             return
         alone = bool(self.trace.lengths.feed_units[row] != self.trace.lengths.units[row])
         of_lengths_alone = self.target.control.units_of_lengths_alone
+        ours = self.source.control.units_of_lengths_alone
+        if written.upper() in codes and (written.upper() in ours) == (written.upper() in of_lengths_alone):
+            result.words.append(written)
+            return
         chosen = [code for code in codes if (code in of_lengths_alone) == alone] or codes
         result.words.append(written if written.upper() in chosen else chosen[0])
 
