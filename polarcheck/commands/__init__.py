@@ -44,6 +44,7 @@ NAMES = (
     "machines",
     "part",
     "plot",
+    "roll",
     "rules",
     "schema",
     "server",

@@ -71,7 +71,13 @@ def read_back(
 
 
 def read_back_on_part(
-    original: Original, data: bytes, settings: Settings, origin: Sequence[int], tolerance: float, chord: float = CHORD
+    original: Original,
+    data: bytes,
+    settings: Settings,
+    origin: Sequence[int],
+    tolerance: float,
+    chord: float = CHORD,
+    left_out: Collection[int] = (),
 ) -> ReadBack:
     """
     Compare a program whose sections have another form with the original: with the mode or without it, compensated or
@@ -82,12 +88,17 @@ def read_back_on_part(
     path of X and C.
 
     settings: of the new program. origin: for each of its lines the line in the original, from 1. tolerance: how far the
-    ways may be apart [mm]. chord: how far chords may leave the true path [mm].
+    ways may be apart [mm]. chord: how far chords may leave the true path [mm]. left_out: lines of the original that
+    position the tool otherwise in the new program; where it goes from there on is compared.
 
     Raises RefusedError where a position of the original is not known, or the new program cannot be run once.
     """
     new = read(original.path, data, settings)
     old_path, new_path = (path_on_part(each.tables, chord=chord) for each in (original, new))
+    if left_out:
+        stands_for = np.array([0, *origin])[np.minimum(new.trace.blocks.line_in_file, len(origin))]
+        old_path = old_path[~np.isin(original.trace.blocks.line_in_file[old_path.row], list(left_out))]
+        new_path = new_path[~np.isin(stands_for[new_path.row], list(left_out))]
     deviation = path_deviation(old_path, new_path, tolerance)
     largest = deviation.largest + deviation.rounding + chord
     differences = []

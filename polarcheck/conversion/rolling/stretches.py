@@ -1,0 +1,191 @@
+"""Where a program mills by plain moves of X and C, and why some of it cannot become a polar section."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import msgspec
+import numpy as np
+
+from polarcheck.arrays import Mask, Rows
+from polarcheck.columns.lengths import RADIUS_FACTOR
+from polarcheck.columns.trace import Trace
+from polarcheck.conversion.outcome import Refusal
+from polarcheck.machines.codes import code_set
+from polarcheck.machines.modal import Distance, FeedMode, Motion, Side
+
+#: Fewer blocks of X and C are left as they are: the blocks of a section around them would be as many.
+LEAST = 8
+#: Lists of G codes that may stand in a block of a stretch: what they say is in the moves, or does not matter there.
+_CODES = ("line", "feed_inverse_time", "feed_per_minute", "absolute")
+#: A radius is not below zero by less [mm].
+_ZERO = 1e-6
+_ON_CYLINDER = "C and Z move together and X stands: that is milling on the cylinder, not on the face"
+
+
+class Stretch(msgspec.Struct, frozen=True):
+    """
+    Consecutive blocks in which X and C move at feed, beginning and ending with such a block.
+
+    first, last: rows of the trace. line: of the first, in the file, from 1. last_line: of the last.
+    """
+
+    first: int
+    last: int
+    line: int
+    last_line: int
+
+    def rows(self, trace: Trace) -> Rows:
+        """Its rows that move, or name the place where the tool stands."""
+        rows = np.arange(self.first, self.last + 1)
+        return np.asarray(rows[trace.axes.motion[rows] != Motion.NONE])
+
+
+def stretches(trace: Trace) -> tuple[list[Stretch], list[Refusal]]:
+    """Return the stretches that can become sections, and for the others why they cannot."""
+    reasons = _reasons(trace)
+    result: list[Stretch] = []
+    refusals: list[Refusal] = []
+    for each in _candidates(trace):
+        reason = _first_reason(trace, each, reasons) or _reason_at_ends(trace, each)
+        if reason is None:
+            result.append(each)
+        else:
+            refusals.append(reason)
+    return result, refusals
+
+
+def _candidates(trace: Trace) -> Iterator[Stretch]:
+    path = trace.path
+    belongs = _belongs(trace)
+    turns, on_plane = path.moves_c & belongs, (path.moves_x | path.moves_c) & belongs
+    # Where a stretch begins or ends, X beside Z alone is turning, or an approach.
+    bounds = turns | (path.moves_x & ~path.moves_z & belongs)
+    breaks = np.flatnonzero(~belongs | _jumps(trace))
+    ends = np.append(breaks, len(trace))
+    begin = 0
+    for end in ends.tolist():
+        # A row that breaks because of what stands before it may begin the next stretch.
+        rows = np.flatnonzero(bounds[begin:end]) + begin
+        begin = end if end < len(trace) and belongs[end] else end + 1
+        if len(rows) < LEAST:
+            continue
+        first, last = int(rows[0]), int(rows[-1])
+        own = slice(first, last + 1)
+        if np.count_nonzero(on_plane[own]) >= LEAST and turns[own].any() and path.moves_x[own].any():
+            lines = trace.blocks.line_in_file
+            yield Stretch(first, last, int(lines[first]), int(lines[last]))
+
+
+def _belongs(trace: Trace) -> Mask:
+    """Rows outside of the mode with words of a straight move at feed and no others; those without words break none."""
+    blocks, machine, words = trace.blocks, trace.machine, trace.run.words
+    rotary = machine.polar.rotary_words
+    names = [name for name in ("N", "X", "U", "Z", "W", "F", *rotary) if name]
+    is_known = np.zeros(256, bool)
+    is_known[[machine.address_number(name) for name in names]] = True
+    allowed = is_known[words.address]
+    codes = code_set([code for key in _CODES for code in machine.codes(key)])
+    allowed[blocks.g_words] = codes[blocks.g_codes]
+    others = blocks.with_words(~allowed)
+    lines = (trace.axes.motion == Motion.LINE) & trace.modal.uses_axes & ~trace.modal.in_cycle
+    none = trace.axes.motion == Motion.NONE
+    return np.asarray((lines | none) & ~others & (trace.mode.whole_section < 0) & ~trace.run.unknown)
+
+
+def _jumps(trace: Trace) -> Mask:
+    """Rows before which the program does not simply go on to the next block."""
+    run, text = trace.run, trace.text
+    is_full = text.blocks.is_macro.copy()
+    is_full[text.words.block] = True
+    full = np.append(0, np.cumsum(is_full))
+    block, before = run.block[1:], run.block[:-1]
+    goes_on = (block > before) & (full[block] - full[np.minimum(before + 1, len(is_full))] == 0)
+    goes_on &= run.depth[1:] == run.depth[:-1]
+    return np.append(True, ~goes_on)[: len(trace)] | trace.blocks.starts
+
+
+def _reasons(trace: Trace) -> list[tuple[Mask, str]]:
+    """Rows that keep a stretch from being rolled, each with the reason, in the order in which they are looked at."""
+    run, path, modal, feedrate = trace.run, trace.path, trace.modal, trace.feedrate
+    moves = trace.axes.motion == Motion.LINE
+    travels = path.moves_x | path.moves_c | path.moves_z
+    on_sub_spindle = modal.on_sub_spindle & (trace.machine.polar.sub_spindle_plane != "as-main")
+    beside = path.moves_z & (path.moves_x | path.moves_c)
+    not_beside = beside & (trace.machine.polar.other_axes != "together")
+    mode = feedrate.modal_feed_mode
+    without_f = (mode == FeedMode.INVERSE_TIME) & ~trace.blocks.has("F")
+    return [
+        (np.bincount(run.block, minlength=1)[run.block] > 1, "its blocks run several times"),
+        (_is_computed(trace), "its blocks are computed, or stand in another file"),
+        (modal.state("distance") == Distance.INCREMENTAL, "distances are in force, not coordinates"),
+        (trace.compensation.side != Side.OFF, "cutter compensation is in force: X and C are not the path of the tool"),
+        (modal.state("modal_call") != 0, "a program is called after each move"),
+        (on_sub_spindle, "which way C turns in the mode on the sub-spindle is not known"),
+        (moves & (np.isnan(path.x) | np.isnan(path.x_before)), "X is not known where it begins"),
+        (path.moves_c & np.isnan(path.c_turn), "C is not known where it begins: position it before, as C0"),
+        (beside & np.isnan(path.z_before), "Z is not known where it begins to move"),
+        (np.nan_to_num(path.local_shift) != 0, "the origin is shifted off the center of C"),
+        (travels & (mode == FeedMode.PER_REVOLUTION), "F is per revolution"),
+        (travels & without_f, "F is missing, which inverse time has in every block"),
+        (travels & ~(feedrate.written_feed > 0), "F is missing"),
+        (not_beside & path.moves_c & ~path.moves_x, _ON_CYLINDER),
+        (not_beside, f"Z moves beside X and C, with which it is not interpolated in the mode: {trace.machine.title}"),
+    ]
+
+
+def _is_computed(trace: Trace) -> Mask:
+    """Rows whose words do not stand in the file as they are executed."""
+    run = trace.run
+    words, code = run.words, trace.text.source.code
+    letter = code[np.minimum(words.start, len(code) - 1)]
+    letter = np.where((letter >= ord("a")) & (letter <= ord("z")), letter - 32, letter)
+    other = (words.address < 128) & (letter != words.address) & (letter != ord(":"))
+    source = trace.text.source
+    computed = trace.blocks.with_words(other) | trace.text.blocks.is_macro[run.block]
+    if source.parts:
+        computed |= trace.blocks.line >= source.parts[0].first_line
+    return computed
+
+
+def _first_reason(trace: Trace, each: Stretch, reasons: list[tuple[Mask, str]]) -> Refusal | None:
+    own = slice(each.first, each.last + 1)
+    for hits, text in reasons:
+        if hits[own].any():
+            row = each.first + int(np.argmax(hits[own]))
+            return Refusal(int(trace.blocks.line_in_file[row]), text)
+    path = trace.path
+    turning = path.moves_c[own]
+    round_cylinder = turning & path.moves_z[own] & ~path.moves_x[own]
+    if np.count_nonzero(round_cylinder) > np.count_nonzero(turning) / 2:
+        return Refusal(each.line, _ON_CYLINDER)
+    return None
+
+
+def _reason_at_ends(trace: Trace, each: Stretch) -> Refusal | None:
+    path = trace.path
+    if path.x_before[each.first] < _ZERO:
+        return Refusal(each.line, "X is not above zero where it begins, where the mode would be switched on")
+    if path.x[each.last] < -_ZERO:
+        return Refusal(each.last_line, "X is below zero where it ends: the mode would leave it above, and C turned")
+    behind = next_row(trace.axes.moves & trace.blocks.has(*trace.machine.polar.rotary_words), each.last)
+    if behind < len(trace) and not trace.blocks.starts[each.last + 1 : behind + 1].any():
+        axis = trace.machine.polar.rotary_address
+        is_coordinate = trace.blocks.has(axis)[behind] and not trace.modal.is_step(axis)[behind]
+        if not is_coordinate and trace.path.moves_c[behind]:
+            line = int(trace.blocks.line_in_file[behind])
+            return Refusal(line, "C is programmed in increments behind it, from an angle that rounding shifts")
+    return None
+
+
+def next_row(mask: Mask, row: int) -> int:
+    """The first row of a mask behind a row; the number of rows where there is none."""
+    hits = mask[row + 1 :]
+    at = int(np.argmax(hits)) if len(hits) else 0
+    return row + 1 + at if len(hits) and hits[at] else len(mask)
+
+
+def x_factor(trace: Trace, row: int) -> float:
+    """Radius per X word outside of the mode."""
+    factor = float(np.broadcast_to(trace.lengths.x_factor, len(trace))[row])
+    return factor if factor > 0 else RADIUS_FACTOR[trace.machine.control.x]

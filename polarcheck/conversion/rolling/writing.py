@@ -1,0 +1,192 @@
+"""The blocks of a section in the place of those of a stretch, and what they leave in force."""
+
+from __future__ import annotations
+
+import cmath
+from collections.abc import Sequence
+
+import numpy as np
+
+from polarcheck.columns.trace import Trace
+from polarcheck.conversion.blocks import NewBlock
+from polarcheck.conversion.outcome import Refusal, RefusedError
+from polarcheck.conversion.pen import Pen
+from polarcheck.conversion.rolling.elements import Element
+from polarcheck.conversion.rolling.entries import Entry
+from polarcheck.conversion.rolling.stretches import Stretch, next_row, x_factor
+from polarcheck.conversion.rolling.ways import Way
+from polarcheck.conversion.style import Style
+from polarcheck.machines.modal import FeedMode, Motion, Units
+
+#: F of the turn back is so much of what C allows.
+_BELOW = 0.9
+_FEED_CODES = {
+    FeedMode.INVERSE_TIME: "feed_inverse_time",
+    FeedMode.PER_MINUTE: "feed_per_minute",
+    FeedMode.PER_REVOLUTION: "feed_per_revolution",
+}
+
+
+class Writer:
+    """
+    Writes the section of a stretch.
+
+    replaced: what stands in the place of each block. inserted: what stands behind the block of the entry; none without
+    an entry. positions: the angle that the word of C there becomes, as it is written; empty where it stays.
+    """
+
+    def __init__(self, trace: Trace, each: Stretch, way: Way, entry: Entry | None, style: Style) -> None:
+        self.trace, self.each, self.way, self.entry = trace, each, way, entry
+        self.pen = _pen(trace, each, style)
+        run = trace.run
+        written = run.words.address != ord("N")
+        first = each.first if entry is None else entry.behind + 1
+        rows = np.unique(run.row[written & (run.row >= first) & (run.row <= each.last)])
+        self.replaced: dict[int, list[NewBlock]] = {block: [] for block in run.block[rows].tolist()}
+        self.inserted: list[NewBlock] = []
+        self.positions = ""
+        # A plane that begins at the switch begins where the tool stands; the others stand still on the part.
+        is_turned = entry is None and not trace.machine.polar.plane_is_fixed
+        self._turn = cmath.exp(1j * float(way.start_angle[0])) if is_turned else 1 + 0j
+
+    @property
+    def count(self) -> int:
+        """Blocks of the section."""
+        return sum(map(len, (*self.replaced.values(), self.inserted)))
+
+    def write(self, elements: Sequence[Element], feeds: Sequence[float]) -> None:
+        """
+        Write the section: the mode, the elements at the blocks at which they end, and what is in force behind it.
+
+        feeds: F of each element [mm/min]. Raises RefusedError where the machine has no words for an element.
+        """
+        trace, pen, each = self.trace, self.pen, self.each
+        if self.entry is None:
+            self._at(each.first).extend(self._entered())
+        else:
+            self._enter_above(self.entry)
+        lines = trace.blocks.line_in_file
+        for element, feed in zip(elements, feeds, strict=True):
+            row = int(self.way.row[element.until - 1])
+            pen.numbers.line = int(lines[row])
+            end = element.end / self._turn
+            if element.kind == Motion.NONE:
+                blocks = pen.line(None, element.z, feed)
+            elif element.kind == Motion.LINE:
+                blocks = pen.line(end, element.z, feed)
+            else:
+                blocks = pen.arc(end, element.center / self._turn, element.kind == Motion.CCW, element.z, feed)
+            self._at(row).extend(blocks)
+        last = self._at(each.last)
+        last += [block for block in pen.leave() if not _changes_x(trace, each, block)]
+        is_line = bool(elements) and elements[-1].kind in (Motion.LINE, Motion.NONE)
+        last += _restored(trace, each, pen, is_line and not trace.machine.control.motion_codes)
+
+    def _at(self, row: int) -> list[NewBlock]:
+        return self.replaced[int(self.trace.run.block[row])]
+
+    def _entered(self) -> list[NewBlock]:
+        """The mode switched on where the stretch begins."""
+        point = complex(self.way.start_radius[0] * np.exp(1j * self.way.start_angle[0]))
+        direction = float(self.trace.path.c_angle_before[self.each.first]) % 360
+        z = float(self.trace.path.z_before[self.each.first])
+        return [*self._per_minute(self.each.first), *self.pen.enter(point / self._turn, z, direction)]
+
+    def _enter_above(self, entry: Entry) -> None:
+        """The mode switched on above the part with C at 0; from there C turns back, and Z leads down."""
+        trace, pen = self.trace, self.pen
+        axis, angle = trace.machine.polar.rotary_address, pen.numbers.angle(entry.turns)
+        if entry.c_word >= 0:
+            self.positions = axis + angle
+        else:
+            word = axis + "=" * (len(axis) > 1) + angle
+            self.inserted.append(NewBlock((_in_case(pen, pen.numbers.code("G0")), _in_case(pen, word))))
+        radius = float(trace.path.x_before[entry.first])
+        self.inserted += self._per_minute(entry.behind + 1)
+        self.inserted += pen.enter(complex(radius), float(trace.path.z_before[entry.first]))
+        feed = trace.machine.writing.rapid_feed
+        if trace.machine.limits.c_feed > 0:
+            feed = min(feed, _BELOW * float(np.radians(trace.machine.limits.c_feed)) * radius)
+        back = radius * cmath.exp(1j * float(self.way.start_angle[0]))
+        self.inserted += pen.arc(back, 0j, back.imag > 0, feed=feed)
+        for row in range(entry.first, self.each.first):
+            if not trace.path.moves_z[row]:
+                continue
+            z, feed = float(trace.path.z[row]), float(trace.feedrate.written_feed[row])
+            is_rapid = trace.axes.motion[row] == Motion.RAPID
+            self._at(row).extend(pen.rapid(z=z) if is_rapid else pen.line(None, z, feed))
+
+    def _per_minute(self, row: int) -> list[NewBlock]:
+        """The code of F per minute where it is not in force before a row."""
+        before = row if self.trace.blocks.starts[row] else row - 1
+        if self.trace.feedrate.modal_feed_mode[before] == FeedMode.PER_MINUTE:
+            return []
+        return [NewBlock(tuple(_code(self.pen, FeedMode.PER_MINUTE)))]
+
+
+def _pen(trace: Trace, each: Stretch, style: Style) -> Pen:
+    units = [np.broadcast_to(column, len(trace)) for column in (trace.lengths.units, trace.lengths.feed_units)]
+    pen = Pen(trace.machine, style, *(bool(column[each.first] == Units.INCH) for column in units))
+    pen.numbers.line = each.line
+    return pen
+
+
+def _code(pen: Pen, mode: FeedMode) -> list[str]:
+    codes = pen.machine.codes(_FEED_CODES[mode])
+    if not codes:
+        raise RefusedError([Refusal(pen.numbers.line, f"no code for that F is known: {pen.machine.title}")])
+    code = pen.numbers.code(codes[0])
+    return [code.lower() if pen.style.lower_case else code]
+
+
+def _changes_x(trace: Trace, each: Stretch, block: NewBlock) -> bool:
+    """A block behind the section that makes of X what it has not been before."""
+    control, text = trace.machine.control, " ".join(block.words)
+    is_radius = x_factor(trace, each.last) == 1
+    return text in (control.x_diameter_words if is_radius else control.x_radius_words)
+
+
+def _restored(trace: Trace, each: Stretch, pen: Pen, is_line: bool) -> list[NewBlock]:
+    """
+    A block of what the stretch has left in force and the blocks behind it take over: G1, X, F and what F is.
+
+    is_line: G1 is in force behind the section.
+
+    X stands where it stood, but the control counts it otherwise in the mode: it is written before anything builds on
+    it.
+    """
+    last, axes, modal, blocks = each.last, trace.axes, trace.modal, trace.blocks
+    end = next_row(blocks.starts, last)
+
+    def before(users: int, setters: int) -> bool:
+        return users < min(setters, end)
+
+    moves = axes.motion != Motion.NONE
+    at_feed = next_row(moves & (axes.motion != Motion.RAPID), last)
+    takes_motion = not is_line and before(next_row(moves, last), next_row(modal.sets("motion"), last))
+    mode = FeedMode(int(trace.feedrate.modal_feed_mode[last]))
+    takes_mode = mode != FeedMode.PER_MINUTE and before(at_feed, next_row(modal.sets("feed_mode"), last))
+    takes_feed = before(at_feed, next_row(blocks.has("F"), last))
+    on_plane = next_row(moves & blocks.has("X", "U", *trace.machine.polar.rotary_words), last)
+    writes_x = on_plane < end and blocks.has("X")[on_plane] and not modal.is_step("X")[on_plane]
+    takes_x = on_plane < end and not writes_x
+    words = []
+    if takes_mode:
+        words += _code(pen, mode)
+    if takes_motion or takes_x:
+        words.append(_in_case(pen, pen.numbers.code("G1")))
+    if takes_x:
+        count = pen.numbers.increments(float(trace.path.x[last]) / x_factor(trace, last))
+        words.append(_in_case(pen, pen.word("X", count)))
+    if takes_feed or ((takes_x or takes_mode) and mode == FeedMode.INVERSE_TIME):
+        # F as it is written, be it a time or a length.
+        number = float(trace.feedrate.written_feed[last])
+        if mode == FeedMode.INVERSE_TIME:
+            scale = float(np.broadcast_to(trace.lengths.feed_scale, len(trace))[last])
+            number = number / scale * (25.4 if pen.numbers.feed_inch else 1.0)
+        words.append(_in_case(pen, "F" + pen.numbers.feed(number)))
+    return [NewBlock(tuple(words))] if words else []
+
+
+def _in_case(pen: Pen, word: str) -> str:
+    return word.lower() if pen.style.lower_case else word
