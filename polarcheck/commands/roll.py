@@ -27,8 +27,12 @@ if TYPE_CHECKING:
         "--feed", type=click.Choice(WITH_ROTARY), help="What F per minute is where X and C move together, if the "
         "machine does not say it.",
     ),
+    option(
+        "--keep-c", is_flag=True, help="Leave C where it stands when the mode is switched on; else it goes to 0 above "
+        "the part, where it can.",
+    ),
 )  # fmt: skip
-def roll(tolerance: float | None, feed: str | None) -> Command:
+def roll(tolerance: float | None, feed: str | None, keep_c: bool) -> Command:
     """
     Write the plain moves of X and C of PATH, thousands of short blocks of a CAM without the polar mode, as polar
     sections of lines and arcs within a tolerance.
@@ -40,7 +44,7 @@ def roll(tolerance: float | None, feed: str | None) -> Command:
 
         def rolls(original: Original) -> Outcome:
             allowed = 0.01 if tolerance is None else in_mm(original, tolerance)
-            return rolled(original, Rolling(allowed, feed or ""))
+            return rolled(original, Rolling(allowed, feed or "", keep_c))
 
         return rolls
 

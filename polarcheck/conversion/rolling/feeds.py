@@ -34,6 +34,7 @@ class Feeds(msgspec.Struct, frozen=True):
     of_element: [mm/min]. meant: those that the blocks had where nothing slowed them, the longest way first [mm/min].
     slowest, fastest: of the tool along its way, but for a twentieth at each end [mm/min].
     is_even: the tool ran at even speed along each element. limited: elements whose F C or a limit of F makes lower.
+    slowed: the share of the way on which C was at its limit.
     """
 
     of_element: list[float]
@@ -42,6 +43,7 @@ class Feeds(msgspec.Struct, frozen=True):
     fastest: float
     is_even: bool
     limited: list[int]
+    slowed: float
 
 
 def feeds_of(way: Way, elements: list[Element], machine: Machine, unit: float) -> Feeds:
@@ -89,7 +91,8 @@ def feeds_of(way: Way, elements: list[Element], machine: Machine, unit: float) -
     ways: dict[float, float] = {}
     for feed, long in zip(chosen, weight[plane].tolist(), strict=True):
         ways[feed] = ways.get(feed, 0.0) + long
-    return Feeds(written, sorted(ways, key=lambda feed: -ways[feed]), low, high, is_even, limited)
+    slowed = float(length[~free].sum() / max(float(length[on_plane].sum()), ZERO))
+    return Feeds(written, sorted(ways, key=lambda feed: -ways[feed]), low, high, is_even, limited, slowed)
 
 
 def _grouped(own: Floats, weight: Floats, plane: Mask, overall: float) -> Floats:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import msgspec
 import numpy as np
@@ -13,17 +13,27 @@ from polarcheck.conversion.blocks import edit_behind, edits_of, with_edits
 from polarcheck.conversion.original import Original
 from polarcheck.conversion.outcome import Figure, Outcome, Refusal, RefusedError
 from polarcheck.conversion.reading_back import ReadBack, read_back_on_part
-from polarcheck.conversion.rolling.elements import Fit, fit_of
-from polarcheck.conversion.rolling.entries import Entry, entry_of
-from polarcheck.conversion.rolling.feeds import Feeds, feeds_of
+from polarcheck.conversion.rolling.elements import fit_of
+from polarcheck.conversion.rolling.entries import entry_of
+from polarcheck.conversion.rolling.feeds import feeds_of
+from polarcheck.conversion.rolling.measuring import Measured, Section, measured_of
 from polarcheck.conversion.rolling.stretches import LEAST, Stretch, stretches, x_factor
-from polarcheck.conversion.rolling.ways import Way, per_minute_rule, through_center, way_of
+from polarcheck.conversion.rolling.ways import per_minute_rule, through_center, way_of
 from polarcheck.conversion.rolling.writing import Writer
 from polarcheck.conversion.style import Style
 from polarcheck.conversion.style_of import style_of
+from polarcheck.machines.modal import Motion
 
+#: Feeds that a note names.
+_LISTED = 5
+#: Less than this share of the way that C slowed down is not told.
+_MOST_SLOWED = 0.02
+#: C nearer to full turns than this is at 0 [deg].
+_AT_ZERO = 1e-9
 #: Of a step of the new words: so far may rounding move a point and a center together.
 _ROUNDING = 1.7
+#: Share of the tolerance that reading back adds to what it measures: chords of curves, by this share of it each.
+_OF_MEASURING, _CHORD = 0.07, 0.02
 
 
 class Rolling(msgspec.Struct, frozen=True):
@@ -37,17 +47,6 @@ class Rolling(msgspec.Struct, frozen=True):
     tolerance: float = 0.01
     feed: str = ""
     keep_c: bool = False
-
-
-class Section(msgspec.Struct, frozen=True):
-    """A stretch and what becomes of it."""
-
-    stretch: Stretch
-    way: Way
-    fit: Fit
-    feeds: Feeds
-    entry: Entry | None
-    text: Writer
 
 
 def rolled(original: Original, options: Rolling) -> Outcome:
@@ -72,13 +71,15 @@ def rolled(original: Original, options: Rolling) -> Outcome:
             left += error.refusals
     while sections:
         data, origin, result = _written(original, sections, style, options.tolerance)
-        wrong = [each for each in sections if _is_at_fault(each, result.differences)]
-        if result.differences and not wrong:
-            raise RefusedError(result.differences)
+        measured = measured_of(original, result.new, origin, sections, options.tolerance)
+        differences = result.differences or measured.differences
+        if not differences:
+            notes = [*_notes(original, sections, rule, options), *(f"{each}" for each in result.notes), *_left(left)]
+            return Outcome(data, origin, [], _figures(sections, measured, result.deviation), notes)
+        wrong = [each for each in sections if _is_at_fault(each, differences)]
         if not wrong:
-            figures = _figures(sections, result)
-            return Outcome(data, origin, [], figures, _notes(original, sections, left))
-        left += [each for each in result.differences if each.line]
+            raise RefusedError(differences)
+        left += differences
         sections = [each for each in sections if each not in wrong]
     raise RefusedError(sorted(set(left)))
 
@@ -87,9 +88,9 @@ def _section(trace: Trace, each: Stretch, rule: str, options: Rolling, style: St
     machine, tolerance = trace.machine, options.tolerance
     way = through_center(way_of(trace, each, rule))
     step = float(np.broadcast_to(trace.lengths.least_step, len(trace))[each.first])
-    reserve = _ROUNDING * step
-    if tolerance < 2 * reserve:
-        text = f"a tolerance of {tolerance:g} mm is too little: the least increment alone takes {reserve:.4f} mm"
+    reserve = _ROUNDING * step + _OF_MEASURING * tolerance
+    if tolerance - reserve < step:
+        text = f"a tolerance of {tolerance:g} mm is too little: rounding alone takes {reserve:.4f} mm"
         raise RefusedError([Refusal(each.line, text)])
     widest = float(np.abs(way.radius).max(initial=0.0))
     noise = np.hypot(step * x_factor(trace, each.first), widest * np.radians(machine.control.least_increment)) / 2
@@ -102,7 +103,7 @@ def _section(trace: Trace, each: Stretch, rule: str, options: Rolling, style: St
     if writer.count >= len(way):
         text = f"the section would have {writer.count} blocks in the place of {len(way)}"
         raise RefusedError([Refusal(each.line, text)])
-    return Section(each, way, fit, feeds, entry, writer)
+    return Section(each, way, fit, feeds, unit, entry, writer, int(trace.blocks.line_in_file[writer.first]))
 
 
 def _written(
@@ -120,31 +121,78 @@ def _written(
             if each.text.positions:
                 edits.append(in_place_of(run, each.entry.c_word, each.text.positions))
     data, origin = with_edits(original, sorted(edits))
-    chord = tolerance / 50
-    allowed = tolerance + max(each.fit.bow for each in sections) + 3 * chord
-    return data, origin, read_back_on_part(original, data, original.settings, origin, allowed, chord, left_out)
+    chord = _CHORD * tolerance
+    allowed = tolerance + max(each.fit.bow for each in sections)
+    return (
+        data,
+        origin,
+        read_back_on_part(original, data, original.settings, origin, allowed, chord, left_out, noted=("setup",)),
+    )
 
 
 def _is_at_fault(each: Section, differences: Sequence[Refusal]) -> bool:
-    stretch = each.stretch
-    return any(stretch.line <= refusal.line <= stretch.last_line for refusal in differences)
+    return any(each.first_line <= refusal.line <= each.stretch.last_line for refusal in differences)
 
 
-def _figures(sections: Sequence[Section], result: ReadBack) -> list[Figure]:
-    before = sum(len(each.way) for each in sections)
+def _figures(sections: Sequence[Section], measured: Measured, deviation: float) -> list[Figure]:
     return [
         Figure("sections", len(sections)),
-        Figure("blocks before", before),
+        Figure("blocks before", sum(len(each.way) for each in sections)),
         Figure("blocks after", sum(each.text.count for each in sections)),
-        Figure("largest distance of the tool center from its path", result.deviation, "mm"),
+        Figure("largest distance of the ends of the blocks from the new path", measured.places, "mm"),
+        Figure("largest distance of the way of the tool, with the bows of its blocks", deviation, "mm"),
+        Figure("time at feed before", 60 * sum(float(each.way.time.sum()) for each in sections), "s"),
+        Figure("time at feed after", measured.time, "s"),
     ]
 
 
-def _notes(original: Original, sections: Sequence[Section], left: Sequence[Refusal]) -> list[str]:
-    notes = []
+def _left(refusals: Sequence[Refusal]) -> list[str]:
+    return [f"line {each.line}: left as it is: {each.text}" for each in dict.fromkeys(refusals)]
+
+
+def _notes(original: Original, sections: Sequence[Section], rule: str, options: Rolling) -> list[str]:
+    trace, notes = original.trace, []
     for each in sections:
-        feeds = ", ".join(f"F{feed:g}" for feed in each.feeds.meant[:5])
-        notes.append(f"line {each.stretch.line}: {feeds}")
-    notes += [f"line {each.line}: left as it is: {each.text}" for each in left]
+        stretch, elements = each.stretch, each.fit.elements
+        where = f"line {stretch.line} to {stretch.last_line}"
+        count = sum(element.kind != Motion.NONE for element in elements)
+        notes.append(f"{where}: {len(each.way)} blocks are {count} lines and arcs with {_feeds(trace, each)}")
+        notes += [f"{where}: {text}" for text in _on_feed(trace, each)]
+        notes += [f"{where}: {text}" for text in _on_entry(trace, each)]
+    known = trace.machine.feed.with_rotary
+    if rule and rule not in known:
+        notes.append(f"F is {rule} as --feed says; the profile of {trace.machine.title} does not say so")
+    elif rule and "feed.with_rotary" in original.settings.doubtful:
+        notes.append(f"that F is {rule} on {trace.machine.title} is in doubt: compare the times, or give --feed")
     notes.append("the path is that of the tool center: `polarcheck compensate` gives it G41 or G42")
     return notes
+
+
+def _feeds(trace: Trace, each: Section) -> str:
+    unit = each.unit
+    texts = [f"F{feed / unit:g}" for feed in each.feeds.meant[:_LISTED]]
+    return ", ".join(texts) + " and others" * (len(each.feeds.meant) > _LISTED)
+
+
+def _on_feed(trace: Trace, each: Section) -> Iterator[str]:
+    feeds, unit = each.feeds, each.unit
+    if not feeds.is_even:
+        low, high = (f"{speed / unit:.3g}" for speed in (feeds.slowest, feeds.fastest))
+        yield f"the speed of the tool changed along it from {low} to {high}: F is that of the middle of the way"
+    if feeds.slowed > _MOST_SLOWED:
+        yield f"C was at its limit in {feeds.slowed:.0%} of the way: F is that of the rest"
+    if feeds.limited:
+        lowest = min(feeds.of_element[index] for index in feeds.limited) / unit
+        count = len(feeds.limited)
+        yield f"F is lower in {count} lines and arcs, down to F{lowest:g}, so that C and F are within their limits"
+
+
+def _on_entry(trace: Trace, each: Section) -> Iterator[str]:
+    axis = trace.machine.polar.rotary_address
+    if each.entry is not None:
+        line = int(trace.blocks.line_in_file[each.entry.behind])
+        yield f"behind line {line} {axis} goes to 0 above the part, and back in the mode: --keep-c leaves it there"
+    elif not trace.machine.polar.plane_is_fixed:
+        angle = float(trace.path.c_angle_before[each.stretch.first])
+        if abs(angle - 360 * round(angle / 360)) > _AT_ZERO:
+            yield f"its coordinates are turned by {axis}{angle:g}, where {axis} stands when the mode is switched on"

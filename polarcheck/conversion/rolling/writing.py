@@ -31,8 +31,9 @@ class Writer:
     """
     Writes the section of a stretch.
 
-    replaced: what stands in the place of each block. inserted: what stands behind the block of the entry; none without
-    an entry. positions: the angle that the word of C there becomes, as it is written; empty where it stays.
+    first: the first row whose block is replaced. replaced: what stands in the place of each block. inserted: what
+    stands behind the block of the entry; none without an entry. positions: the word of C there, as it becomes; empty
+    where it stays.
     """
 
     def __init__(self, trace: Trace, each: Stretch, way: Way, entry: Entry | None, style: Style) -> None:
@@ -40,8 +41,8 @@ class Writer:
         self.pen = _pen(trace, each, style)
         run = trace.run
         written = run.words.address != ord("N")
-        first = each.first if entry is None else entry.behind + 1
-        rows = np.unique(run.row[written & (run.row >= first) & (run.row <= each.last)])
+        self.first = each.first if entry is None else entry.behind + 1
+        rows = np.unique(run.row[written & (run.row >= self.first) & (run.row <= each.last)])
         self.replaced: dict[int, list[NewBlock]] = {block: [] for block in run.block[rows].tolist()}
         self.inserted: list[NewBlock] = []
         self.positions = ""
