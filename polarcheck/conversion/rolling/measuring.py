@@ -14,17 +14,20 @@ from polarcheck.conversion.outcome import Refusal
 from polarcheck.conversion.rolling.elements import Fit
 from polarcheck.conversion.rolling.entries import Entry
 from polarcheck.conversion.rolling.feeds import Feeds
+from polarcheck.conversion.rolling.slowing import Parts
 from polarcheck.conversion.rolling.stretches import Stretch
 from polarcheck.conversion.rolling.ways import Way
 from polarcheck.conversion.rolling.writing import Writer
 from polarcheck.geometry.plane import arc_sweep
-from polarcheck.geometry.straight_axes.pieces import distances
+from polarcheck.geometry.straight_axes.pieces import along, distances
 from polarcheck.geometry.tolerances import ZERO
 from polarcheck.machines.modal import FeedMode, Motion
 from polarcheck.revisions.stretches import NOWHERE, turn_of
 from polarcheck.table.moves import Moves
 from polarcheck.time_limit import keep_time
 
+#: Places on a block at which it is measured.
+_PLACES = np.linspace(0.125, 1, 8)[None, :]
 #: F may differ from what was meant to be written by this share: its digits.
 _SAME_FEED = 1e-3
 
@@ -40,6 +43,7 @@ class Section(msgspec.Struct, frozen=True):
     way: Way
     fit: Fit
     feeds: Feeds
+    parts: Parts
     unit: float
     entry: Entry | None
     text: Writer
@@ -50,11 +54,13 @@ class Measured(msgspec.Struct, frozen=True):
     """
     What was read back.
 
-    places: how far ends of blocks are from the new path at most [mm]. time: of the new blocks at feed [s].
+    places: how far ends of blocks are from the new path at most [mm]; way: how far the ways between them are, which
+    bow. time: of the new blocks at feed [s].
     """
 
     differences: list[Refusal]
     places: float
+    way: float
     time: float
 
 
@@ -72,7 +78,7 @@ def measured_of(
     enters = stands_for[trace.mode.sections.enter].tolist()
     number_of = dict(zip(enters, range(len(enters)), strict=True))
     differences: list[Refusal] = []
-    largest = time = 0.0
+    places = ways = time = 0.0
     lines = original.trace.blocks.line_in_file
     for each in sections:
         keep_time()
@@ -85,25 +91,27 @@ def measured_of(
         own: Moves = moves[low:high]
         of_line = stands_for[own.row]
         away = _away(each, own, of_line, lines, turn_of(trace, number))
-        worst = int(np.argmax(away))
-        largest = max(largest, float(away[worst]))
-        if not away[worst] <= tolerance:
+        at_ends = away[:, -1]
+        worst = int(np.argmax(at_ends))
+        places, ways = max(places, float(at_ends[worst])), max(ways, float(away.max()))
+        if not at_ends[worst] <= tolerance:
             line = int(lines[each.way.row[worst]])
-            differences.append(Refusal(line, f"the path would be {away[worst]:.4f} mm away from the end of this block"))
+            text = f"the path would be {at_ends[worst]:.4f} mm away from the end of this block"
+            differences.append(Refusal(line, text))
         behind = of_line >= each.stretch.line
         differences += _feeds(each, own[behind], of_line[behind], trace)
         time += float(np.nansum((own.length / own.feed)[behind])) * 60
         time += 60 * sum(
             float(each.way.rise[element.first]) / feed
-            for element, feed in zip(each.fit.elements, each.feeds.of_element, strict=True)
+            for element, feed in zip(each.parts.elements, each.parts.feeds, strict=True)
             if element.kind == Motion.NONE
         )
-    return Measured(differences, largest, time)
+    return Measured(differences, places, ways, time)
 
 
 def _feeds(each: Section, moves: Moves, of_line: Rows, trace: Trace) -> list[Refusal]:
     """F of moves that none of the elements was to have."""
-    meant = np.sort(each.feeds.of_element)
+    meant = np.sort(each.parts.feeds)
     at = np.clip(np.searchsorted(meant, moves.feed), 1, max(len(meant) - 1, 1))
     nearest = np.minimum(*(np.abs(moves.feed / meant[np.minimum(at - n, len(meant) - 1)] - 1) for n in (0, 1)))
     per_minute = trace.feedrate.feed_mode[moves.row] == FeedMode.PER_MINUTE
@@ -112,20 +120,26 @@ def _feeds(each: Section, moves: Moves, of_line: Rows, trace: Trace) -> list[Ref
 
 
 def _away(each: Section, moves: Moves, of_line: Rows, lines: Rows, turn: complex) -> Floats:
-    """How far the end of each block on the plane is from the moves that stand for it [mm]; inf where none does."""
+    """
+    How far each block on the plane is from the moves that stand for it [mm], at places along it, the last at its end.
+
+    inf where no move stands for it.
+    """
     way = each.way
-    points = way.radius * np.exp(1j * way.angle)
-    away = np.where(way.length > ZERO, np.inf, 0.0)
+    points = along(way.start_radius, way.radius, way.start_angle, way.angle, _PLACES)
+    away = np.repeat(np.where(way.length > ZERO, np.inf, 0.0)[:, None], points.shape[1], axis=1)
     start, end, center = moves.start * turn, moves.end * turn, moves.center * turn
     sweep = arc_sweep(start, end, np.where(np.isnan(center), 0, center), moves.kind)
     center = np.where(sweep == 0, NOWHERE, center)
-    for element in each.fit.elements:
+    for element in each.parts.elements:
         line = int(lines[way.row[element.until - 1]])
         own = slice(*stretch(of_line, line, line + 1))
         if element.kind == Motion.NONE or own.start == own.stop:
             continue
-        blocks = slice(element.first, element.until)
-        place = np.broadcast_to(points[blocks], (own.stop - own.start, element.until - element.first))
+        # A block at a joint lies beside the element before it, too.
+        first, until = max(element.first - 1, 0), min(element.until + 1, len(way))
+        place = points[first:until].ravel()
+        place = np.broadcast_to(place, (own.stop - own.start, len(place)))
         far = distances(place, start[own], end[own], center[own], sweep[own]).min(axis=0)
-        away[blocks] = np.minimum(away[blocks], far)
+        away[first:until] = np.minimum(away[first:until], far.reshape(until - first, -1))
     return away

@@ -13,17 +13,21 @@ from polarcheck.conversion.blocks import edit_behind, edits_of, with_edits
 from polarcheck.conversion.original import Original
 from polarcheck.conversion.outcome import Figure, Outcome, Refusal, RefusedError
 from polarcheck.conversion.reading_back import ReadBack, read_back_on_part
-from polarcheck.conversion.rolling.elements import fit_of
+from polarcheck.conversion.rolling.elements import Fit, fit_of
 from polarcheck.conversion.rolling.entries import entry_of
 from polarcheck.conversion.rolling.feeds import feeds_of
 from polarcheck.conversion.rolling.measuring import Measured, Section, measured_of
+from polarcheck.conversion.rolling.slowing import parts_of
 from polarcheck.conversion.rolling.stretches import LEAST, Stretch, stretches, x_factor
-from polarcheck.conversion.rolling.ways import per_minute_rule, through_center, way_of
+from polarcheck.conversion.rolling.ways import Way, per_minute_rule, through_center, way_of
 from polarcheck.conversion.rolling.writing import Writer
 from polarcheck.conversion.style import Style
 from polarcheck.conversion.style_of import style_of
+from polarcheck.geometry import polar
 from polarcheck.machines.modal import Motion
 
+#: The rule of ways through the center.
+_THROUGH_CENTER = "path-through-center"
 #: Feeds that a note names.
 _LISTED = 5
 #: Less than this share of the way that C slowed down is not told.
@@ -66,7 +70,7 @@ def rolled(original: Original, options: Rolling) -> Outcome:
     sections: list[Section] = []
     for each in candidates:
         try:
-            sections.append(_section(trace, each, rule, options, style))
+            sections.append(_section(original, each, rule, options, style))
         except RefusedError as error:
             left += error.refusals
     while sections:
@@ -75,7 +79,7 @@ def rolled(original: Original, options: Rolling) -> Outcome:
         differences = result.differences or measured.differences
         if not differences:
             notes = [*_notes(original, sections, rule, options), *(f"{each}" for each in result.notes), *_left(left)]
-            return Outcome(data, origin, [], _figures(sections, measured, result.deviation), notes)
+            return Outcome(data, origin, [], _figures(sections, measured), notes)
         wrong = [each for each in sections if _is_at_fault(each, differences)]
         if not wrong:
             raise RefusedError(differences)
@@ -84,7 +88,8 @@ def rolled(original: Original, options: Rolling) -> Outcome:
     raise RefusedError(sorted(set(left)))
 
 
-def _section(trace: Trace, each: Stretch, rule: str, options: Rolling, style: Style) -> Section:
+def _section(original: Original, each: Stretch, rule: str, options: Rolling, style: Style) -> Section:
+    trace = original.trace
     machine, tolerance = trace.machine, options.tolerance
     way = through_center(way_of(trace, each, rule))
     step = float(np.broadcast_to(trace.lengths.least_step, len(trace))[each.first])
@@ -96,14 +101,30 @@ def _section(trace: Trace, each: Stretch, rule: str, options: Rolling, style: St
     noise = np.hypot(step * x_factor(trace, each.first), widest * np.radians(machine.control.least_increment)) / 2
     fit = fit_of(way, tolerance, reserve, 1.5 * float(noise))
     unit = float(np.broadcast_to(trace.lengths.feed_scale, len(trace))[each.first])
+    _require_off_center(original, way, fit, step)
     feeds = feeds_of(way, fit.elements, machine, unit)
     entry = None if options.keep_c else entry_of(trace, each, way)
     writer = Writer(trace, each, way, entry, style)
-    writer.write(fit.elements, feeds.of_element)
+    parts = parts_of(way, fit.elements, feeds, machine, unit)
+    writer.write(parts.elements, parts.feeds)
     if writer.count >= len(way):
         text = f"the section would have {writer.count} blocks in the place of {len(way)}"
         raise RefusedError([Refusal(each.line, text)])
-    return Section(each, way, fit, feeds, unit, entry, writer, int(trace.blocks.line_in_file[writer.first]))
+    return Section(each, way, fit, feeds, parts, unit, entry, writer, int(trace.blocks.line_in_file[writer.first]))
+
+
+def _require_off_center(original: Original, way: Way, fit: Fit, step: float) -> None:
+    """Raise RefusedError for a way through the center of C, where a check of the result would find an error."""
+    severities = {**original.settings.machine.severities, **original.settings.severities}
+    if severities.get(_THROUGH_CENTER, "error") != "error":
+        return
+    for element in fit.elements:
+        start, end, center = (np.array([point], complex) for point in (element.start, element.end, element.center))
+        nearest = polar.nearest(start, end, center, np.array([element.kind], np.int16))[0]
+        if element.kind != Motion.NONE and nearest < step:
+            line = int(original.trace.blocks.line_in_file[way.row[element.first]])
+            title = original.settings.machine.title
+            raise RefusedError([Refusal(line, f"the way goes through the center of C, which the mode cannot: {title}")])
 
 
 def _written(
@@ -134,13 +155,13 @@ def _is_at_fault(each: Section, differences: Sequence[Refusal]) -> bool:
     return any(each.first_line <= refusal.line <= each.stretch.last_line for refusal in differences)
 
 
-def _figures(sections: Sequence[Section], measured: Measured, deviation: float) -> list[Figure]:
+def _figures(sections: Sequence[Section], measured: Measured) -> list[Figure]:
     return [
         Figure("sections", len(sections)),
         Figure("blocks before", sum(len(each.way) for each in sections)),
         Figure("blocks after", sum(each.text.count for each in sections)),
         Figure("largest distance of the ends of the blocks from the new path", measured.places, "mm"),
-        Figure("largest distance of the way of the tool, with the bows of its blocks", deviation, "mm"),
+        Figure("largest distance of the way between them, which bows", measured.way, "mm"),
         Figure("time at feed before", 60 * sum(float(each.way.time.sum()) for each in sections), "s"),
         Figure("time at feed after", measured.time, "s"),
     ]
@@ -156,8 +177,9 @@ def _notes(original: Original, sections: Sequence[Section], rule: str, options: 
         stretch, elements = each.stretch, each.fit.elements
         where = f"line {stretch.line} to {stretch.last_line}"
         count = sum(element.kind != Motion.NONE for element in elements)
-        notes.append(f"{where}: {len(each.way)} blocks are {count} lines and arcs with {_feeds(trace, each)}")
-        notes += [f"{where}: {text}" for text in _on_feed(trace, each)]
+        curves = f"{count} lines and arcs" if count > 1 else "one line or arc"
+        notes.append(f"{where}: {len(each.way)} blocks become {curves} with {_feeds(each)}")
+        notes += [f"{where}: {text}" for text in _on_feed(each)]
         notes += [f"{where}: {text}" for text in _on_entry(trace, each)]
     known = trace.machine.feed.with_rotary
     if rule and rule not in known:
@@ -168,23 +190,24 @@ def _notes(original: Original, sections: Sequence[Section], rule: str, options: 
     return notes
 
 
-def _feeds(trace: Trace, each: Section) -> str:
+def _feeds(each: Section) -> str:
     unit = each.unit
-    texts = [f"F{feed / unit:g}" for feed in each.feeds.meant[:_LISTED]]
-    return ", ".join(texts) + " and others" * (len(each.feeds.meant) > _LISTED)
+    texts = [f"F{feed / unit:g}" for feed in each.feeds.by_way[:_LISTED]]
+    return ", ".join(texts) + " and others" * (len(each.feeds.by_way) > _LISTED)
 
 
-def _on_feed(trace: Trace, each: Section) -> Iterator[str]:
+def _on_feed(each: Section) -> Iterator[str]:
     feeds, unit = each.feeds, each.unit
     if not feeds.is_even:
         low, high = (f"{speed / unit:.3g}" for speed in (feeds.slowest, feeds.fastest))
         yield f"the speed of the tool changed along it from {low} to {high}: F is that of the middle of the way"
     if feeds.slowed > _MOST_SLOWED:
         yield f"C was at its limit in {feeds.slowed:.0%} of the way: F is that of the rest"
-    if feeds.limited:
-        lowest = min(feeds.of_element[index] for index in feeds.limited) / unit
-        count = len(feeds.limited)
-        yield f"F is lower in {count} lines and arcs, down to F{lowest:g}, so that C and F are within their limits"
+    parts = each.parts
+    if parts.limited:
+        why = "its limit allows" if parts.by == "limit" else "in the plain moves, since its limit is not known"
+        lowest = f"F{parts.lowest / unit:g}"
+        yield f"F is lower in {parts.limited} of them, down to {lowest}, so that C turns no faster than {why}"
 
 
 def _on_entry(trace: Trace, each: Section) -> Iterator[str]:

@@ -20,6 +20,12 @@ LEAST = 8
 _CODES = ("line", "feed_inverse_time", "feed_per_minute", "absolute")
 #: A radius is not below zero by less [mm].
 _ZERO = 1e-6
+#: A block that goes on as those before it turns C by no more [deg].
+_STEP = 30.0
+_UNWINDS = (
+    "C turns back by nearly a turn here: on a lathe that takes the shorter way, --set control.rotary_rolls_over=true "
+    "or its machine file says so"
+)
 _ON_CYLINDER = "C and Z move together and X stands: that is milling on the cylinder, not on the face"
 
 
@@ -124,6 +130,7 @@ def _reasons(trace: Trace) -> list[tuple[Mask, str]]:
         (on_sub_spindle, "which way C turns in the mode on the sub-spindle is not known"),
         (moves & (np.isnan(path.x) | np.isnan(path.x_before)), "X is not known where it begins"),
         (path.moves_c & np.isnan(path.c_turn), "C is not known where it begins: position it before, as C0"),
+        (_unwinds(trace), _UNWINDS),
         (beside & np.isnan(path.z_before), "Z is not known where it begins to move"),
         (np.nan_to_num(path.local_shift) != 0, "the origin is shifted off the center of C"),
         (travels & (mode == FeedMode.PER_REVOLUTION), "F is per revolution"),
@@ -132,6 +139,17 @@ def _reasons(trace: Trace) -> list[tuple[Mask, str]]:
         (not_beside & path.moves_c & ~path.moves_x, _ON_CYLINDER),
         (not_beside, f"Z moves beside X and C, with which it is not interpolated in the mode: {trace.machine.title}"),
     ]
+
+
+def _unwinds(trace: Trace) -> Mask:
+    """Rows in which C turns against the others by nearly a turn, where the shorter way would go on as they do."""
+    turn = np.where(trace.path.moves_c & (trace.axes.motion == Motion.LINE), np.nan_to_num(trace.path.c_turn), 0.0)
+    rows = np.flatnonzero(turn)
+    own, before = turn[rows][1:], turn[rows][:-1]
+    shorter = own - 360 * np.round(own / 360)
+    result = np.zeros(len(trace), bool)
+    result[rows[1:]] = (np.abs(own) > 180) & (np.abs(shorter) <= _STEP) & (shorter * before > 0) & (own * before < 0)
+    return result
 
 
 def _is_computed(trace: Trace) -> Mask:

@@ -79,7 +79,7 @@ class Writer:
                 blocks = pen.arc(end, element.center / self._turn, element.kind == Motion.CCW, element.z, feed)
             self._at(row).extend(blocks)
         last = self._at(each.last)
-        last += [block for block in pen.leave() if not _changes_x(trace, each, block)]
+        last += [block for block in pen.leave() if not self._changes_x(block)]
         is_line = bool(elements) and elements[-1].kind in (Motion.LINE, Motion.NONE)
         last += _restored(trace, each, pen, is_line and not trace.machine.control.motion_codes)
 
@@ -91,7 +91,7 @@ class Writer:
         point = complex(self.way.start_radius[0] * np.exp(1j * self.way.start_angle[0]))
         direction = float(self.trace.path.c_angle_before[self.each.first]) % 360
         z = float(self.trace.path.z_before[self.each.first])
-        return [*self._per_minute(self.each.first), *self.pen.enter(point / self._turn, z, direction)]
+        return [*self._per_minute(self.each.first), *self._switched_on(point / self._turn, z, direction)]
 
     def _enter_above(self, entry: Entry) -> None:
         """The mode switched on above the part with C at 0; from there C turns back, and Z leads down."""
@@ -104,7 +104,7 @@ class Writer:
             self.inserted.append(NewBlock((_in_case(pen, pen.numbers.code("G0")), _in_case(pen, word))))
         radius = float(trace.path.x_before[entry.first])
         self.inserted += self._per_minute(entry.behind + 1)
-        self.inserted += pen.enter(complex(radius), float(trace.path.z_before[entry.first]))
+        self.inserted += self._switched_on(complex(radius), float(trace.path.z_before[entry.first]))
         feed = trace.machine.writing.rapid_feed
         if trace.machine.limits.c_feed > 0:
             feed = min(feed, _BELOW * float(np.radians(trace.machine.limits.c_feed)) * radius)
@@ -116,6 +116,25 @@ class Writer:
             z, feed = float(trace.path.z[row]), float(trace.feedrate.written_feed[row])
             is_rapid = trace.axes.motion[row] == Motion.RAPID
             self._at(row).extend(pen.rapid(z=z) if is_rapid else pen.line(None, z, feed))
+
+    def _switched_on(self, point: complex, z: float, direction: float = 0.0) -> list[NewBlock]:
+        """The blocks that switch the mode on, without one that makes of X what it is already."""
+        blocks = self.pen.enter(point, z, direction)
+        return [block for block in blocks if self._makes_of_x(block) != self._is_radius]
+
+    def _changes_x(self, block: NewBlock) -> bool:
+        """A block behind the section that makes of X what it has not been before."""
+        return self._makes_of_x(block) == (not self._is_radius)
+
+    @property
+    def _is_radius(self) -> bool:
+        return x_factor(self.trace, self.each.first) == 1
+
+    def _makes_of_x(self, block: NewBlock) -> bool | None:
+        """True where a block makes X a radius, False for a diameter, None where it does neither."""
+        control, text = self.trace.machine.control, " ".join(block.words)
+        code = control.native_words.get(text, text)
+        return True if code in control.x_radius_words else False if code in control.x_diameter_words else None
 
     def _per_minute(self, row: int) -> list[NewBlock]:
         """The code of F per minute where it is not in force before a row."""
@@ -138,13 +157,6 @@ def _code(pen: Pen, mode: FeedMode) -> list[str]:
         raise RefusedError([Refusal(pen.numbers.line, f"no code for that F is known: {pen.machine.title}")])
     code = pen.numbers.code(codes[0])
     return [code.lower() if pen.style.lower_case else code]
-
-
-def _changes_x(trace: Trace, each: Stretch, block: NewBlock) -> bool:
-    """A block behind the section that makes of X what it has not been before."""
-    control, text = trace.machine.control, " ".join(block.words)
-    is_radius = x_factor(trace, each.last) == 1
-    return text in (control.x_diameter_words if is_radius else control.x_radius_words)
 
 
 def _restored(trace: Trace, each: Stretch, pen: Pen, is_line: bool) -> list[NewBlock]:
