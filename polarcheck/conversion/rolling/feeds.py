@@ -24,6 +24,8 @@ _EVEN, _UNEVEN_WAY = 0.15, 0.1
 _DIGITS = 3
 #: No more different F than this are looked for.
 _MOST = 20
+#: C at a limit is above this share of its highest rate, in no more than this share of the way.
+_HIGH, _HIGH_WAY = 0.9, 0.3
 #: Turns of C from which on its rate is not that of rounding [deg].
 _LEAST_TURN = 0.02
 
@@ -35,7 +37,7 @@ class Feeds(msgspec.Struct, frozen=True):
     of_element: what was meant [mm/min]. by_way: those on the plane without repetition, that of the longest way first.
     slowest, fastest: of the tool along its way, but for a twentieth at each end [mm/min].
     is_even: the tool ran at even speed along each element. slowed: the share of the way on which C was at its limit.
-    c_rate: the highest that C had [deg/min].
+    c_rate: the highest that C had, where the CAM may have seen to that [deg/min]; else inf.
     """
 
     of_element: list[float]
@@ -71,7 +73,6 @@ def feeds_of(way: Way, elements: list[Element], machine: Machine, unit: float) -
     for feed, long, on in zip(written, weight.tolist(), plane.tolist(), strict=True):
         if on:
             ways[feed] = ways.get(feed, 0.0) + long
-    turns = on_plane & (np.abs(way.turn) >= _LEAST_TURN)
     return Feeds(
         of_element=written,
         by_way=sorted(ways, key=lambda feed: -ways[feed]),
@@ -79,7 +80,7 @@ def feeds_of(way: Way, elements: list[Element], machine: Machine, unit: float) -
         fastest=high,
         is_even=bool(even[plane].all()),
         slowed=float(length[~free].sum() / length[on_plane].sum()),
-        c_rate=float(rate[turns if turns.any() else on_plane].max()),
+        c_rate=_limit_of(way, rate, length, on_plane),
     )
 
 
@@ -91,6 +92,16 @@ def nice(feed: float, unit: float, *, down: bool = False) -> float:
     step = 10.0 ** (math.floor(math.log10(written)) - _DIGITS + 1)
     count = math.floor(written / step * (1 + 1e-12)) if down else round(written / step)
     return max(count, 1) * step * unit
+
+
+def _limit_of(way: Way, rate: Floats, length: Floats, on_plane: Mask) -> float:
+    """The highest rate of C where it may be a limit: of some of the way, and F follows the speed; else inf."""
+    turns = on_plane & (np.abs(way.turn) >= _LEAST_TURN)
+    highest = float(rate[turns].max(initial=0.0))
+    is_high = on_plane & (rate >= _HIGH * highest)
+    _, counts = np.unique(way.number[on_plane], return_counts=True)
+    follows = counts.max() <= len(way) / 2
+    return highest if follows and 0 < length[is_high].sum() <= _HIGH_WAY * length[on_plane].sum() else math.inf
 
 
 def _own(speed: Floats, length: Floats, free: Mask, elements: list[Element]) -> tuple[Floats, Mask]:

@@ -62,24 +62,35 @@ def stretches(trace: Trace) -> tuple[list[Stretch], list[Refusal]]:
 
 
 def _candidates(trace: Trace) -> Iterator[Stretch]:
-    path = trace.path
     belongs = _belongs(trace)
-    turns, on_plane = path.moves_c & belongs, (path.moves_x | path.moves_c) & belongs
-    # Where a stretch begins or ends, X beside Z alone is turning, or an approach.
-    bounds = turns | (path.moves_x & ~path.moves_z & belongs)
     breaks = np.flatnonzero(~belongs | _jumps(trace))
-    ends = np.append(breaks, len(trace))
     begin = 0
-    for end in ends.tolist():
+    for end in [*breaks.tolist(), len(trace)]:
+        if end - begin >= LEAST:
+            yield from _within(trace, begin, end)
         # A row that breaks because of what stands before it may begin the next stretch.
-        rows = np.flatnonzero(bounds[begin:end]) + begin
         begin = end if end < len(trace) and belongs[end] else end + 1
-        if len(rows) < LEAST:
-            continue
-        first, last = int(rows[0]), int(rows[-1])
-        own = slice(first, last + 1)
-        if np.count_nonzero(on_plane[own]) >= LEAST and turns[own].any() and path.moves_x[own].any():
-            lines = trace.blocks.line_in_file
+
+
+def _within(trace: Trace, begin: int, end: int) -> Iterator[Stretch]:
+    """Stretches of rows that belong together: runs on the plane, parted by Z alone, without approaches and retracts."""
+    path, lines = trace.path, trace.blocks.line_in_file
+    rows = np.arange(begin, end)
+    turns, moves_x, moves_z = path.moves_c[rows], path.moves_x[rows], path.moves_z[rows]
+    on_plane = turns | moves_x
+    run = np.cumsum(moves_z & ~on_plane)
+    count = np.bincount(run, on_plane)
+    mills = count >= LEAST
+    # X and C that go together to another place, with Z above, are no contour.
+    goes = turns & moves_x & (np.abs(np.nan_to_num(path.c_turn[rows])) > _STEP)
+    parts = ~mills & (np.bincount(run, goes, minlength=len(count)) > 0)
+    # Where a stretch begins or ends, X beside Z alone is turning, or an approach.
+    bounds = (turns | (moves_x & ~moves_z)) & mills[run]
+    group = np.cumsum(parts)[run]
+    for own in np.split(rows, np.flatnonzero(np.diff(group)) + 1):
+        at = own[bounds[own - begin]]
+        if len(at) and turns[(chosen := slice(at[0] - begin, at[-1] + 1 - begin))].any() and moves_x[chosen].any():
+            first, last = int(at[0]), int(at[-1])
             yield Stretch(first, last, int(lines[first]), int(lines[last]))
 
 

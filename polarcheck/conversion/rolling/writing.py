@@ -7,6 +7,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from polarcheck.arrays import stretch
+from polarcheck.checking.editing import is_plain
 from polarcheck.columns.trace import Trace
 from polarcheck.conversion.blocks import NewBlock
 from polarcheck.conversion.outcome import Refusal, RefusedError
@@ -16,6 +18,7 @@ from polarcheck.conversion.rolling.entries import Entry
 from polarcheck.conversion.rolling.stretches import Stretch, next_row, x_factor
 from polarcheck.conversion.rolling.ways import Way
 from polarcheck.conversion.style import Style
+from polarcheck.machines.codes import code_set
 from polarcheck.machines.modal import FeedMode, Motion, Units
 
 #: F of the turn back is so much of what C allows.
@@ -41,7 +44,7 @@ class Writer:
         self.pen = _pen(trace, each, style)
         run = trace.run
         written = run.words.address != ord("N")
-        self.first = each.first if entry is None else entry.behind + 1
+        self.first = _with_feed_mode(trace, each.first) if entry is None else entry.behind + 1
         rows = np.unique(run.row[written & (run.row >= self.first) & (run.row <= each.last)])
         self.replaced: dict[int, list[NewBlock]] = {block: [] for block in run.block[rows].tolist()}
         self.inserted: list[NewBlock] = []
@@ -79,7 +82,7 @@ class Writer:
                 blocks = pen.arc(end, element.center / self._turn, element.kind == Motion.CCW, element.z, feed)
             self._at(row).extend(blocks)
         last = self._at(each.last)
-        last += [block for block in pen.leave() if not self._changes_x(block)]
+        last += self._in_case([block for block in pen.leave() if not self._changes_x(block)])
         is_line = bool(elements) and elements[-1].kind in (Motion.LINE, Motion.NONE)
         last += _restored(trace, each, pen, is_line and not trace.machine.control.motion_codes)
 
@@ -91,14 +94,14 @@ class Writer:
         point = complex(self.way.start_radius[0] * np.exp(1j * self.way.start_angle[0]))
         direction = float(self.trace.path.c_angle_before[self.each.first]) % 360
         z = float(self.trace.path.z_before[self.each.first])
-        return [*self._per_minute(self.each.first), *self._switched_on(point / self._turn, z, direction)]
+        return [*self._per_minute(self.first), *self._switched_on(point / self._turn, z, direction)]
 
     def _enter_above(self, entry: Entry) -> None:
         """The mode switched on above the part with C at 0; from there C turns back, and Z leads down."""
         trace, pen = self.trace, self.pen
         axis, angle = trace.machine.polar.rotary_address, pen.numbers.angle(entry.turns)
         if entry.c_word >= 0:
-            self.positions = axis + angle
+            self.positions = _in_case(pen, axis + angle)
         else:
             word = axis + "=" * (len(axis) > 1) + angle
             self.inserted.append(NewBlock((_in_case(pen, pen.numbers.code("G0")), _in_case(pen, word))))
@@ -120,7 +123,10 @@ class Writer:
     def _switched_on(self, point: complex, z: float, direction: float = 0.0) -> list[NewBlock]:
         """The blocks that switch the mode on, without one that makes of X what it is already."""
         blocks = self.pen.enter(point, z, direction)
-        return [block for block in blocks if self._makes_of_x(block) != self._is_radius]
+        return self._in_case([block for block in blocks if self._makes_of_x(block) != self._is_radius])
+
+    def _in_case(self, blocks: Sequence[NewBlock]) -> list[NewBlock]:
+        return [NewBlock(tuple(_in_case(self.pen, word) for word in block.words)) for block in blocks]
 
     def _changes_x(self, block: NewBlock) -> bool:
         """A block behind the section that makes of X what it has not been before."""
@@ -142,6 +148,22 @@ class Writer:
         if self.trace.feedrate.modal_feed_mode[before] == FeedMode.PER_MINUTE:
             return []
         return [NewBlock(tuple(_code(self.pen, FeedMode.PER_MINUTE)))]
+
+
+def _with_feed_mode(trace: Trace, row: int) -> int:
+    """The first of the rows right before one that say nothing but what F is."""
+    run, codes = trace.run, code_set(trace.machine.codes("feed_inverse_time"))
+    while row and not trace.blocks.starts[row - 1]:
+        low, high = stretch(run.row, row - 1, row)
+        letters = run.words.address[low:high].tolist()
+        if letters.count(ord("G")) != 1 or not set(letters) <= {ord("G"), ord("N")}:
+            break
+        word = low + letters.index(ord("G"))
+        at = int(np.searchsorted(trace.blocks.g_words, word))
+        if not codes[trace.blocks.g_codes[at]] or not is_plain(run, row - 1):
+            break
+        row -= 1
+    return row
 
 
 def _pen(trace: Trace, each: Stretch, style: Style) -> Pen:
@@ -191,7 +213,7 @@ def _restored(trace: Trace, each: Stretch, pen: Pen, is_line: bool) -> list[NewB
     if takes_x:
         count = pen.numbers.increments(float(trace.path.x[last]) / x_factor(trace, last))
         words.append(_in_case(pen, pen.word("X", count)))
-    if takes_feed or ((takes_x or takes_mode) and mode == FeedMode.INVERSE_TIME):
+    if takes_feed or (takes_x and mode == FeedMode.INVERSE_TIME):
         # F as it is written, be it a time or a length.
         number = float(trace.feedrate.written_feed[last])
         if mode == FeedMode.INVERSE_TIME:
