@@ -92,7 +92,12 @@ def way_of_section(
             continue
         end = complex(block.get("X", at.real * x_counts) / x_counts, block.get(virtual, at.imag))
         if motion in (2, 3):
-            center = at + complex(block["I"], block["J"])
+            if "R" in block:
+                chord = end - at
+                height = math.sqrt(block["R"] ** 2 - abs(chord) ** 2 / 4)
+                center = at + chord / 2 + 1j * chord / abs(chord) * (height if motion == 3 else -height)
+            else:
+                center = at + complex(block["I"], block["J"])
             turn = float(np.angle((end - center) / (at - center)))
             turn = turn % math.tau if motion == 3 else turn % math.tau - math.tau
             turn = turn or (math.tau if motion == 3 else -math.tau)

@@ -99,8 +99,9 @@ def _limit_of(way: Way, rate: Floats, length: Floats, on_plane: Mask) -> float:
     turns = on_plane & (np.abs(way.turn) >= _LEAST_TURN)
     highest = float(rate[turns].max(initial=0.0))
     is_high = on_plane & (rate >= _HIGH * highest)
-    _, counts = np.unique(way.number[on_plane], return_counts=True)
-    follows = counts.max() <= len(way) / 2
+    # One F per minute in most blocks follows no speed.
+    _, counts = np.unique(way.feed[on_plane & ~np.isnan(way.feed)], return_counts=True)
+    follows = counts.max(initial=0) <= len(way) / 2
     return highest if follows and 0 < length[is_high].sum() <= _HIGH_WAY * length[on_plane].sum() else math.inf
 
 

@@ -28,7 +28,8 @@ class Way(Table, frozen=True):
 
     row: of the trace. start_radius, radius: X as a radius before and behind it, of either sign [mm].
     start_angle, angle: of the tool on the part [rad], counted on. z_before, z: [mm], 0 where it is not known.
-    length: way on the plane [mm]. rise: way of Z [mm]. turn: of C [deg]. time: [min]. number: F as it is written.
+    length: way on the plane [mm]. rise: way of Z [mm]. turn: of C [deg]. time: [min]. feed: F per minute as it is
+    written, NaN for inverse time.
     """
 
     row: Rows
@@ -42,7 +43,7 @@ class Way(Table, frozen=True):
     rise: Floats
     turn: Floats
     time: Floats
-    number: Floats
+    feed: Floats
 
 
 def per_minute_rule(trace: Trace, stretches: list[Stretch], feed: str) -> str:
@@ -104,7 +105,7 @@ def way_of(trace: Trace, each: Stretch, rule: str) -> Way:
         rise=rise,
         turn=turn,
         time=time,
-        number=number,
+        feed=np.where(per_minute, number, np.nan),
     )
 
 
