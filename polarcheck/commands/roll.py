@@ -35,7 +35,15 @@ if TYPE_CHECKING:
 def roll(tolerance: float | None, feed: str | None, keep_c: bool) -> Command:
     """
     Write the plain moves of X and C of PATH, thousands of short blocks of a CAM without the polar mode, as polar
-    sections of lines and arcs within a tolerance.
+    sections of lines and arcs that pass the ends of the blocks within a tolerance.
+
+    \b
+    polarcheck roll O1234.NC -o O1234_POLAR.NC
+    polarcheck roll --diff O1234.NC
+    polarcheck roll --machine haas-lathe --feed per-minute O1234.NC
+
+    F becomes that of the tool along its way, lower near the center where C would be above its limit. The result is read
+    back before it is written. Stretches that cannot become a section stay as they are; the notes say why.
     """
 
     def work(settings: Settings) -> Work:
