@@ -8,7 +8,8 @@ import numpy as np
 from polarcheck.arrays import Mask, Rows, stretch
 from polarcheck.checking.editing import is_plain, words_of
 from polarcheck.columns.trace import Trace
-from polarcheck.conversion.rolling.stretches import Stretch, next_row
+from polarcheck.conversion.rolling.following import Following
+from polarcheck.conversion.rolling.stretches import Stretch
 from polarcheck.conversion.rolling.ways import Way
 from polarcheck.machines.modal import FeedMode, Motion
 
@@ -37,7 +38,7 @@ class Entry(msgspec.Struct, frozen=True):
     c_word: int
 
 
-def entry_of(trace: Trace, each: Stretch, way: Way) -> Entry | None:
+def entry_of(trace: Trace, each: Stretch, way: Way, following: Following) -> Entry | None:
     """
     Return how a section is entered with C at 0; None where it begins there, or where that is not possible.
 
@@ -59,19 +60,19 @@ def entry_of(trace: Trace, each: Stretch, way: Way) -> Entry | None:
         return None
     first = int(above[-1])
     behind = first - 1
-    last = behind - next_row(trace.axes.motion[: behind + 1][::-1] != Motion.NONE, -1)
+    before = int(following.moves.searchsorted(behind, "right")) - 1
+    last = int(following.moves[before]) if before >= 0 else -1
     is_rapid = last >= 0 and trace.axes.motion[last] == Motion.RAPID and trace.mode.whole_section[last] < 0
-    if not (is_rapid and _goes_on(trace, behind, each.first)):
+    if not (is_rapid and _goes_on(trace, behind, each.first)) or following.jump_targets[behind : each.first + 1].any():
         return None
     return Entry(behind, first, turns, _c_word(trace, behind))
 
 
 def _goes_on(trace: Trace, behind: int, first: int) -> bool:
-    """The rows stand on lines of their own, one behind the other, and run once."""
-    block = trace.run.block[behind : first + 1]
-    lines = trace.blocks.line_in_file[behind : behind + 2]
-    once = all(np.count_nonzero(trace.run.block == each) == 1 for each in block.tolist())
-    return bool(np.all(np.diff(block) > 0)) and once and bool(lines[1] > lines[0])
+    """The rows stand on lines of their own, one behind the other, in one program."""
+    own = slice(behind, first + 1)
+    block, line, depth = trace.run.block[own], trace.blocks.line_in_file[own], trace.run.depth[own]
+    return bool(np.all(np.diff(block) > 0) and line[1] > line[0] and np.all(depth == depth[0]))
 
 
 def _leads_down(trace: Trace, rows: Rows) -> Mask:

@@ -16,9 +16,10 @@ from polarcheck.conversion.reading_back import ReadBack, read_back_on_part
 from polarcheck.conversion.rolling.elements import Fit, fit_of
 from polarcheck.conversion.rolling.entries import entry_of
 from polarcheck.conversion.rolling.feeds import feeds_of
+from polarcheck.conversion.rolling.following import Following, x_factor
 from polarcheck.conversion.rolling.measuring import Measured, Section, measured_of
 from polarcheck.conversion.rolling.slowing import parts_of
-from polarcheck.conversion.rolling.stretches import LEAST, Stretch, stretches, x_factor
+from polarcheck.conversion.rolling.stretches import LEAST, Stretch, stretches
 from polarcheck.conversion.rolling.ways import Way, per_minute_rule, through_center, way_of
 from polarcheck.conversion.rolling.writing import Writer
 from polarcheck.conversion.style import Style
@@ -26,6 +27,8 @@ from polarcheck.conversion.style_of import style_of
 from polarcheck.geometry import polar
 from polarcheck.machines.modal import Motion
 
+#: How often the program is written again without what differed when it was read back.
+_TRIALS = 5
 #: The rule of ways through the center.
 _THROUGH_CENTER = "path-through-center"
 #: Feeds that a note names.
@@ -36,8 +39,8 @@ _MOST_SLOWED = 0.02
 _AT_ZERO = 1e-9
 #: Of a step of the new words: so far may rounding move a point and a center together.
 _ROUNDING = 1.7
-#: Share of the tolerance that reading back adds to what it measures: chords of curves, by this share of it each.
-_OF_MEASURING, _CHORD = 0.07, 0.02
+#: Share of the tolerance by which chords may leave the way where it is compared as a whole, and what that adds to it.
+_CHORD, _OF_CHORDS = 0.02, 1.1
 
 
 class Rolling(msgspec.Struct, frozen=True):
@@ -61,7 +64,8 @@ def rolled(original: Original, options: Rolling) -> Outcome:
     back differs; TooHardError.
     """
     trace = original.trace
-    candidates, left = stretches(trace)
+    following = Following(trace)
+    candidates, left = stretches(trace, following)
     if not candidates:
         nothing = f"nothing to roll: no {LEAST} blocks one behind the other move X and C at feed without the mode"
         raise RefusedError(left or [Refusal(0, nothing)])
@@ -70,10 +74,12 @@ def rolled(original: Original, options: Rolling) -> Outcome:
     sections: list[Section] = []
     for each in candidates:
         try:
-            sections.append(_section(original, each, rule, options, style))
+            sections.append(_section(original, following, each, rule, options, style))
         except RefusedError as error:
             left += error.refusals
-    while sections:
+    for _ in range(_TRIALS):
+        if not sections:
+            break
         data, origin, result = _written(original, sections, style, options.tolerance)
         measured = measured_of(original, result.new, origin, sections, options.tolerance)
         differences = result.differences or measured.differences
@@ -88,12 +94,14 @@ def rolled(original: Original, options: Rolling) -> Outcome:
     raise RefusedError(sorted(set(left)))
 
 
-def _section(original: Original, each: Stretch, rule: str, options: Rolling, style: Style) -> Section:
+def _section(
+    original: Original, following: Following, each: Stretch, rule: str, options: Rolling, style: Style
+) -> Section:
     trace = original.trace
     machine, tolerance = trace.machine, options.tolerance
     way = through_center(way_of(trace, each, rule))
     step = float(np.broadcast_to(trace.lengths.least_step, len(trace))[each.first])
-    reserve = _ROUNDING * step + _OF_MEASURING * tolerance
+    reserve = _ROUNDING * step
     if tolerance - reserve < step:
         text = f"a tolerance of {tolerance:g} mm is too little: rounding alone takes {reserve:.4f} mm"
         raise RefusedError([Refusal(each.line, text)])
@@ -103,8 +111,8 @@ def _section(original: Original, each: Stretch, rule: str, options: Rolling, sty
     unit = float(np.broadcast_to(trace.lengths.feed_scale, len(trace))[each.first])
     _require_off_center(original, way, fit, step)
     feeds = feeds_of(way, fit.elements, machine, unit)
-    entry = None if options.keep_c else entry_of(trace, each, way)
-    writer = Writer(trace, each, way, entry, style)
+    entry = None if options.keep_c else entry_of(trace, each, way, following)
+    writer = Writer(trace, each, way, entry, style, following)
     parts = parts_of(way, fit.elements, feeds, machine, unit)
     writer.write(parts.elements, parts.feeds)
     if writer.count >= len(way):
@@ -143,7 +151,9 @@ def _written(
                 edits.append(in_place_of(run, each.entry.c_word, each.text.positions))
     data, origin = with_edits(original, sorted(edits))
     chord = _CHORD * tolerance
-    allowed = tolerance + max(each.fit.bow for each in sections)
+    # The ends of blocks are measured by themselves; here the order of the whole way counts.
+    bow = max(each.fit.bow for each in sections)
+    allowed = _OF_CHORDS * (tolerance + bow) + _ROUNDING * float(np.max(original.trace.lengths.least_step))
     return (
         data,
         origin,

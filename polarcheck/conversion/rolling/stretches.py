@@ -8,9 +8,9 @@ import msgspec
 import numpy as np
 
 from polarcheck.arrays import Mask, Rows
-from polarcheck.columns.lengths import RADIUS_FACTOR
 from polarcheck.columns.trace import Trace
 from polarcheck.conversion.outcome import Refusal
+from polarcheck.conversion.rolling.following import Following
 from polarcheck.machines.codes import code_set
 from polarcheck.machines.modal import Distance, FeedMode, Motion, Side
 
@@ -47,13 +47,13 @@ class Stretch(msgspec.Struct, frozen=True):
         return np.asarray(rows[trace.axes.motion[rows] != Motion.NONE])
 
 
-def stretches(trace: Trace) -> tuple[list[Stretch], list[Refusal]]:
+def stretches(trace: Trace, following: Following) -> tuple[list[Stretch], list[Refusal]]:
     """Return the stretches that can become sections, and for the others why they cannot."""
-    reasons = _reasons(trace)
+    reasons = _reasons(trace, following)
     result: list[Stretch] = []
     refusals: list[Refusal] = []
     for each in _candidates(trace):
-        reason = _first_reason(trace, each, reasons) or _reason_at_ends(trace, each)
+        reason = _first_reason(trace, each, reasons) or _reason_at_ends(trace, each, following)
         if reason is None:
             result.append(each)
         else:
@@ -122,7 +122,7 @@ def _jumps(trace: Trace) -> Mask:
     return np.append(True, ~goes_on)[: len(trace)] | trace.blocks.starts
 
 
-def _reasons(trace: Trace) -> list[tuple[Mask, str]]:
+def _reasons(trace: Trace, following: Following) -> list[tuple[Mask, str]]:
     """Rows that keep a stretch from being rolled, each with the reason, in the order in which they are looked at."""
     run, path, modal, feedrate = trace.run, trace.path, trace.modal, trace.feedrate
     moves = trace.axes.motion == Motion.LINE
@@ -135,6 +135,8 @@ def _reasons(trace: Trace) -> list[tuple[Mask, str]]:
     return [
         (np.bincount(run.block, minlength=1)[run.block] > 1, "its blocks run several times"),
         (_is_computed(trace), "its blocks are computed, or stand in another file"),
+        (trace.mode.contours_outside, "C beside this code is no plain move: the control follows the contour by itself"),
+        (following.jump_targets, "a jump may lead to this block"),
         (modal.state("distance") == Distance.INCREMENTAL, "distances are in force, not coordinates"),
         (trace.compensation.side != Side.OFF, "cutter compensation is in force: X and C are not the path of the tool"),
         (modal.state("modal_call") != 0, "a program is called after each move"),
@@ -191,30 +193,16 @@ def _first_reason(trace: Trace, each: Stretch, reasons: list[tuple[Mask, str]]) 
     return None
 
 
-def _reason_at_ends(trace: Trace, each: Stretch) -> Refusal | None:
+def _reason_at_ends(trace: Trace, each: Stretch, following: Following) -> Refusal | None:
     path = trace.path
     if path.x_before[each.first] < _ZERO:
         return Refusal(each.line, "X is not above zero where it begins, where the mode would be switched on")
     if path.x[each.last] < -_ZERO:
         return Refusal(each.last_line, "X is below zero where it ends: the mode would leave it above, and C turned")
-    behind = next_row(trace.axes.moves & trace.blocks.has(*trace.machine.polar.rotary_words), each.last)
-    if behind < len(trace) and not trace.blocks.starts[each.last + 1 : behind + 1].any():
+    behind = following.behind(each.last, following.turns)
+    if behind < len(trace) and path.moves_c[behind]:
         axis = trace.machine.polar.rotary_address
-        is_coordinate = trace.blocks.has(axis)[behind] and not trace.modal.is_step(axis)[behind]
-        if not is_coordinate and trace.path.moves_c[behind]:
+        if not trace.blocks.has(axis)[behind] or trace.modal.is_step(axis)[behind]:
             line = int(trace.blocks.line_in_file[behind])
             return Refusal(line, "C is programmed in increments behind it, from an angle that rounding shifts")
     return None
-
-
-def next_row(mask: Mask, row: int) -> int:
-    """The first row of a mask behind a row; the number of rows where there is none."""
-    hits = mask[row + 1 :]
-    at = int(np.argmax(hits)) if len(hits) else 0
-    return row + 1 + at if len(hits) and hits[at] else len(mask)
-
-
-def x_factor(trace: Trace, row: int) -> float:
-    """Radius per X word outside of the mode."""
-    factor = float(np.broadcast_to(trace.lengths.x_factor, len(trace))[row])
-    return factor if factor > 0 else RADIUS_FACTOR[trace.machine.control.x]

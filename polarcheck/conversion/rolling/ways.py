@@ -74,7 +74,7 @@ def way_of(trace: Trace, each: Stretch, rule: str) -> Way:
     rows = each.rows(trace)
     rows = rows[(path.moves_x | path.moves_c | path.moves_z)[rows]]
     start_radius, radius = path.x_before[rows], path.x[rows]
-    turn = np.where(path.moves_c[rows], path.c_turn_from(path.c_angle_before[rows], rows), 0.0)
+    turn = np.where(path.moves_c[rows], path.c_turn[rows], 0.0)
     start = float(path.c_angle_before[rows[0]])
     if np.isnan(start):
         raise RefusedError([Refusal(each.line, "C is not known where it begins: position it before, as C0")])

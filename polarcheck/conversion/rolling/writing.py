@@ -1,4 +1,4 @@
-"""The blocks of a section in the place of those of a stretch, and what they leave in force."""
+"""The blocks of a section in the place of those of a stretch."""
 
 from __future__ import annotations
 
@@ -11,11 +11,12 @@ from polarcheck.arrays import stretch
 from polarcheck.checking.editing import is_plain
 from polarcheck.columns.trace import Trace
 from polarcheck.conversion.blocks import NewBlock
-from polarcheck.conversion.outcome import Refusal, RefusedError
 from polarcheck.conversion.pen import Pen
 from polarcheck.conversion.rolling.elements import Element
 from polarcheck.conversion.rolling.entries import Entry
-from polarcheck.conversion.rolling.stretches import Stretch, next_row, x_factor
+from polarcheck.conversion.rolling.following import Following, x_factor
+from polarcheck.conversion.rolling.restoring import feed_code, in_case, restored
+from polarcheck.conversion.rolling.stretches import Stretch
 from polarcheck.conversion.rolling.ways import Way
 from polarcheck.conversion.style import Style
 from polarcheck.machines.codes import code_set
@@ -23,11 +24,6 @@ from polarcheck.machines.modal import FeedMode, Motion, Units
 
 #: F of the turn back is so much of what C allows.
 _BELOW = 0.9
-_FEED_CODES = {
-    FeedMode.INVERSE_TIME: "feed_inverse_time",
-    FeedMode.PER_MINUTE: "feed_per_minute",
-    FeedMode.PER_REVOLUTION: "feed_per_revolution",
-}
 
 
 class Writer:
@@ -39,13 +35,15 @@ class Writer:
     where it stays.
     """
 
-    def __init__(self, trace: Trace, each: Stretch, way: Way, entry: Entry | None, style: Style) -> None:
-        self.trace, self.each, self.way, self.entry = trace, each, way, entry
+    def __init__(
+        self, trace: Trace, each: Stretch, way: Way, entry: Entry | None, style: Style, following: Following
+    ) -> None:
+        self.trace, self.each, self.way, self.entry, self.following = trace, each, way, entry, following
         self.pen = _pen(trace, each, style)
         run = trace.run
-        written = run.words.address != ord("N")
         self.first = _with_feed_mode(trace, each.first) if entry is None else entry.behind + 1
-        rows = np.unique(run.row[written & (run.row >= self.first) & (run.row <= each.last)])
+        own = slice(*stretch(run.row, self.first, each.last + 1))
+        rows = np.unique(run.row[own][run.words.address[own] != ord("N")])
         self.replaced: dict[int, list[NewBlock]] = {block: [] for block in run.block[rows].tolist()}
         self.inserted: list[NewBlock] = []
         self.positions = ""
@@ -82,12 +80,14 @@ class Writer:
                 blocks = pen.arc(end, element.center / self._turn, element.kind == Motion.CCW, element.z, feed)
             self._at(row).extend(blocks)
         last = self._at(each.last)
-        last += self._in_case([block for block in pen.leave() if not self._changes_x(block)])
-        is_line = bool(elements) and elements[-1].kind in (Motion.LINE, Motion.NONE)
-        last += _restored(trace, each, pen, is_line and not trace.machine.control.motion_codes)
+        last += self._in_case([block for block in pen.leave() if self._makes_of_x(block) in (None, self._is_radius)])
+        is_line = elements[-1].kind in (Motion.LINE, Motion.NONE) and not trace.machine.control.motion_codes
+        last += restored(trace, self.following, each.last, pen, is_line=is_line)
 
     def _at(self, row: int) -> list[NewBlock]:
         return self.replaced[int(self.trace.run.block[row])]
+
+    # ---- the mode ----
 
     def _entered(self) -> list[NewBlock]:
         """The mode switched on where the stretch begins."""
@@ -101,10 +101,10 @@ class Writer:
         trace, pen = self.trace, self.pen
         axis, angle = trace.machine.polar.rotary_address, pen.numbers.angle(entry.turns)
         if entry.c_word >= 0:
-            self.positions = _in_case(pen, axis + angle)
+            self.positions = in_case(pen, axis + angle)
         else:
-            word = axis + "=" * (len(axis) > 1) + angle
-            self.inserted.append(NewBlock((_in_case(pen, pen.numbers.code("G0")), _in_case(pen, word))))
+            words = pen.numbers.code("G0"), axis + "=" * (len(axis) > 1) + angle
+            self.inserted += self._in_case([NewBlock(words)])
         radius = float(trace.path.x_before[entry.first])
         self.inserted += self._per_minute(entry.behind + 1)
         self.inserted += self._switched_on(complex(radius), float(trace.path.z_before[entry.first]))
@@ -116,21 +116,22 @@ class Writer:
         for row in range(entry.first, self.each.first):
             if not trace.path.moves_z[row]:
                 continue
+            pen.numbers.line = int(trace.blocks.line_in_file[row])
             z, feed = float(trace.path.z[row]), float(trace.feedrate.written_feed[row])
             is_rapid = trace.axes.motion[row] == Motion.RAPID
             self._at(row).extend(pen.rapid(z=z) if is_rapid else pen.line(None, z, feed))
+
+    def _per_minute(self, row: int) -> list[NewBlock]:
+        """The code of F per minute where it is not in force before a row."""
+        before = row if self.trace.blocks.starts[row] else row - 1
+        if self.trace.feedrate.modal_feed_mode[before] == FeedMode.PER_MINUTE:
+            return []
+        return [NewBlock((feed_code(self.pen, FeedMode.PER_MINUTE),))]
 
     def _switched_on(self, point: complex, z: float, direction: float = 0.0) -> list[NewBlock]:
         """The blocks that switch the mode on, without one that makes of X what it is already."""
         blocks = self.pen.enter(point, z, direction)
         return self._in_case([block for block in blocks if self._makes_of_x(block) != self._is_radius])
-
-    def _in_case(self, blocks: Sequence[NewBlock]) -> list[NewBlock]:
-        return [NewBlock(tuple(_in_case(self.pen, word) for word in block.words)) for block in blocks]
-
-    def _changes_x(self, block: NewBlock) -> bool:
-        """A block behind the section that makes of X what it has not been before."""
-        return self._makes_of_x(block) == (not self._is_radius)
 
     @property
     def _is_radius(self) -> bool:
@@ -142,28 +143,8 @@ class Writer:
         code = control.native_words.get(text, text)
         return True if code in control.x_radius_words else False if code in control.x_diameter_words else None
 
-    def _per_minute(self, row: int) -> list[NewBlock]:
-        """The code of F per minute where it is not in force before a row."""
-        before = row if self.trace.blocks.starts[row] else row - 1
-        if self.trace.feedrate.modal_feed_mode[before] == FeedMode.PER_MINUTE:
-            return []
-        return [NewBlock(tuple(_code(self.pen, FeedMode.PER_MINUTE)))]
-
-
-def _with_feed_mode(trace: Trace, row: int) -> int:
-    """The first of the rows right before one that say nothing but what F is."""
-    run, codes = trace.run, code_set(trace.machine.codes("feed_inverse_time"))
-    while row and not trace.blocks.starts[row - 1]:
-        low, high = stretch(run.row, row - 1, row)
-        letters = run.words.address[low:high].tolist()
-        if letters.count(ord("G")) != 1 or not set(letters) <= {ord("G"), ord("N")}:
-            break
-        word = low + letters.index(ord("G"))
-        at = int(np.searchsorted(trace.blocks.g_words, word))
-        if not codes[trace.blocks.g_codes[at]] or not is_plain(run, row - 1):
-            break
-        row -= 1
-    return row
+    def _in_case(self, blocks: Sequence[NewBlock]) -> list[NewBlock]:
+        return [NewBlock(tuple(in_case(self.pen, word) for word in block.words)) for block in blocks]
 
 
 def _pen(trace: Trace, each: Stretch, style: Style) -> Pen:
@@ -173,55 +154,18 @@ def _pen(trace: Trace, each: Stretch, style: Style) -> Pen:
     return pen
 
 
-def _code(pen: Pen, mode: FeedMode) -> list[str]:
-    codes = pen.machine.codes(_FEED_CODES[mode])
-    if not codes:
-        raise RefusedError([Refusal(pen.numbers.line, f"no code for that F is known: {pen.machine.title}")])
-    code = pen.numbers.code(codes[0])
-    return [code.lower() if pen.style.lower_case else code]
-
-
-def _restored(trace: Trace, each: Stretch, pen: Pen, is_line: bool) -> list[NewBlock]:
-    """
-    A block of what the stretch has left in force and the blocks behind it take over: G1, X, F and what F is.
-
-    is_line: G1 is in force behind the section.
-
-    X stands where it stood, but the control counts it otherwise in the mode: it is written before anything builds on
-    it.
-    """
-    last, axes, modal, blocks = each.last, trace.axes, trace.modal, trace.blocks
-    end = next_row(blocks.starts, last)
-
-    def before(users: int, setters: int) -> bool:
-        return users < min(setters, end)
-
-    moves = axes.motion != Motion.NONE
-    at_feed = next_row(moves & (axes.motion != Motion.RAPID), last)
-    takes_motion = not is_line and before(next_row(moves, last), next_row(modal.sets("motion"), last))
-    mode = FeedMode(int(trace.feedrate.modal_feed_mode[last]))
-    takes_mode = mode != FeedMode.PER_MINUTE and before(at_feed, next_row(modal.sets("feed_mode"), last))
-    takes_feed = before(at_feed, next_row(blocks.has("F"), last))
-    on_plane = next_row(moves & blocks.has("X", "U", *trace.machine.polar.rotary_words), last)
-    writes_x = on_plane < end and blocks.has("X")[on_plane] and not modal.is_step("X")[on_plane]
-    takes_x = on_plane < end and not writes_x
-    words = []
-    if takes_mode:
-        words += _code(pen, mode)
-    if takes_motion or takes_x:
-        words.append(_in_case(pen, pen.numbers.code("G1")))
-    if takes_x:
-        count = pen.numbers.increments(float(trace.path.x[last]) / x_factor(trace, last))
-        words.append(_in_case(pen, pen.word("X", count)))
-    if takes_feed or (takes_x and mode == FeedMode.INVERSE_TIME):
-        # F as it is written, be it a time or a length.
-        number = float(trace.feedrate.written_feed[last])
-        if mode == FeedMode.INVERSE_TIME:
-            scale = float(np.broadcast_to(trace.lengths.feed_scale, len(trace))[last])
-            number = number / scale * (25.4 if pen.numbers.feed_inch else 1.0)
-        words.append(_in_case(pen, "F" + pen.numbers.feed(number)))
-    return [NewBlock(tuple(words))] if words else []
-
-
-def _in_case(pen: Pen, word: str) -> str:
-    return word.lower() if pen.style.lower_case else word
+def _with_feed_mode(trace: Trace, row: int) -> int:
+    """The first of the rows right before one that say nothing but that F is inverse time."""
+    run, codes = trace.run, code_set(trace.machine.codes("feed_inverse_time"))
+    while row and not trace.blocks.starts[row - 1] and run.block[row - 1] < run.block[row]:
+        if run.depth[row - 1] != run.depth[row]:
+            break
+        low, high = stretch(run.row, row - 1, row)
+        letters = run.words.address[low:high].tolist()
+        if letters.count(ord("G")) != 1 or not set(letters) <= {ord("G"), ord("N")} or not is_plain(run, row - 1):
+            break
+        at = int(np.searchsorted(trace.blocks.g_words, low + letters.index(ord("G"))))
+        if not codes[trace.blocks.g_codes[at]]:
+            break
+        row -= 1
+    return row
