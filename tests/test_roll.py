@@ -65,8 +65,8 @@ def feeds(text: str) -> list[float]:
 CONTOURS = {"hexagon": (hexagon(), 13), "slot": (slot(), 5), "oval": (oval(), 5)}
 
 
-@pytest.mark.parametrize("inverse", [False, True])
 @pytest.mark.parametrize("name", CONTOURS)
+@pytest.mark.parametrize("inverse", [False, pytest.param(True, marks=pytest.mark.slow)])
 def test_a_contour_of_lines_and_arcs_comes_back_with_as_many_of_them_and_its_f(name: str, inverse: bool) -> None:
     contour, count = CONTOURS[name]
     text = cam_contour(contour, inverse=inverse)
@@ -228,7 +228,7 @@ def polar_program(machine: str, inch: bool, c: str) -> str:
 @pytest.mark.parametrize("c", ["C0", "C37.5"])
 @pytest.mark.parametrize("inch", [False, True])
 @pytest.mark.parametrize("machine", _ON)
-@pytest.mark.one_in(3)
+@pytest.mark.one_in(5)
 def test_a_section_without_the_mode_and_back_is_the_same_contour(machine: str, inch: bool, c: str) -> None:
     original = original_of(polar_program(machine, inch, c), machine)
     known = original.settings.machine.feed.with_rotary
@@ -351,6 +351,13 @@ def test_inverse_time_is_in_force_again_where_blocks_behind_take_it_over() -> No
     assert "G93" not in new_text(text)
 
 
+def test_the_plane_is_in_force_again_where_arcs_follow() -> None:
+    arc = "G0 X30. Z2.\nG1 Z-5. F100.\nG2 X40. Z-10. R5.\nG0 X90.\nM30"
+    text = cam_contour(hexagon(), inverse=True).replace("M30", arc)
+    assert "G13.1\nG18\nG98\n" in new_text(text, "mazak-quick-turn")
+    assert "G18" not in new_text(text.replace("G2 X40.", "G1 X40.").replace(" R5.", ""), "mazak-quick-turn")
+
+
 def test_an_arc_at_the_end_is_not_in_force_behind_the_section() -> None:
     text = cam_contour(oval()).replace("G0 Z2.\n", "Z2. F500.\n")
     assert "G13.1\nG1\nZ2. F500.\n" in new_text(text)
@@ -387,28 +394,24 @@ def test_comments_between_the_blocks_stay_where_they_are() -> None:
 @pytest.mark.parametrize(
     ("was", "becomes", "said"),
     [
-        ("G1 X20.526", "G42 G1 X20.526", "nothing to roll"),
         ("Z2.\n", "Z2.\nG42 D1\n", "line 8: cutter compensation is in force"),
         ("G21 G98", "G21 G99", "line 7: F is per revolution"),
         ("X20.000 C0.000\n", "X20.000\n", "line 7: C is not known where it begins"),
         ("G0 X20.000 C0.000\n", "G0 C0.000\n", "line 7: X is not known where it begins"),
-        (" C", " H", "H"),
-        ("M30", "M98 P2\nM98 P2\nM30\n%\nO2", "nothing to roll"),
+        ("Z2.\nG1 Z-2.000 F100.\n", "", "line 5: Z is not known where it begins"),
     ],
 )
 def test_what_cannot_be_a_section_is_refused_with_its_line(was: str, becomes: str, said: str) -> None:
-    text = cam_contour(hexagon())
-    if said == "nothing to roll" and was.startswith("G1"):
-        text = "\n".join(text.splitlines()[:12]) + "\nM30\n"
-        was, becomes = "%", ""
-    if was == " C":
-        text = text.replace("G0 Z2.\nX80. C0", "G0 Z2.\nX80. H10.")
-        assert "C is programmed in increments behind it" in refusal(text)
-        return
-    if was == "M30":
-        assert "nothing to roll" in refusal("O1\nG21 G98\nG0 X40. C0\nG1 X30. F100.\nC20.\nM30\n")
-        return
-    assert said in refusal(text.replace(was, becomes, 1))
+    assert said in refusal(cam_contour(hexagon()).replace(was, becomes, 1))
+
+
+def test_c_in_increments_behind_it_would_build_on_an_angle_that_is_rounded() -> None:
+    text = cam_contour(hexagon()).replace("G0 Z2.\nX80. C0", "G0 Z2.\nX80. H10.")
+    assert "C is programmed in increments behind it" in refusal(text)
+
+
+def test_a_few_blocks_are_nothing_to_roll() -> None:
+    assert "nothing to roll" in refusal("O1\nG21 G98\nG0 X40. C0\nG1 X30. F100.\nC20.\nM30\n")
 
 
 def test_a_subprogram_that_runs_twice_and_computed_blocks_stay_as_they_are() -> None:
@@ -420,6 +423,15 @@ def test_a_subprogram_that_runs_twice_and_computed_blocks_stay_as_they_are() -> 
         "O1\nG21 G98\nG0 X20. C0\n#1=1\n" + "\n".join(f"G1 X{20 + k} C[#1*{k}] F100." for k in range(1, 20)) + "\nM30\n"
     )
     assert "its blocks are computed" in refusal(computed)
+
+
+def test_what_may_be_jumped_into_and_contours_by_other_codes_stay_as_they_are() -> None:
+    lines = cam_contour(hexagon()).splitlines()
+    lines[60] = f"N70 {lines[60]}"
+    jump = "\n".join([*lines[:3], "IF[#100EQ1]GOTO70", *lines[3:], ""])
+    assert "a jump may lead to this block" in refusal(jump)
+    contour = "\n".join(line.replace("G1 X", "G101 X") for line in cam_contour(hexagon()).splitlines())
+    assert "no plain move" in refusal(contour, "okuma-osp", feed="per-minute")
 
 
 def test_drilling_turning_and_milling_on_the_cylinder_are_left_alone() -> None:
@@ -471,11 +483,10 @@ def test_the_command_writes_a_new_program_and_says_what_was_done() -> None:
     shown = call("a.nc", "--diff", "--machine", "fanuc-30i")
     assert shown.exit_code == 1
     assert "+G12.1\n" in shown.stdout
-    report = json.loads(call("a.nc", "--format", "json", "--machine", "fanuc-30i", "--tolerance", "0.02").stdout)
+    report = json.loads(call("a.nc", "--format", "json", "--machine", "fanuc-30i").stdout)
     assert report["command"] == "roll"
     assert report["files"][0]["figures"][1] == {"name": "blocks before", "value": 144.0, "unit": ""}
     assert call("a.nc", "--machine", "haas-lathe").exit_code == 2
-    assert call("a.nc", "--machine", "haas-lathe", "--feed", "per-minute", "-o", "c.nc").exit_code == 0
     Path("d.nc").write_text("O1\nG0 X40.\nM30\n")
     refused = call("d.nc")
     assert refused.exit_code == 2
@@ -489,9 +500,6 @@ def test_the_tolerance_is_in_the_units_of_the_program() -> None:
     inch = re.sub(r"([XZF])([-0-9.]+)", lambda match: f"{match[1]}{float(match[2]) / 25.4:.5f}", text)
     inch = inch.replace("G21", "G20")
     Path("a.nc").write_text(re.sub(r"X([-0-9.]+)", lambda match: f"X{float(match[1]):.4f}", inch))
-    coarse, fine = (
-        json.loads(call("a.nc", "--format", "json", "--machine", "fanuc-30i", "--feed", "per-minute", *more).stdout)
-        for more in (("--tolerance", "0.001"), ())
-    )
-    assert coarse["files"][0]["figures"][2]["value"] <= fine["files"][0]["figures"][2]["value"]
+    result = call("a.nc", "--machine", "fanuc-30i", "--feed", "per-minute", "--tolerance", "0.002", "-o", "b.nc")
+    assert "largest distance of the ends of the blocks from the new path: 0.0" in result.stderr
     assert "too little" in call("a.nc", "--machine", "fanuc-30i", "--tolerance", "0.0001").stderr

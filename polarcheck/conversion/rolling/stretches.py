@@ -144,6 +144,7 @@ def _reasons(trace: Trace, following: Following) -> list[tuple[Mask, str]]:
         (moves & (np.isnan(path.x) | np.isnan(path.x_before)), "X is not known where it begins"),
         (path.moves_c & np.isnan(path.c_turn), "C is not known where it begins: position it before, as C0"),
         (_unwinds(trace), _UNWINDS),
+        (moves & np.isnan(path.z) & bool(np.isfinite(path.z).any()), "Z is not known where it begins"),
         (beside & np.isnan(path.z_before), "Z is not known where it begins to move"),
         (np.nan_to_num(path.local_shift) != 0, "the origin is shifted off the center of C"),
         (travels & (mode == FeedMode.PER_REVOLUTION), "F is per revolution"),
