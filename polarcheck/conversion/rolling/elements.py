@@ -38,8 +38,8 @@ class Fit(msgspec.Struct, frozen=True):
     """
     What a stretch becomes.
 
-    elements: in order. places: how far the ends of its blocks are from them at most [mm]. bow: how far a block that
-    stands for them bows from the straight way between its ends at most [mm].
+    elements: in order. bow: how far a block that stands for them bows from the straight way between its ends at most
+    [mm].
     """
 
     elements: list[Element]

@@ -48,8 +48,8 @@ class Following:
 
     def behind(self, row: int, rows: Rows) -> int:
         """The first of some rows behind a row, in the same program; the number of all rows where there is none."""
-        found, end = (self._next(row, each) for each in (rows, self._starts))
-        return found if found < end else self._count
+        behind, end = (self._next(row, each) for each in (rows, self._starts))
+        return behind if behind < end else self._count
 
     def _next(self, row: int, rows: Rows) -> int:
         at = int(rows.searchsorted(row, "right"))

@@ -22,6 +22,8 @@ _BELOW = 2e-3
 _FASTER = 0.1
 #: From one F to the next lower one, and the most of them.
 _STEP, _MOST = 0.7, 6
+#: An element is not divided for an F that is not lower than this share of its own.
+_ONE = 0.9
 #: Places at which an element is looked at, and the shortest part of it [mm].
 _PLACES, _SHORTEST = 2001, 0.05
 
@@ -56,8 +58,10 @@ def parts_of(way: Way, elements: list[Element], feeds: Feeds, machine: Machine, 
     for element, meant in zip(elements, feeds.of_element, strict=True):
         feed = nice(highest_feed, unit, down=True) if meant > highest_feed else meant
         parts, lower = [element], [feed]
-        if element.kind != Motion.NONE and _allowed(element, limit) * reserve < feed:
-            parts = _divided(way, element, limit, feed) if element.z is None else [element]
+        allowed = _allowed(element, limit) if element.kind != Motion.NONE else math.inf
+        if allowed * reserve < feed:
+            if element.z is None and allowed < _ONE * feed:
+                parts = _divided(way, element, limit, feed)
             lower = [_lower(feed, _allowed(part, limit), unit) for part in parts]
         if min(lower) < meant:
             limited += 1
