@@ -45,6 +45,7 @@ NAMES = (
     "machines",
     "part",
     "plot",
+    "roll",
     "rules",
     "schema",
     "server",

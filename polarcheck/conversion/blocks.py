@@ -135,6 +135,7 @@ class _Sequence:
         self.blocks = sorted(numbers)
         self.values = [numbers[index] for index in self.blocks]
         self.is_on = style.numbered == "all"
+        self.letter = "n" if style.lower_case else "N"
         self.step, self.digits = style.number_step, style.number_digits
         self.references = _references(text)
 
@@ -151,7 +152,7 @@ class _Sequence:
         following = int(self.values[at]) if at < len(self.values) else last + self.step * (count + 1)
         room = (following - last - 1) // count
         step = next((nice for nice in (self.step, 10, 5, 2, 1) if nice <= room), 0)
-        return [f"N{last + step * n:0{self.digits}d}" if step else "" for n in range(1, count + 1)]
+        return [f"{self.letter}{last + step * n:0{self.digits}d}" if step else "" for n in range(1, count + 1)]
 
 
 def _references(text: Text) -> set[int]:

@@ -9,7 +9,7 @@ import msgspec
 import numpy as np
 
 from polarcheck.checking.check import check_runs
-from polarcheck.checking.rule import load_all
+from polarcheck.checking.rule import Rule, load_all
 from polarcheck.checking.settings import Settings
 from polarcheck.conversion.meanings import lost_orders, other_speeds
 from polarcheck.conversion.original import Original, read
@@ -30,6 +30,8 @@ _OF_ORDERS = frozenset(
         *("no-tool-offset-at-entry", "spindle-code-in-polar"),
     )
 )
+#: Chords of arcs and the end of the search add no more than this share to a measured distance.
+_SHARE_OF_CHORDS = 0.05
 #: Further differences than this are not listed.
 _LISTED = 20
 
@@ -89,14 +91,21 @@ def read_back(
     errors = list(_errors(original, new, origin))
     # The original may start a live tool by a code that its profile does not name.
     is_open = bool(decided) or not original.trace.machine.m_codes.live_tool_on
-    open_orders = [error for error in errors if is_open and error.text.partition(" ")[0] in _OF_ORDERS]
-    differences += [error for error in errors if error not in open_orders]
+    open_orders = [refusal for rule, refusal in errors if is_open and rule.name in _OF_ORDERS]
+    differences += [refusal for _, refusal in errors if refusal not in open_orders]
     notes = [reason.reason for reason in result.not_compared if not reason.matters and "as programmed" in reason.reason]
     return ReadBack(new, differences[:_LISTED], result.deviation or 0.0, notes, open_orders)
 
 
 def read_back_on_part(
-    original: Original, data: bytes, settings: Settings, origin: Sequence[int], tolerance: float, chord: float = CHORD
+    original: Original,
+    data: bytes,
+    settings: Settings,
+    origin: Sequence[int],
+    tolerance: float,
+    chord: float = CHORD,
+    left_out: Collection[int] = (),
+    noted: Collection[str] = (),
 ) -> ReadBack:
     """
     Compare a program whose sections have another form with the original: with the mode or without it, compensated or
@@ -107,13 +116,21 @@ def read_back_on_part(
     path of X and C.
 
     settings: of the new program. origin: for each of its lines the line in the original, from 1. tolerance: how far the
-    ways may be apart [mm]. chord: how far chords may leave the true path [mm].
+    ways may be apart [mm]. chord: how far chords may leave the true path [mm]. left_out: lines of the original that
+    position the tool otherwise in the new program; where it goes from there on is compared. noted: groups of rules
+    whose errors are notes: they judge states that the new program has from the original, in the mode alone.
 
     Raises RefusedError where a position of the original is not known, or the new program cannot be run once.
     """
     new = read(original.path, data, settings)
     old_path, new_path = (path_on_part(each.tables, chord=chord) for each in (original, new))
-    deviation = path_deviation(old_path, new_path, tolerance)
+    if left_out:
+        stands_for = np.array([0, *origin])[np.minimum(new.trace.blocks.line_in_file, len(origin))]
+        old_path = old_path[~np.isin(original.trace.blocks.line_in_file[old_path.row], list(left_out))]
+        new_path = new_path[~np.isin(stands_for[new_path.row], list(left_out))]
+    # What chords add comes on top of what is measured.
+    measured_up_to = max(tolerance - chord, tolerance / 2) / (1 + _SHARE_OF_CHORDS)
+    deviation = path_deviation(old_path, new_path, measured_up_to)
     largest = deviation.largest + deviation.rounding + chord
     differences = []
     if largest > tolerance:
@@ -125,8 +142,13 @@ def read_back_on_part(
         text = f"the tool would be {largest:.4f} mm away from its path, above {tolerance:g} mm"
         differences.append(Refusal(line, f"{text} (line {new_line} of the result)"))
     differences += lost_orders(original.trace, new.trace, ())
-    differences += _errors(original, new, origin)
-    return ReadBack(new, differences[:_LISTED], largest, [])
+    notes: dict[str, str] = {}
+    for rule, refusal in _errors(original, new, origin):
+        if rule.group in noted:
+            notes.setdefault(rule.name, f"line {refusal.line}: {refusal.text}")
+        else:
+            differences.append(refusal)
+    return ReadBack(new, differences[:_LISTED], largest, list(notes.values()))
 
 
 def require_equal(result: ReadBack) -> None:
@@ -175,8 +197,9 @@ def _times(result: Comparison) -> Iterator[Refusal]:
             yield Refusal(section.old.line, f"the section takes {was:.2f} s, and would take {is_now:.2f} s")
 
 
-def _errors(original: Original, new: Original, origin: Sequence[int]) -> Iterator[Refusal]:
-    """Errors of a check that the original does not have."""
+def _errors(original: Original, new: Original, origin: Sequence[int]) -> Iterator[tuple[Rule, Refusal]]:
+    """Errors of a check that the original does not have, with their rules."""
+    rules = load_all()
     before, after = (_errors_of(each) for each in (original, new))
     known = Counter(finding.rule for finding in before)
     lines = {(finding.rule, finding.line) for finding in before}
@@ -186,9 +209,8 @@ def _errors(original: Original, new: Original, origin: Sequence[int]) -> Iterato
     for rule, findings in of_rule.items():
         added = [each for each in findings if (rule, _line(origin, each.line)) not in lines]
         for finding in added[: max(len(findings) - known[rule], 0)]:
-            yield Refusal(
-                _line(origin, finding.line), f"{finding.rule} in line {finding.line} of the result: {finding.message}"
-            )
+            text = f"{finding.rule} in line {finding.line} of the result: {finding.message}"
+            yield rules[rule], Refusal(_line(origin, finding.line), text)
 
 
 def _line(origin: Sequence[int], line: int) -> int:
