@@ -173,7 +173,7 @@ def test_a_helix_is_written_where_z_may_stand_beside_the_plane() -> None:
     assert depths == sorted(depths, reverse=True)
     assert depths[-1] == -4
     assert refusal(text).startswith("line 8: Z moves beside X and C")
-    assert "Z cannot move in an arc there" in refusal(text, "hurco")
+    assert "Z cannot move in an arc" in refusal(text, "hurco")
 
 
 # ---- there and back ----
