@@ -48,6 +48,7 @@ NAMES = (
     "schema",
     "server",
     "trace",
+    "unroll",
 )
 
 

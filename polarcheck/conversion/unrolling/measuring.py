@@ -34,10 +34,15 @@ _SAME = 1e-6
 
 
 class Measured(msgspec.Struct, frozen=True):
-    """What was found: what differs from the original, and the figures that are told."""
+    """
+    What the new program does.
+
+    differences: from the original. figures: for the user, in order. notes: warnings.
+    """
 
     differences: list[Refusal]
     figures: list[Figure]
+    notes: list[str] = []
 
 
 def beyond_travel(trace: Trace, steps: Steps) -> list[Refusal]:
@@ -83,7 +88,19 @@ def measured(
         text = f"the tool would be {distance[worst]:.4f} mm away from its path, above {allowed:.4f} mm"
         differences.append(Refusal(_line(old, steps, worst), text))
     differences += _speeds(old, run, steps)
-    return Measured(differences[:_LISTED], _figures(old, run, float(distance.max(initial=0.0))))
+    notes = list(_too_short(old, run, steps))
+    return Measured(differences[:_LISTED], _figures(old, run, steps, float(distance.max(initial=0.0))), notes)
+
+
+def _too_short(old: Trace, run: _Run, steps: Steps) -> Iterator[str]:
+    limit = old.machine.limits.block_time
+    short = np.flatnonzero(run.time < limit)
+    if len(short):
+        first = _line(old, steps, int(short[0]))
+        yield (
+            f"{len(short)} blocks are shorter than the {limit:g} s that the control needs, the first in line {first}: "
+            "it slows down there; a larger --chord-error makes them longer"
+        )
 
 
 def _line(trace: Trace, steps: Steps, index: int) -> int:
@@ -238,11 +255,12 @@ def _speeds(old: Trace, run: _Run, steps: Steps) -> Iterator[Refusal]:
             yield Refusal(_line(old, steps, index), text)
 
 
-def _figures(old: Trace, run: _Run, distance: float) -> list[Figure]:
+def _figures(old: Trace, run: _Run, steps: Steps, distance: float) -> list[Figure]:
     times = run.time[~np.isnan(run.time)]
     figures = [
         Figure("largest distance of the tool center from its path", distance, "mm"),
         Figure("blocks of X and C", len(run.time)),
+        Figure("most of them in one second", _most_in_a_second(run.time)),
         Figure("shortest block", float(times.min(initial=np.inf)) if len(times) else 0.0, "s"),
     ]
     if not np.isnan(old.machine.limits.block_time):
@@ -251,5 +269,12 @@ def _figures(old: Trace, run: _Run, distance: float) -> list[Figure]:
         *figures,
         Figure("largest rate of C", float(run.c_rate.max(initial=0.0)), "deg/min"),
         Figure("largest rate of X, as a radius", float(run.x_rate.max(initial=0.0)), "mm/min"),
-        Figure("time of the blocks at feed", float(times.sum()), "s"),
+        Figure("time of these blocks in the mode", float(np.nansum(steps.time)), "s"),
+        Figure("time of these blocks now", float(times.sum()), "s"),
     ]
+
+
+def _most_in_a_second(time: Floats) -> int:
+    """The largest number of blocks that begin within a second; a block in rapid traverse ends the second."""
+    begin = np.cumsum(np.append(0.0, np.where(np.isnan(time), 1.0, time)))[:-1]
+    return int(np.max(np.searchsorted(begin, begin + 1 - 1e-9) - np.arange(len(begin)), initial=0))

@@ -68,6 +68,9 @@ def steps_of(trace: Trace, moves: Moves, chord_error: float) -> Steps:
     c_step = trace.machine.control.least_increment
     spans = spans_of(*moves.shape, float(np.max(x_step, initial=_NOTHING)) / 2)
     largest = _ROLLING if trace.machine.control.rotary_rolls_over else _HALF
+    is_short = _short(spans, x_step[spans.move], np.radians(c_step), chord_error)
+    # The block that takes over the way of a short span may leave its own path by that, too.
+    chord_error -= float(np.max(spans.length[is_short], initial=0.0))
     pieces = divide(spans, chord_error, np.radians(largest), MOST)
     move = spans.move[pieces.span]
     begin, end = spans.share(pieces.span, pieces.first), spans.share(pieces.span, pieces.last)
@@ -106,7 +109,21 @@ def steps_of(trace: Trace, moves: Moves, chord_error: float) -> Steps:
         time=np.where(is_rapid[at], np.nan, 0.0),
     )
     order = np.argsort(np.append(np.arange(len(move)), at - 0.5), kind="stable")
-    return _without_nothing(Steps.concatenated((runs, spots))[order])
+    steps = Steps.concatenated((runs, spots))[order]
+    return _without_nothing(steps, _passed_on(moves, steps, np.append(is_short[pieces.span], none > 0)[order]))
+
+
+def _short(spans: Spans, x_step: Floats, c_step: float, chord_error: float) -> Mask:
+    """Spans of about a least increment, as rounding leaves them between others: no block is worth its time for them."""
+    return np.asarray(spans.length <= np.minimum(np.maximum(x_step, c_step * np.abs(spans.start)), chord_error / 4))
+
+
+def _passed_on(moves: Moves, steps: Steps, is_short: Mask) -> Mask:
+    """Short blocks whose way the next block of the section can take over, which is not short."""
+    following, last = np.append(steps.move[1:], -1), np.append(is_short[1:], True)
+    same = (steps.move >= 0) & (following >= 0) & (moves.section[following] == moves.section[steps.move])
+    same &= np.append(steps.is_rapid[1:], True) == steps.is_rapid
+    return np.asarray(is_short & ~last & same & np.isnan(steps.z))
 
 
 class _Turns(Table, frozen=True):
@@ -172,17 +189,19 @@ def _z_after(trace: Trace, moves: Moves, move: Rows, begin: Floats, end: Floats)
     return _Depths(after, np.abs(way[move]) * (end - begin))
 
 
-def _without_nothing(steps: Steps) -> Steps:
+def _without_nothing(steps: Steps, is_short: Mask) -> Steps:
     """
-    Without blocks that rounding leaves without a way: their way and time are those of the next block.
+    Without blocks that rounding leaves without a way, and without short ones: the next block has their way and time.
 
     Those behind the last block with a way count in that.
     """
-    has_way = (steps.radius_step != 0) | (steps.turn != 0) | ~np.isnan(steps.z)
+    has_way = ((steps.radius_step != 0) | (steps.turn != 0) | ~np.isnan(steps.z)) & ~is_short
     count = int(np.count_nonzero(has_way))
     if has_way.all() or not count:
         return steps[has_way]
     group = np.minimum(np.cumsum(has_way) - has_way, count - 1)
-    length, time = (np.bincount(group, np.nan_to_num(each), count) for each in (steps.length, steps.time))
+    sums = (steps.length, steps.time, steps.radius_step, steps.turn)
+    length, time, radius_step, turn = (np.bincount(group, np.nan_to_num(column), count) for column in sums)
     remaining = steps[has_way]
-    return msgspec.structs.replace(remaining, length=length, time=np.where(remaining.is_rapid, np.nan, time))
+    time = np.where(remaining.is_rapid, np.nan, time)
+    return msgspec.structs.replace(remaining, length=length, time=time, radius_step=radius_step, turn=turn)
