@@ -36,8 +36,8 @@ def unroll(chord_error: float | None, feed: str | None) -> Command:
     F keeps the speed of the tool, or less where C or X would pass its limit. It is what `feed.with_rotary` of the
     machine says: inverse time, per minute along X and C, or per minute of C alone; stepwise gives several blocks the
     same F. The new program is read back: standard error says how far its true path leaves that of the original, how
-    fast C and X move, and how many blocks the control has to run in a second. Where a section cannot be written, nothing is,
-    and standard error names the lines and the reasons.
+    fast C and X move, and how many blocks the control has to run in a second. Where a section cannot be written,
+    nothing is, and standard error names the lines and the reasons.
     """
 
     def work(settings: Settings) -> Work:

@@ -80,6 +80,12 @@ def measured(
     differences = [*_outside(old, after, ~within), *_depths(old, after, within)]
     center: ToolCenter = original.tables["tool_center"]
     run = _Run(after, rows, method_of(old, feed))
+    unknown = np.flatnonzero(np.isnan(run.x_before) | np.isnan(run.turn))
+    if len(unknown):
+        text = (
+            "where the tool is before this move is not known without the mode: a tool is called, or an axis referenced"
+        )
+        return Measured([Refusal(_line(old, steps, int(unknown[0])), text)], [])
     differences += _places(old, run, steps)
     distance, allowed = _distance(old, center.moves, run, steps), chord_error + _rounding(old, steps)
     far = np.flatnonzero(~(distance <= allowed))
@@ -88,8 +94,10 @@ def measured(
         text = f"the tool would be {distance[worst]:.4f} mm away from its path, above {allowed:.4f} mm"
         differences.append(Refusal(_line(old, steps, worst), text))
     differences += _speeds(old, run, steps)
-    notes = list(_too_short(old, run, steps))
-    return Measured(differences[:_LISTED], _figures(old, run, steps, float(distance.max(initial=0.0))), notes)
+    moves = center.moves
+    in_mode = float(np.nansum(np.where(moves.kind == Motion.RAPID, np.nan, moves.time)))
+    notes = [*_too_short(old, run, steps), *_too_fast(old, run, steps)]
+    return Measured(differences[:_LISTED], _figures(old, run, in_mode, float(distance.max(initial=0.0))), notes)
 
 
 def _too_short(old: Trace, run: _Run, steps: Steps) -> Iterator[str]:
@@ -101,6 +109,13 @@ def _too_short(old: Trace, run: _Run, steps: Steps) -> Iterator[str]:
             f"{len(short)} blocks are shorter than the {limit:g} s that the control needs, the first in line {first}: "
             "it slows down there; a larger --chord-error makes them longer"
         )
+
+
+def _too_fast(old: Trace, run: _Run, steps: Steps) -> Iterator[str]:
+    limits = old.machine.limits
+    if np.isnan(limits.c_feed) and len(run.c_rate) and run.c_rate.max() > limits.c_feed_suspicious:
+        line = _line(old, steps, int(np.argmax(run.c_rate)))
+        yield f"C turns at {run.c_rate.max():.0f} deg/min in line {line}: its limit, limits.c_feed, is not known"
 
 
 def _line(trace: Trace, steps: Steps, index: int) -> int:
@@ -255,7 +270,7 @@ def _speeds(old: Trace, run: _Run, steps: Steps) -> Iterator[Refusal]:
             yield Refusal(_line(old, steps, index), text)
 
 
-def _figures(old: Trace, run: _Run, steps: Steps, distance: float) -> list[Figure]:
+def _figures(old: Trace, run: _Run, in_mode: float, distance: float) -> list[Figure]:
     times = run.time[~np.isnan(run.time)]
     figures = [
         Figure("largest distance of the tool center from its path", distance, "mm"),
@@ -269,7 +284,7 @@ def _figures(old: Trace, run: _Run, steps: Steps, distance: float) -> list[Figur
         *figures,
         Figure("largest rate of C", float(run.c_rate.max(initial=0.0)), "deg/min"),
         Figure("largest rate of X, as a radius", float(run.x_rate.max(initial=0.0)), "mm/min"),
-        Figure("time of these blocks in the mode", float(np.nansum(steps.time)), "s"),
+        Figure("time of these blocks in the mode", in_mode, "s"),
         Figure("time of these blocks now", float(times.sum()), "s"),
     ]
 

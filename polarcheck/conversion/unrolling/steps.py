@@ -33,7 +33,8 @@ class Steps(Table, frozen=True):
     z: the Z word in least increments, NaN where Z does not move. rise: way of Z [mm].
     radius_step: way of X as a radius [mm]; turn: way of C [deg]; both as they are rounded.
     length: way of the tool center on the plane [mm].
-    time: by the F of the section [s]; NaN in rapid traverse. is_rapid: in rapid traverse.
+    time: with which the tool is nowhere faster than the F of the section [s]; NaN in rapid traverse.
+    is_rapid: in rapid traverse.
     """
 
     row: Rows
@@ -110,7 +111,23 @@ def steps_of(trace: Trace, moves: Moves, chord_error: float) -> Steps:
     )
     order = np.argsort(np.append(np.arange(len(move)), at - 0.5), kind="stable")
     steps = Steps.concatenated((runs, spots))[order]
-    return _without_nothing(steps, _passed_on(moves, steps, np.append(is_short[pieces.span], none > 0)[order]))
+    steps = _without_nothing(steps, _passed_on(moves, steps, np.append(is_short[pieces.span], none > 0)[order]))
+    return msgspec.structs.replace(steps, time=_times(steps, x_factor(trace) * trace.lengths.least_step))
+
+
+def _times(steps: Steps, x_step: Floats) -> Floats:
+    """
+    The time of each block [s] in which the tool is nowhere faster than F.
+
+    X and C move evenly, so that the tool is fastest where it is farthest from the center: sqrt(dr^2 + (r dC)^2) / time
+    with the larger r of both ends. Where that is more than the way on the path, the block takes longer.
+    """
+    x = steps.x * x_step[steps.row]
+    largest = np.maximum(np.abs(x), np.abs(x - steps.radius_step))
+    way = np.hypot(steps.radius_step, largest * np.radians(steps.turn))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        share = np.where(steps.length > 0, way / steps.length, 1.0)
+    return np.asarray(steps.time * np.fmax(share, 1.0))
 
 
 def _short(spans: Spans, x_step: Floats, c_step: float, chord_error: float) -> Mask:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Sequence
 from typing import TypeVar
 
 import msgspec
@@ -54,9 +54,9 @@ def new_text(original: Original, sections: Sequence[Stretch], writer: Writer, st
         for row, new in rows:
             if new is not None:
                 _put(trace, section, blocks, int(trace.run.block[row]), new)
-        for block in _with_block_skip(trace, section):
-            skipped.append(block)
+        for block in _skipped_moves(trace, section):
             blocks.setdefault(block, [])
+            skipped.append(block)
     left_out = _subprograms_left_out(trace, sections)
     edits = [
         *edits_of(original, blocks, style, machine, frozenset(skipped)),
@@ -74,11 +74,14 @@ def _put(trace: Trace, section: Stretch, new: dict[_Key, list[NewBlock]], key: _
         raise RefusedError([Refusal(line, "the section runs several times, and not from the same place")])
 
 
-def _with_block_skip(trace: Trace, section: Stretch) -> Iterator[int]:
-    """Blocks of a section with block skip: those that run are rewritten, those that do not would move otherwise."""
+def _skipped_moves(trace: Trace, section: Stretch) -> list[int]:
+    """Blocks of a section with block skip that move or that switch something of moves, whether they run or not."""
     words = trace.text.words
     low, high = np.searchsorted(words.block, (section.first, section.last + 1))
-    yield from np.unique(words.block[low:high][words.address[low:high] == ord("/")]).tolist()
+    block, address = words.block[low:high], words.address[low:high]
+    moving = block[~np.isin(address, np.frombuffer(b"MSTN/", np.uint8))]
+    blocks: list[int] = np.intersect1d(block[address == ord("/")], moving).tolist()
+    return blocks
 
 
 def _subprograms_left_out(trace: Trace, sections: Sequence[Stretch]) -> list[tuple[int, int]]:

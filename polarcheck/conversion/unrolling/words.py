@@ -43,11 +43,16 @@ class Others:
         self._beside_offset = trace.blocks.listed("compensation_left", "compensation_right")
         macro = machine.macro
         calls = [*macro.subprogram_calls, *macro.macro_calls, *macro.program_returns]
-        self._of_call = trace.blocks.words_at(trace.blocks.code_indices(*calls))
+        indices = trace.blocks.code_indices(*calls)
+        self._of_call = trace.blocks.words_at(indices)
+        # A program that is repeated returns to its own beginning: the depth stays.
+        depth = trace.run.depth
+        self._hands_over = np.append(depth[1:] != depth[:-1], False)[: len(trace)]
+        self._hands_over[trace.run.row[indices]] = True
 
     def is_changed(self, row: int) -> bool:
         """Something of the row does not stay."""
-        if self._calls(row):
+        if self._hands_over[row]:
             return True
         if self._untouched[row]:
             return False
@@ -60,7 +65,7 @@ class Others:
         Raises RefusedError for a word whose value a statement computes, where it is no code.
         """
         run = self.trace.run
-        plain, calls = is_plain(run, row), self._calls(row)
+        plain, hands_over = is_plain(run, row), self._hands_over[row]
         words = [index for index in words_of(run, row) if not is_head(run, index)]
         if self._untouched[row]:
             if words and not plain:
@@ -72,15 +77,10 @@ class Others:
             if self._is_dropped(index) or (letter == "D" and self._beside_offset[row]):
                 continue
             # What stands beside the switch, or hands over to a program, has no meaning without it.
-            if (self._switches[row] or calls) and (letter not in "GMST" or self._of_call[index]):
+            if (self._switches[row] or hands_over) and (letter not in "GMST" or self._of_call[index]):
                 continue
             texts.append(written_word(run, index) if plain else self._computed(row, index))
         return texts
-
-    def _calls(self, row: int) -> bool:
-        """Another program runs behind this row, or the one that called goes on."""
-        depth = self.trace.run.depth
-        return row + 1 < len(depth) and bool(depth[row + 1] != depth[row])
 
     def _is_dropped(self, index: int) -> bool:
         address = int(self.trace.run.words.address[index])

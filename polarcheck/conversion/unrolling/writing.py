@@ -47,7 +47,7 @@ class Writer:
         self._names: dict[str, str] = {}
         self._mode = self._distance = 0
         self._motion = self._feed = ""
-        self._has_feed = False
+        self._has_feed = self._has_moved = False
 
     def of_section(self, section: Stretch) -> list[tuple[int, list[NewBlock] | None]]:
         """
@@ -59,7 +59,7 @@ class Writer:
         self._mode = int(trace.feedrate.modal_feed_mode[enter]) if self.says_feed_mode[enter] else 0
         self._distance = int(trace.modal.state("distance")[enter])
         self._motion = self._feed = ""
-        self._has_feed = False
+        self._has_feed = self._has_moved = False
         self._names = self._names_of_axes(section)
         rows = range(enter, section.leave + 1)
         if section.runs_in_order:
@@ -114,7 +114,8 @@ class Writer:
         row, is_rapid = int(steps.row[index]), bool(steps.is_rapid[index])
         numbers = self._numbers(row)
         words = [*self._state(row, None if is_rapid else self.feed_mode), self._motion_word(row, is_rapid)]
-        is_first = not index or steps.row[index - 1] != row
+        is_first = not self._has_moved
+        self._has_moved = True
         if is_first or style.repeats_axes or steps.radius_step[index] != 0:
             words.append(self._word("X", numbers.of_increments(int(steps.x[index]))))
         if is_first or style.repeats_axes or steps.turn[index] != 0:
