@@ -85,7 +85,8 @@ def of_section(blocks: list[Block], first: complex, last: complex, near: float =
     on_plane = [block for block in blocks if block.ways[0] or block.ways[1]]
     begins = [n for n, block in enumerate(on_plane) if abs(block.points(2)[0] - first) <= near]
     ends = [n for n, block in enumerate(on_plane) if abs(block.points(2)[-1] - last) <= near]
-    assert begins and ends, "the contour is not in the program"
+    assert begins, "the contour does not begin in the program"
+    assert ends, "the contour does not end in the program"
     return on_plane[begins[0] : ends[-1] + 1]
 
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from polarcheck.arrays import Floats, Mask, Rows, is_among
 from polarcheck.columns.trace import Trace
+from polarcheck.conversion.meanings import lost_orders
 from polarcheck.conversion.original import Original
 from polarcheck.conversion.outcome import Figure, Refusal
 from polarcheck.conversion.rotary_feed import block_times
@@ -77,7 +78,7 @@ def measured(
     rows = np.flatnonzero(within & after.blocks.has("X", rotary) & after.modal.uses_axes)
     if len(rows) != len(steps):
         return Measured([Refusal(0, f"the result has {len(rows)} blocks of X and C, not {len(steps)}")], [])
-    differences = [*_outside(old, after, ~within), *_depths(old, after, within)]
+    differences = [*_outside(old, after, ~within), *_depths(old, after, within), *lost_orders(old, after, ())]
     center: ToolCenter = original.tables["tool_center"]
     run = _Run(after, rows, method_of(old, feed))
     unknown = np.flatnonzero(np.isnan(run.x_before) | np.isnan(run.turn))
@@ -87,11 +88,11 @@ def measured(
         )
         return Measured([Refusal(_line(old, steps, int(unknown[0])), text)], [])
     differences += _places(old, run, steps)
-    distance, allowed = _distance(old, center.moves, run, steps), chord_error + _rounding(old, steps)
-    far = np.flatnonzero(~(distance <= allowed))
+    distance = _distance(old, center.moves, run, steps)
+    far = np.flatnonzero(~(distance <= chord_error + _SAME))
     if len(far):
         worst = int(far[np.argmax(distance[far])])
-        text = f"the tool would be {distance[worst]:.4f} mm away from its path, above {allowed:.4f} mm"
+        text = f"the tool would be {distance[worst]:.4f} mm away from its path, above {chord_error:.4f} mm"
         differences.append(Refusal(_line(old, steps, worst), text))
     differences += _speeds(old, run, steps)
     moves = center.moves
@@ -217,14 +218,6 @@ def _places(old: Trace, run: _Run, steps: Steps) -> Iterator[Refusal]:
     differs |= run.is_rapid != steps.is_rapid
     for index in np.flatnonzero(differs)[:1].tolist():
         yield Refusal(_line(old, steps, index), "X, C or Z would not be where the tool center goes")
-
-
-def _rounding(old: Trace, steps: Steps) -> float:
-    """What rounding of X and C may add to the chord error [mm]."""
-    scale = (x_factor(old) * old.lengths.least_step)[steps.row]
-    radius = steps.x * scale
-    least = np.radians(old.machine.control.least_increment)
-    return float(np.max(scale / 2 + radius * least / 2, initial=0.0)) + _SAME
 
 
 def _distance(old: Trace, moves: Moves, run: _Run, steps: Steps) -> Floats:

@@ -63,16 +63,26 @@ def steps_of(trace: Trace, moves: Moves, chord_error: float) -> Steps:
     """
     Divide the moves of the tool center [mm].
 
-    Raises RefusedError where Z is not known; TooHardError for too many blocks.
+    With the rounding of X and C the tool leaves its path by no more than the chord error.
+    Raises RefusedError where Z is not known, or rounding takes most of the chord error; TooHardError for too many
+    blocks.
     """
     x_step = (x_factor(trace) * trace.lengths.least_step)[moves.row]
     c_step = trace.machine.control.least_increment
-    spans = spans_of(*moves.shape, float(np.max(x_step, initial=_NOTHING)) / 2)
+    spans = spans_of(*moves.shape, float(np.max(x_step, initial=_NOTHING)) / 2, chord_error / 2)
     largest = _ROLLING if trace.machine.control.rotary_rolls_over else _HALF
-    is_short = _short(spans, x_step[spans.move], np.radians(c_step), chord_error)
+    farthest = np.maximum(np.abs(spans.start), np.abs(spans.end))
+    c_way = np.radians(c_step) * farthest
+    rounding = np.hypot(x_step[spans.move], c_way) / 2
+    if (least := 2 * float(np.max(rounding, initial=0.0))) > chord_error:
+        line = int(trace.blocks.line_in_file[moves.row[spans.move[np.argmax(rounding)]]])
+        text = f"rounding of X and C alone moves the tool by up to {least / 2:.4f} mm here"
+        raise RefusedError([Refusal(line, f"{text}: the chord error has to be {least:.4f} mm or more")])
+    # Spans of about a least increment, as rounding leaves them between others: no block is worth its time for them.
+    is_short = spans.length <= np.minimum(np.maximum(x_step[spans.move], c_way), chord_error / 4)
     # The block that takes over the way of a short span may leave its own path by that, too.
-    chord_error -= float(np.max(spans.length[is_short], initial=0.0))
-    pieces = divide(spans, chord_error, np.radians(largest), MOST)
+    taken = np.append(0.0, np.where(is_short, spans.length, 0.0))[: len(spans)]
+    pieces = divide(spans, chord_error - rounding - taken, np.radians(largest), MOST)
     move = spans.move[pieces.span]
     begin, end = spans.share(pieces.span, pieces.first), spans.share(pieces.span, pieces.last)
     c, z = _c_after(trace, moves, spans, pieces), _z_after(trace, moves, move, begin, end)
@@ -128,11 +138,6 @@ def _times(steps: Steps, x_step: Floats) -> Floats:
     with np.errstate(divide="ignore", invalid="ignore"):
         share = np.where(steps.length > 0, way / steps.length, 1.0)
     return np.asarray(steps.time * np.fmax(share, 1.0))
-
-
-def _short(spans: Spans, x_step: Floats, c_step: float, chord_error: float) -> Mask:
-    """Spans of about a least increment, as rounding leaves them between others: no block is worth its time for them."""
-    return np.asarray(spans.length <= np.minimum(np.maximum(x_step, c_step * np.abs(spans.start)), chord_error / 4))
 
 
 def _passed_on(moves: Moves, steps: Steps, is_short: Mask) -> Mask:

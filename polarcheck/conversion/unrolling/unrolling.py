@@ -13,6 +13,7 @@ from polarcheck.conversion.original import Original, read
 from polarcheck.conversion.outcome import Figure, Outcome, Refusal, RefusedError
 from polarcheck.conversion.style_of import style_of
 from polarcheck.conversion.unrolling import measuring, rates
+from polarcheck.conversion.unrolling.errors import errors
 from polarcheck.conversion.unrolling.rates import FEEDS as FEEDS
 from polarcheck.conversion.unrolling.steps import Steps, steps_of
 from polarcheck.conversion.unrolling.stretches import Stretch, refusals, stretches
@@ -46,7 +47,7 @@ def unrolled(original: Original, options: Unrolling) -> Outcome:
     sections = stretches(trace)
     if not sections:
         raise RefusedError([Refusal(0, "there is no polar section in it")])
-    if reasons := refusals(original.tables, sections):
+    if reasons := [*errors(original), *refusals(original.tables, sections)]:
         raise RefusedError(reasons)
     feed = rates.chosen(trace, options.feed)
     center: ToolCenter = original.tables["tool_center"]
@@ -83,9 +84,10 @@ def _notes(original: Original, steps: Steps, time: Floats, feed: str) -> list[st
     if slow.any():
         where = ", ".join(str(line) for line in list(dict.fromkeys(lines[rows].tolist()))[:10])
         notes.append(f"slower than its F in {len(rows)} blocks, since C or X cannot turn faster: line {where}")
-    if "feed.with_rotary" in original.settings.doubtful and feed in trace.machine.feed.with_rotary:
-        notes.append(f"that F is {feed} on {trace.machine.title} is in doubt: try it above the part")
-    elif feed not in trace.machine.feed.with_rotary:
+    method = rates.method_of(trace, feed)
+    if "feed.with_rotary" in original.settings.doubtful and method in trace.machine.feed.with_rotary:
+        notes.append(f"that F is {method} on {trace.machine.title} is in doubt: try it above the part")
+    elif method not in trace.machine.feed.with_rotary:
         notes.append(f"F is {feed} as --feed says; the profile of {trace.machine.title} does not say so")
     return notes
 

@@ -124,7 +124,8 @@ class Writer:
         if not math.isnan(z):
             words.append(self._word("Z", numbers.of_increments(int(z))))
         if not is_rapid:
-            words.append(self._feed_word(numbers, float(self.feeds[index]), self.feed_mode == FeedMode.INVERSE_TIME))
+            is_repeated = style.repeats_feed or self.feed_mode == FeedMode.INVERSE_TIME
+            words.append(self._feed_word(numbers, float(self.feeds[index]), is_repeated))
         return self._block(words, others)
 
     def _alone(self, row: int, others: Sequence[str]) -> NewBlock:
@@ -195,7 +196,7 @@ class Writer:
 
     def _feed_word(self, numbers: Numbers, feed: float, is_repeated: bool = False) -> str:
         text = "F" + numbers.rate(feed)
-        if text == self._feed and not is_repeated and not self.style.repeats_feed:
+        if text == self._feed and not is_repeated:
             return ""
         self._feed, self._has_feed = text, True
         return text
