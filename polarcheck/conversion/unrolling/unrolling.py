@@ -83,7 +83,7 @@ def _notes(original: Original, steps: Steps, time: Floats, feed: str) -> list[st
     slow, rows = rates.slowed(steps, time)
     if slow.any():
         where = ", ".join(str(line) for line in list(dict.fromkeys(lines[rows].tolist()))[:10])
-        notes.append(f"slower than its F in {len(rows)} blocks, since C or X cannot turn faster: line {where}")
+        notes.append(f"slower than its F in {len(rows)} blocks, since C or X would pass its limit: line {where}")
     method = rates.method_of(trace, feed)
     if "feed.with_rotary" in original.settings.doubtful and method in trace.machine.feed.with_rotary:
         notes.append(f"that F is {method} on {trace.machine.title} is in doubt: try it above the part")
