@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import Any
 
 import msgspec
 import numpy as np
-from numpy.typing import NDArray
 
-from polarcheck.arrays import Floats, Mask, Rows, is_among
+from polarcheck.arrays import Floats, Mask, Rows
 from polarcheck.columns.trace import Trace
 from polarcheck.conversion.meanings import lost_orders
 from polarcheck.conversion.original import Original
@@ -17,9 +15,10 @@ from polarcheck.conversion.outcome import Figure, Refusal
 from polarcheck.conversion.rotary_feed import block_times
 from polarcheck.conversion.unrolling.rates import method_of
 from polarcheck.conversion.unrolling.steps import Steps, x_factor
+from polarcheck.conversion.unrolling.unchanged import depths, outside
 from polarcheck.geometry.plane import arc_sweep
 from polarcheck.geometry.straight_axes.pieces import along, distances
-from polarcheck.machines.modal import MM_PER_INCH, FeedMode, Motion
+from polarcheck.machines.modal import FeedMode, Motion
 from polarcheck.table.moves import Moves
 from polarcheck.table.tool_center import ToolCenter
 from polarcheck.time_limit import keep_time
@@ -27,7 +26,7 @@ from polarcheck.time_limit import keep_time
 #: How many differences are listed.
 _LISTED = 10
 #: Places on a block at which it is measured, and how many blocks at once.
-_PLACES = np.linspace(0, 1, 14)[None, :]
+_PLACES = np.linspace(0, 1, 17)[None, :]
 _TOGETHER = 20_000
 #: F may be above that of the section, or a rate above its limit, by this share: rounding of F, C and X.
 _SHARE = 1e-3
@@ -46,22 +45,6 @@ class Measured(msgspec.Struct, frozen=True):
     notes: list[str] = []
 
 
-def beyond_travel(trace: Trace, steps: Steps) -> list[Refusal]:
-    """Blocks beyond the travel of X, the first in each direction."""
-    limits = trace.machine.limits
-    scale = (x_factor(trace) * trace.lengths.least_step)[steps.row]
-    radius = steps.x * scale
-    reasons = []
-    for hits, name, limit in (
-        (radius < limits.x_minimum - _SAME, "below", limits.x_minimum),
-        (radius > limits.x_maximum + _SAME, "above", limits.x_maximum),
-    ):
-        if hits.any():
-            line = int(trace.blocks.line_in_file[steps.row[np.argmax(hits)]])
-            reasons.append(Refusal(line, f"X would go {name} its travel limit of {limit:g} mm as a radius"))
-    return reasons
-
-
 def measured(
     original: Original, new: Original, spans: Sequence[tuple[int, int]], steps: Steps, chord_error: float, feed: str
 ) -> Measured:
@@ -78,14 +61,12 @@ def measured(
     rows = np.flatnonzero(within & after.blocks.has("X", rotary) & after.modal.uses_axes)
     if len(rows) != len(steps):
         return Measured([Refusal(0, f"the result has {len(rows)} blocks of X and C, not {len(steps)}")], [])
-    differences = [*_outside(old, after, ~within), *_depths(old, after, within), *lost_orders(old, after, ())]
+    differences = [*outside(old, after, ~within), *depths(old, after, within), *lost_orders(old, after, ())]
     center: ToolCenter = original.tables["tool_center"]
     run = _Run(after, rows, method_of(old, feed))
     unknown = np.flatnonzero(np.isnan(run.x_before) | np.isnan(run.turn))
     if len(unknown):
-        text = (
-            "where the tool is before this move is not known without the mode: a tool is called, or an axis referenced"
-        )
+        text = "where the tool is before this move is not known: a tool is called, or an axis referenced"
         return Measured([Refusal(_line(old, steps, int(unknown[0])), text)], [])
     differences += _places(old, run, steps)
     distance = _distance(old, center.moves, run, steps)
@@ -97,7 +78,7 @@ def measured(
     differences += _speeds(old, run, steps)
     moves = center.moves
     in_mode = float(np.nansum(np.where(moves.kind == Motion.RAPID, np.nan, moves.time)))
-    notes = [*_too_short(old, run, steps), *_too_fast(old, run, steps)]
+    notes = [*_too_short(old, run, steps), *_too_fast(old, run, steps), *_wound_up(old, run, steps)]
     return Measured(differences[:_LISTED], _figures(old, run, in_mode, float(distance.max(initial=0.0))), notes)
 
 
@@ -119,6 +100,23 @@ def _too_fast(old: Trace, run: _Run, steps: Steps) -> Iterator[str]:
         yield f"C turns at {run.c_rate.max():.0f} deg/min in line {line}: its limit, limits.c_feed, is not known"
 
 
+def _wound_up(old: Trace, run: _Run, steps: Steps) -> Iterator[str]:
+    """Sections behind which C stands some turns away from where they began."""
+    if old.machine.control.rotary_rolls_over or not len(run.c):
+        return
+    section = old.mode.whole_section[steps.row]
+    last = np.flatnonzero(np.append(np.diff(section) != 0, True))
+    first = np.append(0, last[:-1] + 1)
+    turned = np.round((run.c[last] - (run.c - run.turn)[first]) / 360)
+    if np.abs(turned).max() >= 1:
+        worst = int(np.argmax(np.abs(turned)))
+        index = int(last[worst])
+        yield (
+            f"line {_line(old, steps, index)}: C has turned on by {abs(turned[worst]):.0f} turns, to "
+            f"{run.c[index]:g} deg: positioning it turns it back"
+        )
+
+
 def _line(trace: Trace, steps: Steps, index: int) -> int:
     return int(trace.blocks.line_in_file[steps.row[index]])
 
@@ -130,60 +128,6 @@ def _within(trace: Trace, spans: Sequence[tuple[int, int]]) -> Mask:
     ends = np.array([end for _, end in spans], np.int64)
     at = np.searchsorted(begins, start, side="left") - 1
     return np.asarray((at >= 0) & (start <= ends[np.maximum(at, 0)]))
-
-
-def _outside(old: Trace, new: Trace, rows: Mask) -> Iterator[Refusal]:
-    """What differs in blocks outside of sections, which are the same text in both."""
-    before, after = np.flatnonzero(old.mode.whole_section < 0), np.flatnonzero(rows)
-    if len(before) != len(after):
-        yield Refusal(0, "the result runs other blocks outside of the sections")
-        return
-    arcs = is_among(old.axes.motion, (Motion.CW, Motion.CCW))
-    columns: dict[str, tuple[NDArray[Any], NDArray[Any]]] = {
-        "X": (old.path.x, new.path.x),
-        "Z": (old.path.z, new.path.z),
-        "C": (_within_turn(old.path.c_angle), _within_turn(new.path.c_angle)),
-        "G code of motion": (old.axes.motion, new.axes.motion),
-        "feed mode": (old.feedrate.modal_feed_mode, new.feedrate.modal_feed_mode),
-        "F": (old.feedrate.feed_number, new.feedrate.feed_number),
-        "plane": (np.where(arcs, old.modal.state("plane"), 0), new.modal.state("plane")),
-        "distances": (old.modal.state("distance"), new.modal.state("distance")),
-    }
-    tolerance = max(old.machine.control.least_increment, old.machine.control.least_increment_inch * MM_PER_INCH)
-    for name, (was, is_now) in columns.items():
-        first, second = was[before].astype(np.float64), is_now[after].astype(np.float64)
-        if name == "plane":
-            second = np.where(first == 0, 0, second)
-        if name == "C":
-            second = first + (second - first + 180) % 360 - 180
-        limit = 1e-3 * np.abs(first) if name == "F" else tolerance
-        differs = ~(np.abs(first - second) <= limit) & ~(np.isnan(first) & np.isnan(second))
-        if differs.any():
-            yield Refusal(int(old.blocks.line_in_file[before[np.argmax(differs)]]), f"{name} would differ from here on")
-
-
-def _within_turn(angle: Floats) -> Floats:
-    return np.asarray(angle % 360)
-
-
-def _depths(old: Trace, new: Trace, within: Mask) -> Iterator[Refusal]:
-    """Blocks with Z alone in the sections, in order."""
-    alone = np.zeros(len(old), bool)
-    alone[old.path.moves_z & (old.mode.section >= 0)] = True
-    on_plane = old.path.travels
-    before = np.flatnonzero(alone & ~on_plane)
-    rotary = new.machine.polar.rotary_address
-    after = np.flatnonzero(within & new.path.moves_z & ~new.blocks.has("X", rotary))
-    if len(before) != len(after):
-        yield Refusal(0, f"the result has {len(after)} blocks with Z alone, not {len(before)}")
-        return
-    tolerance = old.lengths.least_step[before]
-    differs = ~(np.abs(old.path.z[before] - new.path.z[after]) <= tolerance)
-    differs |= old.axes.motion[before] != new.axes.motion[after]
-    feeds = old.feedrate.feed[before], new.feedrate.feed[after]
-    differs |= (old.axes.motion[before] != Motion.RAPID) & ~(np.abs(feeds[0] - feeds[1]) <= 1e-3 * feeds[0])
-    for index in np.flatnonzero(differs)[:1].tolist():
-        yield Refusal(int(old.blocks.line_in_file[before[index]]), "Z or its F would differ")
 
 
 class _Run:
@@ -202,8 +146,8 @@ class _Run:
         mode = trace.feedrate.modal_feed_mode[rows]
         step = self.x - self.x_before
         time = 60 * block_times(method, step, self.turn, self.rise, feed, unit)
-        known = mode == (FeedMode.INVERSE_TIME if method == "inverse-time" else FeedMode.PER_MINUTE)
-        self.time = np.where(self.is_rapid | ~known, np.nan, time)
+        is_meant = mode == (FeedMode.INVERSE_TIME if method == "inverse-time" else FeedMode.PER_MINUTE)
+        self.time = np.where(self.is_rapid | ~is_meant, np.nan, time)
         with np.errstate(divide="ignore", invalid="ignore"):
             self.c_rate = np.where(self.is_rapid | (self.turn == 0), 0.0, 60 * np.abs(self.turn) / self.time)
             self.x_rate = np.where(self.is_rapid | (step == 0), 0.0, 60 * np.abs(step) / self.time)
@@ -238,9 +182,9 @@ def _distance(old: Trace, moves: Moves, run: _Run, steps: Steps) -> Floats:
     for first in range(0, len(runs), _TOGETHER):
         keep_time()
         part = slice(first, first + _TOGETHER)
-        own = of_move[part]
+        move = of_move[part]
         points = along(run.x_before[runs][part], run.x[runs][part], (angle - turn)[part], angle[part], _PLACES)
-        far = distances(points, moves.start[own], moves.end[own], center[own], sweep[own])
+        far = distances(points, moves.start[move], moves.end[move], center[move], sweep[move])
         distance[runs[part]] = far.max(axis=1)
     # The last block of a move leads to its end.
     last = np.append(np.diff(steps.move[runs]) != 0, True)[: len(runs)]

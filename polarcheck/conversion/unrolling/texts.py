@@ -86,13 +86,14 @@ def _skipped_moves(trace: Trace, section: Stretch) -> list[int]:
 
 def _subprograms_left_out(trace: Trace, sections: Sequence[Stretch]) -> list[tuple[int, int]]:
     """The first and last blocks of programs of this file that run in sections alone, where those are written out."""
-    if all(each.runs_in_order for each in sections):
+    if all(section.runs_in_order for section in sections):
         return []
     run, text = trace.run, trace.text
     written_out = np.zeros(len(trace), bool)
-    for each in sections:
-        if not each.runs_in_order:
-            written_out[each.enter : each.leave + 1] = run.depth[each.enter : each.leave + 1] > run.depth[each.enter]
+    for section in sections:
+        if not section.runs_in_order:
+            rows = slice(section.enter, section.leave + 1)
+            written_out[rows] = run.depth[rows] > run.depth[section.enter]
     inside, outside = (set(run.block[rows].tolist()) for rows in (written_out, ~written_out))
     left_out = []
     for program in find_programs(text).programs:

@@ -52,7 +52,7 @@ def unrolled(original: Original, options: Unrolling) -> Outcome:
     feed = rates.chosen(trace, options.feed)
     center: ToolCenter = original.tables["tool_center"]
     steps = steps_of(trace, center.moves, options.chord_error)
-    if reasons := measuring.beyond_travel(trace, steps):
+    if reasons := rates.beyond_travel(trace, steps):
         raise RefusedError(reasons)
     time = rates.times(trace, steps)
     style = style_of(trace)

@@ -153,8 +153,8 @@ class Writer:
         return [self._block(words)] if words else []
 
     def _block(self, words: Sequence[str], others: Sequence[str] = ()) -> NewBlock:
-        own = tuple(word.lower() if self.style.lower_case else word for word in words if word)
-        return NewBlock((*own, *others))
+        written = (word.lower() if self.style.lower_case else word for word in words if word)
+        return NewBlock((*written, *others))
 
     # ---- words ----
 

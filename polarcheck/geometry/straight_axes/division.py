@@ -54,10 +54,10 @@ def divide(spans: Spans, chord_error: Floats | float, largest_turn: float, most:
     errors = np.broadcast_to(np.asarray(chord_error, np.float64), len(spans))
     for first in range(0, len(spans), _TOGETHER):
         keep_time()
-        own = slice(first, first + _TOGETHER)
-        part = _divided(spans[own], errors[own], largest_turn, most - count)
-        count += len(part.span)
-        parts.append(Pieces(part.span + first, part.first, part.last, part.start, part.end, part.turn))
+        part = slice(first, first + _TOGETHER)
+        pieces = _divided(spans[part], errors[part], largest_turn, most - count)
+        count += len(pieces.span)
+        parts.append(Pieces(pieces.span + first, pieces.first, pieces.last, pieces.start, pieces.end, pieces.turn))
     return Pieces.concatenated(parts) if parts else Pieces(*_nothing())
 
 
@@ -116,9 +116,9 @@ def _placed(spans: Spans, at: Floats, need: Floats, count: Rows) -> Pieces:
     cuts = np.interp(number[span] + index / of, (number[:, None] + share).ravel(), at.ravel())
     first = np.where(index == 0, 0.0, cuts)
     last = np.where(index == of - 1, 1.0, np.append(first[1:], 1.0))
-    own = spans[span]
-    ends = own.points(np.stack((first, (first + last) / 2, last), axis=1))
-    ways = own.directions(np.stack((first, last), axis=1))
+    of_piece = spans[span]
+    ends = of_piece.points(np.stack((first, (first + last) / 2, last), axis=1))
+    ways = of_piece.directions(np.stack((first, last), axis=1))
     begins = np.where(ends[:, 0] == 0, ways[:, 0], ends[:, 0])
     arrives = np.where(ends[:, 2] == 0, -ways[:, 1], ends[:, 2])
     turn = angle_between(begins, ends[:, 1]) + angle_between(ends[:, 1], arrives)
@@ -127,10 +127,14 @@ def _placed(spans: Spans, at: Floats, need: Floats, count: Rows) -> Pieces:
 
 def deviations(spans: Spans, pieces: Pieces) -> Floats:
     """How far each piece is from its span [mm], float64[pieces, places between its ends]."""
-    own = spans[pieces.span]
+    of_piece = spans[pieces.span]
     r = np.abs(pieces.start)[:, None] + (np.abs(pieces.end) - np.abs(pieces.start))[:, None] * SHARES
-    ways = own.directions(pieces.first[:, None])[:, 0]
+    ways = of_piece.directions(pieces.first[:, None])[:, 0]
     first = np.angle(np.where(pieces.start == 0, ways, pieces.start))[:, None]
     return distances(
-        r * np.exp(1j * (first + pieces.turn[:, None] * SHARES)), own.start, own.end, own.center, own.sweep
+        r * np.exp(1j * (first + pieces.turn[:, None] * SHARES)),
+        of_piece.start,
+        of_piece.end,
+        of_piece.center,
+        of_piece.sweep,
     )
