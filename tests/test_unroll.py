@@ -200,7 +200,7 @@ def test_c_keeps_its_limit_and_the_block_takes_longer() -> None:
     minutes = sum(block.minutes("per-minute") for block in blocks)
     assert minutes == pytest.approx(free + turn / 3600, rel=0.01)
     assert "slower than its F" in said
-    assert figure(said, "time of these blocks now") > figure(said, "time of these blocks in the mode") + 1
+    assert figure(said, "time at feed now") > figure(said, "time at feed in the mode") + 1
 
 
 def test_x_keeps_its_limit() -> None:
@@ -210,7 +210,7 @@ def test_x_keeps_its_limit() -> None:
 
 def test_times_are_those_of_the_mode() -> None:
     _, said = unrolled(HEXAGON.program, *METHODS["inverse-time"], *HEXAGON.options)
-    before, now = (figure(said, f"time of these blocks {when}") for when in ("in the mode", "now"))
+    before, now = (figure(said, f"time at feed {when}") for when in ("in the mode", "now"))
     assert before == pytest.approx(60 * ((40 - 30) / 900 + (11 + 131.636 + 11) / 300), rel=1e-3)
     assert before <= now <= 1.01 * before
 
@@ -275,6 +275,17 @@ def test_depths_rapids_and_what_else_stands_in_a_section() -> None:
         + "G1 X60. C0 F300 (NEAR)\nM8\nZ-1. F100\nX40. F200\nG4 P500\nZ-2. F100 S800\nX60. F200 M9\nG0 Z2.\n"
         + END.replace("G13.1\n", "")
     )
+
+
+def test_rapid_traverse_keeps_its_path_by_the_f_for_positioning() -> None:
+    program = f"{HEAD}G0 X20. Y12.\nG1 X-20. F300\nG0 X80. Y0\n{END}".replace("G12.1", "G112").replace("G13.1", "G113")
+    haas = ("--machine", "haas-lathe", "--feed", "per-minute")
+    text, _ = unrolled(program.replace("G0 X100. Z50.", "X100."), *haas)
+    blocks = of_section(blocks_of(text), 40 + 0j, 20 + 12j)
+    assert not any(block.rapid for block in blocks)
+    assert 1480 <= fastest(blocks, "per-minute")[1] <= 1500.1
+    # The next move took G0 over from the section.
+    assert "G0\nX100.\n" in text
 
 
 def test_subprograms_and_loops_are_written_out_where_they_run() -> None:

@@ -77,9 +77,10 @@ def measured(
         differences.append(Refusal(_line(old, steps, worst), text))
     differences += _speeds(old, run, steps)
     moves = center.moves
-    in_mode = float(np.nansum(np.where(moves.kind == Motion.RAPID, np.nan, moves.time)))
+    at_feed = old.axes.motion[moves.row] != Motion.RAPID
+    times = float(np.nansum(moves.time[at_feed])), float(run.time[~steps.is_rapid].sum())
     notes = [*_too_short(old, run, steps), *_too_fast(old, run, steps), *_wound_up(old, run, steps)]
-    return Measured(differences[:_LISTED], _figures(old, run, in_mode, float(distance.max(initial=0.0))), notes)
+    return Measured(differences[:_LISTED], _figures(old, run, times, float(distance.max(initial=0.0))), notes)
 
 
 def _too_short(old: Trace, run: _Run, steps: Steps) -> Iterator[str]:
@@ -147,10 +148,10 @@ class _Run:
         step = self.x - self.x_before
         time = 60 * block_times(method, step, self.turn, self.rise, feed, unit)
         is_meant = mode == (FeedMode.INVERSE_TIME if method == "inverse-time" else FeedMode.PER_MINUTE)
-        self.time = np.where(self.is_rapid | ~is_meant, np.nan, time)
+        self.time = np.where(is_meant, time, np.nan)
         with np.errstate(divide="ignore", invalid="ignore"):
-            self.c_rate = np.where(self.is_rapid | (self.turn == 0), 0.0, 60 * np.abs(self.turn) / self.time)
-            self.x_rate = np.where(self.is_rapid | (step == 0), 0.0, 60 * np.abs(step) / self.time)
+            self.c_rate = np.where(self.turn == 0, 0.0, 60 * np.abs(self.turn) / self.time)
+            self.x_rate = np.where(step == 0, 0.0, 60 * np.abs(step) / self.time)
 
 
 def _places(old: Trace, run: _Run, steps: Steps) -> Iterator[Refusal]:
@@ -159,7 +160,7 @@ def _places(old: Trace, run: _Run, steps: Steps) -> Iterator[Refusal]:
     differs = ~(np.abs(run.x - steps.x * scale) <= _SAME) | ~(np.abs(run.turn - steps.turn) <= _SAME)
     z = steps.z * old.lengths.least_step[steps.row]
     differs |= ~np.isnan(z) & ~(np.abs(run.z - z) <= _SAME)
-    differs |= run.is_rapid != steps.is_rapid
+    differs |= run.is_rapid
     for index in np.flatnonzero(differs)[:1].tolist():
         yield Refusal(_line(old, steps, index), "X, C or Z would not be where the tool center goes")
 
@@ -197,7 +198,7 @@ def _speeds(old: Trace, run: _Run, steps: Steps) -> Iterator[Refusal]:
     """Blocks in which the tool would be faster than the F of the section, or an axis faster than its limit."""
     limits = old.machine.limits
     checks = (
-        (~run.is_rapid & ~(run.time > 0), "how long this takes is not known"),
+        (~(run.time > 0), "how long this takes is not known"),
         (run.time < steps.time * (1 - _SHARE), "the tool would be faster than in the mode"),
         (run.c_rate > limits.c_feed * (1 + _SHARE), "C would be above its limit"),
         (run.x_rate > limits.x_feed * (1 + _SHARE), "X would be above its limit"),
@@ -207,13 +208,12 @@ def _speeds(old: Trace, run: _Run, steps: Steps) -> Iterator[Refusal]:
             yield Refusal(_line(old, steps, index), text)
 
 
-def _figures(old: Trace, run: _Run, in_mode: float, distance: float) -> list[Figure]:
-    times = run.time[~np.isnan(run.time)]
+def _figures(old: Trace, run: _Run, times: tuple[float, float], distance: float) -> list[Figure]:
     figures = [
         Figure("largest distance of the tool center from its path", distance, "mm"),
         Figure("blocks of X and C", len(run.time)),
         Figure("most of them in one second", _most_in_a_second(run.time)),
-        Figure("shortest block", float(times.min(initial=np.inf)) if len(times) else 0.0, "s"),
+        Figure("shortest block", float(run.time.min()) if len(run.time) else 0.0, "s"),
     ]
     if not np.isnan(old.machine.limits.block_time):
         figures.append(Figure("shortest block that the control runs", old.machine.limits.block_time, "s"))
@@ -221,12 +221,12 @@ def _figures(old: Trace, run: _Run, in_mode: float, distance: float) -> list[Fig
         *figures,
         Figure("largest rate of C", float(run.c_rate.max(initial=0.0)), "deg/min"),
         Figure("largest rate of X, as a radius", float(run.x_rate.max(initial=0.0)), "mm/min"),
-        Figure("time of these blocks in the mode", in_mode, "s"),
-        Figure("time of these blocks now", float(times.sum()), "s"),
+        Figure("time at feed in the mode", times[0], "s"),
+        Figure("time at feed now", times[1], "s"),
     ]
 
 
 def _most_in_a_second(time: Floats) -> int:
-    """The largest number of blocks that begin within a second; a block in rapid traverse ends the second."""
-    begin = np.cumsum(np.append(0.0, np.where(np.isnan(time), 1.0, time)))[:-1]
+    """The largest number of blocks that begin within a second."""
+    begin = np.cumsum(np.append(0.0, time))[:-1]
     return int(np.max(np.searchsorted(begin, begin + 1 - 1e-9) - np.arange(len(begin)), initial=0))

@@ -54,8 +54,7 @@ def method_of(trace: Trace, feed: str) -> str:
 
 def times(trace: Trace, steps: Steps) -> Floats:
     """
-    How long each block takes [s], NaN in rapid traverse: by the F of the section, or longer where C or X would be too
-    fast.
+    How long each block takes [s]: by the F of the section, or longer where C or X would be too fast.
     """
     limits = trace.machine.limits
     share = min(limits.override_share, 100) / 100 if limits.automatic_override else 1.0
@@ -63,12 +62,11 @@ def times(trace: Trace, steps: Steps) -> Floats:
     spot = np.where(steps.move < 0, limits.c_feed_harmless, np.inf)
     c_feed = np.fmin(limits.c_feed * share, spot)
     longest = np.fmax(steps.time, 60 * np.abs(steps.turn) / c_feed)
-    longest = np.fmax(longest, np.nan_to_num(60 * np.abs(steps.radius_step) / limits.x_feed))
-    return np.where(steps.is_rapid, np.nan, longest)
+    return np.fmax(longest, np.nan_to_num(60 * np.abs(steps.radius_step) / limits.x_feed))
 
 
 def feeds(trace: Trace, steps: Steps, time: Floats, feed: str) -> Floats:
-    """F of each block as it is written, in the units of the program; NaN in rapid traverse."""
+    """F of each block as it is written, in the units of the program."""
     unit = trace.lengths.feed_scale[steps.row]
     exact = block_feeds(method_of(trace, feed), steps.radius_step, steps.turn, steps.rise, time / 60, unit)
     exact = np.minimum(exact, _LARGEST)
@@ -99,7 +97,7 @@ def _stepwise(feed: Floats, steps: Steps) -> Floats:
         end = begin + 1
         while end < len(values):
             low, high = min(lowest, values[end]), max(highest, values[end])
-            if values[end] != values[end] or not low >= high * (1 - _STEP):  # rapid traverse ends a stretch, too
+            if not low >= high * (1 - _STEP):
                 break
             lowest, highest, end = low, high, end + 1
         values[begin:end] = [lowest] * (end - begin)

@@ -33,8 +33,9 @@ class Steps(Table, frozen=True):
     z: the Z word in least increments, NaN where Z does not move. rise: way of Z [mm].
     radius_step: way of X as a radius [mm]; turn: way of C [deg]; both as they are rounded.
     length: way of the tool center on the plane [mm].
-    time: with which the tool is nowhere faster than the F of the section [s]; NaN in rapid traverse.
-    is_rapid: in rapid traverse.
+    time: with which the tool is nowhere faster than the F of the section [s].
+    is_rapid: in the mode it was rapid traverse; its F is that of the machine for positioning, since G0 would not keep
+    the path: X and C need not arrive together.
     """
 
     row: Rows
@@ -89,7 +90,9 @@ def steps_of(trace: Trace, moves: Moves, chord_error: float) -> Steps:
     scale, share = x_step[move], end - begin
     x_before, x_after = np.rint(np.abs(pieces.start) / scale), np.rint(np.abs(pieces.end) / scale)
     c_before, c_after = np.rint((c.after - c.turn) / c_step), np.rint(c.after / c_step)
-    is_rapid = moves.kind[move] == Motion.RAPID
+    is_rapid = trace.axes.motion[moves.row[move]] == Motion.RAPID
+    length = moves.length[move] * share
+    positioning = 60 * np.hypot(length, z.way) / trace.machine.writing.rapid_feed
     runs = Steps(
         row=moves.row[move],
         move=move,
@@ -99,8 +102,8 @@ def steps_of(trace: Trace, moves: Moves, chord_error: float) -> Steps:
         rise=z.way,
         radius_step=(x_after - x_before) * scale,
         turn=(c_after - c_before) * c_step,
-        length=moves.length[move] * share,
-        time=np.where(is_rapid, np.nan, moves.time[move] * share),
+        length=length,
+        time=np.where(is_rapid, positioning, moves.time[move] * share),
         is_rapid=is_rapid,
     )
     # Where C turns on the spot, a block of its own stands before the piece that it leads to.
@@ -117,7 +120,7 @@ def steps_of(trace: Trace, moves: Moves, chord_error: float) -> Steps:
         radius_step=none,
         turn=(c_before - c_first)[at] * c_step,
         length=none,
-        time=np.where(is_rapid[at], np.nan, 0.0),
+        time=none,
     )
     order = np.argsort(np.append(np.arange(len(move)), at - 0.5), kind="stable")
     steps = Steps.concatenated((runs, spots))[order]
@@ -225,5 +228,4 @@ def _without_nothing(steps: Steps, is_short: Mask) -> Steps:
     sums = (steps.length, steps.time, steps.radius_step, steps.turn)
     length, time, radius_step, turn = (np.bincount(group, np.nan_to_num(column), count) for column in sums)
     remaining = steps[has_way]
-    time = np.where(remaining.is_rapid, np.nan, time)
     return msgspec.structs.replace(remaining, length=length, time=time, radius_step=radius_step, turn=turn)

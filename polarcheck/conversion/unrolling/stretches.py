@@ -79,7 +79,8 @@ def _of_rows(tables: Tables) -> Iterator[tuple[int, str]]:
     # The reason stands before its consequences.
     unknown &= ~mode.anywhere_in_section(without_radius)
     without_feed = np.zeros(len(trace), bool)
-    without_feed[moves.row[(moves.kind != Motion.RAPID) & ~(moves.feed > 0)]] = True
+    without_feed[moves.row[~(moves.feed > 0)]] = True
+    without_feed &= trace.axes.motion != Motion.RAPID
     alone = path.moves_z & within & (trace.axes.motion != Motion.RAPID) & ~(trace.feedrate.feed > 0)
     per_minute = trace.feedrate.per_minute | (trace.feedrate.feed_mode == FeedMode.PER_MINUTE)
     order = np.append(False, np.diff(moves.row) < 0)[: len(moves)]

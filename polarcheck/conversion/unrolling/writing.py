@@ -25,6 +25,7 @@ _FEED_CODES = {
     FeedMode.PER_MINUTE: "feed_per_minute",
     FeedMode.PER_REVOLUTION: "feed_per_revolution",
 }
+_MOTIONS = {int(Motion.RAPID): "G0", int(Motion.LINE): "G1"}
 #: X1= in the place of X.
 _NAMED = re.compile(r"[A-Z]+[0-9]*=", re.IGNORECASE)
 
@@ -111,9 +112,9 @@ class Writer:
 
     def _step(self, index: int, others: Sequence[str]) -> NewBlock:
         steps, style = self.steps, self.style
-        row, is_rapid = int(steps.row[index]), bool(steps.is_rapid[index])
+        row = int(steps.row[index])
         numbers = self._numbers(row)
-        words = [*self._state(row, None if is_rapid else self.feed_mode), self._motion_word(row, is_rapid)]
+        words = [*self._state(row, self.feed_mode), self._motion_word(row, "G1")]
         is_first = not self._has_moved
         self._has_moved = True
         if is_first or style.repeats_axes or steps.radius_step[index] != 0:
@@ -123,16 +124,18 @@ class Writer:
         z = float(steps.z[index])
         if not math.isnan(z):
             words.append(self._word("Z", numbers.of_increments(int(z))))
-        if not is_rapid:
-            is_repeated = style.repeats_feed or self.feed_mode == FeedMode.INVERSE_TIME
-            words.append(self._feed_word(numbers, float(self.feeds[index]), is_repeated))
+        is_repeated = style.repeats_feed or self.feed_mode == FeedMode.INVERSE_TIME
+        words.append(self._feed_word(numbers, float(self.feeds[index]), is_repeated))
         return self._block(words, others)
 
     def _alone(self, row: int, others: Sequence[str]) -> NewBlock:
         """Z alone, as in the mode."""
         trace, numbers = self.trace, self._numbers(row)
         is_rapid = bool(trace.axes.motion[row] == Motion.RAPID)
-        words = [*self._state(row, None if is_rapid else FeedMode.PER_MINUTE), self._motion_word(row, is_rapid)]
+        words = [
+            *self._state(row, None if is_rapid else FeedMode.PER_MINUTE),
+            self._motion_word(row, "G0" if is_rapid else "G1"),
+        ]
         if np.isnan(trace.path.z[row]):
             raise self._refused(row, "Z is not known here: it is programmed in increments from an unknown place")
         words.append(self._word("Z", numbers.length(float(trace.path.z[row]))))
@@ -149,8 +152,21 @@ class Writer:
         feed = float(trace.feedrate.feed_number[row] / trace.lengths.feed_scale[row])
         if self._has_feed and not math.isnan(feed):
             words.append(self._feed_word(self._numbers(row), feed))
+        motion = int(trace.modal.state("motion")[row])
+        if motion in _MOTIONS and self._is_motion_taken_over(row):
+            words.append(self._motion_word(row, _MOTIONS[motion]))
         words = [word for word in (*words, *self._others.of_row(row)) if word]
         return [self._block(words)] if words else []
+
+    def _is_motion_taken_over(self, row: int) -> bool:
+        """The next move behind a row has no code of motion of its own."""
+        trace = self.trace
+        for following in range(row + 1, len(trace)):
+            if trace.modal.sets("motion")[following] or trace.blocks.starts[following]:
+                return False
+            if trace.axes.moves[following]:
+                return True
+        return False
 
     def _block(self, words: Sequence[str], others: Sequence[str] = ()) -> NewBlock:
         written = (word.lower() if self.style.lower_case else word for word in words if word)
@@ -175,8 +191,7 @@ class Writer:
             raise self._refused(row, f"no code of {title} is known for that: {key.replace('_', ' ')}")
         return self._numbers(row).code(codes[0])
 
-    def _motion_word(self, row: int, is_rapid: bool) -> str:
-        code = "G0" if is_rapid else "G1"
+    def _motion_word(self, row: int, code: str) -> str:
         word = self._numbers(row).code(self._codes.get(code, code))
         if word == self._motion and not self.style.repeats_motion:
             return ""
