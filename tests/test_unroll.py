@@ -123,8 +123,14 @@ CONTOURS = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("method", METHODS)
-@pytest.mark.parametrize("name", CONTOURS)
+CASES = [
+    *((name, "per-minute") for name in CONTOURS),
+    *(("slot", method) for method in METHODS if method != "per-minute"),
+    ("line by the center", "inverse-time"),
+]
+
+
+@pytest.mark.parametrize(("name", "method"), CASES)
 def test_the_tool_stays_on_the_contour_and_is_nowhere_faster_than_f(name: str, method: str) -> None:
     contour = CONTOURS[name]
     text, said = unrolled(contour.program, *METHODS[method], *contour.options)
@@ -249,6 +255,17 @@ def test_a_full_circle_about_the_center_is_two_blocks_of_c() -> None:
     assert "\nG1 X40. C0 F200\nC180. F572.95\nC360.\nC180.\nC0\n" in text
 
 
+def test_c_counts_on_over_full_turns_or_rolls_over() -> None:
+    program = f"{HEAD}G1 X40. F200\nG3 X40. C0 I-20. J0\nG3 X40. C0 I-20. J0\n{END}"
+    text, said = unrolled(program)
+    assert "\nC180. F572.95\nC360.\nC540.\nC720.\n" in text
+    assert "line 9: C has turned on by 2 turns, to 720 deg" in said
+    assert "that it does not roll over there is in doubt" in said
+    rolls, said = unrolled(program, *METHODS["per-minute"], "--set", "control.rotary_rolls_over=true")
+    assert "\nC120. F572.95\nC240.\nC0\nC120.\nC240.\nC0\n" in rolls
+    assert "turned on" not in said
+
+
 def test_through_the_center_c_turns_on_the_spot() -> None:
     text, said = unrolled(f"{HEAD}G1 X40. F200\nX-60.\n{END}")
     assert "\nG1 X40. C0 F200\nX0\nC180. F3600\nX60. F200\n" in text
@@ -354,6 +371,13 @@ def test_the_code_of_f_is_written_where_no_block_says_it() -> None:
     assert "no code says that F is per minute" in said
     assert "\nG1 X60. C0 F100\n" in unrolled(f"{HEAD}G98 G1 X60. F100\n{END}")[0]
     assert "\nG98 G1 X60. C0 F100\n" in unrolled(f"{bare}G98 G1 X60. F100\n{END}")[0]
+
+
+def test_okuma_moves_by_g1_since_g101_is_a_line_on_the_plane() -> None:
+    program = "O1\nG94 G40\nT0101\nG0 X80. C0 Z2.\nG137 C0\nG17\nG101 X30. Y0 F200\nG101 Y10.\nG136\nM30\n"
+    text, _ = unrolled(program, "--machine", "okuma-osp", "--feed", "per-minute")
+    assert "\nG1 X60. C0 F200\n" in text
+    assert "G101" not in text
 
 
 def test_block_skip_is_that_of_one_position_of_the_switch() -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 import msgspec
+import numpy as np
 
 from polarcheck.arrays import Floats
 from polarcheck.columns.trace import Trace
@@ -84,6 +85,11 @@ def _notes(original: Original, steps: Steps, time: Floats, feed: str) -> list[st
     if slow.any():
         where = ", ".join(str(line) for line in list(dict.fromkeys(lines[rows].tolist()))[:10])
         notes.append(f"slower than its F in {len(rows)} blocks, since C or X would pass its limit: line {where}")
+    control = trace.machine.control
+    turns = steps.c * control.least_increment
+    is_beyond = bool(np.any((turns < 0) | (turns > 360)))
+    if is_beyond and not control.rotary_rolls_over and "control.rotary_rolls_over" in original.settings.doubtful:
+        notes.append("C is written below 0 or above 360 deg: that it does not roll over there is in doubt")
     method = rates.method_of(trace, feed)
     if "feed.with_rotary" in original.settings.doubtful and method in trace.machine.feed.with_rotary:
         notes.append(f"that F is {method} on {trace.machine.title} is in doubt: try it above the part")

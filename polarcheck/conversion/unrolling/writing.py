@@ -44,7 +44,6 @@ class Writer:
             units: Numbers(trace.machine, style, units == Units.INCH)
             for units in np.unique(trace.lengths.units[trace.mode.section >= 0]).tolist()
         }
-        self._codes = {meant: written for written, meant in trace.machine.control.motion_codes.items()}
         self._names: dict[str, str] = {}
         self._mode = self._distance = 0
         self._motion = self._feed = ""
@@ -192,7 +191,8 @@ class Writer:
         return self._numbers(row).code(codes[0])
 
     def _motion_word(self, row: int, code: str) -> str:
-        word = self._numbers(row).code(self._codes.get(code, code))
+        # Not by control.motion_codes: G101 of Okuma is a straight line on the plane, also without the mode.
+        word = self._numbers(row).code(code)
         if word == self._motion and not self.style.repeats_motion:
             return ""
         self._motion = word
