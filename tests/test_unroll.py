@@ -10,11 +10,14 @@ import json
 import math
 import re
 from collections.abc import Callable
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 import pytest
 from click.testing import CliRunner, Result
+from hypothesis import Phase, assume, given, settings
+from hypothesis import strategies as st
 from written_moves import (
     Block,
     Floats,
@@ -446,3 +449,36 @@ def test_a_long_section_has_a_block_for_each_short_line() -> None:
     assert figure(said, "blocks of X and C") <= 20_050
     ends = [block.points(2)[-1] for block in blocks_of(text) if not block.rapid and block.ways[0] + block.ways[1]]
     assert np.abs(np.array(ends[-19_999:]) - turns[1:]).max() < 2e-3
+
+
+_POINT = st.builds(complex, st.integers(-40_000, 40_000), st.integers(-40_000, 40_000)).map(lambda point: point / 1000)
+
+
+@pytest.mark.slow
+@given(st.lists(_POINT, min_size=1, max_size=6), st.sampled_from(list(METHODS)), st.sampled_from(["3600", "20000"]))
+@settings(max_examples=25, deadline=None, phases=[Phase.explicit, Phase.generate])
+def test_any_lines_are_followed_in_order(points: list[complex], method: str, limit: str) -> None:
+    """Each block lies on the line whose turn it is; no block is faster than F, and C keeps its limit."""
+    corners = [40 + 0j, *points]
+    lines = list(pairwise(corners))
+    assume(all(abs(end - start) > 0.05 for start, end in lines) and all(abs(point) > 0.5 for point in points))
+    words = "".join(f"X{2 * point.real:.3f} C{point.imag:.3f}\n" for point in points)
+    text, _ = unrolled(f"{HEAD}G1 F500\n{words}{END}", *METHODS[method], "--set", f"limits.c_feed={limit}")
+    blocks = [block for block in blocks_of(text) if not block.rapid and block.ways[0] + block.ways[1]]
+    at = 0
+    for block in blocks:
+        if not block.ways[0] and not block.start[0]:
+            continue  # C turns on the spot
+        assert _beyond(lines[at], block) <= 0.006
+        assert fastest([block], method)[1] <= 500.1
+        assert block.ways[1] / block.minutes(method) <= float(limit) * 1.0001
+        at += abs(block.points(2)[-1] - lines[at][1]) <= 2e-3
+    assert at == len(lines)
+
+
+def _beyond(line: tuple[complex, complex], block: Block) -> float:
+    """How far a block is from a line between two points, its ends included."""
+    way = line[1] - line[0]
+    offset = (block.points() - line[0]) * np.conj(way) / abs(way)
+    along = np.maximum(np.maximum(-offset.real, offset.real - abs(way)), 0)
+    return float(np.hypot(along, offset.imag).max())
