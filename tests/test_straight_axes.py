@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from polarcheck.geometry.straight_axes.division import Pieces, divide
@@ -74,6 +74,7 @@ def test_dense_samples_stay_within_the_chord_error(
     center = (start + end) / 2 + 1j * bulge * (end - start) / 2
     kind = Motion.LINE if is_line else Motion.CCW
     spans, pieces = divided(start, end, NO_CENTER if is_line else center, kind, tolerance)
+    assume(not np.any(pieces.start[1:] == 0))  # C turns on the spot there, between two pieces
     way = sampled(pieces) * np.exp(1j * np.angle(_direction(spans)))
     if is_line:
         unit = (end - start) / abs(end - start)

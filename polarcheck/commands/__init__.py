@@ -50,6 +50,7 @@ NAMES = (
     "schema",
     "server",
     "trace",
+    "unroll",
 )
 
 

@@ -287,6 +287,6 @@ def _figure(figure: Figure) -> str:
     value = figure.value
     if value != value:
         return f"{figure.name}: not known"
-    whole = f"{value:.0f}" if value == round(value) else f"{value:.4g}"
+    whole = f"{value:.0f}" if value == round(value) or abs(value) >= 1000 else f"{value:.4g}"
     number = f"{value:.4f}" if figure.unit == "mm" else whole
     return f"{figure.name}: {number} {figure.unit}".rstrip()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_right
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 
 import msgspec
 import numpy as np
@@ -68,18 +68,51 @@ def block_text(block: NewBlock, style: Style, machine: Machine) -> str:
     return " ".join(part for part in (text, comment_text(block.comment, machine) if block.comment else "") if part)
 
 
-def edits_of(original: Original, blocks: NewBlocks, style: Style, machine: Machine) -> list[Replace]:
+def edits_of(
+    original: Original, blocks: NewBlocks, style: Style, machine: Machine, without_skip: Collection[int] = ()
+) -> list[Replace]:
     """
     Return the edits that put new blocks in the place of blocks of the original.
 
     N, O and block skip at the head of a block stay, N with its first new block, block skip with each. The others get N
     words between those of the original where its blocks have them and there is room. Its comments stay, in the signs of
     the machine, behind its first block. Where the machine takes `;` for a comment, blocks that it parts go to lines of
-    their own. style: of the original. machine: for which the new program is.
+    their own. style: of the original. machine: for which the new program is. without_skip: blocks that lose their block
+    skip.
     """
     text = original.trace.text
     sequence = _Sequence(text, style)
-    return [_edit(text, index, blocks[index], sequence, style, machine) for index in sorted(blocks)]
+    return [
+        _edit(text, index, blocks[index], sequence, style, machine, index in without_skip) for index in sorted(blocks)
+    ]
+
+
+def edits_of_ranges(
+    original: Original, ranges: Mapping[tuple[int, int], Sequence[NewBlock]], style: Style, machine: Machine
+) -> list[Replace]:
+    """
+    Return the edits that put new blocks in the place of all from a first block to a last one.
+
+    N at the head of the first stays; the others get N words as in `edits_of`. Comments are those of the new blocks.
+    """
+    text = original.trace.text
+    sequence = _Sequence(text, style)
+    edits = []
+    for first, last in sorted(ranges):
+        begin, finish = content_of(text, first)[0], content_of(text, last)[1]
+        head = _HEAD.match(text.source.excerpt(begin, finish))
+        number = _NUMBER.search(head[0]) if head else None
+        written = [block_text(block, style, machine) for block in ranges[first, last]]
+        heads = [number[0] if number else "", *sequence.between(first, len(written) - 1, last)]
+        lines = [_joined(*pair, style) for pair in zip(heads, written, strict=False)]
+        edits.append((begin, finish, _parting(text, first, machine).join(lines)))
+    return edits
+
+
+def comments_of(text: Text, index: int) -> list[str]:
+    """The comments of a block without their signs."""
+    start, end = int(text.blocks.start[index]), int(text.blocks.end[index])
+    return _comments(text, index, text.source.excerpt(start, end))[0]
 
 
 def edits_of_signs(original: Original, machine: Machine) -> list[Replace]:
@@ -143,13 +176,18 @@ class _Sequence:
         """Something in the program may lead to the block with this N word."""
         return number in self.references
 
-    def between(self, index: int, count: int) -> list[str]:
-        """N words of so many new blocks behind the N word of a block, or before it; empty ones without room."""
+    def between(self, index: int, count: int, until: int | None = None) -> list[str]:
+        """
+        N words of so many new blocks behind the N word of a block, or before it; empty ones without room.
+
+        until: a later block, in the place of which and of those before it they stand, too.
+        """
         at = bisect_right(self.blocks, index)
-        if not self.is_on or not count or not at:
+        if not self.is_on or count <= 0 or not at:
             return [""] * count
+        behind = bisect_right(self.blocks, index if until is None else until)
         last = int(self.values[at - 1])
-        following = int(self.values[at]) if at < len(self.values) else last + self.step * (count + 1)
+        following = int(self.values[behind]) if behind < len(self.values) else last + self.step * (count + 1)
         room = (following - last - 1) // count
         step = next((nice for nice in (self.step, 10, 5, 2, 1) if nice <= room), 0)
         return [f"{self.letter}{last + step * n:0{self.digits}d}" if step else "" for n in range(1, count + 1)]
@@ -167,7 +205,13 @@ def _references(text: Text) -> set[int]:
 
 
 def _edit(
-    text: Text, index: int, blocks: Sequence[NewBlock], sequence: _Sequence, style: Style, machine: Machine
+    text: Text,
+    index: int,
+    blocks: Sequence[NewBlock],
+    sequence: _Sequence,
+    style: Style,
+    machine: Machine,
+    is_without_skip: bool,
 ) -> Replace:
     start = int(text.blocks.start[index])
     content = text.source.excerpt(start, int(text.blocks.end[index]))
@@ -178,6 +222,8 @@ def _edit(
     labels = range(*stretch(text.labels.block, index, index + 1))
     head_end = max([head.end() if head else lead, *(int(text.labels.end[at]) - start for at in labels)])
     kept = content[lead:head_end].strip()
+    if is_without_skip:
+        kept = _SKIP.sub("", kept).strip()
     number = _NUMBER.search(kept)
     written = [block_text(block, style, machine) for block in blocks]
     remarks = "".join(f" {comment_text(comment, machine)}" for comment in comments)

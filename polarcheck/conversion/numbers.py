@@ -59,6 +59,10 @@ class Numbers:
         least = self.machine.control.least_increment
         return self._checked(_fixed(round(degrees / least) * least, least), self.style.decimals, self.style.point)
 
+    def rate(self, value: float) -> str:
+        """F that is no length per minute, as 1/min or deg/min: four decimals at most."""
+        return self._checked(f"{value:.4f}", self.style.feed_decimals, self.style.feed_point, counts=self.feed_inch)
+
     def feed(self, feed: float) -> str:
         """F [mm/min] as it is written, in mm or inch per minute."""
         value = feed / (MM_PER_INCH if self.feed_inch else 1.0)

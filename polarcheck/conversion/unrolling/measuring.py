@@ -3,22 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import Any
 
 import msgspec
 import numpy as np
-from numpy.typing import NDArray
 
-from polarcheck.arrays import Floats, Mask, Rows, is_among
+from polarcheck.arrays import Floats, Mask, Rows
 from polarcheck.columns.trace import Trace
+from polarcheck.conversion.meanings import lost_orders
 from polarcheck.conversion.original import Original
 from polarcheck.conversion.outcome import Figure, Refusal
 from polarcheck.conversion.rotary_feed import block_times
 from polarcheck.conversion.unrolling.rates import method_of
 from polarcheck.conversion.unrolling.steps import Steps, x_factor
+from polarcheck.conversion.unrolling.unchanged import depths, outside
 from polarcheck.geometry.plane import arc_sweep
 from polarcheck.geometry.straight_axes.pieces import along, distances
-from polarcheck.machines.modal import MM_PER_INCH, FeedMode, Motion
+from polarcheck.machines.modal import FeedMode, Motion
 from polarcheck.table.moves import Moves
 from polarcheck.table.tool_center import ToolCenter
 from polarcheck.time_limit import keep_time
@@ -26,7 +26,7 @@ from polarcheck.time_limit import keep_time
 #: How many differences are listed.
 _LISTED = 10
 #: Places on a block at which it is measured, and how many blocks at once.
-_PLACES = np.linspace(0, 1, 14)[None, :]
+_PLACES = np.linspace(0, 1, 17)[None, :]
 _TOGETHER = 20_000
 #: F may be above that of the section, or a rate above its limit, by this share: rounding of F, C and X.
 _SHARE = 1e-3
@@ -34,26 +34,15 @@ _SAME = 1e-6
 
 
 class Measured(msgspec.Struct, frozen=True):
-    """What was found: what differs from the original, and the figures that are told."""
+    """
+    What the new program does.
+
+    differences: from the original. figures: for the user, in order. notes: warnings.
+    """
 
     differences: list[Refusal]
     figures: list[Figure]
-
-
-def beyond_travel(trace: Trace, steps: Steps) -> list[Refusal]:
-    """Blocks beyond the travel of X, the first in each direction."""
-    limits = trace.machine.limits
-    scale = (x_factor(trace) * trace.lengths.least_step)[steps.row]
-    radius = steps.x * scale
-    reasons = []
-    for hits, name, limit in (
-        (radius < limits.x_minimum - _SAME, "below", limits.x_minimum),
-        (radius > limits.x_maximum + _SAME, "above", limits.x_maximum),
-    ):
-        if hits.any():
-            line = int(trace.blocks.line_in_file[steps.row[np.argmax(hits)]])
-            reasons.append(Refusal(line, f"X would go {name} its travel limit of {limit:g} mm as a radius"))
-    return reasons
+    notes: list[str] = []
 
 
 def measured(
@@ -72,18 +61,61 @@ def measured(
     rows = np.flatnonzero(within & after.blocks.has("X", rotary) & after.modal.uses_axes)
     if len(rows) != len(steps):
         return Measured([Refusal(0, f"the result has {len(rows)} blocks of X and C, not {len(steps)}")], [])
-    differences = [*_outside(old, after, ~within), *_depths(old, after, within)]
+    differences = [*outside(old, after, ~within), *depths(old, after, within), *lost_orders(old, after, ())]
     center: ToolCenter = original.tables["tool_center"]
     run = _Run(after, rows, method_of(old, feed))
+    unknown = np.flatnonzero(np.isnan(run.x_before) | np.isnan(run.turn))
+    if len(unknown):
+        text = "where the tool is before this move is not known: a tool is called, or an axis referenced"
+        return Measured([Refusal(_line(old, steps, int(unknown[0])), text)], [])
     differences += _places(old, run, steps)
-    distance, allowed = _distance(old, center.moves, run, steps), chord_error + _rounding(old, steps)
-    far = np.flatnonzero(~(distance <= allowed))
+    distance = _distance(old, center.moves, run, steps)
+    far = np.flatnonzero(~(distance <= chord_error + _SAME))
     if len(far):
         worst = int(far[np.argmax(distance[far])])
-        text = f"the tool would be {distance[worst]:.4f} mm away from its path, above {allowed:.4f} mm"
+        text = f"the tool would be {distance[worst]:.4f} mm away from its path, above {chord_error:.4f} mm"
         differences.append(Refusal(_line(old, steps, worst), text))
     differences += _speeds(old, run, steps)
-    return Measured(differences[:_LISTED], _figures(old, run, float(distance.max(initial=0.0))))
+    moves = center.moves
+    at_feed = old.axes.motion[moves.row] != Motion.RAPID
+    times = float(np.nansum(moves.time[at_feed])), float(run.time[~steps.is_rapid].sum())
+    notes = [*_too_short(old, run, steps), *_too_fast(old, run, steps), *_wound_up(old, run, steps)]
+    return Measured(differences[:_LISTED], _figures(old, run, times, float(distance.max(initial=0.0))), notes)
+
+
+def _too_short(old: Trace, run: _Run, steps: Steps) -> Iterator[str]:
+    limit = old.machine.limits.block_time
+    short = np.flatnonzero(run.time < limit)
+    if len(short):
+        first = _line(old, steps, int(short[0]))
+        yield (
+            f"{len(short)} blocks are shorter than the {limit:g} s that the control needs, the first in line {first}: "
+            "it slows down there; a larger --chord-error makes them longer"
+        )
+
+
+def _too_fast(old: Trace, run: _Run, steps: Steps) -> Iterator[str]:
+    limits = old.machine.limits
+    if np.isnan(limits.c_feed) and len(run.c_rate) and run.c_rate.max() > limits.c_feed_suspicious:
+        line = _line(old, steps, int(np.argmax(run.c_rate)))
+        yield f"C turns at {run.c_rate.max():.0f} deg/min in line {line}: its limit, limits.c_feed, is not known"
+
+
+def _wound_up(old: Trace, run: _Run, steps: Steps) -> Iterator[str]:
+    """Sections behind which C stands some turns away from where they began."""
+    if old.machine.control.rotary_rolls_over or not len(run.c):
+        return
+    section = old.mode.whole_section[steps.row]
+    last = np.flatnonzero(np.append(np.diff(section) != 0, True))
+    first = np.append(0, last[:-1] + 1)
+    turned = np.round((run.c[last] - (run.c - run.turn)[first]) / 360)
+    if np.abs(turned).max() >= 1:
+        worst = int(np.argmax(np.abs(turned)))
+        index = int(last[worst])
+        yield (
+            f"line {_line(old, steps, index)}: C has turned on by {abs(turned[worst]):.0f} turns, to "
+            f"{run.c[index]:g} deg: positioning it turns it back"
+        )
 
 
 def _line(trace: Trace, steps: Steps, index: int) -> int:
@@ -97,60 +129,6 @@ def _within(trace: Trace, spans: Sequence[tuple[int, int]]) -> Mask:
     ends = np.array([end for _, end in spans], np.int64)
     at = np.searchsorted(begins, start, side="left") - 1
     return np.asarray((at >= 0) & (start <= ends[np.maximum(at, 0)]))
-
-
-def _outside(old: Trace, new: Trace, rows: Mask) -> Iterator[Refusal]:
-    """What differs in blocks outside of sections, which are the same text in both."""
-    before, after = np.flatnonzero(old.mode.whole_section < 0), np.flatnonzero(rows)
-    if len(before) != len(after):
-        yield Refusal(0, "the result runs other blocks outside of the sections")
-        return
-    arcs = is_among(old.axes.motion, (Motion.CW, Motion.CCW))
-    columns: dict[str, tuple[NDArray[Any], NDArray[Any]]] = {
-        "X": (old.path.x, new.path.x),
-        "Z": (old.path.z, new.path.z),
-        "C": (_within_turn(old.path.c_angle), _within_turn(new.path.c_angle)),
-        "G code of motion": (old.axes.motion, new.axes.motion),
-        "feed mode": (old.feedrate.modal_feed_mode, new.feedrate.modal_feed_mode),
-        "F": (old.feedrate.feed_number, new.feedrate.feed_number),
-        "plane": (np.where(arcs, old.modal.state("plane"), 0), new.modal.state("plane")),
-        "distances": (old.modal.state("distance"), new.modal.state("distance")),
-    }
-    tolerance = max(old.machine.control.least_increment, old.machine.control.least_increment_inch * MM_PER_INCH)
-    for name, (was, is_now) in columns.items():
-        first, second = was[before].astype(np.float64), is_now[after].astype(np.float64)
-        if name == "plane":
-            second = np.where(first == 0, 0, second)
-        if name == "C":
-            second = first + (second - first + 180) % 360 - 180
-        limit = 1e-3 * np.abs(first) if name == "F" else tolerance
-        differs = ~(np.abs(first - second) <= limit) & ~(np.isnan(first) & np.isnan(second))
-        if differs.any():
-            yield Refusal(int(old.blocks.line_in_file[before[np.argmax(differs)]]), f"{name} would differ from here on")
-
-
-def _within_turn(angle: Floats) -> Floats:
-    return np.asarray(angle % 360)
-
-
-def _depths(old: Trace, new: Trace, within: Mask) -> Iterator[Refusal]:
-    """Blocks with Z alone in the sections, in order."""
-    alone = np.zeros(len(old), bool)
-    alone[old.path.moves_z & (old.mode.section >= 0)] = True
-    on_plane = old.path.travels
-    before = np.flatnonzero(alone & ~on_plane)
-    rotary = new.machine.polar.rotary_address
-    after = np.flatnonzero(within & new.path.moves_z & ~new.blocks.has("X", rotary))
-    if len(before) != len(after):
-        yield Refusal(0, f"the result has {len(after)} blocks with Z alone, not {len(before)}")
-        return
-    tolerance = old.lengths.least_step[before]
-    differs = ~(np.abs(old.path.z[before] - new.path.z[after]) <= tolerance)
-    differs |= old.axes.motion[before] != new.axes.motion[after]
-    feeds = old.feedrate.feed[before], new.feedrate.feed[after]
-    differs |= (old.axes.motion[before] != Motion.RAPID) & ~(np.abs(feeds[0] - feeds[1]) <= 1e-3 * feeds[0])
-    for index in np.flatnonzero(differs)[:1].tolist():
-        yield Refusal(int(old.blocks.line_in_file[before[index]]), "Z or its F would differ")
 
 
 class _Run:
@@ -169,11 +147,11 @@ class _Run:
         mode = trace.feedrate.modal_feed_mode[rows]
         step = self.x - self.x_before
         time = 60 * block_times(method, step, self.turn, self.rise, feed, unit)
-        known = mode == (FeedMode.INVERSE_TIME if method == "inverse-time" else FeedMode.PER_MINUTE)
-        self.time = np.where(self.is_rapid | ~known, np.nan, time)
+        is_meant = mode == (FeedMode.INVERSE_TIME if method == "inverse-time" else FeedMode.PER_MINUTE)
+        self.time = np.where(is_meant, time, np.nan)
         with np.errstate(divide="ignore", invalid="ignore"):
-            self.c_rate = np.where(self.is_rapid | (self.turn == 0), 0.0, 60 * np.abs(self.turn) / self.time)
-            self.x_rate = np.where(self.is_rapid | (step == 0), 0.0, 60 * np.abs(step) / self.time)
+            self.c_rate = np.where(self.turn == 0, 0.0, 60 * np.abs(self.turn) / self.time)
+            self.x_rate = np.where(step == 0, 0.0, 60 * np.abs(step) / self.time)
 
 
 def _places(old: Trace, run: _Run, steps: Steps) -> Iterator[Refusal]:
@@ -182,17 +160,9 @@ def _places(old: Trace, run: _Run, steps: Steps) -> Iterator[Refusal]:
     differs = ~(np.abs(run.x - steps.x * scale) <= _SAME) | ~(np.abs(run.turn - steps.turn) <= _SAME)
     z = steps.z * old.lengths.least_step[steps.row]
     differs |= ~np.isnan(z) & ~(np.abs(run.z - z) <= _SAME)
-    differs |= run.is_rapid != steps.is_rapid
+    differs |= run.is_rapid
     for index in np.flatnonzero(differs)[:1].tolist():
         yield Refusal(_line(old, steps, index), "X, C or Z would not be where the tool center goes")
-
-
-def _rounding(old: Trace, steps: Steps) -> float:
-    """What rounding of X and C may add to the chord error [mm]."""
-    scale = (x_factor(old) * old.lengths.least_step)[steps.row]
-    radius = steps.x * scale
-    least = np.radians(old.machine.control.least_increment)
-    return float(np.max(scale / 2 + radius * least / 2, initial=0.0)) + _SAME
 
 
 def _distance(old: Trace, moves: Moves, run: _Run, steps: Steps) -> Floats:
@@ -213,9 +183,9 @@ def _distance(old: Trace, moves: Moves, run: _Run, steps: Steps) -> Floats:
     for first in range(0, len(runs), _TOGETHER):
         keep_time()
         part = slice(first, first + _TOGETHER)
-        own = of_move[part]
+        move = of_move[part]
         points = along(run.x_before[runs][part], run.x[runs][part], (angle - turn)[part], angle[part], _PLACES)
-        far = distances(points, moves.start[own], moves.end[own], center[own], sweep[own])
+        far = distances(points, moves.start[move], moves.end[move], center[move], sweep[move])
         distance[runs[part]] = far.max(axis=1)
     # The last block of a move leads to its end.
     last = np.append(np.diff(steps.move[runs]) != 0, True)[: len(runs)]
@@ -228,7 +198,7 @@ def _speeds(old: Trace, run: _Run, steps: Steps) -> Iterator[Refusal]:
     """Blocks in which the tool would be faster than the F of the section, or an axis faster than its limit."""
     limits = old.machine.limits
     checks = (
-        (~run.is_rapid & ~(run.time > 0), "how long this takes is not known"),
+        (~(run.time > 0), "how long this takes is not known"),
         (run.time < steps.time * (1 - _SHARE), "the tool would be faster than in the mode"),
         (run.c_rate > limits.c_feed * (1 + _SHARE), "C would be above its limit"),
         (run.x_rate > limits.x_feed * (1 + _SHARE), "X would be above its limit"),
@@ -238,12 +208,12 @@ def _speeds(old: Trace, run: _Run, steps: Steps) -> Iterator[Refusal]:
             yield Refusal(_line(old, steps, index), text)
 
 
-def _figures(old: Trace, run: _Run, distance: float) -> list[Figure]:
-    times = run.time[~np.isnan(run.time)]
+def _figures(old: Trace, run: _Run, times: tuple[float, float], distance: float) -> list[Figure]:
     figures = [
         Figure("largest distance of the tool center from its path", distance, "mm"),
         Figure("blocks of X and C", len(run.time)),
-        Figure("shortest block", float(times.min(initial=np.inf)) if len(times) else 0.0, "s"),
+        Figure("most of them in one second", _most_in_a_second(run.time)),
+        Figure("shortest block", float(run.time.min()) if len(run.time) else 0.0, "s"),
     ]
     if not np.isnan(old.machine.limits.block_time):
         figures.append(Figure("shortest block that the control runs", old.machine.limits.block_time, "s"))
@@ -251,5 +221,12 @@ def _figures(old: Trace, run: _Run, distance: float) -> list[Figure]:
         *figures,
         Figure("largest rate of C", float(run.c_rate.max(initial=0.0)), "deg/min"),
         Figure("largest rate of X, as a radius", float(run.x_rate.max(initial=0.0)), "mm/min"),
-        Figure("time of the blocks at feed", float(times.sum()), "s"),
+        Figure("time at feed in the mode", times[0], "s"),
+        Figure("time at feed now", times[1], "s"),
     ]
+
+
+def _most_in_a_second(time: Floats) -> int:
+    """The largest number of blocks that begin within a second."""
+    begin = np.cumsum(np.append(0.0, time))[:-1]
+    return int(np.max(np.searchsorted(begin, begin + 1 - 1e-9) - np.arange(len(begin)), initial=0))

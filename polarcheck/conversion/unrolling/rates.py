@@ -10,7 +10,7 @@ from polarcheck.arrays import Floats, Mask, Rows
 from polarcheck.columns.trace import Trace
 from polarcheck.conversion.outcome import Refusal, RefusedError
 from polarcheck.conversion.rotary_feed import block_feeds
-from polarcheck.conversion.unrolling.steps import Steps
+from polarcheck.conversion.unrolling.steps import Steps, x_factor
 from polarcheck.machines.feed_keys import WITH_ROTARY
 from polarcheck.machines.modal import FeedMode
 
@@ -20,6 +20,8 @@ FEEDS = (*WITH_ROTARY, "stepwise")
 _STEP = 0.1
 #: Largest F that is written; where it would be larger, the block takes longer.
 _LARGEST = 99999.0
+#: X may pass its travel limit by rounding [mm].
+_ROUNDING = 1e-6
 #: Digits of F that count.
 _DIGITS = 5
 
@@ -30,14 +32,14 @@ def chosen(trace: Trace, feed: str) -> str:
 
     Raises RefusedError where that is not known.
     """
-    known: Sequence[str] = trace.machine.feed.with_rotary
-    per_minute = [name for name in known if name != "inverse-time"]
+    of_machine: Sequence[str] = trace.machine.feed.with_rotary
+    per_minute = [name for name in of_machine if name != "inverse-time"]
     if feed == "stepwise" and not per_minute:
         why = "how X and C share F per minute is not known"
-    elif not feed and not known:
+    elif not feed and not of_machine:
         why = "what F is where X and C move together is not known"
     else:
-        return feed or known[0]
+        return feed or of_machine[0]
     raise RefusedError(
         [Refusal(0, f"{why} of {trace.machine.title}: feed.with_rotary of a machine file says it, or --feed for once")]
     )
@@ -52,8 +54,7 @@ def method_of(trace: Trace, feed: str) -> str:
 
 def times(trace: Trace, steps: Steps) -> Floats:
     """
-    How long each block takes [s], NaN in rapid traverse: by the F of the section, or longer where C or X would be too
-    fast.
+    How long each block takes [s]: by the F of the section, or longer where C or X would be too fast.
     """
     limits = trace.machine.limits
     share = min(limits.override_share, 100) / 100 if limits.automatic_override else 1.0
@@ -61,12 +62,11 @@ def times(trace: Trace, steps: Steps) -> Floats:
     spot = np.where(steps.move < 0, limits.c_feed_harmless, np.inf)
     c_feed = np.fmin(limits.c_feed * share, spot)
     longest = np.fmax(steps.time, 60 * np.abs(steps.turn) / c_feed)
-    longest = np.fmax(longest, np.nan_to_num(60 * np.abs(steps.radius_step) / limits.x_feed))
-    return np.where(steps.is_rapid, np.nan, longest)
+    return np.fmax(longest, np.nan_to_num(60 * np.abs(steps.radius_step) / limits.x_feed))
 
 
 def feeds(trace: Trace, steps: Steps, time: Floats, feed: str) -> Floats:
-    """F of each block as it is written, in the units of the program; NaN in rapid traverse."""
+    """F of each block as it is written, in the units of the program."""
     unit = trace.lengths.feed_scale[steps.row]
     exact = block_feeds(method_of(trace, feed), steps.radius_step, steps.turn, steps.rise, time / 60, unit)
     exact = np.minimum(exact, _LARGEST)
@@ -97,7 +97,7 @@ def _stepwise(feed: Floats, steps: Steps) -> Floats:
         end = begin + 1
         while end < len(values):
             low, high = min(lowest, values[end]), max(highest, values[end])
-            if values[end] != values[end] or not low >= high * (1 - _STEP):  # rapid traverse ends a stretch, too
+            if not low >= high * (1 - _STEP):
                 break
             lowest, highest, end = low, high, end + 1
         values[begin:end] = [lowest] * (end - begin)
@@ -110,3 +110,19 @@ def slowed(steps: Steps, time: Floats) -> tuple[Mask, Rows]:
     slow = time > steps.time * (1 + 1e-9)
     slow &= steps.move >= 0
     return slow, steps.row[slow]
+
+
+def beyond_travel(trace: Trace, steps: Steps) -> list[Refusal]:
+    """Blocks beyond the travel of X, the first in each direction."""
+    limits = trace.machine.limits
+    scale = (x_factor(trace) * trace.lengths.least_step)[steps.row]
+    radius = steps.x * scale
+    reasons = []
+    for hits, name, limit in (
+        (radius < limits.x_minimum - _ROUNDING, "below", limits.x_minimum),
+        (radius > limits.x_maximum + _ROUNDING, "above", limits.x_maximum),
+    ):
+        if hits.any():
+            line = int(trace.blocks.line_in_file[steps.row[np.argmax(hits)]])
+            reasons.append(Refusal(line, f"X would go {name} its travel limit of {limit:g} mm as a radius"))
+    return reasons

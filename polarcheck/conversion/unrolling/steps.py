@@ -5,16 +5,15 @@ from __future__ import annotations
 import msgspec
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Points, Rows, Table
+from polarcheck.arrays import Floats, Mask, Rows, Table
 from polarcheck.columns.lengths import RADIUS_FACTOR
 from polarcheck.columns.trace import Trace
 from polarcheck.conversion.outcome import Refusal, RefusedError
-from polarcheck.geometry.plane import angle_between
-from polarcheck.geometry.straight_axes.division import Pieces, divide
+from polarcheck.conversion.unrolling.positions import depths_of, turns_of
+from polarcheck.geometry.straight_axes.division import divide
 from polarcheck.geometry.straight_axes.spans import Spans, spans_of
-from polarcheck.geometry.tolerances import ZERO
 from polarcheck.machines.modal import Motion
-from polarcheck.table.moves import Moves, z_along
+from polarcheck.table.moves import Moves
 
 #: Most blocks of a new program.
 MOST = 1_000_000
@@ -33,7 +32,9 @@ class Steps(Table, frozen=True):
     z: the Z word in least increments, NaN where Z does not move. rise: way of Z [mm].
     radius_step: way of X as a radius [mm]; turn: way of C [deg]; both as they are rounded.
     length: way of the tool center on the plane [mm].
-    time: by the F of the section [s]; NaN in rapid traverse. is_rapid: in rapid traverse.
+    time: with which the tool is nowhere faster than the F of the section [s].
+    is_rapid: in the mode it was rapid traverse; its F is that of the machine for positioning, since G0 would not keep
+    the path: X and C need not arrive together.
     """
 
     row: Rows
@@ -62,20 +63,25 @@ def steps_of(trace: Trace, moves: Moves, chord_error: float) -> Steps:
     """
     Divide the moves of the tool center [mm].
 
-    Raises RefusedError where Z is not known; TooHardError for too many blocks.
+    With the rounding of X and C the tool leaves its path by no more than the chord error.
+    Raises RefusedError where Z is not known, or rounding takes most of the chord error; TooHardError for too many
+    blocks.
     """
     x_step = (x_factor(trace) * trace.lengths.least_step)[moves.row]
     c_step = trace.machine.control.least_increment
-    spans = spans_of(*moves.shape, float(np.max(x_step, initial=_NOTHING)) / 2)
+    spans = spans_of(*moves.shape, float(np.max(x_step, initial=_NOTHING)) / 2, chord_error / 2)
     largest = _ROLLING if trace.machine.control.rotary_rolls_over else _HALF
-    pieces = divide(spans, chord_error, np.radians(largest), MOST)
+    allowed, is_short = _chord_errors(trace, moves, spans, x_step, chord_error)
+    pieces = divide(spans, allowed, np.radians(largest), MOST)
     move = spans.move[pieces.span]
     begin, end = spans.share(pieces.span, pieces.first), spans.share(pieces.span, pieces.last)
-    c, z = _c_after(trace, moves, spans, pieces), _z_after(trace, moves, move, begin, end)
+    c, z = turns_of(trace, moves, spans, pieces), depths_of(trace, moves, move, begin, end)
     scale, share = x_step[move], end - begin
     x_before, x_after = np.rint(np.abs(pieces.start) / scale), np.rint(np.abs(pieces.end) / scale)
     c_before, c_after = np.rint((c.after - c.turn) / c_step), np.rint(c.after / c_step)
-    is_rapid = moves.kind[move] == Motion.RAPID
+    is_rapid = trace.axes.motion[moves.row[move]] == Motion.RAPID
+    length = moves.length[move] * share
+    positioning = 60 * np.hypot(length, z.way) / (trace.machine.writing.rapid_feed or np.nan)
     runs = Steps(
         row=moves.row[move],
         move=move,
@@ -85,8 +91,8 @@ def steps_of(trace: Trace, moves: Moves, chord_error: float) -> Steps:
         rise=z.way,
         radius_step=(x_after - x_before) * scale,
         turn=(c_after - c_before) * c_step,
-        length=moves.length[move] * share,
-        time=np.where(is_rapid, np.nan, moves.time[move] * share),
+        length=length,
+        time=np.where(is_rapid, positioning, moves.time[move] * share),
         is_rapid=is_rapid,
     )
     # Where C turns on the spot, a block of its own stands before the piece that it leads to.
@@ -103,86 +109,69 @@ def steps_of(trace: Trace, moves: Moves, chord_error: float) -> Steps:
         radius_step=none,
         turn=(c_before - c_first)[at] * c_step,
         length=none,
-        time=np.where(is_rapid[at], np.nan, 0.0),
+        time=none,
     )
     order = np.argsort(np.append(np.arange(len(move)), at - 0.5), kind="stable")
-    return _without_nothing(Steps.concatenated((runs, spots))[order])
+    steps = Steps.concatenated((runs, spots))[order]
+    steps = _without_nothing(steps, _passed_on(moves, steps, np.append(is_short[pieces.span], none > 0)[order]))
+    return msgspec.structs.replace(steps, time=_times(steps, x_factor(trace) * trace.lengths.least_step))
 
 
-class _Turns(Table, frozen=True):
-    """Per piece C after it and how far it turns, and what C turns on the spot before it [deg]."""
-
-    after: Floats
-    turn: Floats
-    jump: Floats
-
-
-def _c_after(trace: Trace, moves: Moves, spans: Spans, pieces: Pieces) -> _Turns:
-    """C of the machine, counted on from where it stands before the section."""
-    sense, move = moves.c_axis.sense, spans.move[pieces.span]
-    turn = sense * np.degrees(pieces.turn)
-    ways = spans[pieces.span]
-    leaves = _seen(pieces.start, ways.directions(pieces.first[:, None])[:, 0])
-    arrives = _seen(pieces.end, -ways.directions(pieces.last[:, None])[:, 0])
-    jump = np.zeros(len(turn))
-    jump[1:] = sense * np.degrees(angle_between(arrives[:-1], leaves[1:]))
-    section = moves.section[move]
-    begins = np.flatnonzero(np.append(True, np.diff(section) != 0)[: len(section)])
-    c_from, _ = moves.c_angles
-    jump[begins] = 0
-    total = np.cumsum(turn + jump)
-    base = np.zeros(len(turn))
-    if len(begins):
-        first = c_from[move[begins]]
-        stands = stands_at(trace)[section[begins]]
-        # The path knows C but for full turns.
-        first = first + 360 * np.round((stands - first) / 360)
-        jump[begins] = first - stands
-        offset = first - (total - turn)[begins]
-        base = np.repeat(offset, np.diff(np.append(begins, len(turn))))
-    return _Turns(base + total, turn, jump)
-
-
-def stands_at(trace: Trace) -> Floats:
-    """C of the machine before each section [deg]; where nobody says it, that at which the section begins."""
-    enter = trace.mode.sections.enter
-    before = trace.path.c_angle_before[enter]
-    return np.where(np.isnan(before), trace.path.c_angle[enter], before)
-
-
-def _seen(point: Points, direction: Points) -> Points:
-    return np.where(point == 0, direction, point)
-
-
-class _Depths(Table, frozen=True):
-    """Per piece Z after it [mm], NaN where it does not move, and its way."""
-
-    after: Floats
-    way: Floats
-
-
-def _z_after(trace: Trace, moves: Moves, move: Rows, begin: Floats, end: Floats) -> _Depths:
-    z_from, z_to = z_along(trace, moves)
-    lost = np.isnan(z_from) & ~np.isnan(z_to)
-    if lost.any():
-        line = int(trace.blocks.line_in_file[moves.row[np.argmax(lost)]])
-        raise RefusedError([Refusal(line, "Z moves beside X and C from a place that is not known")])
-    way = np.nan_to_num(z_to - z_from)
-    after = np.where(np.abs(way[move]) <= ZERO, np.nan, z_from[move] + way[move] * end)
-    return _Depths(after, np.abs(way[move]) * (end - begin))
-
-
-def _without_nothing(steps: Steps) -> Steps:
+def _chord_errors(trace: Trace, moves: Moves, spans: Spans, x_step: Floats, chord_error: float) -> tuple[Floats, Mask]:
     """
-    Without blocks that rounding leaves without a way: their way and time are those of the next block.
+    What rounding leaves of the chord error of each span [mm], and whether it is too short for a block of its own.
+
+    Raises RefusedError where rounding takes more than half of it.
+    """
+    farthest = np.maximum(np.abs(spans.start), np.abs(spans.end))
+    c_way = np.radians(trace.machine.control.least_increment) * farthest
+    rounding = np.hypot(x_step[spans.move], c_way) / 2
+    if (least := 2 * float(np.max(rounding, initial=0.0))) > chord_error:
+        line = int(trace.blocks.line_in_file[moves.row[spans.move[np.argmax(rounding)]]])
+        text = f"rounding of X and C alone moves the tool by up to {least / 2:.4f} mm here"
+        raise RefusedError([Refusal(line, f"{text}: the chord error has to be {least:.4f} mm or more")])
+    # Spans of about a least increment, as rounding leaves them between others: no block is worth its time for them.
+    is_short = spans.length <= np.minimum(np.maximum(x_step[spans.move], c_way), chord_error / 4)
+    # The block that takes over the way of a short span may leave its own path by that, too.
+    taken = np.append(0.0, np.where(is_short, spans.length, 0.0))[: len(spans)]
+    return chord_error - rounding - taken, np.asarray(is_short)
+
+
+def _times(steps: Steps, x_step: Floats) -> Floats:
+    """
+    The time of each block [s] in which the tool is nowhere faster than F.
+
+    X and C move evenly, so that the tool is fastest where it is farthest from the center: sqrt(dr^2 + (r dC)^2) / time
+    with the larger r of both ends. Where that is more than the way on the path, the block takes longer.
+    """
+    x = steps.x * x_step[steps.row]
+    largest = np.maximum(np.abs(x), np.abs(x - steps.radius_step))
+    way = np.hypot(steps.radius_step, largest * np.radians(steps.turn))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        share = np.where(steps.length > 0, way / steps.length, 1.0)
+    return np.asarray(steps.time * np.fmax(share, 1.0))
+
+
+def _passed_on(moves: Moves, steps: Steps, is_short: Mask) -> Mask:
+    """Short blocks whose way the next block of the section can take over, which is not short."""
+    following, last = np.append(steps.move[1:], -1), np.append(is_short[1:], True)
+    same = (steps.move >= 0) & (following >= 0) & (moves.section[following] == moves.section[steps.move])
+    same &= np.append(steps.is_rapid[1:], True) == steps.is_rapid
+    return np.asarray(is_short & ~last & same & np.isnan(steps.z))
+
+
+def _without_nothing(steps: Steps, is_short: Mask) -> Steps:
+    """
+    Without blocks that rounding leaves without a way, and without short ones: the next block has their way and time.
 
     Those behind the last block with a way count in that.
     """
-    has_way = (steps.radius_step != 0) | (steps.turn != 0) | ~np.isnan(steps.z)
+    has_way = ((steps.radius_step != 0) | (steps.turn != 0) | ~np.isnan(steps.z)) & ~is_short
     count = int(np.count_nonzero(has_way))
     if has_way.all() or not count:
         return steps[has_way]
     group = np.minimum(np.cumsum(has_way) - has_way, count - 1)
-    length, time = (np.bincount(group, np.nan_to_num(each), count) for each in (steps.length, steps.time))
+    sums = (steps.length, steps.time, steps.radius_step, steps.turn)
+    length, time, radius_step, turn = (np.bincount(group, np.nan_to_num(column), count) for column in sums)
     remaining = steps[has_way]
-    return msgspec.structs.replace(remaining, length=length, time=np.where(remaining.is_rapid, np.nan, time))
+    return msgspec.structs.replace(remaining, length=length, time=time, radius_step=radius_step, turn=turn)

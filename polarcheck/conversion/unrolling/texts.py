@@ -1,85 +1,99 @@
-"""Edits of the text of sections: blocks in the place of others, with N words and comments where they were."""
+"""Edits of the text of a program: new blocks in the place of those of its sections."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
+from typing import TypeVar
 
+import msgspec
 import numpy as np
 
-from polarcheck.arrays import stretch
-from polarcheck.checking.editing import Replace, content_of, line_without, parting, skip_sign, words_of, written_word
+from polarcheck.checking.editing import Replace, content_of, line_without
 from polarcheck.columns.trace import Trace
+from polarcheck.conversion.blocks import NewBlock, edits_of, edits_of_ranges
+from polarcheck.conversion.original import Original
+from polarcheck.conversion.outcome import Refusal, RefusedError
+from polarcheck.conversion.style import Style
 from polarcheck.conversion.unrolling.stretches import Stretch
+from polarcheck.conversion.unrolling.writing import Writer
 from polarcheck.execution.programs import find_programs
 
-
-def edits_of(trace: Trace, each: Stretch, rows: Sequence[tuple[int, list[str] | None]]) -> list[Replace]:
-    """The edits that put new blocks into the text of a section; None for a row that stays as it is."""
-    if not each.runs_in_order:
-        return [_all(trace, each, rows)]
-    return [_in_place(trace, row, blocks) for row, blocks in rows if blocks is not None]
+_Key = TypeVar("_Key", int, tuple[int, int])
 
 
-def _in_place(trace: Trace, row: int, blocks: list[str]) -> Replace:
-    block = int(trace.run.block[row])
-    begin, end = content_of(trace.text, block)
-    lines = _with_heads(trace, row, blocks)
-    if not lines:
-        return line_without(trace.text.source, begin, end)
-    return begin, end, parting(trace.text, block).join(lines)
+class NewText(msgspec.Struct, frozen=True):
+    """
+    The new text of a program.
+
+    edits: in order. spans: the characters of the sections in it. skipped: blocks with block skip in sections.
+    left_out: first and last blocks of the subprograms that are written out where they ran.
+    """
+
+    edits: list[Replace]
+    spans: list[tuple[int, int]]
+    skipped: list[int]
+    left_out: list[tuple[int, int]]
 
 
-def _with_heads(trace: Trace, row: int, blocks: list[str]) -> list[str]:
-    """The blocks with block skip, and the first of them with what stands before its words, and its comments."""
-    run, block = trace.run, int(trace.run.block[row])
-    heads = [written_word(run, index) for index in words_of(run, row) if run.words.address[index] == ord("N")]
-    comments = _comments(trace, block)
-    if not blocks and not comments:
-        return []
-    sign = skip_sign(run, row)
-    lines = [sign + block for block in blocks] or [""]
-    lines[0] = " ".join(part for part in (sign, *heads, *blocks[:1], *comments) if part)
-    return lines
+def new_text(original: Original, sections: Sequence[Stretch], writer: Writer, style: Style) -> NewText:
+    """
+    Return the edits that write the sections.
+
+    Raises RefusedError for a section that runs several times and would be another one each time.
+    """
+    trace, machine = original.trace, original.settings.machine
+    blocks: dict[int, list[NewBlock]] = {}
+    ranges: dict[tuple[int, int], list[NewBlock]] = {}
+    skipped: list[int] = []
+    for section in sections:
+        rows = writer.of_section(section)
+        if not section.runs_in_order:
+            written = [block for _, new in rows for block in new or ()]
+            _put(trace, section, ranges, (section.first, section.last), written)
+            continue
+        for row, new in rows:
+            if new is not None:
+                _put(trace, section, blocks, int(trace.run.block[row]), new)
+        for block in _skipped_moves(trace, section):
+            blocks.setdefault(block, [])
+            skipped.append(block)
+    left_out = _subprograms_left_out(trace, sections)
+    edits = [
+        *edits_of(original, blocks, style, machine, frozenset(skipped)),
+        *edits_of_ranges(original, ranges, style, machine),
+        *(_edit_without(trace, *pair) for pair in left_out),
+    ]
+    edits.sort()
+    places = {(section.first, section.last) for section in sections}
+    return NewText(edits, _spans(trace, places, edits), sorted(set(skipped)), left_out)
 
 
-def _comments(trace: Trace, block: int) -> list[str]:
-    comments, source = trace.text.comments, trace.text.source
-    low, high = stretch(comments.block, block, block + 1)
-    return [source.excerpt(int(comments.start[at]), int(comments.end[at])).strip() for at in range(low, high)]
+def _put(trace: Trace, section: Stretch, new: dict[_Key, list[NewBlock]], key: _Key, blocks: list[NewBlock]) -> None:
+    if new.setdefault(key, blocks) != blocks:
+        line = int(trace.blocks.line_in_file[section.enter])
+        raise RefusedError([Refusal(line, "the section runs several times, and not from the same place")])
 
 
-def _all(trace: Trace, each: Stretch, rows: Sequence[tuple[int, list[str] | None]]) -> Replace:
-    """What runs in the section, in the order in which it runs; comments where they run first."""
-    text = trace.text
-    begin, end = content_of(text, each.first)[0], content_of(text, each.last)[1]
-    seen: set[int] = set()
-    lines: list[str] = []
-    for row, blocks in rows:
-        block = int(trace.run.block[row])
-        is_first = block not in seen
-        seen.add(block)
-        if blocks is None:
-            blocks = [_words(trace, row)]
-        comments = _comments(trace, block) if is_first else []
-        first = " ".join(part for part in (*blocks[:1], *comments) if part)
-        lines += [first] * bool(first) + blocks[1:]
-    return begin, end, parting(text, each.first).join(lines)
+def _skipped_moves(trace: Trace, section: Stretch) -> list[int]:
+    """Blocks of a section with block skip that move or that switch something of moves, whether they run or not."""
+    words = trace.text.words
+    low, high = np.searchsorted(words.block, (section.first, section.last + 1))
+    block, address = words.block[low:high], words.address[low:high]
+    moving = block[~np.isin(address, np.frombuffer(b"MSTN/", np.uint8))]
+    blocks: list[int] = np.intersect1d(block[address == ord("/")], moving).tolist()
+    return blocks
 
 
-def _words(trace: Trace, row: int) -> str:
-    run = trace.run
-    return " ".join(written_word(run, index) for index in words_of(run, row) if run.words.address[index] != ord("N"))
-
-
-def subprograms_left_out(trace: Trace, sections: Sequence[Stretch]) -> list[tuple[int, int]]:
+def _subprograms_left_out(trace: Trace, sections: Sequence[Stretch]) -> list[tuple[int, int]]:
     """The first and last blocks of programs of this file that run in sections alone, where those are written out."""
-    if all(each.runs_in_order for each in sections):
+    if all(section.runs_in_order for section in sections):
         return []
     run, text = trace.run, trace.text
     written_out = np.zeros(len(trace), bool)
-    for each in sections:
-        if not each.runs_in_order:
-            written_out[each.enter : each.leave + 1] = run.depth[each.enter : each.leave + 1] > run.depth[each.enter]
+    for section in sections:
+        if not section.runs_in_order:
+            rows = slice(section.enter, section.leave + 1)
+            written_out[rows] = run.depth[rows] > run.depth[section.enter]
     inside, outside = (set(run.block[rows].tolist()) for rows in (written_out, ~written_out))
     left_out = []
     for program in find_programs(text).programs:
@@ -91,7 +105,19 @@ def subprograms_left_out(trace: Trace, sections: Sequence[Stretch]) -> list[tupl
     return left_out
 
 
-def edit_without(trace: Trace, first: int, last: int) -> Replace:
+def _edit_without(trace: Trace, first: int, last: int) -> Replace:
     """The edit that takes out blocks with their lines."""
     begin, end = (line_without(trace.text.source, *content_of(trace.text, block)) for block in (first, last))
     return begin[0], end[1], ""
+
+
+def _spans(trace: Trace, sections: Collection[tuple[int, int]], edits: Sequence[Replace]) -> list[tuple[int, int]]:
+    """The characters of sections in the new text, by their first and last blocks."""
+    blocks = trace.text.blocks
+    starts = np.array([start for start, _, _ in edits] or [0])
+    grown = np.cumsum([0, *(len(text) - (end - start) for start, end, text in edits)])
+
+    def place(position: int) -> int:
+        return int(position + grown[np.searchsorted(starts, position)]) if edits else position
+
+    return [(place(int(blocks.start[first])), place(int(blocks.end[last]))) for first, last in sorted(sections)]

@@ -1,240 +1,237 @@
-"""The text of sections without the mode: what stays of each block, and the blocks of X and C in its place."""
+"""The blocks of sections without the mode: what stays of each block, and blocks of X and C in its place."""
 
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Sequence
 
 import numpy as np
 
-from polarcheck.arrays import Floats, stretch
-from polarcheck.checking.editing import is_plain, words_of, written_word
+from polarcheck.arrays import Floats, Mask, cached_property, stretch
+from polarcheck.checking.editing import written_word
 from polarcheck.columns.trace import Trace
+from polarcheck.conversion.blocks import NewBlock, comments_of
+from polarcheck.conversion.numbers import Numbers
 from polarcheck.conversion.outcome import Refusal, RefusedError
-from polarcheck.conversion.unrolling.steps import Steps, x_factor
+from polarcheck.conversion.style import Style
+from polarcheck.conversion.unrolling.steps import Steps
 from polarcheck.conversion.unrolling.stretches import Stretch
-from polarcheck.machines.codes import NO_CODE, code_set
-from polarcheck.machines.modal import Distance, FeedMode, Motion
+from polarcheck.conversion.unrolling.words import Others
+from polarcheck.machines.modal import Distance, FeedMode, Motion, Units
 
-#: Lists of G codes that mean nothing without the mode, or that this writes itself.
-_DROPPED = (
-    "rapid", "line", "arc_clockwise", "arc_counterclockwise", "plane_xy", "plane_zx", "plane_yz", "compensation_off",
-    "compensation_left", "compensation_right", "corner_by_arc", "corner_by_intersection", "feed_inverse_time",
-    "feed_per_minute", "feed_per_revolution", "feed_on_plane", "feed_in_space", "feed_as_machine", "feed_at_center",
-    "feed_at_contour", "feed_at_inner_contour", "absolute", "incremental", "frame_shift", "frame_shift_added",
-    "frame_rotation", "frame_rotation_added",
-)  # fmt: skip
-#: Lists of G codes whose blocks stay as they are, with all of their words.
-_UNTOUCHED = ("dwell",)
 _FEED_CODES = {
     FeedMode.INVERSE_TIME: "feed_inverse_time",
     FeedMode.PER_MINUTE: "feed_per_minute",
     FeedMode.PER_REVOLUTION: "feed_per_revolution",
 }
+_MOTIONS = {int(Motion.RAPID): "G0", int(Motion.LINE): "G1"}
+#: X1= in the place of X.
+_NAMED = re.compile(r"[A-Z]+[0-9]*=", re.IGNORECASE)
 
 
 class Writer:
     """
     Writes the blocks of one section in the order in which they run; it knows what its blocks have put in force.
 
-    steps, feeds: of the whole program. feed_mode: what F is beside X and C.
+    steps, feeds: of the whole program. feed_mode: what F is beside X and C. style: how the program is written.
     """
 
-    def __init__(self, trace: Trace, steps: Steps, feeds: Floats, feed_mode: FeedMode) -> None:
-        self.trace, self.steps, self.feeds, self.feed_mode = trace, steps, feeds, feed_mode
-        self._factor = x_factor(trace)
-        machine = trace.machine
-        polar = machine.polar
-        dropped = [code for key in _DROPPED for code in machine.codes(key)]
-        self._dropped = code_set([*dropped, *polar.on, *polar.off])
-        self._codes = np.full(len(trace.run.words), NO_CODE, np.int32)
-        self._codes[trace.blocks.g_words] = trace.blocks.g_codes
-        centers = [word for pair in polar.center_words.values() for word in pair]
-        self._axes = {*polar.axis_addresses, "X", "U", "Z", "W", *centers, machine.arcs.radius_word, "F"}
-        self._axes |= {word for word in (machine.arcs.larger_arc_word, machine.offsets.allowance_word) if word}
-        self._numbers = {machine.address_number(address) for address in self._axes if address}
-        self._switches = trace.mode.enters | trace.mode.leaves
-        macro = machine.macro
-        calls = [*macro.subprogram_calls, *macro.macro_calls, *macro.program_returns]
-        self._of_call = trace.blocks.words_at(trace.blocks.code_indices(*calls))
+    def __init__(self, trace: Trace, steps: Steps, feeds: Floats, feed_mode: FeedMode, style: Style) -> None:
+        self.trace, self.steps, self.feeds, self.feed_mode, self.style = trace, steps, feeds, feed_mode, style
+        self._others = Others(trace)
+        self._by_units = {
+            units: Numbers(trace.machine, style, units == Units.INCH)
+            for units in np.unique(trace.lengths.units[trace.mode.section >= 0]).tolist()
+        }
+        self._names: dict[str, str] = {}
         self._mode = self._distance = 0
-        self._motion = ""
-        self._feed = ""
-        self._has_feed = False
+        self._motion = self._feed = ""
+        self._has_feed = self._has_moved = False
 
-    def of_section(self, each: Stretch) -> list[tuple[int, list[str] | None]]:
+    def of_section(self, section: Stretch) -> list[tuple[int, list[NewBlock] | None]]:
         """
         Return for each row of the section what stands in its place, block by block; None where it stays as it is.
 
-        Its comments are not among it.
+        Comments are among it only where blocks do not run in order.
         """
-        trace, enter = self.trace, each.enter
-        self._mode = int(trace.feedrate.modal_feed_mode[enter])
+        trace, enter = self.trace, section.enter
+        self._mode = int(trace.feedrate.modal_feed_mode[enter]) if self.says_feed_mode[enter] else 0
         self._distance = int(trace.modal.state("distance")[enter])
         self._motion = self._feed = ""
-        self._has_feed = False
-        return [(row, self._row(row, each)) for row in range(enter, each.leave + 1)]
+        self._has_feed = self._has_moved = False
+        self._names = self._names_of_axes(section)
+        rows = range(enter, section.leave + 1)
+        if section.runs_in_order:
+            return [(row, self._row(row, section)) for row in rows]
+        return self._written_out(rows, section)
 
-    def _row(self, row: int, each: Stretch) -> list[str] | None:
+    @cached_property
+    def says_feed_mode(self) -> Mask:
+        """Whether a code above a row, in the same program, says what F is."""
+        trace, rows = self.trace, np.arange(len(self.trace))
+        last = np.maximum.accumulate(np.where(trace.modal.sets("feed_mode"), rows, -1))
+        first = np.maximum.accumulate(np.where(trace.blocks.starts, rows, 0))
+        return np.append(-1, last[:-1]) >= first
+
+    def _written_out(self, rows: Sequence[int], section: Stretch) -> list[tuple[int, list[NewBlock] | None]]:
+        """The rows of a section that does not run from top to bottom; comments stand where they run first."""
+        written: list[tuple[int, list[NewBlock] | None]] = []
+        seen: set[int] = set()
+        for row in rows:
+            block = int(self.trace.run.block[row])
+            blocks = self._row(row, section)
+            if blocks is None:
+                words = self._others.of_row(row)
+                blocks = [NewBlock(tuple(words))] if words else []
+            comment = "" if block in seen else " ".join(comments_of(self.trace.text, block))
+            if comment:
+                first = blocks[0].words if blocks else ()
+                blocks = [NewBlock(first, comment), *blocks[1:]]
+            seen.add(block)
+            written.append((row, blocks))
+        return written
+
+    def _row(self, row: int, section: Stretch) -> list[NewBlock] | None:
         trace = self.trace
-        if row == each.leave:
+        if row == section.leave:
             return self._leaving(row)
         low, high = stretch(self.steps.row, row, row + 1)
         moves_z = bool(trace.path.moves_z[row]) and low == high
-        if low == high and not moves_z and not self._has_dropped(row) and not self._calls(row):
+        if low == high and not moves_z and not self._others.is_changed(row):
             return None
-        own = self._stays(row)
+        others = self._others.of_row(row)
         if low == high and not moves_z:
-            return [self._joined(own)] if own else []
-        blocks = []
+            return [NewBlock(tuple(others))] if others else []
         if moves_z:
-            blocks.append(self._alone(row, own))
-        for index in range(low, high):
-            blocks.append(self._step(index, own if index == low else ()))
-        return blocks
-
-    def _calls(self, row: int) -> bool:
-        """Another program runs behind this row, or the one that called goes on."""
-        depth = self.trace.run.depth
-        return row + 1 < len(depth) and bool(depth[row + 1] != depth[row])
-
-    def _has_dropped(self, row: int) -> bool:
-        if self.trace.blocks.listed(*_UNTOUCHED)[row]:
-            return False
-        run = self.trace.run
-        low, high = stretch(run.row, row, row + 1)
-        return any(self._is_dropped(index) for index in range(low, high))
-
-    def _is_dropped(self, index: int) -> bool:
-        words = self.trace.run.words
-        address = int(words.address[index])
-        if address == ord("G"):
-            return bool(self._dropped[self._codes[index]])
-        return address in self._numbers
-
-    def _stays(self, row: int) -> list[str]:
-        """The words that stay of a block, as they are written."""
-        run = self.trace.run
-        if self.trace.blocks.listed(*_UNTOUCHED)[row]:
-            return [written_word(run, index) for index in words_of(run, row)]
-        plain = is_plain(run, row)
-        beside_offset = self.trace.blocks.listed("compensation_left", "compensation_right")[row]
-        # What stands beside the switch, or hands over to a program, has no meaning without it.
-        machine_words_alone = self._switches[row] or self._calls(row)
-        texts = []
-        for index in words_of(run, row):
-            letter = chr(int(run.words.address[index]))
-            if self._is_dropped(index) or letter in "N/" or (letter == "D" and beside_offset):
-                continue
-            if machine_words_alone and (letter not in "GMST" or self._of_call[index]):
-                continue
-            texts.append(written_word(run, index) if plain else self._generated(row, index))
-        return texts
-
-    def _generated(self, row: int, index: int) -> str:
-        """A word whose text is not that of the word: a value that was computed."""
-        words = self.trace.run.words
-        address, value = int(words.address[index]), float(words.value[index])
-        if chr(address) not in "GMST" or not math.isfinite(value):
-            line = int(self.trace.blocks.line_in_file[row])
-            raise RefusedError(
-                [Refusal(line, "a word of this block cannot be written without the statement around it")]
-            )
-        return f"{chr(address)}{value:.15g}"
+            return [self._alone(row, others)]
+        return [self._step(index, others if index == low else ()) for index in range(low, high)]
 
     # ---- blocks ----
 
-    def _joined(self, words: Sequence[str]) -> str:
-        return " ".join(word for word in words if word)
-
-    def _step(self, index: int, own: Sequence[str]) -> str:
-        steps = self.steps
-        is_rapid = bool(steps.is_rapid[index])
-        words = [*self._state(None if is_rapid else self.feed_mode), self._motion_word(is_rapid)]
-        first = not index or steps.row[index - 1] != steps.row[index]
-        if first or steps.radius_step[index] != 0:
-            words.append(self._length("X", int(steps.x[index]), int(steps.row[index])))
-        if first or steps.turn[index] != 0:
-            words.append(self._angle(int(steps.c[index])))
+    def _step(self, index: int, others: Sequence[str]) -> NewBlock:
+        steps, style = self.steps, self.style
+        row = int(steps.row[index])
+        numbers = self._numbers(row)
+        words = [*self._state(row, self.feed_mode), self._motion_word(row, "G1")]
+        is_first = not self._has_moved
+        self._has_moved = True
+        if is_first or style.repeats_axes or steps.radius_step[index] != 0:
+            words.append(self._word("X", numbers.of_increments(int(steps.x[index]))))
+        if is_first or style.repeats_axes or steps.turn[index] != 0:
+            words.append(self._angle(numbers, int(steps.c[index])))
         z = float(steps.z[index])
         if not math.isnan(z):
-            words.append(self._length("Z", int(z), int(steps.row[index])))
-        if not is_rapid:
-            words.append(self._feed_word(float(self.feeds[index]), every=self.feed_mode == FeedMode.INVERSE_TIME))
-        return self._joined([*words, *own])
+            words.append(self._word("Z", numbers.of_increments(int(z))))
+        is_repeated = style.repeats_feed or self.feed_mode == FeedMode.INVERSE_TIME
+        words.append(self._feed_word(numbers, float(self.feeds[index]), is_repeated))
+        return self._block(words, others)
 
-    def _alone(self, row: int, own: Sequence[str]) -> str:
+    def _alone(self, row: int, others: Sequence[str]) -> NewBlock:
         """Z alone, as in the mode."""
-        trace = self.trace
-        is_rapid = trace.axes.motion[row] == Motion.RAPID
-        words = [*self._state(None if is_rapid else FeedMode.PER_MINUTE), self._motion_word(bool(is_rapid))]
+        trace, numbers = self.trace, self._numbers(row)
+        is_rapid = bool(trace.axes.motion[row] == Motion.RAPID)
+        words = [
+            *self._state(row, None if is_rapid else FeedMode.PER_MINUTE),
+            self._motion_word(row, "G0" if is_rapid else "G1"),
+        ]
         if np.isnan(trace.path.z[row]):
-            line = int(trace.blocks.line_in_file[row])
-            raise RefusedError(
-                [Refusal(line, "Z is not known here: it is programmed in increments from an unknown place")]
-            )
-        words.append(self._length("Z", round(float(trace.path.z[row] / trace.lengths.least_step[row])), row))
+            raise self._refused(row, "Z is not known here: it is programmed in increments from an unknown place")
+        words.append(self._word("Z", numbers.length(float(trace.path.z[row]))))
         if not is_rapid:
-            words.append(self._feed_word(float(trace.feedrate.feed[row] / trace.lengths.feed_scale[row])))
-        return self._joined([*words, *own])
+            feed = float(trace.feedrate.feed[row] / trace.lengths.feed_scale[row])
+            words.append(self._feed_word(numbers, feed, self.style.repeats_feed))
+        return self._block(words, others)
 
-    def _leaving(self, row: int) -> list[str]:
+    def _leaving(self, row: int) -> list[NewBlock]:
         """What the block that switches the mode off leaves in force: F and its mode, and coordinates or distances."""
         trace = self.trace
-        words = self._state(FeedMode(int(trace.feedrate.modal_feed_mode[row])), int(trace.modal.state("distance")[row]))
+        mode = FeedMode(int(trace.feedrate.modal_feed_mode[row]))
+        words = self._state(row, mode, int(trace.modal.state("distance")[row]))
         feed = float(trace.feedrate.feed_number[row] / trace.lengths.feed_scale[row])
         if self._has_feed and not math.isnan(feed):
-            words.append(self._feed_word(feed))
-        words = [*words, *self._stays(row)]
-        return [self._joined(words)] if any(words) else []
+            words.append(self._feed_word(self._numbers(row), feed))
+        motion = int(trace.modal.state("motion")[row])
+        if motion in _MOTIONS and self._is_motion_taken_over(row):
+            words.append(self._motion_word(row, _MOTIONS[motion]))
+        words = [word for word in (*words, *self._others.of_row(row)) if word]
+        return [self._block(words)] if words else []
 
-    def _state(self, mode: FeedMode | None, distance: int = Distance.ABSOLUTE) -> list[str]:
+    def _is_motion_taken_over(self, row: int) -> bool:
+        """The next move behind a row has no code of motion of its own."""
+        trace = self.trace
+        for following in range(row + 1, len(trace)):
+            if trace.modal.sets("motion")[following] or trace.blocks.starts[following]:
+                return False
+            if trace.axes.moves[following]:
+                return True
+        return False
+
+    def _block(self, words: Sequence[str], others: Sequence[str] = ()) -> NewBlock:
+        written = (word.lower() if self.style.lower_case else word for word in words if word)
+        return NewBlock((*written, *others))
+
+    # ---- words ----
+
+    def _state(self, row: int, mode: FeedMode | None, distance: int = Distance.ABSOLUTE) -> list[str]:
         words = []
         if distance != self._distance:
-            key = "absolute" if distance == Distance.ABSOLUTE else "incremental"
-            words += self._first_code(key)
+            words.append(self._first_code(row, "absolute" if distance == Distance.ABSOLUTE else "incremental"))
             self._distance = distance
         if mode is not None and mode != self._mode:
-            words += self._first_code(_FEED_CODES[mode])
+            words.append(self._first_code(row, _FEED_CODES[mode]))
             self._mode, self._feed = int(mode), ""
         return words
 
-    def _first_code(self, key: str) -> list[str]:
+    def _first_code(self, row: int, key: str) -> str:
         codes = self.trace.machine.codes(key)
         if not codes:
-            raise RefusedError([Refusal(0, f"{self.trace.machine.title} has no code for that: {key}")])
-        return codes[:1]
+            title = self.trace.machine.title
+            raise self._refused(row, f"no code of {title} is known for that: {key.replace('_', ' ')}")
+        return self._numbers(row).code(codes[0])
 
-    def _motion_word(self, is_rapid: bool) -> str:
-        word = "G0" if is_rapid else "G1"
-        if word == self._motion:
+    def _motion_word(self, row: int, code: str) -> str:
+        # Not by control.motion_codes: G101 of Okuma is a straight line on the plane, also without the mode.
+        word = self._numbers(row).code(code)
+        if word == self._motion and not self.style.repeats_motion:
             return ""
         self._motion = word
         return word
 
-    # ---- numbers ----
-
-    def _length(self, address: str, count: int, row: int) -> str:
-        return address + number(count, float(self.trace.lengths.least_increment[row]))
-
-    def _angle(self, count: int) -> str:
+    def _angle(self, numbers: Numbers, count: int) -> str:
         machine = self.trace.machine
         least = machine.control.least_increment
         if machine.control.rotary_rolls_over:
             count %= round(360 / least)
-        address = machine.polar.rotary_address
-        return address + "=" * (len(address) > 1) + number(count, least)
+        return self._word(machine.polar.rotary_address, numbers.angle(count * least))
 
-    def _feed_word(self, feed: float, every: bool = False) -> str:
-        text = f"F{feed:.4f}".rstrip("0")
-        if text == self._feed and not every:
+    def _word(self, address: str, number: str) -> str:
+        name = self._names.get(address[0], address + "=" * (len(address) > 1))
+        return name + number
+
+    def _feed_word(self, numbers: Numbers, feed: float, is_repeated: bool = False) -> str:
+        text = "F" + numbers.rate(feed)
+        if text == self._feed and not is_repeated:
             return ""
         self._feed, self._has_feed = text, True
         return text
 
+    # ---- of the trace ----
 
-def number(count: int, least: float) -> str:
-    """So many least increments as a number with a point."""
-    decimals = max(0, math.ceil(-math.log10(least) - 1e-9))
-    text = f"{count * least:.{decimals}f}"
-    return (text.rstrip("0") if "." in text else text + ".").replace("-0.", "-.", 1) if float(text) else "0."
+    def _numbers(self, row: int) -> Numbers:
+        numbers = self._by_units[int(self.trace.lengths.units[row])]
+        numbers.line = int(self.trace.blocks.line_in_file[row])
+        return numbers
+
+    def _names_of_axes(self, section: Stretch) -> dict[str, str]:
+        """Names of axes that the section writes with a number, as X1= for X."""
+        run, names = self.trace.run, dict[str, str]()
+        low, high = stretch(run.row, section.enter, section.leave + 1)
+        axes = np.isin(run.words.address[low:high], np.frombuffer(b"XYZC", np.uint8))
+        for index in (low + np.flatnonzero(axes)).tolist():
+            if name := _NAMED.match(written_word(run, index)):
+                names.setdefault(chr(int(run.words.address[index])), name[0])
+        return names
+
+    def _refused(self, row: int, text: str) -> RefusedError:
+        return RefusedError([Refusal(int(self.trace.blocks.line_in_file[row]), text)])

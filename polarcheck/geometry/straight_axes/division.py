@@ -37,25 +37,27 @@ class Pieces(Table, frozen=True):
     turn: Floats
 
 
-def divide(spans: Spans, chord_error: float, largest_turn: float, most: int) -> Pieces:
+def divide(spans: Spans, chord_error: Floats | float, largest_turn: float, most: int) -> Pieces:
     """
     Divide spans so that the pieces leave them by no more than the chord error [mm].
 
-    largest_turn: of C in one piece [rad]; where X changes along a piece it turns by no more than 5 deg, so that the
-    speed of the tool stays even. most: of the pieces.
+    chord_error: of each span, or of all. largest_turn: of C in one piece [rad]; where X changes along a piece it turns
+    by no more than 5 deg, so that the speed of the tool stays even. most: of the pieces.
     Raises TooHardError where there would be more.
 
     The way of a piece for a chord error is sqrt(8 error / |kappa - (sin a / r)(1 + cos^2 a)|), with kappa the curvature
-    of the path and a its angle against the radius (controls_2.md 4). Where the expression vanishes it says too much: so
-    all pieces are measured, and divided again where they are too long.
+    of the path and a its angle against the radius: the second derivatives of both, across the path. Where the
+    expression vanishes it says too much: so all pieces are measured, and divided again where they are too long.
     """
     parts = []
     count = 0
+    errors = np.broadcast_to(np.asarray(chord_error, np.float64), len(spans))
     for first in range(0, len(spans), _TOGETHER):
         keep_time()
-        part = _divided(spans[first : first + _TOGETHER], chord_error, largest_turn, most - count)
-        count += len(part.span)
-        parts.append(Pieces(part.span + first, part.first, part.last, part.start, part.end, part.turn))
+        part = slice(first, first + _TOGETHER)
+        pieces = _divided(spans[part], errors[part], largest_turn, most - count)
+        count += len(pieces.span)
+        parts.append(Pieces(pieces.span + first, pieces.first, pieces.last, pieces.start, pieces.end, pieces.turn))
     return Pieces.concatenated(parts) if parts else Pieces(*_nothing())
 
 
@@ -65,7 +67,7 @@ def _nothing() -> tuple[Rows, Floats, Floats, Points, Points, Floats]:
 
 
 @quiet
-def _divided(spans: Spans, chord_error: float, largest_turn: float, most: int) -> Pieces:
+def _divided(spans: Spans, chord_error: Floats, largest_turn: float, most: int) -> Pieces:
     at = places(spans)
     need = _needed(spans, at, chord_error, largest_turn)
     total = need[:, -1]
@@ -85,7 +87,7 @@ def _divided(spans: Spans, chord_error: float, largest_turn: float, most: int) -
     raise TooHardError("no division keeps the chord error")
 
 
-def _needed(spans: Spans, at: Floats, chord_error: float, largest_turn: float) -> Floats:
+def _needed(spans: Spans, at: Floats, chord_error: Floats, largest_turn: float) -> Floats:
     """How many pieces the way up to each place asks for, float64[spans, places], rising."""
     point, direction = spans.points(at), spans.directions(at)
     r = np.abs(point)
@@ -94,7 +96,7 @@ def _needed(spans: Spans, at: Floats, chord_error: float, largest_turn: float) -
     chord = np.abs(spans.bend[:, None] - np.where(r > 0, sine / r, 0.0) * (2 - np.minimum(sine**2, 1.0)))
     near, far = r.min(axis=1), r.max(axis=1)
     most_turn = np.where(far > near * (1 + _EVEN), min(_TURN, largest_turn), largest_turn)
-    density = np.maximum(np.sqrt(chord / (8 * chord_error * _AIM)), turn / most_turn[:, None])
+    density = np.maximum(np.sqrt(chord / (8 * chord_error[:, None] * _AIM)), turn / most_turn[:, None])
     step = np.diff(at, axis=1) * spans.length[:, None]
     # At the center itself the turn of an arc is finite, and that of a line nothing.
     density = np.where(np.isfinite(density), density, 0.0)
@@ -114,9 +116,9 @@ def _placed(spans: Spans, at: Floats, need: Floats, count: Rows) -> Pieces:
     cuts = np.interp(number[span] + index / of, (number[:, None] + share).ravel(), at.ravel())
     first = np.where(index == 0, 0.0, cuts)
     last = np.where(index == of - 1, 1.0, np.append(first[1:], 1.0))
-    own = spans[span]
-    ends = own.points(np.stack((first, (first + last) / 2, last), axis=1))
-    ways = own.directions(np.stack((first, last), axis=1))
+    of_piece = spans[span]
+    ends = of_piece.points(np.stack((first, (first + last) / 2, last), axis=1))
+    ways = of_piece.directions(np.stack((first, last), axis=1))
     begins = np.where(ends[:, 0] == 0, ways[:, 0], ends[:, 0])
     arrives = np.where(ends[:, 2] == 0, -ways[:, 1], ends[:, 2])
     turn = angle_between(begins, ends[:, 1]) + angle_between(ends[:, 1], arrives)
@@ -125,10 +127,14 @@ def _placed(spans: Spans, at: Floats, need: Floats, count: Rows) -> Pieces:
 
 def deviations(spans: Spans, pieces: Pieces) -> Floats:
     """How far each piece is from its span [mm], float64[pieces, places between its ends]."""
-    own = spans[pieces.span]
+    of_piece = spans[pieces.span]
     r = np.abs(pieces.start)[:, None] + (np.abs(pieces.end) - np.abs(pieces.start))[:, None] * SHARES
-    ways = own.directions(pieces.first[:, None])[:, 0]
+    ways = of_piece.directions(pieces.first[:, None])[:, 0]
     first = np.angle(np.where(pieces.start == 0, ways, pieces.start))[:, None]
     return distances(
-        r * np.exp(1j * (first + pieces.turn[:, None] * SHARES)), own.start, own.end, own.center, own.sweep
+        r * np.exp(1j * (first + pieces.turn[:, None] * SHARES)),
+        of_piece.start,
+        of_piece.end,
+        of_piece.center,
+        of_piece.sweep,
     )

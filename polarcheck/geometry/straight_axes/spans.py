@@ -86,11 +86,12 @@ class Spans(Table, frozen=True, dict=True):
 
 
 @quiet
-def spans_of(start: Points, end: Points, center: Points, kind: States, at_center: float) -> Spans:
+def spans_of(start: Points, end: Points, center: Points, kind: States, at_center: float, level: float = 0.0) -> Spans:
     """
     Divide moves where they are nearest to the center of C and farthest from it. Moves without a way have no span.
 
-    at_center: a path that comes nearer to the center than that goes through it [mm].
+    at_center: a path that comes nearer to the center than that goes through it [mm]. level: a move is not divided where
+    it is nearer than both of its ends, or farther, by no more than that [mm]: the distance hardly changes there.
     """
     sweep = arc_sweep(start, end, center, kind)
     is_arc = sweep != 0
@@ -99,11 +100,15 @@ def spans_of(start: Points, end: Points, center: Points, kind: States, at_center
     foot = -dot(start, way) / np.abs(way) ** 2
     near, far = (_share(start - center, sweep, side * center) for side in (-1, 1))
     around = np.abs(center) <= at_center
+    radius = np.abs(start - center)
+    nearest = np.where(is_arc, np.abs(np.abs(center) - radius), np.abs(cross(start, way)) / np.abs(way))
+    dips = (np.minimum(np.abs(start), np.abs(end)) - nearest > level) | (nearest <= at_center)
+    rises = np.abs(center) + radius - np.maximum(np.abs(start), np.abs(end)) > level
     shares = np.stack(
         (
             np.zeros(len(start)),
-            np.where(is_arc, np.where(around, np.nan, near), foot),
-            np.where(is_arc & ~around, far, np.nan),
+            np.where(dips & ~(is_arc & around), np.where(is_arc, near, foot), np.nan),
+            np.where(is_arc & ~around & rises, far, np.nan),
             np.ones(len(start)),
         ),
         axis=1,
