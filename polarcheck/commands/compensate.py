@@ -29,16 +29,18 @@ _SIDES = ("left", "right", "part-inside", "part-outside")
 )  # fmt: skip
 def compensate(center: bool, side: str | None) -> Command:
     """
-    Write the programs of PATH, whose polar sections program the path of the tool center, with G41 or G42 and the contour
-    of the part. R of the cutter is that of the job: `--tool 8:radius=4`.
+    Write the programs of PATH, whose polar sections program the path of the tool center, with G41 or G42 and the
+    contour of the part. R of the cutter is that of the job: `--tool 8:radius=4`.
 
     With --center sections with G41 or G42 become paths of the tool center, for a control without compensation in the
-    mode. The new program is read back: the part is the same. Where it would not be, or the program does not say on which
-    side of a path the part is, nothing is written, and standard error names the lines and the reasons.
+    mode. The new program is read back: the part is the same. Where it would not be, or the program does not say on
+    which side of a path the part is, nothing is written, and standard error names the lines and the reasons.
     """
     if center and side:
         raise UsageError("--side is for contours beside a path: with --center the program says its sides")
-    return Command("compensate", "written as paths of the tool center" if center else "compensated", _work(center, side or ""))
+    return Command(
+        "compensate", "written as paths of the tool center" if center else "compensated", _work(center, side or "")
+    )
 
 
 def _work(center: bool, side: str) -> Callable[[Settings], Work]:

@@ -71,7 +71,13 @@ def read_back(
 
 
 def read_back_on_part(
-    original: Original, data: bytes, settings: Settings, origin: Sequence[int], tolerance: float, chord: float = CHORD
+    original: Original,
+    data: bytes,
+    settings: Settings,
+    origin: Sequence[int],
+    tolerance: float,
+    chord: float = CHORD,
+    finer: Sequence[float] = (),
 ) -> ReadBack:
     """
     Compare a program whose sections have another form with the original: with the mode or without it, compensated or
@@ -82,14 +88,18 @@ def read_back_on_part(
     path of X and C.
 
     settings: of the new program. origin: for each of its lines the line in the original, from 1. tolerance: how far the
-    ways may be apart [mm]. chord: how far chords may leave the true path [mm].
+    ways may be apart [mm]. chord: how far chords may leave the true path [mm]. finer: tolerances that are tried before,
+    ascending [mm]; the deviation is exact up to a fiftieth of the one that the ways keep.
 
     Raises RefusedError where a position of the original is not known, or the new program cannot be run once.
     """
     new = read(original.path, data, settings)
     old_path, new_path = (path_on_part(each.tables, chord=chord) for each in (original, new))
-    deviation = path_deviation(old_path, new_path, tolerance)
-    largest = deviation.largest + deviation.rounding + chord
+    for within in (*finer, tolerance):
+        deviation = path_deviation(old_path, new_path, within)
+        largest = deviation.largest + deviation.rounding + chord
+        if largest <= within:
+            break
     differences = []
     if largest > tolerance:
         lines = [each.trace.blocks.line_in_file for each in (original, new)]

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import cmath
+import math
 from collections.abc import Sequence
+from itertools import groupby, pairwise
 
 import msgspec
 import numpy as np
@@ -13,16 +16,19 @@ from polarcheck.conversion.compensating.parallel import NEAR, NoContourError, co
 from polarcheck.conversion.compensating.pieces import Piece
 from polarcheck.conversion.compensating.ramps import Contour
 from polarcheck.conversion.compensating.rings import Ring, rings_of
+from polarcheck.conversion.compensating.sections import Section
 from polarcheck.conversion.compensating.sides import Swept, stands
 from polarcheck.conversion.outcome import Refusal, RefusedError
 from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.parts.tool_paths import above_the_face
 
+#: A line that turns by more at its end leads to what follows [rad].
+_CORNER = math.radians(60)
 #: On which side of all paths the cutter is, seen along them: left is G41, right is G42; or where their parts are.
 SIDES = ("left", "right", "part-inside", "part-outside")
 
 
-class Found(msgspec.Struct, frozen=True):
+class Candidate(msgspec.Struct, frozen=True):
     """
     A contour before its side is known.
 
@@ -37,26 +43,17 @@ class Found(msgspec.Struct, frozen=True):
     ring: Ring | None
     asides: tuple[float, ...]
 
+    @property
+    def is_single_move(self) -> bool:
+        """Nothing leads to its only move and away from it, so that it may itself lead to a place."""
+        return self.ring is None and self.first == self.low == self.last == self.high - 1
+
     def is_inside(self, aside: float) -> bool:
         """The part would be within the ring."""
         return self.ring is not None and self.ring.area * aside > 0
 
 
-class Section(msgspec.Struct, frozen=True):
-    """
-    A section that programs the path of the tool center.
-
-    number: of the section. moves: of it, in order. radius: R of its cutter [mm]. bar: diameter beyond which there is no
-    material [mm]; NaN where it is not known.
-    """
-
-    number: int
-    moves: Sequence[Move]
-    radius: float
-    bar: float
-
-
-def contours_of(trace: Trace, section: Section, swept: Swept, side: str) -> list[tuple[Found, Contour]]:
+def contours_of(trace: Trace, section: Section, swept: Swept, side: str) -> list[tuple[Candidate, Contour]]:
     """
     Return the contours of a section in order.
 
@@ -64,24 +61,37 @@ def contours_of(trace: Trace, section: Section, swept: Swept, side: str) -> list
     Raises RefusedError where there is none, or its side is not known.
     """
     moves = section.moves
-    in_air = above_the_face(trace)
-    spans = [span for span in runs(trace, moves) if moves[span[0]].feeds and not in_air[moves[span[0]].row]]
-    found = [each for span in spans for each in _rings(section, swept, *span, side)]
+    spans = _at_depth(trace, moves)
+    candidates = [ring for span in spans for ring in _rings(section, swept, *span, side)]
     # Beside contours that close, other ways only lead to them.
-    found = found or [each for span in spans if (each := _open(section, swept, *span, side)) is not None]
-    if not found:
-        line = _line(trace, moves[0].row)
-        raise RefusedError([Refusal(line, "nothing of its path is a contour: it does not close, or is in the air")])
-    asides = _chosen(trace, section, found, side)
-    result: list[tuple[Found, Contour]] = []
-    for each, aside in zip(found, asides, strict=True):
-        closed = each.ring is not None and not each.ring.aside and _comes_back(moves, each)
-        contour = Contour(each.first, each.last, aside, closed)
+    candidates = candidates or [path for span in spans for path in _open(section, swept, *span, side)]
+    if not candidates:
+        text = (
+            "nothing of the path is known to be a contour: it does not close, and has no moves to it and away from it"
+        )
+        raise RefusedError([Refusal(_line(trace, moves[0].row), f"{text}: choose with --side left or right")])
+    asides = _chosen(trace, section, candidates, side)
+    result: list[tuple[Candidate, Contour]] = []
+    for candidate, aside in zip(candidates, asides, strict=True):
+        closed = candidate.ring is not None and not candidate.ring.aside and _comes_back(moves, candidate)
+        contour = Contour(candidate.first, candidate.last, aside, closed)
         if result and _goes_on(trace, moves, result[-1][1], contour):
             before, began = result.pop()
-            each = msgspec.structs.replace(each, first=before.first, low=before.low)
+            candidate = msgspec.structs.replace(candidate, first=before.first, low=before.low)
             contour = msgspec.structs.replace(contour, first=began.first)
-        result.append((each, contour))
+        result.append((candidate, contour))
+    return result
+
+
+def _at_depth(trace: Trace, moves: Sequence[Move]) -> list[tuple[int, int]]:
+    """The runs of moves at feed without those at their beginnings that are above the face."""
+    in_air = above_the_face(trace)
+    result = []
+    for low, high in runs(trace, moves):
+        while low < high and in_air[moves[low].row]:
+            low += 1
+        if low < high and moves[low].feeds:
+            result.append((low, high))
     return result
 
 
@@ -101,24 +111,27 @@ def _goes_on(trace: Trace, moves: Sequence[Move], before: Contour, contour: Cont
     )
 
 
-def _comes_back(moves: Sequence[Move], found: Found) -> bool:
-    return abs(moves[found.last].piece.end - moves[found.first].piece.start) <= NEAR
+def _comes_back(moves: Sequence[Move], candidate: Candidate) -> bool:
+    return abs(moves[candidate.last].piece.end - moves[candidate.first].piece.start) <= NEAR
 
 
-def _rings(section: Section, swept: Swept, low: int, high: int, side: str) -> list[Found]:
+def _rings(section: Section, swept: Swept, low: int, high: int, side: str) -> list[Candidate]:
     path = [section.moves[number].piece for number in range(low, high)]
     result = []
     for ring in rings_of(path, section.radius, NEAR):
         first, last = low + ring.first, low + ring.last
-        result.append(Found(first, last, low, high, ring, _asides(section, swept, first, last, ring, side)))
+        result.append(Candidate(first, last, low, high, ring, _asides(section, swept, first, last, ring, side)))
     return result
 
 
-def _open(section: Section, swept: Swept, low: int, high: int, side: str) -> Found | None:
-    span = _open_span(section, low, high)
-    if span is None:
-        return None
-    return Found(*span, low, high, None, _asides(section, swept, *span, None, side))
+def _open(section: Section, swept: Swept, low: int, high: int, side: str) -> list[Candidate]:
+    result = []
+    for span in _open_spans(section, low, high):
+        candidate = Candidate(*span, low, high, None, _asides(section, swept, *span, None, side))
+        if candidate.is_single_move and not side:
+            candidate = msgspec.structs.replace(candidate, asides=())
+        result.append(candidate)
+    return result
 
 
 def _asides(section: Section, swept: Swept, first: int, last: int, ring: Ring | None, side: str) -> tuple[float, ...]:
@@ -144,28 +157,47 @@ def _from_middle(path: Sequence[Piece]) -> list[Piece]:
     return [first.replaced(start=middle), *path[1:], first.replaced(end=middle)]
 
 
-def _open_span(section: Section, low: int, high: int) -> tuple[int, int] | None:
+def _open_spans(section: Section, low: int, high: int) -> list[tuple[int, int]]:
     """
-    The moves of a run that are a contour which does not close; None where all are in the air.
+    The moves of a run that are contours which do not close: for each the first and the last.
 
-    Where the bar is known, moves outside of it lead to the contour or away from it. Else a section that begins and ends
-    with a move to and from its path has its ways in and out there.
+    Where the bar is known, moves outside of it lead to a contour or away from it. So do, without it, the first and the
+    last move of the section, and lines that come from farther out, or leave for there, at a corner.
     """
-    moves, first, last = section.moves, low, high - 1
-    if not np.isnan(section.bar):
-        while first <= last and _is_in_air(section, moves[first].piece):
-            first += 1
-        while last >= first and _is_in_air(section, moves[last].piece):
-            last -= 1
-        return (first, last) if first <= last else None
-    if first == 0 and last > first:
-        first += 1
-    if last == len(moves) - 1 and last > first:
-        last -= 1
-    return first, last
+    pieces = [move.piece for move in section.moves[low:high]]
+    leads = [_is_in_air(section, piece) for piece in pieces]
+    if np.isnan(section.bar):
+        arrives = [_comes_from_outside(section, *pair) for pair in pairwise(pieces)] + [False]
+        backwards = [_back(piece) for piece in pieces]
+        leaves = [False] + [_comes_from_outside(section, after, before) for before, after in pairwise(backwards)]
+        is_outside = False
+        for index in range(len(pieces)):
+            is_outside = (is_outside or leaves[index]) and not (index and arrives[index - 1])
+            leads[index] = is_outside or arrives[index]
+        ends = (0, len(section.moves) - 1)
+        for index in (0, len(pieces) - 1):
+            leads[index] |= low + index in ends and len(pieces) > 1
+    numbers = [low + index for index, is_lead in enumerate(leads) if not is_lead]
+    groups = [
+        [number for _, number in group] for _, group in groupby(enumerate(numbers), lambda pair: pair[1] - pair[0])
+    ]
+    return [(group[0], group[-1]) for group in groups]
+
+
+def _comes_from_outside(section: Section, piece: Piece, following: Piece) -> bool:
+    """A line comes R and more nearer to the center of C, to a corner."""
+    nearer = abs(piece.start) - abs(piece.end) >= section.radius
+    turn = cmath.phase(following.leaving / (piece.arriving or 1.0)) if piece.center is None else 0.0
+    return nearer and abs(turn) >= _CORNER
+
+
+def _back(piece: Piece) -> Piece:
+    return msgspec.structs.replace(piece, start=piece.end, end=piece.start, turning=-piece.turning)
 
 
 def _is_in_air(section: Section, piece: Piece) -> bool:
+    if np.isnan(section.bar):
+        return False
     shares = np.linspace(0, 1, 33).tolist()
     return min(abs(piece.at(share)) for share in shares) >= section.bar / 2 + section.radius - ROUNDING
 
@@ -173,40 +205,49 @@ def _is_in_air(section: Section, piece: Piece) -> bool:
 # ---- which side ----
 
 
-def _chosen(trace: Trace, section: Section, found: Sequence[Found], side: str) -> list[float]:
+def _chosen(trace: Trace, section: Section, candidates: Sequence[Candidate], side: str) -> list[float]:
     """The side of each contour. Raises RefusedError where it is not known."""
     if side:
-        return [_given(trace, section, each, side) for each in found]
-    known = {each.is_inside(each.asides[0]) for each in found if each.ring is not None and len(each.asides) == 1}
+        return [_given(trace, section, candidate, side) for candidate in candidates]
+    known = {
+        candidate.is_inside(candidate.asides[0])
+        for candidate in candidates
+        if candidate.ring is not None and len(candidate.asides) == 1
+    }
     result = []
     refusals = []
-    for each in found:
-        asides = each.asides
-        if len(asides) != 1 and each.ring is not None and len(known) == 1:
+    for candidate in candidates:
+        asides = candidate.asides
+        if len(asides) != 1 and candidate.ring is not None and len(known) == 1:
             is_inside = next(iter(known))
-            asides = tuple(aside for aside in (section.radius, -section.radius) if each.is_inside(aside) == is_inside)
+            both = section.radius, -section.radius
+            asides = tuple(aside for aside in both if candidate.is_inside(aside) == is_inside)
         if len(asides) == 1:
             result.append(asides[0])
             continue
-        options = "--side part-inside or part-outside" if each.ring is not None else "--side left or right"
+        options = "--side part-inside or part-outside" if candidate.ring is not None else "--side left or right"
         why = (
-            "the part may be on both sides of this path" if asides else "metal is taken away on both sides of this path"
+            "no other move leads to this one and away from it"
+            if candidate.is_single_move
+            else "the part may be on both sides of this path"
+            if asides
+            else "no side of this path is known to be the part: metal is taken away there, or arcs are smaller than R"
         )
-        refusals.append(Refusal(_line(trace, section.moves[each.first].row), f"{why}: choose with {options}"))
+        refusals.append(Refusal(_line(trace, section.moves[candidate.first].row), f"{why}: choose with {options}"))
     if refusals:
         raise RefusedError(refusals)
     return result
 
 
-def _given(trace: Trace, section: Section, found: Found, side: str) -> float:
-    line = _line(trace, section.moves[found.first].row)
+def _given(trace: Trace, section: Section, candidate: Candidate, side: str) -> float:
+    line = _line(trace, section.moves[candidate.first].row)
     if side in ("left", "right"):
         aside = -section.radius if side == "left" else section.radius
-    elif found.ring is None:
+    elif candidate.ring is None:
         raise RefusedError([Refusal(line, f"this path does not close, so that {side} says nothing: left or right")])
     else:
-        aside = section.radius if found.is_inside(section.radius) == (side == "part-inside") else -section.radius
-    if aside not in found.asides:
+        aside = section.radius if candidate.is_inside(section.radius) == (side == "part-inside") else -section.radius
+    if aside not in candidate.asides:
         raise RefusedError([Refusal(line, "on that side of this path is no contour: its arcs are smaller than R")])
     return aside
 

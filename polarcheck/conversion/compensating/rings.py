@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import cmath
 import math
+from bisect import bisect_right
 from collections.abc import Sequence
 
 import msgspec
 
 from polarcheck.conversion.compensating.pieces import Piece
+from polarcheck.time_limit import keep_time
 
 #: Moves behind the beginning of a ring, or before its end, within which a ring without them is looked for; and moves
 #: behind the one before, from whose middle a ring may begin.
@@ -47,6 +49,7 @@ def rings_of(path: Sequence[Piece], radius: float, tolerance: float) -> list[Rin
     result: list[Ring] = []
     at = behind = 0
     while at < len(path):
+        keep_time()
         ring = search.ring_from(at, at - behind <= _LEADS)
         if ring is None:
             at += 1
@@ -81,20 +84,22 @@ class _Search:
 
     def ring_from(self, first: int, may_overlap: bool) -> Ring | None:
         """The ring that begins with a piece; None where none does. may_overlap: it may begin within its last piece."""
-        found = [ring for which in range(3) if (ring := self._closed(which, first)) is not None]
-        ring = max(found, key=lambda ring: (ring.last, ring.aside == 0), default=None)
+        hits = [ring for which in range(3) if (ring := self._closed(which, first)) is not None]
+        ring = max(hits, key=lambda ring: (ring.last, ring.aside == 0), default=None)
         ring = ring or (self._overlapping(first) if may_overlap else None)
         if ring is None or self._has_leads(ring):
             return None
         return self._with_overlap(ring)
 
-    def _closed(self, which: int, first: int) -> Ring | None:
-        """The longest ring from the start of a piece, of the path or of one of its parallels."""
+    def _closed(self, which: int, first: int, most: int | None = None) -> Ring | None:
+        """The longest ring from the start of a piece up to one, of the path or of one of its parallels."""
         start = self.starts[which][first]
         x, y = self._cell(start)
         last = -1
         for cell in ((x + i, y + j) for i in (-1, 0, 1) for j in (-1, 0, 1)):
-            for number in reversed(self.ending[which].get(cell, [])):
+            numbers = self.ending[which].get(cell, [])
+            until = len(numbers) if most is None else bisect_right(numbers, most)
+            for number in reversed(numbers[:until]):
                 if number <= last or number < first:
                     break
                 if abs(self.ends[which][number] - start) <= self.tolerance:
@@ -129,19 +134,29 @@ class _Search:
         return None
 
     def _has_leads(self, ring: Ring) -> bool:
-        """A ring without its first and its last moves, which are not run again within it, is the contour."""
-        whole = self.length[ring.last + 1] - self.length[ring.first]
-        for first in range(ring.first + 1, min(ring.first + _LEADS, ring.last) + 1):
-            inner = [found for which in range(3) if (found := self._closed(which, first)) is not None]
-            for each in inner:
-                if not max(ring.last - _LEADS, first) <= each.last <= ring.last - (ring.aside == 0):
-                    continue
-                inside = self.length[each.last + 1] - self.length[first]
-                rest = {_key(piece, self.tolerance) for piece in self.path[first : each.last + 1]}
-                leads = [*self.path[ring.first : first], *self.path[each.last + 1 : ring.last + 1]]
-                if inside >= _MOST_OF * whole and all(_key(piece, self.tolerance) not in rest for piece in leads):
-                    return True
-        return False
+        """The rings within it, without moves that lead to them and away from them, are the contours."""
+        return any(self._leads_to_rings(ring, first) for first in range(ring.first + 1, ring.first + _LEADS + 1))
+
+    def _leads_to_rings(self, ring: Ring, first: int) -> bool:
+        """From this move on rings follow one another, and other moves of the ring are not run again within them."""
+        inner: list[Ring] = []
+        at = behind = first
+        most = ring.last - (ring.aside == 0)
+        while at <= most and (inner or at == first) and at - behind <= _LEADS:
+            hits = [hit for which in range(3) if (hit := self._closed(which, at, most)) is not None]
+            if hits:
+                inner.append(max(hits, key=lambda hit: hit.last))
+                behind = inner[-1].last + 1
+            at = behind if hits else at + 1
+        if ring.last + 1 - behind > _LEADS:
+            return False
+        length = sum(self.length[hit.last + 1] - self.length[hit.first] for hit in inner)
+        if length < _MOST_OF * (self.length[ring.last + 1] - self.length[ring.first]):
+            return False
+        within = {number for hit in inner for number in range(hit.first, hit.last + 1)}
+        ways = {_key(self.path[number], self.tolerance) for number in within}
+        leads = (number for number in range(ring.first, ring.last + 1) if number not in within)
+        return all(_key(self.path[number], self.tolerance) not in ways for number in leads)
 
     def _with_overlap(self, ring: Ring) -> Ring:
         """The ring with the moves behind it that run along its first ones again."""
