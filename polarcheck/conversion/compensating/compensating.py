@@ -9,8 +9,9 @@ import msgspec
 from polarcheck.checking.phrases.offsets import called_tool
 from polarcheck.columns.trace import Trace
 from polarcheck.conversion.blocks import edits_of, with_edits
+from polarcheck.conversion.compensating.candidates import Candidate
 from polarcheck.conversion.compensating.centering import centered
-from polarcheck.conversion.compensating.contours import SIDES, Candidate, contours_of
+from polarcheck.conversion.compensating.contours import SIDES, contours_of
 from polarcheck.conversion.compensating.moves import Move
 from polarcheck.conversion.compensating.parallel import NoContourError
 from polarcheck.conversion.compensating.pieces import Piece
@@ -53,7 +54,7 @@ def compensated(original: Original, options: Compensating = Compensating()) -> O
     bar: Bar = original.tables["bar"]
     sections = sections_of(trace, moves, bar.known.largest)
     swept = Swept(trace, moves, milled.radius[moves.row])
-    chosen = [contours_of(trace, section, swept, options.side) for section in sections]
+    chosen = contours_of(trace, sections, swept, options.side)
     try:
         data, origin, contours, proof = _written(original, swept, sections, chosen, by_moves=True)
     except RefusedError as error:

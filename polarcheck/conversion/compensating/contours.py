@@ -1,76 +1,94 @@
-"""The contours that a section of a tool center path runs along, and on which side of the path each has the part."""
+"""The contours that sections of tool center paths run along, and on which side of the path each has the part."""
 
 from __future__ import annotations
 
-import cmath
-import math
-from collections.abc import Sequence
-from itertools import groupby, pairwise
+from collections.abc import Iterator, Sequence
 
 import msgspec
 import numpy as np
 
 from polarcheck.columns.trace import Trace
-from polarcheck.conversion.compensating.moves import Move, runs
-from polarcheck.conversion.compensating.parallel import NEAR, NoContourError, contour_beside
-from polarcheck.conversion.compensating.pieces import Piece
+from polarcheck.conversion.compensating.candidates import Candidate, candidates_of
+from polarcheck.conversion.compensating.moves import Move
+from polarcheck.conversion.compensating.parallel import NEAR
 from polarcheck.conversion.compensating.ramps import Contour
-from polarcheck.conversion.compensating.rings import Ring, rings_of
 from polarcheck.conversion.compensating.sections import Section
-from polarcheck.conversion.compensating.sides import Swept, stands
+from polarcheck.conversion.compensating.sides import Swept, points_along
 from polarcheck.conversion.outcome import Refusal, RefusedError
 from polarcheck.geometry.tolerances import ROUNDING
-from polarcheck.parts.tool_paths import above_the_face
 
-#: A line that turns by more at its end leads to what follows [rad].
-_CORNER = math.radians(60)
 #: On which side of all paths the cutter is, seen along them: left is G41, right is G42; or where their parts are.
 SIDES = ("left", "right", "part-inside", "part-outside")
+#: Passes round one part have sizes within this factor.
+_SAME_SIZE = 2.0
+
+#: The contours of a section, in order.
+Chosen = list[tuple[Candidate, Contour]]
 
 
-class Candidate(msgspec.Struct, frozen=True):
+class _Path(msgspec.Struct, frozen=True):
     """
-    A contour before its side is known.
+    A candidate and its section.
 
-    first, last: numbers of moves. low, high: of its run. ring: None for a path that does not close. asides: where the
-    part may be, to the left of the path [mm]; below 0 to the right.
+    frame: of the part. center: of the ring, in that frame [mm]. size: its largest distance from there [mm].
     """
 
-    first: int
-    last: int
-    low: int
-    high: int
-    ring: Ring | None
-    asides: tuple[float, ...]
+    section: Section
+    candidate: Candidate
+    frame: int
+    center: complex
+    size: float
 
-    @property
-    def is_single_move(self) -> bool:
-        """Nothing leads to its only move and away from it, so that it may itself lead to a place."""
-        return self.ring is None and self.first == self.low == self.last == self.high - 1
-
-    def is_inside(self, aside: float) -> bool:
-        """The part would be within the ring."""
-        return self.ring is not None and self.ring.area * aside > 0
+    def is_about_part_of(self, other: _Path) -> bool:
+        """Both may be passes round one part."""
+        near = abs(self.center - other.center) <= max(self.section.radius, other.section.radius)
+        sizes = self.size <= _SAME_SIZE * other.size and other.size <= _SAME_SIZE * self.size
+        return self.frame == other.frame and near and sizes
 
 
-def contours_of(trace: Trace, section: Section, swept: Swept, side: str) -> list[tuple[Candidate, Contour]]:
+def contours_of(trace: Trace, sections: Sequence[Section], swept: Swept, side: str) -> list[Chosen]:
     """
-    Return the contours of a section in order.
+    Return the contours of each section.
 
     side: one of SIDES where the program does not say on which side the part is; empty to see what the program says.
     Raises RefusedError where there is none, or its side is not known.
     """
-    moves = section.moves
-    spans = _at_depth(trace, moves)
-    candidates = [ring for span in spans for ring in _rings(section, swept, *span, side)]
-    # Beside contours that close, other ways only lead to them.
-    candidates = candidates or [path for span in spans for path in _open(section, swept, *span, side)]
+    paths = [list(_paths(trace, section, swept, side)) for section in sections]
+    rings = [path for own in paths for path in own if path.candidate.ring is not None]
+    known = [path for path in rings if len(path.candidate.asides) == 1]
+    refusals: list[Refusal] = []
+    result = []
+    for section, own in zip(sections, paths, strict=True):
+        asides = []
+        for path in own:
+            aside = _given(trace, path, side) if side else _aside(path, known)
+            if not aside:
+                refusals.append(_ambiguous(trace, path))
+            asides.append(aside)
+        result.append(_joined(trace, section.moves, [path.candidate for path in own], asides))
+    if refusals:
+        raise RefusedError(refusals)
+    return result
+
+
+def _paths(trace: Trace, section: Section, swept: Swept, side: str) -> Iterator[_Path]:
+    """The candidates of a section. Raises RefusedError where there is none."""
+    candidates = candidates_of(trace, section, swept, side)
     if not candidates:
-        text = (
-            "nothing of the path is known to be a contour: it does not close, and has no moves to it and away from it"
-        )
-        raise RefusedError([Refusal(_line(trace, moves[0].row), f"{text}: choose with --side left or right")])
-    asides = _chosen(trace, section, candidates, side)
+        text = "nothing of its path is a contour: it does not close, and has no moves to it and away from it"
+        raise RefusedError([Refusal(_line(trace, section.moves[0].row), text)])
+    frame, turn = swept.frame_of(section.number)
+    for candidate in candidates:
+        pieces = [move.piece for move in section.moves[candidate.first : candidate.last + 1]]
+        points = points_along(pieces) * turn
+        center = complex(points.mean())
+        yield _Path(section, candidate, frame, center, float(np.abs(points - center).max()))
+
+
+def _joined(
+    trace: Trace, moves: Sequence[Move], candidates: Sequence[Candidate], asides: Sequence[float]
+) -> list[tuple[Candidate, Contour]]:
+    """The contours; turns that follow one another at several depths are one."""
     result: list[tuple[Candidate, Contour]] = []
     for candidate, aside in zip(candidates, asides, strict=True):
         closed = candidate.ring is not None and not candidate.ring.aside and _comes_back(moves, candidate)
@@ -80,18 +98,6 @@ def contours_of(trace: Trace, section: Section, swept: Swept, side: str) -> list
             candidate = msgspec.structs.replace(candidate, first=before.first, low=before.low)
             contour = msgspec.structs.replace(contour, first=began.first)
         result.append((candidate, contour))
-    return result
-
-
-def _at_depth(trace: Trace, moves: Sequence[Move]) -> list[tuple[int, int]]:
-    """The runs of moves at feed without those at their beginnings that are above the face."""
-    in_air = above_the_face(trace)
-    result = []
-    for low, high in runs(trace, moves):
-        while low < high and in_air[moves[low].row]:
-            low += 1
-        if low < high and moves[low].feeds:
-            result.append((low, high))
     return result
 
 
@@ -115,131 +121,50 @@ def _comes_back(moves: Sequence[Move], candidate: Candidate) -> bool:
     return abs(moves[candidate.last].piece.end - moves[candidate.first].piece.start) <= NEAR
 
 
-def _rings(section: Section, swept: Swept, low: int, high: int, side: str) -> list[Candidate]:
-    path = [section.moves[number].piece for number in range(low, high)]
-    result = []
-    for ring in rings_of(path, section.radius, NEAR):
-        first, last = low + ring.first, low + ring.last
-        result.append(Candidate(first, last, low, high, ring, _asides(section, swept, first, last, ring, side)))
-    return result
-
-
-def _open(section: Section, swept: Swept, low: int, high: int, side: str) -> list[Candidate]:
-    result = []
-    for span in _open_spans(section, low, high):
-        candidate = Candidate(*span, low, high, None, _asides(section, swept, *span, None, side))
-        if candidate.is_single_move and not side:
-            candidate = msgspec.structs.replace(candidate, asides=())
-        result.append(candidate)
-    return result
-
-
-def _asides(section: Section, swept: Swept, first: int, last: int, ring: Ring | None, side: str) -> tuple[float, ...]:
-    """The sides on which the part may be: all that leave a contour where one is given; else those that stand."""
-    path = [section.moves[number].piece for number in range(first, last + 1)]
-    whole = _from_middle(path) if ring is not None and not ring.aside else path
-    asides = (ring.aside,) if ring is not None and ring.aside else (section.radius, -section.radius)
-    z = min(section.moves[number].ends for number in range(first, last + 1))
-    result = []
-    for aside in asides:
-        try:
-            contour = contour_beside(whole, aside)
-        except NoContourError:
-            continue
-        if side or len(asides) == 1 or stands(swept, contour, section.number, z, section.bar):
-            result.append(aside)
-    return tuple(result)
-
-
-def _from_middle(path: Sequence[Piece]) -> list[Piece]:
-    """A closed path from the middle of its first piece."""
-    first, middle = path[0], path[0].at(0.5)
-    return [first.replaced(start=middle), *path[1:], first.replaced(end=middle)]
-
-
-def _open_spans(section: Section, low: int, high: int) -> list[tuple[int, int]]:
-    """
-    The moves of a run that are contours which do not close: for each the first and the last.
-
-    Where the bar is known, moves outside of it lead to a contour or away from it. So do, without it, the first and the
-    last move of the section, and lines that come from farther out, or leave for there, at a corner.
-    """
-    pieces = [move.piece for move in section.moves[low:high]]
-    leads = [_is_in_air(section, piece) for piece in pieces]
-    if np.isnan(section.bar):
-        arrives = [_comes_from_outside(section, *pair) for pair in pairwise(pieces)] + [False]
-        backwards = [_back(piece) for piece in pieces]
-        leaves = [False] + [_comes_from_outside(section, after, before) for before, after in pairwise(backwards)]
-        is_outside = False
-        for index in range(len(pieces)):
-            is_outside = (is_outside or leaves[index]) and not (index and arrives[index - 1])
-            leads[index] = is_outside or arrives[index]
-        ends = (0, len(section.moves) - 1)
-        for index in (0, len(pieces) - 1):
-            leads[index] |= low + index in ends and len(pieces) > 1
-    numbers = [low + index for index, is_lead in enumerate(leads) if not is_lead]
-    groups = [
-        [number for _, number in group] for _, group in groupby(enumerate(numbers), lambda pair: pair[1] - pair[0])
-    ]
-    return [(group[0], group[-1]) for group in groups]
-
-
-def _comes_from_outside(section: Section, piece: Piece, following: Piece) -> bool:
-    """A line comes R and more nearer to the center of C, to a corner."""
-    nearer = abs(piece.start) - abs(piece.end) >= section.radius
-    turn = cmath.phase(following.leaving / (piece.arriving or 1.0)) if piece.center is None else 0.0
-    return nearer and abs(turn) >= _CORNER
-
-
-def _back(piece: Piece) -> Piece:
-    return msgspec.structs.replace(piece, start=piece.end, end=piece.start, turning=-piece.turning)
-
-
-def _is_in_air(section: Section, piece: Piece) -> bool:
-    if np.isnan(section.bar):
-        return False
-    shares = np.linspace(0, 1, 33).tolist()
-    return min(abs(piece.at(share)) for share in shares) >= section.bar / 2 + section.radius - ROUNDING
-
-
 # ---- which side ----
 
 
-def _chosen(trace: Trace, section: Section, candidates: Sequence[Candidate], side: str) -> list[float]:
-    """The side of each contour. Raises RefusedError where it is not known."""
-    if side:
-        return [_given(trace, section, candidate, side) for candidate in candidates]
-    known = {
-        candidate.is_inside(candidate.asides[0])
-        for candidate in candidates
-        if candidate.ring is not None and len(candidate.asides) == 1
-    }
-    result = []
-    refusals = []
-    for candidate in candidates:
-        asides = candidate.asides
-        if len(asides) != 1 and candidate.ring is not None and len(known) == 1:
-            is_inside = next(iter(known))
-            both = section.radius, -section.radius
-            asides = tuple(aside for aside in both if candidate.is_inside(aside) == is_inside)
-        if len(asides) == 1:
-            result.append(asides[0])
-            continue
-        options = "--side part-inside or part-outside" if candidate.ring is not None else "--side left or right"
-        why = (
-            "no other move leads to this one and away from it"
-            if candidate.is_single_move
-            else "the part may be on both sides of this path"
-            if asides
-            else "no side of this path is known to be the part: metal is taken away there, or arcs are smaller than R"
-        )
-        refusals.append(Refusal(_line(trace, section.moves[candidate.first].row), f"{why}: choose with {options}"))
-    if refusals:
-        raise RefusedError(refusals)
-    return result
+def _aside(path: _Path, known: Sequence[_Path]) -> float:
+    """
+    The distance of the contour to the left of a path [mm]; 0 where its side is not known.
+
+    Passes round one part have it on one side: what a finishing pass takes away of the contour of a roughing pass, or
+    leaves of its other side, says nothing. Else all rings of the section, or of the program, tell.
+    """
+    candidate, radius = path.candidate, path.section.radius
+    if candidate.ring is None:
+        return candidate.asides[0] if len(candidate.asides) == 1 else 0.0
+    if len(candidate.asides) == 1:
+        return candidate.asides[0]
+    groups = (
+        [other for other in known if path.is_about_part_of(other)],
+        [other for other in known if other.section is path.section],
+        known,
+    )
+    for group in groups:
+        is_inside = {other.candidate.is_inside(other.candidate.asides[0]) for other in group}
+        if len(is_inside) == 1:
+            inner = radius if candidate.is_inside(radius) else -radius
+            return inner if is_inside.pop() else -inner
+        if is_inside:
+            break
+    return 0.0
 
 
-def _given(trace: Trace, section: Section, candidate: Candidate, side: str) -> float:
+def _ambiguous(trace: Trace, path: _Path) -> Refusal:
+    candidate = path.candidate
+    options = "--side part-inside or part-outside" if candidate.ring is not None else "--side left or right"
+    why = "no side of this path is known to be the part: metal is taken away there, or arcs are smaller than R"
+    if candidate.is_single_move:
+        why = "no other move leads to this one and away from it"
+    elif candidate.asides:
+        why = "the part may be on both sides of this path"
+    return Refusal(_line(trace, path.section.moves[candidate.first].row), f"{why}: choose with {options}")
+
+
+def _given(trace: Trace, path: _Path, side: str) -> float:
+    """The distance to the left of a path [mm] by --side. Raises RefusedError where no contour is there."""
+    section, candidate = path.section, path.candidate
     line = _line(trace, section.moves[candidate.first].row)
     if side in ("left", "right"):
         aside = -section.radius if side == "left" else section.radius

@@ -37,6 +37,11 @@ class Swept:
         usable = trace.path.cuts[moves.row] & ~np.isnan(radius) & ~np.isnan(moves.start + moves.end) & moves.is_of_tool
         self.usable, self.moves, self.radius = usable, moves, radius
 
+    def frame_of(self, section: int) -> tuple[int, complex]:
+        """The frame of the part in a section, and the number by which its points come into it."""
+        own = int(np.argmax(self.moves.section == section))
+        return int(self.frame[own]), complex(self.turn[own])
+
     def distance(self, points: Points, section: int, z: float) -> Floats:
         """
         How far points at a depth are from all paths there [mm], beyond R of their cutters; below 0 they are cleared.
@@ -47,8 +52,7 @@ class Swept:
 
         from polarcheck.geometry.polygons.faces import coordinates, lines_of
 
-        own = np.flatnonzero(self.moves.section == section)
-        frame, turn = int(self.frame[own[0]]), complex(self.turn[own[0]])
+        frame, turn = self.frame_of(section)
         in_reach = ~(self.top > z + _TOLERANCE) | (math.isnan(z) & (self.moves.section == section))
         chosen = np.flatnonzero(self.usable & (self.frame == frame) & in_reach)
         distance = np.full(len(points), np.inf)
@@ -78,16 +82,17 @@ def points_along(contour: Sequence[Piece], count: int = _POINTS) -> Points:
     return np.array(result)
 
 
-def stands(swept: Swept, contour: Sequence[Piece], section: int, z: float, bar: float) -> bool:
+def stands(swept: Swept, contour: Sequence[Piece], section: int, z: float, bar: float, least: float = 0.0) -> bool:
     """
-    Return True where nothing takes a contour away, and it lies in the bar at least in part.
+    Return True where nothing takes a contour away, and it lies in the bar, by `least` of its length.
 
     bar: diameter beyond which there is no material [mm]; NaN where it is not known.
     """
     points = points_along(contour)
+    count = len(points)
     if not math.isnan(bar):
         points = points[np.abs(points) < bar / 2 - _DEEP]
-    if not len(points):
+    if len(points) <= least * count:
         return False
     untouched: Mask = swept.distance(points, section, z) > -_DEEP
     return bool(untouched.all())
