@@ -72,10 +72,13 @@ class _Search:
         self.starts = [[piece.start + 1j * aside * piece.leaving for piece in path] for aside in self.asides]
         self.ends = [[piece.end + 1j * aside * piece.arriving for piece in path] for aside in self.asides]
         self.ending: list[dict[tuple[int, int], list[int]]] = []
-        for ends in self.ends:
+        #: Beside arcs that are too small a parallel is none.
+        self.is_there = [[piece.radius - piece.turning * aside > tolerance for piece in path] for aside in self.asides]
+        for ends, is_there in zip(self.ends, self.is_there, strict=True):
             cells: dict[tuple[int, int], list[int]] = {}
             for number, end in enumerate(ends):
-                cells.setdefault(self._cell(end), []).append(number)
+                if is_there[number]:
+                    cells.setdefault(self._cell(end), []).append(number)
             self.ending.append(cells)
 
     def _cell(self, point: complex) -> tuple[int, int]:
@@ -93,6 +96,8 @@ class _Search:
 
     def _closed(self, which: int, first: int, most: int | None = None) -> Ring | None:
         """The longest ring from the start of a piece up to one, of the path or of one of its parallels."""
+        if not self.is_there[which][first]:
+            return None
         start = self.starts[which][first]
         x, y = self._cell(start)
         last = -1
