@@ -16,7 +16,7 @@ from polarcheck.conversion.compensating.parallel import NEAR, NoContourError, co
 from polarcheck.conversion.compensating.pieces import Piece
 from polarcheck.conversion.compensating.rings import Ring, rings_of
 from polarcheck.conversion.compensating.sections import Section
-from polarcheck.conversion.compensating.sides import Swept, stands
+from polarcheck.conversion.compensating.sides import Swept, points_along, stands
 from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.parts.tool_paths import above_the_face
 
@@ -106,11 +106,17 @@ def _asides(section: Section, swept: Swept, first: int, last: int, ring: Ring | 
             contour = contour_beside(whole, aside)
         except NoContourError:
             continue
-        # Round a part a rest of the bar may be left standing at its corners.
-        least = _WALL if ring is not None and ring.area * aside < 0 else 0.0
+        # Farther out than the path a rest of the bar may be left standing at its corners.
+        is_outside = ring.area * aside < 0 if ring is not None else _middle(contour) > _middle(path)
+        least = _WALL if is_outside else 0.0
         if side or len(asides) == 1 or stands(swept, contour, section.number, z, section.bar, least):
             result.append(aside)
     return tuple(result)
+
+
+def _middle(path: Sequence[Piece]) -> float:
+    """How far a path is from the center of C, on average [mm]."""
+    return float(np.abs(points_along(path)).mean())
 
 
 def _from_middle(path: Sequence[Piece]) -> list[Piece]:

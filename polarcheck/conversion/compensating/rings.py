@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import cmath
 import math
-from bisect import bisect_right
+from bisect import bisect_left, bisect_right
 from collections.abc import Sequence
 
 import msgspec
@@ -87,30 +87,30 @@ class _Search:
 
     def ring_from(self, first: int, may_overlap: bool) -> Ring | None:
         """The ring that begins with a piece; None where none does. may_overlap: it may begin within its last piece."""
-        hits = [ring for which in range(3) if (ring := self._closed(which, first)) is not None]
-        ring = max(hits, key=lambda ring: (ring.last, ring.aside == 0), default=None)
+        ring = self._closed(first, len(self.path) - 1)
         ring = ring or (self._overlapping(first) if may_overlap else None)
         if ring is None or self._has_leads(ring):
             return None
         return self._with_overlap(ring)
 
-    def _closed(self, which: int, first: int, most: int | None = None) -> Ring | None:
-        """The longest ring from the start of a piece up to one, of the path or of one of its parallels."""
+    def _closed(self, first: int, most: int) -> Ring | None:
+        """The shortest ring from the start of a piece up to another, of the path or of one of its parallels."""
+        rings = (self._closed_parallel(which, first, most) for which in range(len(self.asides)))
+        return min((ring for ring in rings if ring is not None), key=lambda ring: ring.last, default=None)
+
+    def _closed_parallel(self, which: int, first: int, most: int) -> Ring | None:
         if not self.is_there[which][first]:
             return None
         start = self.starts[which][first]
         x, y = self._cell(start)
-        last = -1
-        for cell in ((x + i, y + j) for i in (-1, 0, 1) for j in (-1, 0, 1)):
-            numbers = self.ending[which].get(cell, [])
-            until = len(numbers) if most is None else bisect_right(numbers, most)
-            for number in reversed(numbers[:until]):
-                if number <= last or number < first:
-                    break
-                if abs(self.ends[which][number] - start) <= self.tolerance:
-                    last = number
-                    break
-        return self._ring(first, last, self.asides[which]) if last >= first else None
+        cells = [self.ending[which].get((x + i, y + j), []) for i in (-1, 0, 1) for j in (-1, 0, 1)]
+        near = (numbers[bisect_left(numbers, first) : bisect_right(numbers, most)] for numbers in cells)
+        for number in sorted(number for numbers in near for number in numbers):
+            if abs(self.ends[which][number] - start) <= self.tolerance:
+                ring = self._ring(first, number, self.asides[which])
+                if ring is not None:
+                    return ring
+        return None
 
     def _ring(self, first: int, last: int, aside: float) -> Ring | None:
         closing = Piece(self.path[last].end, self.path[first].start)
@@ -148,11 +148,11 @@ class _Search:
         at = behind = first
         most = ring.last - (ring.aside == 0)
         while at <= most and (inner or at == first) and at - behind <= _LEADS:
-            hits = [hit for which in range(3) if (hit := self._closed(which, at, most)) is not None]
-            if hits:
-                inner.append(max(hits, key=lambda hit: hit.last))
-                behind = inner[-1].last + 1
-            at = behind if hits else at + 1
+            hit = self._closed(at, most)
+            if hit is not None:
+                inner.append(hit)
+                behind = hit.last + 1
+            at = at + 1 if hit is None else behind
         if ring.last + 1 - behind > _LEADS:
             return False
         length = sum(self.length[hit.last + 1] - self.length[hit.first] for hit in inner)
