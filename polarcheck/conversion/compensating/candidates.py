@@ -16,14 +16,14 @@ from polarcheck.conversion.compensating.parallel import NEAR, NoContourError, co
 from polarcheck.conversion.compensating.pieces import Piece
 from polarcheck.conversion.compensating.rings import Ring, rings_of
 from polarcheck.conversion.compensating.sections import Section
-from polarcheck.conversion.compensating.sides import Swept, points_along, stands
+from polarcheck.conversion.compensating.sides import Swept, points_along, standing_share
 from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.parts.tool_paths import above_the_face
 
 #: A line that turns by more at its end leads to what follows [rad].
 _CORNER = math.radians(60)
-#: The share of a wall round the path that is in the bar.
-_WALL = 0.5
+#: The share of a wall that is in the bar, where it is farther out than the path, and elsewhere.
+_WALL, _LEAST = 0.5, 1e-9
 
 
 class Candidate(msgspec.Struct, frozen=True):
@@ -31,7 +31,7 @@ class Candidate(msgspec.Struct, frozen=True):
     A contour before its side is known.
 
     first, last: numbers of moves. low, high: of its run. ring: None for a path that does not close. asides: where the
-    part may be, to the left of the path [mm]; below 0 to the right.
+    part may be, to the left of the path [mm]; below 0 to the right. rests: where less of the bar is left standing.
     """
 
     first: int
@@ -40,6 +40,7 @@ class Candidate(msgspec.Struct, frozen=True):
     high: int
     ring: Ring | None
     asides: tuple[float, ...]
+    rests: tuple[float, ...]
 
     @property
     def is_single_move(self) -> bool:
@@ -58,9 +59,9 @@ def candidates_of(trace: Trace, section: Section, swept: Swept, side: str) -> li
     side: where it is given, both sides of a path are taken as far as there is a contour; else those that stand.
     """
     spans = _at_depth(trace, section.moves)
-    rings = [ring for span in spans for ring in _rings(section, swept, *span, side)]
+    rings = [ring for span in spans for ring in _rings(section, swept, span, bool(side))]
     # Beside contours that close, other ways only lead to them.
-    return rings or [path for span in spans for path in _open(section, swept, *span, side)]
+    return rings or [path for span in spans for path in _open(section, swept, span, bool(side))]
 
 
 def _at_depth(trace: Trace, moves: Sequence[Move]) -> list[tuple[int, int]]:
@@ -75,43 +76,42 @@ def _at_depth(trace: Trace, moves: Sequence[Move]) -> list[tuple[int, int]]:
     return result
 
 
-def _rings(section: Section, swept: Swept, low: int, high: int, side: str) -> list[Candidate]:
-    path = [section.moves[number].piece for number in range(low, high)]
-    result = []
-    for ring in rings_of(path, section.radius, NEAR):
-        first, last = low + ring.first, low + ring.last
-        result.append(Candidate(first, last, low, high, ring, _asides(section, swept, first, last, ring, side)))
-    return result
+def _rings(section: Section, swept: Swept, run: tuple[int, int], any_side: bool) -> list[Candidate]:
+    low = run[0]
+    path = [section.moves[number].piece for number in range(*run)]
+    rings = rings_of(path, section.radius, NEAR)
+    return [_candidate(section, swept, run, (low + ring.first, low + ring.last), ring, any_side) for ring in rings]
 
 
-def _open(section: Section, swept: Swept, low: int, high: int, side: str) -> list[Candidate]:
-    result = []
-    for span in _open_spans(section, low, high):
-        candidate = Candidate(*span, low, high, None, _asides(section, swept, *span, None, side))
-        if candidate.is_single_move and not side:
-            candidate = msgspec.structs.replace(candidate, asides=())
-        result.append(candidate)
-    return result
+def _open(section: Section, swept: Swept, run: tuple[int, int], any_side: bool) -> list[Candidate]:
+    paths = [_candidate(section, swept, run, span, None, any_side) for span in _open_spans(section, *run)]
+    return [
+        msgspec.structs.replace(path, asides=(), rests=()) if path.is_single_move and not any_side else path
+        for path in paths
+    ]
 
 
-def _asides(section: Section, swept: Swept, first: int, last: int, ring: Ring | None, side: str) -> tuple[float, ...]:
-    """The sides on which the part may be: all that leave a contour where one is given; else those that stand."""
-    path = [section.moves[number].piece for number in range(first, last + 1)]
+def _candidate(
+    section: Section, swept: Swept, run: tuple[int, int], span: tuple[int, int], ring: Ring | None, any_side: bool
+) -> Candidate:
+    """A candidate with the sides on which the part may be; any_side: all on which there is a contour."""
+    path = [section.moves[number].piece for number in range(span[0], span[1] + 1)]
     whole = _from_middle(path) if ring is not None and not ring.aside else path
-    asides = (ring.aside,) if ring is not None and ring.aside else (section.radius, -section.radius)
-    z = min(section.moves[number].ends for number in range(first, last + 1))
-    result = []
-    for aside in asides:
+    both = (ring.aside,) if ring is not None and ring.aside else (section.radius, -section.radius)
+    z = min(section.moves[number].ends for number in range(span[0], span[1] + 1))
+    asides, rests = [], []
+    for aside in both:
         try:
             contour = contour_beside(whole, aside)
         except NoContourError:
             continue
-        # Farther out than the path a rest of the bar may be left standing at its corners.
+        share = standing_share(swept, contour, section.number, z, section.bar)
         is_outside = ring.area * aside < 0 if ring is not None else _middle(contour) > _middle(path)
-        least = _WALL if is_outside else 0.0
-        if side or len(asides) == 1 or stands(swept, contour, section.number, z, section.bar, least):
-            result.append(aside)
-    return tuple(result)
+        if any_side or len(both) == 1 or share >= (_WALL if is_outside else _LEAST):
+            asides.append(aside)
+        elif share:
+            rests.append(aside)
+    return Candidate(*span, *run, ring, tuple(asides), tuple(rests))
 
 
 def _middle(path: Sequence[Piece]) -> float:

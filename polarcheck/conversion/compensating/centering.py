@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -10,7 +10,7 @@ from polarcheck.arrays import Mask
 from polarcheck.checking.phrases.offsets import called_tool, to_give
 from polarcheck.columns.trace import Trace
 from polarcheck.conversion.blocks import NewBlock, edit_before, edits_of, with_edits
-from polarcheck.conversion.compensating.moves import of_section
+from polarcheck.conversion.compensating.moves import Move, of_section
 from polarcheck.conversion.compensating.sections import compensated_sections
 from polarcheck.conversion.compensating.writing import Stroke, Strokes, new_blocks
 from polarcheck.conversion.original import Original
@@ -18,6 +18,7 @@ from polarcheck.conversion.outcome import Figure, Outcome, Refusal, RefusedError
 from polarcheck.conversion.reading_back import read_back_on_part, require_equal
 from polarcheck.conversion.style_of import style_of
 from polarcheck.geometry.cutter_compensation.compensation import Phase
+from polarcheck.geometry.tolerances import ZERO
 from polarcheck.table.moves import Moves
 from polarcheck.table.tool_center import ToolCenter
 
@@ -103,10 +104,23 @@ def _strokes(trace: Trace, moves: Moves, compensated: Mask) -> Strokes:
     for row in np.flatnonzero(changed & compensated & trace.path.on_plane).tolist():
         result.setdefault(row, [])
     for section in np.unique(trace.mode.section[list(result)]).tolist():
-        for move in of_section(trace, moves, section):
-            if move.row in result:
-                result[move.row].append(Stroke(move.piece, z=None if move.is_level else move.ends))
+        new = [move for move in of_section(trace, moves, section) if move.row in result]
+        for move in _without_short(new, float(trace.lengths.least_step[new[0].row])):
+            result[move.row].append(Stroke(move.piece, z=None if move.is_level else move.ends))
     return dict(sorted(result.items()))
+
+
+def _without_short(moves: Sequence[Move], shortest: float) -> list[Move]:
+    """Moves without the lines between two others that are shorter [mm], as at corners that are all but smooth."""
+    result: list[Move] = []
+    for move, following in zip(moves, [*moves[1:], None], strict=True):
+        piece = move.piece
+        if result and following is not None and piece.center is None and move.is_level:
+            is_between = abs(following.piece.start - piece.end) <= ZERO
+            if is_between and abs(piece.end - result[-1].piece.end) < shortest and piece.length > ZERO:
+                continue
+        result.append(move)
+    return result
 
 
 def _cutters(trace: Trace, sections: list[int]) -> Iterator[tuple[int, str, str]]:

@@ -133,7 +133,8 @@ def _aside(path: _Path, known: Sequence[_Path]) -> float:
     """
     candidate, radius = path.candidate, path.section.radius
     if candidate.ring is None:
-        return candidate.asides[0] if len(candidate.asides) == 1 else 0.0
+        sides = candidate.asides or candidate.rests
+        return sides[0] if len(sides) == 1 else 0.0
     if len(candidate.asides) == 1:
         return candidate.asides[0]
     groups = (
@@ -147,8 +148,8 @@ def _aside(path: _Path, known: Sequence[_Path]) -> float:
             inner = radius if candidate.is_inside(radius) else -radius
             return inner if is_inside.pop() else -inner
         if is_inside:
-            break
-    return 0.0
+            return 0.0
+    return candidate.rests[0] if len(candidate.rests) == 1 and not candidate.asides else 0.0
 
 
 def _ambiguous(trace: Trace, path: _Path) -> Refusal:

@@ -146,7 +146,9 @@ class _Search:
         """From this move on rings follow one another, and other moves of the ring are not run again within them."""
         inner: list[Ring] = []
         at = behind = first
-        most = ring.last - (ring.aside == 0)
+        # A ring that closes where the whole does is one only if the moves before it close as well.
+        apart = abs(self.path[min(first, ring.last)].start - self.path[ring.first].start)
+        most = ring.last - (ring.aside == 0 and apart > self.tolerance)
         while at <= most and (inner or at == first) and at - behind <= _LEADS:
             hit = self._closed(at, most)
             if hit is not None:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Points
+from polarcheck.arrays import Floats, Points
 from polarcheck.columns.trace import Trace
 from polarcheck.conversion.compensating.pieces import Piece
 from polarcheck.geometry.segments import Curves, segments
@@ -82,9 +82,9 @@ def points_along(contour: Sequence[Piece], count: int = _POINTS) -> Points:
     return np.array(result)
 
 
-def stands(swept: Swept, contour: Sequence[Piece], section: int, z: float, bar: float, least: float = 0.0) -> bool:
+def standing_share(swept: Swept, contour: Sequence[Piece], section: int, z: float, bar: float) -> float:
     """
-    Return True where nothing takes a contour away, and it lies in the bar, by `least` of its length.
+    Return the share of a contour that lies in the bar, where nothing takes a point of it away; else 0.
 
     bar: diameter beyond which there is no material [mm]; NaN where it is not known.
     """
@@ -92,7 +92,6 @@ def stands(swept: Swept, contour: Sequence[Piece], section: int, z: float, bar: 
     count = len(points)
     if not math.isnan(bar):
         points = points[np.abs(points) < bar / 2 - _DEEP]
-    if len(points) <= least * count:
-        return False
-    untouched: Mask = swept.distance(points, section, z) > -_DEEP
-    return bool(untouched.all())
+    if not len(points) or not (swept.distance(points, section, z) > -_DEEP).all():
+        return 0.0
+    return len(points) / count

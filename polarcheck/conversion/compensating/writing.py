@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from itertools import groupby
 
@@ -22,6 +23,8 @@ from polarcheck.revisions.stretches import NOWHERE
 #: Modal groups that the new moves say themselves.
 _GROUPS = ("motion", "side", "distance")
 _CODES = {0: "G1", 1: "G3", -1: "G2"}
+#: A word with a number, also of an address with several letters, as CR=5.
+_NUMBER = re.compile(r"[A-Za-z]*=?[-+]?[\d.]+")
 _STATES = {int(Motion.RAPID): "G0", int(Motion.LINE): "G1", int(Motion.CW): "G2", int(Motion.CCW): "G3"}
 
 
@@ -184,7 +187,10 @@ class _Writer:
 
     def _require_plain(self, row: int) -> None:
         trace = self.trace
-        if not is_plain(trace.run, row):
+        run = trace.run
+        words = [written_word(run, index) for index in words_of(run, row)]
+        is_macro = run.text.blocks.is_macro[int(run.block[row])]
+        if not is_plain(run, row) and (is_macro or not all(map(_NUMBER.fullmatch, words))):
             raise self._refused(row, "its words are expressions, or in another language: write them as numbers first")
         if trace.path.frames is not None:
             raise self._refused(row, "the program shifts or turns its coordinates by frames")
