@@ -22,6 +22,8 @@ from polarcheck.parts.tool_paths import above_the_face
 
 #: A line that turns by more at its end leads to what follows [rad].
 _CORNER = math.radians(60)
+#: Moves at the end of a path among which one leads to it.
+_MOVES_OF_LEAD = 3
 #: The share of a wall that is in the bar, where it is farther out than the path, and elsewhere.
 _WALL, _LEAST = 0.5, 1e-9
 
@@ -79,8 +81,19 @@ def _at_depth(trace: Trace, moves: Sequence[Move]) -> list[tuple[int, int]]:
 def _rings(section: Section, swept: Swept, run: tuple[int, int], any_side: bool) -> list[Candidate]:
     low = run[0]
     path = [section.moves[number].piece for number in range(*run)]
-    rings = rings_of(path, section.radius, NEAR)
-    return [_candidate(section, swept, run, (low + ring.first, low + ring.last), ring, any_side) for ring in rings]
+    result: list[Candidate] = []
+    for ring in rings_of(path, section.radius, NEAR):
+        first, last = low + ring.first, low + ring.last
+        candidate = _candidate(section, swept, run, (first, last), ring, any_side)
+        pieces = path[ring.first : ring.last + 1]
+        if not any_side and len(candidate.asides) != 1 and _has_leads(section, pieces):
+            # It closes only because it comes back to where it has left for the part.
+            paths = _open(section, swept, (first, last + 1), any_side)
+            if paths and all(len(path.asides) == 1 for path in paths):
+                result += [msgspec.structs.replace(path, low=run[0], high=run[1]) for path in paths]
+                continue
+        result.append(candidate)
+    return result
 
 
 def _open(section: Section, swept: Swept, run: tuple[int, int], any_side: bool) -> list[Candidate]:
@@ -150,6 +163,15 @@ def _open_spans(section: Section, low: int, high: int) -> list[tuple[int, int]]:
         [number for _, number in group] for _, group in groupby(enumerate(numbers), lambda pair: pair[1] - pair[0])
     ]
     return [(group[0], group[-1]) for group in groups]
+
+
+def _has_leads(section: Section, pieces: Sequence[Piece]) -> bool:
+    """A path begins with a line that leads to it, and ends with one that leads away; moves before may go aside."""
+    backwards = [_back(piece) for piece in reversed(pieces)]
+    return all(
+        any(_comes_from_outside(section, *pair) for pair in pairwise(way[:_MOVES_OF_LEAD]))
+        for way in (pieces, backwards)
+    )
 
 
 def _comes_from_outside(section: Section, piece: Piece, following: Piece) -> bool:
