@@ -340,12 +340,12 @@ def test_the_command() -> None:
 
 @pytest.mark.slow
 def test_long_paths() -> None:
-    """40 depths of 72 chords each: twice as many take twice as long, and not four times."""
-    corners = [cmath.rect(25, math.tau * k / 72) for k in range(73)]
-    turn = words([Line(*pair) for pair in pairwise(corners)])
-    passes = [f"Z-{5 + depth / 10}\n" + "\n".join(turn) for depth in range(40)]
-    text = PROGRAM.format(x="90.", blocks="X50. C0. F200\n" + "\n".join(passes))
-    new = text_of(rewrite(text))
+    """25 depths of 100 chords each, as a post writes a shaft."""
+    sides = polygon([cmath.rect(25, math.tau * (k + 0.5) / 99) for k in range(99)])
+    turn = words([Line(60 + 0j, sides[0].start), *sides, Line(sides[0].start, 60 + 0j)])
+    passes = [f"Z-{5 + depth / 10}\n" + "\n".join(turn) for depth in range(25)]
+    new = text_of(rewrite(PROGRAM.format(x="120.", blocks="\n".join(passes).replace("\nG1 ", "\n"))))
     moves, _ = read_section(new)
-    assert (new.count("G42"), len(moves)) == (1, 40 * 72)
-    assert max(abs(abs(move.end) - 25 + R / math.cos(math.pi / 72)) for move in moves) < 0.02
+    assert (new.count("G42"), len(moves)) == (25, 25 * 100)
+    at_corners = [abs(move.end) for move in moves if abs(move.end.imag) > 1e-6]
+    assert at_corners == pytest.approx([25 - R / math.cos(math.pi / 99)] * len(at_corners), abs=0.02)

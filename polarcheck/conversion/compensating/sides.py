@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Points
+from polarcheck.arrays import Floats, Points, Rows
 from polarcheck.columns.trace import Trace
 from polarcheck.conversion.compensating.pieces import Piece
 from polarcheck.geometry.segments import Curves, segments
@@ -15,6 +15,8 @@ from polarcheck.table.moves import Moves, z_along
 
 #: Sagitta of the chords of paths [mm], and what a cutter must cut into a wall to take it away.
 _TOLERANCE, _DEEP = 1e-3, 0.01
+#: Points that differ by less are one [mm].
+_SAME_PLACE = 1e-6
 #: Points of a contour that are looked at.
 _POINTS = 400
 
@@ -35,7 +37,20 @@ class Swept:
         begins, ends = z_along(trace, moves)
         self.top = np.fmax(begins, ends)
         usable = trace.path.cuts[moves.row] & ~np.isnan(radius) & ~np.isnan(moves.start + moves.end) & moves.is_of_tool
-        self.usable, self.moves, self.radius = usable, moves, radius
+        self.moves, self.radius = moves, radius
+        self.usable = self._deepest(np.flatnonzero(usable))
+
+    def _deepest(self, usable: Rows) -> Rows:
+        """The deepest of moves along one way with one R, which clears what the others do."""
+        moves, turn = self.moves[usable], self.turn[usable]
+        points = (
+            np.concatenate([moves.start * turn, moves.end * turn, np.nan_to_num(moves.center * turn)]) / _SAME_PLACE
+        )
+        places = np.round([points.real, points.imag]).reshape(6, -1)
+        columns = [*places, self.radius[usable], self.frame[usable], moves.kind]
+        order = np.lexsort((np.nan_to_num(self.top[usable], nan=np.inf), *columns))
+        is_other = np.any([column[order][1:] != column[order][:-1] for column in columns], axis=0)
+        return np.sort(usable[order[np.append(True, is_other)]]) if len(usable) else usable
 
     def frame_of(self, section: int) -> tuple[int, complex]:
         """The frame of the part in a section, and the number by which its points come into it."""
@@ -54,7 +69,7 @@ class Swept:
 
         frame, turn = self.frame_of(section)
         in_reach = ~(self.top > z + _TOLERANCE) | (math.isnan(z) & (self.moves.section == section))
-        chosen = np.flatnonzero(self.usable & (self.frame == frame) & in_reach)
+        chosen = self.usable[((self.frame == frame) & in_reach)[self.usable]]
         distance = np.full(len(points), np.inf)
         places = shapely.points(coordinates(points * turn))
         for size in np.unique(self.radius[chosen]).tolist():
