@@ -67,7 +67,7 @@ def compensated(original: Original, options: Compensating = Compensating()) -> O
         Figure("sections with G41 or G42 and the contour", len(sections)),
         Figure("contours", len(contours)),
         Figure("largest difference of the part", proof.part, "mm"),
-        Figure("distance of the tool center from its path, at most", proof.path, "mm"),
+        Figure("largest distance of the tool center from its path", proof.path, "mm"),
     ]
     return Outcome(data, origin, [], figures, _notes(trace, contours))
 

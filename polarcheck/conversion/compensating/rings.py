@@ -54,7 +54,8 @@ def rings_of(path: Sequence[Piece], radius: float, tolerance: float) -> list[Rin
         if ring is None:
             at += 1
             continue
-        result.append(ring)
+        if not (result and search.comes_back(result[-1], ring)):
+            result.append(ring)
         at = behind = ring.last + 1
     return result
 
@@ -92,6 +93,11 @@ class _Search:
         if ring is None or self._has_leads(ring):
             return None
         return self._with_overlap(ring)
+
+    def comes_back(self, before: Ring, ring: Ring) -> bool:
+        """A short way that begins where a ring has ended: out, and back for another pass."""
+        lengths = [self.length[way.last + 1] - self.length[way.first] for way in (before, ring)]
+        return ring.first == before.last + 1 and lengths[1] < _MOST_OF * lengths[0]
 
     def _closed(self, first: int, most: int) -> Ring | None:
         """The shortest ring from the start of a piece up to another, of the path or of one of its parallels."""

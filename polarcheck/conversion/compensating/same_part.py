@@ -25,6 +25,8 @@ _POINTS, _NEAR_CORNERS = 400, (0.0, 0.02, 0.1, 0.9, 0.98)
 _INCREMENTS, _CHORDS = 2.0, 5e-4
 #: The tool center goes round an acute corner up to this far from the path, in R.
 _FARTHEST = 3.0
+#: The tool center goes round corners up to this far from arcs with R about them, in R: the square root of 2, less 1.
+_AT_CORNERS = 0.42
 #: Smaller distances that are tried first, in R.
 _FINER = (0.003, 0.15, 0.45, 0.9)
 
@@ -85,7 +87,15 @@ def require_same_part(
         if differs[worst] > tolerance:
             line = int(trace.blocks.line_in_file[moves[numbers[worst]].row])
             raise RefusedError([Refusal(line, _text(was, becomes, worst))])
-    return Proof(largest, result.deviation)
+    path = 0.0
+    for number, own_radius in dict.fromkeys((contour.section.number, contour.section.radius) for contour in contours):
+        apart, row = now.farthest_from(swept, number)
+        path = max(path, apart)
+        if apart > _AT_CORNERS * own_radius + tolerance:
+            line = origin[int(result.new.trace.blocks.line_in_file[row]) - 1]
+            text = f"the tool center would leave its path by {apart:.4f} mm, which no corner explains"
+            raise RefusedError([Refusal(line, text)])
+    return Proof(largest, path)
 
 
 def _text(was: Floats, becomes: Floats, worst: int) -> str:

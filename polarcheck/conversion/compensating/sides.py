@@ -38,7 +38,8 @@ class Swept:
         self.top = np.fmax(begins, ends)
         usable = trace.path.cuts[moves.row] & ~np.isnan(radius) & ~np.isnan(moves.start + moves.end) & moves.is_of_tool
         self.moves, self.radius = moves, radius
-        self.usable = self._deepest(np.flatnonzero(usable))
+        self.at_feed = np.flatnonzero(usable)
+        self.usable = self._deepest(self.at_feed)
 
     def _deepest(self, usable: Rows) -> Rows:
         """The deepest of moves along one way with one R, which clears what the others do."""
@@ -79,6 +80,20 @@ class Swept:
             (at, _), far = tree.query_nearest(places, return_distance=True, all_matches=False)
             distance[at] = np.minimum(distance[at], far - size)
         return distance
+
+    def farthest_from(self, other: Swept, section: int) -> tuple[float, int]:
+        """How far the tool center in a section leaves its path in another program at most [mm], and in which row."""
+        import shapely
+
+        from polarcheck.geometry.polygons.faces import coordinates, lines_of
+
+        chosen, others = (way.at_feed[way.moves.section[way.at_feed] == section] for way in (self, other))
+        own, lines = segments(self._curves(chosen), _TOLERANCE), segments(other._curves(others), _TOLERANCE)
+        tree = shapely.STRtree(lines_of(lines.start, lines.end))
+        points = shapely.points(coordinates(own.end))
+        (at, _), far = tree.query_nearest(points, return_distance=True, all_matches=False)
+        worst = int(np.argmax(far))
+        return float(far[worst]), int(self.moves.row[chosen[own.move[at[worst]]]])
 
     def _curves(self, chosen: np.ndarray) -> Curves:
         moves, turn = self.moves, self.turn[chosen]
