@@ -36,6 +36,7 @@ NAMES = (
     "certify",
     "check",
     "compare",
+    "compensate",
     "completion",
     "config",
     "convert",

@@ -14,6 +14,8 @@ from polarcheck.machines.machine import Machine
 
 #: How often an arc is halved where its words would not come near enough: into 64 parts.
 _HALVINGS = 6
+#: Points that differ by less are one [mm].
+_SAME_POINT = 1e-9
 
 
 class Pen:
@@ -81,6 +83,21 @@ class Pen:
         """Write all words again from here on, as behind blocks that somebody else has written."""
         self._written = [None, None, None]
         self._motion = self._feed = ""
+
+    def go_on(self, at: complex, z: float, motion: str = "") -> None:
+        """
+        Go on behind blocks that somebody else has written: words that would repeat what is in force are left out.
+
+        at: the programmed point there [mm]; the words for it are known where it is the point written last, or whole
+        least increments. z: [mm]. motion: the code in force, as G1; empty where it has to be written.
+        """
+        words: list[int | None] = self._written[:2] if abs(at - self.at) <= _SAME_POINT else [None, None]
+        self.forget()
+        self.at, self.z = at, z
+        if abs(at - self.written_point) <= _SAME_POINT:
+            words = list(self._rounded(at))
+        self._written[:2] = words
+        self._motion = self._code(motion) if motion else ""
 
     def line(
         self, end: complex | None = None, z: float | None = None, feed: float | None = None, codes: Sequence[str] = ()

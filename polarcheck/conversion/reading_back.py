@@ -106,6 +106,7 @@ def read_back_on_part(
     chord: float = CHORD,
     left_out: Collection[int] = (),
     noted: Collection[str] = (),
+    finer: Sequence[float] = (),
 ) -> ReadBack:
     """
     Compare a program whose sections have another form with the original: with the mode or without it, compensated or
@@ -118,7 +119,8 @@ def read_back_on_part(
     settings: of the new program. origin: for each of its lines the line in the original, from 1. tolerance: how far the
     ways may be apart [mm]. chord: how far chords may leave the true path [mm]. left_out: lines of the original that
     position the tool otherwise in the new program; where it goes from there on is compared. noted: groups of rules
-    whose errors are notes: they judge states that the new program has from the original, in the mode alone.
+    whose errors are notes: they judge states that the new program has from the original, in the mode alone. finer: tolerances that are tried before, ascending
+    [mm]: the deviation is found up to the one that the ways keep.
 
     Raises RefusedError where a position of the original is not known, or the new program cannot be run once.
     """
@@ -128,10 +130,13 @@ def read_back_on_part(
         stands_for = np.array([0, *origin])[np.minimum(new.trace.blocks.line_in_file, len(origin))]
         old_path = old_path[~np.isin(original.trace.blocks.line_in_file[old_path.row], list(left_out))]
         new_path = new_path[~np.isin(stands_for[new_path.row], list(left_out))]
-    # What chords add comes on top of what is measured.
-    measured_up_to = max(tolerance - chord, tolerance / 2) / (1 + _SHARE_OF_CHORDS)
-    deviation = path_deviation(old_path, new_path, measured_up_to)
-    largest = deviation.largest + deviation.rounding + chord
+    for within in (*finer, tolerance):
+        # What chords add comes on top of what is measured.
+        measured_up_to = max(within - chord, within / 2) / (1 + _SHARE_OF_CHORDS)
+        deviation = path_deviation(old_path, new_path, measured_up_to)
+        largest = deviation.largest + deviation.rounding + chord
+        if largest <= within:
+            break
     differences = []
     if largest > tolerance:
         lines = [each.trace.blocks.line_in_file for each in (original, new)]

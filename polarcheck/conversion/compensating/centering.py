@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -10,13 +10,15 @@ from polarcheck.arrays import Mask
 from polarcheck.checking.phrases.offsets import called_tool, to_give
 from polarcheck.columns.trace import Trace
 from polarcheck.conversion.blocks import NewBlock, edit_before, edits_of, with_edits
-from polarcheck.conversion.compensating.moves import of_section
+from polarcheck.conversion.compensating.moves import Move, of_section
+from polarcheck.conversion.compensating.sections import compensated_sections
 from polarcheck.conversion.compensating.writing import Stroke, Strokes, new_blocks
 from polarcheck.conversion.original import Original
 from polarcheck.conversion.outcome import Figure, Outcome, Refusal, RefusedError
 from polarcheck.conversion.reading_back import read_back_on_part, require_equal
 from polarcheck.conversion.style_of import style_of
 from polarcheck.geometry.cutter_compensation.compensation import Phase
+from polarcheck.geometry.tolerances import ZERO
 from polarcheck.table.moves import Moves
 from polarcheck.table.tool_center import ToolCenter
 
@@ -34,16 +36,17 @@ def centered(original: Original) -> Outcome:
     trace = original.trace
     tool_center: ToolCenter = original.tables["tool_center"]
     compensated = trace.mode.anywhere_in_section(trace.compensation.compensates)
-    sections = np.unique(trace.mode.section[compensated & trace.mode.in_polar]).tolist()
-    if not sections:
-        raise RefusedError([Refusal(0, "no polar section has G41 or G42: its path is that of the tool center already")])
+    sections = compensated_sections(trace)
     _require_path(trace, tool_center, compensated)
     style, machine = style_of(trace), original.settings.machine
     strokes = _strokes(trace, tool_center.moves, compensated)
     blocks = new_blocks(trace, strokes, style)
-    remarks = list(_remarks(trace, sections))
+    cutters = list(_cutters(trace, sections))
     edits = edits_of(original, blocks, style, machine)
-    first = {int(trace.run.block[trace.mode.sections.enter[section]]): remark for section, remark in remarks}
+    first = {
+        int(trace.run.block[trace.mode.sections.enter[section]]): f"TOOL CENTER PATH OF {tool} WITH R{radius}"
+        for section, tool, radius in cutters
+    }
     edits += [edit_before(original, block, [NewBlock(comment=text)], style, machine) for block, text in first.items()]
     data, origin = with_edits(original, sorted(edits))
     step = float(np.max(trace.lengths.least_step))
@@ -53,7 +56,9 @@ def centered(original: Original) -> Outcome:
         Figure("sections written as the path of the tool center", len(sections)),
         Figure("largest distance of the path from that of the original", result.deviation, "mm"),
     ]
-    notes = [f"{text.lower()}: another R in the offset table changes nothing any more" for _, text in remarks]
+    notes = [
+        f"{tool} with R {radius}: another R in the offset table changes nothing any more" for _, tool, radius in cutters
+    ]
     return Outcome(data, origin, [], figures, list(dict.fromkeys(notes)))
 
 
@@ -78,10 +83,14 @@ def _require_path(trace: Trace, tool_center: ToolCenter, compensated: Mask) -> N
         for row in np.flatnonzero(rows & compensated)[:5].tolist()
     ]
     rows = moves.row[~moves.known & compensated[moves.row]]
-    refusals += [Refusal(int(lines[row]), "where the tool center runs is not known") for row in rows[:1].tolist()]
+    text = "where this move begins is not known: write X and C before it"
+    refusals += [Refusal(int(lines[row]), text) for row in rows[:1].tolist()]
     if moves.allowance.any():
         row = int(moves.row[np.argmax(moves.allowance != 0)])
         refusals.append(Refusal(int(lines[row]), "an infeed cycle makes the passes of its section"))
+    slower = moves.row[(moves.arc_share != 1) & compensated[moves.row]]
+    text = "F along this arc is that of the contour, not of the tool center: switch that off before"
+    refusals += [Refusal(int(lines[row]), text) for row in slower[:1].tolist()]
     if refusals:
         raise RefusedError(sorted(refusals, key=lambda refusal: refusal.line))
 
@@ -92,25 +101,34 @@ def _strokes(trace: Trace, moves: Moves, compensated: Mask) -> Strokes:
     result: dict[int, list[Stroke]] = {row: [] for row in np.flatnonzero(writes & compensated).tolist()}
     changed = np.zeros(len(trace), bool)
     changed[moves.row[moves.phase != Phase.CANCELLED]] = True
-    share = moves.arc_share
     for row in np.flatnonzero(changed & compensated & trace.path.on_plane).tolist():
         result.setdefault(row, [])
     for section in np.unique(trace.mode.section[list(result)]).tolist():
-        own = np.flatnonzero((moves.section == section) & ~np.isnan(moves.start + moves.end))
-        for move, index in zip(of_section(trace, moves, section), own.tolist(), strict=True):
-            if move.row not in result:
-                continue
-            feed = float(moves.feed[index] * share[index]) if share[index] != 1 else None
-            result[move.row].append(Stroke(move.piece, z=None if move.is_level else move.ends, feed=feed))
+        new = [move for move in of_section(trace, moves, section) if move.row in result]
+        for move in _without_short(new, float(trace.lengths.least_step[new[0].row])):
+            result[move.row].append(Stroke(move.piece, z=None if move.is_level else move.ends))
     return dict(sorted(result.items()))
 
 
-def _remarks(trace: Trace, sections: list[int]) -> Iterator[tuple[int, str]]:
-    """A comment for each section that says which tool and R its path is for."""
+def _without_short(moves: Sequence[Move], shortest: float) -> list[Move]:
+    """Moves without the lines between two others that are shorter [mm], as at corners that are all but smooth."""
+    result: list[Move] = []
+    for move, following in zip(moves, [*moves[1:], None], strict=True):
+        piece = move.piece
+        if result and following is not None and piece.center is None and move.is_level:
+            is_between = abs(following.piece.start - piece.end) <= ZERO
+            if is_between and abs(piece.end - result[-1].piece.end) < shortest and piece.length > ZERO:
+                continue
+        result.append(move)
+    return result
+
+
+def _cutters(trace: Trace, sections: list[int]) -> Iterator[tuple[int, str, str]]:
+    """Each section with its tool, as it is called, and R in the units of the program."""
     for section in sections:
         rows = np.flatnonzero((trace.mode.section == section) & trace.compensation.compensates & trace.path.travels)
         if not len(rows):
             continue
         row = int(rows[0])
         radius = abs(float(trace.compensation.radius[row])) / float(trace.lengths.scale[row])
-        yield section, f"TOOL CENTER PATH OF {called_tool(trace.tools, row)} WITH R{radius:.4f}".rstrip("0")
+        yield section, called_tool(trace.tools, row), f"{radius:.4f}".rstrip("0")

@@ -5,28 +5,31 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import msgspec
-import numpy as np
 
-from polarcheck.checking.phrases.offsets import called_tool, example, to_give
+from polarcheck.checking.phrases.offsets import called_tool
 from polarcheck.columns.trace import Trace
 from polarcheck.conversion.blocks import edits_of, with_edits
+from polarcheck.conversion.compensating.candidates import Candidate
 from polarcheck.conversion.compensating.centering import centered
-from polarcheck.conversion.compensating.contours import SIDES, Found, Section, contours_of
-from polarcheck.conversion.compensating.moves import Move, of_section
+from polarcheck.conversion.compensating.contours import SIDES, contours_of
+from polarcheck.conversion.compensating.moves import Move
 from polarcheck.conversion.compensating.parallel import NoContourError
 from polarcheck.conversion.compensating.pieces import Piece
 from polarcheck.conversion.compensating.ramps import Contour, with_ramps
-from polarcheck.conversion.compensating.same_part import Made, Proof, require_same_part
+from polarcheck.conversion.compensating.same_part import CompensatedContour, Proof, require_same_part
+from polarcheck.conversion.compensating.sections import Section, sections_of
 from polarcheck.conversion.compensating.sides import Swept
 from polarcheck.conversion.compensating.writing import Stroke, new_blocks
 from polarcheck.conversion.original import Original
 from polarcheck.conversion.outcome import Figure, Outcome, Refusal, RefusedError
 from polarcheck.conversion.style_of import style_of
-from polarcheck.geometry.tolerances import ADJUSTMENT, ROUNDING
 from polarcheck.machines.machine import Machine
 from polarcheck.table.bar import Bar
 from polarcheck.table.milled import Milled
 from polarcheck.table.moves import Moves
+
+#: A ramp at one depth in the place of a stretch that goes down by less [mm].
+_SAME_DEPTH = 0.01
 
 __all__ = ["SIDES", "Compensating", "centered", "compensated"]
 
@@ -49,85 +52,51 @@ def compensated(original: Original, options: Compensating = Compensating()) -> O
     moves: Moves = original.tables["tool_center"].moves
     milled: Milled = original.tables["milled"]
     bar: Bar = original.tables["bar"]
-    numbers = _sections(trace)
+    sections = sections_of(trace, moves, bar.known.largest)
     swept = Swept(trace, moves, milled.radius[moves.row])
-    sections = [
-        Section(number, of_section(trace, moves, number), _radius(trace, number), bar.known.largest)
-        for number in numbers
-    ]
-    chosen = [contours_of(trace, section, swept, options.side) for section in sections]
+    chosen = contours_of(trace, sections, swept, options.side)
     try:
-        data, origin, made, proof = _written(original, swept, sections, chosen, by_moves=True)
+        data, origin, contours, proof = _written(original, swept, sections, chosen, by_moves=True)
     except RefusedError as error:
         # Where a move to a contour is no good start-up, the contour's first stretch is.
         try:
-            data, origin, made, proof = _written(original, swept, sections, chosen, by_moves=False)
+            data, origin, contours, proof = _written(original, swept, sections, chosen, by_moves=False)
         except RefusedError:
             raise error from None
     figures = [
         Figure("sections with G41 or G42 and the contour", len(sections)),
-        Figure("contours", len(made)),
+        Figure("contours", len(contours)),
         Figure("largest difference of the part", proof.part, "mm"),
-        Figure("largest distance of the tool center from its path, at corners", proof.path, "mm"),
+        Figure("largest distance of the tool center from its path", proof.path, "mm"),
     ]
-    return Outcome(data, origin, [], figures, _notes(trace, made))
+    return Outcome(data, origin, [], figures, _notes(trace, contours))
 
 
 def _written(
     original: Original,
     swept: Swept,
     sections: Sequence[Section],
-    chosen: Sequence[Sequence[tuple[Found, Contour]]],
+    chosen: Sequence[Sequence[tuple[Candidate, Contour]]],
     by_moves: bool,
-) -> tuple[bytes, list[int], list[Made], Proof]:
+) -> tuple[bytes, list[int], list[CompensatedContour], Proof]:
     """The new program, read back. by_moves: moves to a contour and away from it become ramps."""
     trace, machine = original.trace, original.settings.machine
-    made = [each for pair in zip(sections, chosen, strict=True) for each in _made(trace, *pair, by_moves)]
+    contours = [ramped for pair in zip(sections, chosen, strict=True) for ramped in _ramped(trace, *pair, by_moves)]
     style = style_of(trace)
-    blocks = new_blocks(trace, _strokes(trace, made, machine), style)
+    blocks = new_blocks(trace, _strokes(trace, contours, machine), style)
     data, origin = with_edits(original, edits_of(original, blocks, style, machine))
-    return data, origin, made, require_same_part(original, swept, data, origin, made)
+    return data, origin, contours, require_same_part(original, swept, data, origin, contours)
 
 
-def _sections(trace: Trace) -> list[int]:
-    """The sections that cut along the path of the tool center. Raises RefusedError where there is none."""
-    cuts = trace.path.cuts & ~trace.mode.anywhere_in_section(trace.compensation.compensates)
-    numbers: list[int] = np.unique(trace.mode.section[cuts & trace.mode.in_polar]).tolist()
-    if not numbers:
-        raise RefusedError([Refusal(0, "no polar section programs the path of the tool center: all have G41 or G42")])
-    return numbers
-
-
-def _radius(trace: Trace, section: int) -> float:
-    """R of the tool offset in force in a section [mm]. Raises RefusedError where it is not known."""
-    rows = np.flatnonzero((trace.mode.section == section) & trace.path.travels)
-    row, line = int(rows[0]), int(trace.blocks.line_in_file[rows[0]])
-    if not trace.tools.offset_number[row]:
-        how = f"call one before the section, as {example(trace.machine)}"
-        raise RefusedError([Refusal(line, f"no tool offset is in force, from which the control would take R: {how}")])
-    radius = np.unique(trace.offsets.radius_of_offset[rows])
-    tool = called_tool(trace.tools, row)
-    if np.isnan(radius).any():
-        missing = to_give(trace.tools, trace.machine, row, "radius")
-        raise RefusedError([Refusal(line, f"R of {tool} is not known: {missing}")])
-    if len(radius) > 1:
-        raise RefusedError([Refusal(line, "another tool offset is called in the section")])
-    if radius[0] <= ADJUSTMENT + ROUNDING:
-        missing = to_give(trace.tools, trace.machine, row, "radius")
-        text = f"R of {tool} is {radius[0]:g} mm, which is not the radius of its cutter: {missing}"
-        raise RefusedError([Refusal(line, text)])
-    if trace.compensation.sides_are_open[row]:
-        raise RefusedError([Refusal(line, "on the sub-spindle nobody knows which of G41 and G42 is meant")])
-    return float(radius[0])
-
-
-def _made(trace: Trace, section: Section, chosen: Sequence[tuple[Found, Contour]], by_moves: bool) -> list[Made]:
+def _ramped(
+    trace: Trace, section: Section, chosen: Sequence[tuple[Candidate, Contour]], by_moves: bool
+) -> list[CompensatedContour]:
     """The contours of a section with their ramps."""
-    result: list[Made] = []
+    result: list[CompensatedContour] = []
     free = 0
-    for index, (each, contour) in enumerate(chosen):
-        following = chosen[index + 1][0].first if index + 1 < len(chosen) else each.high
-        low, high = max(each.low, free), min(each.high, following)
+    for index, (candidate, contour) in enumerate(chosen):
+        following = chosen[index + 1][0].first if index + 1 < len(chosen) else candidate.high
+        low, high = max(candidate.low, free), min(candidate.high, following)
         try:
             ramped = with_ramps(
                 section.moves, contour, *((low, high) if by_moves else (contour.first, contour.last + 1))
@@ -135,7 +104,7 @@ def _made(trace: Trace, section: Section, chosen: Sequence[tuple[Found, Contour]
         except NoContourError as error:
             line = int(trace.blocks.line_in_file[section.moves[max(error.move, 0)].row])
             raise RefusedError([Refusal(line, str(error))]) from None
-        result.append(Made(section, contour, ramped))
+        result.append(CompensatedContour(section, contour, ramped))
         free = max(contour.last, ramped.leaves, *(piece.move for piece in ramped.contour)) + 1
     return result
 
@@ -143,14 +112,14 @@ def _made(trace: Trace, section: Section, chosen: Sequence[tuple[Found, Contour]
 # ---- to blocks ----
 
 
-def _strokes(trace: Trace, made: Sequence[Made], machine: Machine) -> dict[int, list[Stroke]]:
+def _strokes(trace: Trace, contours: Sequence[CompensatedContour], machine: Machine) -> dict[int, list[Stroke]]:
     """The new moves of all contours, by the rows in whose place they stand."""
     result: dict[int, list[Stroke]] = {}
-    for each in made:
-        moves, ramped = each.section.moves, each.ramped
-        key = "compensation_right" if each.contour.aside > 0 else "compensation_left"
+    for contour in contours:
+        moves, ramped = contour.section.moves, contour.ramped
+        key = "compensation_right" if contour.path.aside > 0 else "compensation_left"
         on, off = machine.codes(key)[0], machine.codes("compensation_off")[0]
-        numbers = range(*_span(each))
+        numbers = range(*_span(contour))
         for number in numbers:
             result[moves[number].row] = []
         start = ramped.contour[0].start
@@ -159,7 +128,7 @@ def _strokes(trace: Trace, made: Sequence[Made], machine: Machine) -> dict[int, 
             result[move.row] = [Stroke(Piece(move.piece.start, start), (on,), _depth(move))]
         else:
             first = moves[ramped.contour[0].move]
-            _require_level(trace, first)
+            _require_level(trace, first, ramped.contour[0])
             result[moves[numbers[0]].row].append(Stroke(Piece(first.piece.start, start), (on,)))
         for piece, following in zip(ramped.contour, [*ramped.contour[1:], None], strict=True):
             move = moves[piece.move]
@@ -178,29 +147,36 @@ def _strokes(trace: Trace, made: Sequence[Made], machine: Machine) -> dict[int, 
     return dict(sorted(result.items()))
 
 
-def _span(made: Made) -> tuple[int, int]:
+def _span(contour: CompensatedContour) -> tuple[int, int]:
     """The numbers of the moves of a contour, with the arcs that lead to it and away from it."""
-    numbers = [piece.move for piece in made.ramped.contour]
-    return min(made.contour.first, *numbers), max(made.contour.last, *numbers) + 1
+    numbers = [piece.move for piece in contour.ramped.contour]
+    return min(contour.path.first, *numbers), max(contour.path.last, *numbers) + 1
 
 
 def _depth(move: Move) -> float | None:
     return None if move.is_level else move.ends
 
 
-def _require_level(trace: Trace, move: Move) -> None:
-    """Raise RefusedError for a move that is left out, or is a ramp, and goes down."""
-    if not move.is_level:
+def _require_level(trace: Trace, move: Move, rest: Piece | None = None) -> None:
+    """
+    Raise RefusedError for a move that is left out, or whose beginning is a ramp, and goes down.
+
+    rest: what of the contour is left beside it; it goes down by as much on a way that is shorter by all but nothing.
+    """
+    share = 1.0
+    if rest is not None and move.piece.center is not None:
+        share = 1 - rest.sweep / move.piece.sweep
+    if not move.is_level and abs(move.ends - move.begins) * share > _SAME_DEPTH:
         line = int(trace.blocks.line_in_file[move.row])
         raise RefusedError([Refusal(line, "Z moves here, where the contour has no move of its own: move Z alone")])
 
 
-def _notes(trace: Trace, made: Sequence[Made]) -> list[str]:
+def _notes(trace: Trace, contours: Sequence[CompensatedContour]) -> list[str]:
     """What to enter in the offset table, and on which side of which contours the tool is."""
     result = []
-    for each in made:
-        row = each.section.moves[each.contour.first].row
+    for contour in contours:
+        row = contour.section.moves[contour.path.first].row
         scale = float(trace.lengths.scale[row])
         tool = called_tool(trace.tools, row)
-        result.append(f"{tool}: enter R {each.section.radius / scale:.4f} in its tool offset, nose type 0 or 9")
+        result.append(f"{tool}: enter R {contour.section.radius / scale:.4f} in its tool offset, nose type 0 or 9")
     return list(dict.fromkeys(result))

@@ -1,87 +1,103 @@
-"""The contours that a section of a tool center path runs along, and on which side of the path each has the part."""
+"""The contours that sections of tool center paths run along, and on which side of the path each has the part."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import msgspec
 import numpy as np
 
 from polarcheck.columns.trace import Trace
-from polarcheck.conversion.compensating.moves import Move, runs
-from polarcheck.conversion.compensating.parallel import NEAR, NoContourError, contour_beside
-from polarcheck.conversion.compensating.pieces import Piece
+from polarcheck.conversion.compensating.candidates import Candidate, candidates_of
+from polarcheck.conversion.compensating.moves import Move
+from polarcheck.conversion.compensating.parallel import NEAR
 from polarcheck.conversion.compensating.ramps import Contour
-from polarcheck.conversion.compensating.rings import Ring, rings_of
-from polarcheck.conversion.compensating.sides import Swept, stands
+from polarcheck.conversion.compensating.sections import Section
+from polarcheck.conversion.compensating.sides import Swept, points_along
 from polarcheck.conversion.outcome import Refusal, RefusedError
 from polarcheck.geometry.tolerances import ROUNDING
-from polarcheck.parts.tool_paths import above_the_face
 
 #: On which side of all paths the cutter is, seen along them: left is G41, right is G42; or where their parts are.
 SIDES = ("left", "right", "part-inside", "part-outside")
+#: Passes round one part have sizes within this factor.
+_SAME_SIZE = 2.0
+
+#: The contours of a section, in order.
+Chosen = list[tuple[Candidate, Contour]]
 
 
-class Found(msgspec.Struct, frozen=True):
+class _Path(msgspec.Struct, frozen=True):
     """
-    A contour before its side is known.
+    A candidate and its section.
 
-    first, last: numbers of moves. low, high: of its run. ring: None for a path that does not close. asides: where the
-    part may be, to the left of the path [mm]; below 0 to the right.
-    """
-
-    first: int
-    last: int
-    low: int
-    high: int
-    ring: Ring | None
-    asides: tuple[float, ...]
-
-    def is_inside(self, aside: float) -> bool:
-        """The part would be within the ring."""
-        return self.ring is not None and self.ring.area * aside > 0
-
-
-class Section(msgspec.Struct, frozen=True):
-    """
-    A section that programs the path of the tool center.
-
-    number: of the section. moves: of it, in order. radius: R of its cutter [mm]. bar: diameter beyond which there is no
-    material [mm]; NaN where it is not known.
+    frame: of the part. center: of the ring, in that frame [mm]. size: its largest distance from there [mm].
     """
 
-    number: int
-    moves: Sequence[Move]
-    radius: float
-    bar: float
+    section: Section
+    candidate: Candidate
+    frame: int
+    center: complex
+    size: float
+
+    def is_about_part_of(self, other: _Path) -> bool:
+        """Both may be passes round one part."""
+        near = abs(self.center - other.center) <= max(self.section.radius, other.section.radius)
+        sizes = self.size <= _SAME_SIZE * other.size and other.size <= _SAME_SIZE * self.size
+        return self.frame == other.frame and near and sizes
 
 
-def contours_of(trace: Trace, section: Section, swept: Swept, side: str) -> list[tuple[Found, Contour]]:
+def contours_of(trace: Trace, sections: Sequence[Section], swept: Swept, side: str) -> list[Chosen]:
     """
-    Return the contours of a section in order.
+    Return the contours of each section.
 
     side: one of SIDES where the program does not say on which side the part is; empty to see what the program says.
     Raises RefusedError where there is none, or its side is not known.
     """
-    moves = section.moves
-    in_air = above_the_face(trace)
-    spans = [span for span in runs(trace, moves) if moves[span[0]].feeds and not in_air[moves[span[0]].row]]
-    found = [each for span in spans for each in _rings(section, swept, *span, side)]
-    # Beside contours that close, other ways only lead to them.
-    found = found or [each for span in spans if (each := _open(section, swept, *span, side)) is not None]
-    if not found:
-        line = _line(trace, moves[0].row)
-        raise RefusedError([Refusal(line, "nothing of its path is a contour: it does not close, or is in the air")])
-    asides = _chosen(trace, section, found, side)
-    result: list[tuple[Found, Contour]] = []
-    for each, aside in zip(found, asides, strict=True):
-        closed = each.ring is not None and not each.ring.aside and _comes_back(moves, each)
-        contour = Contour(each.first, each.last, aside, closed)
+    paths = [list(_paths(trace, section, swept, side)) for section in sections]
+    rings = [path for own in paths for path in own if path.candidate.ring is not None]
+    known = [path for path in rings if len(path.candidate.asides) == 1]
+    refusals: list[Refusal] = []
+    result = []
+    for section, own in zip(sections, paths, strict=True):
+        asides = []
+        for path in own:
+            aside = _given(trace, path, side) if side else _aside(path, known)
+            if not aside:
+                refusals.append(_ambiguous(trace, path))
+            asides.append(aside)
+        result.append(_joined(trace, section.moves, [path.candidate for path in own], asides))
+    if refusals:
+        raise RefusedError(refusals)
+    return result
+
+
+def _paths(trace: Trace, section: Section, swept: Swept, side: str) -> Iterator[_Path]:
+    """The candidates of a section. Raises RefusedError where there is none."""
+    candidates = candidates_of(trace, section, swept, side)
+    if not candidates:
+        text = "nothing of its path is a contour: it does not close, and has no moves to it and away from it"
+        raise RefusedError([Refusal(_line(trace, section.moves[0].row), text)])
+    frame, turn = swept.frame_of(section.number)
+    for candidate in candidates:
+        pieces = [move.piece for move in section.moves[candidate.first : candidate.last + 1]]
+        points = points_along(pieces) * turn
+        center = complex(points.mean())
+        yield _Path(section, candidate, frame, center, float(np.abs(points - center).max()))
+
+
+def _joined(
+    trace: Trace, moves: Sequence[Move], candidates: Sequence[Candidate], asides: Sequence[float]
+) -> list[tuple[Candidate, Contour]]:
+    """The contours; turns that follow one another at several depths are one."""
+    result: list[tuple[Candidate, Contour]] = []
+    for candidate, aside in zip(candidates, asides, strict=True):
+        closed = candidate.ring is not None and not candidate.ring.aside and _comes_back(moves, candidate)
+        contour = Contour(candidate.first, candidate.last, aside, closed)
         if result and _goes_on(trace, moves, result[-1][1], contour):
             before, began = result.pop()
-            each = msgspec.structs.replace(each, first=before.first, low=before.low)
+            candidate = msgspec.structs.replace(candidate, first=before.first, low=before.low)
             contour = msgspec.structs.replace(contour, first=began.first)
-        result.append((each, contour))
+        result.append((candidate, contour))
     return result
 
 
@@ -101,112 +117,63 @@ def _goes_on(trace: Trace, moves: Sequence[Move], before: Contour, contour: Cont
     )
 
 
-def _comes_back(moves: Sequence[Move], found: Found) -> bool:
-    return abs(moves[found.last].piece.end - moves[found.first].piece.start) <= NEAR
-
-
-def _rings(section: Section, swept: Swept, low: int, high: int, side: str) -> list[Found]:
-    path = [section.moves[number].piece for number in range(low, high)]
-    result = []
-    for ring in rings_of(path, section.radius, NEAR):
-        first, last = low + ring.first, low + ring.last
-        result.append(Found(first, last, low, high, ring, _asides(section, swept, first, last, ring, side)))
-    return result
-
-
-def _open(section: Section, swept: Swept, low: int, high: int, side: str) -> Found | None:
-    span = _open_span(section, low, high)
-    if span is None:
-        return None
-    return Found(*span, low, high, None, _asides(section, swept, *span, None, side))
-
-
-def _asides(section: Section, swept: Swept, first: int, last: int, ring: Ring | None, side: str) -> tuple[float, ...]:
-    """The sides on which the part may be: all that leave a contour where one is given; else those that stand."""
-    path = [section.moves[number].piece for number in range(first, last + 1)]
-    whole = _from_middle(path) if ring is not None and not ring.aside else path
-    asides = (ring.aside,) if ring is not None and ring.aside else (section.radius, -section.radius)
-    z = min(section.moves[number].ends for number in range(first, last + 1))
-    result = []
-    for aside in asides:
-        try:
-            contour = contour_beside(whole, aside)
-        except NoContourError:
-            continue
-        if side or len(asides) == 1 or stands(swept, contour, section.number, z, section.bar):
-            result.append(aside)
-    return tuple(result)
-
-
-def _from_middle(path: Sequence[Piece]) -> list[Piece]:
-    """A closed path from the middle of its first piece."""
-    first, middle = path[0], path[0].at(0.5)
-    return [first.replaced(start=middle), *path[1:], first.replaced(end=middle)]
-
-
-def _open_span(section: Section, low: int, high: int) -> tuple[int, int] | None:
-    """
-    The moves of a run that are a contour which does not close; None where all are in the air.
-
-    Where the bar is known, moves outside of it lead to the contour or away from it. Else a section that begins and ends
-    with a move to and from its path has its ways in and out there.
-    """
-    moves, first, last = section.moves, low, high - 1
-    if not np.isnan(section.bar):
-        while first <= last and _is_in_air(section, moves[first].piece):
-            first += 1
-        while last >= first and _is_in_air(section, moves[last].piece):
-            last -= 1
-        return (first, last) if first <= last else None
-    if first == 0 and last > first:
-        first += 1
-    if last == len(moves) - 1 and last > first:
-        last -= 1
-    return first, last
-
-
-def _is_in_air(section: Section, piece: Piece) -> bool:
-    shares = np.linspace(0, 1, 33).tolist()
-    return min(abs(piece.at(share)) for share in shares) >= section.bar / 2 + section.radius - ROUNDING
+def _comes_back(moves: Sequence[Move], candidate: Candidate) -> bool:
+    return abs(moves[candidate.last].piece.end - moves[candidate.first].piece.start) <= NEAR
 
 
 # ---- which side ----
 
 
-def _chosen(trace: Trace, section: Section, found: Sequence[Found], side: str) -> list[float]:
-    """The side of each contour. Raises RefusedError where it is not known."""
-    if side:
-        return [_given(trace, section, each, side) for each in found]
-    known = {each.is_inside(each.asides[0]) for each in found if each.ring is not None and len(each.asides) == 1}
-    result = []
-    refusals = []
-    for each in found:
-        asides = each.asides
-        if len(asides) != 1 and each.ring is not None and len(known) == 1:
-            is_inside = next(iter(known))
-            asides = tuple(aside for aside in (section.radius, -section.radius) if each.is_inside(aside) == is_inside)
-        if len(asides) == 1:
-            result.append(asides[0])
-            continue
-        options = "--side part-inside or part-outside" if each.ring is not None else "--side left or right"
-        why = (
-            "the part may be on both sides of this path" if asides else "metal is taken away on both sides of this path"
-        )
-        refusals.append(Refusal(_line(trace, section.moves[each.first].row), f"{why}: choose with {options}"))
-    if refusals:
-        raise RefusedError(refusals)
-    return result
+def _aside(path: _Path, known: Sequence[_Path]) -> float:
+    """
+    The distance of the contour to the left of a path [mm]; 0 where its side is not known.
+
+    Passes round one part have it on one side: what a finishing pass takes away of the contour of a roughing pass, or
+    leaves of its other side, says nothing. Else all rings of the section, or of the program, tell.
+    """
+    candidate, radius = path.candidate, path.section.radius
+    if candidate.ring is None:
+        sides = candidate.asides or candidate.rests
+        return sides[0] if len(sides) == 1 else 0.0
+    if len(candidate.asides) == 1:
+        return candidate.asides[0]
+    groups = (
+        [other for other in known if path.is_about_part_of(other)],
+        [other for other in known if other.section is path.section],
+        known,
+    )
+    for group in groups:
+        is_inside = {other.candidate.is_inside(other.candidate.asides[0]) for other in group}
+        if len(is_inside) == 1:
+            inner = radius if candidate.is_inside(radius) else -radius
+            return inner if is_inside.pop() else -inner
+        if is_inside:
+            return 0.0
+    return candidate.rests[0] if len(candidate.rests) == 1 and not candidate.asides else 0.0
 
 
-def _given(trace: Trace, section: Section, found: Found, side: str) -> float:
-    line = _line(trace, section.moves[found.first].row)
+def _ambiguous(trace: Trace, path: _Path) -> Refusal:
+    candidate = path.candidate
+    options = "--side part-inside or part-outside" if candidate.ring is not None else "--side left or right"
+    why = "no side of this path is known to be the part: metal is taken away there, or arcs are smaller than R"
+    if candidate.is_single_move:
+        why = "no other move leads to this one and away from it"
+    elif candidate.asides:
+        why = "the part may be on both sides of this path"
+    return Refusal(_line(trace, path.section.moves[candidate.first].row), f"{why}: choose with {options}")
+
+
+def _given(trace: Trace, path: _Path, side: str) -> float:
+    """The distance to the left of a path [mm] by --side. Raises RefusedError where no contour is there."""
+    section, candidate = path.section, path.candidate
+    line = _line(trace, section.moves[candidate.first].row)
     if side in ("left", "right"):
         aside = -section.radius if side == "left" else section.radius
-    elif found.ring is None:
+    elif candidate.ring is None:
         raise RefusedError([Refusal(line, f"this path does not close, so that {side} says nothing: left or right")])
     else:
-        aside = section.radius if found.is_inside(section.radius) == (side == "part-inside") else -section.radius
-    if aside not in found.asides:
+        aside = section.radius if candidate.is_inside(section.radius) == (side == "part-inside") else -section.radius
+    if aside not in candidate.asides:
         raise RefusedError([Refusal(line, "on that side of this path is no contour: its arcs are smaller than R")])
     return aside
 

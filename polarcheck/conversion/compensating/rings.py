@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import cmath
 import math
+from bisect import bisect_left, bisect_right
 from collections.abc import Sequence
 
 import msgspec
 
 from polarcheck.conversion.compensating.pieces import Piece
+from polarcheck.time_limit import keep_time
 
 #: Moves behind the beginning of a ring, or before its end, within which a ring without them is looked for; and moves
 #: behind the one before, from whose middle a ring may begin.
@@ -47,11 +49,13 @@ def rings_of(path: Sequence[Piece], radius: float, tolerance: float) -> list[Rin
     result: list[Ring] = []
     at = behind = 0
     while at < len(path):
+        keep_time()
         ring = search.ring_from(at, at - behind <= _LEADS)
         if ring is None:
             at += 1
             continue
-        result.append(ring)
+        if not (result and search.comes_back(result[-1], ring)):
+            result.append(ring)
         at = behind = ring.last + 1
     return result
 
@@ -69,10 +73,13 @@ class _Search:
         self.starts = [[piece.start + 1j * aside * piece.leaving for piece in path] for aside in self.asides]
         self.ends = [[piece.end + 1j * aside * piece.arriving for piece in path] for aside in self.asides]
         self.ending: list[dict[tuple[int, int], list[int]]] = []
-        for ends in self.ends:
+        #: Beside arcs that are too small a parallel is none.
+        self.is_there = [[piece.radius - piece.turning * aside > tolerance for piece in path] for aside in self.asides]
+        for ends, is_there in zip(self.ends, self.is_there, strict=True):
             cells: dict[tuple[int, int], list[int]] = {}
             for number, end in enumerate(ends):
-                cells.setdefault(self._cell(end), []).append(number)
+                if is_there[number]:
+                    cells.setdefault(self._cell(end), []).append(number)
             self.ending.append(cells)
 
     def _cell(self, point: complex) -> tuple[int, int]:
@@ -81,26 +88,35 @@ class _Search:
 
     def ring_from(self, first: int, may_overlap: bool) -> Ring | None:
         """The ring that begins with a piece; None where none does. may_overlap: it may begin within its last piece."""
-        found = [ring for which in range(3) if (ring := self._closed(which, first)) is not None]
-        ring = max(found, key=lambda ring: (ring.last, ring.aside == 0), default=None)
+        ring = self._closed(first, len(self.path) - 1)
         ring = ring or (self._overlapping(first) if may_overlap else None)
         if ring is None or self._has_leads(ring):
             return None
         return self._with_overlap(ring)
 
-    def _closed(self, which: int, first: int) -> Ring | None:
-        """The longest ring from the start of a piece, of the path or of one of its parallels."""
+    def comes_back(self, before: Ring, ring: Ring) -> bool:
+        """A short way that begins where a ring has ended: out, and back for another pass."""
+        lengths = [self.length[way.last + 1] - self.length[way.first] for way in (before, ring)]
+        return ring.first == before.last + 1 and lengths[1] < _MOST_OF * lengths[0]
+
+    def _closed(self, first: int, most: int) -> Ring | None:
+        """The shortest ring from the start of a piece up to another, of the path or of one of its parallels."""
+        rings = (self._closed_parallel(which, first, most) for which in range(len(self.asides)))
+        return min((ring for ring in rings if ring is not None), key=lambda ring: ring.last, default=None)
+
+    def _closed_parallel(self, which: int, first: int, most: int) -> Ring | None:
+        if not self.is_there[which][first]:
+            return None
         start = self.starts[which][first]
         x, y = self._cell(start)
-        last = -1
-        for cell in ((x + i, y + j) for i in (-1, 0, 1) for j in (-1, 0, 1)):
-            for number in reversed(self.ending[which].get(cell, [])):
-                if number <= last or number < first:
-                    break
-                if abs(self.ends[which][number] - start) <= self.tolerance:
-                    last = number
-                    break
-        return self._ring(first, last, self.asides[which]) if last >= first else None
+        cells = [self.ending[which].get((x + i, y + j), []) for i in (-1, 0, 1) for j in (-1, 0, 1)]
+        near = (numbers[bisect_left(numbers, first) : bisect_right(numbers, most)] for numbers in cells)
+        for number in sorted(number for numbers in near for number in numbers):
+            if abs(self.ends[which][number] - start) <= self.tolerance:
+                ring = self._ring(first, number, self.asides[which])
+                if ring is not None:
+                    return ring
+        return None
 
     def _ring(self, first: int, last: int, aside: float) -> Ring | None:
         closing = Piece(self.path[last].end, self.path[first].start)
@@ -129,19 +145,31 @@ class _Search:
         return None
 
     def _has_leads(self, ring: Ring) -> bool:
-        """A ring without its first and its last moves, which are not run again within it, is the contour."""
-        whole = self.length[ring.last + 1] - self.length[ring.first]
-        for first in range(ring.first + 1, min(ring.first + _LEADS, ring.last) + 1):
-            inner = [found for which in range(3) if (found := self._closed(which, first)) is not None]
-            for each in inner:
-                if not max(ring.last - _LEADS, first) <= each.last <= ring.last - (ring.aside == 0):
-                    continue
-                inside = self.length[each.last + 1] - self.length[first]
-                rest = {_key(piece, self.tolerance) for piece in self.path[first : each.last + 1]}
-                leads = [*self.path[ring.first : first], *self.path[each.last + 1 : ring.last + 1]]
-                if inside >= _MOST_OF * whole and all(_key(piece, self.tolerance) not in rest for piece in leads):
-                    return True
-        return False
+        """The rings within it, without moves that lead to them and away from them, are the contours."""
+        return any(self._leads_to_rings(ring, first) for first in range(ring.first + 1, ring.first + _LEADS + 1))
+
+    def _leads_to_rings(self, ring: Ring, first: int) -> bool:
+        """From this move on rings follow one another, and other moves of the ring are not run again within them."""
+        inner: list[Ring] = []
+        at = behind = first
+        # A ring that closes where the whole does is one only if the moves before it close as well.
+        apart = abs(self.path[min(first, ring.last)].start - self.path[ring.first].start)
+        most = ring.last - (ring.aside == 0 and apart > self.tolerance)
+        while at <= most and (inner or at == first) and at - behind <= _LEADS:
+            hit = self._closed(at, most)
+            if hit is not None:
+                inner.append(hit)
+                behind = hit.last + 1
+            at = at + 1 if hit is None else behind
+        if ring.last + 1 - behind > _LEADS:
+            return False
+        length = sum(self.length[hit.last + 1] - self.length[hit.first] for hit in inner)
+        if length < _MOST_OF * (self.length[ring.last + 1] - self.length[ring.first]):
+            return False
+        within = {number for hit in inner for number in range(hit.first, hit.last + 1)}
+        ways = {_key(self.path[number], self.tolerance) for number in within}
+        leads = (number for number in range(ring.first, ring.last + 1) if number not in within)
+        return all(_key(self.path[number], self.tolerance) not in ways for number in leads)
 
     def _with_overlap(self, ring: Ring) -> Ring:
         """The ring with the moves behind it that run along its first ones again."""

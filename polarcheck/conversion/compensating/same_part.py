@@ -9,9 +9,9 @@ import msgspec
 import numpy as np
 
 from polarcheck.arrays import Floats, Points
-from polarcheck.conversion.compensating.contours import Section
 from polarcheck.conversion.compensating.pieces import Piece
 from polarcheck.conversion.compensating.ramps import Contour, Ramped
+from polarcheck.conversion.compensating.sections import Section
 from polarcheck.conversion.compensating.sides import Swept
 from polarcheck.conversion.original import Original
 from polarcheck.conversion.outcome import Refusal, RefusedError
@@ -25,13 +25,21 @@ _POINTS, _NEAR_CORNERS = 400, (0.0, 0.02, 0.1, 0.9, 0.98)
 _INCREMENTS, _CHORDS = 2.0, 5e-4
 #: The tool center goes round an acute corner up to this far from the path, in R.
 _FARTHEST = 3.0
+#: The tool center goes round corners up to this far from arcs with R about them, in R: the square root of 2, less 1.
+_AT_CORNERS = 0.42
+#: Smaller distances that are tried first, in R.
+_FINER = (0.003, 0.15, 0.45, 0.9)
 
 
-class Made(msgspec.Struct, frozen=True):
-    """A contour of a section with its ramps."""
+class CompensatedContour(msgspec.Struct, frozen=True):
+    """
+    A contour of a section with its ramps.
+
+    path: the moves of the tool center that it is beside.
+    """
 
     section: Section
-    contour: Contour
+    path: Contour
     ramped: Ramped
 
 
@@ -47,7 +55,7 @@ class Proof(NamedTuple):
 
 
 def require_same_part(
-    original: Original, swept: Swept, data: bytes, origin: Sequence[int], made: Sequence[Made]
+    original: Original, swept: Swept, data: bytes, origin: Sequence[int], contours: Sequence[CompensatedContour]
 ) -> Proof:
     """
     Return what the part and the way of the tool center differ by, with G41 and G42 and without.
@@ -56,9 +64,10 @@ def require_same_part(
     Raises RefusedError where the walls along a contour would be others, or the control would object; TooHardError.
     """
     trace = original.trace
-    radius = max(each.section.radius for each in made)
+    radius = max(contour.section.radius for contour in contours)
     step = float(np.max(trace.lengths.least_step))
-    result = read_back_on_part(original, data, original.settings, origin, _FARTHEST * radius)
+    finer = [share * radius for share in _FINER]
+    result = read_back_on_part(original, data, original.settings, origin, _FARTHEST * radius, finer=finer)
     if result.differences:
         raise RefusedError(result.differences)
     new_moves: Moves = result.new.tables["tool_center"].moves
@@ -66,10 +75,10 @@ def require_same_part(
     now = Swept(result.new.trace, new_moves, new_milled.radius[new_moves.row])
     tolerance = _INCREMENTS * step + _CHORDS
     largest = 0.0
-    for each in made:
-        moves, section = each.section.moves, each.section
-        numbers, points = _points(each.ramped.contour)
-        z = min(moves[number].ends for number in range(each.contour.first, each.contour.last + 1))
+    for contour in contours:
+        moves, section = contour.section.moves, contour.section
+        numbers, points = _points(contour.ramped.contour)
+        z = min(moves[number].ends for number in range(contour.path.first, contour.path.last + 1))
         was, becomes = (way.distance(points, section.number, z) for way in (swept, now))
         # What other moves take away is no wall.
         differs = np.where(was > -tolerance, np.abs(becomes - was), 0.0)
@@ -78,7 +87,15 @@ def require_same_part(
         if differs[worst] > tolerance:
             line = int(trace.blocks.line_in_file[moves[numbers[worst]].row])
             raise RefusedError([Refusal(line, _text(was, becomes, worst))])
-    return Proof(largest, result.deviation)
+    path = 0.0
+    for number, own_radius in dict.fromkeys((contour.section.number, contour.section.radius) for contour in contours):
+        apart, row = now.farthest_from(swept, number)
+        path = max(path, apart)
+        if apart > _AT_CORNERS * own_radius + tolerance:
+            line = origin[int(result.new.trace.blocks.line_in_file[row]) - 1]
+            text = f"the tool center would leave its path by {apart:.4f} mm, which no corner explains"
+            raise RefusedError([Refusal(line, text)])
+    return Proof(largest, path)
 
 
 def _text(was: Floats, becomes: Floats, worst: int) -> str:

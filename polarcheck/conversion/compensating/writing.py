@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from itertools import groupby
 
@@ -17,10 +18,13 @@ from polarcheck.conversion.outcome import Refusal, RefusedError
 from polarcheck.conversion.pen import Pen
 from polarcheck.conversion.style import Style
 from polarcheck.machines.modal import STATES, Motion, Units
+from polarcheck.revisions.stretches import NOWHERE
 
 #: Modal groups that the new moves say themselves.
 _GROUPS = ("motion", "side", "distance")
 _CODES = {0: "G1", 1: "G3", -1: "G2"}
+#: A word with a number, also of an address with several letters, as CR=5.
+_NUMBER = re.compile(r"[A-Za-z]*=?[-+]?[\d.]+")
 _STATES = {int(Motion.RAPID): "G0", int(Motion.LINE): "G1", int(Motion.CW): "G2", int(Motion.CCW): "G3"}
 
 
@@ -28,14 +32,12 @@ class Stroke(msgspec.Struct, frozen=True):
     """
     A move of the new program.
 
-    piece: its way. codes: in front of it, as G41. z: depth at its end [mm]; None where Z does not move. feed: F that it
-    needs [mm/min]; None where that of the original is right.
+    piece: its way. codes: in front of it, as G41. z: depth at its end [mm]; None where Z does not move.
     """
 
     piece: Piece
     codes: tuple[str, ...] = ()
     z: float | None = None
-    feed: float | None = None
 
 
 #: The rows that are rewritten, in order, with their new moves; a row without any keeps what else stands in it.
@@ -66,6 +68,10 @@ class _Writer:
         self.blocks: dict[int, list[NewBlock]] = {}
         self.is_said = _said_by_moves(trace)
         self.sets_motion = trace.modal.sets("motion")
+        block = trace.run.block
+        self.runs_again = np.bincount(block)[block] > 1
+        #: The last row of the group before, and the code of its last move.
+        self.last, self.motion = -1, ""
         self.pens = {
             units: Pen(trace.machine, style, units == Units.INCH)
             for units in np.unique(trace.lengths.units[trace.mode.section >= 0]).tolist()
@@ -75,9 +81,15 @@ class _Writer:
         """Write rows that follow one another."""
         trace, first, last = self.trace, group[0], group[-1]
         pen = self.pens[int(trace.lengths.units[first])]
-        pen.forget()
-        pen.at = complex(trace.path.start[first] + trace.path.center_shift[first])
-        pen.z = float(trace.path.z_before[first])
+        start = next((stroke.piece.start for row in group for stroke in strokes[row]), complex(trace.path.start[first]))
+        motion = self._motion_before(first)
+        at, z = start + complex(trace.path.center_shift[first]), float(trace.path.z_before[first])
+        if not self._is_section_of_group_before(first):
+            pen.at = NOWHERE
+        pen.go_on(at, z, motion)
+        if self.runs_again[first]:
+            # A block of a loop or a subprogram has the same words each time.
+            pen.forget()
         steps = self._steps(first)
         new: dict[int, list[NewBlock]] = {}
         for row in group:
@@ -88,8 +100,7 @@ class _Writer:
                 codes = (*steps, *stroke.codes)
                 steps = ()
                 moves += self._moves(pen, row, stroke, codes)
-            has_feed = any(stroke.feed is not None for stroke in strokes[row])
-            new[row] = self._with_others(row, moves, has_feed)
+            new[row] = self._with_others(row, moves)
         feed = ""
         for row in group:
             new[row], feed = _with_feed(new[row], feed)
@@ -101,7 +112,23 @@ class _Writer:
         for row in group:
             self._put(row, new[row])
         if kinds:
-            self._say_motion_behind(last, _CODES[kinds[-1]], pen)
+            self.motion = _CODES[kinds[-1]]
+            self._say_motion_behind(last, self.motion, pen)
+        self.last = last
+
+    def _is_section_of_group_before(self, first: int) -> bool:
+        section = self.trace.mode.section
+        return self.last >= 0 and bool(section[self.last] == section[first])
+
+    def _motion_before(self, first: int) -> str:
+        """The code of motion in force before a group; empty where the group begins with a code of its own."""
+        trace = self.trace
+        if self.sets_motion[first] or not first or trace.run.starts[first]:
+            return ""
+        between = slice(self.last + 1, first)
+        if self.motion and not (self.sets_motion[between] | trace.axes.moves[between]).any():
+            return self.motion
+        return _STATES.get(int(trace.modal.state("motion")[first - 1]), "")
 
     def _steps(self, row: int) -> tuple[str, ...]:
         """The code that makes words coordinates where those in force are distances."""
@@ -113,17 +140,17 @@ class _Writer:
         piece, shift = stroke.piece, complex(self.trace.path.center_shift[row])
         end = piece.end + shift
         if piece.center is None:
-            return pen.line(end, stroke.z, stroke.feed, codes)
-        return pen.arc(end, piece.center + shift, piece.turning > 0, stroke.z, stroke.feed, codes)
+            return pen.line(end, stroke.z, codes=codes)
+        return pen.arc(end, piece.center + shift, piece.turning > 0, stroke.z, codes=codes)
 
-    def _with_others(self, row: int, moves: list[NewBlock], has_feed: bool) -> list[NewBlock]:
+    def _with_others(self, row: int, moves: list[NewBlock]) -> list[NewBlock]:
         """The moves with the other words of the block: G codes in front of the first of them, the rest behind it."""
         run = self.trace.run
         front: list[str] = []
         behind: list[str] = []
         for index in words_of(run, row):
             word = written_word(run, index)
-            if self.is_said[index] or is_head(run, index) or (has_feed and chr(run.words.address[index]) == "F"):
+            if self.is_said[index] or is_head(run, index):
                 continue
             (front if chr(int(run.words.address[index])) == "G" else behind).append(word)
         if not front and not behind:
@@ -160,7 +187,10 @@ class _Writer:
 
     def _require_plain(self, row: int) -> None:
         trace = self.trace
-        if not is_plain(trace.run, row):
+        run = trace.run
+        words = [written_word(run, index) for index in words_of(run, row)]
+        is_macro = run.text.blocks.is_macro[int(run.block[row])]
+        if not is_plain(run, row) and (is_macro or not all(map(_NUMBER.fullmatch, words))):
             raise self._refused(row, "its words are expressions, or in another language: write them as numbers first")
         if trace.path.frames is not None:
             raise self._refused(row, "the program shifts or turns its coordinates by frames")
