@@ -119,8 +119,8 @@ def read_back_on_part(
     settings: of the new program. origin: for each of its lines the line in the original, from 1. tolerance: how far the
     ways may be apart [mm]. chord: how far chords may leave the true path [mm]. left_out: lines of the original that
     position the tool otherwise in the new program; where it goes from there on is compared. noted: groups of rules
-    whose errors are notes: they judge states that the new program has from the original, in the mode alone. finer: tolerances that are tried before, ascending
-    [mm]: the deviation is found up to the one that the ways keep.
+    whose errors are notes: they judge states that the new program has from the original, in the mode alone. finer:
+    tolerances that are tried before, ascending [mm]: the deviation is measured up to the one that the ways keep.
 
     Raises RefusedError where a position of the original is not known, or the new program cannot be run once.
     """
