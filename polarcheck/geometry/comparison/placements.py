@@ -110,7 +110,8 @@ def better_placement(
             continue
         if remaining.largest <= tolerance:
             return placement, remaining.largest
-        if best is None or remaining.largest < best[1]:
+        # The simplest come first: one that is better by less than a shift that counts is no better.
+        if best is None or remaining.largest < best[1] - _NO_SHIFT:
             best = placement, remaining.largest
     return best
 
