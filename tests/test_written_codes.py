@@ -194,6 +194,9 @@ _OF_ADDRESSES = {
     "control.axes",
     "polar.not_simulated_beside",
     "polar.virtual_axis_of_other_controls",
+    # Blocks, as they are written.
+    *("writing.before", "writing.behind", "writing.behind_end"),
+    *("writing.program_head", "writing.program_end", "writing.archive_heads"),
 }
 
 
