@@ -3,21 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import cached_property
 
 import msgspec
-import numpy as np
 
-from polarcheck.arrays import Rows, stretch
+from polarcheck.arrays import stretch
 from polarcheck.checking.settings import Settings
-from polarcheck.columns.filling import fill_down
 from polarcheck.conversion.control.axis_words import AxisWords
 from polarcheck.conversion.control.calls import Calls
+from polarcheck.conversion.control.cycles import WITH_ARGUMENTS, CycleWords
 from polarcheck.conversion.control.dwells import amount, counts_turns, word_for
 from polarcheck.conversion.control.g_meanings import GMeanings
 from polarcheck.conversion.control.m_meanings import MMeanings
 from polarcheck.conversion.control.measures import Measures, fraction
 from polarcheck.conversion.control.number_text import number_of
+from polarcheck.conversion.control.speeds import SpeedWords
 from polarcheck.conversion.control.spindle_roles import SpindleRoles
 from polarcheck.conversion.control.tool_words import ToolWords
 from polarcheck.conversion.original import Original
@@ -26,43 +25,8 @@ from polarcheck.machines.code_lists import numbers
 from polarcheck.machines.codes import code_numbers
 from polarcheck.machines.modal import NO_MOVE, FeedMode
 
-#: Lists of codes beside which the other words are arguments: all of them are the same on both machines, or none is.
-_WITH_ARGUMENTS = (
-    "data_input",
-    "turning_cycle",
-    "threading_cycle",
-    "facing_cycle",
-    "repetitive_cycle",
-    "drilling_cycle",
-    "motion_not_followed",
-    "scaling",
-    "rotation",
-    "mirror_image",
-    "frame_shift",
-    "frame_shift_added",
-    "frame_rotation",
-    "frame_rotation_added",
-    "frame_not_simulated",
-    "cylindrical_interpolation",
-    "axis_words_no_move",
-    "work_offset_extended",
-    "macro_calls",
-    "modal_macro_calls",
-    "modal_macro_calls_each_block",
-)
 #: Lists of codes that say what the other words of their block are for.
-_OF_ITS_BLOCK = frozenset((*NO_MOVE, *_WITH_ARGUMENTS, "thread_cutting"))
-#: Those of them that stay in force.
-_CYCLES = (
-    "turning_cycle",
-    "threading_cycle",
-    "facing_cycle",
-    "drilling_cycle",
-    "motion_not_followed",
-    "thread_cutting",
-)
-#: Cycles whose words are the same on all controls that have them.
-_PLAIN_CYCLES = ("turning_cycle", "threading_cycle", "facing_cycle", "drilling_cycle")
+_OF_ITS_BLOCK = frozenset((*NO_MOVE, *WITH_ARGUMENTS, "thread_cutting"))
 _OF_UNITS = ("inch", "mm")
 _OF_DISTANCE = ("absolute", "incremental")
 
@@ -114,10 +78,8 @@ class Translation:
             for key in ("x", "x_radius_words", "x_diameter_words", "x_absolute_diameter_words", "x_without_words")
         )
         self._polar_off = set(numbers([*self.source.polar.off, *self.source.polar.ended_by]))
-        self._speeds = {self.source.address_number(word): role for word, role in control.spindle_words.items()}
-        blocks = self.trace.blocks
-        self._is_repetitive = blocks.listed("repetitive_cycle")
-        self._has_arguments = blocks.listed(*_WITH_ARGUMENTS) | self.trace.modal.in_cycle
+        self._speeds = SpeedWords(self.trace, self.target, self.measures, self.roles)
+        self._cycles = CycleWords(self.trace, self.target, self.measures, self._g)
 
     # ---- interface ----
 
@@ -153,7 +115,7 @@ class Translation:
             self._dwell(row, indices, result)
         elif self._references_c_alone(row, indices):
             self._note(row, f"{' '.join(written)} is left out: {self.target.title} needs no reference return of C")
-        elif bool(self._has_arguments[row]):
+        elif bool(self._cycles.has_arguments[row]):
             self._with_arguments(row, indices, result)
         else:
             self._one_by_one(row, indices, in_steps, result)
@@ -212,57 +174,7 @@ class Translation:
                 self._word(row, index, result)
             else:
                 result.words.append(self.measures.written(index))
-        result.whole = result.whole or self._why_no_cycle(row) or self._why_other_arguments(row)
-        at = int(self._cycle_word[row])
-        if at >= 0 and bool(self.trace.modal.in_cycle[row]):
-            # Without the block that calls it the cycle does not go on.
-            result.whole = result.whole or self._why_other_arguments(int(self.trace.run.row[at]))
-
-    def _why_no_cycle(self, row: int) -> str:
-        """The code of the cycle in force has no counterpart."""
-        at = int(self._cycle_word[row])
-        if at < 0 or not bool(self.trace.modal.in_cycle[row]):
-            return ""
-        meaning = self._g.meaning(self._code(at), has_words=True)
-        return f"{self.measures.written(at)}: {meaning.reason}" if meaning.reason else ""
-
-    @cached_property
-    def _cycle_word(self) -> Rows:
-        """Per row: the last word with the code of a cycle; -1 before the first."""
-        blocks = self.trace.blocks
-        words = blocks.code_indices(*(code for key in _CYCLES for code in self.source.codes(key)))
-        at = np.full(len(self.trace), -1, np.int64)
-        at[self.trace.run.row[words]] = words
-        return fill_down(at, (at >= 0) | blocks.starts, -1).astype(np.int64)
-
-    def _why_other_arguments(self, row: int) -> str:
-        ours, theirs = self.source, self.target
-        if ours.macro.language != theirs.macro.language:
-            return "its words are those of another language"
-        if self.measures.unit_ratio(row) != 1:
-            return "its lengths are in other units there"
-        if self.measures.x_ratio(row) != 1 and self.trace.blocks.has("X", "U")[row]:
-            return "X counts otherwise there: diameter or radius"
-        if not self.measures.pointless_is_same and not self._has_points(row):
-            return "nothing says that its words mean the same there"
-        if ours.polar.rotary_words != theirs.polar.rotary_words:
-            return "the rotary axis has another address there"
-        systems = ours.control.g_code_system, theirs.control.g_code_system
-        has_steps = self.trace.blocks.has("U", "W", "V", "H")[row] and not self._is_repetitive[row]
-        if systems[0] != systems[1] and (has_steps or self.trace.modal.incremental[row]):
-            return "U, V, W and H are other words there"
-        return ""
-
-    def _has_points(self, row: int) -> bool:
-        """A plain cycle whose numbers have points, so that every control reads them alike."""
-        is_plain = self.trace.blocks.listed(*_PLAIN_CYCLES)[row] or self.trace.modal.in_cycle[row]
-        if not is_plain or self._is_repetitive[row]:
-            return False
-        others = (index for index in self.words_of(row) if self._letter(index) not in "GMST")
-        return all(
-            "." in written or not written.strip("ABCDEFHIJKLPQRUVWXYZ0")
-            for written in map(self.measures.written, others)
-        )
+        result.whole = result.whole or self._cycles.why_not(row)
 
     # ---- words ----
 
@@ -288,8 +200,10 @@ class Translation:
             self._m_word(row, index, result)
         elif letter == "T" or (letter == "D" and bool(self.trace.tools.has_edges[row])):
             self._tool(row, index, result)
-        elif self._is_speed(row, index, letter):
-            self._speed(row, index, result)
+        elif self._speeds.is_speed(row, index):
+            word = self._speeds.written(row, index)
+            no_word = f"{written}: the profile of {self.target.title} has no word for it"
+            (result.words if word else result.decisions).append(word or no_word)
         elif letter == "F":
             self._feed(row, index, result)
         elif letter in "IJKR" or letter == self.source.arcs.radius_word:
@@ -383,26 +297,6 @@ class Translation:
         if call.decision:
             result.decisions.append(call.decision)
 
-    def _speed(self, row: int, index: int, result: Translated) -> None:
-        role = self._speeds.get(int(self.trace.run.words.address[index]))
-        is_live = (
-            bool(self.roles.speed_of_live_tool[row]) if role is None or self._letter(index) == "P" else role == "live"
-        )
-        number = number_of(self.measures.written(index))
-        if number is None:
-            raise RefusedError([Refusal(int(self.trace.blocks.line_in_file[row]), "its speed is computed")])
-        if role == "sub" or role == "":
-            result.decisions.append(
-                f"{self.measures.written(index)}: the profile of {self.target.title} has no word for it"
-            )
-            return
-        names = [word for word, of_spindle in self.target.control.spindle_words.items() if of_spindle == "live"]
-        if is_live and role == "live" and names:
-            word = f"{names[0]}="
-        else:
-            word = (self.target.writing.live_tool_speed or "S") if is_live else "S"
-        result.words.append(f"{word}{number}")
-
     def _feed(self, row: int, index: int, result: Translated) -> None:
         ratio = self.measures.unit_ratio(row, of_feed=True)
         written = self.measures.written(index)
@@ -426,14 +320,6 @@ class Translation:
 
     def _code(self, index: int) -> int:
         return int(code_numbers(self.trace.run.words.value[index : index + 1])[0])
-
-    def _is_speed(self, row: int, index: int, letter: str) -> bool:
-        if letter == "S" or int(self.trace.run.words.address[index]) in self._speeds:
-            return True
-        return letter == "P" and self.source.writing.live_tool_speed == "P" and self._starts_live_tool(row)
-
-    def _starts_live_tool(self, row: int) -> bool:
-        return bool(self.trace.blocks.codes(*self.source.m_codes.live_tool_on)[row])
 
     def _beside_m_code(self, row: int, letter: str) -> bool:
         """The other word of a code such as M3 P12, which goes with that code."""
