@@ -335,7 +335,9 @@ def test_a_plane_that_lies_otherwise_is_turned() -> None:
     outcome = convert(section("G1 X40. C5. F200", c="C90."), SOURCE, "siemens-transmit")
     assert "G0 X60. Z2. C-90.\n" in outcome.data.decode()
     assert "G1 X-5. Y20. F200\n" in outcome.data.decode()
-    assert outcome.notes[-1] == "line 8: the plane is turned by 90.000 deg: it lies otherwise there"
+    assert (
+        outcome.notes[-1] == "line 8: the plane is turned by 90.000 deg: the other control places it at another angle"
+    )
 
 
 def test_outer_corners_need_a_code_and_acute_ones_the_path_of_the_center() -> None:

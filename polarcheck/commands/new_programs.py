@@ -105,7 +105,7 @@ def outputs(wanted: Wanted, tasks: Sequence[Task], paths: Sequence[str]) -> Mapp
     if several and not is_folder and os.path.exists(wanted.out):  # noqa: PTH110
         raise UsageError(f"-o {shown}: expected a folder for several programs, found a file")
     inputs = Inputs(tasks)
-    found: dict[str, Path] = {}
+    by_task: dict[str, Path] = {}
     for task in tasks:
         output = Path(wanted.out)
         if is_folder or several:
@@ -113,13 +113,13 @@ def outputs(wanted: Wanted, tasks: Sequence[Task], paths: Sequence[str]) -> Mapp
                 raise UsageError(f"-o {shown}: a folder; name the file, or give --stdin-filename")
             output /= _name_in_folder(task.place, paths)
         named = f"-o {files.shown(str(output))}"
-        if output in found.values():
+        if output in by_task.values():
             raise UsageError(f"{named}: two programs would be written to this file")
         inputs.refuse(output, named)
         if not wanted.force:
             _refuse_existing(output)
-        found[task.place] = output
-    return found
+        by_task[task.place] = output
+    return by_task
 
 
 def _name_in_folder(path: str, paths: Sequence[str]) -> str:
@@ -137,15 +137,16 @@ def _refuse_existing(output: Path) -> None:
 
 def write(wanted: Wanted, task: Task, old: bytes, new: bytes, output: Path | None) -> str | None:
     """
-    Write a new program into its file; return the file. None if it goes to standard output, or nowhere.
+    Write a new program into its file; return the file. None if it goes to standard output, or nothing is written.
 
     Raises OutputError if it cannot be written; then the file is as it was.
     """
     from polarcheck.reading import files, rewriting
 
     if wanted.in_place:
-        if new != old:
-            rewriting.rewrite(task.path, old, new, keep=True)
+        if new == old:
+            return None
+        rewriting.rewrite(task.path, old, new, keep=True)
         return task.title
     if output is None or wanted.diff:
         return None

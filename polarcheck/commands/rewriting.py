@@ -136,9 +136,13 @@ class _Original(NamedTuple):
         return self.task.title
 
     def line_count(self, data: bytes) -> int:
+        """Return the lines of a program; 0 where it cannot be read in its encoding."""
         from polarcheck.reading.source import read_source
 
-        return len(read_source(data, self.title, self.task.settings.encoding).line_starts)
+        try:
+            return len(read_source(data, self.title, self.task.settings.encoding).line_starts)
+        except SourceError:
+            return 0
 
 
 class _Programs:

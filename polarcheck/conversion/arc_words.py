@@ -8,7 +8,7 @@ import math
 
 import msgspec
 
-#: Of the way along the arc: so much may its end be off, in least increments. Both ends are rounded across and along.
+#: Largest error of the end of an arc along it, in least increments: both ends are rounded across and along.
 _ALONG = 4.0
 
 

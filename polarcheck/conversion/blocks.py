@@ -170,7 +170,7 @@ class _Sequence:
         self.is_on = style.numbered == "all"
         self.letter = "n" if style.lower_case else "N"
         self.step, self.digits = style.number_step, style.number_digits
-        self.references = _references(text)
+        self.references = jump_numbers(text)
 
     def is_reference(self, number: int) -> bool:
         """Something in the program may lead to the block with this N word."""
@@ -193,8 +193,8 @@ class _Sequence:
         return [f"{self.letter}{last + step * n:0{self.digits}d}" if step else "" for n in range(1, count + 1)]
 
 
-def _references(text: Text) -> set[int]:
-    """Numbers that may be targets of jumps and calls: beside P and Q, and in statements."""
+def jump_numbers(text: Text) -> set[int]:
+    """Return the numbers that may be targets of jumps and calls: those beside P and Q, and all in statements."""
     words, blocks = text.words, text.blocks
     beside = np.isin(words.address, np.frombuffer(b"PQ", np.uint8)) & np.isfinite(words.value)
     numbers = {int(value) for value in words.value[beside].tolist()}

@@ -8,8 +8,8 @@ import re
 from polarcheck.conversion.outcome import Refusal, RefusedError
 from polarcheck.conversion.style import PLAIN, Style
 from polarcheck.machines.machine import Machine
+from polarcheck.machines.modal import MM_PER_INCH
 
-MM_PER_INCH = 25.4
 #: Digits behind the point of F, which no least increment rounds: per minute in mm, per minute in inch.
 _FEED_DECIMALS = (3, 4)
 _CODE = re.compile(r"([GM])0*(\d+)(\.\d+)?")
@@ -20,7 +20,7 @@ class Numbers:
     Writes numbers of a program.
 
     machine: that reads them. style: how the program writes them. inch: its lengths are in inch.
-    feed_inch: so is F; as `inch` where it is None. Codes of control.units_of_lengths_alone part the two.
+    feed_inch: so is F; as `inch` where it is None. They differ behind a code of control.units_of_lengths_alone.
     line: of the original, from 1, that a refusal names.
     """
 
@@ -60,7 +60,7 @@ class Numbers:
         return self._checked(_fixed(round(degrees / least) * least, least), self.style.decimals, self.style.point)
 
     def rate(self, value: float) -> str:
-        """F that is no length per minute, as 1/min or deg/min: four decimals at most."""
+        """F as a number in the units of the program, be it 1/min or deg/min: four decimals at most."""
         return self._checked(f"{value:.4f}", self.style.feed_decimals, self.style.feed_point, counts=self.feed_inch)
 
     def feed(self, feed: float) -> str:
@@ -70,10 +70,6 @@ class Numbers:
         if not float(text) and feed > 0:
             text = f"{value:.9f}"
         return self._checked(text, self.style.feed_decimals, self.style.feed_point, counts=self.feed_inch)
-
-    def speed(self, speed: float) -> str:
-        """A spindle speed [1/min] as it is written: a whole number."""
-        return str(round(speed))
 
     def code(self, code: str) -> str:
         """A G or M code as it is written: G1 or G01."""

@@ -20,7 +20,7 @@ class Decision(msgspec.Struct, frozen=True):
 
 
 class Figure(msgspec.Struct, frozen=True):
-    """A number that the user is told, as the largest distance of two paths. unit: mm, deg/min, or empty for counts."""
+    """A measured value for the report, as the largest distance of two paths. unit: mm, deg/min, empty for counts."""
 
     name: str
     value: float
@@ -31,8 +31,11 @@ class Outcome(msgspec.Struct, frozen=True):
     """
     A program that was rewritten, and read back.
 
-    data: the new bytes. origin: for each line of the new program its line in the original (from 1), ascending.
-    decisions: what is to be decided. figures: what is told of it, in order. notes: lines on what was done where.
+    data: the new bytes.
+    origin: for each line of the new program its line in the original (from 1), ascending.
+    decisions: what is to be decided.
+    figures: the measured values, in order.
+    notes: lines on what was done where.
     """
 
     data: bytes

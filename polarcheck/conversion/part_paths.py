@@ -55,7 +55,7 @@ def path_on_part(tables: Tables, first: int = 0, until: int | None = None, chord
     until = len(trace) if until is None else until
     sections = of_sections(trace, tables["tool_center"], ())
     parts = [_in_section(section) for section in sections if section.rows[0] < until and section.rows[-1] >= first]
-    # A degree of C counts 1 there.
+    # With ANGLE as its tolerance C stays in degrees.
     parts.append(_without_mode(outside(trace, ANGLE, (), first, until), chord))
     moves = PartPath.concatenated(parts)
     moves = moves[(moves.row >= first) & (moves.row < until)]

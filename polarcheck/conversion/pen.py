@@ -173,7 +173,7 @@ class Pen:
         own_feed = next((word for word in words if word.startswith("F")), "")
         if own_feed:
             self._wanted_feed = self._feed = own_feed
-        block = self._block(codes, motion, words, feed, motion == "G0")
+        block = self._block(codes, motion, words, feed, bool(own_feed) or motion == "G0")
         self.at, self.z = end, z
         self._written = [None, None, None]
         return [block] if block.words else []

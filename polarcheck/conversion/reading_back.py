@@ -22,7 +22,7 @@ from polarcheck.revisions.report import Comparison, Difference, SectionPair
 
 #: Times of a section that differ by less than this share, or by less than this [s], are the same.
 _SAME_SHARE, _SAME_TIME = 2e-3, 0.02
-#: Rules about orders to spindles, the C axis and tools: where some of these are left to be decided, so is this.
+#: Rules about orders to spindles, the C axis and tools: what another lathe needs is to be decided.
 _OF_ORDERS = frozenset(
     (
         *("c-axis-clamped-in-polar", "c-axis-not-engaged", "c-axis-not-referenced", "live-tool-never-stopped"),
@@ -43,7 +43,7 @@ class ReadBack(msgspec.Struct, frozen=True):
     new: the program as it is read. differences: what differs, with lines of the original; none where it may be written.
     deviation: the largest distance of the tool center paths [mm]. open_orders: errors about spindles, the C axis or
     tools, which somebody has to decide. notes: what could not be compared and does not
-    matter, and warnings of a check that the original does not have.
+    matter.
     """
 
     new: Original
@@ -89,9 +89,8 @@ def read_back(
         differences += lost_orders(original.trace, new.trace, decided)
         differences += other_speeds(original.trace, new.trace, decided, origin)
     errors = list(_errors(original, new, origin))
-    # The original may start a live tool by a code that its profile does not name.
-    is_open = bool(decided) or not original.trace.machine.m_codes.live_tool_on
-    open_orders = [refusal for rule, refusal in errors if is_open and rule.name in _OF_ORDERS]
+    # The original may start a live tool by a code that its profile does not name, or leave it to the operator.
+    open_orders = [refusal for rule, refusal in errors if rule.name in _OF_ORDERS]
     differences += [refusal for _, refusal in errors if refusal not in open_orders]
     notes = [reason.reason for reason in result.not_compared if not reason.matters and "as programmed" in reason.reason]
     return ReadBack(new, differences[:_LISTED], result.deviation or 0.0, notes, open_orders)

@@ -24,7 +24,7 @@ from polarcheck.parts.tool_paths import above_the_face
 _CORNER = math.radians(60)
 #: Moves at the end of a path among which one leads to it.
 _MOVES_OF_LEAD = 3
-#: The share of a wall that is in the bar, where it is farther out than the path, and elsewhere.
+#: Least share of a wall that is in the bar: where it is farther out than the path, and elsewhere.
 _WALL, _LEAST = 0.5, 1e-9
 
 
@@ -32,8 +32,10 @@ class Candidate(msgspec.Struct, frozen=True):
     """
     A contour before its side is known.
 
-    first, last: numbers of moves. low, high: of its run. ring: None for a path that does not close. asides: where the
-    part may be, to the left of the path [mm]; below 0 to the right. rests: where less of the bar is left standing.
+    first, last: numbers of moves. low, high: of its run.
+    ring: None for a path that does not close.
+    part_sides: possible distances to the part, to the left of the path [mm]; below 0 to the right.
+    fallback_sides: distances on sides where only a share of the wall remains standing.
     """
 
     first: int
@@ -41,8 +43,8 @@ class Candidate(msgspec.Struct, frozen=True):
     low: int
     high: int
     ring: Ring | None
-    asides: tuple[float, ...]
-    rests: tuple[float, ...]
+    part_sides: tuple[float, ...]
+    fallback_sides: tuple[float, ...]
 
     @property
     def is_single_move(self) -> bool:
@@ -86,10 +88,10 @@ def _rings(section: Section, swept: Swept, run: tuple[int, int], any_side: bool)
         first, last = low + ring.first, low + ring.last
         candidate = _candidate(section, swept, run, (first, last), ring, any_side)
         pieces = path[ring.first : ring.last + 1]
-        if not any_side and len(candidate.asides) != 1 and _has_leads(section, pieces):
+        if not any_side and len(candidate.part_sides) != 1 and _has_leads(section, pieces):
             # It closes only because it comes back to where it has left for the part.
             paths = _open(section, swept, (first, last + 1), any_side)
-            if paths and all(len(path.asides) == 1 for path in paths):
+            if paths and all(len(path.part_sides) == 1 for path in paths):
                 result += [msgspec.structs.replace(path, low=run[0], high=run[1]) for path in paths]
                 continue
         result.append(candidate)
@@ -99,7 +101,9 @@ def _rings(section: Section, swept: Swept, run: tuple[int, int], any_side: bool)
 def _open(section: Section, swept: Swept, run: tuple[int, int], any_side: bool) -> list[Candidate]:
     paths = [_candidate(section, swept, run, span, None, any_side) for span in _open_spans(section, *run)]
     return [
-        msgspec.structs.replace(path, asides=(), rests=()) if path.is_single_move and not any_side else path
+        msgspec.structs.replace(path, part_sides=(), fallback_sides=())
+        if path.is_single_move and not any_side
+        else path
         for path in paths
     ]
 
@@ -112,7 +116,7 @@ def _candidate(
     whole = _from_middle(path) if ring is not None and not ring.aside else path
     both = (ring.aside,) if ring is not None and ring.aside else (section.radius, -section.radius)
     z = min(section.moves[number].ends for number in range(span[0], span[1] + 1))
-    asides, rests = [], []
+    part_sides, fallback_sides = [], []
     for aside in both:
         try:
             contour = contour_beside(whole, aside)
@@ -121,10 +125,10 @@ def _candidate(
         share = standing_share(swept, contour, section.number, z, section.bar)
         is_outside = ring.area * aside < 0 if ring is not None else _middle(contour) > _middle(path)
         if any_side or len(both) == 1 or share >= (_WALL if is_outside else _LEAST):
-            asides.append(aside)
+            part_sides.append(aside)
         elif share:
-            rests.append(aside)
-    return Candidate(*span, *run, ring, tuple(asides), tuple(rests))
+            fallback_sides.append(aside)
+    return Candidate(*span, *run, ring, tuple(part_sides), tuple(fallback_sides))
 
 
 def _middle(path: Sequence[Piece]) -> float:

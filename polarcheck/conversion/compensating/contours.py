@@ -55,17 +55,17 @@ def contours_of(trace: Trace, sections: Sequence[Section], swept: Swept, side: s
     """
     paths = [list(_paths(trace, section, swept, side)) for section in sections]
     rings = [path for own in paths for path in own if path.candidate.ring is not None]
-    known = [path for path in rings if len(path.candidate.asides) == 1]
+    known = [path for path in rings if len(path.candidate.part_sides) == 1]
     refusals: list[Refusal] = []
     result = []
     for section, own in zip(sections, paths, strict=True):
-        asides = []
+        part_sides = []
         for path in own:
             aside = _given(trace, path, side) if side else _aside(path, known)
             if not aside:
                 refusals.append(_ambiguous(trace, path))
-            asides.append(aside)
-        result.append(_joined(trace, section.moves, [path.candidate for path in own], asides))
+            part_sides.append(aside)
+        result.append(_joined(trace, section.moves, [path.candidate for path in own], part_sides))
     if refusals:
         raise RefusedError(refusals)
     return result
@@ -86,11 +86,11 @@ def _paths(trace: Trace, section: Section, swept: Swept, side: str) -> Iterator[
 
 
 def _joined(
-    trace: Trace, moves: Sequence[Move], candidates: Sequence[Candidate], asides: Sequence[float]
+    trace: Trace, moves: Sequence[Move], candidates: Sequence[Candidate], part_sides: Sequence[float]
 ) -> list[tuple[Candidate, Contour]]:
     """The contours; turns that follow one another at several depths are one."""
     result: list[tuple[Candidate, Contour]] = []
-    for candidate, aside in zip(candidates, asides, strict=True):
+    for candidate, aside in zip(candidates, part_sides, strict=True):
         closed = candidate.ring is not None and not candidate.ring.aside and _comes_back(moves, candidate)
         contour = Contour(candidate.first, candidate.last, aside, closed)
         if result and _goes_on(trace, moves, result[-1][1], contour):
@@ -128,28 +128,28 @@ def _aside(path: _Path, known: Sequence[_Path]) -> float:
     """
     The distance of the contour to the left of a path [mm]; 0 where its side is not known.
 
-    Passes round one part have it on one side: what a finishing pass takes away of the contour of a roughing pass, or
-    leaves of its other side, says nothing. Else all rings of the section, or of the program, tell.
+    Passes round one part have it on the same side. Where the side of a ring is ambiguous, rings round the same part
+    decide, then those of the section, then those of the program.
     """
     candidate, radius = path.candidate, path.section.radius
     if candidate.ring is None:
-        sides = candidate.asides or candidate.rests
+        sides = candidate.part_sides or candidate.fallback_sides
         return sides[0] if len(sides) == 1 else 0.0
-    if len(candidate.asides) == 1:
-        return candidate.asides[0]
+    if len(candidate.part_sides) == 1:
+        return candidate.part_sides[0]
     groups = (
         [other for other in known if path.is_about_part_of(other)],
         [other for other in known if other.section is path.section],
         known,
     )
     for group in groups:
-        is_inside = {other.candidate.is_inside(other.candidate.asides[0]) for other in group}
+        is_inside = {other.candidate.is_inside(other.candidate.part_sides[0]) for other in group}
         if len(is_inside) == 1:
             inner = radius if candidate.is_inside(radius) else -radius
             return inner if is_inside.pop() else -inner
         if is_inside:
             return 0.0
-    return candidate.rests[0] if len(candidate.rests) == 1 and not candidate.asides else 0.0
+    return candidate.fallback_sides[0] if len(candidate.fallback_sides) == 1 and not candidate.part_sides else 0.0
 
 
 def _ambiguous(trace: Trace, path: _Path) -> Refusal:
@@ -158,7 +158,7 @@ def _ambiguous(trace: Trace, path: _Path) -> Refusal:
     why = "no side of this path is known to be the part: metal is taken away there, or arcs are smaller than R"
     if candidate.is_single_move:
         why = "no other move leads to this one and away from it"
-    elif candidate.asides:
+    elif candidate.part_sides:
         why = "the part may be on both sides of this path"
     return Refusal(_line(trace, path.section.moves[candidate.first].row), f"{why}: choose with {options}")
 
@@ -173,7 +173,7 @@ def _given(trace: Trace, path: _Path, side: str) -> float:
         raise RefusedError([Refusal(line, f"this path does not close, so that {side} says nothing: left or right")])
     else:
         aside = section.radius if candidate.is_inside(section.radius) == (side == "part-inside") else -section.radius
-    if aside not in candidate.asides:
+    if aside not in candidate.part_sides:
         raise RefusedError([Refusal(line, "on that side of this path is no contour: its arcs are smaller than R")])
     return aside
 

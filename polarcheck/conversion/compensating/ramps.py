@@ -1,9 +1,8 @@
 """
 Where cutter compensation begins and ends along a contour: start-up and offset cancel, each no shorter than R.
 
-Compensation is built up in the move that leads to the contour. Where none does, its first stretch serves:
-the tool center runs along it while the programmed point goes from the path to the contour. At both the path of the tool
-center is the one that was programmed.
+Compensation is built up in the move that leads to the contour. Where no move does, the start-up runs along the first
+stretch of the contour. The path of the tool center stays the programmed one in both cases.
 """
 
 from __future__ import annotations
@@ -23,7 +22,7 @@ from polarcheck.geometry.tolerances import ZERO
 _RESERVE = 0.0021
 #: What a stretch for a ramp may leave the path by [mm].
 _ASIDE = 5e-4
-#: What it may leave an arc by where the reserve asks for it [mm].
+#: Largest deviation of a ramp from an arc where R and the reserve need a longer one [mm].
 _MOST_ASIDE = 0.002
 #: A ramp takes no more than this share of a path.
 _MOST_OF_PATH = 0.4

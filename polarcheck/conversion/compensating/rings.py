@@ -69,12 +69,12 @@ class _Search:
         for piece in path:
             self.length.append(self.length[-1] + piece.length)
             self.area.append(self.area[-1] + _area(piece, path[0].start))
-        self.asides = (0.0, radius, -radius)
-        self.starts = [[piece.start + 1j * aside * piece.leaving for piece in path] for aside in self.asides]
-        self.ends = [[piece.end + 1j * aside * piece.arriving for piece in path] for aside in self.asides]
+        self.offsets = (0.0, radius, -radius)
+        self.starts = [[piece.start + 1j * aside * piece.leaving for piece in path] for aside in self.offsets]
+        self.ends = [[piece.end + 1j * aside * piece.arriving for piece in path] for aside in self.offsets]
         self.ending: list[dict[tuple[int, int], list[int]]] = []
         #: Beside arcs that are too small a parallel is none.
-        self.is_there = [[piece.radius - piece.turning * aside > tolerance for piece in path] for aside in self.asides]
+        self.is_there = [[piece.radius - piece.turning * aside > tolerance for piece in path] for aside in self.offsets]
         for ends, is_there in zip(self.ends, self.is_there, strict=True):
             cells: dict[tuple[int, int], list[int]] = {}
             for number, end in enumerate(ends):
@@ -101,7 +101,7 @@ class _Search:
 
     def _closed(self, first: int, most: int) -> Ring | None:
         """The shortest ring from the start of a piece up to another, of the path or of one of its parallels."""
-        rings = (self._closed_parallel(which, first, most) for which in range(len(self.asides)))
+        rings = (self._closed_parallel(which, first, most) for which in range(len(self.offsets)))
         return min((ring for ring in rings if ring is not None), key=lambda ring: ring.last, default=None)
 
     def _closed_parallel(self, which: int, first: int, most: int) -> Ring | None:
@@ -113,7 +113,7 @@ class _Search:
         near = (numbers[bisect_left(numbers, first) : bisect_right(numbers, most)] for numbers in cells)
         for number in sorted(number for numbers in near for number in numbers):
             if abs(self.ends[which][number] - start) <= self.tolerance:
-                ring = self._ring(first, number, self.asides[which])
+                ring = self._ring(first, number, self.offsets[which])
                 if ring is not None:
                     return ring
         return None
@@ -212,7 +212,7 @@ def _area(piece: Piece, origin: complex) -> float:
 
 
 def _key(piece: Piece, tolerance: float) -> tuple[int, ...]:
-    """The same for pieces that run along one way, forward."""
+    """A cell of a grid: the same for most pieces that run along one way, forward; not across the border of a cell."""
     size = 4 * tolerance
     points = (piece.start, piece.end, piece.at(0.5))
     return tuple(round(value / size) for point in points for value in (point.real, point.imag))

@@ -1,4 +1,4 @@
-"""The blocks outside of polar sections, as the other machine reads them; what no profile says is left to be decided."""
+"""The blocks outside of polar sections on the other machine; words that no profile explains become decisions."""
 
 from __future__ import annotations
 
@@ -28,9 +28,10 @@ class Around(msgspec.Struct, frozen=True):
     The blocks outside of polar sections.
 
     blocks: index in text.blocks -> what stands in its place; a block that is not in it stays as it is.
-    before, behind: new blocks before and behind a block that stays. edits: of heads and ends of programs.
-    decisions: what is to be decided. decided: lines of the original from which something is left out, or means what it
-    means by other lists of codes.
+    before, behind: new blocks before and behind a block that stays.
+    edits: of heads and ends of programs.
+    decisions: what is to be decided.
+    decided: lines of the original that lost a word, or whose M code stands in another list there.
     """
 
     blocks: dict[int, list[NewBlock]]
@@ -150,16 +151,8 @@ class _Writer:
 
     def _call(self, row: int, content: str) -> Translated | None:
         """A block that calls a subprogram or returns from it; None for any other."""
-        calls = self.translation.calls
-        if not calls.names(content) and not calls.is_flow(row):
-            return None
-        if calls.is_same:
-            return Translated(words=content.split())
-        words = calls.written(content)
-        if words is None:
-            text = f"{content}: how {self.target.title} writes that is not known"
-            raise RefusedError([self._refusal(row, text)])
-        return Translated(words=list(words), changed=list(words) != content.split())
+        words = self.translation.calls.words_of_row(row, content)
+        return None if words is None else Translated(words=words, changed=words != content.split())
 
     def _rest(self, rest: str, result: Translated) -> None:
         """What of a block is no word: a statement beside words, a stray character."""
@@ -215,7 +208,7 @@ class _Writer:
 
     def _without_row(self, block: int) -> None:
         content = self.texts.content(block)
-        line = self.texts.line(block)
+        line, is_never_run = self.texts.line(block), False
         if self.texts.is_mark(block):
             return
         if not content:
@@ -234,11 +227,12 @@ class _Writer:
             return
         else:
             reason = "it is never run, so that what is in force there is not known"
-        if reason.startswith("it is never") and self._reported:
+            is_never_run = True
+        if is_never_run and self._reported:
             self.decided.add(line)
         else:
             self._decide(line, f"{content}: {reason}")
-        self._reported = reason.startswith("it is never")
+        self._reported = is_never_run
         self.blocks[block] = [NewBlock((), decision_comment(f"{content}: {reason}"))]
 
 

@@ -11,7 +11,8 @@ from polarcheck.checking.editing import line_end
 from polarcheck.columns.trace import Trace
 from polarcheck.execution.run import begins_program
 
-_HEAD = re.compile(r"\s*(?:/\d?\s*)?(?:N\d+\s*)?", re.IGNORECASE)
+_LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz"
+_HEAD = re.compile(r"\s*(?:/\d?\s*)?(?:N\s*\d+\s*)?", re.IGNORECASE)
 
 
 class BlockTexts:
@@ -87,8 +88,13 @@ class BlockTexts:
         """What of a block is neither comment nor an executed word of this row."""
         run = self.trace.run
         low, high = stretch(run.row, row, row + 1)
-        spans = [(int(run.words.start[index]), int(run.words.end[index])) for index in range(low, high)]
+        spans = [(self._with_name(block, int(run.words.start[at])), int(run.words.end[at])) for at in range(low, high)]
         return " ".join(_HEAD.sub("", self._without_comments(block, spans), count=1).split())
+
+    def _with_name(self, block: int, start: int) -> int:
+        """Where a word begins, with the letters of its address, of which CR=5 has the last alone."""
+        before = self.text.source.excerpt(int(self.text.blocks.start[block]), start)
+        return start - len(before) + len(before.rstrip(_LETTERS)) if before[-1:].isalpha() else start
 
     def _without_comments(self, block: int, others: list[tuple[int, int]]) -> str:
         at, end = int(self.text.blocks.start[block]), int(self.text.blocks.end[block])

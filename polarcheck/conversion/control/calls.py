@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 
 from polarcheck.columns.trace import Trace
+from polarcheck.conversion.outcome import Refusal, RefusedError
 from polarcheck.machines.machine import Machine
 
 _BLANKS = re.compile(r"\s+")
@@ -40,6 +41,20 @@ class Calls:
         """The text of a block is a call or a return in the words of the profile, in whatever language."""
         squeezed = _BLANKS.sub("", text).upper()
         return bool(self._call and self._call.fullmatch(squeezed)) or (bool(self._return) and squeezed == self._return)
+
+    def words_of_row(self, row: int, text: str) -> list[str] | None:
+        """
+        Return the words of a block that calls a program or returns from one; None for any other block.
+
+        text: of the block, without N word and comments. Raises RefusedError where the other machine has no words.
+        """
+        if not self.names(text) and not self.is_flow(row):
+            return None
+        words = text.split() if self.is_same else self.written(text)
+        if words is None:
+            reason = f"{text}: how {self.target.title} writes that is not known"
+            raise RefusedError([Refusal(int(self.trace.blocks.line_in_file[row]), reason)])
+        return list(words)
 
     def written(self, text: str) -> tuple[str, ...] | None:
         """

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
@@ -20,6 +21,9 @@ from polarcheck.conversion.style import Style
 from polarcheck.conversion.style_of import style_of
 from polarcheck.machines.job import Job
 from polarcheck.machines.modal import Units
+
+#: A decision on an M code.
+_M_CODE = re.compile(r"M\d+\b")
 
 
 def converted(original: Original, target: Settings) -> Outcome:
@@ -52,7 +56,7 @@ def converted(original: Original, target: Settings) -> Outcome:
     _require_equal(result, original, target)
     decisions = sorted({*outside.decisions, *inside.decisions}, key=lambda decision: decision.line)
     # What an M code is that is to be decided says whether the live tool runs.
-    if result.open_orders and not any(decision.text.startswith("M") for decision in decisions):
+    if result.open_orders and not any(_M_CODE.match(decision.text) for decision in decisions):
         edits += _remarks(original, target, style, result.open_orders)
         data, origin = with_edits(original, edits)
         decisions += [Decision(error.line, error.text) for error in result.open_orders]

@@ -9,7 +9,7 @@ from polarcheck.machines.codes import code, spelled
 from polarcheck.machines.machine import Machine
 from polarcheck.machines.own_language import shown
 
-#: Lists that repeat codes of others to say one thing more of them, and lists of other numbers.
+#: Lists that qualify codes of other lists; they give no meaning of their own.
 _NOT_OF_MEANING = (
     "axis_words_no_move",
     "c_axis_reference",
@@ -54,14 +54,14 @@ _OF_ONE_MEANING = (
     "absolute",
     "incremental",
 )
-#: Lists whose codes say what is compared, and where it is compared without them: another control needs none.
+#: Lists whose effect is compared when the program is read back: the other control may lack the code.
 _COMPARED = (
     *("corner_by_arc", "corner_by_intersection", "feed_on_plane", "feed_in_space", "feed_as_machine"),
     *("feed_at_center", "feed_at_contour", "feed_at_inner_contour"),
 )
 #: Lists whose codes mean that with other words beside them, and something else alone.
 _WITH_WORDS = ("coordinate_setting",)
-#: What ends a state: nothing is left out where the other machine has no code that begins that state -> that list.
+#: List that ends a state -> list that begins it. Where the other control cannot begin it, the end is dropped.
 _ENDS = {
     "drilling_cycle_off": "drilling_cycle",
     "scaling_off": "scaling",

@@ -124,8 +124,8 @@ class Heads:
 
 def head_words(trace: Trace, target: Machine, measures: Measures) -> list[str]:
     """
-    The codes that the first block of a program gets: units where those of the lathe are others and no code says them,
-    coordinates where the original has no code for them, a diameter where nobody knows what the control takes X for.
+    Codes for the first block: units, coordinates (G90), X as a diameter, where the other control needs them and the
+    original does not say them.
     """
     words: list[str] = []
     if not len(trace):

@@ -13,7 +13,7 @@ from polarcheck.machines.machine import Machine
 
 #: Lists whose codes differ by the way the spindle turns, in this order.
 _BY_SENSE = ("live_tool_on", "spindle_on", "sub_spindle_on")
-#: Lists that say one thing more of codes that mean the same everywhere.
+#: M codes with one meaning on every lathe.
 _OF_EVERY_LATHE = frozenset(expanded(OF_EVERY_LATHE))
 _LISTS = tuple(
     key
@@ -85,7 +85,7 @@ class MMeanings:
         return self._keys.get(word, []), ""
 
     def _chosen(self, row: int, listed: list[tuple[str, int]]) -> tuple[str, int]:
-        """Of several lists that have a code, what it does in its row; M3 of a live tool that has no code of its own."""
+        """Which list applies in a row if several have the code; M3 starts a live tool without a code of its own."""
         keys = dict(listed)
         runs = row > 0 and bool(self.trace.modal.live_tool[row - 1])
         if "live_tool_off" in keys and len(keys) > 1:

@@ -45,9 +45,8 @@ class Measures:
         self._letters = {
             self.source.address_number(letter): of_axis for letter, of_axis in self._axes.items() if letter
         }
-        self._radius_word = trace.machine.address_number(self.source.arcs.radius_word)
         self._codes = {unit: bool(target.codes(unit)) for unit in ("inch", "mm")}
-        #: The words of the other machine are the same numbers wherever a length is written, but for its units.
+        #: Both controls read a number without a point alike.
         self.pointless_is_same = self.source.control.number_without_point == target.control.number_without_point
 
     # ---- units ----

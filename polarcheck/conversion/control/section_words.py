@@ -80,10 +80,10 @@ class SectionWords:
         """
         if self.is_dwell(row):
             return [], list(words)
-        geometry = [index for index in words if self._is_geometry(row, index, is_switch)]
+        geometry = [index for index in words if self._is_geometry(index, is_switch)]
         return geometry, [index for index in words if index not in geometry]
 
-    def _is_geometry(self, row: int, index: int, is_switch: bool) -> bool:
+    def _is_geometry(self, index: int, is_switch: bool) -> bool:
         address = int(self.trace.run.words.address[index])
         if address == ord("G"):
             return self.key(index) in _OF_GEOMETRY or self._is_switch_code(index)

@@ -28,6 +28,7 @@ from polarcheck.machines.modal import Motion, Side, Units
 
 #: A plane that is turned by less is not turned [rad].
 _SAME_DIRECTION = 1e-9
+_ELSEWHERE = "the other control places it at another angle"
 _SIDES = {Side.OFF: "compensation_off", Side.LEFT: "compensation_left", Side.RIGHT: "compensation_right"}
 
 
@@ -245,15 +246,7 @@ class _Writer:
 
     def _call(self, row: int) -> list[str] | None:
         """The words of a block that calls a subprogram or returns from it; None for any other."""
-        calls = self.translation.calls
-        content = self.texts.content(int(self.trace.run.block[row]))
-        if not calls.names(content) and not calls.is_flow(row):
-            return None
-        words = content.split() if calls.is_same else calls.written(content)
-        if words is None:
-            text = f"{content}: how {self.target.title} writes that is not known"
-            raise RefusedError([Refusal(self._line(row), text)])
-        return list(words)
+        return self.translation.calls.words_of_row(row, self.texts.content(int(self.trace.run.block[row])))
 
     def _translated(self, row: int, words: Sequence[int]) -> list[str]:
         if not words:
@@ -325,7 +318,9 @@ class _Writer:
         if self.divided_rows:
             notes.append(f"{_count(self.divided_rows, 'arc')} divided, as the machine takes them")
         for row, angle in self.turned:
-            notes.append(f"line {self._line(row)}: the plane is turned by {angle:.3f} deg: it lies otherwise there")
+            notes.append(
+                f"line {self._line(row)}: the plane is turned by {angle:.3f} deg: the other control places it at another angle"
+            )
         return notes
 
     def _line(self, row: int) -> int:

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import itertools
+
 import msgspec
+import numpy as np
 from msgspec.structs import replace
 
 from polarcheck.columns.trace import Trace
@@ -38,7 +41,6 @@ class ToolWords:
         self.keys: dict[str, str] = {}
         self._edges: dict[int, list[int]] = {}
         self._offsets: dict[tuple[int, int], int] = {}
-        self._last = ""
         ours, theirs = self.source, target
         self._is_same = (
             ours.offsets.called_by == theirs.offsets.called_by
@@ -74,14 +76,16 @@ class ToolWords:
         if offset >= 10**control.offset_digits:
             return ToolCall(refusal=f"offset {offset} has more digits than T leaves room for")
         written = f"T{tool:02d}{offset:0{control.offset_digits}d}"
-        if radius_offset == offset:
-            self._is_key(str(offset), key)
+        if control.radius_offset_digits and radius_offset != offset:
+            written = f"T{radius_offset:0{control.radius_offset_digits}d}{written[1:]}"
+            number = radius_offset
+        else:
+            number = offset
+        is_claimed = self._claim_key(str(number), key)
+        if is_claimed and (radius_offset == offset or control.radius_offset_digits):
             return ToolCall((written,))
-        if control.radius_offset_digits:
-            self._is_key(str(radius_offset), key)
-            return ToolCall((f"T{radius_offset:0{control.radius_offset_digits}d}{written[1:]}",))
-        if not self._is_key(str(offset), key):
-            return ToolCall(refusal=f"offset {offset} is to have the radius of several offsets")
+        if not is_claimed:
+            return ToolCall(refusal=f"offset {number} is to have the radius of several offsets")
         return ToolCall((written,), f"{written}: enter the radius of offset {radius_offset} in offset {offset}")
 
     def _by_edge(self, row: int, tool: int, offset: int, radius_offset: int, key: str) -> ToolCall:
@@ -93,7 +97,7 @@ class ToolWords:
         if offset not in edges:
             edges.append(offset)
         edge = edges.index(offset) + 1
-        is_new = self._is_key(key_of(str(tool), edge), key)
+        is_new = self._claim_key(key_of(str(tool), edge), key)
         if not is_new:
             return ToolCall(refusal=f"edge {edge} of tool {tool} is to have the radius of several offsets")
         words = (*head, f"D{edge}")
@@ -105,16 +109,22 @@ class ToolWords:
         digits = self.target.control.offset_digits
         if not edge:
             return ToolCall((f"T{tool:02d}{0:0{digits}d}",))
-        offset = tool if edge == 1 else self._offsets.setdefault((tool, edge), _FIRST_FREE + len(self._offsets))
+        offset = tool if edge == 1 else self._offsets.setdefault((tool, edge), self._free_offset())
         if offset >= 10**digits:
             return ToolCall(refusal=f"offset {offset} has more digits than T leaves room for")
-        self._is_key(str(offset), key)
+        if not self._claim_key(str(offset), key):
+            return ToolCall(refusal=f"offset {offset} is to have the values of several edges")
         written = f"T{tool:02d}{offset:0{digits}d}"
         if edge == 1:
             return ToolCall((written,))
         return ToolCall((written,), f"{written}: enter the values of edge {edge} of tool {tool} in offset {offset}")
 
-    def _is_key(self, new: str, old: str) -> bool:
+    def _free_offset(self) -> int:
+        """The next offset number that is neither a tool of the program nor taken."""
+        taken = {*self._offsets.values(), *np.unique(self.trace.tools.tool).tolist()}
+        return next(number for number in itertools.count(_FIRST_FREE) if number not in taken)
+
+    def _claim_key(self, new: str, old: str) -> bool:
         """Take the key of an offset in; False where it stands for another one already."""
         return not old or self.keys.setdefault(new, old) == old
 

@@ -170,7 +170,7 @@ class Translation:
     def _with_arguments(self, row: int, indices: Sequence[int], result: Translated) -> None:
         """A cycle, data input, a macro call: the arguments stay as they are, or the whole block is to be decided."""
         for index in indices:
-            if self._letter(index) in "GMST":
+            if (letter := self._letter(index)) and letter in "GMST":
                 self._word(row, index, result)
             else:
                 result.words.append(self.measures.written(index))
@@ -206,7 +206,7 @@ class Translation:
             (result.words if word else result.decisions).append(word or no_word)
         elif letter == "F":
             self._feed(row, index, result)
-        elif letter in "IJKR" or letter == self.source.arcs.radius_word:
+        elif (letter and letter in "IJKR") or letter == self.source.arcs.radius_word:
             self._axes.of_arc(row, index, letter, result)
         elif letter == "@" and self.source.control.native_words == self.target.control.native_words:
             # A word of the control's own language, as SETMS(2), on a control of the same language.

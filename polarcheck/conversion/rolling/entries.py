@@ -42,8 +42,8 @@ def entry_of(trace: Trace, each: Stretch, way: Way, following: Following) -> Ent
     """
     Return how a section is entered with C at 0; None where it begins there, or where that is not possible.
 
-    Possible it is where the tool is positioned by rapid traverse above all that it cuts in the stretch and blocks of Z
-    alone lead down: there C turns at the X at which it stands.
+    This is possible if the tool is positioned in rapid traverse above all that it cuts in the stretch, and only moves
+    of Z follow: there C turns at the X at which it stands.
     """
     path = trace.path
     angle = float(path.c_angle_before[each.first])

@@ -14,7 +14,7 @@ from polarcheck.geometry.tolerances import ZERO
 from polarcheck.machines.machine import Machine
 from polarcheck.machines.modal import Motion
 
-#: C that turns with more than this share of its limit has slowed the CAM down.
+#: C above this share of its limit counts as limited.
 _AT_LIMIT = 0.97
 #: Speeds that differ by less than this share are one F.
 _SAME = 0.04
@@ -24,7 +24,7 @@ _EVEN, _UNEVEN_WAY = 0.15, 0.1
 _DIGITS = 3
 #: No more different F than this are looked for.
 _MOST = 20
-#: C at a limit is above this share of its highest rate, in no more than this share of the way.
+#: C counts as limited by the CAM where it is above this share of its highest rate, on at most this share of the way.
 _HIGH, _HIGH_WAY = 0.9, 0.3
 #: Turns of C from which on its rate is not that of rounding [deg].
 _LEAST_TURN = 0.02
@@ -37,7 +37,7 @@ class Feeds(msgspec.Struct, frozen=True):
     of_element: what was meant [mm/min]. by_way: those on the plane without repetition, that of the longest way first.
     slowest, fastest: of the tool along its way, but for a twentieth at each end [mm/min].
     is_even: the tool ran at even speed along each element. slowed: the share of the way on which C was at its limit.
-    c_rate: the highest that C had, where the CAM may have seen to that [deg/min]; else inf.
+    c_rate: the rate that the CAM seems to have limited C to [deg/min]; inf if none.
     """
 
     of_element: list[float]

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-import re
-
 import numpy as np
 
 from polarcheck.arrays import Mask, Rows
 from polarcheck.columns.lengths import RADIUS_FACTOR
 from polarcheck.columns.trace import Trace
+from polarcheck.conversion.blocks import jump_numbers
 from polarcheck.machines.modal import Motion
-
-_JUMP = re.compile(r"GOTO\s*([0-9]{1,9})", re.IGNORECASE)
 
 
 class Following:
@@ -20,7 +17,7 @@ class Following:
 
     moves, turns, on_plane, at_feed, arcs: rows that move; that move C; X or C; at feed; along an arc or in a cycle.
     motion, plane, feed_mode: with a code of that group. feed: with F.
-    jump_targets: rows to which a statement jumps, whether it did or not.
+    jump_targets: rows with an N word whose number stands in a statement, or beside P or Q: something may lead there.
     """
 
     def __init__(self, trace: Trace) -> None:
@@ -61,15 +58,11 @@ class Following:
 
 
 def _jump_targets(trace: Trace) -> Mask:
-    text, run = trace.text, trace.run
-    numbers: set[float] = set()
-    for block in np.flatnonzero(text.blocks.is_macro).tolist():
-        statement = text.source.excerpt(int(text.blocks.start[block]), int(text.blocks.end[block]))
-        numbers.update(float(number) for number in _JUMP.findall(statement))
+    run, numbers = trace.run, jump_numbers(trace.text)
     if not numbers:
         return trace.blocks.nowhere
-    own = (run.words.address == ord("N")) & np.isin(run.words.value, list(numbers))
-    return trace.blocks.with_words(own)
+    n_words = (run.words.address == ord("N")) & np.isin(run.words.value, list(numbers))
+    return trace.blocks.with_words(n_words)
 
 
 def x_factor(trace: Trace, row: int) -> float:

@@ -37,10 +37,18 @@ _LISTED = 5
 _MOST_SLOWED = 0.02
 #: C nearer to full turns than this is at 0 [deg].
 _AT_ZERO = 1e-9
-#: Of a step of the new words: so far may rounding move a point and a center together.
+#: How far rounding can move a point and a center together, in steps of the new words.
 _ROUNDING = 1.7
 #: Share of the tolerance by which chords may leave the way where it is compared as a whole, and what that adds to it.
 _CHORD, _OF_CHORDS = 0.02, 1.1
+
+
+#: Why F is lower, by Parts.by.
+_WHY_LOWER = {
+    "limit": "so that C turns no faster than its limit allows",
+    "before": "so that C turns no faster than in the plain moves, since its limit is not known",
+    "feed": "the highest F of the mode (limits.polar_feed)",
+}
 
 
 class Rolling(msgspec.Struct, frozen=True):
@@ -171,7 +179,7 @@ def _figures(sections: Sequence[Section], measured: Measured) -> list[Figure]:
         Figure("blocks before", sum(len(each.way) for each in sections)),
         Figure("blocks after", sum(each.text.count for each in sections)),
         Figure("largest distance of the ends of the blocks from the new path", measured.places, "mm"),
-        Figure("largest distance of the way between them, which bows", measured.way, "mm"),
+        Figure("largest distance between the old and the new path within a block", measured.way, "mm"),
         Figure("time at feed before", 60 * sum(float(each.way.time.sum()) for each in sections), "s"),
         Figure("time at feed after", measured.time, "s"),
     ]
@@ -215,9 +223,8 @@ def _on_feed(each: Section) -> Iterator[str]:
         yield f"C was at its limit in {feeds.slowed:.0%} of the way: F is that of the rest"
     parts = each.parts
     if parts.limited:
-        why = "its limit allows" if parts.by == "limit" else "in the plain moves, since its limit is not known"
         lowest = f"F{parts.lowest / unit:g}"
-        yield f"F is lower in {parts.limited} of them, down to {lowest}, so that C turns no faster than {why}"
+        yield f"F is lower in {parts.limited} of them, down to {lowest}, {_WHY_LOWER[parts.by]}"
 
 
 def _on_entry(trace: Trace, each: Section) -> Iterator[str]:

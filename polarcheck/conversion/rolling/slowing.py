@@ -32,8 +32,9 @@ class Parts(msgspec.Struct, frozen=True):
     """
     Elements with F [mm/min], divided where F changes.
 
-    limited: how many elements have a lower F. lowest: the lowest F of them. by: `limit` of the machine, or `before`,
-    the highest rate of C that the plain moves had.
+    limited: how many elements have a lower F.
+    lowest: the lowest F of them.
+    by: what limits them: `limit` of C, `before` (highest rate of C in the plain moves), `feed` (limits.polar_feed).
     """
 
     elements: list[Element]
@@ -53,7 +54,7 @@ def parts_of(way: Way, elements: list[Element], feeds: Feeds, machine: Machine, 
     reserve = 1.0 if by == "limit" else 1.0 + _FASTER
     result: list[Element] = []
     written: list[float] = []
-    limited = 0
+    limited, is_by_feed = 0, True
     lowest = math.inf
     for element, meant in zip(elements, feeds.of_element, strict=True):
         feed = nice(highest_feed, unit, down=True) if meant > highest_feed else meant
@@ -65,10 +66,11 @@ def parts_of(way: Way, elements: list[Element], feeds: Feeds, machine: Machine, 
             lower = [_lower(feed, _allowed(part, limit), unit) for part in parts]
         if min(lower) < meant:
             limited += 1
+            is_by_feed &= min(lower) >= feed
             lowest = min(lowest, *lower)
         result += parts
         written += lower
-    return Parts(result, written, limited, lowest, by)
+    return Parts(result, written, limited, lowest, "feed" if limited and is_by_feed else by)
 
 
 def _lower(feed: float, allowed: float, unit: float) -> float:

@@ -25,10 +25,10 @@ from polarcheck.time_limit import keep_time
 
 #: How many differences are listed.
 _LISTED = 10
-#: Places on a block at which it is measured, and how many blocks at once.
+#: Samples of each block, and blocks per batch.
 _PLACES = np.linspace(0, 1, 17)[None, :]
 _TOGETHER = 20_000
-#: F may be above that of the section, or a rate above its limit, by this share: rounding of F, C and X.
+#: Tolerance for rounding of F, C and X, as a share.
 _SHARE = 1e-3
 _SAME = 1e-6
 

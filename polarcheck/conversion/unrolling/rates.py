@@ -80,7 +80,7 @@ def mode_of(feed: str) -> FeedMode:
 
 
 def _rounded(feed: Floats) -> Floats:
-    """Five digits, and no more than four behind the point: never more than it was by half of the last one."""
+    """Five digits, no more than four behind the point, rounded down."""
     with np.errstate(divide="ignore", invalid="ignore"):
         digits = np.clip(_DIGITS - 1 - np.floor(np.log10(feed)), 0, 4)
     scale = 10.0 ** np.nan_to_num(digits, nan=0.0, posinf=4.0)

@@ -33,7 +33,7 @@ def longest_elements(samples: Samples, tolerance: float, most: float = math.inf)
     at, guess = 0, 8
     while at < len(joints) - 1:
         keep_time()
-        if len(elements) >= most:
+        if len(elements) + 1 > most:
             return None
         first = int(joints[at])
 
