@@ -519,3 +519,25 @@ def test_a_machine_that_there_is_not_is_named() -> None:
     Path("a.nc").write_text(HEXAGON)
     assert "--to" in call("a.nc").stderr
     assert "okuma" in call("a.nc", "--to", "okum").stderr
+
+
+def test_offsets_of_edges_are_free_numbers() -> None:
+    """Tool 51 keeps its offset 51; the second edge of tool 3 takes another one."""
+    program = (
+        "G90 DIAMON G18 G71 G94\nT51 D1\nG0 X60 Z2 C0\nT3 D2\nG0 X60 Z2 C0\nDIAMOF\nTRANSMIT\nG1 X20 Y5 F100\nTRAFOOF\n"
+        "DIAMON\nG0 X60\nM30\n"
+    )
+    text = convert(program, "siemens-transmit", "haas-lathe").data.decode()
+    assert "T5151\n" in text
+    assert "T0352 (DECIDE: T0352: ENTER THE VALUES OF EDGE 2 OF TOOL 3 IN OFFSET 52)\n" in text
+
+
+def test_a_message_is_no_m_code_that_explains_why_the_live_tool_stands() -> None:
+    program = 'G90 DIAMON G18 G71 G94\nT1 D1\nMSG("A")\nG0 X60 Z2 C0\nDIAMOF\nTRANSMIT\nG1 X20 Y5 F100\nTRAFOOF\nM30\n'
+    decisions = convert(program, "siemens-transmit", "haas-lathe").decisions
+    assert any("live-tool-stopped-in-cut" in decision.text for decision in decisions)
+
+
+def test_a_word_with_a_name_is_whole() -> None:
+    program = "G90 DIAMON G18 G71 G95\nT1 D1\nG0 X40 Z2\nG1 Z0 F.1\nG3 X50 Z-5 CR=5\nM30\n"
+    assert "G3 X50 Z-5 R5\n" in convert(program, "siemens-transmit", "haas-lathe").data.decode()

@@ -153,6 +153,8 @@ def test_a_program_is_overwritten_on_demand_and_kept(program: Path) -> None:
     assert (program.read_text(), Path("a.nc.orig").read_text()) == (NEW, PROGRAM)
     again = call(program, "--in-place", "--backup")
     assert (again.exit_code, again.stderr.splitlines()[0]) == (0, "polarcheck: a.nc: nothing to change")
+    assert again.stdout == ""
+    assert json.loads(call(program, "--in-place", "--backup", "--format", "json").stdout)["files"][0]["written"] is None
     assert Path("a.nc.orig").read_text() == PROGRAM
 
 
@@ -200,6 +202,15 @@ def test_many_programs_go_to_a_folder_and_none_stops_the_others(program: Path) -
         ("jobs/a.nc", 0), ("jobs/c.nc", 22), ("jobs/left/b.nc", 0),
     ]  # fmt: skip
     assert call("jobs", "--diff").stdout.count("--- jobs/") == 2
+
+
+def test_a_file_that_cannot_be_read_in_its_encoding_stops_no_other(program: Path) -> None:
+    Path("bad.nc").write_bytes(b"%\nO1 (\xc4)\nM30\n%\n")
+    result = call("bad.nc", "a.nc", "--encoding", "utf-8", "-o", "new/")
+    assert result.exit_code == 2
+    assert Path("new/a.nc").read_text() == NEW
+    report = json.loads(call("bad.nc", "a.nc", "--encoding", "utf-8", "--format", "json").stdout)
+    assert [(file["path"], file["lines"]) for file in report["files"]] == [("bad.nc", 0), ("a.nc", PROGRAM.count("\n"))]
 
 
 @pytest.mark.parametrize(

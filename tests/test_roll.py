@@ -430,6 +430,7 @@ def test_what_may_be_jumped_into_and_contours_by_other_codes_stay_as_they_are() 
     lines[60] = f"N70 {lines[60]}"
     jump = "\n".join([*lines[:3], "IF[#100EQ1]GOTO70", *lines[3:], ""])
     assert "a jump may lead to this block" in refusal(jump)
+    assert "a jump may lead to this block" in refusal(jump.replace("GOTO70", "GOTO N70"))
     contour = "\n".join(line.replace("G1 X", "G101 X") for line in cam_contour(hexagon()).splitlines())
     assert "no plain move" in refusal(contour, "okuma-osp", feed="per-minute")
 

@@ -207,7 +207,7 @@ class _Programs:
 
             lines = difference(original.title, original.data, outcome.data, outcome.origin, settings.encoding)
             show_diff(lines, in_color(wanted.color))
-        elif written is None:
+        elif written is None and not wanted.in_place:
             new_programs.print_program(outcome.data, original.title, settings.encoding)
         if not wanted.quiet:
             self._say(original, outcome, written)

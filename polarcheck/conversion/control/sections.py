@@ -318,9 +318,7 @@ class _Writer:
         if self.divided_rows:
             notes.append(f"{_count(self.divided_rows, 'arc')} divided, as the machine takes them")
         for row, angle in self.turned:
-            notes.append(
-                f"line {self._line(row)}: the plane is turned by {angle:.3f} deg: the other control places it at another angle"
-            )
+            notes.append(f"line {self._line(row)}: the plane is turned by {angle:.3f} deg: {_ELSEWHERE}")
         return notes
 
     def _line(self, row: int) -> int:
