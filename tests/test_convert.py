@@ -541,3 +541,62 @@ def test_a_message_is_no_m_code_that_explains_why_the_live_tool_stands() -> None
 def test_a_word_with_a_name_is_whole() -> None:
     program = "G90 DIAMON G18 G71 G95\nT1 D1\nG0 X40 Z2\nG1 Z0 F.1\nG3 X50 Z-5 CR=5\nM30\n"
     assert "G3 X50 Z-5 R5\n" in convert(program, "siemens-transmit", "haas-lathe").data.decode()
+
+
+# ---- what hostile programs have found ----
+
+HEAD, END = "%\nO1\nG21 G98 G40\nT0101\n", "M30\n%\n"
+MILLED = "G0 X60. Z2. C0\nG12.1\nG1 X40. C5. F200\nX60. C0\nG13.1\n"
+TURNED = "G0 X50. Z2.\nG1 Z0 F100\nG2 X52. Z-1. R1.\n"
+LIVE = f"G97 S2000 M3\nG0 X50. Z2.\nM5\nM76\nM70\n{MILLED}M72\nS400 M3\nM5\nM70\n{MILLED}M72\nM75\n"
+CYCLES = "G0 X50. Z2.\nG71 U1.5 R.5\nG71 P80 Q90 U.5 W.1 F.2\nN80 G0 X30.\nN90 G1 Z-10.\nG70 P80 Q90\n"
+JUMPS = "N1 #1=1\nN2 IF[#1 EQ 2]GOTO 75\nN70 G0 X60. Z2. C0\nN71 G12.1\nN72 G1 X40. C5. F200\nN73 X60. C0 F900\n"
+JUMPS += "N74 G13.1\nN76 G1 Z5.\nN75 G0 Z20.\nN78 M30\n%\n"
+DRILLED = "G0 X50. Z9.\nG83 Z-20. R-8. F80.\nG80\n"
+SECOND = MILLED + "M30\nO2\nG21 G98\n" + MILLED
+SURFACE = "%\nO1\nG20 G99\nT0101\nG96 S600 M3\nG0 X2. Z.1\nG1 Z-.5 F.01\nG97 S800\nM5\nM30\n%\n"
+
+
+@pytest.mark.parametrize(
+    ("program", "source", "target", "expected"),
+    [
+        # S beside G96 is ft/min in inch.
+        (SURFACE, SOURCE, "okuma-osp", "G96 S183 M3\n"),
+        # A live tool with a speed of its own starts with S of before, be it that of the main spindle.
+        (HEAD + LIVE + END, SOURCE, "okuma-osp", "SB=400 M13\n"),
+        (HEAD + LIVE + END, SOURCE, "haas-lathe", "P2000 M133\n"),
+        (HEAD + "G97 S1500 M3\n" + MILLED + "M5\n" + END, "fanuc-30i", "siemens-transmit", "S3=1500 ; DECIDE: M3: IT"),
+        # The section leaves G17 in force where the off code has no plane.
+        (HEAD + MILLED + TURNED + END, "fanuc-30i", "siemens-transmit", "TRAFOOF\nDIAMON\nG18\nG0 X50. Z2.\n"),
+        (HEAD + TURNED + MILLED + END, "fanuc-30i", "okuma-osp", "G2 X52. Z-1. L1.\n"),
+        # N75 stands behind: new blocks take no number of the file.
+        (HEAD + JUMPS, "fanuc-30i", "haas-lathe", "G18\nF900\nN76"),
+        (HEAD + DRILLED + MILLED + END, SOURCE, "haas-lathe", "(DECIDE: G83 Z-20. R-8."),
+        (HEAD + CYCLES + MILLED + END, SOURCE, "mitsubishi-m700", "(DECIDE: G70 P80 Q90: ITS CONTOUR)\n"),
+        (HEAD + SECOND + END, "fanuc-30i", "siemens-transmit", "%_N_O2_MPF\nG90 DIAMON\n"),
+        (HEAD + "G50 S2500\n" + MILLED + END, SOURCE, "okuma-osp", "G50 S2500\n"),
+        (HEAD + "M76 M8\n" + MILLED + END, SOURCE, "siemens-transmit", "M8 ; DECIDE: M76: IT ENGAGES THE C AXIS"),
+        # The code of the motion was in the block that is to be decided.
+        (HEAD + "G1 Z5. F100\nG0 G28 U0 W0\nX99. Z50.\n" + MILLED + END, "fanuc-30i", "okuma-osp", ")\nG0 X99. Z50.\n"),
+        (HEAD + "G04 X1. F100\n" + MILLED + END, "fanuc-30i", "okuma-osp", "(DECIDE: G04 X1. F100: F BESIDE IT"),
+    ],
+)  # fmt: skip
+def test_what_goes_on_around_sections_keeps_its_meaning(program: str, source: str, target: str, expected: str) -> None:
+    assert expected in convert(program, source, target).data.decode()
+
+
+@pytest.mark.parametrize(
+    ("program", "target", "expected"),
+    [
+        (HEAD + "G0 X50. Z2.\nG1 Z-500 F100\n" + MILLED + END, "siemens-transmit", "Z-500 has no point"),
+        ("%\nO1 G20\nT0101\n" + MILLED + END, "okuma-osp", "words stand beside O"),
+        (HEAD + MILLED + "M99\n%\n", "okuma-osp", "M99: how Okuma OSP lathe control begins the main program again"),
+    ],
+)
+def test_what_would_mean_something_else_is_refused(program: str, target: str, expected: str) -> None:
+    assert expected in str(refused(program, "fanuc-30i", target))
+
+
+def test_a_program_that_is_called_and_not_there_is_named() -> None:
+    notes = convert(HEAD + "M98 P9001\n" + MILLED + END, "fanuc-30i", "okuma-osp").notes
+    assert "line 5: O9001 is not in the file: convert it, too" in notes

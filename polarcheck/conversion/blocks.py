@@ -167,6 +167,8 @@ class _Sequence:
         #: Blocks with an N word in their order, and its value.
         self.blocks = sorted(numbers)
         self.values = [numbers[index] for index in self.blocks]
+        #: All N words of the file: they need not ascend.
+        self.numbers = set(self.values)
         self.is_on = style.numbered == "all"
         self.letter = "n" if style.lower_case else "N"
         self.step, self.digits = style.number_step, style.number_digits
@@ -189,7 +191,10 @@ class _Sequence:
         last = int(self.values[at - 1])
         following = int(self.values[behind]) if behind < len(self.values) else last + self.step * (count + 1)
         room = (following - last - 1) // count
-        step = next((nice for nice in (self.step, 10, 5, 2, 1) if nice <= room), 0)
+        steps = (step for step in (self.step, 10, 5, 2, 1) if step <= room)
+        step = next(
+            (step for step in steps if self.numbers.isdisjoint(last + step * n for n in range(1, count + 1))), 0
+        )
         return [f"{self.letter}{last + step * n:0{self.digits}d}" if step else "" for n in range(1, count + 1)]
 
 

@@ -9,9 +9,11 @@ from difflib import SequenceMatcher
 import msgspec
 import numpy as np
 
+from polarcheck.arrays import stretch
 from polarcheck.columns.trace import Trace
 from polarcheck.conversion.outcome import Refusal
 from polarcheck.machines.m_codes import SWITCHED
+from polarcheck.machines.modal import Units
 from polarcheck.table.dwells import time_of_dwells
 
 #: Lists of G codes; what the others do is compared as paths, feeds and states.
@@ -29,6 +31,8 @@ _M_LISTS = (*(name for pair in SWITCHED for name in pair), "spindle_orientation"
 _ANY_SPINDLE = {"live_tool_on": "spindle_on", "live_tool_off": "spindle_off"}
 #: Dwells that differ by no more are the same [s]: a control counts thousandths.
 _SAME_TIME = 1e-3
+#: Speeds are whole numbers: those by G96 are rounded where the units are others.
+_SAME_SPEED = 1.0
 #: More differences than this are not listed.
 _LISTED = 20
 #: More orders than this, between those that are equal at both ends, are not paired.
@@ -63,19 +67,20 @@ def lost_orders(old: Trace, new: Trace, decided: Collection[int]) -> Iterator[Re
     yield from _dwells(old, new, pairs)
 
 
-def other_speeds(old: Trace, new: Trace, decided: Collection[int], origin: Sequence[int]) -> Iterator[Refusal]:
+def other_speeds(old: Trace, new: Trace, left_out: Collection[int], origin: Sequence[int]) -> Iterator[Refusal]:
     """
     Yield the first spindle speed that differs, whichever words name it: S, SB=, or P beside M133.
 
-    decided: lines of the old file that somebody has to decide. origin: of each new line the line in the old file.
+    left_out: lines of the old file whose speeds do not count. origin: of each new line the line in the old file.
     """
     for machine in (old.machine, new.machine):
         if machine.writing.live_tool_speed.rstrip("=") not in ("S", "P", *machine.control.spindle_words):
             return  # S3= is not read there
-    of_decided = {number for number, line in enumerate(origin, 1) if line in decided}
-    speeds = _speeds(old, decided), _speeds(new, of_decided)
+    of_left_out = {number for number, line in enumerate(origin, 1) if line in left_out}
+    speeds = _speeds(old, left_out), _speeds(new, of_left_out)
     for (line, speed), (new_line, other) in itertools.zip_longest(*speeds, fillvalue=(0, 0.0)):
-        if speed != other and not (np.isnan(speed) and np.isnan(other)):
+        is_same = abs(speed - other) <= _SAME_SPEED
+        if not is_same and not (np.isnan(speed) and np.isnan(other)):
             where = f" (line {new_line} of the result)" if new_line else ""
             yield Refusal(line, f"the spindle speed {speed:g} would be {other:g}{where}")
             return
@@ -90,7 +95,10 @@ def _speeds(trace: Trace, left_out: Collection[int]) -> list[tuple[int, float]]:
         starts = trace.blocks.codes(*machine.m_codes.live_tool_on)
         is_speed |= (words.address == ord("P")) & starts[trace.run.row]
     lines = trace.blocks.line_in_file[trace.run.row[is_speed]].tolist()
-    pairs = zip(lines, words.value[is_speed].tolist(), strict=True)
+    row = trace.run.row[is_speed]
+    in_ft = (trace.modal.state("speed")[row] != 0) & ~trace.blocks.listed("coordinate_setting")[row]
+    in_ft &= trace.lengths.units[row] == Units.INCH
+    pairs = zip(lines, (words.value[is_speed] * np.where(in_ft, 0.3048, 1.0)).tolist(), strict=True)
     return [(line, speed) for line, speed in pairs if line not in left_out]
 
 
@@ -120,10 +128,19 @@ def _of_one_meaning(trace: Trace, listed_words: Collection[tuple[int, str]]) -> 
     for index, listed in names.items():
         row = int(trace.run.row[index])
         runs = row > 0 and bool(trace.modal.live_tool[row - 1])
+        if "scaling_off" in listed and "coordinate_setting" in listed:
+            # G50 S2500 limits the speed, G50 alone ends scaling.
+            beside = _has_other_words(trace, row)
+            listed = [name for name in listed if name != ("scaling_off" if beside else "coordinate_setting")]
         if len(listed) > 1 and "live_tool_off" in listed:
             listed = ["live_tool_off"] if runs else [name for name in listed if name != "live_tool_off"]
         result |= {(index, _ANY_SPINDLE.get(name, name)) for name in listed}
     return sorted(result)
+
+
+def _has_other_words(trace: Trace, row: int) -> bool:
+    address = trace.run.words.address[slice(*stretch(trace.run.row, row, row + 1))]
+    return bool((~np.isin(address, np.frombuffer(b"GMTNO/", np.uint8))).any())
 
 
 def _paired(old: list[Order], new: list[Order]) -> tuple[list[tuple[Order, Order]], list[Order]]:

@@ -62,6 +62,7 @@ def read_back(
     *,
     rapid_as_line: bool = False,
     other_states: Collection[str] = (),
+    added_speeds: Collection[int] = (),
 ) -> ReadBack:
     """
     Compare a program that has its polar sections on another control, or on the same one, with the original.
@@ -75,6 +76,7 @@ def read_back(
     are not compared, but where the new program moves in their place.
     rapid_as_line: moves in rapid traverse in sections are lines in the new program, whose F and time are its own.
     other_states: states at the beginning of sections that are others on that machine, as `spindle`.
+    added_speeds: lines of the original in whose place the new program names a speed that was in force there.
 
     Raises RefusedError where the new program cannot be run once, TooHardError.
     """
@@ -83,11 +85,11 @@ def read_back(
     tolerance = default_tolerance(old_side, new_side)
     left_out = _without_moves(new, origin, decided)
     result = compared(old_side, new_side, tolerance, left_out, is_rewritten=True)
-    differences = [*_of_comparison(result, decided, rapid_as_line, other_states)]
+    differences = [*_of_comparison(result, decided, rapid_as_line, other_states, origin)]
     differences += [] if rapid_as_line else _times(result)
     if original.settings.machine != settings.machine:
         differences += lost_orders(original.trace, new.trace, decided)
-        differences += other_speeds(original.trace, new.trace, decided, origin)
+        differences += other_speeds(original.trace, new.trace, {*decided, *added_speeds}, origin)
     errors = list(_errors(original, new, origin))
     # The original may start a live tool by a code that its profile does not name, or leave it to the operator.
     open_orders = [refusal for rule, refusal in errors if rule.name in _OF_ORDERS]
@@ -170,7 +172,11 @@ def _without_moves(new: Original, origin: Sequence[int], decided: Collection[int
 
 
 def _of_comparison(
-    result: Comparison, decided: Collection[int], rapid_as_line: bool, other_states: Collection[str]
+    result: Comparison,
+    decided: Collection[int],
+    rapid_as_line: bool,
+    other_states: Collection[str],
+    origin: Sequence[int],
 ) -> Iterator[Refusal]:
     for section in result.sections:
         for each in section.differences:
@@ -178,7 +184,8 @@ def _of_comparison(
             if not is_rapid and each.what not in other_states:
                 yield _refusal(each, section)
     for each in result.outside:
-        if each.what != "order" or each.old_line not in decided:
+        of_line = each.old_line or (_line(origin, each.new_line) if each.new_line else 0)
+        if each.what != "order" or of_line not in decided:
             yield _refusal(each)
     for reason in result.not_compared:
         if reason.matters:

@@ -292,8 +292,9 @@ def _continuous(start: Floats, end: Floats, turn: Floats) -> tuple[Floats, Float
 
 
 def _centers(trace: Trace, row: Rows, start: Points, end: Points, kind: States) -> Points:
-    """Centers of arcs in the plane of X and Z, by R or by I and K; NaN for lines, and where neither is written."""
-    i, k, radius = (trace.lengths.length_of(address)[row] for address in ("I", "K", "R"))
+    """Centers of arcs in the plane of X and Z, by their radius or by I and K; NaN for lines, and without either."""
+    addresses = ("I", "K", trace.machine.arcs.radius_word)
+    i, k, radius = (trace.lengths.length_of(address)[row] for address in addresses)
     is_arc = (kind == Motion.CW) | (kind == Motion.CCW)
     by_radius = polar.center_from_radius(start, end, radius, kind, 0.01)
     by_words = start + np.nan_to_num(k) + 1j * np.nan_to_num(i)

@@ -68,6 +68,8 @@ class _Writer:
             self.target.control.parentheses_are_comments,
         )
         self._reported = False
+        self._contours: dict[tuple[float, float], tuple[int, int]] = {}
+        self._has_lost_motion = False
         self.decided: set[int] = set()
 
     def result(self) -> Around:
@@ -102,8 +104,17 @@ class _Writer:
             line = int(blocks.line_in_file[row])
             cycle = int(self.trace.run.block[row])
             first, last = (self.texts.block_numbered(float(blocks.word(word)[row]), cycle) for word in "PQ")
-            if line not in self.decided or first is None or last is None:
+            if first is None or last is None:
+                first, last = self._contours.get((float(blocks.word("P")[row]), float(blocks.word("Q")[row])), (-1, -1))
+                if first >= 0 and line not in self.decided:
+                    # A finishing cycle along a contour that is left to be decided.
+                    content = self.texts.content(cycle)
+                    self._decide(line, f"{content}: its contour is left to be decided")
+                    self.blocks[cycle] = [NewBlock((), decision_comment(f"{content}: ITS CONTOUR"))]
                 continue
+            if line not in self.decided:
+                continue
+            self._contours[float(blocks.word("P")[row]), float(blocks.word("Q")[row])] = first, last
             for block in range(first, last + 1):
                 content = self.texts.content(block)
                 if content and not self._taken[block] and self.texts.line(block) not in self.decided:
@@ -120,7 +131,10 @@ class _Writer:
             return
         row = int(rows[0])
         content = self.texts.content(block)
+        self._reported = False
         if self.texts.has_program_number(block):
+            if self.translation.words_of(row):
+                raise RefusedError([self._refusal(row, "words stand beside O: put them into a block of their own")])
             self._program(block)
             return
         called = self._call(row, content)
@@ -163,16 +177,18 @@ class _Writer:
         result.whole = f"{rest} is a statement of another language"
 
     def _with_motion(self, row: int, result: Translated) -> None:
-        """The code of the motion in force, where only a section has written it."""
+        """The code of the motion in force, where only a section, or a block that is to be decided, has it."""
         trace, motion = self.trace, int(self.trace.modal.state("motion")[row])
-        if result.whole or not self._from_section[row] or motion not in _MOTIONS:
+        if bool(trace.modal.sets("motion")[row]):
+            self._has_lost_motion = bool(result.whole)
+        if result.whole or not (self._from_section[row] or self._has_lost_motion) or motion not in _MOTIONS:
             return
         moves = trace.modal.uses_axes[row] and trace.blocks.has(*trace.machine.axis_words)[row]
         if not moves or bool(trace.modal.in_cycle[row]):
             return
         code = self.target.codes(_MOTIONS[Motion(motion)])[0]
         result.words.insert(len(result.behind), code)
-        result.changed = True
+        result.changed, self._has_lost_motion = True, False
 
     def _write(self, block: int, result: Translated) -> None:
         line = self.texts.line(block)

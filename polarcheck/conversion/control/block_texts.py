@@ -117,11 +117,9 @@ class BlockTexts:
         ]
         return (filled[0], filled[-1]) if filled else (0, len(blocks) - 1)
 
-    def first_block(self) -> int | None:
-        """The first block that runs, behind the program number; None where there is none."""
-        run = self.trace.run.block
-        first = int(run.min()) if len(run) else -1
-        for block in range(max(first, 0), len(self.text.blocks)):
+    def first_block(self, row: int) -> int | None:
+        """The first block with words of a program that begins with a row, behind its number; None if there is none."""
+        for block in range(int(self.trace.run.block[row]), len(self.text.blocks)):
             if block not in self._numbered and block in self._words:
                 return block
         return None

@@ -31,6 +31,12 @@ class Calls:
                 for key in ("subprogram_calls", "program_returns", "local_calls", "sequence_word", "repeats_in_p")
             )
         )
+        is_number = trace.text.words.address == ord("O")
+        self._programs = {
+            int(value) % _LAST_DIGITS for value in trace.text.words.value[is_number].tolist() if value == value
+        }
+        #: Programs that are called and not in the file -> the first line with a call.
+        self.missing: dict[int, int] = {}
         self._flow = trace.blocks.codes(*self.source.macro.flow_codes)
 
     def is_flow(self, row: int) -> bool:
@@ -50,10 +56,18 @@ class Calls:
         """
         if not self.names(text) and not self.is_flow(row):
             return None
+        squeezed = _BLANKS.sub("", text).upper()
+        line = int(self.trace.blocks.line_in_file[row])
+        if not self.is_same and squeezed == self._return and not int(self.trace.run.depth[row]):
+            reason = f"{text}: how {self.target.title} begins the main program again is not known"
+            raise RefusedError([Refusal(line, reason)])
+        match = self._call.fullmatch(squeezed) if self._call else None
+        if match and int(match["number"]) % _LAST_DIGITS not in self._programs:
+            self.missing.setdefault(int(match["number"]) % _LAST_DIGITS, line)
         words = text.split() if self.is_same else self.written(text)
         if words is None:
             reason = f"{text}: how {self.target.title} writes that is not known"
-            raise RefusedError([Refusal(int(self.trace.blocks.line_in_file[row]), reason)])
+            raise RefusedError([Refusal(line, reason)])
         return list(words)
 
     def written(self, text: str) -> tuple[str, ...] | None:

@@ -51,7 +51,14 @@ def converted(original: Original, target: Settings) -> Outcome:
     is_other_spindle = bool(decided) or bool(translation.roles.of_live_tool.any())
     states = {"speed", *(("spindle", "live_tool") if is_other_spindle else ())}
     result = read_back(
-        original, data, settings, origin, decided, rapid_as_line=inside.rapid_as_line, other_states=states
+        original,
+        data,
+        settings,
+        origin,
+        decided,
+        rapid_as_line=inside.rapid_as_line,
+        other_states=states,
+        added_speeds=translation.added_speeds,
     )
     _require_equal(result, original, target)
     decisions = sorted({*outside.decisions, *inside.decisions}, key=lambda decision: decision.line)
@@ -65,7 +72,12 @@ def converted(original: Original, target: Settings) -> Outcome:
         Figure("blocks after", float(len(result.new.trace.text.blocks))),
         Figure("largest distance of the tool center paths", result.deviation, "mm"),
     ]
-    return Outcome(data, origin, decisions, figures, [*_notes(translation.notes), *inside.notes, *result.notes])
+    notes = [*_notes(translation.notes), *inside.notes, *result.notes]
+    notes += [
+        f"line {line}: O{number} is not in the file: convert it, too"
+        for number, line in translation.calls.missing.items()
+    ]
+    return Outcome(data, origin, decisions, figures, notes)
 
 
 def _remarks(original: Original, target: Settings, style: Style, open_orders: Sequence[Refusal]) -> Iterator[Replace]:

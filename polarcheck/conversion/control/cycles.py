@@ -107,7 +107,8 @@ class CycleWords:
     def _has_points(self, row: int) -> bool:
         """A plain cycle whose numbers have points, so that every control reads them alike."""
         is_plain = self.trace.blocks.listed(*_PLAIN_CYCLES)[row] or self.trace.modal.in_cycle[row]
-        if not is_plain or self._is_repetitive[row]:
+        # R, I and K of a cycle are distances on one control and coordinates on another.
+        if not is_plain or self._is_repetitive[row] or self.trace.blocks.has("R", "I", "K")[row]:
             return False
         words = self.trace.run.words
         indices = range(*stretch(self.trace.run.row, row, row + 1))

@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
+import numpy as np
+
 from polarcheck.checking.editing import Replace, content_of, line_without
 from polarcheck.columns.trace import Trace
 from polarcheck.conversion.blocks import NewBlock, comment_text
@@ -37,6 +39,8 @@ class Heads:
         self.decisions: list[Decision] = []
         ours, theirs = (machine.writing for machine in (self.source, target))
         self._takes_marks, self._has_marks = (_MARK in head for head in (theirs.program_head, ours.program_head))
+        starts = trace.blocks.starts & (trace.run.depth == 0)
+        self._main = set(trace.run.block[starts].tolist())
         if not writes_numbers(target):
             self._numbers_to_names()
         if (ours.program_head, ours.archive_heads) != (theirs.program_head, theirs.archive_heads):
@@ -52,7 +56,7 @@ class Heads:
             number = _NUMBER.search(content)
             heads = self.target.writing.archive_heads
             if len(blocks) > 1 and heads and number:
-                text = heads[min(place, 1)].replace("#", number[1])
+                text = heads[0 if block in self._main or not place else 1].replace("#", number[1])
                 self._replace(block, text + self._comments(block))
             else:
                 self._replace(block, comment_text(content, self.target) + self._comments(block))
@@ -106,10 +110,11 @@ class Heads:
     def before(self, measures: Measures) -> dict[int, list[NewBlock]]:
         """New blocks by the block before which they stand."""
         new: dict[int, list[NewBlock]] = {}
-        first = self.texts.first_block()
-        words = head_words(self.trace, self.target, measures)
-        if words and first is not None:
-            new[first] = [NewBlock(tuple(words))]
+        for row in np.flatnonzero(self.trace.blocks.starts & (self.trace.run.depth == 0)).tolist():
+            first = self.texts.first_block(row)
+            words = head_words(self.trace, self.target, measures, row)
+            if words and first is not None:
+                new[first] = [NewBlock(tuple(words))]
         begin, _ = self.texts.ends()
         if self._takes_marks and not self._has_marks and begin not in self.texts.marks():
             new[begin] = [NewBlock((_MARK,)), *new.get(begin, [])]
@@ -122,16 +127,16 @@ class Heads:
         return {last: [NewBlock((_MARK,))]} if needs_mark else {}
 
 
-def head_words(trace: Trace, target: Machine, measures: Measures) -> list[str]:
+def head_words(trace: Trace, target: Machine, measures: Measures, row: int) -> list[str]:
     """
-    Codes for the first block: units, coordinates (G90), X as a diameter, where the other control needs them and the
-    original does not say them.
+    Codes for the first block of a program: units, coordinates (G90), X as a diameter, where the other control needs
+    them and the original does not say them. row: its first one.
     """
     words: list[str] = []
     if not len(trace):
         return words
     if not trace.modal.sets("units").any() and trace.machine.control.units != target.control.units:
-        codes = target.codes("inch" if measures.writes_inch(0) else "mm")
+        codes = target.codes("inch" if measures.writes_inch(row) else "mm")
         of_lengths_alone = target.control.units_of_lengths_alone
         if codes:
             words.append(next((code for code in codes if code not in of_lengths_alone), codes[0]))

@@ -93,6 +93,8 @@ class MMeanings:
             key = "live_tool_off" if runs else others[0]
             return key, keys[key]
         key, place = listed[0]
-        if key in _LIVE and self._turns_live_tool[row] and getattr(self.target.m_codes, _LIVE[key]):
+        has_word = self.target.writing.live_tool_speed not in ("", "S")
+        if key in _LIVE and self._turns_live_tool[row] and (has_word or getattr(self.target.m_codes, _LIVE[key])):
+            # A live tool with a speed of its own has a start of its own, be it that no profile names it.
             key = _LIVE[key]
         return key, place

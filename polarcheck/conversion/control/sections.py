@@ -29,6 +29,7 @@ from polarcheck.machines.modal import Motion, Side, Units
 #: A plane that is turned by less is not turned [rad].
 _SAME_DIRECTION = 1e-9
 _ELSEWHERE = "the other control places it at another angle"
+_PLANES = {17: "plane_xy", 18: "plane_zx", 19: "plane_yz"}
 _SIDES = {Side.OFF: "compensation_off", Side.LEFT: "compensation_left", Side.RIGHT: "compensation_right"}
 
 
@@ -193,7 +194,8 @@ class _Writer:
             new = pen.enter(point, float(trace.path.z[row]), 0.0 if math.isnan(angle) else angle)
             return _without_empty(NewBlock(tuple(front)), *new, self.corners.before(row), NewBlock(tuple(behind)))
         if row == leave:
-            return _without_empty(NewBlock(tuple(words)), *pen.leave(), self.corners.behind(row))
+            restored = self.corners.behind(row), self._plane_behind(enter, leave)
+            return _without_empty(NewBlock(tuple(words)), *pen.leave(), *restored)
         codes = [*front, *self._sides(geometry)]
         if self.computed.is_computed(row):
             moves = self._computed_block(row, geometry, pen, turn, codes)
@@ -202,6 +204,24 @@ class _Writer:
         if not moves:
             return [NewBlock((*codes, *behind))] if codes or behind else []
         return [*moves[:-1], NewBlock((*moves[-1].words, *behind), moves[-1].comment)]
+
+    def _plane_behind(self, enter: int, leave: int) -> NewBlock:
+        """The plane of before where the section selects one and arcs, cycles or compensation follow outside."""
+        trace, writing = self.trace, self.target.writing
+        planes = {code for key in _PLANES.values() for code in self.target.codes(key)}
+        selects = [any(word in planes for text in texts for word in text.split()) for texts in (
+            (*writing.before, *writing.behind), writing.behind_end
+        )]  # fmt: skip
+        key = _PLANES.get(int(trace.modal.state("plane")[enter - 1]) if enter else 0, "plane_zx")
+        if not selects[0] or selects[1] or not self.target.codes(key):
+            return NewBlock()
+        ends = np.flatnonzero(trace.mode.enters | trace.blocks.starts)
+        following = ends[ends > leave]
+        until = int(following[0]) if len(following) else len(trace)
+        behind = slice(leave + 1, until)
+        needs = np.isin(trace.axes.motion[behind], (Motion.CW, Motion.CCW)) | trace.modal.in_cycle[behind]
+        needs |= trace.compensation.side[behind] != Side.OFF
+        return NewBlock((self.target.codes(key)[0],)) if needs.any() else NewBlock()
 
     def _moves(self, row: int, pen: Pen, turn: complex, codes: Sequence[str]) -> list[NewBlock]:
         """The moves of a row; none where nothing moves."""

@@ -69,6 +69,8 @@ class Translation:
         self.calls = Calls(self.trace, self.target)
         self.notes: dict[str, int] = {}
         self.left_out: set[int] = set()
+        #: Lines in which a speed is written that the original does not have there.
+        self.added_speeds: set[int] = set()
         control = self.source.control
         switches = (*control.x_radius_words, *control.x_diameter_words, *control.x_absolute_diameter_words)
         self._x_switches = {number for word in switches for number in numbers([word.partition(" ")[0]])}
@@ -145,6 +147,13 @@ class Translation:
 
     def _dwell(self, row: int, indices: Sequence[int], result: Translated) -> None:
         per_revolution = bool(self.trace.modal.state("feed_mode")[row] == FeedMode.PER_REVOLUTION)
+        if (
+            "F" in self.target.feed.dwell_words
+            and "F" not in self.source.feed.dwell_words
+            and self.trace.blocks.has("F")[row]
+        ):
+            result.whole = "F beside it would be the time of the dwell there: give F a block of its own"
+            return
         for index in indices:
             letter = self._letter(index)
             if letter not in self.source.feed.dwell_words:
@@ -200,7 +209,7 @@ class Translation:
             self._m_word(row, index, result)
         elif letter == "T" or (letter == "D" and bool(self.trace.tools.has_edges[row])):
             self._tool(row, index, result)
-        elif self._speeds.is_speed(row, index):
+        elif self._speeds.is_speed(index):
             word = self._speeds.written(row, index)
             no_word = f"{written}: the profile of {self.target.title} has no word for it"
             (result.words if word else result.decisions).append(word or no_word)
@@ -278,10 +287,18 @@ class Translation:
         if bool(self.roles.of_live_tool[row]) and meaning.key.startswith("live_tool"):
             self.left_out.add(int(self.trace.blocks.line_in_file[row]))
         if meaning.words:
+            if meaning.key in ("live_tool_on", "spindle_on"):
+                self._add_speed(row, meaning.key == "live_tool_on", result)
             same = self._is_spelling(index, meaning.words)
             result.words += [written] if same else self._styled(written, meaning.words)
         else:
             result.decisions.append(f"{written}: {meaning.reason}")
+
+    def _add_speed(self, row: int, is_live: bool, result: Translated) -> None:
+        """Write the speed that is in force where a spindle starts without one."""
+        if word := self._speeds.in_force(row, is_live):
+            result.words.append(word)
+            self.added_speeds.add(int(self.trace.blocks.line_in_file[row]))
 
     def _tool(self, row: int, index: int, result: Translated) -> None:
         if self.tools.is_same:
