@@ -42,13 +42,19 @@ EQUAL, DECIDED, REFUSED, WRONG = "equal", "to decide", "refused", "wrong"
 
 
 class Case(NamedTuple):
-    """A program. name: what draws it again. inch: lengths of its tools are in inch."""
+    """
+    A program.
+
+    name: what draws it again, or the path of a sample program, with the job file beside it.
+    inch: lengths of its tools are in inch.
+    """
 
     machine: str
     name: str
     data: bytes
-    tools: tuple[str, ...]
-    inch: bool
+    tools: tuple[str, ...] = ()
+    inch: bool = False
+    is_sample: bool = False
 
 
 def cases(machine: str, count: int) -> list[Case]:
@@ -58,6 +64,7 @@ def cases(machine: str, count: int) -> list[Case]:
         for seed in range(1, SECTIONS + 1)
         if machine in CONTROLS
     ]
+    result += _samples(machine)
     seed = 0
     while len(result) < count and seed < 3 * count:
         seed += 1
@@ -72,7 +79,16 @@ def cases(machine: str, count: int) -> list[Case]:
     return result
 
 
+def _samples(machine: str) -> list[Case]:
+    """The sample programs of a machine."""
+    folder = ROOT / "sample_programs"
+    paths = sorted((folder if machine == BASE else folder / machine).glob("*.[nm][cp]*"))
+    return [Case(machine, str(path), path.read_bytes(), is_sample=True) for path in paths]
+
+
 def _settings(case: Case) -> Settings:
+    if case.is_sample:
+        return OfPrograms(Options())(case.name)
     settings = OfPrograms(Options(machine=case.machine, tools=case.tools, use_config=False))("")
     # Programs that were converted may be in other units than their tools.
     return msgspec.structs.replace(
