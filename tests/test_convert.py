@@ -488,7 +488,8 @@ def test_real_programs_are_converted_or_refused(target: str) -> None:
             done += bool(convert(path.read_bytes(), "fanuc", target).data)
         except RefusedError as error:
             refusals += len(error.refusals) > 0
-    assert done >= 7
+    # One of them has numbers without points, which the lathe that it is for takes for whole units.
+    assert done >= 6
     assert done + refusals == len(paths)
 
 
@@ -554,6 +555,9 @@ JUMPS = "N1 #1=1\nN2 IF[#1 EQ 2]GOTO 75\nN70 G0 X60. Z2. C0\nN71 G12.1\nN72 G1 X
 JUMPS += "N74 G13.1\nN76 G1 Z5.\nN75 G0 Z20.\nN78 M30\n%\n"
 DRILLED = "G0 X50. Z9.\nG83 Z-20. R-8. F80.\nG80\n"
 SECOND = MILLED + "M30\nO2\nG21 G98\n" + MILLED
+HEAD_OF_B = "%\nO1\nG90 G21 G94\nT0101\nG0 X25. Z2.\n"
+SIEMENS = "G90 DIAMON G18 G71 G94\nT1 D1\nG0 X60 Z2 C0\n"
+OKUMA_TURNED = "O1\nG90 G94\nT0101\nG0 X60. Z2. C0\n"
 SURFACE = "%\nO1\nG20 G99\nT0101\nG96 S600 M3\nG0 X2. Z.1\nG1 Z-.5 F.01\nG97 S800\nM5\nM30\n%\n"
 
 
@@ -579,8 +583,28 @@ SURFACE = "%\nO1\nG20 G99\nT0101\nG96 S600 M3\nG0 X2. Z.1\nG1 Z-.5 F.01\nG97 S80
         # The code of the motion was in the block that is to be decided.
         (HEAD + "G1 Z5. F100\nG0 G28 U0 W0\nX99. Z50.\n" + MILLED + END, "fanuc-30i", "okuma-osp", ")\nG0 X99. Z50.\n"),
         (HEAD + "G04 X1. F100\n" + MILLED + END, "fanuc-30i", "okuma-osp", "(DECIDE: G04 X1. F100: F BESIDE IT"),
+        # Dwells: seconds, thousandths, turns of the spindle.
+        (HEAD + "G4 X1.5\nG4 P500\n" + MILLED + END, "fanuc-30i", "okuma-osp", "G4 F1.5\nG4 F0.5\n"),
+        (OKUMA_TURNED + "G4 F2.5\nM2\n", "okuma-osp", "haas-lathe", "G4 P2500\n"),
+        (OKUMA_TURNED + "CALL O7 Q3\nM2\nO7\nG0 Z5.\nRTS\n", "okuma-osp", "fanuc-30i", "M98 P7 L3\n"),
+        (SIEMENS + "G4 S3\nM30\n", "siemens-transmit", "okuma-osp", "DECIDE: G4 S3: NO WORD OF A DWELL OF OKUMA"),
+        ("%_N_O12_MPF\n" + SIEMENS + "M30\n", "siemens-transmit", "fanuc-30i", "%\nO12\n"),
+        ("%_N_SHAFT_MPF\n" + SIEMENS + "M30\n", "siemens-transmit", "fanuc-30i", "%\n(SHAFT_MPF)\n"),
+        # Tools and offsets.
+        (SIEMENS + "T2 D1\nG0 X40 Z2\nT2 D0\nM30\n", "siemens-transmit", "fanuc-30i", "T0202\n"),
+        (HEAD + "T0313\nG0 X60. Z2.\n" + END, "fanuc-30i", "siemens-transmit", "T3 D1 ; DECIDE: D1 OF TOOL 3: ENTER"),
+        (HEAD + "T0300\nG0 X60. Z2.\n" + END, "fanuc-30i", "siemens-transmit", "T3 D0\n"),
+        (HEAD + "T0313\nG0 X60. Z2.\n" + END, "fanuc-30i", "mazak-integrex", "T"),
+        # Distances outside of sections; units beside a code; what ends a state that the other control cannot begin.
+        (HEAD + "G0 X50. Z2.\nG1 U2. W-1. F100\n" + END, "fanuc-30i", "siemens-transmit", "G1 X52 Z1 F100\n"),
+        (HEAD_OF_B + "G91 G1 X1. F100\nG90\n" + END, "mitsubishi-m700", "haas-lathe", "U2."),
+        (HEAD + "G80 G0 X50. Z2.\n" + END, "fanuc-30i", "siemens-transmit", "G0 X50. Z2.\n"),
+        (HEAD + "G54 G0 X50. Z2.\n" + END, "fanuc-30i", "okuma-osp", "DECIDE: G54:"),
+        (HEAD + "G0 X50. Z2.\nG2 X52. Z1. I1. K0 F9\n" + END, "fanuc-30i", "siemens-transmit", "I1. K0 F9\n"),
+        (HEAD + "G0 X[40+10] Z2.\n" + END, "fanuc-30i", "haas-lathe", "G0 X[40+10] Z2.\n"),
     ],
 )  # fmt: skip
+@pytest.mark.one_in(1)
 def test_what_goes_on_around_sections_keeps_its_meaning(program: str, source: str, target: str, expected: str) -> None:
     assert expected in convert(program, source, target).data.decode()
 

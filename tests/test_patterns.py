@@ -20,6 +20,7 @@ from programs import report_of
 
 from polarcheck.checking import survey
 from polarcheck.columns import called_comments, comment_lengths, part_comments
+from polarcheck.conversion.control import calls, heads
 from polarcheck.errors import UsageError
 from polarcheck.execution import library, spoken_block
 from polarcheck.execution.programs import ProgramName
@@ -56,6 +57,9 @@ def build_every_pattern() -> None:
         if listed := tuple(machine.macro.statements.items()):
             spoken_block._patterns.__wrapped__(listed)
         mentions._flow_pattern(machine.macro)
+        calls._pattern(machine.writing.subprogram_call, machine.writing.subprogram_repeats)
+        for head in machine.writing.archive_heads:
+            heads._archive_pattern(head)
     spoken_block._patterns.__wrapped__(STATEMENTS)
     translation.spans(read_source(b""), " G17  X C ")
     for language in languages.LANGUAGES:

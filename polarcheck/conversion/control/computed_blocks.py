@@ -16,7 +16,7 @@ from polarcheck.conversion.pen import Pen
 from polarcheck.machines.machine import Machine
 from polarcheck.machines.modal import Motion
 
-_PLAIN_FEED = re.compile(r"F\s*=?\s*[\d.]", re.IGNORECASE)
+_PLAIN_FEED = re.compile(r"F\s*+=?\s*+[\d.]", re.IGNORECASE)
 _MOTIONS = {Motion.RAPID: "G0", Motion.LINE: "G1", Motion.CW: "G2", Motion.CCW: "G3"}
 
 

@@ -89,9 +89,7 @@ class Heads:
     def _archived(self, content: str) -> str:
         """The number of a program in the head of an archive; empty without one."""
         for head in self.source.writing.archive_heads:
-            before, _, behind = head.partition("#")
-            pattern = rf"{re.escape(before)}0*(\d{{1,9}}){re.escape(behind)}"
-            if match := re.fullmatch(pattern, content, re.IGNORECASE):
+            if match := _archive_pattern(head).fullmatch(content):
                 return match[1]
         return ""
 
@@ -125,6 +123,12 @@ class Heads:
         _, last = self.texts.ends()
         needs_mark = self._takes_marks and not self._has_marks and self.texts.content(last) != _MARK
         return {last: [NewBlock((_MARK,))]} if needs_mark else {}
+
+
+def _archive_pattern(head: str) -> re.Pattern[str]:
+    """The head of a program in an archive, with its number as the group."""
+    before, _, behind = head.partition("#")
+    return re.compile(rf"{re.escape(before)}0*(\d{{1,9}}){re.escape(behind)}", re.IGNORECASE)
 
 
 def head_words(trace: Trace, target: Machine, measures: Measures, row: int) -> list[str]:

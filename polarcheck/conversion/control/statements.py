@@ -7,7 +7,8 @@ from fnmatch import fnmatchcase
 
 from polarcheck.machines.machine import Machine
 
-_WORD = re.compile(r"[$A-Z_][A-Z0-9_$]*(?:\[[^\]]{0,80}\])?=?")
+_WORD = re.compile(r"[$A-Z_][A-Z0-9_$]*+(?:\[[^\[\]]{0,80}+\])?=?")
+_INDEX = re.compile(r"\[[^\[\]]*+\]")
 
 
 def is_without_effect(content: str, machine: Machine) -> bool:
@@ -20,7 +21,7 @@ def is_without_effect(content: str, machine: Machine) -> bool:
     words = [match[0] for match in _WORD.finditer(rest)][:1]
     if not words:
         return False
-    plain = re.sub(r"\[[^\]]*\]", "[*]", words[0])
+    plain = _INDEX.sub("[*]", words[0])
     numbered = re.sub(r"(?<=[A-Z])\d+=", "n=", plain)
     for name, effect in machine.macro.statements.items():
         if effect == "none" and (fnmatchcase(plain, name) or numbered == name):

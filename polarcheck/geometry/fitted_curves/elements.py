@@ -23,7 +23,8 @@ Element = tuple[int, int, float]
 
 def longest_elements(samples: Samples, tolerance: float, most: float = math.inf) -> list[Element] | None:
     """
-    Return lines and arcs that pass all places within the tolerance [mm], one behind the other; None above `most`.
+    Return lines and arcs that pass all places within the tolerance [mm], one behind the other; None
+    where `most` of them do not reach the end.
 
     Each is as long as possible by doubling and halving, so that the time grows as n log n; then joints move to where
     both elements beside them fit best: the longest one reaches beyond a tangent joint by what the tolerance hides.
@@ -33,7 +34,7 @@ def longest_elements(samples: Samples, tolerance: float, most: float = math.inf)
     at, guess = 0, 8
     while at < len(joints) - 1:
         keep_time()
-        if len(elements) + 1 > most:
+        if len(elements) >= most:
             return None
         first = int(joints[at])
 
