@@ -40,7 +40,7 @@ os.environ.update([NO_CACHE])
 LONGEST = 50
 
 #: Of a test of more cases than these, one in SHARE runs by default, and one in COUNTED counts for the coverage.
-MANY_CASES, SHARE, COUNTED = 8, 6, 4
+MANY_CASES, SHARE, COUNTED = 8, 6, 2
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

@@ -56,7 +56,6 @@ def program(machine: str, inch: bool, style: Style) -> tuple[str, int, int]:
         blocks += pen.line(end, feed=200) if center is None else pen.arc(end, center, ccw, feed=200)
     if pen.machine.writing.helices:
         blocks += pen.arc(20 + 0j, 15 + 0j, True, z=-3.0)
-    blocks += pen.dwell(1.5)
     blocks += pen.line(20 + 0j, 5.0, feed=400) if pen.machine.polar.other_axes != "forbidden" else pen.line(z=5.0)
     blocks += pen.rapid(50 + 0j)
     blocks += pen.leave()

@@ -151,17 +151,6 @@ class Pen:
             blocks.append(NewBlock(tuple(codes)))
         return blocks
 
-    def dwell(self, seconds: float, codes: Sequence[str] = ()) -> list[NewBlock]:
-        """A dwell of a time [s]. Raises RefusedError where the machine counts none in time."""
-        for address, unit in self.machine.feed.dwell_words.items():
-            factor = {"seconds": 1, "as-lengths": 1, "hundredths": 100, "thousandths": 1000}.get(unit.split("-or-")[0])
-            if factor is None:
-                continue
-            whole = factor > 1
-            text = f"{seconds * factor:.0f}" if whole else f"{seconds:.3f}".rstrip("0")
-            return [NewBlock((*codes, self._code("G4"), address + text))]
-        raise RefusedError([self._refusal("the words of a dwell there are not known")])
-
     def written(
         self, words: Sequence[str], motion: str, end: complex, z: float, feed: float | None, codes: Sequence[str] = ()
     ) -> list[NewBlock]:

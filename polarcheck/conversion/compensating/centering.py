@@ -17,6 +17,7 @@ from polarcheck.conversion.original import Original
 from polarcheck.conversion.outcome import Figure, Outcome, Refusal, RefusedError
 from polarcheck.conversion.reading_back import read_back_on_part, require_equal
 from polarcheck.conversion.style_of import style_of
+from polarcheck.conversion.unchanged import changed_outside, changed_words
 from polarcheck.geometry.cutter_compensation.compensation import Phase
 from polarcheck.geometry.tolerances import ZERO
 from polarcheck.table.moves import Moves
@@ -52,6 +53,8 @@ def centered(original: Original) -> Outcome:
     step = float(np.max(trace.lengths.least_step))
     result = read_back_on_part(original, data, original.settings, origin, _INCREMENTS * step + 1e-3)
     require_equal(result)
+    if changed := [*changed_words(trace, result.new.trace), *changed_outside(trace, result.new.trace)]:
+        raise RefusedError(changed)
     figures = [
         Figure("sections written as the path of the tool center", len(sections)),
         Figure("largest distance of the path from that of the original", result.deviation, "mm"),

@@ -16,6 +16,7 @@ from polarcheck.conversion.compensating.sides import Swept
 from polarcheck.conversion.original import Original
 from polarcheck.conversion.outcome import Refusal, RefusedError
 from polarcheck.conversion.reading_back import read_back_on_part
+from polarcheck.conversion.unchanged import changed_outside, changed_words
 from polarcheck.table.milled import Milled
 from polarcheck.table.moves import Moves
 
@@ -68,8 +69,9 @@ def require_same_part(
     step = float(np.max(trace.lengths.least_step))
     finer = [share * radius for share in _FINER]
     result = read_back_on_part(original, data, original.settings, origin, _FARTHEST * radius, finer=finer)
-    if result.differences:
-        raise RefusedError(result.differences)
+    changed = [*changed_words(trace, result.new.trace), *changed_outside(trace, result.new.trace)]
+    if result.differences or changed:
+        raise RefusedError([*result.differences, *changed])
     new_moves: Moves = result.new.tables["tool_center"].moves
     new_milled: Milled = result.new.tables["milled"]
     now = Swept(result.new.trace, new_moves, new_milled.radius[new_moves.row])

@@ -13,6 +13,7 @@ from polarcheck.conversion.blocks import with_edits
 from polarcheck.conversion.original import Original, read
 from polarcheck.conversion.outcome import Figure, Outcome, Refusal, RefusedError
 from polarcheck.conversion.style_of import style_of
+from polarcheck.conversion.unchanged import changed_words
 from polarcheck.conversion.unrolling import measuring, rates
 from polarcheck.conversion.unrolling.errors import errors
 from polarcheck.conversion.unrolling.rates import FEEDS as FEEDS
@@ -62,8 +63,9 @@ def unrolled(original: Original, options: Unrolling) -> Outcome:
     data, origin = with_edits(original, text.edits)
     new = read(original.path, data, original.settings)
     measured = measuring.measured(original, new, text.spans, steps, options.chord_error, feed)
-    if measured.differences:
-        raise RefusedError(measured.differences)
+    changed = list(changed_words(trace, new.trace))
+    if measured.differences or changed:
+        raise RefusedError([*measured.differences, *changed])
     notes = [*measured.notes, *_notes(original, steps, time, feed), *_notes_of_text(trace, sections, writer, text)]
     return Outcome(data, origin, [], [*_sizes(original, data), *measured.figures], notes)
 
