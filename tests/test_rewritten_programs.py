@@ -219,3 +219,77 @@ def test_a_fault_of_a_writer_is_found(command: str, fault: str, monkeypatch: pyt
 @pytest.mark.one_in(1)
 def test_words_that_few_programs_have(program: str, source: str, target: str, expected: str) -> None:
     assert expected in convert(program, source, target).data.decode()
+
+
+MAZAK = "%\nO1\nG90 G94 G21\nT05.01 T00 M6\n"
+MORE = [
+    (IN_MODE.format("G1 X40. C5. F200\n#1=5.\nG3 X20. C-5. R[5.+#1]\nG1 X60. C0"), "fanuc-30i", "mazak-quick-turn"),
+    (IN_MODE.format("G1 X40. C0 F200\n#1=20.\nG2 X-40. C0 I[0-#1] J0\nG1 X60. C0"), "fanuc-30i", "mazak-quick-turn"),
+    (IN_MODE.format("G1 X40. C5. F200\nZ-1.\nG1 C[5.] Z-1. F[90.]\nG1 X60. C0"), "fanuc-30i", "haas-lathe"),
+    (IN_MODE.format("G1 X40. C5. F200\nG1 X30. C2. Z-1.\nX60. C0"), "fanuc-30i", "turning-center"),
+    (IN_MODE.format("G1 X40. C5. F200\nG3 X40.001 C5.001 R.5\nG1 X60. C0"), "fanuc-30i", "okuma-osp"),
+    (IN_MODE.format("G1 X40. C5. F200\nG4 P500\nX30. M8\nM98 P7\nX60. C0") + "O7\nM9\nM99\n", "fanuc-30i", "doosan"),
+    (IN_MODE.format("G1 X40. C5. F200\nX30. S900 M77\nX60. C0"), "fanuc-30i", "fanuc-16i"),
+    (HEAD + "G83 Z-5. F80.\nG80\n" + END, "fanuc-30i", "siemens-iso"),
+    (HEAD + "G92 U-1. Z-5. F1.\nG0 X60.\n" + END, "fanuc-30i", "mazak-eia"),
+    (HEAD + "G20\nG83 Z-.5 F8.\nG80\n" + END, "fanuc-30i", "gsk-988"),
+    (HEAD + "G28 W0\nG0 X60. W1.\n" + END, "fanuc-30i", "mazak-eia"),
+    (HEAD + "GOTO 5\nG0 X1.\nG0 X2.\nN5 G0 X60.\n" + END, "fanuc-30i", "haas-lathe"),
+    (HEAD + "T0101 G0 X60. #1=5\nG0 X#1\n" + END, "fanuc-30i", "haas-lathe"),
+    (HEAD + "G0 X60. Z2.\nG43 H1 Z5.\nG49\n" + END, "fanuc-30i", "haas-lathe"),
+    (HEAD + "G0 X60. Z2.\n,R5.\nG1 X50. ,R1. F100\n" + END, "fanuc-30i", "okuma-osp"),
+    (HEAD + "G4 X[1.+1.]\nG99 G4 U2.\n" + END, "fanuc-30i", "siemens-transmit"),
+    (HEAD + "#1=5\nG99 G1 F[.1]\nG20\nG1 Z-1. F[#1]\n" + END, "fanuc-30i", "okuma-osp"),
+    (HEAD + "M98 P30007\nM30\nO7\nG0 X60.\nM99\n%\n", "fanuc-16i", "okuma-osp"),
+    (SIEMENS + "L7 P2\nM30\n", "siemens-transmit", "haas-lathe"),
+    (SIEMENS + 'T="MILL" D1\nM30\n', "siemens-transmit", "haas-lathe"),
+    (SIEMENS + "IF R1==1 GOTOF A\nA: G0 X5\nM30\n", "siemens-transmit", "haas-lathe"),
+    (SIEMENS + "G4 F=R1\nM30\n", "siemens-transmit", "haas-lathe"),
+    (SIEMENS + "X=IC(5) Z=R1\nG91 X5 Z5\nG90\nM30\n", "siemens-transmit", "haas-lathe"),
+    (SIEMENS + "G1 X55 Z1 F.1 G95\nG3 X50 Z-5 I=AC(40) K=AC(1)\nM30\n", "siemens-transmit", "haas-lathe"),
+    (MAZAK + "G91 G28 X0 Z0\nG90 G0 X60. C0\nG91 C5.\nG90\nM30\n%\n", "mazak-eia", "fanuc-30i"),
+    ("%\nO1\nG21 G98\nT101\nM154\nP#1 M133\nG0 X60.\nM135\nM155\nM30\n%\n", "haas-lathe", "okuma-osp"),
+    ("O1\nG90 G94\nT030203\nT110203\nSB=VC1 M13\nG0 X60. Z2. C0\nCALL OABC\nM2\n", "okuma-osp", "haas-lathe"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("program", "source", "target"), MORE)
+@pytest.mark.one_in(1)
+def test_any_program_is_converted_or_refused_with_its_line(program: str, source: str, target: str) -> None:
+    """What is written is proven by reading it back; nothing else comes of it than a program or reasons."""
+    try:
+        assert convert(program, source, target).data
+    except RefusedError as error:
+        reasons = [refusal.text for refusal in error.refusals]
+        if not all(reasons):
+            pytest.fail(str(error))
+
+
+LOOP = "#1=0\nWHILE[#1 LT 2]DO1\n#1=#1+1\nG1 Z[-#1] F100\nX40. C5. S[500+#1] M8\nX60. C0\nEND1"
+PLAIN = [
+    IN_MODE.format(LOOP),
+    IN_MODE.format(LOOP.replace("S[500+#1] M8", "A[#1]")),
+    IN_MODE.format("G91 G1 X-20. C5. F200\nG90 X60. C0").replace("G98", "G94"),
+    IN_MODE.format("G1 X40. C5. F200\nIF[1 EQ 1]GOTO 9\nX30.").replace("G0 Z50.", "N9 G0 Z50."),
+    HEAD + "G0 X60. Z2. C0\nM98 P7\nG1 X40. C5. F200\nG13.1\nM30\nO7\nG12.1\nM99\n%\n",
+    IN_MODE.format("G1 X40. C5. F200\nW-1.\nX60. C0").replace(" Z2.", ""),
+]
+
+
+@pytest.mark.parametrize("machine", ["fanuc-30i", "mitsubishi-m700"])
+@pytest.mark.parametrize("program", PLAIN)
+@pytest.mark.one_in(1)
+def test_any_section_is_unrolled_or_refused_with_its_line(program: str, machine: str) -> None:
+    settings = settings_of(machine, "1:radius=4")
+    for work in (unroll, compensate, centered):
+        outcome = outcome_of(program, settings, work)
+        assert outcome is None or outcome.data
+
+
+def test_elements_near_the_center_are_divided_for_the_limit_of_c() -> None:
+    """An arc that passes 2 mm from the center: F of its parts keeps C at its limit."""
+    program = IN_MODE.format("G1 X30. C0 F300\nG3 X-4. C0 R8.5\nG3 X30. C0 R8.5\nG1 X40. C3.\nX60. C0")
+    plain = rewritten("a.nc", program.encode(), settings_of("fanuc-30i"), unroll).data
+    slow = OfPrograms(Options(machine="fanuc-30i", changes=("limits.c_feed=1500",), use_config=False))("")
+    outcome = rewritten("a.nc", plain, slow, lambda original: rolled(original, Rolling(feed="per-minute", keep_c=True)))
+    assert any("C turns no faster than its limit allows" in note for note in outcome.notes)
