@@ -39,8 +39,8 @@ os.environ.update([NO_CACHE])
 #: Characters of one value in the name of a test.
 LONGEST = 50
 
-#: Of a test of more cases than these, one in SHARE runs by default, and one in COUNTED counts for the coverage.
-MANY_CASES, SHARE, COUNTED = 8, 6, 2
+#: Of a test of more cases than these, one in SHARE runs by default.
+MANY_CASES, SHARE = 8, 6
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -68,7 +68,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         is_many = everything and count[test] > MANY_CASES
         if cases[test] % (share.args[0] if share else SHARE if is_many else 1):
             item.add_marker("slow")
-        if cases[test] % (share.args[0] if share else COUNTED if is_many else 1):
+        if share and cases[test] % share.args[0]:
             item.add_marker("uncounted")
         cases[test] += 1
 

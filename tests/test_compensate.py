@@ -255,6 +255,15 @@ def with_square(before: str = "", after: str = "") -> str:
     return PROGRAM.format(x="90.", blocks=SQUARE).replace(before, after)
 
 
+def test_moves_behind_the_contour_keep_their_code_and_feed() -> None:
+    """G0 Z2. X90.: the modal code of the last move is said again; F alone in a block stays alone."""
+    blocks = "\n".join(["G0 Z-4.", *("G1 " + block for block in SQUARE.splitlines()), "G0 Z2.", "X90."])
+    assert "G40 G1 X38. C0\nG0 Z2.\nX90.\n" in text_of(rewrite(PROGRAM.format(x="90.", blocks=blocks)))
+    alone = text_of(rewrite(with_square("\nX-38.0 C19.0", "\nF150\nX-38.0 C19.0")))
+    assert "X30. C15.\nF150\nX-30. C15.\n" in alone
+    assert "X38. C19.\nF150\nX-38. C19.\n" in text_of(rewrite(alone, centered))
+
+
 @pytest.mark.parametrize(
     ("text", "tool", "line", "reason"),
     [
@@ -265,9 +274,10 @@ def with_square(before: str = "", after: str = "") -> str:
         (with_square("X90. Z2.", "X90. Z2. G42"), "8:radius=4", 8, "G41 or G42 is in force where the mode is switched"),
         (with_square("G12.1", "G12.1\nG12.1"), "8:radius=4", 9, "the polar mode is switched on within itself"),
         (with_square("\nX-38.0 C19.0", "\nX[-38.] C19."), "8:radius=4", 12, "its words are expressions"),
+        (with_square("\nX-38.0 C19.0", "\n#1=-38.\nX#1 C19."), "8:radius=4", 13, "its words are expressions"),
         ("O1\nG0 X60. C0\nM30\n", "8:radius=4", 0, "the program has no polar section"),
     ],
-    ids=["R", "R 0", "no offset", "side", "switch", "twice", "macro", "no section"],
+    ids=["R", "R 0", "no offset", "side", "switch", "twice", "macro", "variable", "no section"],
 )
 def test_refused_with_line_and_reason(text: str, tool: str, line: int, reason: str) -> None:
     with pytest.raises(RefusedError) as refused:
