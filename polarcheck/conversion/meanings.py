@@ -11,7 +11,7 @@ import numpy as np
 
 from polarcheck.arrays import stretch
 from polarcheck.columns.trace import Trace
-from polarcheck.conversion.outcome import Refusal
+from polarcheck.conversion.outcome import Refusal, refusal_at
 from polarcheck.machines.m_codes import SWITCHED
 from polarcheck.machines.modal import Units
 from polarcheck.table.dwells import time_of_dwells
@@ -175,5 +175,4 @@ def _dwells(old: Trace, new: Trace, pairs: list[tuple[Order, Order]]) -> Iterato
     for first, second in rows:
         was, is_now = float(times[0][first]), float(times[1][second])
         if not (abs(was - is_now) <= _SAME_TIME or (np.isnan(was) and np.isnan(is_now))):
-            line = int(old.blocks.line_in_file[first])
-            yield Refusal(line, f"the dwell of {was:g} s would be one of {is_now:g} s")
+            yield refusal_at(old, first, f"the dwell of {was:g} s would be one of {is_now:g} s")

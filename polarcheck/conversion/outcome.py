@@ -2,10 +2,25 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import msgspec
 
 from polarcheck.errors import Refusal as Refusal
 from polarcheck.errors import RefusedError as RefusedError
+
+if TYPE_CHECKING:
+    from polarcheck.columns.trace import Trace
+
+
+def refusal_at(trace: Trace, row: int, text: str) -> Refusal:
+    """A reason with the line of a row in the file."""
+    return Refusal(int(trace.blocks.line_in_file[row]), text)
+
+
+def refused_at(trace: Trace, row: int, text: str) -> RefusedError:
+    """The error to raise for one reason with the line of a row in the file."""
+    return RefusedError([refusal_at(trace, row, text)])
 
 
 class Decision(msgspec.Struct, frozen=True):

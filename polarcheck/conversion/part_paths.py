@@ -11,7 +11,7 @@ import numpy as np
 from polarcheck.arrays import Floats, Mask, Points, Rows, States
 from polarcheck.checking.tables import Tables
 from polarcheck.columns.trace import Trace
-from polarcheck.conversion.outcome import Refusal, RefusedError
+from polarcheck.conversion.outcome import refused_at
 from polarcheck.errors import TooHardError
 from polarcheck.geometry.comparison.polyline import SpacePath
 from polarcheck.geometry.plane import arc_sweep
@@ -63,9 +63,8 @@ def path_on_part(tables: Tables, first: int = 0, until: int | None = None, chord
     missing = np.append(moves.row[~moves.is_known], [section.row[0] for section in sections if section.as_programmed])
     missing = missing[(missing >= first) & (missing < until)]
     if len(missing):
-        line = int(trace.blocks.line_in_file[int(missing.min())])
         reasons = [section.as_programmed for section in sections if section.as_programmed]
-        raise RefusedError([Refusal(line, (reasons or ["where the tool is there is not known"])[0])])
+        raise refused_at(trace, int(missing.min()), (reasons or ["where the tool is there is not known"])[0])
     return moves
 
 

@@ -42,8 +42,7 @@ class ReadBack(msgspec.Struct, frozen=True):
 
     new: the program as it is read. differences: what differs, with lines of the original; none where it may be written.
     deviation: the largest distance of the tool center paths [mm]. open_orders: errors about spindles, the C axis or
-    tools, which somebody has to decide. notes: what could not be compared and does not
-    matter.
+    tools, which somebody has to decide. notes: what could not be compared and does not matter.
     """
 
     new: Original

@@ -8,7 +8,7 @@ import numpy as np
 
 from polarcheck.arrays import Floats
 from polarcheck.columns.trace import Trace
-from polarcheck.conversion.outcome import Refusal
+from polarcheck.conversion.outcome import Refusal, refusal_at
 
 #: Places that differ by less are the same [mm].
 _SAME = 1e-6
@@ -50,11 +50,12 @@ def changed_outside(old: Trace, new: Trace) -> Iterator[Refusal]:
         differs &= old.blocks.has(name)[rows[0]]
         if differs.any():
             row = int(rows[0][np.argmax(differs)])
-            yield Refusal(int(old.blocks.line_in_file[row]), f"{name} would be another one there")
+            yield refusal_at(old, row, f"{name} would be another one there")
     for number, (depth, other) in enumerate(zip(_depths(old), _depths(new), strict=False)):
         if abs(depth - other) > _SAME:
-            line = int(old.blocks.line_in_file[old.mode.sections.enter[number]])
-            yield Refusal(line, f"the depth of the section was Z{depth:g} and would be Z{other:g}")
+            yield refusal_at(
+                old, old.mode.sections.enter[number], f"the depth of the section was Z{depth:g} and would be Z{other:g}"
+            )
 
 
 def _depths(trace: Trace) -> Floats:

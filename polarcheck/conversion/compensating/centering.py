@@ -14,7 +14,7 @@ from polarcheck.conversion.compensating.moves import Move, of_section
 from polarcheck.conversion.compensating.sections import compensated_sections
 from polarcheck.conversion.compensating.writing import Stroke, Strokes, new_blocks
 from polarcheck.conversion.original import Original
-from polarcheck.conversion.outcome import Figure, Outcome, Refusal, RefusedError
+from polarcheck.conversion.outcome import Figure, Outcome, RefusedError, refusal_at, refused_at
 from polarcheck.conversion.reading_back import read_back_on_part, require_equal
 from polarcheck.conversion.style_of import style_of
 from polarcheck.conversion.unchanged import changed_outside, changed_words
@@ -67,12 +67,12 @@ def centered(original: Original) -> Outcome:
 
 def _require_path(trace: Trace, tool_center: ToolCenter, compensated: Mask) -> None:
     """Raise RefusedError where the path of the tool center is not known, or not that of the contour."""
-    moves, lines = tool_center.moves, trace.blocks.line_in_file
+    moves = tool_center.moves
     unknown = np.flatnonzero(trace.compensation.compensates & trace.path.travels & np.isnan(trace.compensation.radius))
     if len(unknown):
         row = int(unknown[0])
         missing = to_give(trace.tools, trace.machine, row, "radius")
-        raise RefusedError([Refusal(int(lines[row]), f"R of {called_tool(trace.tools, row)} is not known: {missing}")])
+        raise refused_at(trace, row, f"R of {called_tool(trace.tools, row)} is not known: {missing}")
     objections = {
         "the tool does not fit into this arc": tool_center.inside_arc_too_small,
         "the tool center would run against the program": tool_center.interferes,
@@ -81,19 +81,19 @@ def _require_path(trace: Trace, tool_center: ToolCenter, compensated: Mask) -> N
         "the center of the arc is its start or its end": tool_center.arc_center_on_path,
     }
     refusals = [
-        Refusal(int(lines[row]), f"{text}: there the path is wrong already")
+        refusal_at(trace, row, f"{text}: there the path is wrong already")
         for text, rows in objections.items()
         for row in np.flatnonzero(rows & compensated)[:5].tolist()
     ]
     rows = moves.row[~moves.known & compensated[moves.row]]
     text = "where this move begins is not known: write X and C before it"
-    refusals += [Refusal(int(lines[row]), text) for row in rows[:1].tolist()]
+    refusals += [refusal_at(trace, row, text) for row in rows[:1].tolist()]
     if moves.allowance.any():
         row = int(moves.row[np.argmax(moves.allowance != 0)])
-        refusals.append(Refusal(int(lines[row]), "an infeed cycle makes the passes of its section"))
+        refusals.append(refusal_at(trace, row, "an infeed cycle makes the passes of its section"))
     slower = moves.row[(moves.arc_share != 1) & compensated[moves.row]]
     text = "F along this arc is that of the contour, not of the tool center: switch that off before"
-    refusals += [Refusal(int(lines[row]), text) for row in slower[:1].tolist()]
+    refusals += [refusal_at(trace, row, text) for row in slower[:1].tolist()]
     if refusals:
         raise RefusedError(sorted(refusals, key=lambda refusal: refusal.line))
 

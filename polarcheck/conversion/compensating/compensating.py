@@ -21,7 +21,7 @@ from polarcheck.conversion.compensating.sections import Section, sections_of
 from polarcheck.conversion.compensating.sides import Swept
 from polarcheck.conversion.compensating.writing import Stroke, new_blocks
 from polarcheck.conversion.original import Original
-from polarcheck.conversion.outcome import Figure, Outcome, Refusal, RefusedError
+from polarcheck.conversion.outcome import Figure, Outcome, RefusedError, refused_at
 from polarcheck.conversion.style_of import style_of
 from polarcheck.machines.machine import Machine
 from polarcheck.table.bar import Bar
@@ -102,8 +102,7 @@ def _ramped(
                 section.moves, contour, *((low, high) if by_moves else (contour.first, contour.last + 1))
             )
         except NoContourError as error:
-            line = int(trace.blocks.line_in_file[section.moves[max(error.move, 0)].row])
-            raise RefusedError([Refusal(line, str(error))]) from None
+            raise refused_at(trace, section.moves[max(error.move, 0)].row, str(error)) from None
         result.append(CompensatedContour(section, contour, ramped))
         free = max(contour.last, ramped.leaves, *(piece.move for piece in ramped.contour)) + 1
     return result
@@ -167,8 +166,7 @@ def _require_level(trace: Trace, move: Move, rest: Piece | None = None) -> None:
     if rest is not None and move.piece.center is not None:
         share = 1 - rest.sweep / move.piece.sweep
     if not move.is_level and abs(move.ends - move.begins) * share > _SAME_DEPTH:
-        line = int(trace.blocks.line_in_file[move.row])
-        raise RefusedError([Refusal(line, "Z moves here, where the contour has no move of its own: move Z alone")])
+        raise refused_at(trace, move.row, "Z moves here, where the contour has no move of its own: move Z alone")
 
 
 def _notes(trace: Trace, contours: Sequence[CompensatedContour]) -> list[str]:

@@ -14,7 +14,7 @@ from polarcheck.conversion.compensating.parallel import NEAR
 from polarcheck.conversion.compensating.ramps import Contour
 from polarcheck.conversion.compensating.sections import Section
 from polarcheck.conversion.compensating.sides import Swept, points_along
-from polarcheck.conversion.outcome import Refusal, RefusedError
+from polarcheck.conversion.outcome import Refusal, RefusedError, refusal_at, refused_at
 from polarcheck.geometry.tolerances import ROUNDING
 
 #: On which side of all paths the cutter is, seen along them: left is G41, right is G42; or where their parts are.
@@ -76,7 +76,7 @@ def _paths(trace: Trace, section: Section, swept: Swept, side: str) -> Iterator[
     candidates = candidates_of(trace, section, swept, side)
     if not candidates:
         text = "nothing of its path is a contour: it does not close, and has no moves to it and away from it"
-        raise RefusedError([Refusal(_line(trace, section.moves[0].row), text)])
+        raise refused_at(trace, section.moves[0].row, text)
     frame, turn = swept.frame_of(section.number)
     for candidate in candidates:
         pieces = [move.piece for move in section.moves[candidate.first : candidate.last + 1]]
@@ -160,23 +160,19 @@ def _ambiguous(trace: Trace, path: _Path) -> Refusal:
         why = "no other move leads to this one and away from it"
     elif candidate.part_sides:
         why = "the part may be on both sides of this path"
-    return Refusal(_line(trace, path.section.moves[candidate.first].row), f"{why}: choose with {options}")
+    return refusal_at(trace, path.section.moves[candidate.first].row, f"{why}: choose with {options}")
 
 
 def _given(trace: Trace, path: _Path, side: str) -> float:
     """The distance to the left of a path [mm] by --side. Raises RefusedError where no contour is there."""
     section, candidate = path.section, path.candidate
-    line = _line(trace, section.moves[candidate.first].row)
+    row = section.moves[candidate.first].row
     if side in ("left", "right"):
         aside = -section.radius if side == "left" else section.radius
     elif candidate.ring is None:
-        raise RefusedError([Refusal(line, f"this path does not close, so that {side} says nothing: left or right")])
+        raise refused_at(trace, row, f"this path does not close, so that {side} says nothing: left or right")
     else:
         aside = section.radius if candidate.is_inside(section.radius) == (side == "part-inside") else -section.radius
     if aside not in candidate.part_sides:
-        raise RefusedError([Refusal(line, "on that side of this path is no contour: its arcs are smaller than R")])
+        raise refused_at(trace, row, "on that side of this path is no contour: its arcs are smaller than R")
     return aside
-
-
-def _line(trace: Trace, row: int) -> int:
-    return int(trace.blocks.line_in_file[row])

@@ -14,7 +14,7 @@ from polarcheck.conversion.compensating.ramps import Contour, Ramped
 from polarcheck.conversion.compensating.sections import Section
 from polarcheck.conversion.compensating.sides import Swept
 from polarcheck.conversion.original import Original
-from polarcheck.conversion.outcome import Refusal, RefusedError
+from polarcheck.conversion.outcome import Refusal, RefusedError, refused_at
 from polarcheck.conversion.reading_back import read_back_on_part
 from polarcheck.conversion.unchanged import changed_outside, changed_words
 from polarcheck.table.milled import Milled
@@ -87,8 +87,7 @@ def require_same_part(
         worst = int(np.argmax(differs))
         largest = max(largest, float(differs[worst]))
         if differs[worst] > tolerance:
-            line = int(trace.blocks.line_in_file[moves[numbers[worst]].row])
-            raise RefusedError([Refusal(line, _text(was, becomes, worst))])
+            raise refused_at(trace, moves[numbers[worst]].row, _text(was, becomes, worst))
     path = 0.0
     for number, own_radius in dict.fromkeys((contour.section.number, contour.section.radius) for contour in contours):
         apart, row = now.farthest_from(swept, number)

@@ -10,7 +10,7 @@ import numpy as np
 from polarcheck.checking.phrases.offsets import called_tool, example, to_give
 from polarcheck.columns.trace import Trace
 from polarcheck.conversion.compensating.moves import Move, of_section
-from polarcheck.conversion.outcome import Refusal, RefusedError
+from polarcheck.conversion.outcome import Refusal, RefusedError, refusal_at, refused_at
 from polarcheck.geometry.tolerances import ADJUSTMENT, ROUNDING
 from polarcheck.machines.code_lists import expanded
 from polarcheck.machines.modal import ArcFeed, Side
@@ -69,59 +69,55 @@ def _require_sound_switches(trace: Trace) -> None:
     compensation, mode = trace.compensation, trace.mode
     again = np.flatnonzero(mode.enters_again)
     if len(again):
-        raise RefusedError([Refusal(_line(trace, int(again[0])), "the polar mode is switched on within itself")])
+        raise refused_at(trace, int(again[0]), "the polar mode is switched on within itself")
     side = trace.modal.state("side")
     on = mode.enters & ~compensation.writes_cancel & ((side == Side.LEFT) | (side == Side.RIGHT))
     off = mode.leaves & (compensation.side_of_move_before != Side.OFF)
     wrong = np.flatnonzero(on | off)
     if len(wrong):
         text = "G41 or G42 is in force where the mode is switched: cancel it by G40 and a move before"
-        raise RefusedError([Refusal(_line(trace, int(row)), text) for row in wrong.tolist()])
+        raise RefusedError([refusal_at(trace, int(row), text) for row in wrong.tolist()])
 
 
 def _require_control(trace: Trace, section: int) -> None:
     """Raise RefusedError where the control takes no cutter compensation in the mode."""
     machine = trace.machine
-    line = _line(trace, int(np.flatnonzero(trace.mode.section == section)[0]))
+    row = int(np.flatnonzero(trace.mode.section == section)[0])
     allowed = expanded(machine.polar.allowed_codes)
     for key in ("compensation_left", "compensation_right", "compensation_off"):
         codes = machine.codes(key)
         if not codes or (allowed and codes[0] not in allowed):
             what = f"{codes[0]} in the polar mode" if codes else "cutter compensation"
-            raise RefusedError([Refusal(line, f"{machine.title} takes no {what}: leave the path of the tool center")])
+            raise refused_at(trace, row, f"{machine.title} takes no {what}: leave the path of the tool center")
 
 
 def _radius(trace: Trace, section: int) -> float:
     """R of the tool offset in force in a section [mm]. Raises RefusedError where it is not known."""
     rows = np.flatnonzero((trace.mode.section == section) & trace.path.travels)
-    row, line = int(rows[0]), _line(trace, int(rows[0]))
+    row = int(rows[0])
     if not trace.tools.offset_number[row]:
         how = f"call one before the section, as {example(trace.machine)}"
-        raise RefusedError([Refusal(line, f"no tool offset is in force, from which the control would take R: {how}")])
+        raise refused_at(trace, row, f"no tool offset is in force, from which the control would take R: {how}")
     radius = np.unique(trace.offsets.radius_of_offset[rows])
     tool = called_tool(trace.tools, row)
     if np.isnan(radius).any():
         missing = to_give(trace.tools, trace.machine, row, "radius")
-        raise RefusedError([Refusal(line, f"R of {tool} is not known: {missing}")])
+        raise refused_at(trace, row, f"R of {tool} is not known: {missing}")
     if len(radius) > 1:
-        raise RefusedError([Refusal(line, "another tool offset is called in the section")])
+        raise refused_at(trace, row, "another tool offset is called in the section")
     if radius[0] <= ADJUSTMENT + ROUNDING:
         missing = to_give(trace.tools, trace.machine, row, "radius")
         text = f"R of {tool} is {radius[0]:g} mm, which is not the radius of its cutter: {missing}"
-        raise RefusedError([Refusal(line, text)])
+        raise refused_at(trace, row, text)
     if trace.compensation.sides_are_open[row]:
-        raise RefusedError([Refusal(line, "on the sub-spindle nobody knows which of G41 and G42 is meant")])
+        raise refused_at(trace, row, "on the sub-spindle nobody knows which of G41 and G42 is meant")
     if trace.compensation.allowance[rows].any():
         word = trace.machine.offsets.allowance_word
-        raise RefusedError([Refusal(line, f"{word} is in force, which the control would add to R: set it to 0 before")])
+        raise refused_at(trace, row, f"{word} is in force, which the control would add to R: set it to 0 before")
     of_contour = rows[trace.path.is_arc[rows] & (trace.modal.state("arc_feed")[rows] > ArcFeed.CENTER)]
     if len(of_contour):
         text = (
             "with the code in force F would be that of the contour along this arc, and the cutter run at another speed"
         )
-        raise RefusedError([Refusal(_line(trace, int(of_contour[0])), text)])
+        raise refused_at(trace, int(of_contour[0]), text)
     return float(radius[0])
-
-
-def _line(trace: Trace, row: int) -> int:
-    return int(trace.blocks.line_in_file[row])

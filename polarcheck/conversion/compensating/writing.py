@@ -14,7 +14,7 @@ from polarcheck.checking.editing import is_head, is_plain, words_of, written_wor
 from polarcheck.columns.trace import Trace
 from polarcheck.conversion.blocks import NewBlock
 from polarcheck.conversion.compensating.pieces import Piece
-from polarcheck.conversion.outcome import Refusal, RefusedError
+from polarcheck.conversion.outcome import refused_at
 from polarcheck.conversion.pen import Pen
 from polarcheck.conversion.style import Style
 from polarcheck.machines.modal import STATES, Motion, Units
@@ -93,7 +93,7 @@ class _Writer:
         steps = self._steps(first)
         new: dict[int, list[NewBlock]] = {}
         for row in group:
-            pen.numbers.line = self._line(row)
+            pen.numbers.line = int(self.trace.blocks.line_in_file[row])
             self._require_plain(row)
             moves: list[NewBlock] = []
             for stroke in strokes[row]:
@@ -161,7 +161,7 @@ class _Writer:
     def _put(self, row: int, blocks: list[NewBlock]) -> None:
         block = int(self.trace.run.block[row])
         if self.blocks.setdefault(block, blocks) != blocks:
-            raise self._refused(row, "the block runs several times, and would move otherwise each time")
+            raise refused_at(self.trace, row, "the block runs several times, and would move otherwise each time")
 
     def _say_motion_behind(self, row: int, code: str, pen: Pen) -> None:
         """Say the code of the next move where it is in force from before the rewritten rows, and is another now."""
@@ -183,7 +183,9 @@ class _Writer:
         others = np.isin(block, block[list(rows)])
         others[list(rows)] = False
         if others.any():
-            raise self._refused(int(np.argmax(others)), "the block runs several times, not always along a contour")
+            raise refused_at(
+                self.trace, int(np.argmax(others)), "the block runs several times, not always along a contour"
+            )
 
     def _require_plain(self, row: int) -> None:
         trace = self.trace
@@ -191,15 +193,11 @@ class _Writer:
         words = [written_word(run, index) for index in words_of(run, row)]
         is_macro = run.text.blocks.is_macro[int(run.block[row])]
         if not is_plain(run, row) and (is_macro or not all(map(_NUMBER.fullmatch, words))):
-            raise self._refused(row, "its words are expressions, or in another language: write them as numbers first")
+            raise refused_at(
+                self.trace, row, "its words are expressions, or in another language: write them as numbers first"
+            )
         if trace.path.frames is not None:
-            raise self._refused(row, "the program shifts or turns its coordinates by frames")
-
-    def _refused(self, row: int, text: str) -> RefusedError:
-        return RefusedError([Refusal(self._line(row), text)])
-
-    def _line(self, row: int) -> int:
-        return int(self.trace.blocks.line_in_file[row])
+            raise refused_at(self.trace, row, "the program shifts or turns its coordinates by frames")
 
 
 def _said_by_moves(trace: Trace) -> Mask:

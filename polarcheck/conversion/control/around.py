@@ -17,7 +17,7 @@ from polarcheck.conversion.control.heads import Heads, writes_numbers
 from polarcheck.conversion.control.statements import is_without_effect
 from polarcheck.conversion.control.translating import Translated, Translation
 from polarcheck.conversion.original import Original
-from polarcheck.conversion.outcome import Decision, Refusal, RefusedError
+from polarcheck.conversion.outcome import Decision, Refusal, RefusedError, refused_at
 from polarcheck.machines.modal import Motion
 
 _MOTIONS = {Motion.RAPID: "rapid", Motion.LINE: "line", Motion.CW: "arc_clockwise", Motion.CCW: "arc_counterclockwise"}
@@ -134,7 +134,7 @@ class _Writer:
         self._reported = False
         if self.texts.has_program_number(block):
             if self.translation.words_of(row):
-                raise RefusedError([self._refusal(row, "words stand beside O: put them into a block of their own")])
+                raise refused_at(self.trace, row, "words stand beside O: put them into a block of their own")
             self._program(block)
             return
         called = self._call(row, content)
@@ -157,7 +157,7 @@ class _Writer:
             first = self.translation.words(int(rows[0]), indices, in_steps)
             if all(self._is_same(first, int(row), in_steps) for row in rows[1:]):
                 return first
-        raise RefusedError([self._refusal(int(rows[0]), "it runs several times, and would be another block each time")])
+        raise refused_at(self.trace, int(rows[0]), "it runs several times, and would be another block each time")
 
     def _is_same(self, first: Translated, row: int, in_steps: bool) -> bool:
         other = self.translation.words(row, self.translation.words_of(row), in_steps)
@@ -216,9 +216,6 @@ class _Writer:
     def _decide(self, line: int, text: str) -> None:
         self.decisions.append(Decision(line, text))
         self.decided.add(line)
-
-    def _refusal(self, row: int, text: str) -> Refusal:
-        return Refusal(int(self.trace.blocks.line_in_file[row]), text)
 
     # ---- blocks that are not executed ----
 

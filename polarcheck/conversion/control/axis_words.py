@@ -7,7 +7,7 @@ from typing import Protocol
 
 from polarcheck.columns.trace import Trace
 from polarcheck.conversion.control.measures import AxisWord, Measures
-from polarcheck.conversion.outcome import Refusal, RefusedError
+from polarcheck.conversion.outcome import refused_at
 from polarcheck.machines.machine import Machine
 from polarcheck.machines.modal import NO_MOVE, Motion
 
@@ -74,8 +74,7 @@ class AxisWords:
         is_same_letter = written[:1].upper() == self.measures.letter(word.axis, word.is_step and self._has_letters)
         if self.measures.ratio(row, word) == 1 and languages[0] == languages[1] and is_same_letter:
             return written
-        line = int(self.trace.blocks.line_in_file[row])
-        raise RefusedError([Refusal(line, f"{written} is computed, and has to be another number there")])
+        raise refused_at(self.trace, row, f"{written} is computed, and has to be another number there")
 
     def of_arc(self, row: int, index: int, letter: str, result: Result) -> None:
         """I, J, K and R of an arc; anything else that they say, as a corner, is a thing to decide."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 from polarcheck.columns.trace import Trace
-from polarcheck.conversion.outcome import Refusal, RefusedError
+from polarcheck.conversion.outcome import refused_at
 from polarcheck.machines.machine import Machine
 
 _BLANKS = re.compile(r"\s+")
@@ -60,14 +60,14 @@ class Calls:
         line = int(self.trace.blocks.line_in_file[row])
         if not self.is_same and squeezed == self._return and not int(self.trace.run.depth[row]):
             reason = f"{text}: how {self.target.title} begins the main program again is not known"
-            raise RefusedError([Refusal(line, reason)])
+            raise refused_at(self.trace, row, reason)
         match = self._call.fullmatch(squeezed) if self._call else None
         if match and int(match["number"]) % _LAST_DIGITS not in self._programs:
             self.missing.setdefault(int(match["number"]) % _LAST_DIGITS, line)
         words = text.split() if self.is_same else self.written(text)
         if words is None:
             reason = f"{text}: how {self.target.title} writes that is not known"
-            raise RefusedError([Refusal(line, reason)])
+            raise refused_at(self.trace, row, reason)
         return list(words)
 
     def written(self, text: str) -> tuple[str, ...] | None:

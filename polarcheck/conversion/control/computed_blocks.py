@@ -11,7 +11,7 @@ from polarcheck.columns.trace import Trace
 from polarcheck.conversion.control.measures import Measures, fraction
 from polarcheck.conversion.control.number_text import number_of
 from polarcheck.conversion.control.section_words import SectionWords
-from polarcheck.conversion.outcome import Refusal, RefusedError
+from polarcheck.conversion.outcome import refused_at
 from polarcheck.conversion.pen import Pen
 from polarcheck.machines.machine import Machine
 from polarcheck.machines.modal import Motion
@@ -53,7 +53,7 @@ class ComputedBlocks:
         """The code of the motion of a row: G1."""
         code = _MOTIONS.get(Motion(int(self.trace.axes.motion[row])), "")
         if code == "G0" and not self.target.writing.rapid_in_mode:
-            raise self._refusal(row, "rapid traverse in the mode to a computed place is not converted")
+            raise refused_at(self.trace, row, "rapid traverse in the mode to a computed place is not converted")
         return code
 
     def written(self, row: int, words: Sequence[int], pen: Pen) -> list[str]:
@@ -63,7 +63,7 @@ class ComputedBlocks:
         Raises RefusedError for computed words that the other machine counts otherwise.
         """
         if self.trace.modal.incremental[row]:
-            raise self._refusal(row, "distances in a block with computed words are not converted")
+            raise refused_at(self.trace, row, "distances in a block with computed words are not converted")
         return [self._word(row, index, pen) for index in words if not self.words.key(index) and not self._is_g(index)]
 
     def _is_g(self, index: int) -> bool:
@@ -75,7 +75,9 @@ class ComputedBlocks:
         number = self.measures.number(row, index, ratio)
         written = self.measures.written(index)
         if number is None and ratio != 1:
-            raise self._refusal(row, f"{written} is computed, and has to be another number there: write numbers")
+            raise refused_at(
+                self.trace, row, f"{written} is computed, and has to be another number there: write numbers"
+            )
         return f"{name}{'=' * (len(name) > 1 and not name.endswith('='))}{written[1:] if number is None else number}"
 
     def _counted(self, row: int, letter: str, pen: Pen) -> tuple[str, Fraction]:
@@ -96,7 +98,4 @@ class ComputedBlocks:
             return self.target.polar.center_words["X"][centers.index(letter)], unit
         if letter == self.source.arcs.radius_word and "radius" in self.target.writing.arcs_by:
             return self.target.writing.arc_radius, unit
-        raise self._refusal(row, f"{letter} in a block with computed words is not converted")
-
-    def _refusal(self, row: int, text: str) -> RefusedError:
-        return RefusedError([Refusal(int(self.trace.blocks.line_in_file[row]), text)])
+        raise refused_at(self.trace, row, f"{letter} in a block with computed words is not converted")

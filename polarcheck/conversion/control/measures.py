@@ -46,6 +46,7 @@ class Measures:
             self.source.address_number(letter): of_axis for letter, of_axis in self._axes.items() if letter
         }
         self._codes = {unit: bool(target.codes(unit)) for unit in ("inch", "mm")}
+        self._c_ratio = Fraction(self.source.polar.c_sense * target.polar.c_sense)
         #: Both controls read a number without a point alike.
         self.pointless_is_same = self.source.control.number_without_point == target.control.number_without_point
 
@@ -67,6 +68,10 @@ class Measures:
         """The least increment of lengths that the new program writes in a row, in its units."""
         control = self.target.control
         return fraction(control.least_increment_inch if self.writes_inch(row) else control.least_increment)
+
+    def least_read(self, row: int) -> Fraction:
+        """The least increment of lengths that the original counts in a row, in its units."""
+        return fraction(float(self.trace.lengths.least_increment[row]))
 
     # ---- what a word is ----
 
@@ -94,7 +99,7 @@ class Measures:
     def ratio(self, row: int, word: AxisWord) -> Fraction:
         """What the number of a word is multiplied by."""
         if word.axis == "C":
-            return Fraction(self.source.polar.c_sense * self.target.polar.c_sense)
+            return self._c_ratio
         ratio = self.unit_ratio(row)
         return ratio * self.x_ratio(row, word.is_step) if word.axis == "X" else ratio
 
@@ -117,9 +122,7 @@ class Measures:
             return written
         coordinates = self.trace.coordinates
         if bool(coordinates.is_unpointed[index]) and not bool(coordinates.is_taken_as_pointed[index]):
-            control = self.source.control
-            is_inch = bool(self.trace.lengths.units[row] == Units.INCH) and not is_angle
-            ratio *= fraction(control.least_increment_inch if is_inch else control.least_increment)
+            ratio *= fraction(self.source.control.least_increment) if is_angle else self.least_read(row)
         least = fraction(self.target.control.least_increment) if is_angle else self.least(row)
         return rescaled(written, ratio, least, self.target.control.number_without_point == "least-increment")
 
@@ -132,7 +135,7 @@ class Measures:
         """Where an axis stands at the end of a row, as the other machine reads it; None where that is not known."""
         path = self.trace.path
         if axis == "C":
-            value, ratio = float(path.c_angle[row]), Fraction(self.source.polar.c_sense * self.target.polar.c_sense)
+            value, ratio = float(path.c_angle[row]), self._c_ratio
         else:
             value = float(path.x[row] if axis == "X" else path.z[row]) if axis in "XZ" else np.nan
             ratio = 1 / _MM_PER_INCH if self.writes_inch(row) else Fraction(1)

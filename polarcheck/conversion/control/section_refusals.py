@@ -9,7 +9,7 @@ import numpy as np
 from polarcheck.arrays import Mask
 from polarcheck.columns.trace import Trace
 from polarcheck.conversion.original import Original
-from polarcheck.conversion.outcome import Refusal
+from polarcheck.conversion.outcome import Refusal, refusal_at
 from polarcheck.machines.modal import FeedMode
 
 
@@ -31,11 +31,10 @@ def refusals(original: Original, is_same: bool) -> list[Refusal]:
 def _of_ends(trace: Trace) -> Iterator[Refusal]:
     sections = trace.mode.sections
     for number, (enter, leave) in enumerate(zip(sections.enter.tolist(), sections.leave.tolist(), strict=True)):
-        line = _line(trace, enter)
         if not sections.left[number] or sections.returned[number] or leave >= len(trace):
-            yield Refusal(line, "the polar mode is never left")
+            yield refusal_at(trace, enter, "the polar mode is never left")
         if ((sections.again > enter) & (sections.again < leave)).any():
-            yield Refusal(line, "the polar mode is switched on again within")
+            yield refusal_at(trace, enter, "the polar mode is switched on again within")
 
 
 def _of_numbers(trace: Trace) -> Iterator[Refusal]:
@@ -45,7 +44,7 @@ def _of_numbers(trace: Trace) -> Iterator[Refusal]:
         written = trace.text.source.excerpt(int(words.start[index]), int(words.end[index]))
         text = f"{written} has no point, and the control counts it in increments: write the point, or"
         how = "--set control.number_without_point=whole-unit where the control takes it for a whole unit"
-        yield Refusal(_line(trace, int(trace.run.row[index])), f"{text} {how}")
+        yield refusal_at(trace, int(trace.run.row[index]), f"{text} {how}")
 
 
 def _of_rows(trace: Trace) -> Iterator[Refusal]:
@@ -75,14 +74,10 @@ def _of_rows(trace: Trace) -> Iterator[Refusal]:
         rows = np.flatnonzero(hits)
         numbers = mode.section[rows]
         for row in rows[np.append(True, np.diff(numbers) != 0)[: len(rows)]].tolist():
-            yield Refusal(_line(trace, row), text)
+            yield refusal_at(trace, row, text)
 
 
 def _of_words(trace: Trace) -> Iterator[Refusal]:
     rows = np.flatnonzero(trace.mode.whole_section >= 0)
     if len(rows) and trace.path.frames is not None:
-        yield Refusal(_line(trace, int(rows[0])), "the program shifts or turns its coordinates by frames")
-
-
-def _line(trace: Trace, row: int) -> int:
-    return int(trace.blocks.line_in_file[row])
+        yield refusal_at(trace, int(rows[0]), "the program shifts or turns its coordinates by frames")

@@ -20,7 +20,7 @@ from polarcheck.conversion.control.section_refusals import refusals
 from polarcheck.conversion.control.section_words import SectionWords
 from polarcheck.conversion.control.translating import Translation
 from polarcheck.conversion.original import Original
-from polarcheck.conversion.outcome import Decision, Refusal, RefusedError
+from polarcheck.conversion.outcome import Decision, RefusedError, refused_at
 from polarcheck.conversion.pen import Pen
 from polarcheck.conversion.style import Style
 from polarcheck.machines.machine import Machine
@@ -157,7 +157,7 @@ class _Writer:
             if ours.zero_angle == theirs.zero_angle and not theirs.direction_word:
                 return 1.0 + 0j
             text = "C is not known where the mode begins, and the other control asks for it: position it, as C0"
-            raise RefusedError([Refusal(self._line(enter), text)])
+            raise refused_at(self.trace, enter, text)
         of_ours = ours.c_sense * float(trace.path.section_entry[number])
         of_theirs = 0.0 if theirs.plane_is_fixed else ours.c_sense * c_angle
         angle = math.radians((of_ours - of_theirs + 180) % 360 - 180)
@@ -231,7 +231,7 @@ class _Writer:
             return []
         z = float(path.z[row]) if moves_z else None
         if z is not None and math.isnan(z):
-            raise RefusedError([Refusal(self._line(row), "Z is a distance from a place that is not known")])
+            raise refused_at(self.trace, row, "Z is a distance from a place that is not known")
         end = complex(path.end[row]) * turn if travels else None
         if trace.axes.motion[row] == Motion.RAPID:
             self.rapid_rows.append(row)
@@ -249,7 +249,7 @@ class _Writer:
         self, row: int, geometry: Sequence[int], pen: Pen, turn: complex, codes: Sequence[str]
     ) -> list[NewBlock]:
         if turn != 1:
-            raise RefusedError([Refusal(self._line(row), "its words are computed, and the plane lies otherwise there")])
+            raise refused_at(self.trace, row, "its words are computed, and the plane lies otherwise there")
         path = self.trace.path
         words = self.computed.written(row, geometry, pen)
         feed = None if self._has_feed_word(words) or self.computed.has_computed_feed(row) else self.feeds.of_row(row)
@@ -309,7 +309,7 @@ class _Writer:
         self.taken.add(block)
         if new is not None and self.blocks.setdefault(block, new) != new:
             text = "the block runs several times, and would be another one each time"
-            raise RefusedError([Refusal(self._line(row), text)])
+            raise refused_at(self.trace, row, text)
 
     def _is_unchanged(self, block: int, new: Sequence[NewBlock]) -> bool:
         if len(new) != 1 or new[0].comment:
@@ -324,7 +324,7 @@ class _Writer:
         hits = outside[np.isin(trace.run.block[outside], blocks)]
         if len(hits):
             text = "the block runs in polar sections and outside of them, and would be another one there"
-            raise RefusedError([Refusal(self._line(int(hits[0])), text)])
+            raise refused_at(self.trace, int(hits[0]), text)
 
     def _decide(self, decisions: Sequence[Decision]) -> None:
         self.decisions += [decision for decision in decisions if decision not in self.decisions]

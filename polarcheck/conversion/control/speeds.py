@@ -12,7 +12,7 @@ from polarcheck.columns.trace import Trace
 from polarcheck.conversion.control.measures import Measures
 from polarcheck.conversion.control.number_text import number_of
 from polarcheck.conversion.control.spindle_roles import SpindleRoles
-from polarcheck.conversion.outcome import Refusal, RefusedError
+from polarcheck.conversion.outcome import refused_at
 from polarcheck.machines.machine import Machine
 
 _M_PER_FT = 0.3048
@@ -65,8 +65,7 @@ class SpeedWords:
             return ""
         speed = self._last(row, is_live and ours != "S")
         if math.isnan(speed):
-            line = int(self.trace.blocks.line_in_file[row])
-            raise RefusedError([Refusal(line, "the speed of this spindle is not known")])
+            raise refused_at(self.trace, row, "the speed of this spindle is not known")
         return f"{theirs if is_live else 'S'}{speed:g}"
 
     def _last(self, row: int, is_live_word: bool) -> float:
@@ -96,7 +95,7 @@ class SpeedWords:
         is_live = bool(self._roles.speed_of_live_tool[row]) if by_row else role == "live"
         number = number_of(self.measures.written(index))
         if number is None:
-            raise RefusedError([Refusal(int(self.trace.blocks.line_in_file[row]), "its speed is computed")])
+            raise refused_at(self.trace, row, "its speed is computed")
         if role in ("sub", ""):
             return ""
         if self.is_surface_speed(row):

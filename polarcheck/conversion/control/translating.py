@@ -14,13 +14,13 @@ from polarcheck.conversion.control.cycles import WITH_ARGUMENTS, CycleWords
 from polarcheck.conversion.control.dwells import amount, counts_turns, word_for
 from polarcheck.conversion.control.g_meanings import GMeanings
 from polarcheck.conversion.control.m_meanings import MMeanings
-from polarcheck.conversion.control.measures import Measures, fraction
+from polarcheck.conversion.control.measures import Measures
 from polarcheck.conversion.control.number_text import number_of
 from polarcheck.conversion.control.speeds import SpeedWords
 from polarcheck.conversion.control.spindle_roles import SpindleRoles
 from polarcheck.conversion.control.tool_words import ToolWords
 from polarcheck.conversion.original import Original
-from polarcheck.conversion.outcome import Decision, Refusal, RefusedError
+from polarcheck.conversion.outcome import Decision, refused_at
 from polarcheck.machines.code_lists import numbers
 from polarcheck.machines.codes import code_numbers
 from polarcheck.machines.modal import NO_MOVE, FeedMode
@@ -79,6 +79,7 @@ class Translation:
             getattr(control, key) == getattr(self.target.control, key)
             for key in ("x", "x_radius_words", "x_diameter_words", "x_absolute_diameter_words", "x_without_words")
         )
+        self._tool_changes = set(numbers(self.source.m_codes.tool_change))
         self._polar_off = set(numbers([*self.source.polar.off, *self.source.polar.ended_by]))
         self._speeds = SpeedWords(self.trace, self.target, self.measures, self.roles)
         self._cycles = CycleWords(self.trace, self.target, self.measures, self._g)
@@ -164,10 +165,8 @@ class Translation:
                 result.whole = "the time of the dwell is computed"
                 return
             is_turns = counts_turns(self.source, letter, per_revolution)
-            control = self.source.control
-            is_inch = bool(self.trace.lengths.least_increment[row] == control.least_increment_inch)
-            least = fraction(control.least_increment_inch if is_inch else control.least_increment)
-            word = word_for(self.target, amount(self.source, letter, number, least), is_turns, per_revolution, letter)
+            counted = amount(self.source, letter, number, self.measures.least_read(row))
+            word = word_for(self.target, counted, is_turns, per_revolution, letter)
             if not word:
                 kind = "turns of the spindle" if is_turns else "a time"
                 result.whole = f"no word of a dwell of {self.target.title} counts {kind} here"
@@ -309,7 +308,7 @@ class Translation:
             return
         call = self.tools.call(row)
         if call.refusal:
-            raise RefusedError([Refusal(int(self.trace.blocks.line_in_file[row]), call.refusal)])
+            raise refused_at(self.trace, row, call.refusal)
         result.words += call.words
         if call.decision:
             result.decisions.append(call.decision)
@@ -322,14 +321,10 @@ class Translation:
             return
         text = self.measures.feed(index, ratio)
         if text is None:
-            raise RefusedError([Refusal(int(self.trace.blocks.line_in_file[row]), "its F is computed, in other units")])
+            raise refused_at(self.trace, row, "its F is computed, in other units")
         result.words.append(f"F{text}")
 
     # ---- helpers ----
-
-    @property
-    def _tool_changes(self) -> set[int]:
-        return set(numbers(self.source.m_codes.tool_change))
 
     def _letter(self, index: int) -> str:
         number = int(self.trace.run.words.address[index])

@@ -11,7 +11,7 @@ from polarcheck.checking.editing import in_place_of
 from polarcheck.columns.trace import Trace
 from polarcheck.conversion.blocks import edit_behind, edits_of, with_edits
 from polarcheck.conversion.original import Original
-from polarcheck.conversion.outcome import Figure, Outcome, Refusal, RefusedError
+from polarcheck.conversion.outcome import Figure, Outcome, Refusal, RefusedError, refused_at
 from polarcheck.conversion.reading_back import ReadBack, read_back_on_part
 from polarcheck.conversion.rolling.elements import Fit, fit_of
 from polarcheck.conversion.rolling.entries import entry_of
@@ -138,9 +138,12 @@ def _require_off_center(original: Original, way: Way, fit: Fit, step: float) -> 
         start, end, center = (np.array([point], complex) for point in (element.start, element.end, element.center))
         nearest = polar.nearest(start, end, center, np.array([element.kind], np.int16))[0]
         if element.kind != Motion.NONE and nearest < step:
-            line = int(original.trace.blocks.line_in_file[way.row[element.first]])
             title = original.settings.machine.title
-            raise RefusedError([Refusal(line, f"the way goes through the center of C, which the mode cannot: {title}")])
+            raise refused_at(
+                original.trace,
+                way.row[element.first],
+                f"the way goes through the center of C, which the mode cannot: {title}",
+            )
 
 
 def _written(

@@ -9,7 +9,7 @@ import numpy as np
 
 from polarcheck.arrays import Mask, Rows
 from polarcheck.columns.trace import Trace
-from polarcheck.conversion.outcome import Refusal
+from polarcheck.conversion.outcome import Refusal, refusal_at
 from polarcheck.conversion.rolling.following import Following
 from polarcheck.machines.codes import code_set
 from polarcheck.machines.modal import Distance, FeedMode, Motion, Side
@@ -185,7 +185,7 @@ def _first_reason(trace: Trace, each: Stretch, reasons: list[tuple[Mask, str]]) 
     for hits, text in reasons:
         if hits[own].any():
             row = each.first + int(np.argmax(hits[own]))
-            return Refusal(int(trace.blocks.line_in_file[row]), text)
+            return refusal_at(trace, row, text)
     path = trace.path
     turning = path.moves_c[own]
     round_cylinder = turning & path.moves_z[own] & ~path.moves_x[own]
@@ -204,6 +204,7 @@ def _reason_at_ends(trace: Trace, each: Stretch, following: Following) -> Refusa
     if behind < len(trace) and path.moves_c[behind]:
         axis = trace.machine.polar.rotary_address
         if not trace.blocks.has(axis)[behind] or trace.modal.is_step(axis)[behind]:
-            line = int(trace.blocks.line_in_file[behind])
-            return Refusal(line, "C is programmed in increments behind it, from an angle that rounding shifts")
+            return refusal_at(
+                trace, behind, "C is programmed in increments behind it, from an angle that rounding shifts"
+            )
     return None

@@ -6,7 +6,7 @@ import numpy as np
 
 from polarcheck.arrays import Floats, Points, Rows, Table
 from polarcheck.columns.trace import Trace
-from polarcheck.conversion.outcome import Refusal, RefusedError
+from polarcheck.conversion.outcome import refused_at
 from polarcheck.geometry.plane import angle_between
 from polarcheck.geometry.straight_axes.division import Pieces
 from polarcheck.geometry.straight_axes.spans import Spans
@@ -70,8 +70,7 @@ def depths_of(trace: Trace, moves: Moves, move: Rows, begin: Floats, end: Floats
     z_from, z_to = z_along(trace, moves)
     lost = np.isnan(z_from) & ~np.isnan(z_to)
     if lost.any():
-        line = int(trace.blocks.line_in_file[moves.row[np.argmax(lost)]])
-        raise RefusedError([Refusal(line, "Z moves beside X and C from a place that is not known")])
+        raise refused_at(trace, moves.row[np.argmax(lost)], "Z moves beside X and C from a place that is not known")
     way = np.nan_to_num(z_to - z_from)
     after = np.where(np.abs(way[move]) <= ZERO, np.nan, z_from[move] + way[move] * end)
     return Depths(after, np.abs(way[move]) * (end - begin))

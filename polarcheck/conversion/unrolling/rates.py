@@ -8,7 +8,7 @@ import numpy as np
 
 from polarcheck.arrays import Floats, Mask, Rows
 from polarcheck.columns.trace import Trace
-from polarcheck.conversion.outcome import Refusal, RefusedError
+from polarcheck.conversion.outcome import Refusal, RefusedError, refusal_at
 from polarcheck.conversion.rotary_feed import block_feeds
 from polarcheck.conversion.unrolling.steps import Steps, x_factor
 from polarcheck.machines.feed_keys import WITH_ROTARY
@@ -123,6 +123,9 @@ def beyond_travel(trace: Trace, steps: Steps) -> list[Refusal]:
         (radius > limits.x_maximum + _ROUNDING, "above", limits.x_maximum),
     ):
         if hits.any():
-            line = int(trace.blocks.line_in_file[steps.row[np.argmax(hits)]])
-            reasons.append(Refusal(line, f"X would go {name} its travel limit of {limit:g} mm as a radius"))
+            reasons.append(
+                refusal_at(
+                    trace, steps.row[np.argmax(hits)], f"X would go {name} its travel limit of {limit:g} mm as a radius"
+                )
+            )
     return reasons

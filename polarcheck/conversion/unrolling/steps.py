@@ -8,7 +8,7 @@ import numpy as np
 from polarcheck.arrays import Floats, Mask, Rows, Table
 from polarcheck.columns.lengths import RADIUS_FACTOR
 from polarcheck.columns.trace import Trace
-from polarcheck.conversion.outcome import Refusal, RefusedError
+from polarcheck.conversion.outcome import refused_at
 from polarcheck.conversion.unrolling.positions import depths_of, turns_of
 from polarcheck.geometry.straight_axes.division import divide
 from polarcheck.geometry.straight_axes.spans import Spans, spans_of
@@ -127,9 +127,12 @@ def _chord_errors(trace: Trace, moves: Moves, spans: Spans, x_step: Floats, chor
     c_way = np.radians(trace.machine.control.least_increment) * farthest
     rounding = np.hypot(x_step[spans.move], c_way) / 2
     if (least := 2 * float(np.max(rounding, initial=0.0))) > chord_error:
-        line = int(trace.blocks.line_in_file[moves.row[spans.move[np.argmax(rounding)]]])
         text = f"rounding of X and C alone moves the tool by up to {least / 2:.4f} mm here"
-        raise RefusedError([Refusal(line, f"{text}: the chord error has to be {least:.4f} mm or more")])
+        raise refused_at(
+            trace,
+            moves.row[spans.move[np.argmax(rounding)]],
+            f"{text}: the chord error has to be {least:.4f} mm or more",
+        )
     # Spans of about a least increment, as rounding leaves them between others: no block is worth its time for them.
     is_short = spans.length <= np.minimum(np.maximum(x_step[spans.move], c_way), chord_error / 4)
     # The block that takes over the way of a short span may leave its own path by that, too.

@@ -11,7 +11,7 @@ from polarcheck.arrays import Mask
 from polarcheck.checking.phrases.offsets import called_tool, to_give
 from polarcheck.checking.tables import Tables
 from polarcheck.columns.trace import Trace
-from polarcheck.conversion.outcome import Refusal
+from polarcheck.conversion.outcome import Refusal, refusal_at
 from polarcheck.execution.names import FIRST_VARIABLE
 from polarcheck.machines.modal import FeedMode, Motion, Side
 from polarcheck.table.tool_center import ToolCenter
@@ -57,14 +57,10 @@ def stretches(trace: Trace) -> list[Stretch]:
 def refusals(tables: Tables, sections: list[Stretch]) -> list[Refusal]:
     """Why these sections cannot be unrolled, each reason once a line."""
     trace: Trace = tables["trace"]
-    reasons = [Refusal(_line(trace, row), text) for row, text in _of_rows(tables)]
+    reasons = [refusal_at(trace, row, text) for row, text in _of_rows(tables)]
     for section in sections:
         reasons += _of_section(trace, section)
     return list(dict.fromkeys(sorted(reasons, key=lambda reason: reason.line)))
-
-
-def _line(trace: Trace, row: int) -> int:
-    return int(trace.blocks.line_in_file[row])
 
 
 def _of_rows(tables: Tables) -> Iterator[tuple[int, str]]:
@@ -126,31 +122,31 @@ def _first_of_sections(trace: Trace, hits: Mask) -> list[int]:
 
 
 def _of_section(trace: Trace, section: Stretch) -> Iterator[Refusal]:
-    line, sections = _line(trace, section.enter), trace.mode.sections
+    enter, sections = section.enter, trace.mode.sections
     if not sections.left[section.number] or sections.returned[section.number] or section.leave >= len(trace):
-        yield Refusal(line, "the polar mode is never left")
+        yield refusal_at(trace, enter, "the polar mode is never left")
         return
     if (trace.compensation.side[section.leave - 1 : section.leave + 1] != Side.OFF).any():
-        yield Refusal(_line(trace, section.leave), "cutter compensation is in force where the mode ends")
+        yield refusal_at(trace, section.leave, "cutter compensation is in force where the mode ends")
     if np.isnan(trace.path.c_angle[section.enter]):
-        yield Refusal(line, "C is not known where the mode begins: position it before, as C0")
+        yield refusal_at(trace, enter, "C is not known where the mode begins: position it before, as C0")
     if np.isnan(trace.path.x_before[section.enter]):
-        yield Refusal(line, "X is not known where the mode begins")
+        yield refusal_at(trace, enter, "X is not known where the mode begins")
     if sections.again[(sections.again > section.enter) & (sections.again < section.leave)].size:
-        yield Refusal(line, "the polar mode is switched on again within")
+        yield refusal_at(trace, enter, "the polar mode is switched on again within")
     depth = trace.run.depth[section.enter : section.leave + 1]
     if depth[0] != depth[-1] or depth.min() < depth[0] or section.last < section.first:
-        yield Refusal(line, "the polar mode is switched on in one program and left in another")
+        yield refusal_at(trace, enter, "the polar mode is switched on in one program and left in another")
         return
     source = trace.text.source
     part = source.part_of(int(trace.blocks.line[section.enter]))
     if part is not None and not source.is_own(part):
-        yield Refusal(line, "the section stands in another file")
+        yield refusal_at(trace, enter, "the section stands in another file")
     if section.runs_in_order:
         return
     blocks = trace.run.block[section.enter : section.leave + 1][depth == depth[0]]
     if blocks.min() < section.first or blocks.max() > section.last:
-        yield Refusal(line, "a jump leads out of the section")
+        yield refusal_at(trace, enter, "a jump leads out of the section")
     behind = trace.run.block[section.leave + 1 :]
     outside = np.flatnonzero(trace.text.blocks.is_macro)
     outside = outside[(outside > section.last) & np.isin(outside, behind)]

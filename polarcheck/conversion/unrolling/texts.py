@@ -12,7 +12,7 @@ from polarcheck.checking.editing import Replace, content_of, line_without
 from polarcheck.columns.trace import Trace
 from polarcheck.conversion.blocks import NewBlock, edits_of, edits_of_ranges
 from polarcheck.conversion.original import Original
-from polarcheck.conversion.outcome import Refusal, RefusedError
+from polarcheck.conversion.outcome import refused_at
 from polarcheck.conversion.style import Style
 from polarcheck.conversion.unrolling.stretches import Stretch
 from polarcheck.conversion.unrolling.writing import Writer
@@ -70,8 +70,7 @@ def new_text(original: Original, sections: Sequence[Stretch], writer: Writer, st
 
 def _put(trace: Trace, section: Stretch, new: dict[_Key, list[NewBlock]], key: _Key, blocks: list[NewBlock]) -> None:
     if new.setdefault(key, blocks) != blocks:
-        line = int(trace.blocks.line_in_file[section.enter])
-        raise RefusedError([Refusal(line, "the section runs several times, and not from the same place")])
+        raise refused_at(trace, section.enter, "the section runs several times, and not from the same place")
 
 
 def _skipped_moves(trace: Trace, section: Stretch) -> list[int]:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from polarcheck.arrays import Floats, Mask, is_among
 from polarcheck.columns.trace import Trace
-from polarcheck.conversion.outcome import Refusal
+from polarcheck.conversion.outcome import Refusal, refusal_at
 from polarcheck.machines.modal import MM_PER_INCH, Motion
 
 
@@ -41,7 +41,7 @@ def outside(old: Trace, new: Trace, rows: Mask) -> Iterator[Refusal]:
         limit = 1e-3 * np.abs(first) if name == "F" else tolerance
         differs = ~(np.abs(first - second) <= limit) & ~(np.isnan(first) & np.isnan(second))
         if differs.any():
-            yield Refusal(int(old.blocks.line_in_file[before[np.argmax(differs)]]), f"{name} would differ from here on")
+            yield refusal_at(old, before[np.argmax(differs)], f"{name} would differ from here on")
 
 
 def _within_turn(angle: Floats) -> Floats:
@@ -65,4 +65,4 @@ def depths(old: Trace, new: Trace, within: Mask) -> Iterator[Refusal]:
     feeds = old.feedrate.feed[before], new.feedrate.feed[after]
     differs |= (old.axes.motion[before] != Motion.RAPID) & ~(np.abs(feeds[0] - feeds[1]) <= 1e-3 * feeds[0])
     for index in np.flatnonzero(differs)[:1].tolist():
-        yield Refusal(int(old.blocks.line_in_file[before[index]]), "Z or its F would differ")
+        yield refusal_at(old, before[index], "Z or its F would differ")

@@ -9,7 +9,7 @@ import numpy as np
 from polarcheck.arrays import stretch
 from polarcheck.checking.editing import is_head, is_plain, words_of, written_word
 from polarcheck.columns.trace import Trace
-from polarcheck.conversion.outcome import Refusal, RefusedError
+from polarcheck.conversion.outcome import refused_at
 from polarcheck.machines.codes import NO_CODE, code_set
 
 #: Lists of G codes that mean nothing without the mode, or that the new blocks say themselves.
@@ -22,6 +22,8 @@ _DROPPED = (
 )  # fmt: skip
 #: Lists of G codes whose blocks stay as they are, with all of their words.
 _UNTOUCHED = ("dwell",)
+#: Why a block with a word that a statement computes is refused.
+_COMPUTED = "a word of this block cannot be written without the statement around it"
 
 
 class Others:
@@ -69,7 +71,7 @@ class Others:
         words = [index for index in words_of(run, row) if not is_head(run, index)]
         if self._untouched[row]:
             if words and not plain:
-                raise self._refused(row)
+                raise refused_at(self.trace, row, _COMPUTED)
             return [written_word(run, index) for index in words]
         texts = []
         for index in words:
@@ -93,9 +95,5 @@ class Others:
         words = self.trace.run.words
         letter, value = chr(int(words.address[index])), float(words.value[index])
         if letter not in "GMST" or not math.isfinite(value):
-            raise self._refused(row)
+            raise refused_at(self.trace, row, _COMPUTED)
         return f"{letter}{value:.15g}"
-
-    def _refused(self, row: int) -> RefusedError:
-        line = int(self.trace.blocks.line_in_file[row])
-        return RefusedError([Refusal(line, "a word of this block cannot be written without the statement around it")])

@@ -13,7 +13,7 @@ from polarcheck.checking.editing import written_word
 from polarcheck.columns.trace import Trace
 from polarcheck.conversion.blocks import NewBlock, comments_of
 from polarcheck.conversion.numbers import Numbers
-from polarcheck.conversion.outcome import Refusal, RefusedError
+from polarcheck.conversion.outcome import refused_at
 from polarcheck.conversion.style import Style
 from polarcheck.conversion.unrolling.steps import Steps
 from polarcheck.conversion.unrolling.stretches import Stretch
@@ -136,7 +136,9 @@ class Writer:
             self._motion_word(row, "G0" if is_rapid else "G1"),
         ]
         if np.isnan(trace.path.z[row]):
-            raise self._refused(row, "Z is not known here: it is programmed in increments from an unknown place")
+            raise refused_at(
+                self.trace, row, "Z is not known here: it is programmed in increments from an unknown place"
+            )
         words.append(self._word("Z", numbers.length(float(trace.path.z[row]))))
         if not is_rapid:
             feed = float(trace.feedrate.feed[row] / trace.lengths.feed_scale[row])
@@ -187,7 +189,7 @@ class Writer:
         codes = self.trace.machine.codes(key)
         if not codes:
             title = self.trace.machine.title
-            raise self._refused(row, f"no code of {title} is known for that: {key.replace('_', ' ')}")
+            raise refused_at(self.trace, row, f"no code of {title} is known for that: {key.replace('_', ' ')}")
         return self._numbers(row).code(codes[0])
 
     def _motion_word(self, row: int, code: str) -> str:
@@ -232,6 +234,3 @@ class Writer:
             if name := _NAMED.match(written_word(run, index)):
                 names.setdefault(chr(int(run.words.address[index])), name[0])
         return names
-
-    def _refused(self, row: int, text: str) -> RefusedError:
-        return RefusedError([Refusal(int(self.trace.blocks.line_in_file[row]), text)])
