@@ -25,41 +25,56 @@ _NOT_AFTER = (
     r"|PL[AC]|OFF\b|P[CT]S|DEG|TIMES|OF\b|FL\b|TPI|PITCH))"
 )
 _WHOLE = r"(?<![\w.,/-])"
-#: By shape the plain forms of its size across flats, or of its diameter; the shape is empty where any has such a size.
-_SHAPES = [
+#: By shape its word, and the plain forms of its size across flats, or of its diameter; the shape is empty where any has
+#: such a size. The patterns here are compiled where they are first needed, which takes longer than a small check: the
+#: long ones only for a comment in which the word stands.
+_SHAPES = (
     *(
-        (name, re.compile(pattern))
-        for name, word in _NAMES.items()
-        for pattern in (
-            # HEX 24 AF, SQUARE 20
-            rf"{_WHOLE}{word}{_IS}(?:{_AF}{_IS})?{_VALUE}{_NOT_AFTER}",
-            # 24 AF HEX, 24MM HEX
-            rf"{_WHOLE}{NUMBER}{UNIT}[\s-]*+{_AF}[\s-]*+{word}",
-            rf"^{NUMBER}{UNIT}[\s-]++{word}\s*+$",
+        (
+            name,
+            word,
+            (
+                # HEX 24 AF, SQUARE 20
+                rf"{_WHOLE}{word}{_IS}(?:{_AF}{_IS})?{_VALUE}{_NOT_AFTER}",
+                # 24 AF HEX, 24MM HEX
+                rf"{_WHOLE}{NUMBER}{UNIT}[\s-]*+{_AF}[\s-]*+{word}",
+                rf"^{NUMBER}{UNIT}[\s-]++{word}\s*+$",
+            ),
         )
+        for name, word in _NAMES.items()
     ),
-    ("flats", re.compile(rf"{_WHOLE}FLATS{_IS}(?:AT\s++|{_AF}{_IS})?{_VALUE}{_NOT_AFTER}")),
-    ("boss", re.compile(rf"{_WHOLE}{_DIAMETER}{_IS}{_VALUE}\s*+(?:ROUND\s++)?BOSS\b")),
-    ("boss", re.compile(rf"{_WHOLE}BOSS{_IS}{_DIAMETER}{_IS}{_VALUE}{_NOT_AFTER}")),
-    ("boss", re.compile(rf"{_WHOLE}{NUMBER}{UNIT}\s*+{_DIAMETER}\s*+BOSS\b")),
-    ("", re.compile(rf"{_WHOLE}{NUMBER}{UNIT}\s*+{_AF}")),
-    ("", re.compile(rf"{_WHOLE}(?:A/?F|SW){_IS}{_VALUE}{_NOT_AFTER}")),
-]
-_ACROSS_FLATS = re.compile(rf"(?<![A-Z]){_AF}")
+    ("flats", "FLATS", (rf"{_WHOLE}FLATS{_IS}(?:AT\s++|{_AF}{_IS})?{_VALUE}{_NOT_AFTER}",)),
+    (
+        "boss",
+        "BOSS",
+        (
+            rf"{_WHOLE}{_DIAMETER}{_IS}{_VALUE}\s*+(?:ROUND\s++)?BOSS\b",
+            rf"{_WHOLE}BOSS{_IS}{_DIAMETER}{_IS}{_VALUE}{_NOT_AFTER}",
+            rf"{_WHOLE}{NUMBER}{UNIT}\s*+{_DIAMETER}\s*+BOSS\b",
+        ),
+    ),
+    (
+        "",
+        r"A[/.]?F|ACROSS|SW",
+        (rf"{_WHOLE}{NUMBER}{UNIT}\s*+{_AF}", rf"{_WHOLE}(?:A/?F|SW){_IS}{_VALUE}{_NOT_AFTER}"),
+    ),
+)
+_ACROSS_FLATS = rf"(?<![A-Z]){_AF}"
 #: Of what is not cut here, or not to its size.
-_NOT_HERE = re.compile(
+_NOT_HERE = (
     r"SOCKET|\bKEY\b|\bNUT\b|\bBOLT|SCREW|WRENCH|SPANNER|BROACH|\bBUSH|\bJAW|COLLET|CHUCK|\bGRIP|\bHOLD|\bCLAMP|\bROUGH|\bLEAVE"
     r"|ALLOW|\bBEFORE\b|\bPRE-?|\bA/?C\b|CORNERS|\bINSIDE\b|INTERNAL|\bNOT\b|\bWAS\b|\bOLD\b|\bDONE\b|\bLATER\b|\bOTHER\b"
     r"|\bNEXT\b|\bOP\s?\d|\bFROM\s++HEX|\bMIN\b|\bMAX\b|\bOR\b|\bM\d"
 )
+_DEPTH_WORDS = ("DEPTH", "DEEP")
 _DEPTHS = (
     # DEPTH 5, DEPTH OF 5MM
-    re.compile(rf"{_WHOLE}DEPTH(?:\s++OF(?=\s++[\d.]))?{_IS}{_VALUE}{_NOT_AFTER}"),
+    rf"{_WHOLE}DEPTH(?:\s++OF(?=\s++[\d.]))?{_IS}{_VALUE}{_NOT_AFTER}",
     # 5 DEEP
-    re.compile(rf"{_WHOLE}{NUMBER}{UNIT}\s*+(?:DEEP|DEPTH)\b"),
+    rf"{_WHOLE}{NUMBER}{UNIT}\s*+(?:DEEP|DEPTH)\b",
 )
 #: Depths of cuts, and of what this section does not cut.
-_OTHER_DEPTH = re.compile(
+_OTHER_DEPTH = (
     r"OF\s++CUT|\bCUT\b|\bPASS|\bPER\b|\bSTEP|\bPECK|DRILL|\bHOLE|\bTAP\b|THREAD|\bCHUCK|\bJAW|\bBORE|\bBORING|\bGRIP|\bROUGH|\bLEAVE"
     r"|\bGROOVE|\bFLATS?\b|\bKEY|\bMIN\b|\bMAX\b|\bOR\b|\bNOT\b|\bWAS\b|\bOLD\b|\bDONE\b|\bOP\s?\d|CHAMF|REAM|SPOT|\bEACH\b|\bFEED\b|\bTOTAL\b"
 )
@@ -84,17 +99,18 @@ class Size(NamedTuple):
 def shape_in(comment: str, in_inch: bool) -> Size | None:
     """The shape and size that a comment states of the part; None where its words do not say so plainly."""
     text = plain_text(comment)
-    if _NOT_HERE.search(text):
+    shapes = [(shape, patterns) for shape, word, patterns in _SHAPES if re.search(word, text)]
+    if not shapes or re.search(_NOT_HERE, text):
         return None
     bar = bar_in(comment, in_inch)
     if bar is not None and bar.across_flats == bar.across_flats:
         return None
     sizes: list[Size] = []
-    is_across_flats = bool(_ACROSS_FLATS.search(text))
-    for shape, pattern in _SHAPES:
+    is_across_flats = bool(re.search(_ACROSS_FLATS, text))
+    for shape, patterns in shapes:
         if not shape and sizes:
             break
-        for match in pattern.finditer(text):
+        for match in (match for pattern in patterns for match in re.finditer(pattern, text)):
             size = _length(match, in_inch)
             if size is None:
                 return None
@@ -108,9 +124,9 @@ def shape_in(comment: str, in_inch: bool) -> Size | None:
 def depth_in(comment: str, in_inch: bool) -> float | None:
     """The depth [mm] that a comment states; None where its words do not say so plainly."""
     text = plain_text(comment)
-    if _OTHER_DEPTH.search(text):
+    if not any(word in text for word in _DEPTH_WORDS) or re.search(_OTHER_DEPTH, text):
         return None
-    depths = [_length(match, in_inch, 0.0) for pattern in _DEPTHS for match in pattern.finditer(text)]
+    depths = [_length(match, in_inch, 0.0) for pattern in _DEPTHS for match in re.finditer(pattern, text)]
     return depths[0] if len(depths) == 1 else None
 
 

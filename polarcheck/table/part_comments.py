@@ -10,6 +10,7 @@ import numpy as np
 from polarcheck.arrays import Columns, Floats, Mask, Rows, cached_property, different, is_among
 from polarcheck.columns.comment_lengths import comments_with
 from polarcheck.columns.filling import last_row
+from polarcheck.columns.part_comments import Size, depth_in, shape_in
 from polarcheck.columns.tool_numbers import named_tool
 from polarcheck.columns.trace import Trace
 from polarcheck.geometry.shapes.shape import POLYGONS
@@ -19,7 +20,6 @@ from polarcheck.table.finished import Finished
 from polarcheck.table.stock_comments import StockComments
 
 if TYPE_CHECKING:
-    from polarcheck.columns.part_comments import Size
     from polarcheck.geometry.shapes.shape import Shape
 
 #: One of these stands in each comment that states a shape, a size or a depth.
@@ -139,9 +139,6 @@ class PartComments(Columns, frozen=True):
     def _statements(self) -> Iterator[_Statement]:
         text, rows = self.trace.text, self.trace.blocks.row_of_block
         for number, comment in comments_with(text, _WORDS):
-            # Imported late: the patterns take longer to compile than the check of a small file.
-            from polarcheck.columns.part_comments import depth_in, shape_in
-
             block = int(text.comments.block[number])
             below = np.flatnonzero(rows[block:] >= 0)
             if not len(below):

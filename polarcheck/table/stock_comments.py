@@ -7,15 +7,13 @@ from typing import NamedTuple
 import numpy as np
 
 from polarcheck.arrays import Columns, Floats, Rows, cached_property, repeated
+from polarcheck.columns.bar_comments import WORDS, bar_in
 from polarcheck.columns.blocks import ExecutedBlocks
 from polarcheck.columns.comment_lengths import comments_with
 from polarcheck.columns.lengths import Lengths
 from polarcheck.execution.run import Run
 from polarcheck.machines.modal import Units
 from polarcheck.reading.words import Text
-
-#: One of these stands in each comment that states a bar.
-_BAR_WORDS = ("BAR", "STOCK", "RD", "MAT", "BLANK", "BILLET", "ROH", "STANGE", "RUND")
 
 
 class StockComment(NamedTuple):
@@ -51,10 +49,7 @@ class StockComments(Columns, frozen=True):
         if not len(self.run) or not len(self.text.comments):
             return []
         found = []
-        for number, comment in comments_with(self.text, _BAR_WORDS):
-            # Imported late: the patterns take longer to compile than the check of a small file.
-            from polarcheck.columns.bar_comments import bar_in
-
+        for number, comment in comments_with(self.text, WORDS):
             block = int(self.text.comments.block[number])
             row = self._row_of(block)
             bar = bar_in(comment, bool(self.lengths.units[self._row_of_units(row)] == Units.INCH))
