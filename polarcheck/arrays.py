@@ -85,7 +85,11 @@ def repeated(value: _Number, count: int) -> NDArray[_Number]:
 
 def is_uniform(values: NDArray[Any]) -> bool:
     """Return True if all values are equal, or all are NaN."""
+    if values.dtype == np.bool_:  # ends at the first that is another
+        return bool(values.all() if values[0] else not values.any())
     first, last = values[0], values[-1]
+    if first != values[len(values) // 2] and first == first:
+        return False
     if first == last:
         return bool((values == first).all())
     return bool(first != first and last != last and (values != values).all())

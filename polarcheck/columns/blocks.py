@@ -133,8 +133,13 @@ class ExecutedBlocks(Lookups):
         return column
 
     def has(self, *addresses: str) -> Mask:
-        """Whether a row has a word of any of the addresses."""
-        return self.with_words(self.word_indices(*addresses))
+        """Whether a row has a word of any of the addresses; cannot be written to."""
+        return self._column(f"has {' '.join(addresses)}", lambda: self._has(*addresses))
+
+    def _has(self, *addresses: str) -> Mask:
+        mask = self.with_words(self.word_indices(*addresses))
+        mask.flags.writeable = False
+        return mask
 
     def consists_of(self, *addresses: str) -> Mask:
         """Whether a row has words of these addresses and no others; N and block skip may stand beside them."""

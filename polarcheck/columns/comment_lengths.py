@@ -87,18 +87,12 @@ def comments_with(text: Text, words: tuple[str, ...]) -> Iterator[tuple[int, str
     comments = text.comments
     if not len(comments):
         return
-    code = text.source.code
-    edges = np.zeros(len(code) + 1, np.int8)
-    edges[comments.start] += 1
-    edges[comments.end] -= 1
-    joined = code[np.cumsum(edges[:-1], dtype=np.int8) > 0].tobytes().upper()
-    wanted = [word.encode("latin-1") for word in words]
-    places = [match.start() for word in wanted if word in joined for match in re.finditer(re.escape(word), joined)]
-    if not places:
-        return
     length = comments.end - comments.start
     begin = np.cumsum(length) - length
-    if len(places) > _MOST:
+    joined = text.source.code[np.repeat(comments.start - begin, length) + np.arange(length.sum())].tobytes().upper()
+    wanted = [word.encode("latin-1") for word in words]
+    places = [match.start() for word in wanted if word in joined for match in re.finditer(re.escape(word), joined)]
+    if not places or len(places) > _MOST:
         return
     numbers = sorted({int(number) for number in np.searchsorted(begin, places, side="right") - 1})
     for number in numbers:

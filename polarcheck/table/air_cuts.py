@@ -7,10 +7,12 @@ Each reason needs a witness: the words of the section itself, the face, the bar,
 from __future__ import annotations
 
 from enum import IntEnum
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from polarcheck.arrays import Columns, Floats, Mask, Points, Rows, States, cached_property
+from polarcheck.arrays import Columns, Floats, Mask, Rows, States, cached_property
 from polarcheck.columns.trace import Trace
 from polarcheck.geometry import polar
 from polarcheck.geometry.tolerances import ROUNDING
@@ -197,8 +199,8 @@ class AirCuts(Columns, frozen=True):
         repeated = np.zeros(len(trace.mode.sections) + 1, bool)
         if len(trace.mode.sections) < 2:
             return repeated[trace.mode.section]
-        keys, angle = self._signatures
-        for members in _groups(keys):
+        angle = self._angle_of_plane
+        for members in self._alike:
             angles = angle[members]
             _, number, count = np.unique(angles, return_inverse=True, return_counts=True)
             later = np.array([index not in number[:place] for place, index in enumerate(number)]) == 0
@@ -208,29 +210,42 @@ class AirCuts(Columns, frozen=True):
         return repeated[trace.mode.section]
 
     @property
-    def _signatures(self) -> tuple[Floats, Floats]:
-        """What is cut in each section, relative to its plane, by tool, feed and depth; and the angle of the plane."""
+    def _angle_of_plane(self) -> Floats:
+        """The angle of the plane of each section, so that equal angles are equal numbers."""
+        angle = np.rint(np.mod(self.trace.path.section_entry, 360) / _SAME_ANGLE)
+        return np.mod(angle, round(360 / _SAME_ANGLE))
+
+    @property
+    def _alike(self) -> list[Rows]:
+        """Sections that cut the same, relative to their planes, by tool, feed and depth; two or more of a kind."""
         trace = self.trace
         rows = np.flatnonzero(self.walls)
         section, count = trace.mode.section[rows], len(trace.mode.sections)
-        place = np.arange(1, len(rows) + 1) - np.searchsorted(section, section)
-        columns: list[Floats | Points | Rows] = [
-            trace.path.start[rows],
-            trace.path.end[rows] * place,
-            np.nan_to_num(trace.path.center[rows]) * place,
-            trace.path.z[rows] * place + 0j,
-            np.nan_to_num(trace.feedrate.feed[rows]) * place + 0j,
-            trace.axes.motion[rows] * place + 0j,
-        ]
-        sums = [
-            np.rint(np.bincount(section, weights=part, minlength=count) / _SAME)
-            for column in columns
-            for part in (column.real, column.imag)
-        ]
+        moves = np.bincount(section, minlength=count)
         tool = trace.tools.tool_called[trace.mode.sections.enter]
-        keys = np.stack([np.bincount(section, minlength=count), tool, *sums], axis=1).astype(np.float64)
-        angle = np.rint(np.mod(trace.path.section_entry, 360) / _SAME_ANGLE)
-        return keys, np.mod(angle, round(360 / _SAME_ANGLE))
+
+        def sums(section: Rows, *columns: NDArray[Any]) -> list[Floats]:
+            parts = [part for one in columns for part in ((one.real, one.imag) if np.iscomplexobj(one) else (one,))]
+            return [np.rint(np.bincount(section, weights=part, minlength=count) / _SAME) for part in parts]
+
+        # Most sections differ in the number or the depth of their moves: the others alone are compared by their places.
+        keys = np.stack([moves, tool, *sums(section, trace.path.z[rows] * _place(section))], axis=1).astype(np.float64)
+        alike = _groups(keys)
+        if not alike:
+            return []
+        kept = np.zeros(count, bool)
+        kept[np.concatenate(alike)] = True
+        rows, section = rows[kept[section]], section[kept[section]]
+        path, place = trace.path, _place(section)
+        more = sums(
+            section,
+            path.start[rows],
+            path.end[rows] * place,
+            np.nan_to_num(path.center[rows]) * place,
+            np.nan_to_num(trace.feedrate.feed[rows]) * place,
+            trace.axes.motion[rows] * place,
+        )
+        return _groups(np.concatenate([keys, np.stack(more, axis=1)], axis=1))
 
     @cached_property
     def _idle_index(self) -> Mask:
@@ -247,6 +262,11 @@ class AirCuts(Columns, frozen=True):
         result = (idle[enter] > idle[since]) & (turns[enter] == turns[since])
         result[:1] = False
         return np.asarray(result)
+
+
+def _place(section: Rows) -> Rows:
+    """The number of each element within its section, from 1; section rises."""
+    return np.arange(1, len(section) + 1) - np.searchsorted(section, section)
 
 
 def _groups(keys: Floats) -> list[Rows]:

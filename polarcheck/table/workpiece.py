@@ -231,6 +231,13 @@ class Workpiece(Columns, frozen=True):
         ways = Ways.concatenated([self._outside, self._inside])
         return ways[np.argsort(ways.row, kind="stable")]
 
+    @cached_property
+    def _with_all_rapids(self) -> Ways:
+        """All moves where one in a section is in rapid traverse, else those outside of sections alone."""
+        path, rows = self.trace.path, self.tool_center.moves.row
+        z_alone = self.trace.mode.in_polar & path.moves_z & ~path.travels
+        return self._all if self.is_rapid[rows].any() or (self.is_rapid & z_alone).any() else self._outside
+
     def _sweeps(self, ways: Ways) -> Sweeps:
         from polarcheck.geometry.polygons.standing_metal import Sweeps
         from polarcheck.geometry.segments import Curves
@@ -249,7 +256,7 @@ class Workpiece(Columns, frozen=True):
     @cached_property
     def _into_bar(self) -> Ways:
         """Moves in rapid traverse with the tip below the face and the cutter within the circle of the bar."""
-        bar, ways = self.bar.known, self._all
+        bar, ways = self.bar.known, self._with_all_rapids
         low = ways.is_rapid & (ways.tip < self.top - _CLEARANCE)
         if not low.any():
             return ways[low]
@@ -487,8 +494,9 @@ class Workpiece(Columns, frozen=True):
 
     @cached_property
     def plunges(self) -> Mask:
-        """Rows that go down to their place."""
-        return self._mask(self._all.row[self._all.plunges])
+        """Rows that go down to their place, of those with all moves in rapid traverse."""
+        ways = self._with_all_rapids
+        return self._mask(ways.row[ways.plunges])
 
     @cached_property
     def is_rapid(self) -> Mask:
