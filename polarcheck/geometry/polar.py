@@ -29,6 +29,8 @@ from polarcheck.geometry.plane import (
     arc_sweep,
     arcs_from_center,
     cleared,
+    cross,
+    dot,
     lines_from_center,
     quiet,
     rows_of_arcs,
@@ -50,6 +52,13 @@ class CAxis(NamedTuple):
 
 
 _AS_PLANE = CAxis()
+#: The cross product of start and end, as a share of the square of their size, below which a line may be radial; what
+#: counts as radial is decided by plane.NOISE, and this share is far above it.
+_RADIAL = 1e-9
+
+
+def _size(point: Points) -> Floats:
+    return np.abs(point.real) + np.abs(point.imag)
 
 
 @quiet
@@ -119,9 +128,12 @@ def c_sweep(start: Points, end: Points, center: Points, kind: States) -> Floats:
     center outside turns C by no more than half a turn.
     """
     first, last = cleared(start), cleared(end)
-    turn = angle_between(first, last)
-    straight = lines_from_center(start, end)
-    turn = np.where(straight.offset == 0, np.where(straight.has_foot, np.pi, 0.0), turn)
+    aside = cross(first, last)
+    turn = np.arctan2(aside + 0.0, dot(first, last))
+    # Lines through the center or along a radius: only where start and end are seen at the same or opposite angles.
+    along = np.flatnonzero(~(np.abs(aside) > _RADIAL * (_size(first) + _size(last)) ** 2))
+    straight = lines_from_center(start[along], end[along])
+    turn[along] = np.where(straight.offset == 0, np.where(straight.has_foot, np.pi, 0.0), turn[along])
     turn += np.where(np.isnan(start) | np.isnan(end), np.nan, 0.0)
     arcs = arcs_from_center(start, end, center, kind, rows := rows_of_arcs(kind))
     leave = angle_between(arcs.end - arcs.center, arcs.end)

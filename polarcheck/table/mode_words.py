@@ -94,6 +94,8 @@ class ModeWords(Columns, frozen=True):
         by G10. G50 with S in the block of another of them is no mistake of its own, and counts with it.
         """
         trace = self.trace
+        if not self.not_allowed.any():
+            return trace.blocks.no_words
         kind = trace.blocks.word("L")
         # Without L a lathe takes P0 as the work shift, other numbers as tool offsets.
         is_work_offset = np.isin(kind, trace.machine.g_codes.data_input_work_offset) | (

@@ -44,6 +44,8 @@ class SwitchWords(Columns, frozen=True):
     @cached_property
     def names_no_axis(self) -> Mask:
         """Per word: P or Q that is not the number of an axis, a whole one from 1 to that of the last axis."""
+        if not self.names_axis.any():
+            return self.names_axis
         number = self.trace.run.words.value
         is_axis = (number >= 1) & (number <= self.trace.axes.most_axes) & (number == np.rint(number))
         return np.asarray(self.names_axis & ~is_axis)
@@ -78,8 +80,10 @@ class SwitchWords(Columns, frozen=True):
     @cached_property
     def shifts_incrementally(self) -> Mask:
         """Per word: a shift of the center by an incremental word, or by an absolute one while G91 is in force."""
-        is_incremental = self.trace.modal.state("distance") == Distance.INCREMENTAL
-        absolute = self._beside(*self.shifts) & is_incremental[self.trace.run.row]
+        absolute = self._beside(*self.shifts)
+        if absolute.any():
+            is_incremental = self.trace.modal.state("distance") == Distance.INCREMENTAL
+            absolute = absolute & is_incremental[self.trace.run.row]
         return np.asarray(self._beside(*self.shifts.values()) | absolute)
 
     # ---- the infeed ----

@@ -88,9 +88,11 @@ class Unpointed(Columns, frozen=True):
     def _radii_of_offsets(self) -> Mask:
         """Per executed word: R of a tool offset that G10 sets, too small to be meant in least increments."""
         trace, words = self.trace, self.trace.run.words
+        if not (data_input := trace.blocks.listed("data_input")).any():
+            return trace.blocks.no_words
         kinds = trace.machine.g_codes.data_input_tool_offset
         sets = (
-            trace.blocks.listed("data_input")
+            data_input
             & (np.isin(trace.blocks.word("L"), kinds) | ~trace.blocks.has("L"))
             & (trace.blocks.word("P") > 0)
         )
