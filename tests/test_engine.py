@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import ast
 import inspect
+import re
 import string
 import textwrap
+from collections.abc import Callable
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -13,13 +15,14 @@ from typing import Any
 import msgspec
 import numpy as np
 import pytest
-from programs import machine_of, report_of, said, tables_of
+from programs import machine_of, report_of, said, tables_of, tables_of_example
 
 from polarcheck.checking import message, tables
 from polarcheck.checking.engine import LISTED, Engine
+from polarcheck.checking.examples import examples
 from polarcheck.checking.other_machine import OtherMachine
 from polarcheck.checking.rule import Hits, Rule, graded, load_all, rule, rule_files
-from polarcheck.checking.tables import MAKERS, OF_CAUSE, OF_TEXT, PARTS, SPANS, Tables
+from polarcheck.checking.tables import MAKERS, OF_CAUSE, OF_TEXT, ONLY_WITH, PARTS, SPANS, Tables
 from polarcheck.errors import RuleError, TooHardError
 from polarcheck.finding import ERROR, NOTE, WARNING, Finding
 from polarcheck.silence.allow_comments import Allows
@@ -392,7 +395,7 @@ def test_each_rule_is_asked_once(monkeypatch: pytest.MonkeyPatch) -> None:
         return hits(one, made)
 
     monkeypatch.setattr(Rule, "hits", noted)
-    report_of("G98 G0 X60. C0\nG12.1\nG1 X40. F100\nG13.1\n")
+    report_of("(A SECTION WITH AN ARC)\nG98 G0 X60. C0\nG12.1\nG1 X40. F100\nG3 X20. C0 R30.\nG13.1\n")
     off = {name for name, rule in RULES.items() if rule.level(machine_of().severities) == "off"}
     of_allows = {name for name, rule in RULES.items() if rule.group == "silence"}
     assert sorted(order) == sorted(set(RULES) - off - of_allows)
@@ -505,3 +508,39 @@ def test_findings_beyond_the_limit_are_counted() -> None:
     (missing,) = engine.unlisted
     assert (missing.reason, missing.blocks) == ("only the first 1000 of 1100 findings are listed", 100)
     assert not missing.matters
+
+
+#: What takes from a program all that a key of ONLY_WITH is about.
+TAKEN_AWAY: dict[str, Callable[[str], str]] = {
+    "section": lambda text: re.sub(r"G0*1[23]\.1|G11[23]|G10[123]|G13[67]|TRANSMIT|TRAFOOF|G7[.]1|G268|G269", "", text),
+    "arc": lambda text: re.sub(r"G0*[23](?![\d.])", "G1", text),
+    "comment": lambda text: re.sub(r"\([^()\n]*\)|;[^\n]*", "", text),
+}
+
+
+@pytest.mark.parametrize("what", ONLY_WITH)
+def test_rules_that_are_not_run_would_find_nothing(what: str) -> None:
+    """Each example of each rule that is not run without a section, arc or comment, with that taken away."""
+    tried = set()
+    for one in RULES.values():
+        if not ONLY_WITH[what].intersection(one.parameters):
+            continue
+        for example in examples(one.page):
+            found = tables_of_example(msgspec.structs.replace(example, program=TAKEN_AWAY[what](example.program)))
+            if not found.may_hold(one.parameters):
+                assert not one.hits(found).mask.any(), (one.name, example.program)
+                tried.add(one.name)
+    names = {one.name for one in RULES.values() if ONLY_WITH[what].intersection(one.parameters)}
+    assert len(tried) > 0.9 * len(names), names - tried
+
+
+def test_rules_that_a_program_cannot_break_make_no_tables() -> None:
+    turning = tables_of("O1\nG21 G99 T0101\nG0 X60. Z2.\nG1 Z-20. F.2\nM30\n")
+    turning.give("other_machine", OtherMachine(turning))
+    allows = Allows(turning["text"], {rule.name: rule.group for rule in RULES.values()})
+    turning.give("allows", allows)
+    turning.give("unused_allows", allows.unused((), RULES))
+    assert not Engine(turning, {}, RULES.values()).findings()
+    made = {name for name, _ in turning.computed()}
+    assert made >= {"trace", "written", "procedure"}
+    assert not made & {"regularity", "coverage", "air_cuts", "slots", "part_comments", "tool_comments", "senses"}

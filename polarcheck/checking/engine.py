@@ -103,12 +103,17 @@ class Engine:
         if rule.name not in self._hits:
             keep_going()
             try:
-                self._hits[rule.name] = self._shared_if_empty(rule.hits(self.tables))
+                self._hits[rule.name] = self._found(rule)
                 if len(self.trace) > _MANY_ROWS:
                     self._share_constant_columns()
             except TooHardError as error:
                 self._give_up(rule, error)
         return self._hits[rule.name]
+
+    def _found(self, rule: Rule) -> Hits:
+        if not self.tables.may_hold(rule.parameters):
+            return Hits(np.zeros(0, np.bool_))
+        return self._shared_if_empty(rule.hits(self.tables))
 
     def _shared_if_empty(self, hits: Hits) -> Hits:
         """Replace hits that are all False by a shared empty object: their values are not needed."""

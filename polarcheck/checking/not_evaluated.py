@@ -75,7 +75,7 @@ def all_unevaluated(tables: Tables, rules: Iterable[Rule]) -> Iterator[NotEvalua
     """Report the blocks that were not executed, and the blocks that each rule could not evaluate."""
     yield from unexecuted(tables)
     for rule in rules:
-        if rule.needs or rule.name in _EXTRA_REASONS:
+        if (rule.needs or rule.name in _EXTRA_REASONS) and tables.may_hold(rule.parameters):
             yield from told(unevaluated(tables, rule), tables["machine"])
 
 

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import functools
 import importlib
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from typing import TYPE_CHECKING, Any
 
 from polarcheck.errors import RuleError
+from polarcheck.machines.modal import Motion
 
 if TYPE_CHECKING:
     from polarcheck.execution.run import Run
@@ -133,6 +134,21 @@ OF_CAUSE = {"X before": "X", "C before": "C", "arc before": "row"}
 #: Tables that hang on the text and the machine alone: what is found in them is the same however the program runs.
 OF_TEXT = frozenset({"text", "words", "machine", "job", "written", "dialect"})
 
+#: What a program must have for anything to be found in some tables: where it has none, a rule that compares one of them
+#: finds nothing, and is not run. tests/test_engine.py runs them nevertheless.
+ONLY_WITH = {
+    "section": frozenset(
+        {
+            *("air_cuts", "angles", "center", "contour_depths", "coverage", "crossings", "entry", "entry_angles"),
+            *("feed_ranges", "feeds", "increments", "infeed", "mirrored", "misplaced_ramps", "mode", "mode_words"),
+            *("overcuts", "part_comments", "pass_depths", "pass_differences", "pass_ends", "ramps", "rapid_contours"),
+            *("regularity", "sections", "slots", "switch_words", "tool_center", "uncompensated_cuts", "workpiece"),
+        }
+    ),
+    "arc": frozenset({"same_circle", "senses", "tangency"}),
+    "comment": frozenset({"part_comments", "tool_comments"}),
+}
+
 
 class Tables(dict[str, Any]):
     """
@@ -158,6 +174,19 @@ class Tables(dict[str, Any]):
     def give(self, name: str, table: Any) -> None:
         """Add a table that was made elsewhere."""
         self[name] = table
+
+    def may_hold(self, names: Iterable[str]) -> bool:
+        """Return False where one of these tables holds nothing since the program has nothing that it is about."""
+        wanted = frozenset(names)
+        return not any(wanted & of_it and not self._has[what] for what, of_it in ONLY_WITH.items())
+
+    @functools.cached_property
+    def _has(self) -> dict[str, bool]:
+        """For each key of ONLY_WITH: the program has it."""
+        trace = self["trace"]
+        is_arc = (trace.axes.motion == Motion.CW) | (trace.axes.motion == Motion.CCW)
+        counts = {"section": len(trace.mode.sections), "arc": is_arc.any(), "comment": len(trace.text.comments)}
+        return {what: bool(count) for what, count in counts.items()}
 
     def computed(self) -> Iterator[tuple[str, Any]]:
         """The tables computed so far, by name."""
