@@ -140,7 +140,7 @@ def _pairs(walls: _Walls, tangled: Mask) -> Iterator[tuple[Rows, Rows]]:
         return
     runs = _runs(walls)
     group, size = walls.group[runs.first], runs.size
-    box = _boxes(walls, runs.first)
+    box, boxes_of_walls = _boxes(walls, runs.first), _boxes(walls, np.arange(len(walls.a)))
     tree = shapely.STRtree(shapely.box(*box))
     left = _PAIRS * np.bincount(walls.group, minlength=len(tangled)) + _FREE_PAIRS
     begin, step = 0, _LEAST_AT_A_TIME
@@ -164,10 +164,14 @@ def _pairs(walls: _Walls, tangled: Mask) -> Iterator[tuple[Rows, Rows]]:
         tangled |= left < 0
         for part in _shares(size[one] * size[other]):
             kept = part[~tangled[group[one[part]]]]
-            yield _each_wall(walls, runs, one[kept], other[kept])
+            yield _each_wall(walls, boxes_of_walls, runs, one[kept], other[kept])
 
 
-def _boxes(walls: _Walls, first: Rows) -> tuple[Floats, Floats, Floats, Floats]:
+#: Least x and c, greatest x and c [mm].
+_Boxes = tuple[Floats, Floats, Floats, Floats]
+
+
+def _boxes(walls: _Walls, first: Rows) -> _Boxes:
     """Boxes of runs of walls, widened by TOUCH: least x and c, greatest x and c [mm]."""
     a, b = walls.nodes[walls.a], walls.nodes[walls.b]
     return (
@@ -184,7 +188,7 @@ def _shares(count: Rows) -> list[Rows]:
     return np.split(np.arange(len(count)), np.flatnonzero(np.diff(share)) + 1)
 
 
-def _each_wall(walls: _Walls, runs: _Runs, one: Rows, other: Rows) -> tuple[Rows, Rows]:
+def _each_wall(walls: _Walls, boxes: _Boxes, runs: _Runs, one: Rows, other: Rows) -> tuple[Rows, Rows]:
     """Every wall of one run with every wall of the other that it may meet."""
     first, size = runs.first, runs.size
     count = size[one] * size[other]
@@ -192,6 +196,11 @@ def _each_wall(walls: _Walls, runs: _Runs, one: Rows, other: Rows) -> tuple[Rows
     place = np.arange(len(pair)) - np.repeat(np.cumsum(count) - count, count)
     i = first[one[pair]] + place // size[other[pair]]
     j = first[other[pair]] + place % size[other[pair]]
+    left, below, right, above = boxes
+    kept = (left[i] <= right[j]) & (left[j] <= right[i])  # most pairs end here
+    i, j = i[kept], j[kept]
+    kept = (below[i] <= above[j]) & (below[j] <= above[i])
+    i, j = i[kept], j[kept]
     kept = ~_beside(walls, i, j)
     i, j = i[kept], j[kept]
     kept = ~_beside(walls, j, i)
