@@ -2,15 +2,18 @@
 polarcheck beside other readers of NC programs: time and memory of whole processes, and what each of them finds.
 
     python benchmarks/peers.py --rs274 FILE --python FILE --nctab FILE --ncplot7py FOLDER -o docs/benchmarks.md
+        [--before FILE]
 
 A peer is found by its option, by RS274, PEERS_PYTHON, NCTAB or NCPLOT7PY in the environment, or on the search path; one
 that is not there is left out, which the page says. All are run in turn, round by round, so that they see the same
 machine. --python: one that has nc-gcode-interpreter and pygcode. --ncplot7py: the folder of its source.
+--before: a Python with an older polarcheck, which is measured beside this one.
 """
 
 from __future__ import annotations
 
 import argparse
+import contextlib
 import os
 import platform
 import re
@@ -27,7 +30,10 @@ from one_fault import FAULTS, GOOD, TOOL
 from stages import stages
 from xy_twin import tool_table, twin
 
-CHECK = (sys.executable, "-m", "polarcheck", "check", "--no-config", "--fail-on", "never", "--jobs", "1", "-q")
+_OPTIONS = ("--no-config", "--no-cache", "--fail-on", "never", "--jobs", "1", "-q")
+CHECK = (sys.executable, "-m", "polarcheck", "check", *_OPTIONS)
+WITHOUT, WITH = "polarcheck", "polarcheck, with compensation and overcut"
+BEFORE = ", before"
 CUTTERS = range(4, 13)
 SIZES = (1_000, 10_000, 50_000, 200_000, 1_000_000, 2_000_000)
 #: Sizes from here on take seconds, which do not need so many rounds.
@@ -72,10 +78,14 @@ def cutters(radius: float) -> list[str]:
 def peers(asked: argparse.Namespace, folder: Path) -> dict[str, Peer]:
     """Those that are installed, polarcheck among them; folder: where the tables of tools for rs274 lie."""
     found = {
-        "polarcheck": Peer("lathe", CHECK),
-        "polarcheck, with compensation and overcut": Peer("lathe", [*CHECK, *cutters(2)], "LinuxCNC rs274, G41/G42"),
+        WITHOUT: Peer("lathe", CHECK),
+        WITH: Peer("lathe", [*CHECK, *cutters(2)], "LinuxCNC rs274, G41/G42"),
         "a bare regex": Peer("lathe", [sys.executable, "-c", REGEX]),
     }
+    if asked.before:
+        older = [asked.before, "-P", *CHECK[1:]]  # -P: not the package in the working folder
+        found[WITHOUT + BEFORE] = Peer("lathe", older)
+        found[WITH + BEFORE] = Peer("lathe", [*older, *cutters(2)], "LinuxCNC rs274, G41/G42")
     if rs274 := _place(asked.rs274, "RS274", "rs274"):
         for kind, name in (("mill", "LinuxCNC rs274"), ("compensated", "LinuxCNC rs274, G41/G42")):
             found[name] = Peer(kind, [rs274, "-t", str(folder / f"{kind}.tbl"), "-g"], name)
@@ -155,11 +165,16 @@ def small(asked: argparse.Namespace, folder: Path) -> str:
         lines = generated(folder, 1_000).read_text("ascii").splitlines(keepends=True)
         changed[-1].write_text("".join([*lines[:2], *lines[-501:]]), "ascii")
     check = [word for word in CHECK if word not in ("--jobs", "1")]
+    older = {
+        "polarcheck, a sample program, before": [asked.before, "-P", *check[1:], program],
+        "polarcheck, a program of 500 blocks, before": [asked.before, "-P", *check[1:], str(changed[0])],
+    }
     commands = {
         "`import click, numpy`": [sys.executable, "-c", "import click, numpy"],
         "polarcheck, a sample program": [*check, program],
         "polarcheck, a program of 500 blocks": [*check, str(changed[0])],
         "polarcheck, 20 programs of 500 blocks": [*check, *map(str, changed)],
+        **(older if asked.before else {}),
     }
     taken = measured(commands, 2 * asked.rounds)
     base, one = taken["`import click, numpy`"], taken["polarcheck, a program of 500 blocks"]
@@ -195,7 +210,7 @@ def findings(asked: argparse.Namespace, folder: Path) -> str:
     """On how many programs with one fault each reader says what it does not say of the sound one, and names it."""
     (folder / "compensated.tbl").write_text(tool_table(4.0))
     readers = peers(asked, folder)
-    for name in ("polarcheck, with compensation and overcut", "a bare regex", "LinuxCNC rs274"):
+    for name in (WITH, WITHOUT + BEFORE, WITH + BEFORE, "a bare regex", "LinuxCNC rs274"):
         readers.pop(name, None)
     readers["polarcheck"] = Peer("lathe", [*CHECK[:4], "--no-config", "--tool", TOOL])
     rows = []
@@ -223,7 +238,28 @@ def both_stages(asked: argparse.Namespace, folder: Path) -> str:
     """Where the time goes, without and with a cutter."""
     path = generated(folder, asked.blocks)
     kinds = {"without a cutter": [], "with one": cutters(2)}
-    return "\n".join(f"{what}:\n\n{stages(path, *CHECK[4:], *tools)}" for what, tools in kinds.items())
+    told = [f"{what}:\n\n{stages(path, *CHECK[4:], *tools)}" for what, tools in kinds.items()]
+    sample = ROOT / "sample_programs" / "hexagon.nc"
+    return "\n".join([*told, f"a sample program:\n\n{stages(sample, *CHECK[4:])}"])
+
+
+def versions(asked: argparse.Namespace) -> str:
+    """The version of each peer, as its package or its checkout tells it."""
+    python = _place(asked.python, "PEERS_PYTHON", "") or sys.executable
+    of_package = "import sys, importlib.metadata as m; print(m.version(sys.argv[1]))"
+    questions = {
+        "LinuxCNC rs274": ["dpkg-query", "-W", "-f", "${Version}", "linuxcnc-uspace"],
+        "nc-gcode-interpreter": [python, "-c", of_package, "nc-gcode-interpreter"],
+        "pygcode": [python, "-c", of_package, "pygcode"],
+        "nctab": [_place(asked.nctab, "NCTAB", "nctab") or "nctab", "--version"],
+        "ncplot7py": ["git", "-C", asked.ncplot7py or "no folder", "log", "-1", "--format=%h of %cs"],
+    }
+    told = {}
+    for name, command in questions.items():
+        with contextlib.suppress(OSError):
+            status, said = output(command)
+            told[name] = said.strip().splitlines()[-1] if not status and said.strip() else ""
+    return ", ".join(f"{name} {version}" for name, version in told.items() if version)
 
 
 ONE_SLIP = """\
@@ -266,6 +302,8 @@ By cProfile, which adds time to each call (`benchmarks/stages.py FILE` does so f
 stage of its module, one of a library or of polarcheck/geometry for the stages that call it.""",
     }
     text = "\n".join(f"## {title}\n\n{about[title]}\n\n{part}" for title, part in parts.items())
+    beside = versions(asked)
+    older = f" `{BEFORE[2:]}`: the version at {asked.before_is}, in the same rounds." if asked.before else ""
     return f"""\
 # Benchmarks
 
@@ -274,6 +312,8 @@ Made by one command:
     python benchmarks/peers.py --rs274 FILE --python FILE --nctab FILE --ncplot7py FOLDER -o docs/benchmarks.md
 
 on {machine}; medians of {asked.rounds} rounds, in each of which every command runs once.
+What they write goes to /dev/null, and polarcheck keeps no results of earlier runs (`--no-cache`).{older}
+Peers: {beside}.
 Ratios carry over to another machine, seconds do not.
 
 {text}
@@ -285,12 +325,15 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     for name in ("rs274", "python", "nctab", "ncplot7py"):
         parser.add_argument(f"--{name}")
+    parser.add_argument("--before", metavar="FILE", help="a Python that has an older polarcheck")
+    parser.add_argument("--before-is", default="an earlier commit", metavar="WORDS", help="which one that is")
     parser.add_argument("--blocks", type=int, default=200_000)
     parser.add_argument("--rounds", type=int, default=7)
     parser.add_argument("--quick", action="store_true", help="nothing larger than --blocks")
     parser.add_argument("-o", "--output", type=Path, required=True)
     asked = parser.parse_args()
-    run([*CHECK, str(ROOT / "sample_programs" / "hexagon.nc")])  # compiles what is not yet
+    for python in filter(None, (sys.executable, asked.before)):
+        run([python, "-P", *CHECK[1:], str(ROOT / "sample_programs" / "hexagon.nc")])  # compiles what is not yet
     with tempfile.TemporaryDirectory() as made:
         folder = Path(made)
         parts = {
