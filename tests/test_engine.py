@@ -7,7 +7,6 @@ import inspect
 import re
 import string
 import textwrap
-from collections.abc import Callable
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -19,7 +18,7 @@ from programs import machine_of, report_of, said, tables_of, tables_of_example
 
 from polarcheck.checking import message, tables
 from polarcheck.checking.engine import LISTED, Engine
-from polarcheck.checking.examples import examples
+from polarcheck.checking.examples import Example, examples
 from polarcheck.checking.other_machine import OtherMachine
 from polarcheck.checking.rule import Hits, Rule, graded, load_all, rule, rule_files
 from polarcheck.checking.tables import MAKERS, OF_CAUSE, OF_TEXT, ONLY_WITH, PARTS, SPANS, Tables
@@ -395,7 +394,8 @@ def test_each_rule_is_asked_once(monkeypatch: pytest.MonkeyPatch) -> None:
         return hits(one, made)
 
     monkeypatch.setattr(Rule, "hits", noted)
-    report_of("(A SECTION WITH AN ARC)\nG98 G0 X60. C0\nG12.1\nG1 X40. F100\nG3 X20. C0 R30.\nG13.1\n")
+    program = "(A SECTION WITH AN ARC)\nG98 G0 X60. C0\nG12.1\nG1 X40. F100\nG3 X20. C0 R30.\nG13.1\n"
+    report_of(program, job={"part": [{"shape": "square", "across_flats": 40.0}]})
     off = {name for name, rule in RULES.items() if rule.level(machine_of().severities) == "off"}
     of_allows = {name for name, rule in RULES.items() if rule.group == "silence"}
     assert sorted(order) == sorted(set(RULES) - off - of_allows)
@@ -510,23 +510,31 @@ def test_findings_beyond_the_limit_are_counted() -> None:
     assert not missing.matters
 
 
-#: What takes from a program all that a key of ONLY_WITH is about.
-TAKEN_AWAY: dict[str, Callable[[str], str]] = {
-    "section": lambda text: re.sub(r"G0*1[23]\.1|G11[23]|G10[123]|G13[67]|TRANSMIT|TRAFOOF|G7[.]1|G268|G269", "", text),
-    "arc": lambda text: re.sub(r"G0*[23](?![\d.])", "G1", text),
-    "comment": lambda text: re.sub(r"\([^()\n]*\)|;[^\n]*", "", text),
+#: What takes from the text of a program all that a key of ONLY_WITH is about.
+TAKEN_AWAY = {
+    "section": (r"G0*1[23]\.1|G11[23]|G10[123]|G13[67]|TRANSMIT|TRAFOOF|G7[.]1|G268|G269", ""),
+    "arc": (r"G0*[23](?![\d.])", "G1"),
+    "comment": (r"\([^()\n]*\)|;[^\n]*", ""),
 }
+
+
+def without(what: str, example: Example) -> Example:
+    """An example without its sections, arcs or comments, or without the part that its job asks for."""
+    if what == "part":
+        settings = tuple(setting for setting in example.settings if not setting.startswith("job.part"))
+        return msgspec.structs.replace(example, settings=settings)
+    return msgspec.structs.replace(example, program=re.sub(*TAKEN_AWAY[what], example.program))
 
 
 @pytest.mark.parametrize("what", ONLY_WITH)
 def test_rules_that_are_not_run_would_find_nothing(what: str) -> None:
-    """Each example of each rule that is not run without a section, arc or comment, with that taken away."""
+    """Each example of each rule that is not run without a section, arc, comment or part, with that taken away."""
     tried = set()
     for one in RULES.values():
         if not ONLY_WITH[what].intersection(one.parameters):
             continue
         for example in examples(one.page):
-            found = tables_of_example(msgspec.structs.replace(example, program=TAKEN_AWAY[what](example.program)))
+            found = tables_of_example(without(what, example))
             if not found.may_hold(one.parameters):
                 assert not one.hits(found).mask.any(), (one.name, example.program)
                 tried.add(one.name)

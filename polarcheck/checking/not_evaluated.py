@@ -13,7 +13,6 @@ from polarcheck.arrays import Floats, Mask, Rows
 from polarcheck.checking.macro_faults import ENDLESS_LOOP, Faults, reason_of
 from polarcheck.checking.not_known import OF_MOVES, cause_of, of_variables, why
 from polarcheck.checking.phrases.common import block_and_line
-from polarcheck.checking.phrases.drawing import compared_with
 from polarcheck.checking.phrases.offsets import offset, to_give
 from polarcheck.checking.phrases.polar import (
     axes_not_followed,
@@ -315,6 +314,8 @@ def _parts_not_compared(tables: Tables, rule: Rule) -> Iterator[Missing]:
     deviations = tables["deviations"]
     if not deviations.parts:
         return
+    from polarcheck.checking.phrases.drawing import compared_with  # late: few programs have a part to compare
+
     crosses = f"crosses itself or others more than {CROSSINGS} times a block: no part can be told from it"
     yield from _skipped_loops(tables, rule, deviations.where & deviations.crosses, crosses)
     for comparison in deviations.comparisons:

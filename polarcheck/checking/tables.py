@@ -134,8 +134,8 @@ OF_CAUSE = {"X before": "X", "C before": "C", "arc before": "row"}
 #: Tables that hang on the text and the machine alone: what is found in them is the same however the program runs.
 OF_TEXT = frozenset({"text", "words", "machine", "job", "written", "dialect"})
 
-#: What a program must have for anything to be found in some tables: where it has none, a rule that compares one of them
-#: finds nothing, and is not run. tests/test_engine.py runs them nevertheless.
+#: What a program, or its job, must have for anything to be found in some tables: where it has none, a rule that compares
+#: one of them finds nothing, and is not run. tests/test_engine.py runs them nevertheless.
 ONLY_WITH = {
     "section": frozenset(
         {
@@ -147,6 +147,7 @@ ONLY_WITH = {
     ),
     "arc": frozenset({"same_circle", "senses", "tangency"}),
     "comment": frozenset({"part_comments", "tool_comments"}),
+    "part": frozenset({"deviations"}),
 }
 
 
@@ -185,8 +186,12 @@ class Tables(dict[str, Any]):
         """For each key of ONLY_WITH: the program has it."""
         trace = self["trace"]
         is_arc = (trace.axes.motion == Motion.CW) | (trace.axes.motion == Motion.CCW)
-        counts = {"section": len(trace.mode.sections), "arc": is_arc.any(), "comment": len(trace.text.comments)}
-        return {what: bool(count) for what, count in counts.items()}
+        return {
+            "section": len(trace.mode.sections) > 0,
+            "arc": bool(is_arc.any()),
+            "comment": len(trace.text.comments) > 0,
+            "part": len(trace.job.part) > 0,
+        }
 
     def computed(self) -> Iterator[tuple[str, Any]]:
         """The tables computed so far, by name."""
