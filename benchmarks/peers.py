@@ -35,9 +35,11 @@ CHECK = (sys.executable, "-m", "polarcheck", "check", *_OPTIONS)
 WITHOUT, WITH = "polarcheck", "polarcheck, with compensation and overcut"
 BEFORE = ", before"
 CUTTERS = range(4, 13)
-SIZES = (1_000, 10_000, 50_000, 200_000, 1_000_000, 2_000_000)
+SIZES = (1_000, 10_000, 50_000, 200_000, 1_000_000, 5_000_000)
 #: Sizes from here on take seconds, which do not need so many rounds.
 LARGE = 1_000_000
+#: Of the files that are checked by several processes.
+_MANY, _BLOCKS_OF_MANY = 40, 10_000
 
 REGEX = "import re, sys; re.findall(rb'([A-Z])([-+]?[0-9.]+)', open(sys.argv[1], 'rb').read())"
 INTERPRETER = "import sys, nc_gcode_interpreter as n; n.nc_to_dataframe(open(sys.argv[1]).read())"
@@ -185,6 +187,21 @@ def small(asked: argparse.Namespace, folder: Path) -> str:
     return table(["command", "clock ms", "to the import", "to one program"], rows)
 
 
+def many(asked: argparse.Namespace, folder: Path) -> str:
+    """Many files in one process and in two."""
+    text = generated(folder, _BLOCKS_OF_MANY).read_text("ascii")
+    paths = [folder / f"many_{number}.nc" for number in range(_MANY)]
+    for path in paths:
+        path.write_text(text, "ascii")
+    check = [word for word in CHECK if word not in ("--jobs", "1")]
+    taken = measured({jobs: [*check, "--jobs", jobs, *map(str, paths)] for jobs in ("1", "2")}, asked.rounds)
+    rows = [
+        [jobs, f"{one.clock:.2f}", f"{one.clock / taken['1'].clock:.2f}", f"{one.cpu:.2f}"]
+        for jobs, one in taken.items()
+    ]
+    return table(["processes", "clock s", "to one process", "CPU s"], rows)
+
+
 def growth(asked: argparse.Namespace, folder: Path) -> str:
     """Programs of more and more blocks, and the exponents of time and memory."""
     sizes = [size for size in SIZES if size <= asked.blocks or not asked.quick]
@@ -292,6 +309,7 @@ Readers of mill programs have the same path in X and Y (`benchmarks/xy_twin.py`)
 what polarcheck with a cutter is put beside. A reader that takes longer than {SLOW} s runs {SLOW_ROUNDS} times at most.
 Of one that needs less memory than what starts it, the peak is that of what starts it.{left_out}""",
         "Small files": "On the clock, since that is what somebody waits for at a commit.",
+        "Many files": f"{_MANY} programs of {_BLOCKS_OF_MANY:,} blocks, in one process and in two (`--jobs`).",
         "Growth": "Without a cutter; from 1,000,000 blocks on one run each.",
         "What is found": f"""\
 {len(FAULTS)} programs with one fault each (`benchmarks/one_fault.py`), and the sound one. A reader names a fault where
@@ -302,7 +320,8 @@ By cProfile, which adds time to each call (`benchmarks/stages.py FILE` does so f
 stage of its module, one of a library or of polarcheck/geometry for the stages that call it.""",
     }
     text = "\n".join(f"## {title}\n\n{about[title]}\n\n{part}" for title, part in parts.items())
-    beside = versions(asked)
+    peers_there = versions(asked)
+    beside = f"Peers: {peers_there}." if peers_there else ""
     older = f" `{BEFORE[2:]}`: the version at {asked.before_is}, in the same rounds." if asked.before else ""
     return f"""\
 # Benchmarks
@@ -313,7 +332,7 @@ Made by one command:
 
 on {machine}; medians of {asked.rounds} rounds, in each of which every command runs once.
 What they write goes to /dev/null, and polarcheck keeps no results of earlier runs (`--no-cache`).{older}
-Peers: {beside}.
+{beside}
 Ratios carry over to another machine, seconds do not.
 
 {text}
@@ -339,6 +358,7 @@ def main() -> None:
         parts = {
             "Whole processes": speed(asked, folder),
             "Small files": small(asked, folder),
+            "Many files": many(asked, folder),
             "Growth": growth(asked, folder),
             "What is found": findings(asked, folder),
             "Where the time goes": both_stages(asked, folder),

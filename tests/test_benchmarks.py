@@ -104,13 +104,15 @@ def test_the_page_is_written_without_any_peer(tmp_path: Path, monkeypatch: pytes
         monkeypatch.delenv(name, raising=False)
     monkeypatch.setenv("PATH", str(tmp_path))
     monkeypatch.setattr(peers, "FAULTS", dict([next(iter(FAULTS.items()))]))
+    monkeypatch.setattr(peers, "_MANY", 2)
+    monkeypatch.setattr(peers, "_BLOCKS_OF_MANY", 1000)
     page = tmp_path / "page.md"
     monkeypatch.setattr(sys, "argv", ["peers", "--blocks", "1000", "--rounds", "1", "--quick", "-o", str(page)])
     peers.main()
     text = page.read_text()
     assert "Not installed there, and left out: LinuxCNC rs274, nc-gcode-interpreter, pygcode, nctab, ncplot7py." in text
     assert re.search(r"^\| polarcheck \| 0 \| 1 \| 1 \|$", text, re.MULTILINE)
-    assert len(re.findall(r"^\| total \|", text, re.MULTILINE)) == 2
+    assert len(re.findall(r"^\| total \|", text, re.MULTILINE)) == 3
 
 
 def test_time_of_libraries_counts_for_the_stages_that_call_them() -> None:

@@ -134,8 +134,8 @@ OF_CAUSE = {"X before": "X", "C before": "C", "arc before": "row"}
 #: Tables that hang on the text and the machine alone: what is found in them is the same however the program runs.
 OF_TEXT = frozenset({"text", "words", "machine", "job", "written", "dialect"})
 
-#: What a program, or its job, must have for anything to be found in some tables: where it has none, a rule that compares
-#: one of them finds nothing, and is not run. tests/test_engine.py runs them nevertheless.
+#: What a program, or its job, must have for anything to be found in some tables. Where it has none, a rule that
+#: compares one of them finds nothing, and is not run; tests/test_engine.py runs them nevertheless.
 ONLY_WITH = {
     "section": frozenset(
         {
