@@ -32,7 +32,14 @@ ROOMS = {
         ),
         *(f"polarcheck/table/{name}.py" for name in ("coverage", "senses", "trial", "uncompensated_cuts")),
     ),
+    "metal": (
+        *(f"polarcheck/geometry/polygons/{name}.py" for name in ("cleared", "finished_part", "standing_metal")),
+        *(f"polarcheck/table/{name}.py" for name in ("bar", "finished", "milled", "stock_comments", "workpiece")),
+        "polarcheck/inspection/*",
+        "polarcheck/parts/*",
+    ),
     "geometry": ("polarcheck/geometry/*",),
+    "tables": ("polarcheck/table/*",),
 }
 #: Files of tests that see all of these rooms, the quickest and sharpest first.
 TESTS = (
@@ -49,10 +56,20 @@ TESTS = (
     "inside",
     "mesh",
     "finished_part",
+    "metal",
+    "stock_comments",
+    "part",
+    "part_*",
+    "cleared",
+    "left_standing",
+    "parts",
+    "makes",
+    "deviations",
     "faces",
     "contour",
     "compensation",
     "missing_rules",
+    "repairs",
     "polar_sections",
     "one_cause",
     "one_cut",
@@ -70,6 +87,8 @@ TESTS = (
     "properties",
     "corpus",
 )
+#: Packages in which a module is followed to the modules that import it.
+UPWARD = ("geometry", "table", "inspection", "parts")
 
 
 def modules() -> list[str]:
@@ -97,31 +116,36 @@ def promising(file: str) -> list[str]:
         names += [f"test_{stem}.py", f"test_table_{stem}"]
     for stem in upward(file):
         names += [f"findings[{rule}-" for rule in rules_of(stem)]
+    if room_of(file) == "metal":
+        names += ["test_metal.py", "test_finished_part.py", "test_part", "test_deviations.py"]
     if room_of(file) == "rules":
-        rule = Path(file).stem.replace("_", "-")
-        names = [f"findings[{rule}-", "test_limits.py", "test_severities", rule, Path(file).stem]
+        stem = Path(file).stem.removesuffix("_repair")
+        rule = stem.replace("_", "-")
+        names = [f"findings[{rule}-", "test_repairs.py", "test_limits.py", "test_severities", rule, stem]
     return names
 
 
 @functools.cache
 def importers(file: str) -> list[str]:
     """The tests that import a module themselves."""
-    room, stem = file.split("/")[1], Path(file).stem
-    imported = re.compile(rf"from polarcheck\.{room}(\.{stem} import| import .*\b{stem}\b)")
     tests = sorted((ROOT / "tests").glob("test_*.py"))
-    return [path.name for path in tests if imported.search(path.read_text("utf-8"))]
+    return [path.name for path in tests if import_of(file).search(path.read_text("utf-8"))]
 
 
 @functools.cache
 def upward(file: str) -> list[str]:
-    """The name of a module of geometry or tables, and those of the modules there that import it, the nearest first."""
-    text = {one: (ROOT / one).read_text("utf-8") for one in modules() if one.split("/")[1] in ("geometry", "table")}
+    """The name of a module, and those of the modules of UPWARD that import it and so on, the nearest first."""
+    text = {one: (ROOT / one).read_text("utf-8") for one in modules() if one.split("/")[1] in UPWARD}
     found = [file]
     for one in found:  # grows
-        room, stem = one.split("/")[1], Path(one).stem
-        imported = re.compile(rf"from polarcheck\.{room}(\.{stem} import| import .*\b{stem}\b)")
-        found += [other for other in text if other not in found and imported.search(text[other])]
+        found += [other for other in text if other not in found and import_of(one).search(text[other])]
     return [Path(one).stem for one in found]
+
+
+def import_of(file: str) -> re.Pattern[str]:
+    """A pattern of the statements that import a module."""
+    package, stem = ".".join(Path(file).parent.parts), Path(file).stem
+    return re.compile(rf"from {re.escape(package)}(\.{stem} import| import .*\b{stem}\b)")
 
 
 @functools.cache
@@ -137,6 +161,7 @@ def batches(one: Mutation) -> list[list[str]]:
     files = [path.relative_to(ROOT).as_posix() for path in dict.fromkeys(paths)]
     names = promising(one.file)
     near = [f"tests/{name}" for name in importers(one.file)]
+    near += [f"tests/{path.name}" for path in sorted((ROOT / "tests").glob("test_*.py")) if path.name in names]
     near += [file for file in files if any(name in file for name in names)]
     if any("findings[" in name for name in names):
         near.append("tests/test_rules.py")

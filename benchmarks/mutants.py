@@ -1,16 +1,19 @@
 """
-Would a test notice? Plants one small fault at a time in rules, compensation and geometry, and runs the tests on it.
+Would a test notice? Plants one small fault at a time in rules, compensation, metal, geometry and tables, and runs the
+tests on it.
 
     python benchmarks/mutants.py --count 100 --seed 1 [--only rules --only polarcheck/table/ramps.py:158] [--jobs 2]
+    python benchmarks/mutants.py --count 100 --only metal --only tables --write docs/reliability.md
     python benchmarks/mutants.py --list --only geometry/cutter_compensation/corner.py
 
-Which faults there are says mutations.py; a sample of them is taken, the same for the same seed. First run the tests
-that are named as the module, the modules above it or their rules, then all of TESTS, until one fails or --budget
-seconds of processor time are spent, twice. What is not found by then has survived; so the true score is never less
-than what is printed. Without a fault the tests must pass.
+Which faults there are says mutations.py; a sample is taken of each room or file, the same for the same seed. First run
+the tests that are named as the module, the modules above it or their rules, then all of TESTS, until one fails or
+--budget seconds of processor time are spent, twice. What is not found by then has survived; so the true score is never
+less than what is printed. Without a fault the tests must pass.
 
 It runs in copies of the checkout, niced. Ends with 1 where less than --at-least per cent are killed. Survivors that no
-program can tell from the original stand in equivalent_mutants.toml, each with its reason, and do not count.
+program can tell from the original stand in equivalent_mutants.toml, each with its reason, and do not count. --write
+puts the figures of the rooms that were measured into the table of a page; the rows of other rooms stay as they are.
 """
 
 from __future__ import annotations
@@ -49,13 +52,18 @@ NICE = 5
 USAGE = 4
 #: File, line of the source, what is written, what would be, which of those alike in that line.
 Key = tuple[str, str, str, str, int]
+#: What stands around the table of figures in a page.
+BEGIN, END = "<!-- mutation scores: begin -->", "<!-- mutation scores: end -->"
 OUTCOMES = ("killed", "timeout", "survived", "equivalent")
 
 
 def main() -> int:
     """Choose, run, tell."""
     asked = arguments()
-    chosen = sample(asked.only or list(ROOMS), asked.count, asked.seed)
+    if asked.write and not set(asked.only or ROOMS) <= set(ROOMS):
+        sys.exit(f"--write: only for whole rooms ({', '.join(ROOMS)})")
+    samples = [sample(name, asked.count, asked.seed) for name in asked.only or ROOMS]
+    chosen = list(dict.fromkeys(itertools.chain.from_iterable(samples)))
     if asked.list:
         print(*chosen, sep="\n")
         return 0
@@ -82,6 +90,8 @@ def main() -> int:
         if outcome == "survived" or asked.verbose:
             print(f"{number}/{len(plans)} {outcome}: {one}  {by}", flush=True)
     score = print_table(counts)
+    if asked.write:
+        asked.write.write_text(with_figures(asked.write.read_text("utf-8"), counts, asked.seed), "utf-8", newline="\n")
     print(f"{len(chosen)} faults in {time.perf_counter() - began:.0f} s")
     return int(score < asked.at_least)
 
@@ -90,7 +100,7 @@ def arguments() -> argparse.Namespace:
     """What is asked for."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--only", action="append", metavar="ROOM|PATH[:LINE]", help=f"{', '.join(ROOMS)} or files")
-    parser.add_argument("--count", type=int, default=100, help="faults in the sample; 0 for all")
+    parser.add_argument("--count", type=int, default=100, help="faults of each room or file; 0 for all")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--budget", type=float, default=60.0, help="seconds of processor time for one fault")
@@ -99,6 +109,7 @@ def arguments() -> argparse.Namespace:
         "--trust", dest="sound", action="store_false", help="do not first run the tests without a fault"
     )
     parser.add_argument("--list", action="store_true", help="print the faults of the sample, run nothing")
+    parser.add_argument("--write", type=Path, metavar="PAGE", help="put the figures into the table of this page")
     parser.add_argument("--verbose", action="store_true", help="print what is killed, too")
     return parser.parse_args()
 
@@ -106,22 +117,21 @@ def arguments() -> argparse.Namespace:
 # ---- which faults ----
 
 
-def sample(only: Sequence[str], count: int, seed: int) -> list[Mutation]:
+def sample(name: str, count: int, seed: int) -> list[Mutation]:
     """
-    Some of the mutations of rooms and files, in order of file and place; all if count is 0 or more than there are.
+    Some of the mutations of a room or file, in order of file and place; all if count is 0 or more than there are.
 
     Ends the program for a name that is neither a room nor a file of the package.
     """
+    path, _, line = name.partition(":")
+    files = [file for file in modules() if (room_of(file) == name if name in ROOMS else file.endswith(path))]
+    if not files:
+        sys.exit(f"{name}: neither a room ({', '.join(ROOMS)}) nor a file of the package")
     found = {}
-    for name in only:
-        path, _, line = name.partition(":")
-        files = [file for file in modules() if (room_of(file) == name if name in ROOMS else file.endswith(path))]
-        if not files:
-            sys.exit(f"{name}: neither a room ({', '.join(ROOMS)}) nor a file of the package")
-        for file in files:
-            for one in mutations((ROOT / file).read_bytes(), file):
-                if not line or one.line == int(line):
-                    found[one.file, one.begin, one.end, one.new] = one
+    for file in files:
+        for one in mutations((ROOT / file).read_bytes(), file):
+            if not line or one.line == int(line):
+                found[one.file, one.begin, one.end, one.new] = one
     everything = [found[place] for place in sorted(found)]
     random.Random(seed).shuffle(everything)  # noqa: S311
     sound = (one for one in everything if compiles(one.applied((ROOT / one.file).read_bytes())))
@@ -301,19 +311,41 @@ def surroundings(checkout: Path) -> dict[str, str]:
     return {**os.environ, "PYTHONPATH": path, "OPENBLAS_NUM_THREADS": "1"}
 
 
+# ---- figures ----
+
+
 def print_table(counts: dict[str, Counter[str]]) -> float:
-    """A line for each room and one for all; the share of killed ones of those that count [per cent]."""
+    """A line for each room and one for all; the score of all [per cent]."""
     total: Counter[str] = Counter()
     for row in counts.values():
         total.update(row)
     print(f"{'':14}" + "".join(f"{name:>11}" for name in (*OUTCOMES, "score")))
-    score = 100.0
     for name, row in [*counts.items(), ("all", total)]:
-        found = row["killed"] + row["timeout"]
-        judged = found + row["survived"]
-        score = 100.0 * found / judged if judged else 100.0
-        print(f"{name:14}" + "".join(f"{row[outcome]:>11}" for outcome in OUTCOMES) + f"{score:>10.1f}%")
-    return score
+        print(f"{name:14}" + "".join(f"{row[outcome]:>11}" for outcome in OUTCOMES) + f"{score_of(row):>10.1f}%")
+    return score_of(total)
+
+
+def score_of(row: Counter[str]) -> float:
+    """The share of killed faults among those that a program can show [per cent]."""
+    killed = row["killed"] + row["timeout"]
+    judged = killed + row["survived"]
+    return 100.0 * killed / judged if judged else 100.0
+
+
+def with_figures(page: str, counts: dict[str, Counter[str]], seed: int) -> str:
+    """A page with the rows of these rooms in its table between the two markers, in the order of ROOMS."""
+    before, begin, rest = page.partition(BEGIN)
+    table, end, after = rest.partition(END)
+    if not (begin and end):
+        sys.exit(f"the page has no {BEGIN} and {END}")
+    rows = {row.split("|")[1].strip(): row for row in table.strip().splitlines() if row.startswith("| ")}
+    head = "| package | faults | seed | killed | equivalent | survived | score |"
+    for room, row in counts.items():
+        killed = row["killed"] + row["timeout"]
+        figures = (row.total(), seed, killed, row["equivalent"], row["survived"], f"{score_of(row):.1f} %")
+        rows[room] = f"| {room} | {' | '.join(map(str, figures))} |"
+    lines = [head, "|---|---|---|---|---|---|---|", *(rows[room] for room in ROOMS if room in rows)]
+    return "\n".join([before + begin, *lines, end + after])
 
 
 if __name__ == "__main__":

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from collections import Counter
 from pathlib import Path
 
 import pytest
@@ -88,7 +89,36 @@ def test_a_name_that_is_no_room_and_no_file_is_refused() -> None:
     command = [sys.executable, BENCHMARKS / "mutants.py", "--list", "--only", "rulez"]
     found = subprocess.run(command, capture_output=True, text=True, check=False)
     assert found.returncode != 0
-    assert found.stderr == ("rulez: neither a room (rules, compensation, geometry) nor a file of the package\n")
+    rooms = "rules, compensation, metal, geometry, tables"
+    assert found.stderr == f"rulez: neither a room ({rooms}) nor a file of the package\n"
+
+
+def test_figures_take_the_place_of_the_row_of_their_room() -> None:
+    others = "| rules | 9 | 1 | 8 | 0 | 1 | 88.9 % |"
+    page = f"Above.\n\n{mutants.BEGIN}\n{others}\n| metal | 1 | 1 | 0 | 0 | 1 | 0.0 % |\n{mutants.END}\n\nBelow.\n"
+    counts = {"metal": Counter(killed=37, timeout=1, equivalent=1, survived=2)}
+    written = mutants.with_figures(page, counts, seed=7)
+    assert (
+        written
+        == f"""Above.
+
+{mutants.BEGIN}
+| package | faults | seed | killed | equivalent | survived | score |
+|---|---|---|---|---|---|---|
+{others}
+| metal | 41 | 7 | 38 | 1 | 2 | 95.0 % |
+{mutants.END}
+
+Below.
+"""
+    )
+    assert mutants.with_figures(written, counts, seed=7) == written
+
+
+def test_only_whole_rooms_have_a_row() -> None:
+    command = [sys.executable, BENCHMARKS / "mutants.py", "--only", "geometry/rates.py", "--write", "page.md"]
+    found = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert found.stderr == "--write: only for whole rooms (rules, compensation, metal, geometry, tables)\n"
 
 
 def test_what_counts_as_equivalent_is_still_there() -> None:
