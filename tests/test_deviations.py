@@ -452,6 +452,50 @@ def test_a_depth_that_nothing_reaches_differs() -> None:
     assert "nothing mills its walls" in found.message or "too much stays" in found.message
 
 
+@pytest.mark.parametrize(("half", "by", "what"), [(10.05, 0.071, "stays"), (9.95, 0.05, "is cut away")])
+def test_a_boss_that_the_path_of_the_tool_makes_is_compared_as_a_boss(half: float, by: float, what: str) -> None:
+    """No contour in offset mode says on which side of the drawn square the part is: what is cleared does."""
+    h = half + 3
+    path = f"G1 X100. C0 F300/Z-3./X{2 * h:.3f}/C{h:.3f}/X-{2 * h:.3f}/C-{h:.3f}/X{2 * h:.3f}/C0/X100./Z2./"
+    job = msgspec.structs.replace(drawn(shapely.box(-10, -10, 10, 10)), stock=Stock(diameter=30))
+    (difference,) = report_of(
+        HEAD + path.replace("/", "\n") + TAIL, "fanuc-30i", "1:radius=3", job=job, only=[RULE]
+    ).findings
+    assert f"by {by} mm" in difference.message
+    assert f"too much {what}" in difference.message
+
+
+def slot(angle: float, half: float, z: float) -> str:
+    """A straight cut through the center, so long on either side of it."""
+    end = cmath.rect(half, math.radians(angle))
+    words = [f"X{sign * 2 * end.real:.4f} C{sign * end.imag:.4f}" for sign in (1, -1)]
+    return f"G1 {words[0]} F300\nZ{z}\n{words[1]}\nZ2.\n"
+
+
+def test_a_slot_shorter_than_the_cutter_is_wide_leaves_its_ends() -> None:
+    """In a bar of 20 it reaches 6 mm to each side: 4 mm stay."""
+    job = {"part": [{"shape": "slot", "width": 8.0, "z": -3.0}], "stock": {"diameter": 20}}
+    text = HEAD + slot(0, 2, -3.0) + TAIL
+    (difference,) = report_of(text, "fanuc-30i", "1:radius=4", job=job, only=[RULE]).findings
+    assert "by 4 mm, 0.02 mm is allowed: too much stays at X-20 C0" in difference.message
+
+
+def test_a_slot_is_placed_by_its_own_depth_not_by_a_deeper_groove() -> None:
+    """The groove ends 2 mm from the center, which is 1 mm off the middle of the slot: so far it cuts into its wall."""
+    job = {"part": [{"shape": "slot", "width": 8.0, "z": -3.0}], "stock": {"diameter": 40}}
+    text = HEAD + slot(30, 25, -3.0) + slot(0, 2, -6.0) + TAIL
+    (difference,) = report_of(text, "fanuc-30i", "1:radius=4", job=job, only=[RULE]).findings
+    assert difference.values["largest"] == pytest.approx(1, abs=0.002)
+    assert report_of(text.replace(slot(0, 2, -6.0), ""), "fanuc-30i", "1:radius=4", job=job, only=[RULE]).findings == []
+
+
+@pytest.mark.parametrize(("z", "is_compared"), [("-3.015625", True), ("-3.016", False), ("-2.984375", True)])
+def test_a_depth_belongs_to_a_part_up_to_its_tolerance(z: str, is_compared: bool) -> None:
+    text = program(polygon(6, 13.5)).replace("Z-3.0000", f"Z{z}")
+    part = {"shape": "hexagon", "across_flats": 27.0, "z": -3.0, "tolerance": 0.015625}
+    assert [one.contour is not None for one in comparisons(text, 4, {"part": [part]})] == [is_compared]
+
+
 @pytest.mark.parametrize("seed", [1, 10])
 def test_the_bar_of_the_job_bounds_what_is_compared(seed: int) -> None:
     """Flats, slots and keyways that end beyond it."""

@@ -174,6 +174,18 @@ def part_of(points: list[complex], radius: float, turn: complex = 1, mirrored: b
     return finished_parts(Contours(curves, np.full(count, mirrored), one, one, np.array([radius]), np.nan, 0.001))
 
 
+def test_a_contour_at_places_that_are_not_known_takes_no_part_away() -> None:
+    """It stands before a square of 40 with a gap of 2, which is closed as if it were alone."""
+    corners = np.array([20 + 1j, 20 + 20j, -20 + 20j, -20 - 20j, 20 - 20j, 20 - 1j])
+    start, end = np.append(np.nan, corners[:-1]), np.append(np.nan, corners[1:])
+    loop, kind = np.array([0, 1, 1, 1, 1, 1]), np.full(6, Motion.LINE, np.int16)
+    curves = Curves(start, end, np.full(6, np.nan + 0j), kind, loop, np.arange(6))
+    group = np.zeros(2, np.int64)
+    parts = finished_parts(Contours(curves, np.zeros(6, bool), np.arange(2), group, np.array([3.0]), np.nan, 0.001))
+    assert parts.gap == pytest.approx([2])
+    assert shapely.area(parts.polygon[0]) == pytest.approx(1600)
+
+
 ROUND = [20 + 20j, -20 + 20j, -20 - 20j, 20 - 20j]
 #: A gap of 2 in the middle of the right side, whose ends are so far off each other sideways.
 STEP = {aside: [20 + aside + 1j, 20 + aside + 20j, *ROUND[1:], 20 - 1j] for aside in (0.0, 1.1, 1.2)}

@@ -39,6 +39,32 @@ def test_an_index_with_the_cutter_in_a_hole_goes_through_the_part(job: dict[str,
     }
 
 
+START = "G21 G98 G40/T0101/G97 S3000 M13"
+CENTER = "G0 X0 Z2. C0/G12.1/G1 X0 F500/Z-4. F40/G41 X8. F80/G3 I-4./G1 G40 X0/Z2./G13.1"
+
+
+def test_a_part_is_gone_through_far_from_its_center_too() -> None:
+    """A hole on the center is milled before the one that the cutter stays in."""
+    program = f"{START}/{CENTER}/{HOLE}/{{retract}}G13.1/G0 C120./Z50./X100./M30"
+    assert "rapid-through-part" not in found(program.format(retract="Z2./"), 2.5)
+    assert found(program.format(retract=""), 2.5)["rapid-through-part"] == "error"
+
+
+def test_where_the_face_is_not_known_the_part_stands_up_to_its_contours() -> None:
+    """The origin lies at the back: one hole is milled down to Z25, the other down to Z10."""
+    center = CENTER.replace("Z2.", "Z32.").replace("Z-4.", "Z25.")
+    hole = HOLE.replace("Z2.", "Z32.").replace("Z-4.", "Z10.")
+    program = f"{START}/{center}/{hole}/{{retract}}/G13.1/G0 C120./Z50./X100./M30"
+    assert "rapid-through-part" not in found(program.format(retract="Z15."), 2.5)
+    assert found(program.format(retract="Z9."), 2.5)["rapid-through-part"] == "error"
+
+
+def test_of_a_mill_along_z_all_is_evaluated() -> None:
+    slot = f"{START}/G0 X24. Z2. C0/Z-3./G12.1/G1 X10. F200/X24./Z2. F1000/G13.1/G0 Z50./M30".replace("/", "\n")
+    report = report_of(slot, "fanuc-30i", "1:radius=4,nose=0", job=bar(40), only=["rapid-plunge-into-stock"])
+    assert ([one.rule for one in report.findings], report.not_evaluated) == (["rapid-plunge-into-stock"], [])
+
+
 def test_a_rapid_plunge_needs_a_bar() -> None:
     slot = "G21 G98 G40/T0101/G97 S3000 M13/G0 X24. Z2. C0/{plunge}/G12.1/G1 X10. F200/X24./Z2. F1000/G13.1/G0 Z50./M30"
     assert found(slot.format(plunge="Z-3.")) == {}
@@ -85,6 +111,7 @@ def test_the_bar_that_is_turned(turning: str, diameter: float | None, face: floa
     stock = report_of(program.replace("/", "\n"), "fanuc-30i", "1:radius=4,nose=0").stock
     assert (stock and stock.diameter) == diameter
     assert (stock and stock.face) == face
+    assert (stock and stock.bore) == (diameter and 0)
 
 
 def test_a_pass_names_its_bar() -> None:

@@ -263,6 +263,13 @@ def test_a_rib_is_told_where_it_stands() -> None:
     assert found[1].left_standing == []
 
 
+def test_a_low_rib_is_told_too() -> None:
+    """Leads 2 apart with R3: 3 - sqrt(9 - 4) high."""
+    (bad, *_) = examples(load_all()["material-left"].page)
+    (square,) = made_by(tables_of(bad.program.replace("C1.", "C2."), "fanuc", *bad.tools))
+    assert [left.text for left in square.left_standing] == ["a rib 0.764 high behind line 11, at x 20.000 c 1.000"]
+
+
 def test_a_program_without_sections_and_one_that_is_not_there() -> None:
     Path("plain.nc").write_text("O1\nG0 X10.\nM30\n", "utf-8")
     assert "no polar section" in call("part", "plain.nc").stdout
