@@ -61,7 +61,7 @@ def test_where_the_face_is_not_known_the_part_stands_up_to_its_contours() -> Non
 
 def test_of_a_mill_along_z_all_is_evaluated() -> None:
     slot = f"{START}/G0 X24. Z2. C0/Z-3./G12.1/G1 X10. F200/X24./Z2. F1000/G13.1/G0 Z50./M30".replace("/", "\n")
-    report = report_of(slot, "fanuc-30i", "1:radius=4,nose=0", job=bar(40), only=["rapid-plunge-into-stock"])
+    report = report_of(slot, "fanuc-30i", "1:radius=4,nose=0", job=bar(40))
     assert ([one.rule for one in report.findings], report.not_evaluated) == (["rapid-plunge-into-stock"], [])
 
 
