@@ -233,6 +233,11 @@ def test_it_is_carried_within_the_work_of_the_mill_too() -> None:
     assert said_of_it.startswith("F.008 is 0.008 inch a minute in this move: G98 of line 14 is still in force")
 
 
+def test_an_f_in_a_block_of_its_own_is_told_where_it_moves() -> None:
+    wrong = CARRIED.replace("M30\n", TURNING.format("F.008\nG1 Z-.5"))
+    assert errors_and_warnings(wrong, "8:radius=0") == [("G1 Z-.5", "turning-feed-not-restored")]
+
+
 def test_a_program_in_mm_is_judged_alike() -> None:
     program = in_mm(CARRIED.replace("M30\n", TURNING.format("G1 Z-.5 F.008")))
     assert errors_and_warnings(program, "8:radius=0") == [("G1 Z-12.7 F0.2032", "turning-feed-not-restored")]

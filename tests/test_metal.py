@@ -155,6 +155,16 @@ def test_a_section_in_air(turning: str, depth: str) -> None:
     assert found(f"{head}/{CONTOUR}/{END}") == {"cut-in-air": "warning"}
 
 
+@pytest.mark.parametrize(
+    ("across", "rules"), [(44, {}), (50, {"cut-in-air": "warning"}), (90, {"cut-in-air": "warning"})]
+)
+def test_a_contour_around_the_bar_cuts_air(across: int, rules: dict[str, str]) -> None:
+    """The sides of a square, R4 outside of them, and a bar of 40: of 50 across flats nothing is cut any more."""
+    head, end = (blocks.replace("X60.", "X140.") for blocks in (HEAD, END))
+    square = f"G42 X{across}. C0 F200/C{across / 2}/X-{across}./C-{across / 2}/X{across}./C0"
+    assert found(f"{head}/{square}/{end}", **bar(40)) == rules
+
+
 def test_an_origin_at_the_back_is_no_air() -> None:
     head = HEAD.replace("Z2.", "Z32.").replace("Z-5.", "Z25.")
     assert found(f"{head}/{CONTOUR}/{END.replace('Z2.', 'Z32.')}") == {}

@@ -320,6 +320,12 @@ def test_a_map_with_its_moves_and_its_end_is_the_mode_of_another_control(on: str
         assert known(MAPPED.format(on, off), name) == ["hurco"]
 
 
+def test_a_map_in_one_program_makes_no_map_of_a_macro_in_another() -> None:
+    macro = "O1\nG101\nG1 X50. F200\nM30\n"
+    report = report_of(macro + MAPPED.format("G101", "G109").replace("O1", "O2"), "fanuc")
+    assert [found.line for found in report.findings if found.rule == RULE] == [7]
+
+
 @pytest.mark.parametrize("name", ["fanuc", "haas-lathe", "doosan"])
 @pytest.mark.parametrize(
     ("on", "off"),

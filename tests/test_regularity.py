@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import cmath
 import functools
+import math
 import random
 
 import pytest
@@ -17,6 +19,7 @@ from drawn_regular import (
     regular_contour,
     style,
 )
+from programs import report_of
 
 from polarcheck.table.slips import slip_of
 
@@ -84,3 +87,18 @@ def test_what_differs_on_purpose_is_silent() -> None:
 def test_a_slip_of_the_pen(written: str, meant: float, kind: str | None) -> None:
     slip = slip_of(written, meant, 0.002)
     assert (slip.kind if slip else None) == kind
+
+
+@pytest.mark.parametrize(
+    ("written", "how"),
+    [("X1.0426", "two digits are swapped"), ("X1.0346", "a digit is wrong"), ("X1.246", "a digit is missing")],
+)
+def test_the_number_that_is_meant_has_all_of_its_digits(written: str, how: str) -> None:
+    """A pentagon in inch: the X of its point stands nowhere else in the contour."""
+    points = [cmath.rect(0.5123, 2 * math.pi * number / 5) for number in range(5)]
+    middle = (points[0] + points[-1]) / 2
+    corner = [f"X{2 * point.real:.4f} C{point.imag:.4f}" for point in (middle, *points, middle)]
+    blocks = "\n".join(corner).replace("X1.0246", written)
+    program = f"O1\nG20 G98 G40\nT0101\nG0 X4. Z.1 C-1.\nG12.1\nG1 Z-.1 F8.\nG42 {blocks}\nG40 X4. C-1.\nG13.1\nM30\n"
+    (slip,) = report_of(program, "fanuc", "1:radius=.05", only=["nearly-regular-contour"]).findings
+    assert f"{how}: with X1.0246 it would be a regular pentagon" in slip.message
