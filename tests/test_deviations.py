@@ -465,6 +465,23 @@ def test_a_boss_that_the_path_of_the_tool_makes_is_compared_as_a_boss(half: floa
     assert f"too much {what}" in difference.message
 
 
+def test_of_two_pockets_alike_the_one_that_is_off_is_compared_with_its_own() -> None:
+    """It is 0.1 off, not 30.1: that is how far the other one lies away."""
+    blocks, holes = [], []
+    for made, meant in ((15.1, 15), (-15, -15)):
+        corners = [complex(made + 3, 3), complex(made - 3, 3), complex(made - 3, -3), complex(made + 3, -3)]
+        path = [complex(made), complex(made + 3), *corners, complex(made + 3), complex(made)]
+        words = [f"X{2 * point.real:.3f} C{point.imag:.3f}" for point in path]
+        blocks += [f"G1 {words[0]} F300", "Z-3.", *words[1:], "Z2."]
+        holes.append(shapely.box(meant - 5, -5, meant + 5, 5).buffer(-2).buffer(2, quad_segs=64))
+    part = shapely.Point(0, 0).buffer(30, quad_segs=128).difference(shapely.union_all(holes))
+    job = msgspec.structs.replace(drawn(part), stock=Stock(diameter=60))
+    text = HEAD + "\n".join(blocks) + "\n" + TAIL
+    first, *_ = report_of(text, "fanuc-30i", "1:radius=2", job=job, only=[RULE]).findings
+    assert "by 0.1 mm, 0.02 mm is allowed" in first.message
+    assert "would fit shifted by x 0.100 c 0.000" in first.message
+
+
 def slot(angle: float, half: float, z: float) -> str:
     """A straight cut through the center, so long on either side of it."""
     end = cmath.rect(half, math.radians(angle))

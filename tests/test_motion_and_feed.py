@@ -238,3 +238,11 @@ def test_on_a_lathe_that_rounds_corners_r_is_forgotten_g3_only_where_it_makes_no
     program = f"G98 G17\nG0 X60. Y0\nG112\nG1 X20. F200\n{moves}\nX60.\nG113\n"
     report = report_of(program, "haas-lathe", "1:radius=3", only=["arc-word-without-arc"])
     assert [finding.rule for finding in report.findings] == ["arc-word-without-arc"] * is_forgotten
+
+
+@pytest.mark.parametrize("across", [1.6, 8])
+def test_degrees_are_seen_on_a_thin_pin_too(across: float) -> None:
+    """Within 0.8 mm of the center, and within 4 mm."""
+    program = f"G98 G0 X{across} C0\nG12.1\nG1 X{across} F200\nC45.\nC90.\nC135.\nX{across}\nG13.1\n"
+    (finding,) = report_of(program, "fanuc", "1:radius=1", only=["degrees-in-polar"]).findings
+    assert f"lies within {across / 2:g} mm of the center" in finding.message

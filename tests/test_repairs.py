@@ -103,6 +103,17 @@ def test_a_finding_without_a_repair_has_no_fix() -> None:
     assert found.fix is None
 
 
+def test_g1_in_place_of_g0_is_no_safe_fix_even_where_the_block_has_an_f() -> None:
+    report = report_of("G98 G0 X60. C0\nG12.1\nG0 X40. F200\nG1 C5.\nG13.1\n", only=["rapid-in-polar"])
+    assert not fix_of(report, "rapid-in-polar").safe
+
+
+def test_nothing_is_written_before_a_switch_that_is_computed() -> None:
+    rule = "polar-switched-in-offset-mode"
+    program = "#1=12.1\nT0101\nG98 G0 X60. C0\nG42\nG#1\nG1 X40. F200\nC10.\nG40 X60.\nG13.1\n"
+    assert fixes_of(report_of(program, "fanuc", "1:radius=4", only=[rule]), rule) == [None]
+
+
 # ---- programs of other kinds ----
 
 #: Inch and mm, with N words and without blanks, semicolons, comments, block skip; the rule, the machine, the program
