@@ -114,6 +114,13 @@ def test_nothing_is_written_before_a_switch_that_is_computed() -> None:
     assert fixes_of(report_of(program, "fanuc", "1:radius=4", only=[rule]), rule) == [None]
 
 
+@pytest.mark.parametrize(("entry", "is_mended"), [("X60. Z2. C0", True), ("X60. C0", False)])
+def test_z_is_moved_only_where_it_is_known_whether_it_goes_in_or_comes_out(entry: str, is_mended: bool) -> None:
+    rule = "z-with-plane-axis"
+    program = f"G98 G0 {entry}\nG12.1\nG1 X40. Z-5. F200\nC10.\nX60.\nG13.1\n"
+    assert [fix is not None for fix in fixes_of(report_of(program, only=[rule]), rule)] == [is_mended]
+
+
 # ---- programs of other kinds ----
 
 #: Inch and mm, with N words and without blanks, semicolons, comments, block skip; the rule, the machine, the program
