@@ -97,3 +97,21 @@ def test_the_number_of_pieces_is_near_the_least() -> None:
     u = np.linspace(-np.arcsinh(2), np.arcsinh(2), 2001)
     least = np.trapezoid(np.sqrt(20 * (2 - 1 / np.cosh(u) ** 2) / 0.04), u)
     assert least - 1 <= len(pieces) <= 1.05 * least + 2
+
+
+@pytest.mark.parametrize(
+    ("start", "end", "level", "between"),
+    [
+        (10 + 4j, 10 - 4j, 0.0, [6]),  # by the place that is nearest to the center of C
+        (10 - 4j, 10 + 4j, 0.0, [14]),  # by the one that is farthest away
+        (13.759 - 1.368j, 13.759 + 1.368j, 0.0, [14]),
+        (13.759 - 1.368j, 13.759 + 1.368j, 0.5, []),  # 0.17 farther away than both ends
+    ],
+)
+def test_an_arc_is_divided_where_it_is_nearest_and_farthest(
+    start: complex, end: complex, level: float, between: list[complex]
+) -> None:
+    """R4 about 10 mm from the center of C, counterclockwise."""
+    columns = (np.array([point], complex) for point in (start, end, 10))
+    spans = spans_of(*columns, np.array([Motion.CCW], np.int16), 2.5e-4, level)
+    assert spans.end[:-1] == pytest.approx(between, abs=1e-3)
