@@ -70,6 +70,7 @@ TESTS = (
     "compensation",
     "missing_rules",
     "repairs",
+    "builders_guide",
     "polar_sections",
     "one_cause",
     "one_cut",

@@ -25,8 +25,9 @@ BEYOND = re.compile(r"beyond a static check: \S+")
 
 
 def test_every_fault_has_a_test() -> None:
-    """Each row of the tables names at least one, and each that is named is one."""
-    rows = [line for line in RELIABILITY.splitlines() if line.startswith("| ") and not line.startswith("| fault ")]
+    """Each row of the tables of faults names at least one, and each that is named is one."""
+    faults, *_ = RELIABILITY.partition("<!-- mutation scores: begin -->")
+    rows = [line for line in faults.splitlines() if line.startswith("| ") and not line.startswith("| fault ")]
     assert len(rows) >= 50
     for row in rows:
         named = re.findall(r"`(test_\w+)`", row)

@@ -210,36 +210,6 @@ def test_travel_in_the_mode_is_the_distance_of_the_tool_center() -> None:
     assert [blocks for _, blocks in reasons(report(program, limits=limits | {"c_feed": 9000}))] == [4, 4]
 
 
-def test_arcs_of_wrong_radius_are_one_fault_only_where_many_of_a_section_are() -> None:
-    """Through 6 good arcs and 2 wrong ones there are two slips; three wrong ones of three are one."""
-    good, wrong = ("G3 X20. C10. R11.\nG1 X40. C0\n", "G3 X20. C10. R6.\nG1 X40. C0\n")
-    head = "G98 G0 X60. C0\nG12.1\nG1 X40. F200\n"
-
-    def lines(arcs: str) -> list[int]:
-        report = report_of(f"{head}{arcs}G1 X60.\nG13.1\n", "fanuc", only=["arc-radius-too-small"])
-        return [finding.line for finding in report.findings]
-
-    assert lines(6 * good + 2 * wrong) == [16, 18]
-    assert lines(3 * wrong) == [4]
-
-
-@pytest.mark.parametrize(
-    ("moves", "is_forgotten"),
-    [
-        ("Y20. R4.\nX-20.", False),  # a corner that is rounded with R4
-        ("Y16.\nX16. Y20. R4.\nX-16.", True),  # an arc of R4 would be tangent on both sides
-        ("Y16.\nX16. Y20. R3.\nX-16.", False),
-        ("Y17.\nY20. R4.\nX-20.", True),  # R4 leaves nothing of a move of 3
-    ],
-)
-def test_on_a_lathe_that_rounds_corners_r_is_forgotten_g3_only_where_it_makes_no_corner(
-    moves: str, is_forgotten: bool
-) -> None:
-    program = f"G98 G17\nG0 X60. Y0\nG112\nG1 X20. F200\n{moves}\nX60.\nG113\n"
-    report = report_of(program, "haas-lathe", "1:radius=3", only=["arc-word-without-arc"])
-    assert [finding.rule for finding in report.findings] == ["arc-word-without-arc"] * is_forgotten
-
-
 @pytest.mark.parametrize("across", [1.6, 8])
 def test_degrees_are_seen_on_a_thin_pin_too(across: float) -> None:
     """Within 0.8 mm of the center, and within 4 mm."""

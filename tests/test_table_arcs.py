@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from programs import tables_of
+from programs import report_of, tables_of
 
 from polarcheck.checking.rule import load_all
 from polarcheck.checking.tables import Tables
@@ -220,3 +220,16 @@ def test_a_program_for_the_other_reading_is_known_by_its_arcs(quarters: list[tup
         assert misread(program, "radius")
     elif min(misses) < 0.02:
         assert not misread(program, "radius")
+
+
+def test_arcs_of_wrong_radius_are_one_fault_only_where_many_of_a_section_are() -> None:
+    """Through 6 good arcs and 2 wrong ones there are two slips; three wrong ones of three are one."""
+    good, wrong = ("G3 X20. C10. R11.\nG1 X40. C0\n", "G3 X20. C10. R6.\nG1 X40. C0\n")
+    head = "G98 G0 X60. C0\nG12.1\nG1 X40. F200\n"
+
+    def lines(arcs: str) -> list[int]:
+        report = report_of(f"{head}{arcs}G1 X60.\nG13.1\n", "fanuc", only=["arc-radius-too-small"])
+        return [finding.line for finding in report.findings]
+
+    assert lines(6 * good + 2 * wrong) == [16, 18]
+    assert lines(3 * wrong) == [4]
