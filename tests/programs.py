@@ -11,6 +11,7 @@ from the folder.
 
 from __future__ import annotations
 
+import functools
 import re
 import tomllib
 from collections.abc import Mapping, Sequence
@@ -22,7 +23,6 @@ from polarcheck.checking.examples import Example
 from polarcheck.checking.rule import Rule, find, load_all
 from polarcheck.checking.tables import Tables
 from polarcheck.columns.trace import Trace
-from polarcheck.execution import user_task as _user_task  # noqa: F401  # late else, by a test that does not count
 from polarcheck.finding import FileReport
 from polarcheck.machines import profiles
 from polarcheck.machines.job import Job, from_table, with_tool
@@ -123,6 +123,12 @@ def _asked_by(example: Example) -> tuple[str, dict[str, dict[str, Any]]]:
             table = table.setdefault(folder, {})
         table[last] = tomllib.loads(f"value = {value}")["value"]
     return example.machine or profiles.DEFAULT, values
+
+
+@functools.cache
+def report_of_whole_example(example: Example) -> FileReport:
+    """As report_of_example by all rules, once for all tests that only look at it."""
+    return report_of_example(example)
 
 
 def said(report: FileReport) -> list[tuple[int, str]]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import random
 
 import pytest
@@ -20,20 +21,35 @@ def rules_of(drawn: Drawn, blocks: list[str] | None = None) -> list[str]:
     return [finding.rule for finding in report.findings if finding.severity != "note"]
 
 
-DRAWN = [drawn for drawn in map(contour, SEEDS) if not _BY_CHANCE & set(rules_of(drawn))]
+@functools.cache
+def drawn_contour(seed: int) -> tuple[Drawn, list[str]]:
+    """A drawn contour, and the rules that report something of it."""
+    drawn = contour(seed)
+    return drawn, rules_of(drawn)
 
 
-@pytest.mark.parametrize("drawn", DRAWN, ids=lambda drawn: f"{drawn.family}-{drawn.machine}")
-def test_a_drawn_contour_is_sound(drawn: Drawn) -> None:
-    assert rules_of(drawn) == []
+def clear_of_center() -> list[Drawn]:
+    """Those that come near the center of C by no chance; to check them all takes seconds."""
+    return [drawn for drawn, rules in map(drawn_contour, SEEDS) if not _BY_CHANCE & set(rules)]
 
 
-@pytest.mark.one_in(4)
+@pytest.mark.parametrize("seed", SEEDS)
+def test_a_drawn_contour_is_sound(seed: int) -> None:
+    _, rules = drawn_contour(seed)
+    assert not rules or _BY_CHANCE & set(rules)
+
+
+@pytest.mark.slow
+def test_most_drawn_contours_are_clear_of_the_center() -> None:
+    assert len(clear_of_center()) > len(SEEDS) / 2
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize("name", SLIPS)
 def test_a_slip_in_a_contour_is_one_finding(name: str) -> None:
     slip, silent = SLIPS[name]
     found = []
-    for number, drawn in enumerate(DRAWN):
+    for number, drawn in enumerate(clear_of_center()):
         blocks = drawn.blocks()
         changed = None if drawn.family in silent else slip(drawn, [*blocks], random.Random(number))  # noqa: S311
         if changed is not None and changed != blocks:
