@@ -7,8 +7,10 @@ Property tests take the same examples in each run, unless new ones are asked for
 from __future__ import annotations
 
 import gc
+import importlib
 import math
 import os
+import pkgutil
 import sys
 from collections import Counter
 from collections.abc import Generator, Mapping, Set
@@ -56,7 +58,8 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     """
     Before pytest deselects by markers: where all files run, all cases but a share are slow of a test of many.
 
-    `one_in(5)` says which share of a test runs by default, `one_in(1)` that all cases do.
+    `one_in(5)` says which share of a test runs by default, `one_in(1)` that all cases do. What it leaves out does not
+    count for the coverage, unless that is said: of `one_in(6, counted=2)` every second case does.
     """
     everything = [Path(argument).name for argument in config.args] == config.getini("testpaths")
     count = Counter(item.nodeid.partition("[")[0] for item in items)
@@ -69,7 +72,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         is_many = everything and count[test] > MANY_CASES
         if cases[test] % (share.args[0] if share else SHARE if is_many else 1):
             item.add_marker("slow")
-        if share and cases[test] % share.args[0]:
+        if share and cases[test] % share.kwargs.get("counted", share.args[0]):
             item.add_marker("uncounted")
         cases[test] += 1
 
@@ -83,6 +86,16 @@ def pytest_collection() -> Generator[None, Any, Any]:
     finally:
         gc.enable()
         gc.freeze()
+
+
+def pytest_collection_finish() -> None:
+    """For the coverage modules are imported now: later, a test that does not count might be the first to do it."""
+    if sys.gettrace():
+        import polarcheck
+
+        for module in pkgutil.walk_packages(polarcheck.__path__, "polarcheck."):
+            if module.name != "polarcheck.__main__":
+                importlib.import_module(module.name)
 
 
 @pytest.hookimpl(tryfirst=True)

@@ -290,6 +290,7 @@ def test_a_finding_for_many_blocks_is_silenced_where_it_is_reported() -> None:
     assert [bool(one) for one in lines] == [found.line == 3, found.line == 4]
 
 
+@pytest.mark.slow
 def test_silenced_findings_take_no_place_of_others_in_a_list_that_is_cut() -> None:
     on, off = "(POLARCHECK ALLOW-ON RAPID-IN-POLAR X)\n", "(POLARCHECK ALLOW-OFF RAPID-IN-POLAR)\n"
     program = HEAD + on + "G0 C5.\n" * 1100 + off + "G0 C6.\n" + TAIL
@@ -474,6 +475,7 @@ WORDS = st.sampled_from(
 KINDS = st.sampled_from(["", "-FILE", "-ON", "-OFF"])
 
 
+@pytest.mark.slow
 @settings(max_examples=60, deadline=None)
 @given(
     st.lists(

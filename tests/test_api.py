@@ -54,11 +54,13 @@ def by_command(*arguments: str) -> Any:
 # ---- the command and the function agree ----
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::polarcheck.errors.PolarcheckWarning")
 def test_check_gives_the_report_of_the_command(samples: None) -> None:
     assert json.loads(polarcheck.render(polarcheck.check("."), "json")) == by_command("check", ".", "--format", "json")
 
 
+@pytest.mark.slow
 def test_formats_are_those_of_the_command(samples: None) -> None:
     names = ["degrees.nc", "hexagon.nc", "../sample_programs/spiral.nc"]
     report = polarcheck.check(names)
@@ -67,16 +69,19 @@ def test_formats_are_those_of_the_command(samples: None) -> None:
         assert polarcheck.render(report, form) == result.stdout, form
 
 
+@pytest.mark.slow
 def test_check_of_several_processes_is_the_same(samples: None) -> None:
     paths = [Path(name) for name in SAMPLES[:6]]
     assert polarcheck.check(paths, processes=2) == polarcheck.check(paths)
 
 
+@pytest.mark.slow
 def test_part_gives_what_the_command_gives(samples: None) -> None:
     files = by_command("part", *SAMPLES, "--format", "json")["files"]
     assert [json.loads(msgspec.json.encode(polarcheck.part(name))) for name in SAMPLES] == files
 
 
+@pytest.mark.one_in(2, counted=1)
 @pytest.mark.parametrize("which", ["tool", "programmed"])
 def test_trace_gives_the_moves_of_the_command(samples: None, which: Any) -> None:
     for name in SAMPLES:
@@ -144,6 +149,7 @@ def test_any_text_has_a_report(text: str | bytes) -> None:
     assert polarcheck.render(report, "json")
 
 
+@pytest.mark.slow
 def test_texts_are_checked_in_threads() -> None:
     texts = [RAPID.replace("C5.", f"C{number}.") for number in range(5, 13)]
     with ThreadPoolExecutor(4) as pool:

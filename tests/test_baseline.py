@@ -440,6 +440,7 @@ def test_what_an_editor_holds_is_known_as_its_file() -> None:
     assert (silenced(result), result.exit_code, result.stderr) == ({"sub/a.nc": 1}, 1, "")
 
 
+@pytest.mark.slow
 def test_many_files_by_several_processes() -> None:
     for number in range(30):
         make(**{f"{number:02}__nc": RAPID if number % 2 else TWICE})
@@ -615,6 +616,7 @@ def test_it_takes_all_options_that_decide_what_is_found() -> None:
         assert {*baseline_command.DECIDING, "output"} <= parameters
 
 
+@pytest.mark.slow
 def test_the_process() -> None:
     """As a shell starts it, with its output to pipes."""
     make(a__nc=RAPID)

@@ -85,6 +85,7 @@ def shown(result: Result) -> tuple[int, str, str]:
     return result.exit_code, result.stdout, result.stderr
 
 
+@pytest.mark.one_in(11, counted=1)
 @pytest.mark.parametrize("form", formats())
 def test_reports_from_the_cache_are_those_of_a_fresh_run(form: str, checked: list[str]) -> None:
     paths = ["tool.nc"] if form == "html" else ["."]
@@ -97,6 +98,7 @@ def test_reports_from_the_cache_are_those_of_a_fresh_run(form: str, checked: lis
     assert checked == (["tool.nc"] if form == "html" else [])
 
 
+@pytest.mark.one_in(3, counted=1)
 @pytest.mark.parametrize("options", [("--part", "--show-silenced"), ("--baseline", "known.json"), ("--statistics",)])
 def test_what_is_added_to_reports_or_taken_from_them(options: tuple[str, ...], checked: list[str]) -> None:
     Path("a.nc").write_text("O0001\n(POLARCHECK ALLOW-FILE RAPID-IN-POLAR known)\n" + RAPID + "M30\n")
@@ -150,6 +152,7 @@ CHANGES: dict[str, Callable[[], None]] = {
 }
 
 
+@pytest.mark.one_in(15, counted=1)
 @pytest.mark.parametrize("name", CHANGES)
 def test_what_has_changed_is_checked_again(name: str) -> None:
     before = shown(check(".", "--format", "json"))
@@ -176,6 +179,7 @@ def test_changes_in_any_order(names: list[str]) -> None:
         assert shown(check(".", "--format", "json")) == shown(check(".", "--format", "json", "--no-cache"))
 
 
+@pytest.mark.one_in(11, counted=1)
 @pytest.mark.parametrize(
     ("arguments", "environment"),
     [
@@ -237,6 +241,7 @@ def entries() -> list[Path]:
     return sorted(Path(NAME).rglob("*.cache"))
 
 
+@pytest.mark.slow
 def test_a_broken_cache_is_ignored(checked: list[str]) -> None:
     fresh = shown(check())
     assert entries()
@@ -266,6 +271,7 @@ def test_a_cache_of_somebody_else_makes_nothing_pass(checked: list[str], tmp_pat
     assert checked
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="links need more than files there")
 def test_a_link_is_never_followed(tmp_path: Path) -> None:
     (tmp_path / "other").mkdir()

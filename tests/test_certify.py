@@ -60,6 +60,7 @@ def edit(path: str, before: str, after: str, count: int = -1) -> None:
 # ---- the page ----
 
 
+@pytest.mark.slow
 def test_the_example_prints_what_its_page_shows(example: Path) -> None:
     result = certify(example)
     assert result.exit_code == 0
@@ -68,6 +69,7 @@ def test_the_example_prints_what_its_page_shows(example: Path) -> None:
     assert result.stdout.split("\n") == [line.removeprefix("    ") for line in shown[1].rstrip().split("\n")] + [""]
 
 
+@pytest.mark.slow
 def test_the_manifest_of_the_page_is_one(example: Path) -> None:
     """The page shows the example without two of its features."""
     block = re.search(r"((?:    .*\n|\n)+)", PAGE[PAGE.index('    title = "Example') :])
@@ -82,6 +84,7 @@ def test_the_manifest_of_the_page_is_one(example: Path) -> None:
 CONTOUR, ROUND, INDEXED = "fanuc/contour.nc", "fanuc/arc-above-180.nc", "fanuc/indexing.nc"
 
 
+@pytest.mark.one_in(2, counted=1)
 @pytest.mark.parametrize(
     ("file", "before", "after"),
     [
@@ -98,6 +101,7 @@ def test_other_words_for_the_same_path_pass(example: Path, file: str, before: st
     assert reasons(f"{Path(file).stem}/lathe-7") == []
 
 
+@pytest.mark.one_in(5, counted=1)
 @pytest.mark.parametrize(
     ("file", "before", "after", "said"),
     [
@@ -142,6 +146,7 @@ def test_an_index_of_the_other_control_that_is_another(example: Path, turned: st
     assert reason.startswith(said)
 
 
+@pytest.mark.slow
 def test_a_fault_of_one_control_is_none_of_the_other_that_runs_its_golden_trace(example: Path) -> None:
     edit("post.toml", 'same_path_as = "lathe-7"', 'same_path_as = "lathe-7"\ngolden = "golden/8-{feature}.jsonl"')
     assert certify(example, "--update", "--case", "contour/lathe-8").exit_code == 0
@@ -153,6 +158,7 @@ def test_a_fault_of_one_control_is_none_of_the_other_that_runs_its_golden_trace(
     assert re.match(r"line \d+: 0\.100 mm from contour/lathe-7", reasons("contour/lathe-8")[0])
 
 
+@pytest.mark.slow
 def test_the_start_angle_of_the_whole_part_is_free(example: Path) -> None:
     manifest = example.read_text("utf-8").replace("turned = 0.0\n", "")
     example.write_text(manifest, "utf-8")
@@ -163,6 +169,7 @@ def test_the_start_angle_of_the_whole_part_is_free(example: Path) -> None:
     ]
 
 
+@pytest.mark.slow
 def test_corners_that_controls_go_round_in_another_way_are_named(example: Path) -> None:
     edit("post.toml", 'path = "programmed"', "")
     found = {entry["name"]: entry["reasons"] for entry in certificate(example)["cases"] if entry["reasons"]}
@@ -177,6 +184,7 @@ def test_corners_that_controls_go_round_in_another_way_are_named(example: Path) 
 NEGATIVE = 'findings = [{ rule = "rapid-in-polar", block = "G0 G40 X50.000" }]'
 
 
+@pytest.mark.one_in(2, counted=1)
 @pytest.mark.parametrize(
     ("findings", "said"),
     [
@@ -215,6 +223,7 @@ def test_a_radius_that_is_not_known_is_no_pass(example: Path) -> None:
 # ---- exit codes ----
 
 
+@pytest.mark.slow
 def test_a_program_that_is_not_there(example: Path) -> None:
     Path(CONTOUR).unlink()
     result = certify(example)
@@ -223,6 +232,7 @@ def test_a_program_that_is_not_there(example: Path) -> None:
     assert "the path is not compared: contour/lathe-7 was not run" in " ".join(result.stdout.split())
 
 
+@pytest.mark.one_in(4, counted=1)
 @pytest.mark.parametrize(
     ("arguments", "status"),
     [((), 0), (("--strict",), 1), (("--case", "contour/lathe-8"), 0), (("--case", "contour/lathe"), 2)],
@@ -316,6 +326,7 @@ def test_a_job_file_applies_where_the_manifest_names_it(example: Path) -> None:
 # ---- golden traces ----
 
 
+@pytest.mark.slow
 def test_an_update_says_what_changes_and_keeps_what_fails(example: Path) -> None:
     before = Path("golden/indexing.jsonl").read_bytes()
     edit(CONTOUR, "X50.000 C0. F1000.000\nG1 Z-3", "X52.000 C0. F1000.000\nG1 Z-3")
@@ -336,6 +347,7 @@ def test_an_update_says_what_changes_and_keeps_what_fails(example: Path) -> None
     assert certify(example, "--update", "--case", "contour/lathe-7").stderr == "golden/contour.jsonl: unchanged\n"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("golden", "said"),
     [
@@ -365,6 +377,7 @@ def test_a_golden_trace_that_is_none(example: Path) -> None:
 # ---- reports ----
 
 
+@pytest.mark.slow
 def test_the_page_escapes_what_others_have_written(example: Path) -> None:
     edit("post.toml", "Example post 1.0", "<script>alert(1)</script>\\u001b[31m")
     edit("post.toml", "the control takes no Z", "<b>no Z</b>")
@@ -385,6 +398,7 @@ def test_a_report_overwrites_no_file_of_the_run(example: Path, output: str) -> N
     assert certify(example, "-o", output).exit_code == 2
 
 
+@pytest.mark.slow
 def test_many_controls_stand_below_each_other(example: Path) -> None:
     controls = "".join(f"[controls.a-lathe-with-a-long-name-{number}]\n" for number in range(9))
     edit("post.toml", "[feature.contour]\n", f"{controls}\n[feature.contour]\n")
@@ -397,6 +411,7 @@ def test_many_controls_stand_below_each_other(example: Path) -> None:
     assert all(len(line) <= 100 for part in shown for line in part.splitlines())
 
 
+@pytest.mark.slow
 def test_the_certificate_and_the_manifest_fit_their_schemas(example: Path) -> None:
     import tomllib
 
@@ -449,6 +464,7 @@ def test_the_suite_is_a_manifest_with_drawings(tmp_path: Path) -> None:
     }
 
 
+@pytest.mark.slow
 def test_files_are_relative_to_the_manifest(example: Path) -> None:
     certify("init", "suite")
     part = 'shape = "hexagon"\nacross_flats = 24.0\nturned = 0.0\nz = -3.0\n'

@@ -122,6 +122,7 @@ def test_what_is_not_evaluated_fails_only_where_that_is_asked_for() -> None:
     ]
 
 
+@pytest.mark.slow
 def test_the_offset_table_of_a_job_is_no_program_of_its_folder() -> None:
     table = "%\nG10 P1 R4.\n%\n"
     make(a__nc=GOOD, TOOLOFST__TXT=table, other__txt=table, O0002__nc=table)
@@ -196,6 +197,7 @@ def test_an_interrupted_process_says_so_in_a_word() -> None:
     assert "Traceback" not in told
 
 
+@pytest.mark.slow
 def test_a_reader_who_goes_away_changes_no_exit_code() -> None:
     make(a__nc=RAPID, b__nc=GOOD)
     for name, code in (("a.nc", 1), ("b.nc", 0)):
@@ -798,7 +800,7 @@ def test_machines_lists_all_of_them() -> None:
 _LEFT_OUT = ("known_parameters", "notes")
 
 
-@pytest.mark.one_in(3)
+@pytest.mark.one_in(20, counted=3)
 @pytest.mark.parametrize("name", names())
 def test_a_profile_is_shown_as_a_profile_that_says_the_same(name: str) -> None:
     shown = call("machines", name).stdout
@@ -826,6 +828,7 @@ def test_the_version_is_shown() -> None:
 # ---- schemas ----
 
 
+@pytest.mark.one_in(4, counted=1)
 @pytest.mark.parametrize("name", ["report", "job", "machine", "feeds", "trace", "comparison", "rewriting"])
 def test_schemas_are_valid_and_say_what_they_are(name: str) -> None:
     shown = json.loads(call("schema", name).stdout, parse_constant=pytest.fail)

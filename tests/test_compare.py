@@ -213,6 +213,7 @@ def test_sections_are_paired_by_what_they_do(new: Sequence[tuple[int, int]], cha
     assert result.verdict == (SAME_WORDS if set(changes) == {"same"} else DIFFERS)
 
 
+@pytest.mark.one_in(2, counted=1)
 @pytest.mark.parametrize("seed", range(2))
 def test_slips_of_setters_are_found(seed: int) -> None:
     """Each slip that writes another word; comments are none for the metal, and a line run twice is run once."""
@@ -462,6 +463,7 @@ def test_names_and_words_of_strangers_are_shown_without_escapes(pair: Path) -> N
 GIT = ("git", "-c", "user.name=a", "-c", "user.email=a@b.c", "-c", "commit.gpgsign=false")
 
 
+@pytest.mark.slow
 def test_git_shows_metal(pair: Path) -> None:
     """As a diff driver, as a difftool and as a textconv, as docs/compare.md says."""
     command = f'"{sys.executable}" -m polarcheck'

@@ -141,7 +141,7 @@ def test_metal_that_stays_or_is_missing_is_found_where_shapely_finds_it(seed: in
     assert any(comparison.differs for comparison in found) == leaves_metal(one, min(certain, turned) - 0.02)
 
 
-@pytest.mark.one_in(5)
+@pytest.mark.one_in(13, counted=5)
 @pytest.mark.parametrize("seed", sound_seeds(1))
 @pytest.mark.parametrize(
     "twin", [Twin(turn=0.7), Twin(mirror=True), Twin(inch=True)], ids=["turned", "mirrored", "inch"]
@@ -156,7 +156,7 @@ def test_so_do_their_twins_with_the_drawing_of_the_twin(seed: int, twin: Twin) -
     assert max(found.difference.largest for found in tables["contour_comparisons"].all) < 0.005
 
 
-@pytest.mark.one_in(3)
+@pytest.mark.one_in(7, counted=3)
 @pytest.mark.parametrize(
     ("family", "by"),
     # A cam has thousands of corners: one of the two ways is enough.
@@ -178,6 +178,7 @@ def test_a_larger_or_smaller_drawing_differs_by_what_shapely_says(family: str, b
 # ---- slips of a known size ----
 
 
+@pytest.mark.one_in(3, counted=1)
 @pytest.mark.parametrize(
     ("side", "off", "turned"),
     [(0, 0.05, None), (1, -0.05, 10.0), (2, 0.05, 10.0), (3, -0.05, None), (4, 0.05, None), (5, -0.05, 10.0)],
@@ -193,6 +194,7 @@ def test_a_side_that_is_off_is_told_with_its_block(side: int, off: float, turned
     assert ("too much stays" if off > 0 else "too much is cut away") in found.message
 
 
+@pytest.mark.slow
 def test_a_part_agrees_within_the_tolerance_that_is_given() -> None:
     text = program(polygon(6, 13.5, {2: 0.05}))
     for tolerance, count in ((None, 1), (0.049, 1), (0.051, 0)):
@@ -310,6 +312,7 @@ def shaped(part: dict[str, Any], text: str, radius: float = 2.0) -> list[float]:
     return [one.difference.largest for one in comparisons(text, radius, {"part": [part]})]
 
 
+@pytest.mark.slow
 def test_flats_and_slots_are_compared_along_their_walls() -> None:
     flats = "G1 X60. C10. F300/Z-1./G42 X40./X-40./G40 X-60./G1 C-10./G42 X-40./X40./G40 X60."
     text = HEAD + flats.replace("/", "\n") + "\n" + TAIL
@@ -360,6 +363,7 @@ def test_nothing_agrees_by_less_than_the_last_digit(code: str, across: float, wi
     assert found.text.startswith(f"agrees with the square asked for within {within} (tolerance ")
 
 
+@pytest.mark.slow
 def test_arcs_are_bulges_in_a_file_and_agreement_is_told_with_its_worst_place(tmp_path: Path) -> None:
     """A D shaft of 30 with its flat 9 from the center."""
     half = math.acos(9 / 15)

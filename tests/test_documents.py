@@ -59,6 +59,7 @@ def test_statements_of_the_five_documents_are_numbered_in_order() -> None:
         assert own == list(range(1, len(own) + 1))
 
 
+@pytest.mark.slow
 def test_each_statement_is_covered_by_what_there_is() -> None:
     """A rule, a test, a column, a key of a machine, a field of the trace; or a reason why no check can cover it."""
     tables = tables_of("G98 G0 X40. C0\nG12.1\nG1 X30. F100\nC5.\nG13.1\n")

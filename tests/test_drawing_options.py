@@ -45,7 +45,7 @@ VARIANTS = pytest.mark.parametrize(
 )
 
 
-@pytest.mark.one_in(4)
+@pytest.mark.one_in(8, counted=4)
 @VARIANTS
 @pytest.mark.parametrize("command", ["check", "part"])
 def test_several_drawings_are_several_parts(
@@ -65,7 +65,7 @@ def test_several_drawings_are_several_parts(
     assert "differs from hexagon.dxf" not in result.stdout
 
 
-@pytest.mark.one_in(2)
+@pytest.mark.slow
 @VARIANTS
 def test_the_tolerance_of_the_command_line(tmp_path: Path, scale: float, turn: float, machine: str) -> None:
     path = tmp_path / "O1.NC"
@@ -87,6 +87,7 @@ def test_the_tolerance_of_the_command_line(tmp_path: Path, scale: float, turn: f
         job.unlink()
 
 
+@pytest.mark.one_in(4, counted=1)
 @VARIANTS
 def test_layers_by_name(tmp_path: Path, scale: float, turn: float, machine: str) -> None:
     path = tmp_path / "O1.NC"

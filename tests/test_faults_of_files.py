@@ -184,6 +184,7 @@ def test_what_the_shell_hands_over_is_read_to_its_end(redirected: str, names: li
     assert (ended.returncode, ended.stderr, checked(ended.stdout)) == (1, b"", names)
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(shutil.which("bash") is None or sys.platform == "win32", reason="needs bash")
 def test_process_substitution_is_read_to_its_end() -> None:
     make("a.nc")

@@ -107,6 +107,7 @@ def test_nor_has_it_the_name_of_a_program(name: str) -> None:
     assert not Path(name).exists()
 
 
+@pytest.mark.slow
 def test_two_reports_have_two_files() -> None:
     status, _, told = run("check", "b.nc", *ONLY, "-o", "json:r.json", "-o", "concise:./r.json")
     assert (status, told) == (2, "polarcheck: -o r.json: two reports would be written to this file\n")
@@ -132,6 +133,7 @@ def test_a_full_disk_behind_standard_output_is_one_line(arguments: tuple[str, ..
     assert (status, told) == (2, "polarcheck: standard output: No space left on device\n")
 
 
+@pytest.mark.slow
 @posix
 def test_standard_output_may_be_closed() -> None:
     status, _, told = run("check", "b.nc", *ONLY, "-o", "json:r.json", preexec_fn=partial(os.close, 1))
@@ -186,6 +188,7 @@ def own_descriptors(number: int) -> list[str]:
     return [f"/dev/fd/{number}", "link", *by_process]
 
 
+@pytest.mark.slow
 @posix
 def test_a_pipe_that_the_shell_has_opened_gets_the_report() -> None:
     """`-o json:>(cat)` is /dev/fd/63, which leads to a pipe without a name."""
@@ -222,6 +225,7 @@ def test_a_report_goes_behind_what_a_standard_stream_holds(output: str, number: 
     assert ("error: G0 cannot be used" in text) == (number == 1)
 
 
+@pytest.mark.slow
 @posix
 def test_a_descriptor_that_cannot_be_written_is_one_line() -> None:
     for output, said in (

@@ -71,6 +71,7 @@ def polygon_plain(sides: int) -> str:
     return "\n".join([*lines, "G1 C0", "G40 X90.", "G13.1", "G0 Z50.", "M30"]) + "\n"
 
 
+@pytest.mark.one_in(4, counted=1)
 @pytest.mark.parametrize("sides", range(3, 13))
 def test_polygon_runs_as_its_written_out_twin(sides: int) -> None:
     macro, plain = (tables_of(program(sides), "fanuc", CUTTER) for program in (polygon_macro, polygon_plain))
@@ -219,6 +220,7 @@ def test_return_with_p_goes_to_the_caller() -> None:
     np.testing.assert_array_equal(trace.blocks.word("X")[trace.blocks.has("X")], [5.0, 2.0])
 
 
+@pytest.mark.slow
 def test_an_endless_program_is_no_fault_of_those_behind_it() -> None:
     """The statements of the whole file were counted: every program behind a run-in cycle was endless, too."""
     endless = "O{0}\nN10 G0 X50.\nX60.\n#1=#1+1\nGOTO10\nM30\n"

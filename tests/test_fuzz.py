@@ -40,6 +40,7 @@ def test_programs_that_look_sound(data: bytes, setup: int) -> None:
     fuzz_targets.trace(data, setup)
 
 
+@pytest.mark.slow
 @given(strategies.wild_programs(), strategies.setups)
 @few
 def test_wild_programs(data: bytes, setup: int) -> None:
@@ -55,6 +56,7 @@ def test_mutated_programs(data: bytes, setup: int) -> None:
     fuzz_targets.whole(data, setup)
 
 
+@pytest.mark.slow
 @given(strategies.programs(), strategies.setups)
 @few
 def test_the_command(data: bytes, setup: int) -> None:
@@ -67,6 +69,7 @@ def test_reports_fit_their_schema(data: bytes, setup: int) -> None:
     fits_schema(data, setup)
 
 
+@pytest.mark.slow
 @given(strategies.programs(), strategies.setups)
 @more
 def test_the_reader(data: bytes, setup: int) -> None:
@@ -81,6 +84,7 @@ def test_macro_statements(data: bytes, setup: int) -> None:
     fuzz_targets.statement(data, setup)
 
 
+@pytest.mark.slow
 @given(strategies.statements(), strategies.setups)
 @few
 def test_programs_of_macro_statements(data: bytes, setup: int) -> None:
@@ -172,6 +176,7 @@ def test_mutation_of_a_seed_is_the_same_every_time() -> None:
     assert len(set(ours)) > 40
 
 
+@pytest.mark.one_in(4, counted=1)
 @pytest.mark.parametrize("target", TARGETS)
 def test_seeds_hold(target: str) -> None:
     """A few of the inputs that the loop begins with, so that a failure later is one of a mutation."""

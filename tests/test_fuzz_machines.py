@@ -311,7 +311,7 @@ def in_toml(value: Any) -> str:
     return json.dumps(value) if isinstance(value, str) else str(value)
 
 
-@pytest.mark.one_in(4)
+@pytest.mark.slow
 @pytest.mark.usefixtures("own_folder")
 @pytest.mark.parametrize("seed", range(4))
 def test_what_is_nearly_a_value_in_use_is_taken_without_harm_or_refused(seed: int) -> None:

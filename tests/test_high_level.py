@@ -194,6 +194,7 @@ HARMLESS = [
 ]
 
 
+@pytest.mark.one_in(4, counted=1)
 @pytest.mark.parametrize("blocks", SIMULATED)
 def test_a_construct_is_simulated(blocks: str) -> None:
     report = report_of(program(f"{blocks} / M30"), OWN)
@@ -220,6 +221,7 @@ def test_frames_are_told_by_their_names_where_the_profile_has_no_words_for_them(
     assert not told(f"{blocks} / M30", OWN)
 
 
+@pytest.mark.one_in(3, counted=1)
 @pytest.mark.parametrize("blocks", NAMED)
 def test_what_is_not_simulated_is_told_by_its_name(blocks: str) -> None:
     report = report_of(program(f"{blocks} / M30"), OWN)
@@ -228,7 +230,7 @@ def test_what_is_not_simulated_is_told_by_its_name(blocks: str) -> None:
     assert executed(f"{blocks} / M30")[-1] == "M30"
 
 
-@pytest.mark.one_in(1)
+@pytest.mark.one_in(5, counted=1)
 @pytest.mark.parametrize("blocks", HARMLESS)
 @pytest.mark.parametrize("machine", [OWN, ISO])
 def test_what_has_no_bearing_is_silent(blocks: str, machine: str) -> None:
@@ -241,6 +243,7 @@ def test_what_has_no_bearing_is_silent(blocks: str, machine: str) -> None:
     assert executed(f"{blocks} / M30", machine)[-1] == "M30"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", [OWN, ISO])
 def test_every_statement_of_a_profile_is_told_or_harmless(name: str) -> None:
     """By what the profile says of it, whatever stands behind it."""

@@ -86,6 +86,7 @@ def test_a_feed_that_grows_is_told_again_with_what_is_known_of_it() -> None:
     assert line.endswith("[c-feed-above-limit]")
 
 
+@pytest.mark.one_in(3, counted=1)
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [
@@ -221,6 +222,7 @@ def test_a_long_program_is_known_by_a_part_of_its_blocks() -> None:
     assert len(told()) == 1
 
 
+@pytest.mark.slow
 def test_pairs_that_are_drawn() -> None:
     """`python tests/drawn_baselines.py 5000` takes more of them."""
     assert list(drawn_baselines.faults(0, 25)) == []

@@ -119,6 +119,7 @@ def test_part_says_more_than_the_line() -> None:
     assert line_of(program([Section(polygon(6, 30.0), depths=TWICE)]), "fanuc", "--part") == ""
 
 
+@pytest.mark.slow
 def test_it_depends_on_the_file_alone() -> None:
     """Neither on the files before it nor on the number of processes."""
     Path("a.nc").write_text(program([Section(polygon(6, 30.0))]))

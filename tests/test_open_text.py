@@ -40,6 +40,7 @@ def lines_of(text: str) -> list[str]:
     return text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
 
 
+@pytest.mark.slow
 @given(texts, st.sampled_from(UNITS))
 def test_a_place_of_the_editor_leads_there_and_back(text: str, units: str) -> None:
     opened = OpenText(text, units)

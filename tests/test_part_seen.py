@@ -57,6 +57,7 @@ def test_a_quadrilateral_with_corners_of_chords_that_ends_past_its_start(control
     assert "open" not in seen.text
 
 
+@pytest.mark.slow
 def test_closed_contours_that_end_past_their_start() -> None:
     assert [seed for seed in range(40) if not is_seen(contour(seed))] == []
 
@@ -81,7 +82,7 @@ def test_two_contours_of_one_level_that_end_past_their_start() -> None:
 # ---- contours that end beside their start ----
 
 
-@pytest.mark.one_in(3)
+@pytest.mark.one_in(9, counted=3)
 @pytest.mark.parametrize("control", BY_MACHINE)
 def test_a_contour_that_ends_beside_its_start_keeps_its_last_wall(control: str) -> None:
     for number in range(24):

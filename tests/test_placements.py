@@ -83,7 +83,7 @@ CHANGES = {
 }
 
 
-@pytest.mark.one_in(4)
+@pytest.mark.one_in(15, counted=4)
 @pytest.mark.parametrize("name", CHANGES)
 @pytest.mark.parametrize("machine", ["fanuc-30i", "haas-lathe", "siemens-iso"])
 def test_a_drawing_that_lies_or_measures_otherwise_is_told_as_that(name: str, machine: str) -> None:
@@ -130,6 +130,7 @@ def test_of_several_contours_each_is_found_in_a_drawing_in_inch() -> None:
         assert "The drawing would fit 25.4 times as large (as one in inch): within 0" in finding.message
 
 
+@pytest.mark.one_in(3, counted=1)
 @pytest.mark.parametrize(
     ("change", "expected"),
     [
@@ -160,7 +161,7 @@ def center_path(corners: list[complex]) -> str:
     return HEAD + "\n".join(blocks) + "\n" + TAIL
 
 
-@pytest.mark.one_in(5)
+@pytest.mark.one_in(12, counted=5)
 @pytest.mark.parametrize(
     ("change", "expected"),
     [
@@ -180,6 +181,7 @@ def test_so_it_is_without_compensation(change: Any, expected: str, machine: str,
     assert expected in said(text, drawing([change(corner) for corner in polygon(6, 13.5, turn=turn)]), 4.0, machine)
 
 
+@pytest.mark.slow
 def test_a_shape_that_is_shifted_or_in_other_units() -> None:
     text = program(polygon(6, 13.5))
     for expected, part in (

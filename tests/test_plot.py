@@ -84,6 +84,7 @@ def test_a_page_holds_findings_and_pictures_whatever_is_found() -> None:
     assert PLOTLY in Path("part.html").read_text("utf-8")
 
 
+@pytest.mark.slow
 def test_the_page_of_check_is_that_of_plot_and_fails_as_check_does() -> None:
     make(a__nc=GROOVE, b__nc=HEXAGON)
     assert call("plot", "a.nc", *RADIUS, "-o", "plot.html").exit_code == 0
@@ -102,6 +103,7 @@ def test_other_formats_beside_it_know_nothing_of_pictures() -> None:
     assert check("a.nc", *RADIUS, "--format", "jsonl", "-o", "html:a.html").stdout.count("\n") == 3
 
 
+@pytest.mark.slow
 def test_a_folder_gets_a_page_for_each_program_and_plotly_once() -> None:
     make(a__nc=GROOVE, b__nc=HEXAGON)
     Path("sub").mkdir()

@@ -330,6 +330,7 @@ def test_turning_the_plane_shifts_c_alone(move: Move, turn: float) -> None:
         assert turned.of(function, *more) == pytest.approx(move.of(function, *more), rel=1e-6, abs=1e-6)
 
 
+@pytest.mark.slow
 @few
 @given(smooth_moves, st.floats(0.05, 0.95))
 def test_splitting_a_move_changes_no_maximum(move: Move, share: float) -> None:
@@ -548,6 +549,7 @@ def test_c_outside_sections_is_unknown() -> None:
     assert c_angles(section=np.zeros(0, dtype=np.int64), entry=[]) == ([], [])
 
 
+@pytest.mark.slow
 @few
 @given(st.lists(point, min_size=3, max_size=30), st.floats(-360, 360))
 def test_c_angles_lead_to_the_points(points: list[complex], entry: float) -> None:

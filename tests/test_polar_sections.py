@@ -391,6 +391,7 @@ def test_a_tool_that_another_file_of_the_run_calls_is_none(folder: Path) -> None
     assert "offset 2" not in call("check", "a.nc", "b.nc", "--tool", "2:radius=4").stderr
 
 
+@pytest.mark.slow
 def test_a_tool_of_a_job_may_be_for_other_programs(folder: Path) -> None:
     make(polarcheck__toml="[tools.1]\nradius = 4\nnose = 0\n[tools.99]\nradius = 4\n")
     result = call("check", "a.nc")

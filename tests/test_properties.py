@@ -141,6 +141,7 @@ def test_spelling_changes_nothing(moves: list[Move], data: st.DataObject) -> Non
     assert [(f.line, f.rule, f.values) for f in ours.findings] == [(f.line, f.rule, f.values) for f in theirs.findings]
 
 
+@pytest.mark.slow
 @given(contours())
 @example(AT_CENTER)
 @example(THROUGH_CENTER)
@@ -150,6 +151,7 @@ def test_incremental_twin_has_the_same_path(moves: list[Move]) -> None:
     same_path(moves_of(program(moves), FANUC), moves_of(program(moves, incremental=True), FANUC))
 
 
+@pytest.mark.slow
 @given(contours())
 @example(AT_CENTER)
 @example(THROUGH_CENTER)
@@ -160,6 +162,7 @@ def test_inch_twin_has_the_same_path(moves: list[Move]) -> None:
     same_path(moves_of(program(moves), FANUC), moves_of(program(moves, unit=25.4), FANUC), point=2e-8)
 
 
+@pytest.mark.slow
 @given(contours())
 @settings(max_examples=EXAMPLES, deadline=None)
 def test_radius_twin_has_the_same_path(moves: list[Move]) -> None:
@@ -167,6 +170,7 @@ def test_radius_twin_has_the_same_path(moves: list[Move]) -> None:
     same_path(moves_of(program(moves), FANUC), moves_of(program(moves, x_factor=1.0), by_radius))
 
 
+@pytest.mark.slow
 @given(contours(), st.floats(-math.pi, math.pi))
 @settings(max_examples=EXAMPLES, deadline=None)
 def test_turning_the_entry_shifts_only_c(moves: list[Move], angle: float) -> None:
@@ -179,6 +183,7 @@ def test_turning_the_entry_shifts_only_c(moves: list[Move], angle: float) -> Non
         np.testing.assert_allclose(theirs - ours, degrees, atol=1e-9)
 
 
+@pytest.mark.slow
 @given(contours(), st.floats(-math.pi, math.pi))
 @settings(max_examples=EXAMPLES, deadline=None)
 def test_turning_the_contour_keeps_speed_and_distance(moves: list[Move], angle: float) -> None:
@@ -218,6 +223,7 @@ def rounded_square(corner: float, on: str) -> str:
     return COMPENSATED.format(on=on, half=words(half), inner=words(2 * half), corner=words(corner))
 
 
+@pytest.mark.slow
 @given(coordinate(0.5, 25), coordinate(0, 12))
 @settings(max_examples=EXAMPLES, deadline=None)
 def test_a_rounded_square_is_followed_at_its_distance(corner: float, radius: float) -> None:
@@ -228,6 +234,7 @@ def test_a_rounded_square_is_followed_at_its_distance(corner: float, radius: flo
     np.testing.assert_allclose(np.abs(table.end - table.center)[arcs], corner + radius, atol=1e-9)
 
 
+@pytest.mark.slow
 @given(coordinate(0.5, 25), coordinate(0.1, 12))
 @settings(max_examples=EXAMPLES, deadline=None)
 def test_mirroring_swaps_the_sides(corner: float, radius: float) -> None:

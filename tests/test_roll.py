@@ -86,6 +86,7 @@ def test_a_contour_of_lines_and_arcs_comes_back_with_as_many_of_them_and_its_f(n
     assert told["largest distance of the ends of the blocks from the new path"] == pytest.approx(measured, abs=1e-3)
 
 
+@pytest.mark.slow
 def test_a_free_contour_is_passed_within_the_tolerance() -> None:
     angle = np.linspace(0, math.tau, 801)
     points = (20 + 2 * np.sin(5 * angle) + 0.7 * np.sin(13 * angle + 1)) * np.exp(1j * angle)
@@ -228,7 +229,7 @@ def polar_program(machine: str, inch: bool, c: str) -> str:
 @pytest.mark.parametrize("c", ["C0", "C37.5"])
 @pytest.mark.parametrize("inch", [False, True])
 @pytest.mark.parametrize("machine", _ON)
-@pytest.mark.one_in(5)
+@pytest.mark.one_in(14, counted=5)
 def test_a_section_without_the_mode_and_back_is_the_same_contour(machine: str, inch: bool, c: str) -> None:
     original = original_of(polar_program(machine, inch, c), machine)
     known = original.settings.machine.feed.with_rotary
@@ -252,6 +253,7 @@ def test_a_section_without_the_mode_and_back_is_the_same_contour(machine: str, i
 # ---- where the section begins ----
 
 
+@pytest.mark.slow
 def test_c_goes_to_0_above_the_part_so_that_the_coordinates_are_those_of_the_drawing() -> None:
     text = cam_contour(slot())
     outcome = roll(text)
@@ -473,6 +475,7 @@ def call(*arguments: str) -> Result:
     return CliRunner().invoke(main, ["roll", *arguments], prog_name="polarcheck")
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("own_folder")
 def test_the_command_writes_a_new_program_and_says_what_was_done() -> None:
     text = cam_contour(hexagon())

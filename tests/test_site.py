@@ -40,6 +40,7 @@ def written_pages() -> list[Path]:
     return [path for path in pages() if path.name == "index.md" or not _MADE & set(path.relative_to(ROOT).parts)]
 
 
+@pytest.mark.slow
 def test_the_made_pages_are_current() -> None:
     """`python -m polarcheck.reports.pages.site docs` makes them anew."""
     made = site.pages()
@@ -168,6 +169,7 @@ def beside_samples(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("beside_samples")
 def test_those_on_sample_programs_run() -> None:
     lines = {line for page in written_pages() for line, _ in commands(page) if SAMPLES in line}

@@ -269,7 +269,7 @@ HOSTILE = [
 HOSTILE += ["ATAN[1]/[", "POW[1,", "IF[1EQ1]TH", "GOTO", "<", ">", "<A>", " ", "#_A", "=", "X[1+", "1EQ", "X1.1"]
 
 
-@pytest.mark.one_in(5)
+@pytest.mark.one_in(8, counted=5)
 @pytest.mark.parametrize("head", ["", "#1=", "IF[", "G1X["])
 @pytest.mark.parametrize("part", HOSTILE)
 def test_reading_takes_linear_time(part: str, head: str) -> None:
@@ -318,6 +318,7 @@ NAMES = [
 MACRO_TEXT = st.lists(st.sampled_from(SIGNS + NAMES), max_size=40).map("".join)
 
 
+@pytest.mark.slow
 @given(block=st.one_of(MACRO_TEXT, st.text(max_size=60)))
 @settings(max_examples=400, deadline=None)
 def test_reading_and_running_never_fail(block: str) -> None:

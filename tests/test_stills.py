@@ -42,6 +42,7 @@ def read(data: bytes) -> tuple[ElementTree.Element, str]:
     return root, "\n".join(node.text or "" for node in root.iter() if not isinstance(node.tag, str))
 
 
+@pytest.mark.slow
 def test_a_picture_has_the_width_of_a_page_and_says_what_is_wrong() -> None:
     make(a__nc=GROOVE)
     result = call("plot", "a.nc", *RADIUS, "--png", "a.png", "--svg", "a.svg")
@@ -63,6 +64,7 @@ def test_a_picture_has_the_width_of_a_page_and_says_what_is_wrong() -> None:
     assert (Path("b.PNG").read_bytes(), Path("b.svg").read_bytes()) == (data, Path("a.svg").read_bytes())
 
 
+@pytest.mark.slow
 def test_sections_stand_one_below_the_other_and_can_be_chosen() -> None:
     make(a__nc=TWO)
     assert call("plot", "a.nc", *RADIUS, "--svg", "a.svg").exit_code == 0
@@ -115,6 +117,7 @@ def test_without_matplotlib_one_line_says_what_to_install(monkeypatch: pytest.Mo
     assert result.stderr == "polarcheck: --png and --svg need matplotlib, of the extra [plot]: pip install matplotlib\n"
 
 
+@pytest.mark.slow
 def test_hostile_names_and_words_are_text() -> None:
     name = "a--><script>$x^$ \x1b.nc"
     Path(name).write_text(HEXAGON.replace("F200", "F200 $\\frac{1}$ <b>&amp; --> Q\u65e5", 1), "utf-8")

@@ -204,6 +204,7 @@ BLOCKS = st.lists(
 )
 
 
+@pytest.mark.slow
 @given(st.lists(BLOCKS, max_size=6))
 @settings(max_examples=100, deadline=None)
 def test_repeated_words_are_those_that_a_count_finds(blocks: list[list[tuple[str, str]]]) -> None:
@@ -274,6 +275,7 @@ MORE = [
 ]
 
 
+@pytest.mark.slow
 @given(
     st.one_of(
         st.binary(max_size=80), st.lists(st.sampled_from(PARTS + MORE)).map(lambda parts: "".join(parts).encode())

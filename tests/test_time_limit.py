@@ -46,7 +46,7 @@ def checked(program: str, *tools: str) -> FileReport:
 # ---- without any time ----
 
 
-@pytest.mark.one_in(5)
+@pytest.mark.one_in(42, counted=5)
 @pytest.mark.parametrize("family", FAMILIES)
 def test_without_any_time_a_check_ends_and_says_so(family: str) -> None:
     """What needs no time is judged as ever; a file is never passed whose contours nobody has looked at."""
@@ -66,6 +66,7 @@ def test_without_any_time_a_check_ends_and_says_so(family: str) -> None:
     assert left <= set(said(report)) | following
 
 
+@pytest.mark.slow
 def test_the_limit_is_kept_wherever_it_runs_out() -> None:
     """A few milliseconds end anywhere: in a table, in a trial, in a message."""
     program = FAMILIES["overcut-loops"].make(400)
@@ -132,6 +133,7 @@ WITHOUT_MEASURE = {
 }
 
 
+@pytest.mark.one_in(3, counted=1)
 @pytest.mark.parametrize("case", WITHOUT_MEASURE)
 def test_numbers_without_measure_leave_the_other_loop_as_it_is(case: str) -> None:
     alone = checked(in_mode([*GROOVE, "G1 X100. C0"]))
@@ -193,6 +195,7 @@ def all_rules(report: FileReport) -> set[str]:
     return {one.rule for finding in report.findings for one in (finding, *finding.follows)}
 
 
+@pytest.mark.slow
 def test_what_is_not_looked_for_is_said_without_weight(monkeypatch: pytest.MonkeyPatch) -> None:
     from polarcheck.geometry.material_left import ribs, strips
 

@@ -21,6 +21,7 @@ def test_the_drawn_sections_are_sound() -> None:
     assert len(DRAWN) > 9
 
 
+@pytest.mark.one_in(20, counted=1)
 @pytest.mark.parametrize("slip", SLIPS, ids=lambda slip: slip.name)
 def test_one_slip_is_one_finding(slip: Slip) -> None:
     draw = random.Random(5)  # noqa: S311

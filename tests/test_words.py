@@ -70,6 +70,7 @@ WORDS = st.tuples(
 )
 
 
+@pytest.mark.slow
 @given(st.lists(WORDS, max_size=20))
 @settings(max_examples=100, deadline=None)
 def test_words_are_read_back_exactly(parts: list[tuple[str, str, str, str, str, str]]) -> None:
@@ -400,6 +401,7 @@ def as_meant(program: str, text: Text) -> str:
     return "".join(shown)
 
 
+@pytest.mark.slow
 @given(GARBAGE)
 @example(["X1.", ";", "X", "Z-2.5"])
 @settings(max_examples=300, deadline=None)
