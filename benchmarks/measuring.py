@@ -28,7 +28,7 @@ class Taken(NamedTuple):
     """
     What a process has taken: time of the processor and on the clock [s], peak memory [bytes], and its exit code.
 
-    runs: of how many these are the median.
+    runs: of how many these are the median. cpus, clocks: the times of each of them.
     """
 
     cpu: float
@@ -36,6 +36,8 @@ class Taken(NamedTuple):
     peak: int
     status: int
     runs: int = 1
+    cpus: tuple[float, ...] = ()
+    clocks: tuple[float, ...] = ()
 
 
 def run(command: Sequence[str]) -> Taken:
@@ -60,8 +62,14 @@ def measured(commands: Mapping[str, Sequence[str]], rounds: int) -> dict[str, Ta
 
 
 def _middle(runs: Sequence[Taken]) -> Taken:
-    cpu, clock, peak, status, _ = (statistics.median(column) for column in zip(*runs, strict=True))
-    return Taken(cpu, clock, int(peak), int(status), len(runs))
+    cpus, clocks, peaks, statuses, *_ = zip(*runs, strict=True)
+    peak, status = (int(statistics.median(column)) for column in (peaks, statuses))
+    return Taken(statistics.median(cpus), statistics.median(clocks), peak, status, len(runs), cpus, clocks)
+
+
+def ratio(times: Sequence[float], others: Sequence[float]) -> float:
+    """The median of the ratios of each round: a machine whose speed drifts is as fast for both of a round."""
+    return statistics.median(one / other for one, other in zip(times, others, strict=False))
 
 
 def apart(function: Callable[..., Any], *arguments: Any) -> Any:

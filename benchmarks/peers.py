@@ -25,7 +25,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import NamedTuple
 
-from measuring import ROOT, SLOW, SLOW_ROUNDS, Taken, apart, exponent, measured, output, run, table
+from measuring import ROOT, SLOW, SLOW_ROUNDS, Taken, apart, exponent, measured, output, ratio, run, table
 from one_fault import FAULTS, GOOD, TOOL
 from stages import stages
 from xy_twin import tool_table, twin
@@ -153,7 +153,7 @@ def speed(asked: argparse.Namespace, folder: Path) -> str:
 
 
 def _row(name: str, peer: Peer, one: Taken, rs274: Taken | None, size: int) -> list[str]:
-    beside = f"{one.cpu / rs274.cpu:.2f}" if rs274 else "-"
+    beside = f"{ratio(one.cpus, rs274.cpus):.2f}" if rs274 else "-"
     figures = f"{one.cpu:.2f}", f"{one.clock:.2f}", beside, f"{one.peak / 1e6:.0f}", f"{one.peak / size:.0f}"
     return [name, peer.kind, str(one.runs), *figures, str(one.status)]
 
@@ -181,7 +181,7 @@ def small(asked: argparse.Namespace, folder: Path) -> str:
     taken = measured(commands, 2 * asked.rounds)
     base, one = taken["`import click, numpy`"], taken["polarcheck, a program of 500 blocks"]
     rows = [
-        [name, f"{found.clock * 1000:.0f}", f"{found.clock / base.clock:.2f}", f"{found.clock / one.clock:.2f}"]
+        [name, f"{found.clock * 1000:.0f}", *(f"{ratio(found.clocks, other.clocks):.2f}" for other in (base, one))]
         for name, found in taken.items()
     ]
     return table(["command", "clock ms", "to the import", "to one program"], rows)
@@ -196,7 +196,7 @@ def many(asked: argparse.Namespace, folder: Path) -> str:
     check = [word for word in CHECK if word not in ("--jobs", "1")]
     taken = measured({jobs: [*check, "--jobs", jobs, *map(str, paths)] for jobs in ("1", "2")}, asked.rounds)
     rows = [
-        [jobs, f"{one.clock:.2f}", f"{one.clock / taken['1'].clock:.2f}", f"{one.cpu:.2f}"]
+        [jobs, f"{one.clock:.2f}", f"{ratio(one.clocks, taken['1'].clocks):.2f}", f"{one.cpu:.2f}"]
         for jobs, one in taken.items()
     ]
     return table(["processes", "clock s", "to one process", "CPU s"], rows)
@@ -207,7 +207,7 @@ def growth(asked: argparse.Namespace, folder: Path) -> str:
     sizes = [size for size in SIZES if size <= asked.blocks or not asked.quick]
     taken = []
     for size in sizes:
-        command = [*CHECK, str(generated(folder, size))]
+        command = [*CHECK, "--max-size", "512MB", str(generated(folder, size))]
         taken.append(measured({"check": command}, asked.rounds if size < LARGE else 1)["check"])
     rows = [
         [f"{size:,}", f"{one.cpu:.2f}", f"{one.cpu / size * 1e6:.1f}", f"{one.peak / 1e6:.0f}"]
@@ -322,7 +322,7 @@ stage of its module, one of a library or of polarcheck/geometry for the stages t
     text = "\n".join(f"## {title}\n\n{about[title]}\n\n{part}" for title, part in parts.items())
     peers_there = versions(asked)
     beside = f"Peers: {peers_there}." if peers_there else ""
-    older = f" `{BEFORE[2:]}`: the version at {asked.before_is}, in the same rounds." if asked.before else ""
+    older = f"`{BEFORE[2:]}` is polarcheck at {asked.before_is}, in the same rounds.\n" if asked.before else ""
     return f"""\
 # Benchmarks
 
@@ -330,9 +330,10 @@ Made by one command:
 
     python benchmarks/peers.py --rs274 FILE --python FILE --nctab FILE --ncplot7py FOLDER -o docs/benchmarks.md
 
-on {machine}; medians of {asked.rounds} rounds, in each of which every command runs once.
-What they write goes to /dev/null, and polarcheck keeps no results of earlier runs (`--no-cache`).{older}
-{beside}
+on {machine}; medians of {asked.rounds} rounds, in each of which every command runs once;
+ratios are medians of those of each round.
+What they write goes to /dev/null, and polarcheck keeps no results of earlier runs (`--no-cache`).
+{older}{beside}
 Ratios carry over to another machine, seconds do not.
 
 {text}
