@@ -19,7 +19,7 @@ from pattern_growth import (
 from programs import report_of
 
 from polarcheck.checking import survey
-from polarcheck.columns import called_comments, comment_lengths, part_comments
+from polarcheck.columns import bar_comments, called_comments, comment_lengths, part_comments
 from polarcheck.conversion.control import calls, heads
 from polarcheck.errors import UsageError
 from polarcheck.execution import library, spoken_block
@@ -81,8 +81,12 @@ def build_every_pattern() -> None:
     with contextlib.suppress(UsageError):
         with_tool(Job(), "8:radius=x")
     report_of("O1\nG0 X1.\n#1=1\nO2\nM30\n", "fanuc")
-    importlib.reload(part_comments)
     importlib.reload(completions)
+    # The words without a size: all patterns are tried, and none is found.
+    part_comments.shape_in("HEX SQ OCT PENT FLATS BOSS AF", False)
+    part_comments.depth_in("DEPTH DEEP", False)
+    for bar in ("BAR", "HEX BAR", "BAR DIA 28"):
+        bar_comments.bar_in(bar, False)
     report_of("(BAR DIA 28)\nT0101\nG98 G0 X60. Z2. C0\nG12.1\nG1 X50. F200\nG13.1", "fanuc")
 
 
