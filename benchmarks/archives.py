@@ -70,7 +70,7 @@ class Taken(NamedTuple):
 def run(folder: Path, *options: str) -> Taken:
     """Check a folder by processes of their own, and look at them meanwhile."""
     words = [sys.executable, "-m", "polarcheck", "check", str(folder), "--no-config", "--fail-on", "never", *options]
-    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), "POLARCHECK_NO_CACHE": "1"}
     wanted: dict[int, float] = {}
     peaks = [0.0]
     began = time.perf_counter()
@@ -111,7 +111,7 @@ def cluster(workers: int) -> Iterator[str]:
         script = Path(folder) / "cluster.py"
         script.write_text(CLUSTER)
         words = [sys.executable, str(script), str(workers)]
-        environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+        environment = {**os.environ, "PYTHONPATH": str(ROOT), "POLARCHECK_NO_CACHE": "1"}
         pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "stderr": subprocess.DEVNULL}
         with subprocess.Popen(words, env=environment, text=True, cwd=folder, **pipes) as running:  # type: ignore[call-overload]
             yield running.stdout.readline().strip()

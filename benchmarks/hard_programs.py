@@ -491,7 +491,7 @@ def run(
             timeout=seconds,
             preexec_fn=limit_memory,
             check=False,
-            env={**os.environ, "PYTHONPATH": str(tree), "OPENBLAS_NUM_THREADS": "1"},
+            env={**os.environ, "PYTHONPATH": str(tree), "OPENBLAS_NUM_THREADS": "1", "POLARCHECK_NO_CACHE": "1"},
         )
     except subprocess.TimeoutExpired:
         return Outcome(seconds, math.nan, "", 0, (), "takes too long")

@@ -13,11 +13,13 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 ROOT = Path(__file__).resolve().parent.parent
-#: Code of Python is compiled once, as at a user's, and output has one width. All have one thread for linear algebra,
-#: which none of them needs: starting more takes a fifth of the import of NumPy.
+#: Code of Python is compiled once, as at a user's, output has one width, and polarcheck takes no results of earlier
+#: runs. All have one thread for linear algebra, which none of them needs: starting more takes a fifth of the import of
+#: NumPy.
 _ENVIRONMENT = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"} | {
     "COLUMNS": "200",
     "OPENBLAS_NUM_THREADS": "1",
+    "POLARCHECK_NO_CACHE": "1",
 }
 #: What takes longer on the clock [s] varies less, and runs less often.
 SLOW = 10

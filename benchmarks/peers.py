@@ -30,8 +30,9 @@ from one_fault import FAULTS, GOOD, TOOL
 from stages import stages
 from xy_twin import tool_table, twin
 
-_OPTIONS = ("--no-config", "--no-cache", "--fail-on", "never", "--jobs", "1", "-q")
-CHECK = (sys.executable, "-m", "polarcheck", "check", *_OPTIONS)
+#: How polarcheck checks files as a user would, and in one process.
+CHECK_FILES = (sys.executable, "-m", "polarcheck", "check", "--no-config", "--fail-on", "never", "-q")
+CHECK = (*CHECK_FILES, "--jobs", "1")
 WITHOUT, WITH = "polarcheck", "polarcheck, with compensation and overcut"
 BEFORE = ", before"
 CUTTERS = range(4, 13)
@@ -72,6 +73,11 @@ class Peer(NamedTuple):
     rs274: str = "LinuxCNC rs274"
 
 
+def by_older(python: str, command: Sequence[str]) -> list[str]:
+    """A command of polarcheck with the package that this Python has, not with that of the working folder (-P)."""
+    return [python, "-P", *command[1:]]
+
+
 def cutters(radius: float) -> list[str]:
     """The tools of the benchmark program as options."""
     return [f"--tool={number}:radius={radius},nose=0" for number in CUTTERS]
@@ -85,7 +91,7 @@ def peers(asked: argparse.Namespace, folder: Path) -> dict[str, Peer]:
         "a bare regex": Peer("lathe", [sys.executable, "-c", REGEX]),
     }
     if asked.before:
-        older = [asked.before, "-P", *CHECK[1:]]  # -P: not the package in the working folder
+        older = by_older(asked.before, CHECK)
         found[WITHOUT + BEFORE] = Peer("lathe", older)
         found[WITH + BEFORE] = Peer("lathe", [*older, *cutters(2)], "LinuxCNC rs274, G41/G42")
     if rs274 := _place(asked.rs274, "RS274", "rs274"):
@@ -166,18 +172,16 @@ def small(asked: argparse.Namespace, folder: Path) -> str:
         changed.append(folder / f"changed_{number}.nc")
         lines = generated(folder, 1_000).read_text("ascii").splitlines(keepends=True)
         changed[-1].write_text("".join([*lines[:2], *lines[-501:]]), "ascii")
-    check = [word for word in CHECK if word not in ("--jobs", "1")]
-    older = {
-        "polarcheck, a sample program, before": [asked.before, "-P", *check[1:], program],
-        "polarcheck, a program of 500 blocks, before": [asked.before, "-P", *check[1:], str(changed[0])],
+    inputs_of = {
+        "polarcheck, a sample program": [program],
+        "polarcheck, a program of 500 blocks": [str(changed[0])],
+        "polarcheck, 20 programs of 500 blocks": [*map(str, changed)],
     }
-    commands = {
-        "`import click, numpy`": [sys.executable, "-c", "import click, numpy"],
-        "polarcheck, a sample program": [*check, program],
-        "polarcheck, a program of 500 blocks": [*check, str(changed[0])],
-        "polarcheck, 20 programs of 500 blocks": [*check, *map(str, changed)],
-        **(older if asked.before else {}),
-    }
+    commands = {"`import click, numpy`": [sys.executable, "-c", "import click, numpy"]}
+    commands |= {name: [*CHECK_FILES, *files] for name, files in inputs_of.items()}
+    if asked.before:
+        older = by_older(asked.before, CHECK_FILES)
+        commands |= {name + BEFORE: [*older, *files] for name, files in inputs_of.items()}
     taken = measured(commands, 2 * asked.rounds)
     base, one = taken["`import click, numpy`"], taken["polarcheck, a program of 500 blocks"]
     rows = [
@@ -193,8 +197,7 @@ def many(asked: argparse.Namespace, folder: Path) -> str:
     paths = [folder / f"many_{number}.nc" for number in range(_MANY)]
     for path in paths:
         path.write_text(text, "ascii")
-    check = [word for word in CHECK if word not in ("--jobs", "1")]
-    taken = measured({jobs: [*check, "--jobs", jobs, *map(str, paths)] for jobs in ("1", "2")}, asked.rounds)
+    taken = measured({jobs: [*CHECK_FILES, "--jobs", jobs, *map(str, paths)] for jobs in ("1", "2")}, asked.rounds)
     rows = [
         [jobs, f"{one.clock:.2f}", f"{ratio(one.clocks, taken['1'].clocks):.2f}", f"{one.cpu:.2f}"]
         for jobs, one in taken.items()
@@ -332,7 +335,7 @@ Made by one command:
 
 on {machine}; medians of {asked.rounds} rounds, in each of which every command runs once;
 ratios are medians of those of each round.
-What they write goes to /dev/null, and polarcheck keeps no results of earlier runs (`--no-cache`).
+What they write goes to /dev/null, and polarcheck keeps no results of earlier runs.
 {older}{beside}
 Ratios carry over to another machine, seconds do not.
 
@@ -352,8 +355,8 @@ def main() -> None:
     parser.add_argument("--quick", action="store_true", help="nothing larger than --blocks")
     parser.add_argument("-o", "--output", type=Path, required=True)
     asked = parser.parse_args()
-    for python in filter(None, (sys.executable, asked.before)):
-        run([python, "-P", *CHECK[1:], str(ROOT / "sample_programs" / "hexagon.nc")])  # compiles what is not yet
+    for command in (CHECK, *([by_older(asked.before, CHECK)] if asked.before else [])):
+        run([*command, str(ROOT / "sample_programs" / "hexagon.nc")])  # compiles what is not yet
     with tempfile.TemporaryDirectory() as made:
         folder = Path(made)
         parts = {

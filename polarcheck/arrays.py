@@ -85,10 +85,10 @@ def repeated(value: _Number, count: int) -> NDArray[_Number]:
 
 def is_uniform(values: NDArray[Any]) -> bool:
     """Return True if all values are equal, or all are NaN."""
-    if values.dtype == np.bool_:  # ends at the first that is another
+    if values.dtype == np.bool_:  # `all` and `any` stop at the first value that differs
         return bool(values.all() if values[0] else not values.any())
     first, last = values[0], values[-1]
-    if first != values[len(values) // 2] and first == first:
+    if first == first and first != values[len(values) // 2]:  # spares most columns the comparison of each value
         return False
     if first == last:
         return bool((values == first).all())

@@ -181,6 +181,7 @@ class Tables(dict[str, Any]):
         wanted = frozenset(names)
         return not any(wanted & of_it and not self._has[what] for what, of_it in ONLY_WITH.items())
 
+    # `cached_property` and `is_among` of polarcheck.arrays would load NumPy, which `explain` and `rules` do without.
     @functools.cached_property
     def _has(self) -> dict[str, bool]:
         """For each key of ONLY_WITH: the program has it."""

@@ -26,7 +26,7 @@ _HEX = r"\b(?:HEX(?:AGON(?:AL)?)?(?![A-Z])|SECHSKANT|6-?KT|6-?KANT)"
 _VALUE = NUMBER + UNIT + ENDS
 _LABEL = rf"^\s*+(?:{_NOUN}{_IS})?"
 
-# The patterns are compiled where they are first needed: that takes longer than a small check.
+# `re` compiles a pattern at its first use, and keeps it. To compile all of them takes longer than a small check.
 _ROUND_PATTERNS = (
     # BAR DIA 28, STOCK: OD 50, MATERIAL RD 40
     rf"{_NOUN}{_IS}{_ROUND}{_IS}{_VALUE}",

@@ -26,8 +26,7 @@ _NOT_AFTER = (
 )
 _WHOLE = r"(?<![\w.,/-])"
 #: By shape its word, and the plain forms of its size across flats, or of its diameter; the shape is empty where any has
-#: such a size. The patterns here are compiled where they are first needed, which takes longer than a small check: the
-#: long ones only for a comment in which the word stands.
+#: such a size. `re` compiles a pattern at its first use: that of a form only for a comment in which the word stands.
 _SHAPES = (
     *(
         (

@@ -190,6 +190,12 @@ class Workpiece(Columns, frozen=True):
         ways = Ways.concatenated(several)
         return ways[np.argsort(ways.row, kind="stable")]
 
+    @property
+    def _z_alone(self) -> Mask:
+        """Rows in sections that move Z and nothing on the plane."""
+        path = self.trace.path
+        return np.asarray(self.trace.mode.in_polar & path.moves_z & ~path.travels)
+
     @cached_property
     def _inside(self) -> Ways:
         """All moves of the tool center in sections, those of Z alone as places."""
@@ -199,8 +205,9 @@ class Workpiece(Columns, frozen=True):
         known = moves.is_of_tool & ~np.isnan(self.radius[moves.row] + low) & ~np.isnan(moves.start + moves.end)
         moves, low = moves[known], low[known]
         of_move = turn[moves.section]
-        z_alone = trace.mode.in_polar & trace.path.moves_z & ~trace.path.travels & ~np.isnan(self.radius)
-        row = np.flatnonzero(z_alone & ~trace.modal.in_cycle & ~np.isnan(trace.path.end + trace.path.z))
+        row = np.flatnonzero(
+            self._z_alone & ~np.isnan(self.radius) & ~trace.modal.in_cycle & ~np.isnan(trace.path.end + trace.path.z)
+        )
         # With compensation in force the tool stands beside the programmed point.
         last = np.searchsorted(moves.row, row) - 1
         same = (
@@ -233,10 +240,13 @@ class Workpiece(Columns, frozen=True):
 
     @cached_property
     def _with_all_rapids(self) -> Ways:
-        """All moves where one in a section is in rapid traverse, else those outside of sections alone."""
-        path, rows = self.trace.path, self.tool_center.moves.row
-        z_alone = self.trace.mode.in_polar & path.moves_z & ~path.travels
-        return self._all if self.is_rapid[rows].any() or (self.is_rapid & z_alone).any() else self._outside
+        """
+        The moves outside of sections, and those in sections, too, where one of these is in rapid traverse.
+
+        In most programs none is, and to compute them takes long.
+        """
+        rapid_on_plane = self.is_rapid[self.tool_center.moves.row].any()
+        return self._all if rapid_on_plane or (self.is_rapid & self._z_alone).any() else self._outside
 
     def _sweeps(self, ways: Ways) -> Sweeps:
         from polarcheck.geometry.polygons.standing_metal import Sweeps
