@@ -136,4 +136,6 @@ class AreaComparisons(Columns, frozen=True):
             return ()
         cleared, radius = self.milled.cleared(chosen)
         shapes = shapes_of_cleared(cleared.outline, cleared.across, radius, self.bar.known.smallest)
-        return tuple(shape for shape in shapes if shape.inside == feature.is_pocket)[:1]
+        middle = complex(feature.area.centroid.x, feature.area.centroid.y)
+        alike = [shape for shape in shapes if shape.inside == feature.is_pocket]
+        return tuple(sorted(alike, key=lambda shape: abs(shape.middle - middle))[:1])

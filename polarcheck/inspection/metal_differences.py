@@ -129,16 +129,21 @@ class _Cleared:
 
 
 def _difference(feature: Feature, features: Sequence[Feature], cleared: _Cleared) -> AreaDifference:
-    cuts, tolerance = cleared.cuts, max(feature.tolerance, _CHORDS) + _CHORDS
+    cuts, tolerance = cleared.cuts, _allowed(feature)
     off = _off_wall(feature, cleared)
     proud, island = NOTHING, NOTHING
     if feature.excess_is_judged:
         proud, island = _excess(feature, features, cleared, tolerance)
-    deep, deep_row = _lack(feature, features, cleared, tolerance)
+    deep, deep_row = _lack(feature, features, cleared)
     at_depth = cuts.low <= feature.z + SAME_Z
     proud_row = nearest_row(cuts, at_depth if at_depth.any() else cuts.low < np.inf, proud.place) if proud.size else -1
     is_made = _is_made(off, tolerance + _CHORDS)
     return AreaDifference(proud, deep, proud_row, deep_row, float(off.max(initial=0.0)), island, is_made)
+
+
+def _allowed(feature: Feature) -> float:
+    """What may differ, as chords may add to it [mm]."""
+    return max(feature.tolerance, _CHORDS) + _CHORDS
 
 
 def _excess(
@@ -166,24 +171,62 @@ def _excess(
     return farthest(stays, whole, feature.area), farthest(far, far, feature.area)
 
 
-def _lack(feature: Feature, features: Sequence[Feature], cleared: _Cleared, tolerance: float) -> tuple[Extreme, int]:
+def _lack(feature: Feature, features: Sequence[Feature], cleared: _Cleared) -> tuple[Extreme, int]:
     """Metal of a part, or around a pocket, that is cut away at its depth or above; and the row that cuts it, or -1."""
-    cuts, worst, row = cleared.cuts, NOTHING, -1
-    own = feature.own_cuts if feature.is_pocket else feature.cuts
-    heights = sorted({other.z for other in features if other.z >= feature.z - SAME_Z})
-    for z in heights:
-        # Above the highest of them all that is cut counts, below it what is cut no higher.
-        chosen = own if z == heights[-1] else own & (cuts.high <= z + SAME_Z)
-        if not chosen.any():
+    worst, row = NOTHING, -1
+    for z in _heights(feature, features):
+        lacks = _lacking(feature, features, cleared, z)
+        found = farthest(lacks, lacks, feature.area)
+        if found.size <= worst.size:
             continue
-        stands = _must_stand(feature, features, z, tolerance)
-        if np.isfinite(feature.most):
-            stands = areas.intersection(stands, disc(feature.most))
-        lacks = areas.intersection(stands, cleared.by(chosen))
+        lacks = _without_those_of_others(lacks, feature, features, cleared)
         found = farthest(lacks, lacks, feature.area)
         if found.size > worst.size:
-            worst, row = found, nearest_row(cuts, chosen, found.place)
+            worst, row = found, nearest_row(cleared.cuts, _cuts_down_to(feature, features, cleared, z), found.place)
     return worst, row
+
+
+def _heights(feature: Feature, features: Sequence[Feature]) -> list[float]:
+    """The depths, of a feature and of those above it, at which what is cut away is looked for, the lowest first."""
+    return sorted({other.z for other in features if other.z >= feature.z - SAME_Z})
+
+
+def _cuts_down_to(feature: Feature, features: Sequence[Feature], cleared: _Cleared, z: float) -> Mask:
+    """The cuts that may cut away what stands: above the highest of all depths each one, below it those no higher."""
+    own = feature.own_cuts if feature.is_pocket else feature.cuts
+    is_highest = z == _heights(feature, features)[-1]
+    return own if is_highest else own & (cleared.cuts.high <= z + SAME_Z)
+
+
+def _lacking(feature: Feature, features: Sequence[Feature], cleared: _Cleared, z: float) -> Any:
+    """What should stand of a part, or around a pocket, and is cut away at a height."""
+    chosen = _cuts_down_to(feature, features, cleared, z)
+    if not chosen.any():
+        return empty()
+    stands = _must_stand(feature, features, z, _allowed(feature))
+    if np.isfinite(feature.most):
+        stands = areas.intersection(stands, disc(feature.most))
+    return areas.intersection(stands, cleared.by(chosen))
+
+
+def _without_those_of_others(lacks: Any, feature: Feature, features: Sequence[Feature], cleared: _Cleared) -> Any:
+    """
+    What lacks of a feature, without what lacks of another one and is nearer to the wall of that: a pocket that is
+    milled too wide is no fault of the part that it lies in. What is as near to both is the first one's.
+    """
+    pieces, is_later = shapely.get_parts(lacks), False
+    for other in features:
+        if other is feature:
+            is_later = True
+            continue
+        if other.may_be_absent:
+            continue
+        far, far_of_other = (shapely.distance(pieces, shapely.boundary(one.area)) for one in (feature, other))
+        of_other = joined([_lacking(other, features, cleared, z) for z in _heights(other, features)])
+        rest = shapely.area(areas.difference(pieces, grown(of_other, _CHORDS)))
+        is_nearer = far_of_other < far - _CHORDS if is_later else far_of_other <= far + _CHORDS
+        pieces = pieces[~is_nearer | (rest > _SHARED * shapely.area(pieces))]
+    return joined([*pieces])
 
 
 def _off_wall(feature: Feature, cleared: _Cleared) -> Floats:
@@ -208,6 +251,12 @@ def _are_apart(one: Any, other: Any) -> bool:
     return bool(both <= _SHARED * min(shapely.area(one), shapely.area(other)))
 
 
+def _stands_alone(part: Feature, feature: Feature, features: Sequence[Feature]) -> bool:
+    """Around a part there is nothing; around an island in a pocket this holds for features in that pocket only."""
+    pockets = [one for one in features if one.is_pocket and is_inside(part.area, one.area, _allowed(feature))]
+    return all(one is not feature and is_inside(feature.area, one.area) for one in pockets)
+
+
 def _must_stand(feature: Feature, features: Sequence[Feature], z: float, tolerance: float) -> Any:
     """What must stand of a part, or around a pocket, just above a height."""
     stands = within(feature.area, feature.radius, tolerance, feature.is_pocket)
@@ -217,10 +266,9 @@ def _must_stand(feature: Feature, features: Sequence[Feature], z: float, toleran
         if other.is_pocket:
             if feature.is_pocket or not is_inside(feature.area, other.area, tolerance):
                 stands = areas.difference(stands, grown(other.area, tolerance))
-        elif feature.is_pocket:
-            if not is_inside(other.area, feature.area, tolerance):
-                stands = areas.intersection(stands, grown(other.area, -tolerance))
-        elif not _are_apart(feature.area, other.area):
+        elif _stands_alone(other, feature, features) and (
+            feature.is_pocket or not _are_apart(feature.area, other.area)
+        ):
             stands = areas.intersection(stands, grown(other.area, -tolerance))
     return stands
 

@@ -23,7 +23,7 @@ _MOST = 4
 def metal_fit(result: Comparison, nominal_parts: NominalParts, milled: Milled) -> Fit | None:
     """The change with which an outline of what is cleared would agree, or nearly agree; None if there is none."""
     from polarcheck.geometry.comparison.measured_path import way_of_curves
-    from polarcheck.geometry.comparison.placements import Freedom, better_placement
+    from polarcheck.geometry.comparison.placements import Freedom, agrees, better_placement
 
     part, unit = result.part, nominal_parts.unit(result.number, result.row)
     curves = nominal_parts.curves(result.number, unit)
@@ -33,6 +33,8 @@ def metal_fit(result: Comparison, nominal_parts: NominalParts, milled: Milled) -
     fits = []
     for made in _outlines(result, milled) if ways else ():
         keep_time()
+        if any(agrees(made, way, result.tolerance) for way in ways):  # it says nothing of the one that differs
+            continue
         center = unit * complex(*part.center)
         fit = better_placement(made, ways, center, result.difference, result.tolerance, freedom)
         if fit is not None:

@@ -116,6 +116,15 @@ def better_placement(
     return best
 
 
+def agrees(made: Made, way: Way, tolerance: float) -> bool:
+    """Tells whether a contour agrees with a curve where that lies, within a tolerance [mm]."""
+    both_ways = _both_closed(made.way, way)
+    if both_ways and _mean(made.way, way) > tolerance:
+        return False
+    found = difference(made, way, both_ways=both_ways)
+    return found.length > 0 and found.largest <= tolerance
+
+
 def _candidates(
     made: Made, ways: Sequence[Way], center: complex, enough: float, freedom: Freedom
 ) -> Iterator[tuple[Way, Placement]]:

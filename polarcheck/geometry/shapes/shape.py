@@ -69,6 +69,14 @@ class Shape(NamedTuple):
     is_open: bool = False
     mixed: tuple[int, ...] = ()
 
+    @property
+    def middle(self) -> complex:
+        """The point off the axis about which it is, or the middle of what it reaches to [mm]."""
+        values = self.values
+        if "x_least" in values:
+            return complex(values["x_least"] + values["x_most"], values["c_least"] + values["c_most"]) / 2
+        return complex(values.get("center_x", 0.0), values.get("center_c", 0.0))
+
 
 def polygon_name(sides: int) -> str:
     """The name of a regular polygon."""
