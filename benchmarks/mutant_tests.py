@@ -2,7 +2,8 @@
 What pytest does for a mutant (`pytest -p mutant_tests`), told by the environment.
 
 MUTANT_NAMES: parts of names of tests with line feeds between, the most promising first. MUTANT_BATCH: 0 for the tests
-with one of them in their name, in that order; 1 for all others. In both, the tests marked slow come last.
+with one of them in their name, in that order; 1 for all others. In both, the tests that the default run leaves
+out come last.
 MUTANT_SECONDS: of processor time; no test begins after it.
 """
 
@@ -27,12 +28,12 @@ def pytest_configure() -> None:
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """The tests of this batch, the most promising first, the slow ones behind all others."""
+    """The tests of this batch, the most promising first, those that the default run leaves out behind all others."""
     place = [next((at for at, name in enumerate(_NAMES) if name in item.nodeid), len(_NAMES)) for item in items]
     chosen = [number for number, at in enumerate(place) if (at == len(_NAMES)) == bool(_BATCH)]
     config.hook.pytest_deselected(items=[item for number, item in enumerate(items) if number not in set(chosen)])
-    is_slow = [item.get_closest_marker("slow") is not None for item in items]
-    items[:] = [items[number] for number in sorted(chosen, key=lambda number: (is_slow[number], place[number]))]
+    is_late = [any(map(item.get_closest_marker, ("slow", "left_out"))) for item in items]
+    items[:] = [items[number] for number in sorted(chosen, key=lambda number: (is_late[number], place[number]))]
 
 
 @pytest.hookimpl(tryfirst=True)

@@ -248,7 +248,7 @@ def child(checkout: Path, mutation: Mutation, batch: int, budget: float) -> int:
     # What is preloaded is not rewritten; it holds no asserts of ours.
     rewriting = ["-W", "ignore::pytest.PytestAssertRewriteWarning"]
     plugins = ["-p", "mutant_tests", "-p", "no:xdist", "-p", "no:cacheprovider"]
-    # The options of pyproject.toml leave the slow tests out, and ask for several processes.
+    # The options of pyproject.toml leave tests out, and ask for several processes.
     options = ["-o", "addopts=", "-x", "-q", "--hypothesis-seed=0", "--snapshot-warn-unused", *plugins, *rewriting]
     files = batches(mutation)[batch]
     if not files:

@@ -11,7 +11,6 @@ import importlib
 import math
 import os
 import pkgutil
-import sys
 from collections import Counter
 from collections.abc import Generator, Mapping, Set
 from enum import Enum
@@ -31,6 +30,13 @@ settings.register_profile(
     print_blob=True,
     suppress_health_check=[HealthCheck.too_slow],
 )
+
+# slipcover counts modules that are searched for; rules are loaded without a search (checking/rule.py).
+if "SLIPCOVER_ENABLED" in os.environ:
+    import polarcheck.rules
+
+    for module in pkgutil.walk_packages(polarcheck.rules.__path__, "polarcheck.rules."):
+        importlib.import_module(module.name)
 
 # The commands that tests start write their bytecode: hundreds of processes would each compile the package.
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
@@ -56,10 +62,9 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """
-    Before pytest deselects by markers: where all files run, all cases but a share are slow of a test of many.
+    Before pytest deselects by markers: where all files run, all cases but a share are left out of a test of many.
 
-    `one_in(5)` says which share of a test runs by default, `one_in(1)` that all cases do. What it leaves out does not
-    count for the coverage, unless that is said: of `one_in(6, counted=2)` every second case does.
+    `one_in(5)` says which share of a test runs by default, `one_in(1)` that all cases do.
     """
     everything = [Path(argument).name for argument in config.args] == config.getini("testpaths")
     count = Counter(item.nodeid.partition("[")[0] for item in items)
@@ -71,9 +76,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         share = item.get_closest_marker("one_in")
         is_many = everything and count[test] > MANY_CASES
         if cases[test] % (share.args[0] if share else SHARE if is_many else 1):
-            item.add_marker("slow")
-        if share and cases[test] % share.kwargs.get("counted", share.args[0]):
-            item.add_marker("uncounted")
+            item.add_marker("left_out")
         cases[test] += 1
 
 
@@ -88,33 +91,11 @@ def pytest_collection() -> Generator[None, Any, Any]:
         gc.freeze()
 
 
-def pytest_collection_finish() -> None:
-    """For the coverage modules are imported now: later, a test that does not count might be the first to do it."""
-    if sys.gettrace():
-        import polarcheck
-
-        for module in pkgutil.walk_packages(polarcheck.__path__, "polarcheck."):
-            if module.name != "polarcheck.__main__":
-                importlib.import_module(module.name)
-
-
 @pytest.hookimpl(tryfirst=True)
 def pytest_cmdline_main(config: pytest.Config) -> None:
     """One process takes the golden outcomes: several would write the same file."""
     if config.option.update_snapshots:
         config.option.numprocesses = 0
-
-
-@pytest.hookimpl(wrapper=True)
-def pytest_runtest_call(item: pytest.Item) -> Generator[None, Any, Any]:
-    """Cases that the default run leaves out, and long searches, do not count: measuring doubles the time of a test."""
-    tracer = sys.gettrace()
-    if item.get_closest_marker("uncounted"):
-        sys.settrace(None)
-    try:
-        return (yield)
-    finally:
-        sys.settrace(tracer)
 
 
 @pytest.fixture

@@ -211,7 +211,7 @@ def test_rules_neither_loop_nor_load_numpy(path: Path) -> None:
     assert not any(isinstance(node, ast.For | ast.While) for node in ast.walk(tree))
 
 
-@pytest.mark.one_in(2, counted=1)
+@pytest.mark.one_in(2)
 @pytest.mark.parametrize(
     "arguments", [["--help"], ["explain", "rapid-in-polar"], ["rules"], ["machines"], ["machines", "fanuc"], ["schema"]]
 )

@@ -124,7 +124,7 @@ def of_bound(report: FileReport) -> list[tuple[str, str]]:
     return [one for one in rules_and_severities(report) if one[0] in ("endless-loop", "polar-never-left")]
 
 
-@pytest.mark.one_in(16, counted=3)
+@pytest.mark.one_in(16)
 @pytest.mark.parametrize("in_mode", [True, False], ids=["in the mode", "before the mode"])
 @pytest.mark.parametrize("loop", LOOPS)
 def test_a_bound_within_the_mode_is_one_warning_and_leaves_the_file_unverified(loop: str, in_mode: bool) -> None:
@@ -190,7 +190,7 @@ def cut_examples(rule: str) -> Iterator[tuple[Example, Example]]:
             yield whole, msgspec.structs.replace(whole, settings=(*whole.settings, "job.run.max_statements=9"))
 
 
-@pytest.mark.one_in(12, counted=5)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize("rule", LOOKING_AHEAD)
 def test_nothing_is_reported_that_rests_on_what_a_bound_has_cut_off(rule: str) -> None:
     broken_off = 0

@@ -204,7 +204,7 @@ CARRIED = SAMPLE.replace("G99 G0 X2.5", "G0 X2.5")
 TURNING = "T0101\nM34\nG97 S800 M3\nG0 X1. Z.1\n{}\nG0 X5. Z5.\nM30\n"
 
 
-@pytest.mark.one_in(2, counted=1)
+@pytest.mark.one_in(2)
 @pytest.mark.parametrize(
     ("work", "block"),
     [
@@ -515,7 +515,7 @@ def test_each_f_of_a_section_is_told_once() -> None:
     assert of_feed(more) == ["G1 C.2 F40.", "C0 F50."]
 
 
-@pytest.mark.one_in(3, counted=1)
+@pytest.mark.one_in(3)
 @pytest.mark.parametrize(("diameter", "cuts"), [(1.25, False), (1.29, False), (1.31, True), (1.4, True)])
 @pytest.mark.parametrize("convert", [str, in_mm])
 def test_given_stock_decides_whether_the_way_round_cuts(

@@ -85,7 +85,7 @@ def shown(result: Result) -> tuple[int, str, str]:
     return result.exit_code, result.stdout, result.stderr
 
 
-@pytest.mark.one_in(11, counted=1)
+@pytest.mark.one_in(11)
 @pytest.mark.parametrize("form", formats())
 def test_reports_from_the_cache_are_those_of_a_fresh_run(form: str, checked: list[str]) -> None:
     paths = ["tool.nc"] if form == "html" else ["."]
@@ -98,7 +98,7 @@ def test_reports_from_the_cache_are_those_of_a_fresh_run(form: str, checked: lis
     assert checked == (["tool.nc"] if form == "html" else [])
 
 
-@pytest.mark.one_in(3, counted=1)
+@pytest.mark.one_in(3)
 @pytest.mark.parametrize("options", [("--part", "--show-silenced"), ("--baseline", "known.json"), ("--statistics",)])
 def test_what_is_added_to_reports_or_taken_from_them(options: tuple[str, ...], checked: list[str]) -> None:
     Path("a.nc").write_text("O0001\n(POLARCHECK ALLOW-FILE RAPID-IN-POLAR known)\n" + RAPID + "M30\n")
@@ -152,7 +152,7 @@ CHANGES: dict[str, Callable[[], None]] = {
 }
 
 
-@pytest.mark.one_in(15, counted=1)
+@pytest.mark.one_in(15)
 @pytest.mark.parametrize("name", CHANGES)
 def test_what_has_changed_is_checked_again(name: str) -> None:
     before = shown(check(".", "--format", "json"))
@@ -179,7 +179,7 @@ def test_changes_in_any_order(names: list[str]) -> None:
         assert shown(check(".", "--format", "json")) == shown(check(".", "--format", "json", "--no-cache"))
 
 
-@pytest.mark.one_in(11, counted=1)
+@pytest.mark.one_in(11)
 @pytest.mark.parametrize(
     ("arguments", "environment"),
     [

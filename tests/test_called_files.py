@@ -272,7 +272,7 @@ RAMP = "G12.1\nG1 G42 X40. F200\nC10.\nX-40.\nC-10.\nX40.\nC0\nG40 X60.\nG13.1\n
 """Its start-up needs 4 mm in X: too short where X is 41 before it."""
 
 
-@pytest.mark.one_in(4, counted=1)
+@pytest.mark.one_in(4)
 @pytest.mark.parametrize(
     ("starts", "ends"),
     [

@@ -84,7 +84,7 @@ def test_the_manifest_of_the_page_is_one(example: Path) -> None:
 CONTOUR, ROUND, INDEXED = "fanuc/contour.nc", "fanuc/arc-above-180.nc", "fanuc/indexing.nc"
 
 
-@pytest.mark.one_in(2, counted=1)
+@pytest.mark.one_in(2)
 @pytest.mark.parametrize(
     ("file", "before", "after"),
     [
@@ -101,7 +101,7 @@ def test_other_words_for_the_same_path_pass(example: Path, file: str, before: st
     assert reasons(f"{Path(file).stem}/lathe-7") == []
 
 
-@pytest.mark.one_in(5, counted=1)
+@pytest.mark.one_in(5)
 @pytest.mark.parametrize(
     ("file", "before", "after", "said"),
     [
@@ -184,7 +184,7 @@ def test_corners_that_controls_go_round_in_another_way_are_named(example: Path) 
 NEGATIVE = 'findings = [{ rule = "rapid-in-polar", block = "G0 G40 X50.000" }]'
 
 
-@pytest.mark.one_in(2, counted=1)
+@pytest.mark.one_in(2)
 @pytest.mark.parametrize(
     ("findings", "said"),
     [
@@ -232,7 +232,7 @@ def test_a_program_that_is_not_there(example: Path) -> None:
     assert "the path is not compared: contour/lathe-7 was not run" in " ".join(result.stdout.split())
 
 
-@pytest.mark.one_in(4, counted=1)
+@pytest.mark.one_in(4)
 @pytest.mark.parametrize(
     ("arguments", "status"),
     [((), 0), (("--strict",), 1), (("--case", "contour/lathe-8"), 0), (("--case", "contour/lathe"), 2)],

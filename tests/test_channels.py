@@ -107,7 +107,7 @@ def test_the_order_of_the_channels_makes_no_difference() -> None:
     assert reports[0] == reports[1] == [("$1", "rapid-in-polar", "G0 C10."), ("$2", "bad-number", "C-.5 F.")]
 
 
-@pytest.mark.one_in(11, counted=5)
+@pytest.mark.one_in(11)
 @pytest.mark.parametrize(
     "file",
     [
@@ -278,7 +278,7 @@ def test_common_variables_of_another_channel_are_not_vacant() -> None:
 # ---- waits ----
 
 
-@pytest.mark.one_in(12, counted=5)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize("wait", ["!2L1", "!1L10", "!L3", "!1", "!12L2", "! 2 L 1", "!2l1", "!2L1!3L1", "!9L99999"])
 @pytest.mark.parametrize(
     "block",
@@ -365,7 +365,7 @@ def test_remarks_and_comments_stand_in_the_order_of_the_file() -> None:
 # ---- hostile ----
 
 
-@pytest.mark.one_in(7, counted=4)
+@pytest.mark.one_in(7)
 @pytest.mark.parametrize(
     "line", ["$1\n", "$1\n$2\n", "O1$1\n!2L1\n", "$9 !1\n", "$1!1L1!2L2(A)\n", "N1 $3;$4;\n", "!1L1;"]
 )

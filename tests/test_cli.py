@@ -800,7 +800,7 @@ def test_machines_lists_all_of_them() -> None:
 _LEFT_OUT = ("known_parameters", "notes")
 
 
-@pytest.mark.one_in(20, counted=3)
+@pytest.mark.one_in(20)
 @pytest.mark.parametrize("name", names())
 def test_a_profile_is_shown_as_a_profile_that_says_the_same(name: str) -> None:
     shown = call("machines", name).stdout
@@ -828,7 +828,7 @@ def test_the_version_is_shown() -> None:
 # ---- schemas ----
 
 
-@pytest.mark.one_in(4, counted=1)
+@pytest.mark.one_in(4)
 @pytest.mark.parametrize("name", ["report", "job", "machine", "feeds", "trace", "comparison", "rewriting"])
 def test_schemas_are_valid_and_say_what_they_are(name: str) -> None:
     shown = json.loads(call("schema", name).stdout, parse_constant=pytest.fail)

@@ -112,7 +112,7 @@ HOSTILE = (
 )
 
 
-@pytest.mark.one_in(14, counted=5)
+@pytest.mark.one_in(14)
 @pytest.mark.parametrize("machine", ["fanuc", "okuma-osp", "siemens-transmit"])
 @pytest.mark.parametrize("repeated", HOSTILE)
 def test_hostile_comments_of_any_kind_are_checked_by_their_length(repeated: str, machine: str) -> None:

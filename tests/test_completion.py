@@ -191,7 +191,7 @@ def test_every_value_says_what_it_is() -> None:
                 assert completing.metavar(parameter) in known, (command.name, parameter.name)
 
 
-@pytest.mark.one_in(2, counted=1)
+@pytest.mark.one_in(2)
 @pytest.mark.parametrize(
     "words", ["", "check --select", "check --machine", "explain", "check", "check --set", "check -o"]
 )

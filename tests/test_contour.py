@@ -554,7 +554,6 @@ def is_simple(of: Loop) -> bool:
 
 
 @pytest.mark.slow
-@pytest.mark.uncounted
 @settings(max_examples=120, deadline=None)
 @given(contours())
 def test_random_contours_of_one_turn(drawn: tuple[list[Block], Side, float]) -> None:

@@ -35,7 +35,7 @@ def disc(radius: float, center: complex = 0j) -> shapely.Polygon:
     return polygon_of([Piece("ccw", center + radius, center + radius, center)])
 
 
-@pytest.mark.one_in(13, counted=4)
+@pytest.mark.one_in(13)
 @pytest.mark.parametrize("family", FAMILIES)
 def test_polarcheck_agrees_with_the_reference(family: str) -> None:
     found = [comparison for seed in range(SHARE) for comparison in compare_seed(seed, family)]

@@ -266,7 +266,7 @@ def without_helices(plan: list[Section]) -> list[Section]:
     return result
 
 
-@pytest.mark.one_in(40, counted=1)
+@pytest.mark.one_in(40)
 @pytest.mark.parametrize("source", ["haas-lathe", "fanuc", "hurco", "siemens-transmit"])
 @pytest.mark.parametrize("target", CONTROLS)
 def test_the_path_on_the_part_is_that_of_the_plan(source: str, target: str) -> None:
@@ -431,7 +431,7 @@ def test_a_wrong_move_is_found_when_the_program_is_read_back(
     assert refused(haas, "haas-lathe", "siemens-transmit")
 
 
-@pytest.mark.one_in(2, counted=1)
+@pytest.mark.one_in(2)
 @pytest.mark.parametrize("what", ["feed", "side", "code", "z"])
 def test_a_wrong_word_is_found_when_the_program_is_read_back(what: str, monkeypatch: pytest.MonkeyPatch) -> None:
     changes = {"feed": (b"F150", b"F160"), "side": (b"G42", b"G41"), "code": (b"M8", b"M9"), "z": (b"Z-4.", b"Z-4.01")}
@@ -606,7 +606,7 @@ SURFACE = "%\nO1\nG20 G99\nT0101\nG96 S600 M3\nG0 X2. Z.1\nG1 Z-.5 F.01\nG97 S80
         (HEAD + "G0 X[40+10] Z2.\n" + END, "fanuc-30i", "haas-lathe", "G0 X[40+10] Z2.\n"),
     ],
 )  # fmt: skip
-@pytest.mark.one_in(6, counted=1)
+@pytest.mark.one_in(6)
 def test_what_goes_on_around_sections_keeps_its_meaning(program: str, source: str, target: str, expected: str) -> None:
     assert expected in convert(program, source, target).data.decode()
 

@@ -152,7 +152,7 @@ JUDGED_SO = {row.name for row in JUDGED if (row.machine, row.tools, row.changes)
 OTHERS = [path for path in FILES if path.name not in {*JUDGED_SO, *DEFECTS} and path not in FANUC_LATHES]
 
 
-@pytest.mark.one_in(9, counted=3)
+@pytest.mark.one_in(9)
 @pytest.mark.parametrize("path", OTHERS, ids=lambda path: f"{path.parent.name}/{path.name}")
 def test_every_other_program_gives_a_report(path: Path) -> None:
     report_of_file(path)

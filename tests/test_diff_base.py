@@ -211,7 +211,7 @@ def with_subprograms() -> None:
     assert checked() == []
 
 
-@pytest.mark.one_in(3, counted=1)
+@pytest.mark.one_in(3)
 @pytest.mark.parametrize(
     ("path", "callers"),
     [

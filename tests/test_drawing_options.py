@@ -45,7 +45,7 @@ VARIANTS = pytest.mark.parametrize(
 )
 
 
-@pytest.mark.one_in(8, counted=4)
+@pytest.mark.one_in(8)
 @VARIANTS
 @pytest.mark.parametrize("command", ["check", "part"])
 def test_several_drawings_are_several_parts(
@@ -87,7 +87,7 @@ def test_the_tolerance_of_the_command_line(tmp_path: Path, scale: float, turn: f
         job.unlink()
 
 
-@pytest.mark.one_in(4, counted=1)
+@pytest.mark.one_in(4)
 @VARIANTS
 def test_layers_by_name(tmp_path: Path, scale: float, turn: float, machine: str) -> None:
     path = tmp_path / "O1.NC"

@@ -223,7 +223,7 @@ def respelled(program: str, hand: Hand) -> str:
     return "\r\n".join(lines)
 
 
-@pytest.mark.one_in(20, counted=5)
+@pytest.mark.one_in(20)
 @every_machine
 @given(part=parts, radius=st.integers(1, 9))
 @settings(max_examples=EXAMPLES, deadline=None)
@@ -235,7 +235,7 @@ def test_spelling_changes_nothing(name: str, part: Part, radius: int) -> None:
     assert (findings, verdict) == (same, other)
 
 
-@pytest.mark.one_in(20, counted=5)
+@pytest.mark.one_in(20)
 @every_machine
 @given(part=parts, radius=st.integers(1, 9))
 @settings(max_examples=EXAMPLES, deadline=None)
@@ -290,7 +290,7 @@ def test_where_the_plane_stays_with_the_part_only_the_way_to_it_changes(
     np.testing.assert_allclose(turns, np.round(turns), atol=1e-9)
 
 
-@pytest.mark.one_in(10, counted=5)
+@pytest.mark.one_in(10)
 @every_machine
 @given(part=parts, radius=st.integers(1, 9))
 @settings(max_examples=EXAMPLES, deadline=None)
@@ -313,7 +313,7 @@ def test_radius_zero_gives_the_programmed_path(name: str, part: Part) -> None:
     np.testing.assert_allclose(tables["moves"].end, programmed.end[programmed.length > 1e-9], atol=1e-9)
 
 
-@pytest.mark.one_in(20, counted=5)
+@pytest.mark.one_in(20)
 @every_machine
 @given(part=parts, radius=st.integers(1, 9), limit=st.floats(100, 5000), more=st.floats(1, 9))
 @example(part=Part(9.0, 300.0), radius=1, limit=100.0, more=6.0)
@@ -327,7 +327,7 @@ def test_raising_a_limit_adds_no_finding(name: str, part: Part, radius: int, lim
     assert high <= low
 
 
-@pytest.mark.one_in(10, counted=5)
+@pytest.mark.one_in(10)
 @every_machine
 @given(part=parts, radius=st.integers(1, 9))
 @settings(max_examples=EXAMPLES, deadline=None)
@@ -340,7 +340,7 @@ def test_splitting_a_move_changes_no_finding(name: str, part: Part, radius: int)
     np.testing.assert_allclose(np.nansum(theirs.time), np.nansum(ours.time), rtol=1e-9)
 
 
-@pytest.mark.one_in(20, counted=5)
+@pytest.mark.one_in(20)
 @every_machine
 @pytest.mark.parametrize("radius", [9.5, 12.0, 20.0])
 def test_a_cutter_too_large_for_a_pocket_is_found(name: str, radius: float) -> None:
@@ -351,7 +351,7 @@ def test_a_cutter_too_large_for_a_pocket_is_found(name: str, radius: float) -> N
     assert {rule for rule, severity in findings if severity == "error"}
 
 
-@pytest.mark.one_in(14, counted=5)
+@pytest.mark.one_in(14)
 @every_machine
 @pytest.mark.parametrize("radius", [30.5, 45.0])
 def test_a_ramp_shorter_than_r_is_found(name: str, radius: float) -> None:

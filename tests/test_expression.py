@@ -194,7 +194,7 @@ def sparse(tree: Any, around: int = 0) -> str:
     return f"[{text}]" if RANK[name] < around else text
 
 
-@pytest.mark.one_in(2, counted=1)
+@pytest.mark.one_in(2)
 @pytest.mark.parametrize("trees_", [REAL_TREES, WHOLE_TREES], ids=["real", "whole"])
 @given(data=st.data())
 @settings(max_examples=150, deadline=None)

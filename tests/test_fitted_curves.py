@@ -65,7 +65,7 @@ def farthest(x: NDArray[np.float64], c: NDArray[np.float64], curves: Curves) -> 
 CONTOURS = {"hexagon": (hexagon(), 13), "slot": (slot(), 5), "oval": (oval(), 5)}
 
 
-@pytest.mark.one_in(3, counted=1)
+@pytest.mark.one_in(3)
 @pytest.mark.parametrize("chord_error", [0.005, 0.0005])
 @pytest.mark.parametrize("name", CONTOURS)
 def test_a_clean_contour_comes_back_with_its_lines_and_arcs(name: str, chord_error: float) -> None:

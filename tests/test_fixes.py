@@ -709,7 +709,6 @@ PROGRAMS = [path for path in SAMPLES if path.stat().st_size < 3000]
 
 
 @pytest.mark.slow
-@pytest.mark.uncounted
 @settings(max_examples=15, deadline=None)
 @given(
     st.sampled_from(PROGRAMS), st.lists(st.sampled_from(sorted(FAULTS)), min_size=1, max_size=4), st.sampled_from(ENDS)

@@ -71,7 +71,7 @@ def polygon_plain(sides: int) -> str:
     return "\n".join([*lines, "G1 C0", "G40 X90.", "G13.1", "G0 Z50.", "M30"]) + "\n"
 
 
-@pytest.mark.one_in(4, counted=1)
+@pytest.mark.one_in(4)
 @pytest.mark.parametrize("sides", range(3, 13))
 def test_polygon_runs_as_its_written_out_twin(sides: int) -> None:
     macro, plain = (tables_of(program(sides), "fanuc", CUTTER) for program in (polygon_macro, polygon_plain))

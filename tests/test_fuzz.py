@@ -32,7 +32,6 @@ more = settings(max_examples=100, deadline=None, suppress_health_check=list(Heal
 
 
 @pytest.mark.slow
-@pytest.mark.uncounted
 @given(strategies.sound_programs(), strategies.setups)
 @fewest
 def test_programs_that_look_sound(data: bytes, setup: int) -> None:
@@ -49,7 +48,6 @@ def test_wild_programs(data: bytes, setup: int) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.uncounted
 @given(strategies.worse_programs(), strategies.setups)
 @few
 def test_mutated_programs(data: bytes, setup: int) -> None:
@@ -77,7 +75,6 @@ def test_the_reader(data: bytes, setup: int) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.uncounted
 @given(strategies.statements(), strategies.setups)
 @more
 def test_macro_statements(data: bytes, setup: int) -> None:
@@ -176,7 +173,7 @@ def test_mutation_of_a_seed_is_the_same_every_time() -> None:
     assert len(set(ours)) > 40
 
 
-@pytest.mark.one_in(4, counted=1)
+@pytest.mark.one_in(4)
 @pytest.mark.parametrize("target", TARGETS)
 def test_seeds_hold(target: str) -> None:
     """A few of the inputs that the loop begins with, so that a failure later is one of a mutation."""

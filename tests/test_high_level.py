@@ -194,7 +194,7 @@ HARMLESS = [
 ]
 
 
-@pytest.mark.one_in(4, counted=1)
+@pytest.mark.one_in(4)
 @pytest.mark.parametrize("blocks", SIMULATED)
 def test_a_construct_is_simulated(blocks: str) -> None:
     report = report_of(program(f"{blocks} / M30"), OWN)
@@ -221,7 +221,7 @@ def test_frames_are_told_by_their_names_where_the_profile_has_no_words_for_them(
     assert not told(f"{blocks} / M30", OWN)
 
 
-@pytest.mark.one_in(3, counted=1)
+@pytest.mark.one_in(3)
 @pytest.mark.parametrize("blocks", NAMED)
 def test_what_is_not_simulated_is_told_by_its_name(blocks: str) -> None:
     report = report_of(program(f"{blocks} / M30"), OWN)
@@ -230,7 +230,7 @@ def test_what_is_not_simulated_is_told_by_its_name(blocks: str) -> None:
     assert executed(f"{blocks} / M30")[-1] == "M30"
 
 
-@pytest.mark.one_in(5, counted=1)
+@pytest.mark.one_in(5)
 @pytest.mark.parametrize("blocks", HARMLESS)
 @pytest.mark.parametrize("machine", [OWN, ISO])
 def test_what_has_no_bearing_is_silent(blocks: str, machine: str) -> None:

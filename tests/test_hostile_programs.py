@@ -153,7 +153,7 @@ def test_block_skip_tells_nothing_twice(slash: str) -> None:
 # ---- what could take time ----
 
 
-@pytest.mark.one_in(6, counted=1)
+@pytest.mark.one_in(6)
 @pytest.mark.parametrize("blank", ["\n", " \n", "%\n", "\r\n", " ", "\n%"])
 def test_blank_lines_before_a_called_program_are_read_once(tmp_path: Path, blank: str) -> None:
     """In a process of its own, which is ended if it hangs: read again from each line, this would take hours."""
@@ -232,7 +232,7 @@ G1 G40 X129. C0."""
 FANUC = next(n for n, setup in enumerate(SETUPS) if (setup.machine, setup.tools[:1]) == ("fanuc", ("1:radius=5",)))
 
 
-@pytest.mark.one_in(12, counted=5)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize("seed", [None, 368, *range(10)])
 def test_contours_at_several_depths_end_in_a_report(seed: int | None) -> None:
     data = DEPTHS.encode() if seed is None else deep_contours.program(Random(seed))  # noqa: S311

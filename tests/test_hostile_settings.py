@@ -67,7 +67,7 @@ NESTED = "tables or lists are nested more than 12 deep"
 LONG_KEY = "a key has more than 12 parts: a."
 
 
-@pytest.mark.one_in(16, counted=3)
+@pytest.mark.one_in(16)
 @pytest.mark.parametrize(
     ("text", "told"),
     [
@@ -225,7 +225,7 @@ def test_what_is_no_file_is_said_to_be_none(kind: str, place: str) -> None:
     assert any(words in error for words in told[kind])
 
 
-@pytest.mark.one_in(12, counted=5)
+@pytest.mark.one_in(12)
 @needs_pipes
 @pytest.mark.parametrize("device", ["/dev/zero", "/dev/random"])
 @pytest.mark.parametrize("place", ["--config", "--machine", "--offsets", "machine", "offsets", "inherits"])
@@ -391,7 +391,7 @@ def test_each_block_is_an_offset_of_its_own(text: str) -> None:
     assert table(text) == {"1": 1, "2": 2}
 
 
-@pytest.mark.one_in(11, counted=3)
+@pytest.mark.one_in(11)
 @pytest.mark.parametrize(
     ("text", "told"),
     [

@@ -71,7 +71,7 @@ CASES: dict[str, tuple[str, dict[str, Any]]] = {
 }
 
 
-@pytest.mark.one_in(15, counted=3)
+@pytest.mark.one_in(15)
 @pytest.mark.parametrize("machine", ["fanuc-30i", "siemens-iso", "haas-lathe"])
 @pytest.mark.parametrize("name", CASES)
 def test_the_entry_of_a_shape_and_its_program_agree(tmp_path: Path, name: str, machine: str) -> None:
@@ -155,7 +155,7 @@ def indexed(angles: list[float]) -> str:
     return head + "".join(f"G0 X160. C{angle:g}\nG12.1\n{blocks}\nG13.1\n" for angle in angles) + end
 
 
-@pytest.mark.one_in(12, counted=3)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize(
     ("angles", "expected"),
     [
@@ -277,7 +277,7 @@ def again(text: str, radius: float, machine: str = "fanuc-30i") -> None:
     assert max(one.difference.largest for one in results if not one.is_superseded) <= 0.01
 
 
-@pytest.mark.one_in(13, counted=3)
+@pytest.mark.one_in(13)
 @pytest.mark.parametrize("seed", sound_seeds(2))
 @pytest.mark.parametrize("twin", [Twin(), Twin(turn=0.7), Twin(inch=True)], ids=["plain", "turned", "inch"])
 def test_programs_of_all_families_agree_with_what_they_make(seed: int, twin: Twin) -> None:
@@ -291,7 +291,7 @@ INCOMPLETE = ("feed_from_per_revolution",)
 SAMPLES = sorted((ROOT / "sample_programs").rglob("*.nc"))
 
 
-@pytest.mark.one_in(18, counted=4)
+@pytest.mark.one_in(18)
 @pytest.mark.parametrize("path", SAMPLES, ids=lambda path: f"{path.parent.name}/{path.stem}")
 def test_each_sample_agrees_with_what_it_makes(tmp_path: Path, path: Path) -> None:
     result = run("init", "--part", path)

@@ -86,7 +86,7 @@ def test_a_feed_that_grows_is_told_again_with_what_is_known_of_it() -> None:
     assert line.endswith("[c-feed-above-limit]")
 
 
-@pytest.mark.one_in(3, counted=1)
+@pytest.mark.one_in(3)
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [

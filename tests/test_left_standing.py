@@ -38,7 +38,7 @@ def not_reached(tables: Any) -> list[Any]:
     return [area for area in shapely.get_parts(left) if area.area > worth and area.distance(walls) < 3 * NEAR]
 
 
-@pytest.mark.one_in(7, counted=1)
+@pytest.mark.one_in(7)
 @pytest.mark.parametrize(
     ("family", "seed", "ribs", "corners"),
     [

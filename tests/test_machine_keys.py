@@ -430,7 +430,7 @@ def changed(key: str, use: Use) -> dict[str, Any]:
     return changes
 
 
-@pytest.mark.one_in(15, counted=3)
+@pytest.mark.one_in(15)
 @pytest.mark.parametrize("key", USES)
 def test_changing_a_key_changes_a_result(key: str) -> None:
     use = USES[key]
@@ -444,7 +444,7 @@ def test_no_key_is_forgotten() -> None:
     assert not set(USES) & set(NOT_CHECKED)
 
 
-@pytest.mark.one_in(23, counted=5)
+@pytest.mark.one_in(23)
 @pytest.mark.parametrize("key", LISTS)
 def test_a_list_may_be_empty_or_hold_codes_of_ones_own(key: str) -> None:
     """No rule counts on a code to be there; what is listed is no unknown code."""

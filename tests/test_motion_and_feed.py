@@ -127,7 +127,7 @@ def places(program: str) -> list[tuple[complex, ...]]:
     return list(zip(moves.start.tolist(), moves.end.tolist(), strict=True))
 
 
-@pytest.mark.one_in(5, counted=1)
+@pytest.mark.one_in(5)
 @pytest.mark.parametrize("base", [POINTED, WHOLE], ids=["with points", "without"])
 @pytest.mark.parametrize("units", ["", "G20 "], ids=["mm", "inch"])
 @pytest.mark.parametrize("place", ["before", "inside", "behind"])

@@ -213,7 +213,7 @@ OF_FILES = (
 without_such_names = pytest.mark.skipif(sys.platform == "win32", reason="no file of Windows has : in its name")
 
 
-@pytest.mark.one_in(13, counted=4)
+@pytest.mark.one_in(13)
 @without_such_names
 @pytest.mark.parametrize("arguments", OF_FILES, ids=" ".join)
 def test_no_line_of_a_report_is_a_command_of_a_ci_log(arguments: tuple[str, ...]) -> None:

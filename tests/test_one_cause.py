@@ -584,7 +584,7 @@ CASES = [
 ]
 
 
-@pytest.mark.one_in(12, counted=3)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize(("mistake", "form"), CASES)
 def test_one_mistake_is_one_finding(mistake: Mistake, form: Callable[[Mistake], tuple[list[str], int]]) -> None:
     program, before = form(mistake)
@@ -606,7 +606,7 @@ def test_it_is_one_finding_in_inch(mistake: Mistake) -> None:
     assert rule == "c-feed-above-limit" or program[line - 1].endswith(in_inch(mistake.block))
 
 
-@pytest.mark.one_in(15, counted=5)
+@pytest.mark.one_in(15)
 @pytest.mark.parametrize(
     ("mistake", "machine"),
     [

@@ -59,7 +59,7 @@ def findings_of(section: str, radius: float = 4.0, units: str = "G21") -> list[F
     return [one for one in found.findings if one.severity != "note"]
 
 
-@pytest.mark.one_in(9, counted=4)
+@pytest.mark.one_in(9)
 @pytest.mark.parametrize("name", SOUND)
 def test_a_wrong_point_is_one_finding_of_what_is_cut(name: str) -> None:
     assert findings_of(SOUND[name]) == []

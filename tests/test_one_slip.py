@@ -59,7 +59,7 @@ def test_a_sound_program_has_no_event(seed: int) -> None:
     assert not differs(outcome, outcome)
 
 
-@pytest.mark.one_in(3, counted=1)
+@pytest.mark.one_in(3)
 @pytest.mark.parametrize(
     ("kind", "family"),
     [

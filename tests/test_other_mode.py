@@ -77,7 +77,7 @@ def has_statements(path: str, own: str) -> bool:
     return machine_of(own).macro.language != "custom-macro" and bool(blocks.is_macro.any())
 
 
-@pytest.mark.one_in(20, counted=10)
+@pytest.mark.one_in(20)
 @pytest.mark.parametrize("name", profiles.names())
 def test_a_program_for_another_machine_is_read_or_fails_with_one_finding(name: str) -> None:
     for path, own, other in PAIRS:

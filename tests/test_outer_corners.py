@@ -203,7 +203,7 @@ def test_the_code_may_stand_before_the_mode_and_change_within() -> None:
     assert last.corner.sum() == 1
 
 
-@pytest.mark.one_in(3, counted=1)
+@pytest.mark.one_in(3)
 @pytest.mark.parametrize("shape", SHAPES.values(), ids=SHAPES)
 def test_the_part_is_the_same_whatever_the_corners(shape: list[Element]) -> None:
     """No overcut, no remnant, the same words for what is made: the arcs touch the corner and cut nothing else."""

@@ -65,7 +65,7 @@ def test_a_sound_program_makes_its_part(family: str) -> None:
     assert not judged(plan, program, plan.allowed).differs
 
 
-@pytest.mark.one_in(9, counted=3)
+@pytest.mark.one_in(9)
 @pytest.mark.parametrize("kind", list(KINDS)[::3])
 def test_a_defect_of_each_kind_can_be_drawn(kind: str) -> None:
     defect = drawn_defect(3, (kind,))
@@ -73,14 +73,14 @@ def test_a_defect_of_each_kind_can_be_drawn(kind: str) -> None:
     assert not judged(defect.plan, defect.sound, defect.plan.allowed).differs
 
 
-@pytest.mark.one_in(6, counted=1)
+@pytest.mark.one_in(6)
 @pytest.mark.parametrize("number", range(6))
 def test_nothing_is_said_of_a_sound_part(number: int) -> None:
     result = part_defects.sound_of(number, FAMILIES[number::6], None)
     assert (result.verdict, result.says) == ("pass", ())
 
 
-@pytest.mark.one_in(3, counted=1)
+@pytest.mark.one_in(3)
 @pytest.mark.parametrize("number", [0, 3, 4])
 def test_a_defect_is_said(number: int) -> None:
     result = part_defects.defect_of(number, tuple(KINDS)[number::6], None)

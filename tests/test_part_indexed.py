@@ -241,7 +241,7 @@ def test_json_has_the_sections() -> None:
     ]
 
 
-@pytest.mark.one_in(8, counted=1)
+@pytest.mark.one_in(8)
 @pytest.mark.parametrize("inch", [False, True])
 @pytest.mark.parametrize("control", ["fanuc", "haas-lathe"])
 @pytest.mark.parametrize("entry", [0.0, 20.0])

@@ -82,7 +82,7 @@ def test_two_contours_of_one_level_that_end_past_their_start() -> None:
 # ---- contours that end beside their start ----
 
 
-@pytest.mark.one_in(9, counted=3)
+@pytest.mark.one_in(9)
 @pytest.mark.parametrize("control", BY_MACHINE)
 def test_a_contour_that_ends_beside_its_start_keeps_its_last_wall(control: str) -> None:
     for number in range(24):

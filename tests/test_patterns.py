@@ -33,7 +33,7 @@ from polarcheck.reading.source import read_source
 from polarcheck.server.structure import mentions, workspace
 from polarcheck.server.words import completions
 
-pytestmark = [pytest.mark.slow, pytest.mark.uncounted]
+pytestmark = pytest.mark.slow
 
 #: What a stranger's job file may hold.
 GLOBS = ["O12*.nc", "*a*a*a*b", "lathe7/**/x?/**/*.nc", "[a-z]*[!0-9]", "**/a*b*/**", "??*??", "[[[*"]

@@ -107,7 +107,7 @@ def pairs(starts: list[complex], moves: Moves) -> list[tuple[complex, complex, c
     return [(begin, *move) for begin, move in zip(starts[:-1], moves, strict=True)]
 
 
-@pytest.mark.one_in(14, counted=1)
+@pytest.mark.one_in(14)
 @pytest.mark.parametrize("inch", [False, True], ids=["mm", "inch"])
 @pytest.mark.parametrize("machine", profiles.names())
 def test_a_section_reads_back_as_it_was_asked_for(machine: str, inch: bool) -> None:

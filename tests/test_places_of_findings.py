@@ -41,7 +41,7 @@ REVERSED = contour(*(f"X{x:.1f} C{c:.6f}" for x, c in CORNERS[:1]), "X0.2 C17.26
                    *(f"X{x:.1f} C{c:.6f}" for x, c in CORNERS[2:]))  # fmt: skip
 
 
-@pytest.mark.one_in(2, counted=1)
+@pytest.mark.one_in(2)
 @pytest.mark.parametrize(
     ("program", "rule", "place", "span"),
     [

@@ -119,7 +119,6 @@ PAST_CENTER = [Move(38 + 39.998j), Move(-38.002 - 40j), Move(-0.002 + 0j), Move(
 
 
 @pytest.mark.slow
-@pytest.mark.uncounted
 @given(contours(), st.data())
 @settings(max_examples=EXAMPLES, deadline=None)
 def test_spelling_changes_nothing(moves: list[Move], data: st.DataObject) -> None:
@@ -257,7 +256,6 @@ def test_radius_zero_gives_the_programmed_path(corner: float) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.uncounted
 @given(contours(), st.floats(500, 20_000), st.floats(1, 3))
 @settings(max_examples=EXAMPLES, deadline=None)
 def test_raising_a_limit_adds_no_finding(moves: list[Move], limit: float, more: float) -> None:
@@ -269,7 +267,6 @@ def test_raising_a_limit_adds_no_finding(moves: list[Move], limit: float, more: 
 
 
 @pytest.mark.slow
-@pytest.mark.uncounted
 @given(contours())
 @settings(max_examples=EXAMPLES, deadline=None)
 def test_splitting_a_move_changes_no_finding(moves: list[Move]) -> None:
@@ -291,7 +288,6 @@ def test_splitting_a_move_changes_no_finding(moves: list[Move]) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.uncounted
 @given(st.binary(max_size=400))
 @settings(max_examples=200, deadline=None)
 def test_any_bytes_give_a_report(data: bytes) -> None:
@@ -300,7 +296,6 @@ def test_any_bytes_give_a_report(data: bytes) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.uncounted
 @given(st.text(alphabet="GMXYZCUWHIJKRFTSNO%();/#[]=.-+0123456789 \n<>ABWHILEDOT", max_size=300))
 @settings(max_examples=200, deadline=None)
 def test_any_text_like_a_program_gives_a_report(text: str) -> None:

@@ -83,7 +83,7 @@ def differences(old: Original, text: str, machine: str = "fanuc", decided: Colle
     return [f"{each.line}: {each.text}" for each in result.differences]
 
 
-@pytest.mark.one_in(4, counted=1)
+@pytest.mark.one_in(4)
 @pytest.mark.parametrize(
     ("was", "becomes", "said"),
     [

@@ -70,7 +70,7 @@ def test_each_repair_is_of_a_rule_and_has_a_page(name: str) -> None:
     assert kinds == [False, True] * (len(kinds) // 2)
 
 
-@pytest.mark.one_in(4, counted=1)
+@pytest.mark.one_in(4)
 @pytest.mark.parametrize(("name", "bad", "good"), pairs())
 def test_the_fix_makes_the_bad_example_the_good_one(name: str, bad: Example, good: Example) -> None:
     assert (bad.machine, bad.tools, bad.settings) == (good.machine, good.tools, good.settings)
@@ -84,7 +84,7 @@ def test_the_fix_makes_the_bad_example_the_good_one(name: str, bad: Example, goo
     assert sorted(others) == sorted(rule for _, rule in said(report_of_example(good)))
 
 
-@pytest.mark.one_in(7, counted=1)
+@pytest.mark.one_in(7)
 @pytest.mark.parametrize("end", ["\r\n", "\n\r\r", "\r\r\n", "\r"])
 @pytest.mark.parametrize(("name", "bad", "good"), pairs())
 def test_lines_keep_their_ends(name: str, bad: Example, good: Example, end: str) -> None:
@@ -360,7 +360,7 @@ CASES = [
 ]
 
 
-@pytest.mark.one_in(4, counted=1)
+@pytest.mark.one_in(4)
 @pytest.mark.parametrize(("rule", "machine", "program", "good"), CASES)
 def test_fixes_of_programs_of_any_kind(rule: str, machine: str, program: str, good: str) -> None:
     tool = "1:radius=0.2" if "G20" in program else "1:radius=4"

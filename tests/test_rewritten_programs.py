@@ -130,7 +130,7 @@ def test_why_a_path_is_not_compensated(program: str, expected: str) -> None:
         (HEAD + "G90 X40. Z-5. F.2\nU-2.\nG0 X60.\n" + END, "fanuc-30i", "mitsubishi-m700", ""),
     ],
 )
-@pytest.mark.one_in(2, counted=1)
+@pytest.mark.one_in(2)
 def test_what_converting_does_with_what_it_cannot_write(program: str, source: str, target: str, expected: str) -> None:
     """It is refused with the reason, or written with a decision where none is expected."""
     if expected:
@@ -164,7 +164,7 @@ def faulty(old: str, new: str, real: Callable[..., Any], *arguments: Any) -> tup
 
 @pytest.mark.parametrize("fault", [*FAULTS, "X", "C", "F"])
 @pytest.mark.parametrize("command", ["unroll", "center", "compensate", "roll"])
-@pytest.mark.one_in(13, counted=1)
+@pytest.mark.one_in(13)
 def test_a_fault_of_a_writer_is_found(command: str, fault: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """A word of the result is changed before it is read back; what is the same or not there is passed over."""
     program = SQUARE.replace("T0101\n", "T0101\nG97 S500 M3\nG4 P500\n")
@@ -216,7 +216,7 @@ def test_a_fault_of_a_writer_is_found(command: str, fault: str, monkeypatch: pyt
         (HEAD + "M35\nG97 S900 M33\nG0 X60. Z2.\nM35\n" + END, "turning-center", "haas-lathe", "P900 M133\n"),
     ],
 )  # fmt: skip
-@pytest.mark.one_in(2, counted=1)
+@pytest.mark.one_in(2)
 def test_words_that_few_programs_have(program: str, source: str, target: str, expected: str) -> None:
     assert expected in convert(program, source, target).data.decode()
 
@@ -254,7 +254,7 @@ MORE = [
 
 
 @pytest.mark.parametrize(("program", "source", "target"), MORE)
-@pytest.mark.one_in(3, counted=1)
+@pytest.mark.one_in(3)
 def test_any_program_is_converted_or_refused_with_its_line(program: str, source: str, target: str) -> None:
     """What is written is proven by reading it back; nothing else comes of it than a program or reasons."""
     try:

@@ -229,7 +229,7 @@ def polar_program(machine: str, inch: bool, c: str) -> str:
 @pytest.mark.parametrize("c", ["C0", "C37.5"])
 @pytest.mark.parametrize("inch", [False, True])
 @pytest.mark.parametrize("machine", _ON)
-@pytest.mark.one_in(14, counted=5)
+@pytest.mark.one_in(14)
 def test_a_section_without_the_mode_and_back_is_the_same_contour(machine: str, inch: bool, c: str) -> None:
     original = original_of(polar_program(machine, inch, c), machine)
     known = original.settings.machine.feed.with_rotary

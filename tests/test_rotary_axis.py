@@ -68,7 +68,7 @@ def findings(report: FileReport) -> list[tuple[Any, ...]]:
     return [(one.rule, one.line, one.severity, one.alarm, one.count) for one in report.findings]
 
 
-@pytest.mark.one_in(21, counted=5)
+@pytest.mark.one_in(21)
 @pytest.mark.parametrize(
     ("path", "machine", "name"),
     # Two of the four names for each program, each time others.

@@ -27,7 +27,7 @@ EXAMPLES = [
 ]
 
 
-@pytest.mark.one_in(4, counted=1)
+@pytest.mark.one_in(4)
 @pytest.mark.parametrize(("rule", "example"), EXAMPLES)
 def test_example_gives_exactly_its_findings(rule: Rule, example: Example) -> None:
     assert said(report_of_whole_example(example)) == sorted(example.expected)

@@ -123,7 +123,7 @@ def boundary(program: Program) -> Any:
     return program.part.boundary.intersection(shapely.box(-FAR / 2, -FAR / 2, FAR / 2, FAR / 2))
 
 
-@pytest.mark.one_in(13, counted=4)
+@pytest.mark.one_in(13)
 @pytest.mark.parametrize("family", FAMILIES)
 def test_what_is_drawn_from_a_shape_is_the_part(family: str) -> None:
     told = []
@@ -152,7 +152,7 @@ SIZES = ("across_flats", "diameter", "width", "length", "apart", "distance", "ra
 TWINS = {"turned": Twin(0.7), "mirror": Twin(mirror=True), "inch": Twin(inch=True), "steps": Twin(incremental=True)}
 
 
-@pytest.mark.one_in(4, counted=1)
+@pytest.mark.one_in(4)
 @pytest.mark.parametrize("twin", TWINS.values(), ids=list(TWINS))
 def test_twins_have_the_same_shape(twin: Twin) -> None:
     compared = 0

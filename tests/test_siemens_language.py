@@ -90,7 +90,7 @@ def test_behind_g291_and_in_the_iso_mode_it_is_a_comment() -> None:
 # ---- predefined procedures and synchronized actions ----
 
 
-@pytest.mark.one_in(3, counted=1)
+@pytest.mark.one_in(3)
 @pytest.mark.parametrize(
     "block",
     [

@@ -53,7 +53,7 @@ def serious(found: FileReport) -> list[tuple[int, str]]:
     return sorted((one.line, one.rule) for one in found.findings if one.severity != "note")
 
 
-@pytest.mark.one_in(12, counted=5)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize("section", [SOUND[name] for name in TOLD], ids=TOLD)
 @pytest.mark.parametrize("units", ["G21", "G20"])
 @pytest.mark.parametrize("machine", ["fanuc", "fanuc-30i"])
@@ -129,7 +129,7 @@ def test_a_slot_beside_its_walls_is_not_told() -> None:
 BENT = "G0 X100. Z2. C0/G12.1/G1 Z-5. F300/G42 X40. F200/C20./X0 C19.65/X-40. C20./C-20./X40./C0/G40 X100./Z2./G13.1"
 
 
-@pytest.mark.one_in(2, counted=1)
+@pytest.mark.one_in(2)
 @pytest.mark.parametrize(("pause", "is_mirrored"), [("", True), ("M8/", True), ("M8/M9/", False), ("M8/M9/M8/", False)])
 def test_a_loop_that_the_control_objects_to_on_the_other_side_is_not_mirrored(pause: str, is_mirrored: bool) -> None:
     """Two blocks without a way leave the corner unknown to the control, whichever side the cutter is on."""

@@ -46,7 +46,7 @@ def checked(program: str, *tools: str) -> FileReport:
 # ---- without any time ----
 
 
-@pytest.mark.one_in(42, counted=5)
+@pytest.mark.one_in(42)
 @pytest.mark.parametrize("family", FAMILIES)
 def test_without_any_time_a_check_ends_and_says_so(family: str) -> None:
     """What needs no time is judged as ever; a file is never passed whose contours nobody has looked at."""
@@ -133,7 +133,7 @@ WITHOUT_MEASURE = {
 }
 
 
-@pytest.mark.one_in(3, counted=1)
+@pytest.mark.one_in(3)
 @pytest.mark.parametrize("case", WITHOUT_MEASURE)
 def test_numbers_without_measure_leave_the_other_loop_as_it_is(case: str) -> None:
     alone = checked(in_mode([*GROOVE, "G1 X100. C0"]))

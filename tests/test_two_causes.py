@@ -21,7 +21,7 @@ def test_the_drawn_sections_are_sound() -> None:
     assert len(DRAWN) > 9
 
 
-@pytest.mark.one_in(20, counted=1)
+@pytest.mark.one_in(20)
 @pytest.mark.parametrize("slip", SLIPS, ids=lambda slip: slip.name)
 def test_one_slip_is_one_finding(slip: Slip) -> None:
     draw = random.Random(5)  # noqa: S311
@@ -36,7 +36,6 @@ def test_one_slip_is_one_finding(slip: Slip) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.uncounted
 def test_two_slips_are_two_findings() -> None:
     found = [gives_two_findings(numbered) for numbered in enumerate(pairs(DRAWN, 40, 1))]
     known = [one for one in found if one is not None]

@@ -97,7 +97,7 @@ SIMULATED = {
 }
 
 
-@pytest.mark.one_in(6, counted=1)
+@pytest.mark.one_in(6)
 @pytest.mark.parametrize("body", SIMULATED)
 def test_it_is_simulated(body: str) -> None:
     report, trace = run(body)
@@ -146,7 +146,7 @@ NAMED = {
 }
 
 
-@pytest.mark.one_in(3, counted=1)
+@pytest.mark.one_in(3)
 @pytest.mark.parametrize("body", NAMED)
 def test_it_is_named_where_it_is_not_simulated(body: str) -> None:
     report, _ = run(body)
@@ -322,7 +322,7 @@ def test_the_direction_of_the_new_axis_turns_the_whole_plane() -> None:
 # ---- hostile files ----
 
 
-@pytest.mark.one_in(16, counted=5)
+@pytest.mark.one_in(16)
 @pytest.mark.parametrize(
     "program",
     [

@@ -45,7 +45,7 @@ def held(text: str, page: str) -> str:
     return text.encode(page, "backslashreplace").decode(page)
 
 
-@pytest.mark.one_in(5, counted=1)
+@pytest.mark.one_in(5)
 @pytest.mark.parametrize("page", CODE_PAGES)
 def test_people_are_told_in_every_code_page_and_files_are_utf_8(page: str) -> None:
     Path(NAME).write_bytes(f"O0001(FRÄSER Ø8 ÖL 漢)\n{RAPID.replace('G0 C5.', 'G0 C5. (Ä 漢)')}".encode())
