@@ -222,10 +222,12 @@ def _without_those_of_others(lacks: Any, feature: Feature, features: Sequence[Fe
         if other.may_be_absent:
             continue
         far, far_of_other = (shapely.distance(pieces, shapely.boundary(one.area)) for one in (feature, other))
-        of_other = joined([_lacking(other, features, cleared, z) for z in _heights(other, features)])
-        rest = shapely.area(areas.difference(pieces, grown(of_other, _CHORDS)))
         is_nearer = far_of_other < far - _CHORDS if is_later else far_of_other <= far + _CHORDS
-        pieces = pieces[~is_nearer | (rest > _SHARED * shapely.area(pieces))]
+        if is_nearer.any():
+            keep_time()
+            of_other = joined([_lacking(other, features, cleared, z) for z in _heights(other, features)])
+            rest = shapely.area(areas.difference(pieces, grown(of_other, _CHORDS)))
+            pieces = pieces[~is_nearer | (rest > _SHARED * shapely.area(pieces))]
     return joined([*pieces])
 
 
