@@ -62,9 +62,9 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """
-    Before pytest deselects by markers: where all files run, all cases but a share are left out of a test of many.
+    Before pytest deselects by markers: where all files run, all cases but a share are slow of a test of many.
 
-    `one_in(5)` says which share of a test runs by default, `one_in(1)` that all cases do.
+    `one_in(5)` says which share of a test runs by default, `one_in(1)` that all cases do; the others are left out.
     """
     everything = [Path(argument).name for argument in config.args] == config.getini("testpaths")
     count = Counter(item.nodeid.partition("[")[0] for item in items)
@@ -75,8 +75,10 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         test = item.nodeid.partition("[")[0]
         share = item.get_closest_marker("one_in")
         is_many = everything and count[test] > MANY_CASES
-        if cases[test] % (share.args[0] if share else SHARE if is_many else 1):
+        if share and cases[test] % share.args[0]:
             item.add_marker("left_out")
+        elif not share and is_many and cases[test] % SHARE:
+            item.add_marker("slow")
         cases[test] += 1
 
 

@@ -43,6 +43,7 @@ def messages(program: str, rule: str) -> list[str]:
 # ---- where ----
 
 
+@pytest.mark.one_in(6)
 @pytest.mark.parametrize(
     "block",
     [

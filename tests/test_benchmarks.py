@@ -26,6 +26,7 @@ def test_the_program_without_a_fault_passes() -> None:
     assert (report.verdict, said(report)) == ("pass", [])
 
 
+@pytest.mark.one_in(6)
 @pytest.mark.parametrize("name", FAULTS)
 def test_one_fault_is_found_for_the_right_reason(name: str) -> None:
     fault = FAULTS[name]

@@ -123,6 +123,7 @@ def test_arcs_by_radius_by_center_and_in_parts_are_the_same_metal() -> None:
     assert comparison(whole, program.format("G3 X-40. C0 R20.1\nG3 X40. C0 R20.\n")).verdict == DIFFERS
 
 
+@pytest.mark.one_in(6)
 @pytest.mark.parametrize("name", CONTROLS)
 @pytest.mark.parametrize("incremental", [False, True])
 def test_a_section_for_another_control_is_the_same_metal(name: str, incremental: bool) -> None:
@@ -143,6 +144,7 @@ def test_a_section_for_another_control_is_the_same_metal(name: str, incremental:
 # ---- what differs ----
 
 
+@pytest.mark.one_in(6)
 @pytest.mark.parametrize(
     ("new", "expected", "words"),
     [

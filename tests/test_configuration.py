@@ -445,6 +445,7 @@ def test_a_list_of_files_is_no_check(option: list[str], told: str) -> None:
     assert not Path("x.json").exists()
 
 
+@pytest.mark.one_in(6)
 @pytest.mark.parametrize(
     "form", ["text", "short", "github", "json", "jsonl", "html", "concise", "sarif", "gitlab", "junit"]
 )
@@ -584,6 +585,7 @@ def test_a_folder_without_a_job_file_cannot_be_extended() -> None:
 # ---- a file below another ----
 
 
+@pytest.mark.one_in(6)
 @pytest.mark.parametrize(
     ("outer", "inner", "left"),
     [

@@ -460,6 +460,7 @@ REASONS = (
 )
 
 
+@pytest.mark.one_in(3)
 @pytest.mark.slow
 @pytest.mark.parametrize("target", [SOURCE, "okuma-osp", "siemens-transmit", "haas-lathe", "mitsubishi-m700", "hurco"])
 @pytest.mark.parametrize("source", ["doosan", "haas-lathe", "okuma-osp", "siemens-transmit"])

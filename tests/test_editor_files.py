@@ -51,6 +51,7 @@ def in_the_same_moment(name: str, text: str) -> None:
         os.utime(name, ns=(status.st_atime_ns, status.st_mtime_ns))
 
 
+@pytest.mark.one_in(6)
 @pytest.mark.parametrize("write", [rewritten, renamed, in_the_same_moment])
 @pytest.mark.parametrize(
     ("name", "good", "broken"),

@@ -59,6 +59,7 @@ def test_the_keys_of_a_part_say_what_its_feature_is(family: str) -> None:
             assert apart.buffer(-0.01).is_empty, (seed, feature.keys)
 
 
+@pytest.mark.one_in(6)
 @pytest.mark.parametrize("family", FAMILIES[::4])
 def test_a_sound_program_makes_its_part(family: str) -> None:
     plan, program = drawn_sound(1, family)

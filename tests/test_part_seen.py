@@ -47,6 +47,7 @@ def is_seen(shape: Overlapped, drift: complex = 0) -> bool:
     return shapes[0].inside == is_pocket and all(abs(area - shape.area) <= slack for area in areas)
 
 
+@pytest.mark.one_in(6)
 @pytest.mark.parametrize("turned", [0.0, 33.0])
 @pytest.mark.parametrize("control", BY_MACHINE)
 def test_a_quadrilateral_with_corners_of_chords_that_ends_past_its_start(control: str, turned: float) -> None:
@@ -151,6 +152,7 @@ def test_a_hexagon_without_z_words(control: str, turned: float) -> None:
     assert seen.text.endswith("; to Z not known")
 
 
+@pytest.mark.one_in(6)
 @pytest.mark.parametrize("narrower", [1.0, 0.6, 0.3])
 @pytest.mark.parametrize("control", BY_MACHINE)
 def test_a_hexagon_without_z_words_as_the_path_of_the_tool(control: str, narrower: float) -> None:

@@ -120,6 +120,7 @@ def test_the_methods_of_a_pattern_are_known_after_many_others_were_compiled() ->
     assert [used.methods for used in constant_patterns()[0]] == [used.methods for used in before]
 
 
+@pytest.mark.one_in(4)
 @pytest.mark.parametrize("part", range(8))
 def test_no_pattern_costs_more_than_the_length_of_its_text(part: int) -> None:
     """Slow, since it tries each part of each pattern: 90,000 texts of nine sizes. A new pattern is tried by itself."""

@@ -148,6 +148,7 @@ def cphase(value: complex) -> float:
     return math.atan2(value.imag, value.real)
 
 
+@pytest.mark.one_in(3)
 @pytest.mark.parametrize("name", SECTIONS)
 def test_a_section_played_through_agrees_with_the_trace(
     opened: Any, name: str, tmp_path: Path, monkeypatch: Any

@@ -85,6 +85,7 @@ def test_a_folder_gets_a_picture_of_each_program_beside_pages() -> None:
     assert "No polar section is drawn." in svg("drawn/b.nc.svg")[1]
 
 
+@pytest.mark.one_in(6)
 @pytest.mark.parametrize(
     ("words", "said"),
     [
