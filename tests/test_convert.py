@@ -172,13 +172,27 @@ def test_blanks_line_ends_letters_and_comments_stay() -> None:
 
 
 def test_there_and_back_gives_the_same_words() -> None:
-    """But for those of the first move in the mode, which are all written, and arcs that were divided."""
+    """But for those of the first move in the mode, which are all written, arcs that were divided, and G21 by itself."""
     program = HEXAGON.replace("N80 G1 X56. F1000", "N80 G1 X56. C0 F1000").replace("C0 F150", "F150")
     program = program.replace("G3 X-36. C-10.392 I0 J-20.785", "G3 X-36. C10.392 R20.785")
     there = convert(program, "takisawa", "okuma-osp", "3:radius=4")
     back = convert(there.data, "okuma-osp", "takisawa", "3:radius=4")
     lines = [line for line in program.splitlines() if "G28" not in line and not line.startswith("N10 ")]
-    assert [line for line in back.data.decode().splitlines() if not line.startswith("N10 ")] == lines
+    assert [line for line in back.data.decode().splitlines() if not line.startswith("N10 ")] == [
+        *lines[:2],
+        "G21",
+        *lines[2:],
+    ]
+
+
+@pytest.mark.parametrize(
+    ("target", "codes"), [("takisawa", ["G21"]), ("haas-lathe", ["G21", "G17", "G18"]), (SOURCE, ["G21"])]
+)
+def test_a_control_with_codes_for_units_is_told_those_of_one_without(target: str, codes: list[str]) -> None:
+    """Whatever the last program on that machine has left in force."""
+    there = convert(HEXAGON, "takisawa", "okuma-osp", "3:radius=4").data
+    words = convert(there, "okuma-osp", target, "3:radius=4").data.decode().split()
+    assert [word for word in words if word in ("G20", "G21", "G17", "G18")] == codes
 
 
 # ---- the path, by a reading of its own ----
@@ -505,7 +519,7 @@ def test_the_command_writes_says_what_is_to_be_decided_and_ends_with_its_code() 
     Path("a.nc").write_text(HEXAGON)
     done = call("a.nc", "--from", "takisawa", "--to", "okuma-osp", "--tool", "3:radius=4", "-o", "b.nc")
     assert (done.exit_code, Path("b.nc").read_text()) == (0, OKUMA)
-    assert "polarcheck: a.nc: converted for Okuma OSP lathe control, 26 lines of 26: b.nc\n" in done.stderr
+    assert "polarcheck: a.nc: converted for Okuma OSP lathe control, from 26 lines to 26: b.nc\n" in done.stderr
     Path("c.nc").write_text(HEXAGON.replace("M70", "M70 M77"))
     open_ = call("c.nc", "--from", "takisawa", "--to", "okuma-osp", "--tool", "3:radius=4", "-o", "d.nc")
     assert open_.exit_code == 1

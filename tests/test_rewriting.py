@@ -69,7 +69,7 @@ def test_the_new_program_is_printed_and_what_was_done_is_said_beside_it(program:
     result = call(program)
     assert (result.exit_code, result.stdout) == (1, NEW)
     assert result.stderr.splitlines() == [
-        "polarcheck: a.nc: slowed down, 11 lines of 11",
+        "polarcheck: a.nc: slowed down, from 11 lines to 11",
         "polarcheck: a.nc: largest distance: 1.0000 mm",
         "polarcheck: a.nc: blocks: 12",
         "polarcheck: a.nc: C rate: 1235 deg/min",
@@ -86,7 +86,7 @@ def test_nothing_to_decide_ends_with_0(program: Path) -> None:
     program.write_text(PROGRAM.replace("M88\n", "").replace("G21", "G20"))
     result = call(program, "-o", "new.nc")
     assert (result.exit_code, result.stdout) == (0, "")
-    assert "polarcheck: a.nc: slowed down, 10 lines of 10: new.nc\n" in result.stderr
+    assert "polarcheck: a.nc: slowed down, from 10 lines to 10: new.nc\n" in result.stderr
     assert "largest distance: 25.4000 mm" in result.stderr
     assert Path("new.nc").read_text() == NEW.replace("(DECIDE)\n", "").replace("G21", "G20")
 

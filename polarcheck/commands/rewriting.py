@@ -220,7 +220,7 @@ class _Programs:
         else:
             old, new = (original.line_count(data) for data in (original.data, outcome.data))
             to = f": {written}" if written else ""
-            say(f"{title}: {self._command.done}, {new} lines of {old}{to}")
+            say(f"{title}: {self._command.done}, from {old} lines to {new}{to}")
         for figure in outcome.figures:
             say(f"{title}: {_figure(figure)}")
         _list(outcome.notes, lambda note: f"{title}: {note}", f"{title}: {{}} more notes")

@@ -139,7 +139,10 @@ def head_words(trace: Trace, target: Machine, measures: Measures, row: int) -> l
     words: list[str] = []
     if not len(trace):
         return words
-    if not trace.modal.sets("units").any() and trace.machine.control.units != target.control.units:
+    # What a control with codes for units starts in is a matter of its last program; where there is none it is that of the machine.
+    has_codes = trace.machine.codes("mm") or trace.machine.codes("inch")
+    is_same = has_codes and trace.machine.control.units == target.control.units
+    if not trace.modal.sets("units").any() and not is_same:
         codes = target.codes("inch" if measures.writes_inch(row) else "mm")
         of_lengths_alone = target.control.units_of_lengths_alone
         if codes:
