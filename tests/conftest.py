@@ -49,7 +49,7 @@ os.environ.update([NO_CACHE])
 LONGEST = 50
 
 #: Of a test of more cases than these, one in SHARE runs by default.
-MANY_CASES, SHARE = 8, 6
+MANY_CASES, SHARE = 8, 12
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

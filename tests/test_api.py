@@ -203,7 +203,7 @@ JOBS = {
 }
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize(("given", "written"), JOBS.values(), ids=JOBS)
 def test_a_keyword_says_what_a_job_file_says(
     given: dict[str, Any], written: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

@@ -95,6 +95,7 @@ def test_pipes_are_refused_unless_they_are_asked_for(tmp_path: Path) -> None:
     assert objection(tmp_path / "pipe") == "is a pipe, not a file"
 
 
+@pytest.mark.slow
 @needs_pipes
 def test_a_pipe_that_nobody_writes_to(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "pipe")

@@ -438,6 +438,7 @@ def test_python_gives_the_certificate_of_the_command(example: Path) -> None:
 # ---- certify init ----
 
 
+@pytest.mark.slow
 def test_the_suite_is_a_manifest_with_drawings(tmp_path: Path) -> None:
     from polarcheck.certification.jobs import JOBS
     from polarcheck.certification.manifest import FEATURES

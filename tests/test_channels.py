@@ -258,6 +258,7 @@ def test_block_skip_of_one_channel(channel: int) -> None:
     assert found.message.endswith("(with block skip off)")
 
 
+@pytest.mark.slow
 def test_common_variables_of_another_channel_are_not_vacant() -> None:
     reads = "G98 G40\nT0202\nG0 X60. C0\nG12.1\nG1 X40. F200\nC#{0}\nX60.\nG13.1\nM30\n"
     for number in (101, 501):

@@ -124,7 +124,7 @@ def test_nasty_text_is_no_fault_and_all_is_the_same_twice(form: str) -> None:
     assert text.endswith("\n")
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize("form", OF_MANY)
 def test_the_exit_code_is_that_of_the_text(form: str) -> None:
     make(a__nc=RAPID, b__nc=GOOD, c__nc=COMPENSATED)

@@ -28,7 +28,7 @@ def citizen(text: str, changes: Changes | None = None) -> FileReport:
     return report_of(text, "citizen", "11:radius=1,nose=0", changes=changes)
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize(
     "spindle",
     [

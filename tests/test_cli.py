@@ -871,7 +871,7 @@ def test_a_report_fits_its_schema() -> None:
 # ---- what is imported ----
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize(
     ("arguments", "unwanted"),
     [

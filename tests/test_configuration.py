@@ -445,7 +445,7 @@ def test_a_list_of_files_is_no_check(option: list[str], told: str) -> None:
     assert not Path("x.json").exists()
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize(
     "form", ["text", "short", "github", "json", "jsonl", "html", "concise", "sarif", "gitlab", "junit"]
 )
@@ -585,7 +585,7 @@ def test_a_folder_without_a_job_file_cannot_be_extended() -> None:
 # ---- a file below another ----
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize(
     ("outer", "inner", "left"),
     [
@@ -1002,6 +1002,7 @@ def test_the_page_has_each_key() -> None:
     assert wanted <= rows, sorted(wanted - rows)
 
 
+@pytest.mark.slow
 def test_each_job_file_of_the_page_is_one() -> None:
     blocks = re.findall(r"```toml\n(.*?)```", PAGE.read_text("utf-8"), re.DOTALL)
     assert len(blocks) > 2

@@ -366,7 +366,7 @@ def test_virtual_axis_as_a_diameter() -> None:
 # ---- alarms ----
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize(
     ("code", "alarm"),
     [

@@ -79,7 +79,7 @@ JUDGED = [
 ]
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize("row", JUDGED, ids=lambda row: " ".join([row.name, row.machine, *row.tools]))
 def test_judged_program(row: Judged) -> None:
     report = report_of_file(POLAR / row.name, row.machine, *row.tools, changes=row.changes)

@@ -33,7 +33,7 @@ def clear_of_center() -> list[Drawn]:
     return [drawn for drawn, rules in map(drawn_contour, SEEDS) if not _BY_CHANCE & set(rules)]
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize("seed", SEEDS)
 def test_a_drawn_contour_is_sound(seed: int) -> None:
     _, rules = drawn_contour(seed)

@@ -38,7 +38,7 @@ def dwell_of(machine: str, words: str, **more: Any) -> tuple[Tables, float]:
     return tables, float(tables["dynamics"].time[rows[0]])
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize(
     ("machine", "words", "seconds"),
     [

@@ -97,6 +97,7 @@ def test_an_editor_chooses_how_characters_are_counted(units: str, before: int) -
         assert editor.marks(program) == []
 
 
+@pytest.mark.slow
 def test_settings_are_read_anew_when_they_change() -> None:
     dynamic = {"didChangeWatchedFiles": {"dynamicRegistration": True}, "codeLens": {"refreshSupport": True}}
     with Editor(*ONLY_RAPID, capabilities={"workspace": dynamic}) as editor:

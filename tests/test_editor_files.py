@@ -51,7 +51,7 @@ def in_the_same_moment(name: str, text: str) -> None:
         os.utime(name, ns=(status.st_atime_ns, status.st_mtime_ns))
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize("write", [rewritten, renamed, in_the_same_moment])
 @pytest.mark.parametrize(
     ("name", "good", "broken"),
@@ -123,6 +123,7 @@ def test_a_state_that_tells_nothing_is_compared_by_content(monkeypatch: pytest.M
 MAIN = RAPID.replace("G0 C5.", "M98 P77")
 
 
+@pytest.mark.slow
 def test_an_unsaved_subprogram_counts_for_its_callers() -> None:
     Path("sub").mkdir()
     Path("sub/O77.NC").write_text("O77\nG1 C5.\nM99\n", "utf-8")
@@ -157,6 +158,7 @@ def test_a_subprogram_that_was_never_saved_counts_too() -> None:
         editor.marks(program, "subprogram-missing")
 
 
+@pytest.mark.slow
 def test_settings_count_as_they_are_saved() -> None:
     """A tool table that is open as a text counts as it stands; a job file once it is saved."""
     shop()

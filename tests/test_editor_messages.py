@@ -102,7 +102,7 @@ def test_the_answer_names_the_place() -> None:
         assert len(error["message"]) < 300
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize(
     ("messages", "expected"),
     [
@@ -144,7 +144,7 @@ def test_what_is_no_message_is_refused(message: Any, expected: tuple[Any, int]) 
     assert answers(wire(BEGIN, message, HOVER))[:2] == [(1, 0), expected]
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize(
     "broken",
     [

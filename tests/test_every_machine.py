@@ -200,7 +200,7 @@ def test_every_machine_has_a_hand() -> None:
     assert sorted(HANDS) == profiles.names()
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @every_machine
 def test_its_program_is_read_whole(name: str) -> None:
     """Else the twins would agree on nothing."""

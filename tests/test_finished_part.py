@@ -80,7 +80,7 @@ def errors(program: str, radius: float, **job: object) -> list[tuple[int, str]]:
     return [(found.line, found.rule) for found in report.findings if found.severity == "error"]
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize("name", SOUND)
 @pytest.mark.parametrize("form", ["as it is", "inch", "mirrored"])
 def test_sound_programs_cut_nothing(name: str, form: str) -> None:
@@ -90,7 +90,7 @@ def test_sound_programs_cut_nothing(name: str, form: str) -> None:
     assert errors(program, radius * scale) == []
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize("turn", [30, 137, 200])
 @pytest.mark.parametrize("name", [name for name in SOUND if " arcs" not in name])
 def test_nor_do_they_when_they_are_turned(name: str, turn: float) -> None:

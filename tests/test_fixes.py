@@ -299,7 +299,7 @@ def test_what_a_baseline_knows_is_not_fixed() -> None:
     assert "1 silenced" in fixed.stdout
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize(
     ("wrong", "said"),
     [
@@ -421,7 +421,7 @@ ENCODINGS = {
 }
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize("end", ENDS)
 @pytest.mark.parametrize("encoding", ENCODINGS)
 def test_encodings_and_line_ends_stay(encoding: str, end: str) -> None:

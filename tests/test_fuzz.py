@@ -88,12 +88,14 @@ def test_programs_of_macro_statements(data: bytes, setup: int) -> None:
     fuzz_targets.whole(data, setup)
 
 
+@pytest.mark.slow
 @given(strategies.offset_tables(), strategies.setups)
 @more
 def test_offset_tables(data: bytes, setup: int) -> None:
     fuzz_targets.offsets(data, setup)
 
 
+@pytest.mark.slow
 @given(strategies.setting_files)
 @few
 def test_machine_files_and_jobs(data: bytes) -> None:
@@ -202,6 +204,7 @@ def test_the_script_fuzzes_for_as_long_as_it_is_told() -> None:
     assert " inputs in " in told
 
 
+@pytest.mark.slow
 @not_on_windows
 def test_the_script_bears_the_death_of_its_process(tmp_path: Path) -> None:
     """So little memory is not enough to begin with."""

@@ -325,7 +325,7 @@ def test_what_is_nearly_a_value_in_use_is_taken_without_harm_or_refused(seed: in
     assert taken > NEARLY / 4
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.usefixtures("own_folder")
 @pytest.mark.parametrize(
     ("value", "is_sound"),
@@ -361,7 +361,7 @@ def test_addresses_of_other_controls_are_pairs_that_begin_with_one(value: str, i
     assert is_sound or found.stderr.count("\n") == 1
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.usefixtures("own_folder")
 @pytest.mark.parametrize(
     "values",

@@ -86,7 +86,7 @@ BOTH = [
 ]
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize("program", [SINGLE, CYCLE], ids=["single", "cycle"])
 @pytest.mark.parametrize(("right", "wrong", "number", "rule"), BOTH)
 def test_a_wrong_twin_gives_the_one_finding(program: str, right: str, wrong: str, number: str, rule: str) -> None:
@@ -104,7 +104,7 @@ def test_the_alarm_text_of_a_switch_in_offset_mode_is_that_of_the_control() -> N
     assert found.alarm == "polar interpolation command in tool nose radius compensation"
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize(
     ("right", "wrong"),
     [

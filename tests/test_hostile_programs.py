@@ -31,7 +31,7 @@ def every(report: FileReport) -> Iterator[Finding]:
 LARGEST = ["POW[10,307]*9", "0-POW[10,308]", "POW[10,155]", "POW[10,18]", "1/POW[10,300]"]
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize("value", LARGEST)
 @pytest.mark.parametrize("letters", ["XU", "CH", "ZW", "IJ", "R", "FS", "GM", "T", "PQ", "EK"])
 def test_computed_numbers_without_measure_are_unknown(value: str, letters: str) -> None:
@@ -43,7 +43,7 @@ def test_computed_numbers_without_measure_are_unknown(value: str, letters: str) 
         assert not any("inf" in found.message.split() for found in every(report))
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize("digits", [10, 16, 23, 150, 400])
 @pytest.mark.parametrize(
     "word", ["X", "C-", "U", "H", "Z", "I", "R", "G3 X40. C30. R", "G3 C30. I", "F", "G", "T", "N"]
@@ -106,7 +106,7 @@ LONG_PROGRAMS = {
 }
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize("name", LONG_PROGRAMS)
 @pytest.mark.parametrize("machine", ["fanuc", "haas-lathe", "mitsubishi-m700"])
 def test_a_report_quotes_only_the_beginning_of_what_is_long(name: str, machine: str) -> None:
@@ -156,7 +156,7 @@ def test_block_skip_tells_nothing_twice(slash: str) -> None:
 # ---- what could take time ----
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize("blank", ["\n", " \n", "%\n", "\r\n", " ", "\n%"])
 def test_blank_lines_before_a_called_program_are_read_once(tmp_path: Path, blank: str) -> None:
     """In a process of its own, which is ended if it hangs: read again from each line, this would take hours."""

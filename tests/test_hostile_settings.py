@@ -199,7 +199,7 @@ def test_a_job_with_values_that_nobody_means(text: str, told: str) -> None:
 # ---- what is no file ----
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @needs_pipes
 @pytest.mark.parametrize("kind", ["folder", "pipe", "itself", "nowhere"])
 @pytest.mark.parametrize("place", ["job", "config", "machine", "of-job", "inherits", "offsets", "of-job-offsets"])
@@ -295,7 +295,7 @@ def test_inheritance_from_nothing(text: str, told: str) -> None:
 # ---- values of machines ----
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize(
     ("text", "told"),
     [

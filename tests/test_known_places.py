@@ -180,7 +180,7 @@ def test_a_program_does_not_inherit_the_silence_of_another(name: str) -> None:
     assert [line[-31:] for line in told("--tool", "3:radius=3")] == ["[polar-switched-in-offset-mode]"]
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize("name", ["O1005", "new_of_O1005", "O9999"], ids=["here", "other folder", "renamed"])
 @pytest.mark.parametrize(
     "edit",

@@ -100,7 +100,7 @@ def messages(program: str, machine: str = "fanuc") -> list[tuple[int, str, str]]
     return [(found.line, found.rule, found.message) for found in report_of(program, machine).findings]
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize("head", [HEAD, INCH])
 @pytest.mark.parametrize("machine", ["fanuc", "fanuc-30i", "mitsubishi-m700"])
 @pytest.mark.parametrize(

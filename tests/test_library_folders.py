@@ -48,7 +48,7 @@ def test_what_lies_beside_the_folder_or_below_it_is_not_found(folder: Path) -> N
     assert of(folder) == MISSING
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize(
     "name",
     [

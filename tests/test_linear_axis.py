@@ -66,7 +66,7 @@ def changed(*tables: Mapping[str, Mapping[str, Any]]) -> dict[str, dict[str, Any
     return changes
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize(
     ("program", "machine", "changes"),
     [
@@ -130,7 +130,7 @@ def test_a_linear_axis_that_is_not_known(program: str, changes: dict[str, Any], 
     assert report.verdict == "unverified"
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize("word", ["P7", "P1.5", "P0", "P4", "Q9", "Q1", "P4 Q1", "P2 Q3", "P4 Q4", "P2 Q2", "P9 Q1"])
 def test_a_number_of_no_axis_is_one_finding(word: str) -> None:
     """After it the axes of the parameters are taken, and the section is judged."""
@@ -185,7 +185,7 @@ def test_x_beside_another_linear_axis_moves_by_itself() -> None:
     )
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize("entry", ["C0 Z2.", "C0 Y75. Z2.", "C0 Z75."])
 @pytest.mark.parametrize("axis", ["Y", "Z"])
 @pytest.mark.parametrize("control", ["gsk-988", "mitsubishi-m700", "fanuc-30i"])

@@ -171,7 +171,7 @@ def test_alarms_of_another_control_are_not_inherited(name: str) -> None:
     assert not {"fanuc", "fanuc-16i", "fanuc-30i"} & set(alarms.values()), alarms
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize("name", profiles.names())
 def test_parameters_set_what_there_is(name: str) -> None:
     """Every setting of every parameter gives a machine that can be loaded."""
@@ -496,7 +496,7 @@ def test_a_value_beside_a_parameter_counts() -> None:
 # ---- a file for a lathe of one's own ----
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize("name", profiles.names())
 def test_a_new_profile_can_be_read_empty_and_filled_in(name: str) -> None:
     text = new_machine.text("NL2000", name)

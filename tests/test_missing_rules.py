@@ -140,7 +140,7 @@ def test_f_of_which_nobody_knows_what_it_means(feed: str, head: str, machine: st
     assert "feed-mode-unknown" not in [rule for _, rule in said(FLAT.format(feed), machine, head=per_minute)]
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize(
     ("feed", "head", "machine"),
     [
@@ -166,7 +166,7 @@ def test_f_that_may_be_meant_as_it_is(feed: str, head: str, machine: str) -> Non
 # ---- no F in force ----
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize(
     ("head", "machine", "expected"),
     [
@@ -251,7 +251,7 @@ def test_d_that_belongs_to_no_section(blocks: str) -> None:
 ASSIGNED = "G0 X50. Z2. C0/G12.1/G1 X40. F200./{}/C10./C-10./X50./G13.1"
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize(
     ("block", "rule"),
     [
@@ -384,7 +384,7 @@ def test_an_origin_in_g_code_system_b(blocks: str) -> None:
         assert ("G12.1", "origin-off-center") in said(SHIFTED.format(blocks), machine, head=G92)
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize(
     "blocks",
     [
@@ -427,7 +427,7 @@ def test_an_origin_at_the_center_or_unknown(blocks: str) -> None:
     assert "origin-off-center" not in [rule for _, rule in said(SHIFTED.format(blocks))]
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize(
     ("blocks", "cause"),
     [

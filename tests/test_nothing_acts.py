@@ -161,7 +161,7 @@ def test_nothing_acts(arguments: tuple[str, ...]) -> None:
     assert not re.search(r"^(?:N\\x0d|NR)", result.stdout, re.MULTILINE)
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize("form", OF_MANY)
 def test_nothing_acts_in_a_file_that_is_written(form: str) -> None:
     call("check", *PATHS, *OF_MACHINE, "-o", f"{form}:out")
@@ -229,7 +229,7 @@ def test_no_line_of_a_report_is_a_command_of_a_ci_log(arguments: tuple[str, ...]
     assert not OLD_OF_RUNNER.search(result.stderr)
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @without_such_names
 @pytest.mark.parametrize("name", COMMANDS)
 def test_no_line_on_one_file_is_a_command_of_a_ci_log(name: str) -> None:

@@ -557,7 +557,7 @@ def title(value: object) -> str | None:
     return value.title if isinstance(value, Mistake) else None
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize("section", [SQUARE, ROUND, BY_RADIUS, HEXAGON, TWO_LOOPS])
 @pytest.mark.parametrize("machine", ["fanuc", *OTHERS])
 def test_the_sections_are_sound(section: str, machine: str) -> None:
@@ -596,7 +596,7 @@ def test_one_mistake_is_one_finding(mistake: Mistake, form: Callable[[Mistake], 
     holds(report, mistake, line)
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize("mistake", [one for one in MISTAKES if one.inch], ids=title)
 def test_it_is_one_finding_in_inch(mistake: Mistake) -> None:
     program = [in_inch(block) for block in plain(mistake)[0]]
@@ -646,7 +646,7 @@ def called_three_times(section: str) -> str:
     return "/".join([*HEAD, "M98 P30002", "M30", "O2", section, "M99"])
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize(
     ("program", "machine", "rule"),
     [

@@ -32,7 +32,7 @@ def test_there_are_enough_families_and_kinds() -> None:
     assert len(SLIPS) >= 30
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize("machine", DIALECTS)
 def test_sound_programs_are_silent(machine: str) -> None:
     for seed in range(4):
@@ -52,7 +52,7 @@ def test_the_simulation_leaves_what_is_programmed(machine: str) -> None:
     assert 2 * ring.distance(shapely.Point(0, 0)) == pytest.approx(program.size, abs=0.01)
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize("seed", range(0, 150, 15))
 def test_a_sound_program_has_no_event(seed: int) -> None:
     outcome = simulate(drawn(seed))

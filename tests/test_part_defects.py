@@ -59,7 +59,7 @@ def test_the_keys_of_a_part_say_what_its_feature_is(family: str) -> None:
             assert apart.buffer(-0.01).is_empty, (seed, feature.keys)
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize("family", FAMILIES[::4])
 def test_a_sound_program_makes_its_part(family: str) -> None:
     plan, program = drawn_sound(1, family)
@@ -74,7 +74,7 @@ def test_a_defect_of_each_kind_can_be_drawn(kind: str) -> None:
     assert not judged(defect.plan, defect.sound, defect.plan.allowed).differs
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize("number", range(6))
 def test_nothing_is_said_of_a_sound_part(number: int) -> None:
     result = part_defects.sound_of(number, FAMILIES[number::6], None)

@@ -47,7 +47,7 @@ def test_flats_with_c_between_them_are_one_shape(count: int, name: str, first: f
     assert (shape.line, shape.end_line) == (shape.sections[0].line, shape.sections[0].end_line)
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize(("control", "inch"), VARIATIONS)
 @pytest.mark.parametrize("first", [0.0, 30.0])
 def test_two_flats_are_a_part_with_two_flats(first: float, control: str, inch: bool) -> None:
@@ -149,7 +149,7 @@ def test_a_shape_in_a_shape_keeps_its_own_section() -> None:
     assert outside.line < inside.line
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize(("control", "inch"), VARIATIONS)
 @pytest.mark.parametrize("first", [0.0, 15.0])
 def test_flats_that_close_no_polygon_are_told_with_their_angles(first: float, control: str, inch: bool) -> None:
@@ -201,7 +201,7 @@ def path(distance: float, angle: float, radius: float = 8.0) -> Section:
     return Section([complex(distance + radius, -40), complex(distance + radius, 40)], angle, side=40, approach=60.0)
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize(("control", "inch"), VARIATIONS)
 @pytest.mark.parametrize("first", [0.0, 10.0])
 def test_paths_of_the_center_are_put_together_likewise(first: float, control: str, inch: bool) -> None:

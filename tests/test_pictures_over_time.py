@@ -88,7 +88,7 @@ CASES: dict[str, tuple[str, dict[str, Any], int, int]] = {
 }
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize("case", CASES)
 def test_the_cutter_x_and_c_are_those_of_the_trace(case: str) -> None:
     program, changes, sense, side = CASES[case]

@@ -65,7 +65,7 @@ def feeds(text: str) -> list[float]:
 CONTOURS = {"hexagon": (hexagon(), 13), "slot": (slot(), 5), "oval": (oval(), 5)}
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize("name", CONTOURS)
 @pytest.mark.parametrize("inverse", [False, pytest.param(True, marks=pytest.mark.slow)])
 def test_a_contour_of_lines_and_arcs_comes_back_with_as_many_of_them_and_its_f(name: str, inverse: bool) -> None:

@@ -39,7 +39,7 @@ def report_of_sample(path: Path) -> FileReport:
     )
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize("path", SAMPLES, ids=NAMES)
 def test_sample_gives_what_it_expects(path: Path) -> None:
     report = report_of_sample(path)
@@ -62,7 +62,7 @@ def test_tool_center_path_is_the_golden_one(path: Path, snapshot: SnapshotAssert
 FAULTY = [path for path in SAMPLES if expected(path.read_text("utf-8"))]
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize("path", FAULTY, ids=lambda path: path.relative_to(FOLDER).as_posix())
 def test_comments_that_expect_something_are_no_part_of_it(path: Path) -> None:
     text = path.read_text("utf-8")

@@ -228,6 +228,7 @@ def test_nobody_else_gets_anything(visitor: Visitor, between: Callable[..., None
     assert call("plot", "--serve", "a.nc", *RADIUS).exit_code == 0
 
 
+@pytest.mark.slow
 def test_connections_are_few_and_bytes_of_any_kind_end_nothing(
     visitor: Visitor, between: Callable[..., None], monkeypatch: pytest.MonkeyPatch
 ) -> None:

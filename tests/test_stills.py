@@ -85,7 +85,7 @@ def test_a_folder_gets_a_picture_of_each_program_beside_pages() -> None:
     assert "No polar section is drawn." in svg("drawn/b.nc.svg")[1]
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize(
     ("words", "said"),
     [
@@ -134,6 +134,7 @@ def colors(root: ElementTree.Element) -> set[str]:
     return {match for node in root.iter() for match in re.findall("stroke: (#[0-9a-f]{6})", node.get("style", ""))}
 
 
+@pytest.mark.slow
 def test_all_that_is_known_of_a_section_is_drawn() -> None:
     moves = msgspec.structs.replace(
         hexagon().moves,

@@ -32,7 +32,7 @@ def fitting_of(sections: str, radius: float = 4.0) -> Fitting:
     return found
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize(
     ("radius", "width"), [(3.05, 6), (3.4, 6), (4, 6), (5, 6), (9, 6), (1.55, 3), (5, 3), (9, 3), (0.4, 0.7), (4, 0.7)]
 )

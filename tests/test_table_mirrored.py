@@ -90,7 +90,7 @@ def test_a_negative_r_is_wrong_itself_or_the_code_is() -> None:
     assert serious(report(exchanged(SOUND["square"]), -4.0)) == []
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize(
     ("name", "changed", "radius"),
     [

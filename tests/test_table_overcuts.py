@@ -173,7 +173,7 @@ SQUARE = (
 )
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize("radius", ["-.005", ".005", "0", "-.01", ".01", "-.0002", ".0002", "-.001"])
 @pytest.mark.parametrize("machine", ["fanuc", "haas-lathe", "gsk-988"])
 def test_an_adjusted_path_of_the_center_has_no_walls(radius: str, machine: str) -> None:

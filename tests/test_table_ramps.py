@@ -138,7 +138,7 @@ def test_an_arc_after_a_standing_block_is_the_ramp() -> None:
     assert said(report_of(HEAD + program, "fanuc", "1:radius=4")) == [(6, "start-up-on-arc")]
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize("off", ["G40\n", "G40 X40.\n", "G40 X40. C0\n", "G40 U0\n"])
 @pytest.mark.parametrize(
     ("machine", "severity"), [("fanuc", "error"), ("gsk-988", "note"), ("turning-center", "error")]

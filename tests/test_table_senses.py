@@ -53,7 +53,7 @@ def hexagon(radius: float, decimals: int, *wrong: int, scale: float = 1.0) -> st
     return "/".join([*blocks, f"G1 {words(middle)}", f"G40 {words(2.2 * middle)}"])
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize("number", range(4))
 @pytest.mark.parametrize("section", [BY_RADIUS, BY_CENTER, POCKET], ids=["R", "I J", "pocket"])
 def test_one_of_four_corners(section: str, number: int) -> None:
@@ -91,7 +91,7 @@ def test_the_rest_of_a_circle_needs_no_other_arc() -> None:
     assert [rule for _, rule, _ in told(section, 4)] == [RULE]
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize(
     "section",
     [

@@ -23,7 +23,7 @@ def found(
     return [(one.block, one.severity) for one in findings if one.rule == RULE]
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize(
     ("blocks", "expected"),
     [
@@ -51,7 +51,7 @@ def test_through_the_part(blocks: str, expected: tuple[str, str]) -> None:
     assert found(blocks) == [expected]
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize(
     "blocks",
     [

@@ -76,7 +76,7 @@ def test_the_limit_is_kept_wherever_it_runs_out() -> None:
         assert report.verdict == "fail" or any("--max-seconds" in reason for reason in given_up(report).values())
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize("family", ["zigzag", "bosses", "overcut-loops", "passes", "slanted-leads", "bare-moves"])
 @pytest.mark.parametrize("seconds", [-1, 0.01])
 def test_every_column_of_contours_is_there_or_given_up(family: str, seconds: float) -> None:

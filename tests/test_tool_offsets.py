@@ -100,7 +100,7 @@ def test_the_size_adjusted_by_its_own_radius() -> None:
 # ---- which R ----
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize(
     ("blocks", "radius"),
     [
@@ -322,7 +322,7 @@ def test_a_comment_that_the_program_adjusts() -> None:
 TOOL = "8:radius=.375,nose=0"
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize(
     ("block", "word", "column"),
     [
@@ -349,7 +349,7 @@ def test_a_size_that_the_x_offset_is_to_keep(block: str, word: str, column: int,
     assert report.verdict == "pass"
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize(
     "block",
     [

@@ -286,7 +286,7 @@ def test_a_program_without_moves_gives_a_document_without_moves(folder: Path) ->
     assert document(written(folder, "O1\nM30\n"))["moves"] == []
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize(
     "path", [(), ("--path", "tool"), ("--path", "programmed")], ids=["blocks", "tool", "programmed"]
 )

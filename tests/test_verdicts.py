@@ -53,7 +53,7 @@ def deselected(report: dict[str, Any]) -> list[str]:
 # ---- no exit policy, no selection makes a pass ----
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize(
     ("options", "code"),
     [
@@ -76,7 +76,7 @@ def test_what_fails_a_file_does_not_hang_on_the_exit_code(options: str, code: in
     assert failed.attrib["failures"] == "1"
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize(
     ("options", "environment", "line"),
     [
@@ -131,7 +131,7 @@ def test_a_program_without_a_polar_section_was_not_looked_at_either() -> None:
     assert check("a.nc", "--ignore", "word-repeated")["files"][0]["verdict"] == "unverified"
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize(
     ("written", "line"),
     [
@@ -343,7 +343,7 @@ def test_a_link_to_nowhere_is_a_file_that_did_not_pass() -> None:
     assert check(".")["summary"]["unreadable"] == 1
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.skipif(os.name == "nt", reason="links need rights there")
 @pytest.mark.parametrize(
     ("form", "shown"),
@@ -419,7 +419,7 @@ def test_a_bug_and_a_lost_worker_leave_a_file_that_did_not_pass(monkeypatch: pyt
     assert check("a.nc")["files"][0]["reason"] == "there is not enough memory to check it"
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize("form", [form for form in formats() if form not in ("concise", "html")])
 def test_every_report_says_that_the_run_was_interrupted(form: str) -> None:
     make(a__nc=GOOD, b__nc=GOOD, c__nc=GOOD)
