@@ -78,6 +78,7 @@ TESTS = (
     "motion_and_feed",
     "contour_families",
     "trace",
+    "compare",
     "positions",
     "controls",
     "machine_keys",

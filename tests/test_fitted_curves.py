@@ -23,6 +23,14 @@ def fit(x: NDArray[np.float64], c: NDArray[np.float64], z: NDArray[np.float64] |
     return fitted(samples, TOLERANCE - RESERVE, NOISE)
 
 
+@pytest.mark.parametrize(("turn", "pieces"), [(0.07, 2), (0.2, 9)])
+def test_a_block_that_bows_little_is_looked_at_in_its_middle_alone(turn: float, pieces: int) -> None:
+    """Up to MOST_BOW tolerances it stands for a contour through its ends; another one is followed as it is."""
+    around = np.array([20.0, 20.0]), np.array([0.0, turn])
+    assert (bows(*around)[0] <= MOST_BOW * TOLERANCE) == (pieces == 2)
+    assert len(sampled(*around, np.zeros(2), TOLERANCE).point) == pieces + 1
+
+
 def along(start: complex, curves: Curves, share: NDArray[np.float64]) -> list[NDArray[np.complex128]]:
     """Dense points of each element."""
     result, begin = [], start

@@ -236,6 +236,19 @@ def test_one_side_that_is_off_is_told_with_its_size(sides: int, at: int) -> None
     assert [round(odd.size, 2) for odd in found.odd] == [27.1]
 
 
+def test_a_corner_that_is_off_makes_two_sides_uneven_each_by_its_worse_end() -> None:
+    corners = [cmath.rect(13.5 / math.cos(math.pi / 6), math.radians(30 + 60 * number)) for number in range(6)]
+    corners[0] += cmath.rect(0.06, math.radians(30))
+    found = shape_of(shapely.Polygon([(point.real, point.imag) for point in corners]))
+    assert [odd.size for odd in found.odd] == pytest.approx([27 + 2 * 0.06 * math.cos(math.pi / 6)] * 2, abs=0.003)
+
+
+def test_a_sharp_inside_corner_is_reached_as_far_as_its_walls_are_long() -> None:
+    """At a right angle R takes its own length of either wall: the shorter one is 10 mm long."""
+    found = shape_of(shapely.box(-20, -10, 20, 10).difference(shapely.box(0, 0, 30, 20)))
+    assert found.values["corner_reach"] == pytest.approx(10, abs=0.005)
+
+
 def test_an_octagon_of_mixed_words_is_not_regular_and_says_so() -> None:
     found = shape_of(affinity.scale(regular(8, 40.0), 0.5, 1.0, origin=(0, 0)))
     assert (found.name, found.is_regular) == ("octagon", False)

@@ -80,6 +80,7 @@ def test_the_f_that_the_acceleration_of_c_allows() -> None:
 def test_without_a_limit_of_the_acceleration_any_f_is_allowed() -> None:
     feeds = tables_of(NEAR.format("200"))["feeds"]
     assert np.isinf(feeds.allowed_by_acceleration).all()
+    assert np.isinf(feeds.allowed_by_x_acceleration).all()
     assert not feeds.is_limited_in_acceleration.any()
 
 
