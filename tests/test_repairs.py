@@ -385,6 +385,8 @@ def test_each_repair_is_tried_on_three_programs(rule: str) -> None:
         ("rapid-in-polar", "fanuc", "#1=5.\nG98 G0 X60. C0\nG12.1\nG1 X40. F200\nG0 C#1 F500\nG1 C-5.\nG13.1\n"),
         ("c-feed-above-limit", "fanuc", "#1=500\nG98 G0 X60. C0\nG12.1\nG1 X4. C2. F#1\nX-4.\nG13.1\n"),
         ("z-with-plane-axis", "fanuc", "#1=5.\nG98 G0 X60. Z2. C0\nG12.1\nG1 X40. Z-#1 F200\nC5.\nG13.1\n"),
+        # Nobody knows whether Z goes in or comes out.
+        ("z-with-plane-axis", "fanuc", "G98 G0 X60. C0\nG12.1\nG1 X40. Z-5. F200\nC5.\nG13.1\n"),
         # No F for positioning, or none to go on with.
         ("rapid-in-polar", "fanuc", "G98 F200 G0 X60. C0\nG12.1\nG0 X40.\nG0 C5.\nG13.1\n"),
         ("rapid-in-polar", "fanuc", "G99 G0 X60. C0\nG12.1\nG1 X40. F.2\nG0 C5.\nG1 C-5.\nG13.1\n"),
