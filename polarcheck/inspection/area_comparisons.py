@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -136,6 +137,9 @@ class AreaComparisons(Columns, frozen=True):
             return ()
         cleared, radius = self.milled.cleared(chosen)
         shapes = shapes_of_cleared(cleared.outline, cleared.across, radius, self.bar.known.smallest)
-        middle = complex(feature.area.centroid.x, feature.area.centroid.y)
         alike = [shape for shape in shapes if shape.inside == feature.is_pocket]
-        return tuple(sorted(alike, key=lambda shape: abs(shape.middle - middle))[:1])
+        # The first is the largest; it is another one where it lies farther off than the part is large.
+        middle, size = complex(feature.area.centroid.x, feature.area.centroid.y), math.sqrt(feature.area.area / math.pi)
+        if alike and abs(alike[0].middle - middle) > size:
+            alike.sort(key=lambda shape: abs(shape.middle - middle))
+        return tuple(alike[:1])
