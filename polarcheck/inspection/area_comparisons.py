@@ -138,7 +138,7 @@ class AreaComparisons(Columns, frozen=True):
         cleared, radius = self.milled.cleared(chosen)
         shapes = shapes_of_cleared(cleared.outline, cleared.across, radius, self.bar.known.smallest)
         alike = [shape for shape in shapes if shape.inside == feature.is_pocket]
-        # The first is the largest; it is another one where it lies farther off than the part is large.
+        # What lies farther off than the part is large was not meant for it, where something nearer is made.
         middle, size = complex(feature.area.centroid.x, feature.area.centroid.y), math.sqrt(feature.area.area / math.pi)
         if alike and abs(alike[0].middle - middle) > size:
             alike.sort(key=lambda shape: abs(shape.middle - middle))

@@ -139,7 +139,7 @@ def head_words(trace: Trace, target: Machine, measures: Measures, row: int) -> l
     words: list[str] = []
     if not len(trace):
         return words
-    # A control with codes for units may still be in those of its last program; one without any has those of the machine.
+    # A control with codes for units may be in those of its last program; one without any has those of the machine.
     has_codes = trace.machine.codes("mm") or trace.machine.codes("inch")
     is_same = has_codes and trace.machine.control.units == target.control.units
     if not trace.modal.sets("units").any() and not is_same:
