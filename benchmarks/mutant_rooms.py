@@ -110,14 +110,16 @@ def promising(file: str) -> list[str]:
     """
     Parts of the names of tests that are likely to see a fault in a module, the most likely first.
 
-    Those that are named as the module, or as one that imports it and so on upward, and the examples of the rules that
-    compare one of these tables.
+    Those that are named as the module, or as one that imports it and so on upward, the examples of the rules that
+    compare one of these tables, and the tests that name a rule of the nearest.
     """
     names = list(importers(file))
     for stem in upward(file):
         names += [f"test_{stem}.py", f"test_table_{stem}"]
     for stem in upward(file):
         names += [f"findings[{rule}-" for rule in rules_of(stem)]
+    nearest = next((rules for stem in upward(file) if (rules := rules_of(stem))), [])
+    names += naming(*nearest)
     if room_of(file) == "metal":
         names += ["test_metal.py", "test_finished_part.py", "test_part", "test_deviations.py"]
     if room_of(file) == "rules":
@@ -132,6 +134,16 @@ def importers(file: str) -> list[str]:
     """The tests that import a module themselves."""
     tests = sorted((ROOT / "tests").glob("test_*.py"))
     return [path.name for path in tests if import_of(file).search(path.read_text("utf-8"))]
+
+
+@functools.cache
+def naming(*rules: str) -> list[str]:
+    """The tests that name one of these rules, those that name the fewest of all rules first."""
+    tests = {path.name: path.read_text("utf-8") for path in (ROOT / "tests").glob("test_*.py")}
+    known = [Path(one).stem.replace("_", "-") for one in modules() if room_of(one) == "rules"]
+    count = {name: sum(f'"{rule}"' in text for rule in known) for name, text in tests.items()}
+    found = [name for name, text in tests.items() if any(f'"{rule}"' in text for rule in rules)]
+    return sorted(found, key=lambda name: (count[name], name))
 
 
 @functools.cache

@@ -142,3 +142,20 @@ def test_without_radius_or_compensation_nothing_is_compared(text: str) -> None:
 
 def test_what_a_wrong_arc_leads_to_is_no_slot() -> None:
     assert said(report_of(program(SLOT.replace("G41 X50.", "G2 R1. G41 X50.")), "fanuc", "1:radius=5")) != []
+
+
+def test_a_lone_wall_is_not_that_of_a_slot_at_another_depth() -> None:
+    """Two slots at two depths; the lone wall is at the depth of the first, and above the middle of the second."""
+    ways = [[f"X{2 * way * side:g}." for way in (6, 10, 20, 24)] for side in (1, -1)]
+    slots = [
+        f"G1 {inside} C0/Z{z}/G41 {near} C1.5/{far}/G40 {outside} C0/G41 {far} C-1.5/{near}/G40 {inside} C0/Z2./"
+        for (inside, near, far, outside), z in zip(ways, ("-1.", "-2."), strict=True)
+    ]
+    inside, near, far, outside = ways[1]
+    lone = f"G1 {inside} C0/Z-1./G41 {near} C0/{far}/G40 {outside} C0/Z2./"
+    blocks = program(slots[0] + lone + slots[1])
+    only = ["slot-narrower-than-cutter"]
+    assert said(report_of(blocks, "fanuc", "1:radius=1", only=only)) == []
+    (line,) = (number for number, block in enumerate(blocks.splitlines(), 1) if block.startswith("Z-2."))
+    ((first, _),) = said(report_of(blocks, "fanuc", "1:radius=1.6", only=only))
+    assert first > line
