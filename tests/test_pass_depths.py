@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from programs import tables_of
 
-PASS = "Z{}\nG42 X{} C0 F{}\nG3 I-{}\nG1 G40 X{}\n"
+BLOCKS = "Z{}\nG42 X{} C0 F{}\nG3 I-{}\nG1 G40 X{}\n"
 #: Size of X, F, radius and X of the approach: of mm and of inch.
 UNITS = {"G21": (1.0, "20.", "200", "10.", "60."), "G20": (25.4, "1.", "8.", ".5", "3.")}
 
@@ -13,7 +13,7 @@ UNITS = {"G21": (1.0, "20.", "200", "10.", "60."), "G20": (25.4, "1.", "8.", ".5
 def off(levels: list[float], code: str) -> dict[int, float]:
     """The passes that are off by their number, and the Z that each would have."""
     scale, across, feed, radius, away = UNITS[code]
-    passes = "".join(PASS.format(f"{z / scale:.5f}", across, feed, radius, away) for z in levels)
+    passes = "".join(BLOCKS.format(f"{z / scale:.5f}", across, feed, radius, away) for z in levels)
     text = f"O1\n{code} G98 T0101\nG0 X{away} Z.2 C0\nG12.1\nG1 X{away} F{feed}\n{passes}Z.2\nG13.1\n"
     tables = tables_of(text, "fanuc", f"1:radius={4 / scale:.5f}")
     depths = tables["pass_depths"]
