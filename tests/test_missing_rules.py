@@ -246,6 +246,11 @@ def test_d_that_belongs_to_no_section(blocks: str) -> None:
     assert "d-word-on-lathe" not in [rule for _, rule in said(blocks)]
 
 
+def test_d_above_the_first_tool_may_be_meant_for_it() -> None:
+    blocks = "D1/T0101/G0 X60. Z2. C-15./G12.1/G1 C15. F500./G41 X40. F200./C-15./G40 X60./G13.1"
+    assert said(blocks, head="O1\nG21 G40 G97 G98 G18\n") == [("D1", "d-word-on-lathe")]
+
+
 # ---- offsets as variables ----
 
 ASSIGNED = "G0 X50. Z2. C0/G12.1/G1 X40. F200./{}/C10./C-10./X50./G13.1"
