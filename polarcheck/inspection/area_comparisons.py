@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,7 +12,7 @@ from polarcheck.arrays import Columns, cached_property
 from polarcheck.columns.trace import Trace
 from polarcheck.inspection.comparison import SAME_Z, Comparison
 from polarcheck.inspection.contour_comparisons import ContourComparisons
-from polarcheck.inspection.nominal_features import NominalFeatures
+from polarcheck.inspection.nominal_features import NominalFeatures, PlacedFeature
 from polarcheck.inspection.nominal_parts import NominalParts
 from polarcheck.table.bar import Bar
 from polarcheck.table.milled import Milled
@@ -46,6 +47,20 @@ class AreaComparisons(Columns, frozen=True):
         placed = self.nominal_features.all
         if not placed:
             return results
+        compared = list(self._differences(placed))
+        for feature, _, difference in compared:
+            results = [self._as_left(one, feature, difference) for one in results]
+        contours = tuple(results)
+        for feature, contour, difference in compared:
+            found = self._comparison(feature, contour, difference, contours)
+            if found is not None and contour < 0:
+                results.append(found)
+            elif found is not None:
+                results[contour] = found
+        return results
+
+    def _differences(self, placed: Sequence[PlacedFeature]) -> Iterator[tuple[Feature, int, AreaDifference]]:
+        """The features with the places of their contours, -1 for none, and how the metal differs from each."""
         from polarcheck.inspection.metal_differences import differences
 
         for frame in sorted({one.frame for one in placed}):
@@ -56,12 +71,20 @@ class AreaComparisons(Columns, frozen=True):
                 for one in features
             ]
             for one, difference in zip(features, differences(chosen, self.milled.cuts[of_frame]), strict=True):
-                compared = self._comparison(one.feature, one.contour, difference)
-                if compared is not None and one.contour < 0:
-                    results.append(compared)
-                elif compared is not None:
-                    results[one.contour] = compared
-        return results
+                yield one.feature, one.contour, difference
+
+    @staticmethod
+    def _as_left(result: Comparison, feature: Feature, found: AreaDifference) -> Comparison:
+        """
+        The comparison of a contour, without what the cutter does not cut away: a corner that is sharp in the program
+        and round in the drawing is as it should be where R of the cutter rounds it.
+        """
+        is_own = result.number == feature.number and (feature.curve < 0 or result.curve in (-1, feature.curve))
+        is_closed = result.contour is not None and result.contour.is_closed and not result.is_other_way_round
+        is_deep = result.difference.deep > result.tolerance
+        if not (is_own and is_closed and is_deep and found.is_made and found.deep.size == 0):
+            return result
+        return result._replace(difference=result.difference._replace(deep=0.0))
 
     def why_not(self, number: int) -> str:
         """Why a part was compared with nothing; empty where another reason is given."""
@@ -76,11 +99,12 @@ class AreaComparisons(Columns, frozen=True):
             return "nothing is milled there"
         return "its curves do not close, and no contour comes near to them"
 
-    def _comparison(self, feature: Feature, place: int, found: AreaDifference) -> Comparison | None:
+    def _comparison(
+        self, feature: Feature, place: int, found: AreaDifference, results: Sequence[Comparison]
+    ) -> Comparison | None:
         """What is changed of the comparison of the contour, or what stands in for it; None for nothing."""
         from polarcheck.geometry.comparison.deviation import Difference
 
-        results = self.contour_comparisons.all
         own = [one for one in results if one.number == feature.number]
         if any(one.differs and (place < 0 or one.curve in (-1, feature.curve) or feature.curve < 0) for one in own):
             return None

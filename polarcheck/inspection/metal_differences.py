@@ -155,7 +155,8 @@ def _excess(
     metal = areas.union(disc(feature.certain), around)
     near = areas.intersection(beside(feature.area, feature.radius, tolerance, feature.is_pocket), metal)
     stays = areas.difference(_cleared_of_others(near, feature, features), gone)
-    side = areas.intersection(feature.area, metal) if feature.is_pocket else areas.difference(metal, feature.area)
+    limit = reachable(feature.area, feature.radius, feature.is_pocket)
+    side = areas.intersection(limit, metal) if feature.is_pocket else areas.difference(metal, limit)
     whole = areas.difference(_cleared_of_others(side, feature, features), gone)
     if not feature.is_solid:
         return farthest(stays, whole, feature.area), NOTHING
