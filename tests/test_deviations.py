@@ -489,8 +489,8 @@ def opening(center: complex, half: float) -> Any:
     return shapely.buffer(middle, half - 2, cap_style="square").buffer(2, quad_segs=64)
 
 
-def messages(text: str, part: Any, diameter: float = 60.0) -> list[str]:
-    job = msgspec.structs.replace(drawn(part), stock=Stock(diameter=diameter))
+def messages(text: str, part: Any) -> list[str]:
+    job = msgspec.structs.replace(drawn(part), stock=Stock(diameter=60))
     return [one.message for one in report_of(text, "fanuc-30i", "1:radius=2", job=job, only=[RULE]).findings]
 
 
@@ -570,11 +570,11 @@ def slot(angle: float, half: float, z: float) -> str:
 
 
 def test_a_slot_shorter_than_the_cutter_is_wide_leaves_its_ends() -> None:
-    """In a bar of 20 it reaches 6 mm to each side: 4 mm stay at either end."""
+    """In a bar of 20 it reaches 6 mm to each side: 4 mm stay."""
     job = {"part": [{"shape": "slot", "width": 8.0, "z": -3.0}], "stock": {"diameter": 20}}
     text = HEAD + slot(0, 2, -3.0) + TAIL
     (difference,) = report_of(text, "fanuc-30i", "1:radius=4", job=job, only=[RULE]).findings
-    assert re.search("by 4 mm, 0.02 mm is allowed: too much stays at X-?20 C0", difference.message)
+    assert "by 4 mm, 0.02 mm is allowed: too much stays at X-20 C0" in difference.message
 
 
 def test_a_slot_is_placed_by_its_own_depth_not_by_a_deeper_groove() -> None:

@@ -8,6 +8,7 @@ frame of the part. Import late: shapely takes its time.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
@@ -58,7 +59,8 @@ class Feature(NamedTuple):
     allowed difference. certain: up to this distance from the axis there is metal before milling. most: beyond it there
     is none, inf where nobody knows. excess_is_judged: all that may clear something there is known. is_bar_known: what
     is far from the walls is compared as well. is_solid: there is no hole where it is to be cleared. cuts: bool per cut,
-    those in its sections. own_cuts: those without the contours of other parts.
+    those in its sections. own_cuts: those without the contours of other parts. pockets: those that it lies in, by their
+    number and curve; `differences` finds them.
     """
 
     number: int
@@ -76,6 +78,7 @@ class Feature(NamedTuple):
     is_solid: bool
     cuts: Mask
     own_cuts: Mask
+    pockets: frozenset[tuple[int, int]] = frozenset()
 
 
 class AreaDifference(NamedTuple):
@@ -105,7 +108,10 @@ class AreaDifference(NamedTuple):
 def differences(features: Sequence[Feature], cuts: Cuts) -> list[AreaDifference]:
     """The difference of each feature. Raises TooHardError where areas are too many."""
     cleared = _Cleared(cuts)
-    present = [one for one in features if not one.may_be_absent or _is_made(_off_wall(one, cleared), one.radius / 2)]
+    is_there = [not one.may_be_absent or _is_made(_off_wall(one, cleared), one.radius / 2) for one in features]
+    pockets = [one for one in itertools.compress(features, is_there) if one.is_pocket]
+    features = [one._replace(pockets=_pockets_around(one, pockets)) for one in features]
+    present = [*itertools.compress(features, is_there)]
     found = []
     for feature in features:
         keep_time()
@@ -133,7 +139,7 @@ def _difference(feature: Feature, features: Sequence[Feature], cleared: _Cleared
     off = _off_wall(feature, cleared)
     proud, island = NOTHING, NOTHING
     if feature.excess_is_judged:
-        proud, island = _excess(feature, features, cleared, tolerance)
+        proud, island = _excess(feature, features, cleared)
     deep, deep_row = _lack(feature, features, cleared)
     at_depth = cuts.low <= feature.z + SAME_Z
     proud_row = nearest_row(cuts, at_depth if at_depth.any() else cuts.low < np.inf, proud.place) if proud.size else -1
@@ -146,21 +152,21 @@ def _allowed(feature: Feature) -> float:
     return max(feature.tolerance, _CHORDS) + _CHORDS
 
 
-def _excess(
-    feature: Feature, features: Sequence[Feature], cleared: _Cleared, tolerance: float
-) -> tuple[Extreme, Extreme]:
+def _excess(feature: Feature, features: Sequence[Feature], cleared: _Cleared) -> tuple[Extreme, Extreme]:
     """Metal at the depth of a feature that should be gone; and what stands in a pocket that is not cleared here."""
+    tolerance = _allowed(feature)
     gone = cleared.by(cleared.cuts.low <= feature.z + SAME_Z)
     around = _parts_around(feature, features)
     metal = areas.union(disc(feature.certain), around)
     near = areas.intersection(beside(feature.area, feature.radius, tolerance, feature.is_pocket), metal)
     stays = areas.difference(_cleared_of_others(near, feature, features), gone)
-    limit = reachable(feature.area, feature.radius, feature.is_pocket)
-    side = areas.intersection(limit, metal) if feature.is_pocket else areas.difference(metal, limit)
+    side = areas.intersection(feature.area, metal) if feature.is_pocket else areas.difference(metal, feature.area)
     whole = areas.difference(_cleared_of_others(side, feature, features), gone)
     if not feature.is_solid:
         return farthest(stays, whole, feature.area), NOTHING
-    far = areas.intersection(whole, areas.union(disc(feature.certain - _RIM), grown(around, -_RIM)))
+    limit = reachable(feature.area, feature.radius, feature.is_pocket)
+    far = areas.intersection(whole, limit) if feature.is_pocket else areas.difference(whole, limit)
+    far = areas.intersection(far, areas.union(disc(feature.certain - _RIM), grown(around, -_RIM)))
     far = grown(grown(far, -_RIM), _RIM)
     middle = grown(feature.area, -2 * feature.radius - tolerance)
     is_roughed = shapely.area(areas.intersection(gone, middle)) > _ROUGHED * shapely.area(middle)
@@ -200,11 +206,11 @@ def _cuts_down_to(feature: Feature, features: Sequence[Feature], cleared: _Clear
 
 
 def _lacking(feature: Feature, features: Sequence[Feature], cleared: _Cleared, z: float) -> Any:
-    """What should stand of a part, or around a pocket, and is cut away at a height."""
+    """What should stand of a part, or around a pocket, just above a height, and is cut away."""
     chosen = _cuts_down_to(feature, features, cleared, z)
     if not chosen.any():
         return empty()
-    stands = _must_stand(feature, features, z, _allowed(feature))
+    stands = _must_stand(feature, features, z)
     if np.isfinite(feature.most):
         stands = areas.intersection(stands, disc(feature.most))
     return areas.intersection(stands, cleared.by(chosen))
@@ -212,8 +218,8 @@ def _lacking(feature: Feature, features: Sequence[Feature], cleared: _Cleared, z
 
 def _without_those_of_others(lacks: Any, feature: Feature, features: Sequence[Feature], cleared: _Cleared) -> Any:
     """
-    What lacks of a feature, without what lacks of another one and is nearer to the wall of that: a pocket that is
-    milled too wide is no fault of the part that it lies in. What is as near to both is the first one's.
+    What is missing of a feature, less what is missing of another one as well and lies nearer to the wall of that: a
+    pocket that is milled too wide is no fault of the part around it. What is as near to both belongs to the first.
     """
     pieces, is_later = shapely.get_parts(lacks), False
     for other in features:
@@ -254,24 +260,27 @@ def _are_apart(one: Any, other: Any) -> bool:
     return bool(both <= _SHARED * min(shapely.area(one), shapely.area(other)))
 
 
-def _stands_alone(part: Feature, feature: Feature, features: Sequence[Feature]) -> bool:
-    """Around a part there is nothing; around an island in a pocket this holds for features in that pocket only."""
-    pockets = [one for one in features if one.is_pocket and is_inside(part.area, one.area, _allowed(feature))]
-    return all(one is not feature and is_inside(feature.area, one.area) for one in pockets)
+def _pockets_around(feature: Feature, pockets: Sequence[Feature]) -> frozenset[tuple[int, int]]:
+    """The pockets that a feature lies in, by their number and curve."""
+    keep_time()
+    others = (other for other in pockets if other is not feature)
+    return frozenset(
+        (other.number, other.curve) for other in others if is_inside(feature.area, other.area, _allowed(feature))
+    )
 
 
-def _must_stand(feature: Feature, features: Sequence[Feature], z: float, tolerance: float) -> Any:
+def _must_stand(feature: Feature, features: Sequence[Feature], z: float) -> Any:
     """What must stand of a part, or around a pocket, just above a height."""
+    tolerance = _allowed(feature)
     stands = within(feature.area, feature.radius, tolerance, feature.is_pocket)
     for other in features:
         if other is feature or other.z > z + SAME_Z:
             continue
         if other.is_pocket:
-            if feature.is_pocket or not is_inside(feature.area, other.area, tolerance):
+            if feature.is_pocket or (other.number, other.curve) not in feature.pockets:
                 stands = areas.difference(stands, grown(other.area, tolerance))
-        elif _stands_alone(other, feature, features) and (
-            feature.is_pocket or not _are_apart(feature.area, other.area)
-        ):
+        # Around a part there is nothing; around an island that holds in its own pocket only.
+        elif other.pockets <= feature.pockets and (feature.is_pocket or not _are_apart(feature.area, other.area)):
             stands = areas.intersection(stands, grown(other.area, -tolerance))
     return stands
 

@@ -102,27 +102,29 @@ def better_placement(
         keep_time()
         limit = min(enough, _SHIFTED_LESS * now.largest) if placement.shift else enough
         placed = placement.of(way, center)
-        both_ways = _both_closed(made.way, way)
-        if both_ways and _mean(made.way, placed) > limit:
+        remaining = _difference_within(made, placed, limit)
+        if remaining is None:
             continue
-        remaining = difference(made, placed, both_ways=both_ways)
-        if not remaining.length or remaining.largest > limit:
-            continue
-        if remaining.largest <= tolerance:
-            return placement, remaining.largest
+        if remaining <= tolerance:
+            return placement, remaining
         # The simplest come first: one that is better by less than a shift that counts is no better.
-        if best is None or remaining.largest < best[1] - _NO_SHIFT:
-            best = placement, remaining.largest
+        if best is None or remaining < best[1] - _NO_SHIFT:
+            best = placement, remaining
     return best
 
 
 def agrees(made: Made, way: Way, tolerance: float) -> bool:
     """Tells whether a contour agrees with a curve where that lies, within a tolerance [mm]."""
+    return _difference_within(made, way, tolerance) is not None
+
+
+def _difference_within(made: Made, way: Way, limit: float) -> float | None:
+    """The largest difference of a contour from a curve [mm]; None where it is above a limit, or nothing is compared."""
     both_ways = _both_closed(made.way, way)
-    if both_ways and _mean(made.way, way) > tolerance:
-        return False
+    if both_ways and _mean(made.way, way) > limit:
+        return None
     found = difference(made, way, both_ways=both_ways)
-    return found.length > 0 and found.largest <= tolerance
+    return found.largest if found.length and found.largest <= limit else None
 
 
 def _candidates(
