@@ -132,18 +132,21 @@ def promising(file: str) -> list[str]:
 @functools.cache
 def importers(file: str) -> list[str]:
     """The tests that import a module themselves."""
-    tests = sorted((ROOT / "tests").glob("test_*.py"))
-    return [path.name for path in tests if import_of(file).search(path.read_text("utf-8"))]
+    return [name for name, text in tests().items() if import_of(file).search(text)]
+
+
+@functools.cache
+def tests() -> dict[str, str]:
+    """The files of tests by name, and their text."""
+    return {path.name: path.read_text("utf-8") for path in sorted((ROOT / "tests").glob("test_*.py"))}
 
 
 @functools.cache
 def naming(*rules: str) -> list[str]:
     """The tests that name one of these rules, those that name the fewest of all rules first."""
-    tests = {path.name: path.read_text("utf-8") for path in (ROOT / "tests").glob("test_*.py")}
     known = [Path(one).stem.replace("_", "-") for one in modules() if room_of(one) == "rules"]
-    count = {name: sum(f'"{rule}"' in text for rule in known) for name, text in tests.items()}
-    found = [name for name, text in tests.items() if any(f'"{rule}"' in text for rule in rules)]
-    return sorted(found, key=lambda name: (count[name], name))
+    found = [name for name, text in tests().items() if any(f'"{rule}"' in text for rule in rules)]
+    return sorted(found, key=lambda name: sum(f'"{rule}"' in tests()[name] for rule in known))
 
 
 @functools.cache

@@ -621,7 +621,7 @@ SURFACE = "%\nO1\nG20 G99\nT0101\nG96 S600 M3\nG0 X2. Z.1\nG1 Z-.5 F.01\nG97 S80
         (HEAD + "G0 X[40+10] Z2.\n" + END, "fanuc-30i", "haas-lathe", "G0 X[40+10] Z2.\n"),
     ],
 )  # fmt: skip
-@pytest.mark.one_in(12)
+@pytest.mark.one_in(6)
 def test_what_goes_on_around_sections_keeps_its_meaning(program: str, source: str, target: str, expected: str) -> None:
     assert expected in convert(program, source, target).data.decode()
 

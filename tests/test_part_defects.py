@@ -74,7 +74,7 @@ def test_a_defect_of_each_kind_can_be_drawn(kind: str) -> None:
     assert not judged(defect.plan, defect.sound, defect.plan.allowed).differs
 
 
-@pytest.mark.one_in(12)
+@pytest.mark.one_in(6)
 @pytest.mark.parametrize("number", range(6))
 def test_nothing_is_said_of_a_sound_part(number: int) -> None:
     result = part_defects.sound_of(number, FAMILIES[number::6], None)

@@ -97,7 +97,7 @@ def test_a_contour_that_ends_beside_its_start_keeps_its_last_wall(control: str) 
     assert is_seen(pocket, 0.05)
 
 
-@pytest.mark.one_in(12)
+@pytest.mark.one_in(6)
 @pytest.mark.parametrize("turned", [0.0, 17.0])
 @pytest.mark.parametrize("control", BY_MACHINE)
 @pytest.mark.parametrize("drift", [0.05, -0.05, 0.3, -0.3, 0.05j, -0.05j, 0.1 + 0.1j])

@@ -97,7 +97,7 @@ SIMULATED = {
 }
 
 
-@pytest.mark.one_in(12)
+@pytest.mark.one_in(6)
 @pytest.mark.parametrize("body", SIMULATED)
 def test_it_is_simulated(body: str) -> None:
     report, trace = run(body)
