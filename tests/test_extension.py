@@ -44,6 +44,19 @@ def test_grammar_and_client_in_node() -> None:
     assert "# fail 0" in node("npm", "--silent", "test")
 
 
+@needs_node
+def test_a_program_that_a_folder_plants_is_not_started() -> None:
+    assert "# fail 0" in node("node", "--test", "test/executable.test.js")
+
+
+def test_the_extension_starts_one_program_whose_path_it_has_searched() -> None:
+    assert re.findall(r'const (.*) = require\("(?:node:)?child_process"\)', SOURCES) == ["{ spawn }"]
+    assert re.findall(r"\bspawn\((\w+)", SOURCES) == ["program"]
+    assert "const program = isRefused ? undefined : executable(command, folder);" in SOURCES
+    # vscode-languageclient searches the PATH itself where it is given a command, and ends such a process by name.
+    assert 'new Connection("polarcheck", "polarcheck", () => this.spawned(line, left)' in SOURCES
+
+
 @pytest.mark.slow
 @needs_node
 def test_the_package_is_built_from_checked_types(tmp_path: Path) -> None:

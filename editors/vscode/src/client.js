@@ -5,7 +5,8 @@
 const { spawn } = require("node:child_process");
 const vscode = require("vscode");
 const { CloseAction, ErrorAction, LanguageClient, State: ClientState } = require("vscode-languageclient/node");
-const { advice, commandLine } = require("./options");
+const { executable } = require("./executable");
+const { advice, commandLine, distrust } = require("./options");
 
 /** A server that ends within this time after its start is not started again [ms]. */
 const SHORTEST_LIFE = 10_000;
@@ -62,7 +63,7 @@ class Client {
       },
       folder,
     );
-    return { ...line, folder };
+    return { ...line, folder, isRefused: line.isOfFolder && !vscode.workspace.isTrusted };
   }
 
   /** The languages of NC programs. @returns {string[]} */
@@ -101,8 +102,8 @@ class Client {
     const fail = async () => {
       if (!hasComplained) {
         hasComplained = true;
-        await Promise.race([left.ended, new Promise((resolve) => setTimeout(resolve, LONGEST_END))]);
-        this.complain(advice(line.command, left.code, left.said));
+        await Promise.race([left.ended, new Promise((resolve) => setTimeout(resolve, LONGEST_END).unref())]);
+        this.complain(line.isRefused ? distrust(line.command) : advice(line.command, left.code, left.said));
       }
     };
     const client = new Connection("polarcheck", "polarcheck", () => this.spawned(line, left), {
@@ -160,14 +161,18 @@ class Client {
 
   /**
    * The process of the server, once it runs.
-   * @param {{ command: string, args: string[], folder: string }} line
+   * @param {{ command: string, args: string[], folder: string, isRefused: boolean }} line
    * @param {Left} left
    * @returns {Promise<import("node:child_process").ChildProcess>}
    */
-  spawned({ command, args, folder }, left) {
-    this.log.info(`${command} ${args.join(" ")}`);
+  async spawned({ command, args, folder, isRefused }, left) {
+    const program = isRefused ? undefined : executable(command, folder);
+    if (program === undefined) {
+      throw new Error(isRefused ? distrust(command) : advice(command, null, ""));
+    }
+    this.log.info(`${program} ${args.join(" ")}`);
     return new Promise((resolve, reject) => {
-      const child = spawn(command, args, { cwd: folder || undefined, env: { ...process.env, PYTHONUTF8: "1" } });
+      const child = spawn(program, args, { cwd: folder || undefined, env: { ...process.env, PYTHONUTF8: "1" } });
       child.once("spawn", () => resolve(child));
       child.once("error", reject);
       left.ended = new Promise((ended) => {

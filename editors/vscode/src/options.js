@@ -4,6 +4,7 @@
 
 const os = require("node:os");
 const path = require("node:path");
+const { isName, isWhole } = require("./executable");
 
 /**
  * @typedef {object} Settings
@@ -25,17 +26,21 @@ function expanded(text, folder, home = os.homedir()) {
 }
 
 /**
- * The command that starts the server.
+ * The command that starts the server; isOfFolder: which program that is depends on the folder of the workspace.
  * @param {Settings} settings
  * @param {string} folder of the workspace; empty without one
  * @param {string} [home]
+ * @param {boolean} [isWindows]
  */
-function commandLine(settings, folder, home) {
+function commandLine(settings, folder, home, isWindows = process.platform === "win32") {
   /** @param {string} text */
   const whole = (text) => expanded(text, folder, home);
   const machine = settings.machine.trim();
+  const command = whole(settings.path.trim()) || "polarcheck";
   return {
-    command: whole(settings.path.trim()) || "polarcheck",
+    command,
+    isOfFolder:
+      settings.path.includes("${workspaceFolder}") || !(isName(command, isWindows) || isWhole(command, isWindows)),
     args: [
       "server",
       ...(machine ? ["--machine", whole(machine)] : []),
@@ -43,6 +48,14 @@ function commandLine(settings, folder, home) {
       ...settings.arguments.map(whole),
     ],
   };
+}
+
+/**
+ * What to do in Restricted Mode where the program to start is of the folder, in one line.
+ * @param {string} command
+ */
+function distrust(command) {
+  return `polarcheck is not running: ${command} is of a folder that you do not trust. Trust the folder, or name a whole path without \${workspaceFolder} in the setting polarcheck.path.`;
 }
 
 /**
@@ -65,4 +78,4 @@ function advice(command, code, said) {
   return `polarcheck is not running: ${said.replace(/^polarcheck: /, "")}`;
 }
 
-module.exports = { advice, commandLine, expanded };
+module.exports = { advice, commandLine, distrust, expanded };

@@ -46,10 +46,11 @@ test("a picture of what is not open is refused with a reason", async () => {
 });
 
 test("settings become a command line, each entry one word of it", () => {
-  assert.deepStrictEqual(commandLine(SETTINGS, ""), { command: "polarcheck", args: ["server"] });
+  assert.deepStrictEqual(commandLine(SETTINGS, ""), { command: "polarcheck", isOfFolder: false, args: ["server"] });
   const settings = { path: "${workspaceFolder}/.venv/bin/polarcheck", machine: "~/my lathe.toml", arguments: ["--set", "limits.c_feed=3600"], trustedFolders: ["/srv/$(x)"] };
   assert.deepStrictEqual(commandLine(settings, "/shop", "/home/me"), {
     command: "/shop/.venv/bin/polarcheck",
+    isOfFolder: true,
     args: ["server", "--machine", "/home/me/my lathe.toml", "--trust", path.normalize("/srv/$(x)"), "--set", "limits.c_feed=3600"],
   });
   assert.strictEqual(expanded("a~b $& ${workspaceFolder}", "$&$1"), "a~b $& $&$1");
