@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import contextlib
 import http.client
 import json
+import random
 import re
 import signal
 import socket
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 from urllib.parse import urlsplit
@@ -21,7 +23,7 @@ from test_pictures import GROOVE, HEXAGON
 from test_plot import PLOTLY, RADIUS
 
 from polarcheck.commands import serving, watching
-from polarcheck.pictures import library
+from polarcheck.pictures import connections, library
 from polarcheck.pictures import serving as served
 
 pytestmark = pytest.mark.usefixtures("own_folder")
@@ -228,42 +230,268 @@ def test_nobody_else_gets_anything(visitor: Visitor, between: Callable[..., None
     assert call("plot", "--serve", "a.nc", *RADIUS).exit_code == 0
 
 
-@pytest.mark.slow
-def test_connections_are_few_and_bytes_of_any_kind_end_nothing(
-    visitor: Visitor, between: Callable[..., None], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    make(a__nc=HEXAGON)
-    monkeypatch.setattr(served, "_CONNECTIONS", 3)
+# ---- whatever is sent ----
 
-    def look() -> None:
-        where = ("127.0.0.1", urlsplit(visitor.address).port or 0)
-        for data in (
-            b"\x00\xff" * 50 + b"\r\n\r\n",
-            b"GET\r\n\r\n",
-            b"GET / HTTP/9.9\r\n\r\n",
-            b"GET /" + b"a" * 70000,
-            b"",
-        ):
-            with socket.create_connection(where, 10) as connection:
-                connection.sendall(data)
-        idle = [socket.create_connection(where, 10) for _ in range(3)]
-        with socket.create_connection(where, 10) as refused:
-            assert refused.recv(10) == b""
-        for connection in idle:
+
+class Attacker:
+    """Sends bytes to a server with one page; `errors` has what the server said of itself."""
+
+    def __init__(self) -> None:
+        self.errors: list[Exception] = []
+        self.open: list[socket.socket] = []
+        site = served.Site()
+        site.put("", served.Served(lambda: b"the page", "text/html", "1"))
+        self.server = served.Server(site, 0, self.errors.append)
+        self.visitor = Visitor()
+        self.visitor.address = self.server.address
+        parts = urlsplit(self.server.address)
+        self.where, self.path = ("127.0.0.1", parts.port or 0), parts.path.encode()
+
+    def connect(self, data: bytes = b"") -> socket.socket:
+        """A connection that stays open behind some bytes."""
+        connection = socket.create_connection(self.where, 30)
+        self.open.append(connection)
+        with contextlib.suppress(OSError):
+            connection.sendall(data)
+        return connection
+
+    def answer(self, data: bytes) -> bytes:
+        """All that the server sends back, until it closes the connection."""
+        connection = self.connect(data)
+        with contextlib.suppress(OSError):
+            connection.shutdown(socket.SHUT_WR)
+        return until_closed(connection)
+
+
+def until_closed(connection: socket.socket) -> bytes:
+    """All that is sent until a connection is closed, by a reset too, as with bytes that nobody has read."""
+    answer = b""
+    with contextlib.suppress(ConnectionError):
+        while data := connection.recv(65536):
+            answer += data
+    connection.close()
+    return answer
+
+
+@pytest.fixture
+def attacker() -> Iterator[Attacker]:
+    attacker = Attacker()
+    with attacker.server:
+        attacker.server.start()
+        yield attacker
+        for connection in attacker.open:
             connection.close()
-        for _ in range(100):
-            try:
-                assert visitor.ask()[0] == 200
-                break
-            except OSError:  # the threads of those that have gone are not yet free
-                continue
-        else:
-            pytest.fail("no connection is free again")
+        assert attacker.visitor.ask() == (200, "the page")
+    assert attacker.errors == []
 
-    between(look)
-    result = call("plot", "--serve", "a.nc", *RADIUS)
-    assert result.exit_code == 0
-    assert "Traceback" not in result.stderr
+
+RIGHT = b"Host: 127.0.0.1\r\n"
+
+
+@pytest.mark.parametrize(
+    ("request_", "status"),
+    [
+        (b"GET http://[ HTTP/1.1\r\n" + RIGHT, 400),
+        (b"GET http://[TOKEN HTTP/1.1\r\n" + RIGHT, 400),
+        (b"HEAD http://]/ HTTP/1.0\r\n" + RIGHT, 400),
+        (b"GET http://[v1.x]/ HTTP/1.1\r\n" + RIGHT, 421),
+        (b"GET http://[::1]TOKEN HTTP/1.1\r\n" + RIGHT, 421),
+        (b"GET http://evil.exampleTOKEN HTTP/1.1\r\n" + RIGHT, 421),
+        (b"GET http://127.0.0.1:80TOKEN HTTP/1.1\r\nHost: evil.example\r\n", 200),
+        (b"GET TOKEN?x=[#y HTTP/1.1\r\n" + RIGHT, 200),
+        (b"GET TOKEN HTTP/1.1\r\n" + RIGHT + b"Content-Length: -1e99\r\nTransfer-Encoding: \xff\r\n", 200),
+        (b"GET TOKEN HTTP/1.1\r\n" + RIGHT + b"Expect: 100-continue\r\nConnection: keep-alive\r\n", 200),
+        (b"GET TOKEN HTTP/1.1\r\n" + RIGHT + b"Content-Type: multipart/x; boundary=y\r\n", 200),
+        (b"GET TOKEN HTTP/1.1\r\n" + RIGHT + b"Content-Type: multipart/x; boundary*=%00''x\r\n", 400),
+        (b"GET TOKEN HTTP/1.1\r\n" + RIGHT + b"Content-Type: multipart/x; boundary*=idna''%ff\r\n", 400),
+        (b"GET / HTTP/1.1\r\n" + RIGHT + b"Content-Type: message/x; a*" + b"9" * 5000 + b"=1\r\n", 404),
+        (b"GET / HTTP/1.1\r\n" + RIGHT + b"Content-Type: multipart/x; a*" + b"9" * 5000 + b"=1\r\n", 400),
+        (b"GET TOKEN HTTP/1.1\r\nHost: \xff[\0]:\r\n", 421),
+        (b"GET TOKEN HTTP/1.1\r\n", 421),
+        (b"GET TOKEN HTTP/1.1\r\n" + RIGHT + b"X: " + b"a" * 70000 + b"\r\n", 431),
+        (b"GET TOKEN HTTP/1.1\r\n" + RIGHT + b"X: a\r\n" * 200, 431),
+        (b"GET /%00%ff%2e%2e%zz TOKEN HTTP/1.1\r\n" + RIGHT, 400),
+        (b"GET /%00%ff%zz HTTP/1.1\r\n" + RIGHT, 404),
+        (b"GET TOKEN%00 HTTP/1.1\r\n" + RIGHT, 404),
+        (b"GET TOKEN HTTP/1.\xb2\r\n" + RIGHT, 400),
+        (b"GET TOKEN HTTP/9999999999999.1\r\n" + RIGHT, 400),
+        (b"GET TOKEN HTTP/2.0\r\n" + RIGHT, 505),
+        (b"PRI * HTTP/2.0\r\n\r\nSM\r\n", 505),
+        (b"\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03\r\n", 400),
+        (b"\0 \0 \0\r\n", 400),
+        (b"__class__ TOKEN HTTP/1.1\r\n" + RIGHT, 501),
+        (b"get TOKEN HTTP/1.1\r\n" + RIGHT, 501),
+        (b"GET /" + b"a" * 70000, 414),
+    ],
+    ids=lambda data: repr(data)[:50] if isinstance(data, bytes) else str(data),
+)
+def test_an_odd_request_is_refused_and_nothing_is_said_of_it(attacker: Attacker, request_: bytes, status: int) -> None:
+    answer = attacker.answer(request_.replace(b"TOKEN", attacker.path) + b"\r\n")
+    if len(request_) > 60000 and not answer:
+        return  # the answer is lost where the connection is closed before all is read
+    # Without a version that can be read the answer has no head.
+    said = re.match(rb"HTTP/1\.0 (\d+) |<!DOCTYPE[^$]*<p>Error code: (\d+)<", answer)
+    assert said is not None
+    assert int(said[1] or said[2]) == status
+    assert (b"the page" in answer) is (status == 200)
+
+
+def test_a_request_without_a_version_or_without_words_is_no_page(attacker: Attacker) -> None:
+    for data in (b"", b"\r\n", b"\n\n\n", b"GET\r\n\r\n", b"GET " + attacker.path + b"\r\n\r\n", b"\xff" * 100):
+        assert b"the page" not in attacker.answer(data)
+
+
+def test_of_requests_one_behind_the_other_the_first_is_answered(attacker: Attacker) -> None:
+    request = b"GET " + attacker.path + b" HTTP/1.1\r\n" + RIGHT + b"Connection: keep-alive\r\n\r\n"
+    assert attacker.answer(request * 5).count(b"the page") <= 1
+
+
+#: Pieces of requests; TOKEN is the path of the page.
+PIECES = (
+    *(
+        b"GET",
+        b"HEAD",
+        b"POST",
+        b" ",
+        b" ",
+        b"TOKEN",
+        b"/",
+        b"http://",
+        b"[",
+        b"]",
+        b"@",
+        b":",
+        b"?",
+        b"#",
+        b"%",
+        b"%00",
+    ),
+    *(
+        b" HTTP/1.1\r\n",
+        b" HTTP/1.0\r\n",
+        b"HTTP/",
+        b"2.0",
+        b"\r\n",
+        b"\r\n",
+        b"\n",
+        b"\r",
+        b"\0",
+        b"\t",
+        b"\x85",
+        b"\xff",
+    ),
+    *(
+        b"Host: ",
+        b"127.0.0.1",
+        b"localhost",
+        RIGHT,
+        b"Content-Type: ",
+        b"multipart/x",
+        b"; boundary",
+        b"*=",
+        b"''",
+        b'"',
+    ),
+    *(
+        b"idna",
+        b"utf-16",
+        b"*0*",
+        b"Content-Length: ",
+        b"-1",
+        b"9" * 30,
+        b"Connection: keep-alive\r\n",
+        b"\xc2\xb2",
+        b"a" * 99,
+    ),
+)
+
+
+def drawn_request(seed: int) -> bytes:
+    """Bytes that begin as a request, or not."""
+    draw = random.Random(seed)  # noqa: S311
+    begin = draw.choice([b"GET ", b"GET TOKEN HTTP/1.1\r\n", b"GET TOKEN HTTP/1.1\r\n" + RIGHT, b"HEAD http://", b""])
+    rest = b"".join(draw.choices(PIECES, k=draw.randrange(12)))
+    return begin + rest + draw.choice([b"", b" HTTP/1.1\r\n" + RIGHT, b"\r\n\r\n"])
+
+
+@pytest.mark.parametrize("count", [150, pytest.param(4000, marks=pytest.mark.slow)])
+def test_drawn_bytes_end_nothing_and_print_nothing(
+    attacker: Attacker, count: int, capfd: pytest.CaptureFixture[str]
+) -> None:
+    for seed in range(count):
+        answer = attacker.answer(drawn_request(seed).replace(b"TOKEN", attacker.path))
+        assert not answer or answer.startswith((b"HTTP/1.0 ", b"<!DOCTYPE")), seed
+        assert attacker.errors == [], seed
+    assert capfd.readouterr() == ("", "")
+
+
+# ---- who holds connections ----
+
+
+SLOW = (b"", b"G", b"GET / HTTP/1.1\r\nHost: 127.0.0.1\r\nX: ")
+
+
+@pytest.mark.parametrize("most", [6, pytest.param(connections.MOST, marks=pytest.mark.slow)])
+def test_slow_connections_without_the_token_keep_no_page_away(
+    attacker: Attacker, monkeypatch: pytest.MonkeyPatch, most: int
+) -> None:
+    monkeypatch.setattr(connections, "MOST", most)
+    with attacker.visitor.answer("events/") as event:
+        assert event.readline() == b'data: {"version": "1", "notice": ""}\n'
+        for _ in range(3):
+            for number in range(most):
+                attacker.connect(SLOW[number % len(SLOW)])
+            assert attacker.visitor.ask() == (200, "the page")
+        # The oldest have made room, and the last ones are still there.
+        for connection in attacker.open[:most]:
+            assert until_closed(connection) == b""
+        attacker.open[-1].settimeout(0)
+        with pytest.raises(BlockingIOError):
+            attacker.open[-1].recv(1)
+        # One that has shown the token makes room for none.
+        attacker.server._site.notice("", "late")
+        event.readline()
+        assert event.readline() == b'data: {"version": "1", "notice": "late"}\n'
+
+
+def test_headers_that_never_end_are_not_waited_for(attacker: Attacker, monkeypatch: pytest.MonkeyPatch) -> None:
+    with attacker.visitor.answer("events/") as event:
+        event.readline()
+        slow = attacker.connect(b"GET " + attacker.path + b" HTTP/1.1\r\n" + RIGHT)
+        slow.settimeout(0)
+        with pytest.raises(BlockingIOError):
+            slow.recv(1)
+        slow.settimeout(30)
+        monkeypatch.setattr(connections, "LONGEST", 0.0)
+        gone = threading.Event()
+
+        def drip() -> None:
+            with contextlib.suppress(OSError):
+                while not gone.wait(0.01):
+                    slow.sendall(b"X: y\r\n"[:1])
+
+        dripping = threading.Thread(target=drip)
+        dripping.start()
+        assert until_closed(slow) == b""
+        gone.set()
+        dripping.join()
+        monkeypatch.setattr(connections, "LONGEST", 60.0)
+        # A connection that has shown the token lasts.
+        attacker.server._site.notice("", "late")
+        event.readline()
+        assert event.readline() == b'data: {"version": "1", "notice": "late"}\n'
+
+
+def test_connections_with_the_token_are_counted_too(attacker: Attacker, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(connections, "MOST", 2)
+    events = [attacker.visitor.answer("events/") for _ in range(2)]
+    for event in events:
+        event.readline()
+    assert attacker.visitor.ask()[0] == 503
+    monkeypatch.setattr(connections, "MOST", 3)
+    assert attacker.visitor.ask() == (200, "the page")
+    for event in events:
+        event.close()
 
 
 def test_a_bug_in_an_answer_is_one_line(capsys: pytest.CaptureFixture[str]) -> None:

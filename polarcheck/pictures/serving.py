@@ -3,7 +3,8 @@ Serves pages to browsers on this machine, and tells them of new ones.
 
 Only 127.0.0.1 is listened on, only pages that were put here are served, and only below a token that nobody can guess:
 other users of the machine cannot read them, nor pages of other sites (the name of the host is verified, so that none
-leads here by a name of its own).
+leads here by a name of its own). They cannot keep a browser away either: connections that have not shown the token make
+room for newer ones, and are closed after a time.
 """
 
 from __future__ import annotations
@@ -11,15 +12,15 @@ from __future__ import annotations
 import contextlib
 import json
 import secrets
-import socket
 import threading
 from collections.abc import Callable, Iterator
 from http import HTTPStatus
-from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
-from typing import Any, NamedTuple
-from urllib.parse import urlsplit
+from http.server import BaseHTTPRequestHandler
+from typing import NamedTuple
+from urllib.parse import SplitResult, urlsplit
 
 from polarcheck.errors import OutputError
+from polarcheck.pictures.connections import Connections
 
 #: The only address.
 ADDRESS = "127.0.0.1"
@@ -27,8 +28,8 @@ ADDRESS = "127.0.0.1"
 _HOSTS = (ADDRESS, "localhost")
 #: The address below the token that tells of new versions of a page: `events/NAME`.
 EVENTS = "events/"
-#: The most connections at a time, and the time for a request or for a browser to take some of an answer [s].
-_CONNECTIONS, _TIMEOUT = 64, 10.0
+#: The time for a browser to send some of a request, or to take some of an answer [s].
+_TIMEOUT = 10.0
 #: A browser that has gone is noticed after this time [s].
 _BEAT = 5.0
 _HEADERS = (
@@ -129,7 +130,7 @@ class Server:
         handler = type("Handler", (_Handler,), {"site": site, "root": f"/{token}/", "timeout": _TIMEOUT})
         self._site = site
         try:
-            self._server = _Threads((ADDRESS, port), handler, failed)
+            self._server = Connections((ADDRESS, port), handler, failed)
         except (OSError, OverflowError) as error:
             said = getattr(error, "strerror", None) or error
             raise OutputError(f"--port {port}: {said}") from None
@@ -154,44 +155,25 @@ class Server:
         self._thread.start()
 
 
-class _Threads(ThreadingHTTPServer):
-    """A thread for each of some connections; the others are closed."""
-
-    daemon_threads = True
-    # On Windows two programs could listen on one port.
-    allow_reuse_address = not hasattr(socket, "SO_EXCLUSIVEADDRUSE")
-
-    def __init__(self, address: tuple[str, int], handler: type, failed: Callable[[Exception], None]) -> None:
-        self._free, self._failed = threading.BoundedSemaphore(_CONNECTIONS), failed
-        super().__init__(address, handler)
-
-    def process_request(self, request: Any, client_address: Any) -> None:
-        if self._free.acquire(blocking=False):
-            super().process_request(request, client_address)
-        else:
-            self.shutdown_request(request)
-
-    def process_request_thread(self, request: Any, client_address: Any) -> None:
-        try:
-            super().process_request_thread(request, client_address)
-        finally:
-            self._free.release()
-
-    def handle_error(self, request: Any, client_address: Any) -> None:
-        import sys
-
-        error = sys.exc_info()[1]
-        # A browser that has gone, or that asks for nothing, is no error.
-        if isinstance(error, Exception) and not isinstance(error, OSError):
-            self._failed(error)
-
-
 class _Handler(BaseHTTPRequestHandler):
     """Answers one request."""
 
     site: Site
     root: str
+    server: Connections
+    url: SplitResult
     server_version, sys_version = "polarcheck", ""
+
+    def parse_request(self) -> bool:
+        """Return True for a request; answer anything else."""
+        try:
+            if not super().parse_request():
+                return False
+            self.url = urlsplit(self.path)
+        except ValueError:  # also of http.client, for some types of content
+            self._refuse(HTTPStatus.BAD_REQUEST)
+            return False
+        return True
 
     def do_GET(self) -> None:
         """Answer with a page, or with events until the browser goes."""
@@ -205,9 +187,12 @@ class _Handler(BaseHTTPRequestHandler):
         if not self._is_from_here():
             self._refuse(HTTPStatus.MISDIRECTED_REQUEST)
             return
-        path = urlsplit(self.path).path
+        path = self.url.path
         if not secrets.compare_digest(path[: len(self.root)].encode(), self.root.encode()):
             self._refuse(HTTPStatus.NOT_FOUND)
+            return
+        if not self.server.admit(self.connection):
+            self._refuse(HTTPStatus.SERVICE_UNAVAILABLE)
             return
         name = path[len(self.root) :]
         if name.startswith(EVENTS) and self.site.get(name.removeprefix(EVENTS)) is not None:
@@ -226,7 +211,7 @@ class _Handler(BaseHTTPRequestHandler):
 
     def _is_from_here(self) -> bool:
         """Return True if the browser asked for this machine by its address, not by a name that leads here."""
-        host = self.headers.get("Host", "")
+        host = self.url.netloc or self.headers.get("Host", "")
         return host.rpartition(":")[0] in _HOSTS if ":" in host else host in _HOSTS
 
     def _begin(self, kind: str, length: int | None) -> None:
