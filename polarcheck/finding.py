@@ -326,6 +326,10 @@ class KnownStock(msgspec.Struct, frozen=True, kw_only=True):
     face_end_line: int | None
 
 
+#: What `Outline.cuts` has of a finding: Z [mm], and F in mm/min and mm/rev.
+LOWEST_Z, FASTEST, FASTEST_PER_REVOLUTION = "lowest_z", "fastest_f", "fastest_f_per_revolution"
+
+
 class Outline(msgspec.Struct, frozen=True):
     """
     The blocks of a file in short, by which a baseline finds its places again.
@@ -334,11 +338,18 @@ class Outline(msgspec.Struct, frozen=True):
     of: only hashes that are a multiple of this are listed, 1 for all.
     place_of_line: for lines of findings, and of the sections that they stand in, the index of the hash of the block
     there, or of the last one that is listed before it, -1 for none. Lines without a block, as of a comment, are absent.
+    cuts: by `key`, for findings of rules that are `gouges`, the lowest Z and the highest F of their blocks, if known.
     """
 
     hashes: list[int]
     of: int
     place_of_line: dict[int, int]
+    cuts: dict[str, dict[str, float]] = {}
+
+    @staticmethod
+    def key(finding: Finding) -> str:
+        """Return the key of a finding in `cuts`."""
+        return f"{finding.rule}:{finding.line}:{finding.column}"
 
 
 class Decided(msgspec.Struct, frozen=True, kw_only=True):

@@ -101,17 +101,17 @@ def moves_of(program: str | bytes, machine: str | Machine = profiles.DEFAULT, *t
 
 def report_of_example(example: Example, only: Sequence[str | Rule] = ()) -> FileReport:
     """What is reported of an example of a manual page, on its machine, with its tools and values."""
-    name, values = _asked_by(example)
+    name, values = settings_of(example)
     return report_of(example.program, name, *example.tools, changes=values["machine"], job=values["job"], only=only)
 
 
 def tables_of_example(example: Example) -> Tables:
     """The tables of an example likewise."""
-    name, values = _asked_by(example)
+    name, values = settings_of(example)
     return tables_of(example.program, name, *example.tools, changes=values["machine"], job=values["job"])
 
 
-def _asked_by(example: Example) -> tuple[str, dict[str, dict[str, Any]]]:
+def settings_of(example: Example) -> tuple[str, dict[str, dict[str, Any]]]:
     """The machine of an example, and its values for machine and job."""
     values: dict[str, dict[str, Any]] = {"machine": {}, "job": {}}
     for setting in example.settings:

@@ -162,12 +162,15 @@ def matches(entries: Iterable[Entry], both: Versions | None, report: FileReport)
     if both is not None and not both.is_same:
         return of_findings
     for key, of_key in numbers.items():
-        for number, match in _of_entry(known[key], both, {number: report.findings[number] for number in of_key}):
+        findings = {number: report.findings[number] for number in of_key}
+        for number, match in _of_entry(known[key], both, findings, report.outline):
             of_findings[number] = match
     return of_findings
 
 
-def _of_entry(entry: Entry, both: Versions | None, findings: Mapping[int, Finding]) -> Iterator[tuple[int, Match]]:
+def _of_entry(
+    entry: Entry, both: Versions | None, findings: Mapping[int, Finding], outline: Outline | UnsetType
+) -> Iterator[tuple[int, Match]]:
     """Yield the numbers of findings with the places of an entry: the same block first, then others that it can be."""
     places = dict(enumerate(entry.places or [Place()] * entry.count))
     left = dict(findings)
@@ -176,7 +179,7 @@ def _of_entry(entry: Entry, both: Versions | None, findings: Mapping[int, Findin
         for number, finding in findings.items():
             ats = [*islice((at for at in fitting.get(number, ()) if at in places), _TRIED)]
             if number in left and ats:
-                grown = {at: growth(entry, places[at], finding) for at in ats}
+                grown = {at: growth(entry, places[at], finding, outline) for at in ats}
                 at = min(ats, key=lambda at: bool(grown[at]))
                 yield number, Match(entry, at, grown[at])
                 del places[at], left[number]
@@ -236,7 +239,7 @@ def place_of(finding: Finding, outline: Outline | UnsetType) -> Place:
         at=lines.get(finding.line),
         section=lines.get(finding.section_line or 0) if in_section else None,
         blocks=blocks_of(finding),
-        values=values_of(finding),
+        values=values_of(finding, outline),
     )
 
 

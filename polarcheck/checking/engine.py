@@ -158,6 +158,7 @@ class Engine:
             listed = self._all_listed()
         # Pictures show the other places of a finding. Rules of a second engine, on allow comments, come to the first.
         self.tables.give("listed", {**self.tables.get("listed", {}), **listed})
+        self.tables.give("rows_in_calls", {**self.tables.get("rows_in_calls", {}), **self.rows_in_calls})
         roots = _roots(listed)
         following: dict[_Number, list[Finding]] = {}
         for number, root in roots.items():

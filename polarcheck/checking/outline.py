@@ -10,6 +10,7 @@ from collections.abc import Iterable, Iterator, Sequence
 import msgspec
 
 from polarcheck.checking.channels import first_runs
+from polarcheck.checking.cuts import cuts
 from polarcheck.checking.tables import Tables
 from polarcheck.finding import FileReport, Finding, Outline
 from polarcheck.reading.source import Source
@@ -36,7 +37,8 @@ def with_outline(report: FileReport, runs: Sequence[tuple[str, Tables]]) -> File
     texts: list[Text] = [tables["text"] for _, tables in first_runs(runs)]
     if not report.findings or len(texts[0].source.data) > _LARGEST:
         return report
-    return msgspec.structs.replace(report, outline=outline(_without_comments(texts), _lines(report.findings)))
+    of_file = outline(_without_comments(texts), _lines(report.findings))
+    return msgspec.structs.replace(report, outline=msgspec.structs.replace(of_file, cuts=cuts(runs)))
 
 
 def outline(text: str, lines: Iterable[int], most: int = MOST) -> Outline:

@@ -190,6 +190,7 @@ class Rule(Documented, frozen=True):
     is_advice: the rule is off unless the machine or the user names a severity for it.
     worse: the values of the message that grow where the fault grows worse; behind a minus those of which less is worse,
     and with a colon between them two whose distance counts (position:limit).
+    gouges: the tool cuts where it must not, so that the fault grows with the depth and F of its blocks.
     parameters: the names of the tables that the function compares.
     """
 
@@ -208,6 +209,7 @@ class Rule(Documented, frozen=True):
     worst: str
     is_advice: bool
     worse: tuple[str, ...]
+    gouges: bool
     parameters: tuple[str, ...]
 
     def __reduce__(self) -> tuple[Callable[[str], Rule], tuple[str]]:
@@ -269,6 +271,7 @@ def rule(
     worst: str = "",
     is_advice: bool = False,
     worse: tuple[str, ...] = (),
+    gouges: bool = False,
 ) -> Callable[[Callable[..., Any]], Rule]:
     """Decorate a function as a rule; see Rule. Its parameters name the tables that it compares."""
 
@@ -304,6 +307,7 @@ def rule(
             worst,
             is_advice,
             worse,
+            gouges,
             parameters,
         )
 

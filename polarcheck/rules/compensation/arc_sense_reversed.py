@@ -8,6 +8,8 @@ from polarcheck.checking.rule import WARNING, Mask, SameCircle, Senses, rule
     "{written_sense} turns a corner of {corner_of_sense} deg at its ends; {other_sense} {fit_of_sense}: write "
     "{other_sense}",
     values={"corner": "corner_at_arc", "code": "written_sense", "code_needed": "other_sense"},
+    worse=("corner",),
+    gouges=True,
     at=("arc_clockwise", "arc_counterclockwise"),
     once="motion",
     doubts=(("compensation", "loop"), ("move", "loop")),

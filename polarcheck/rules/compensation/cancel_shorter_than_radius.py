@@ -17,6 +17,7 @@ from polarcheck.checking.rule import (
     "offset cancel {fault}",
     values={"length": "ramp_length", "radius": "cutter_radius", "length_needed": "cutter_radius"},
     worse=("-length", "length_needed"),
+    gouges=True,
     at=("compensation_off",),
     needs=("compensation.radius", "path.length"),
     where="ramps.cancel_judged_by_radius",

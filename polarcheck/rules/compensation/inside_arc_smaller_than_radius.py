@@ -9,6 +9,7 @@ from polarcheck.checking.rule import ERROR, CutterCompensation, Mask, ToolCenter
     "R {compensation.radius:length/ramps.arc_radius} must be smaller",
     values={"arc_radius": "ramps.arc_radius", "radius": "cutter_radius"},
     worse=("-arc_radius", "radius"),
+    gouges=True,
     at=("arc_clockwise", "arc_counterclockwise", "R", "I", "J"),
     needs=("compensation.radius",),
     where="ramps.compensated",

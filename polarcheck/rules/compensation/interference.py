@@ -7,6 +7,8 @@ from polarcheck.checking.rule import ERROR, Mask, Ramps, ToolCenter, rule
     ERROR,
     "tool center would run backwards here: {misfit}",
     values={"radius": "cutter_radius"},
+    worse=("radius",),
+    gouges=True,
     needs=("compensation.radius",),
     where="ramps.compensated",
     once="mesh",

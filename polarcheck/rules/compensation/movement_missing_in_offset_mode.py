@@ -9,6 +9,7 @@ from polarcheck.checking.rule import WARNING, Mask, ToolCenter, rule
     "{why}; the tool center ends perpendicular to {move_before}, not where the next one needs it",
     values={"blocks": "idle_blocks", "limit": "idle_blocks_allowed"},
     worse=("blocks",),
+    gouges=True,
     needs=("compensation.radius",),
     where="ramps.compensated",
     doubts=(("metal", "pause"),),

@@ -7,6 +7,8 @@ from polarcheck.checking.rule import ERROR, Mask, Ramps, ToolCenter, rule
     ERROR,
     "paths of the tool center in this block and the next do not meet with R {compensation.radius:length}",
     values={"radius": "cutter_radius"},
+    worse=("radius",),
+    gouges=True,
     needs=("compensation.radius",),
     where="ramps.compensated",
     doubts=(("metal", "narrow loop"),),

@@ -7,6 +7,7 @@ from polarcheck.checking.rule import ERROR, CutterCompensation, Mask, ToolOffset
     ERROR,
     "offset {offset} {has_nose} nose type T{offsets.nose:.0f}; for a mill it must be {allowed}",
     values={"offset": "offset", "nose": "offsets.nose"},
+    gouges=True,
     at=("compensation_left", "compensation_right"),
     once="tool call",
     needs=("offsets.nose",),

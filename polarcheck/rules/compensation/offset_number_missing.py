@@ -7,6 +7,7 @@ from polarcheck.checking.rule import ERROR, CalledTools, CutterCompensation, Exe
     ERROR,
     "{side} begins and no tool offset is in force, so that R is 0",
     values={"code": "side"},
+    gouges=True,
     at=("compensation_left", "compensation_right"),
     once="tool call",
     follows={"section": ("offset-changed-in-polar",)},

@@ -15,6 +15,7 @@ from polarcheck.checking.rule import ERROR, Mask, Overcuts, rule
         "other_line": "line_of_overcut",
     },
     worse=("depth",),
+    gouges=True,
     needs=("compensation.radius",),
     where="compensation.offset_mode",
     worst="overcuts.depth",

@@ -16,6 +16,7 @@ from polarcheck.checking.rule import ERROR, Deviations, Mask, rule
         "cut_away": "cut_away",
     },
     worse=("largest", "too_much", "cut_away"),
+    gouges=True,
     needs=("compensation.radius",),
     where="deviations.where",
     follows={"file": (*FAULTS_OF_CONTOUR, *FAULTS_OF_METAL)},

@@ -8,6 +8,7 @@ from polarcheck.checking.rule import WARNING, CutterCompensation, Mask, Ramps, r
     WARNING,
     "{side} while {before} is in force; write G40 with a move between them",
     values={"code": "side", "other_code": "before"},
+    gouges=True,
     at=("compensation_left", "compensation_right"),
     subject="",
     doubts=(("compensation", UNIT),),

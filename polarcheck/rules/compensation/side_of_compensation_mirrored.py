@@ -8,6 +8,8 @@ from polarcheck.checking.rule import WARNING, Mask, Mirrored, rule
     "{side_in_force} has the cutter on the wrong side: both ramps come through the part, on the other side the whole "
     "contour is free; {remedy}{or_other_sense}",
     values={"code": "side", "radius": "cutter_radius"},
+    worse=("radius",),
+    gouges=True,
     at=("compensation_left", "compensation_right"),
     doubts=(("compensation", "compensation"),),
 )

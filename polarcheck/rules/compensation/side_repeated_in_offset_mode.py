@@ -9,6 +9,7 @@ from polarcheck.checking.rule import WARNING, CutterCompensation, Mask, Ramps, r
     "{side} again: it is in force already, and the tool center does not turn into the corner before "
     "it; delete it, or write {cancel} into the block that leaves the contour before it",
     values={"code": "side"},
+    gouges=True,
     at=("compensation_left", "compensation_right"),
     once="section",
     subject="",

@@ -16,6 +16,7 @@ from polarcheck.checking.rule import ERROR, Mask, Slots, rule
         "other_line": "line_of_slot",
     },
     worse=("depth", "-width"),
+    gouges=True,
     needs=("compensation.radius",),
     where="slots.compared",
     worst="slots.depth",

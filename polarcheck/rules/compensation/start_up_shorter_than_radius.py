@@ -8,6 +8,7 @@ from polarcheck.checking.rule import ERROR, CutterCompensation, Mask, Programmed
     "start-up {fault}{ramp_at_rest}",
     values={"code": "side", "length": "ramp_length", "radius": "cutter_radius", "length_needed": "cutter_radius"},
     worse=("-length", "length_needed"),
+    gouges=True,
     at=("compensation_left", "compensation_right"),
     needs=("compensation.radius", "path.length"),
     where="ramps.start_up_judged_by_radius",

@@ -14,6 +14,7 @@ from polarcheck.checking.rule import ERROR, Hits, Slots, rule
         "other_line": "line_swept",
     },
     worse=("depth",),
+    gouges=True,
     at=("compensation_off", "compensation_left", "compensation_right"),
     once="loop",
     worst="slots.ramp_depth",

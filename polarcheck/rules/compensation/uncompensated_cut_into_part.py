@@ -14,6 +14,7 @@ from polarcheck.checking.rule import ERROR, Hits, UncompensatedCuts, graded, rul
         "other_line": "line_of_cut",
     },
     worse=("depth",),
+    gouges=True,
     worst="uncompensated_cuts.graveness",
     once="loop",
     follows={

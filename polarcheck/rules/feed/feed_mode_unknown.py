@@ -8,6 +8,7 @@ from polarcheck.checking.rule import WARNING, Feeds, Mask, ProgrammedPath, rule
     "no code of feed per minute or per revolution stands before this F: where the lathe powers on with feed per "
     "revolution it is {feedrate.feed_number:length} for each turn; write {per_minute} at the head of the program",
     values={"feed_per_revolution": "feedrate.feed_number"},
+    worse=("feed_per_revolution",),
     at=("F",),
     once="program",
 )

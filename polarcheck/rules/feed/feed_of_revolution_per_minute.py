@@ -7,6 +7,7 @@ from polarcheck.checking.rule import WARNING, Feeds, Mask, ProgrammedPath, rule
     WARNING,
     "{feedrate.feed:feed} here: {left_over}; write an F per minute",
     values={"feed": "feedrate.feed"},
+    worse=("-feed",),
     at=("F", "feed_per_minute", "line", "arc_clockwise", "arc_counterclockwise"),
     once="feed",
 )

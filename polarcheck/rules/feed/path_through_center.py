@@ -3,7 +3,7 @@ from __future__ import annotations
 from polarcheck.checking.rule import ERROR, Arcs, Center, Mask, ProgrammedPath, rule
 
 
-@rule(ERROR, "tool center {meeting}", at=("X", "U", "C", "H"), doubts=(("move", "X before"),))
+@rule(ERROR, "tool center {meeting}", at=("X", "U", "C", "H"), doubts=(("move", "X before"),), gouges=True)
 def path_through_center(path: ProgrammedPath, center: Center, arcs: Arcs) -> Mask:
     """
     Path through the center of the C axis.

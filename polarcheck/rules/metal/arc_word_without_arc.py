@@ -7,6 +7,7 @@ from polarcheck.checking.rule import WARNING, ArcWords, Hits, rule
     WARNING,
     "{words_of_arc} in a straight move does nothing: {forgotten_arc}",
     values={"word": "words_of_arc"},
+    gouges=True,
     once="motion",
     subject="",
     doubts=(("compensation", "loop"),),

@@ -8,6 +8,8 @@ from polarcheck.checking.rule import WARNING, Mask, MisplacedRamps, rule
     "{cancel} takes back a compensation that nothing has begun: the contour before it is cut with the cutter center on "
     "the programmed path, {wrong_by}; write {left_or_right} into the block that leads to the contour",
     values={"code": "cancel", "radius": "radius_of_offset"},
+    worse=("radius",),
+    gouges=True,
     at=("compensation_off",),
     once="section",
     subject="",

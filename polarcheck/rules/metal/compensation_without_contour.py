@@ -8,6 +8,7 @@ from polarcheck.checking.rule import WARNING, Mask, MisplacedRamps, rule
     "{side} of this block is taken back by {early_cancel}: no block of a contour is cut with compensation; "
     "{where_ramps_belong}",
     values={"code": "side", "other_line": "line_of_cancel"},
+    gouges=True,
     at=("compensation_left", "compensation_right"),
     once="section",
     subject="",

@@ -8,6 +8,7 @@ from polarcheck.checking.rule import WARNING, Crossings, Mask, rule
     WARNING,
     "the contour {crosses_line}: look for a wrong point or sign, a wrong arc, or a block that stands twice",
     values={"plane_x": "crossing.real", "plane_c": "crossing.imag", "other_line": "line_crossed"},
+    gouges=True,
     once="loop",
     subject="side",
     doubts=(("compensation", "loop"),),

@@ -8,6 +8,7 @@ from polarcheck.checking.rule import WARNING, Hits, Machine, PolarMode, RapidCon
     "rapid traverse along the contour at Z{tip}{more}: the cutter goes through what it should mill; write {line_code} "
     "with an F",
     values={"z": "path.z"},
+    gouges=True,
     once="section",
     subject="",
     follows={"section": ("rapid-in-polar", "degrees-in-polar")},

@@ -8,6 +8,7 @@ from polarcheck.checking.rule import ERROR, Hits, Workpiece, graded, rule
     "{way} takes the cutter, R {cutter}, in rapid traverse into {bar_there} down to Z{depth}; {way_down}",
     values={"radius": "workpiece.radius", "z": "path.z", "stock": "bar_in_the_way"},
     worse=("-z",),
+    gouges=True,
     where="workpiece.is_mill",
     once="tool call",
     follows={

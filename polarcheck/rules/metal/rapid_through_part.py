@@ -8,6 +8,7 @@ from polarcheck.checking.rule import ERROR, Hits, Workpiece, graded, rule
     "{way} takes the cutter, R {cutter}, {height} {through} the finished part; retract Z above the part first",
     values={"radius": "workpiece.radius", "z": "height_of_move"},
     worse=("-z",),
+    gouges=True,
     where="workpiece.is_mill",
     once="tool call",
     follows={

@@ -8,6 +8,7 @@ from polarcheck.checking.rule import ERROR, Hits, Workpiece, graded, rule
     "{way} takes the cutter, R {cutter}, {height} {through} what stands of the bar ({bar}); {at_depth}",
     values={"radius": "workpiece.radius", "z": "height_of_move", "stock": "bar.known.smallest"},
     worse=("-z",),
+    gouges=True,
     where="workpiece.is_mill",
     once="tool call",
     follows={

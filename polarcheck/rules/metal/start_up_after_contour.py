@@ -8,6 +8,8 @@ from polarcheck.checking.rule import WARNING, Mask, MisplacedRamps, ProgrammedPa
     "{side} begins late: {block_before} cuts the contour without compensation, with the cutter center on the "
     "programmed path, {wrong_by}; {where_to_begin}",
     values={"code": "side", "radius": "radius_of_offset", "other_line": "line_before"},
+    worse=("radius",),
+    gouges=True,
     at=("compensation_left", "compensation_right"),
     once="section",
     subject="",

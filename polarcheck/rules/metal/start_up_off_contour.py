@@ -13,6 +13,7 @@ from polarcheck.checking.rule import WARNING, Mask, MisplacedRamps, rule
         "x_needed": "x_of_contour",
         "other_line": "line_of_end",
     },
+    gouges=True,
     at=("X", "U"),
     once="loop",
     subject="",

@@ -12,6 +12,7 @@ LAST_DIGIT = 0.1
     "{fewer}{machine.arcs.sweep_limit:whole/arcs.sweep} deg in one block; write it as several arcs{or_short_arc}",
     values={"sweep": "arcs.sweep", "limit": "machine.arcs.sweep_limit"},
     worse=("sweep",),
+    gouges=True,
     at=("X", "U", "C", "H", "I", "J", "R"),
     subject="move",
     follows={"block": ("arc-sense-reversed",)},

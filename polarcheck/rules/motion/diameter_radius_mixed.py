@@ -12,6 +12,7 @@ from polarcheck.checking.rule import WARNING, Arcs, Mask, Regularity, rule
     subject="",
     doubts=SECTION_READ_OTHERWISE,
     follows={"section": ("wrong-axis-address-in-polar",)},
+    gouges=True,
 )
 def diameter_radius_mixed(arcs: Arcs, regularity: Regularity) -> Mask:
     """

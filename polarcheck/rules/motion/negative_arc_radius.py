@@ -10,6 +10,7 @@ from polarcheck.checking.rule import WARNING, Arcs, Mask, Tangency, rule
     subject="",
     doubts=(("compensation", "loop"),),
     follows={"block": ("full-circle-by-radius", "arc-off-polar-plane", "arc-sweep-above-limit")},
+    gouges=True,
 )
 def negative_arc_radius(arcs: Arcs, tangency: Tangency) -> Mask:
     """

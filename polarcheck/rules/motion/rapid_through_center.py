@@ -19,6 +19,7 @@ from polarcheck.machines.modal import Motion
     "{word} in rapid traverse outside the polar mode goes across the center, to {path.x:diameter} in X, the other "
     "side of the spindle; write an X above 0",
     values={"word": "word", "x": "path.x"},
+    gouges=True,
     at=("X", "U"),
     follows={"block": ("travel-limit",)},
 )

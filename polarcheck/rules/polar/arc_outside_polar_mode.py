@@ -8,6 +8,7 @@ from polarcheck.checking.rule import WARNING, Mask, Procedure, rule
     "arc with X and {rotary} outside the polar mode: {rotary} is an angle here, and no plane has both axes; write "
     "{switch_on} before the contour",
     values={"code_needed": "switch_on"},
+    gouges=True,
     at=("arc_clockwise", "arc_counterclockwise"),
     once="tool call",
     follows={"program": ("polar-code-of-another-control", "polar-switch-unknown"), "file": ("other-dialect",)},

@@ -8,6 +8,7 @@ from polarcheck.checking.rule import WARNING, Mask, Procedure, rule
     "contour with X and {rotary} outside the polar mode: {rotary} is an angle here, and X a place of the machine "
     "axis; write {switch_on} before it",
     values={"code_needed": "switch_on"},
+    gouges=True,
     once="tool call",
     follows={
         "tool call": ("polar-never-entered", "arc-outside-polar-mode"),

@@ -19,6 +19,7 @@ from polarcheck.machines.modal import Motion
     WARNING,
     "{others} in one block in the polar mode: {what_z_does}; write Z in a block of its own",
     values={"word": "others"},
+    gouges=True,
     at=("X", "U", "C", "H", "Y", "V", "Z", "W"),
 )
 def z_with_plane_axis(

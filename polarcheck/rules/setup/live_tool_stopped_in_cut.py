@@ -7,6 +7,7 @@ from polarcheck.checking.rule import ERROR, Entry, Hits, Machine, ModalStates, P
     ERROR,
     "the live tool is not running in this cutting move; {codes} is missing{or_started_by}",
     values={"code_needed": "codes"},
+    gouges=True,
     at=("line", "arc_clockwise", "arc_counterclockwise"),
     once="live tool code",
     follows={"section": ("main-spindle-running-at-entry",)},
