@@ -95,29 +95,27 @@ def create(program: str, *options: str) -> None:
 def told(*options: str) -> list[str]:
     """What of each finding is worse, by its rule; "new" for one that is not known."""
     result = call("check", "a.nc", "--baseline", FILE, "--format", "concise", options=(*OPTIONS, *options))
-    return [
-        re.sub(r".*?(?:; worse than in the baseline: (.*))? \[([a-z-]+)\]$", lambda said: f"{said[2]}: {said[1] or 'new'}", line)
-        for line in result.stdout.splitlines()
-    ]  # fmt: skip
+    said = re.findall(r"(?m)(?:; worse than in the baseline: (.*))? \[([a-z-]+)\]$", result.stdout)
+    return [f"{rule}: {growth or 'new'}" for growth, rule in said]
 
 
 SUBS = ("--subprograms", "subs")
 SIEMENS = ("--machine", "siemens-transmit")
 Program = Callable[[str, str], str]
 Numbers = tuple[str, str]
-CENTER = "path-through-center"
+CENTER, NARROW = "path-through-center", "interference"
 
 
 @pytest.mark.parametrize(
     ("program", "old", "new", "expected", "options"),
     [
-        (narrow, ("-.5", "150"), ("-20.", "5000"), "interference: known with Z -0.5, now -20, known with F 150, now 5000", ()),
-        (narrow, ("-.5", "150"), ("-.52", "150"), "interference: known with Z -0.5, now -0.52", ()),
-        (narrow, ("-.5", "150"), ("-.5", "170"), "interference: known with F 150, now 170", ()),
+        (narrow, ("-.5", "150"), ("-9.", "900"), f"{NARROW}: known with Z -0.5, now -9, known with F 150, now 900", ()),
+        (narrow, ("-.5", "150"), ("-.52", "150"), f"{NARROW}: known with Z -0.5, now -0.52", ()),
+        (narrow, ("-.5", "150"), ("-.5", "170"), f"{NARROW}: known with F 150, now 170", ()),
         (narrow, ("-.5", "150"), ("-.5", "152"), "", ()),
         (narrow, ("-.5", "150"), ("-.501", "150."), "", ()),
         (narrow, ("-.5", "150"), ("-.3", "20"), "", ()),
-        (narrow, ("48.", "150"), ("47.9", "150"), "interference: known with Z 48, now 47.9", ()),
+        (narrow, ("48.", "150"), ("47.9", "150"), f"{NARROW}: known with Z 48, now 47.9", ()),
         (through, ("-.5", "200"), ("-20.", "200"), f"{CENTER}: known with Z -0.5, now -20", ()),
         (through, ("-20.", "200"), ("-.5", "100"), "", ()),
         (through_inch, ("-.02", "8."), ("-.0201", "8.1"), "", ()),
@@ -159,7 +157,7 @@ def test_a_baseline_without_these_numbers_compares_the_others() -> None:
     assert Path(FILE).read_text() != text
     write(a=narrow("-20.", "5000"))
     assert told() == []
-    assert told("--tool", "1:radius=5") == ["interference: known with radius 4, now 5"]
+    assert told("--tool", "1:radius=5") == [f"{NARROW}: known with radius 4, now 5"]
     assert call("baseline update", "a.nc", "-q", "-o", FILE, options=OPTIONS).output == ""
     (entry,) = read(Path(FILE)).entries
     assert entry.places[0].values == {"radius": 4.0, "lowest_z": -20.0, "fastest_f": 5000.0}
@@ -170,6 +168,18 @@ def test_what_follows_may_not_go_deeper_under_its_cause() -> None:
     create(text)
     write(a=text.replace("-.5", "-5."))
     assert f"c-elsewhere-at-entry: known with {CENTER}.Z -0.5, now -5" in told()
+
+
+PLUNGE = (
+    "(BAR DIA 40)\nT0101\nG98 G0 X24. C0 Z2.\n{down}G12.1\nG1 X20. F200\nC3.\nX24.\nZ2. F1000\nG13.1\nG0 Z5.\nM30\n"
+)
+
+
+def test_a_number_that_two_names_have_is_said_once() -> None:
+    create(PLUNGE.format(down="#1=-1.\nZ#1\n"))
+    write(a=PLUNGE.format(down="#1=-9.\nZ#1\n"))
+    (line,) = (line for line in told() if line.startswith("rapid-plunge-into-stock"))
+    assert line == "rapid-plunge-into-stock: known with Z -1, now -9"
 
 
 def test_where_a_number_is_not_known_any_more_it_is_worse() -> None:

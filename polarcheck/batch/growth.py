@@ -21,7 +21,7 @@ LESS, _FROM = "-", ":"
 #: The numbers of rules that are `gouges`, with the same sign.
 _OF_CUTS = (f"{LESS}{LOWEST_Z}", FASTEST, FASTEST_PER_REVOLUTION)
 #: The last words of a name in messages.
-_WORDS = {LOWEST_Z: "Z", FASTEST: "F", FASTEST_PER_REVOLUTION: "F per revolution"}
+_WORDS = {"z": "Z", LOWEST_Z: "Z", FASTEST: "F", FASTEST_PER_REVOLUTION: "F per revolution"}
 
 
 def values_of(finding: Finding, outline: Outline | UnsetType) -> dict[str, float]:
