@@ -112,6 +112,27 @@ def test_a_commit_that_changes_the_lathe_checks_all_programs(tmp_path: Path, mon
         assert commit(tmp_path) == (False, {"polarcheck": "Failed", "polarcheck-config": "Failed"})
 
 
+@pytest.mark.parametrize("args", [[], ["--strict", "--machine", "fanuc-30i"]])
+@pytest.mark.parametrize(
+    "name",
+    ["--fail-on=never", "--no-config", "--select=overcut", "-ojson:NOTES", "--fix", "--version", "-", "--", "--strict"],
+)
+def test_no_name_of_a_file_is_an_option_of_the_hook(
+    name: str, args: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    with_hooks(tmp_path, **{one: {"args": args} for one in hooks()})
+    for path, text in (("a.nc", RAPID), ("NOTES", "mine"), (f"./{name}", ""), ("polarcheck.toml", f"{FAULTS_ONLY}#")):
+        Path(path).write_text(text)
+    assert commit(tmp_path) == (False, {"polarcheck": "Failed", "polarcheck-config": "Failed"})
+    assert (Path("NOTES").read_text(), Path("a.nc").read_text()) == ("mine", RAPID)
+    Path("a.nc").write_text(GOOD)
+    assert commit(tmp_path)[1]["polarcheck"] == "Failed"
+    Path("folder").mkdir()
+    Path(f"./{name}").rename(Path("folder", name))
+    assert commit(tmp_path) == (True, {"polarcheck": "Passed", "polarcheck-config": "Passed"})
+
+
 def test_a_commit_that_changes_a_subprogram_or_an_offset_table(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     with_hooks(tmp_path)

@@ -17,7 +17,7 @@ from typing import Any
 import click
 
 from polarcheck import __version__, ending
-from polarcheck.commands import options, signals
+from polarcheck.commands import options, planted_names, signals
 from polarcheck.commands.exit_codes import BUG, CLEAN, COULD_NOT_RUN
 from polarcheck.commands.output import (
     COLUMNS,
@@ -122,11 +122,18 @@ class Commands(click.Group):
     def resolve_command(
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
-        """Return the named command; suggest `check` if a program is named in its place."""
+        """
+        Return the named command; suggest `check` if a program is named in its place.
+
+        Raises UsageError for an option that is the name of a file, too.
+        """
         name = args[0]
         if name not in NAMES and (any(mark in name for mark in "./\\") or name == "-" or os.path.exists(name)):  # noqa: PTH110  Path.exists raises for some names
             ctx.fail(f"{name} is no command; did you mean `polarcheck check {' '.join(args)}`?")
-        return super().resolve_command(ctx, args)
+        resolved, command, remaining = super().resolve_command(ctx, args)
+        if command is not None and not ctx.resilient_parsing:  # of shell completion
+            planted_names.refuse(command, remaining)
+        return resolved, command, remaining
 
     def invoke(self, ctx: click.Context) -> Any:
         """Run a command; an unexpected exception is a bug of polarcheck, never a finding."""
