@@ -161,6 +161,7 @@ def _run(
     from polarcheck.commands.progress import Bar
     from polarcheck.memory import keep_within_memory
     from polarcheck.reading import files
+    from polarcheck.reading.excerpt import head
     from polarcheck.settings.of_programs import OfPrograms, Options
 
     keep_within_memory()
@@ -183,7 +184,7 @@ def _run(
     updated, summary = make(known, contents, checked, tasks, reason)
     files.write(target, baseline_file.text_of(updated))
     if not quiet:
-        show(f"{files.shown(str(target))}: {summary}\n")
+        show(f"{head(files.shown(str(target)))}: {summary}\n")
     return status
 
 

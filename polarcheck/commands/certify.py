@@ -118,7 +118,9 @@ def _certify(
     certificate = certifying.certificate(loaded, {name: certified[name] for name in certified if name in chosen})
     for other, output in outputs:
         files.write(output, _report(certificate, other))
-    show(_report(certificate, form, columns(), in_color(color)))
+    is_colored = in_color(color)
+    report = _report(certificate, form, columns(), is_colored)
+    show(report if form == "text" else report.encode(), is_colored or None)
     counts = certificate.summary
     if counts.fail or (strict and counts.missing):
         status = max(status, FINDINGS)
@@ -158,30 +160,30 @@ def _update(loaded: Loaded, certified: dict[str, Certified], chosen: frozenset[s
     return CLEAN
 
 
-def _report(certificate: Certificate, form: str, columns: int = COLUMNS, is_colored: bool = False) -> bytes:
+def _report(certificate: Certificate, form: str, columns: int = COLUMNS, is_colored: bool = False) -> str:
     """Return the report in a format."""
     if form == "html":
         from polarcheck.certification.html import html
 
-        return html(certificate).encode()
+        return html(certificate)
     if form == "json":
         from polarcheck.reports.json import encoded
 
-        return f"{encoded(certificate, indent=2)}\n".encode()
+        return f"{encoded(certificate, indent=2)}\n"
     from polarcheck.certification.text import text
     from polarcheck.pictures.painting import plain
     from polarcheck.reports import painted
 
-    return text(certificate, columns, painted if is_colored else plain).encode()
+    return text(certificate, columns, painted if is_colored else plain)
 
 
 def _init(folder: Path, machines: tuple[str, ...]) -> int:
     from polarcheck.certification import suite
     from polarcheck.commands.output import show
-    from polarcheck.reading.excerpt import visible
+    from polarcheck.reading.excerpt import head
 
     written = suite.write(folder, machines)
-    manifest, words, *drawings = map(visible, written)
+    manifest, words, *drawings = map(head, written)
     show(
         f"{manifest}: the manifest; fill in the title, and the file names of the programs\n"
         f"{words}: the jobs in words, to be programmed once and posted for each control\n"

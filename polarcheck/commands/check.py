@@ -227,7 +227,8 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
         tasks = with_own_settings(tasks)
     tasks = narrowed(tasks, arguments.diff_base, arguments.changed, arguments.max_size, not arguments.quiet)
     if arguments.lists_files:
-        show(show_files.text(arguments.form or "text", tasks, skipped).encode())
+        listed = show_files.text(arguments.form or "text", tasks, skipped)
+        show(listed if arguments.form in (None, "text") else listed.encode())
         return faults.report()
     is_colored = in_color(arguments.color)
     shown_in = fixing.Shown(arguments.quiet, is_colored, arguments.debug, bool(arguments.outputs))

@@ -98,7 +98,7 @@ def _compare(
     from polarcheck.commands.running import Faults
     from polarcheck.memory import keep_within_memory
     from polarcheck.pictures.painting import plain
-    from polarcheck.reading.excerpt import visible
+    from polarcheck.reading.excerpt import head
     from polarcheck.reports import painted
     from polarcheck.reports.pages import comparison as page
     from polarcheck.revisions.report import DIFFERS, NOT_COMPARED
@@ -109,12 +109,7 @@ def _compare(
     if os.devnull in (pair.old, pair.new):
         # git has a new or a deleted file.
         side = "new" if pair.old == os.devnull else "old"
-        show(f"{visible(pair.named)}: only in the {side} revision\n".encode())
-        return CLEAN if is_git else FINDINGS
-    if os.devnull in (pair.old, pair.new):
-        # git has a new or a deleted file.
-        side = "new" if pair.old == os.devnull else "old"
-        show(f"{visible(pair.named)}: only in the {side} revision\n".encode())
+        show(f"{head(pair.named or getattr(pair, side))}: only in the {side} revision\n")
         return CLEAN if is_git else FINDINGS
     faults = Faults(bool(arguments.pop("debug", False)))
     settings = [
@@ -135,8 +130,8 @@ def _compare(
     else:
         has_color = in_color(color)
         for each, inch in found:
-            show(page.text(each, inch=inch, paint=painted if has_color else plain).encode(), has_color or None)
-        show(page.single_files(only_old, only_new).encode())
+            show(page.text(each, inch=inch, paint=painted if has_color else plain), has_color or None)
+        show(page.single_files(only_old, only_new))
     verdicts = {each.verdict for each, _ in found}
     status = FINDINGS if DIFFERS in verdicts or only_old or only_new else CLEAN
     status = max(status, COULD_NOT_RUN if NOT_COMPARED in verdicts else CLEAN, faults.report())

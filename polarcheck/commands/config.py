@@ -47,7 +47,8 @@ def show(ctx: click.Context, /, path: str, **arguments: Any) -> None:
     polarcheck config show O1234.NC
     polarcheck config show O1234.NC --tool 8:radius=4
     """
-    print_out(_shown(ctx, path, **arguments).encode())
+    text = _shown(ctx, path, **arguments)
+    print_out(text if arguments["form"] == "text" else text.encode())
 
 
 def _shown(

@@ -70,7 +70,7 @@ def _show_table(title: str, machine: str, runs: list[Tables], form: str) -> None
         return
     report = FeedReport(schema=1, path=title, machine=machine, tables=[feed_table(tables) for tables in runs])
     encoded = msgspec.json.format(msgspec.json.encode(report), indent=2) + b"\n"
-    show(encoded if form == "json" else pages.text(report).encode())
+    show(encoded if form == "json" else pages.text(report))
 
 
 def _show_diff(title: str, data: bytes, runs: list[Tables], encoding: str | None) -> int:
@@ -80,7 +80,7 @@ def _show_diff(title: str, data: bytes, runs: list[Tables], encoding: str | None
     if edited is None:
         say(f"{title}: its encoding does not give all characters back as they are")
         return COULD_NOT_RUN
-    show("".join(f"{line}\n" for line in edited.difference).encode())
+    show("".join(f"{line}\n" for line in edited.difference))
     for line in edited.lowest:
         warn(f"{title}:{line}: its runs need different F, and it has the lowest of them")
     for line in edited.left:

@@ -61,7 +61,7 @@ def init(
         ctx.exit(_parts(parts, debug=options.DEBUG in ctx.meta, **arguments))
     _refuse(ctx, written & arguments.keys() - {"machine"}, "is for --part")
     lines = _init(folder, arguments["machine"], extensions, schema, quiet)
-    show("".join(f"{line}\n" for line in lines).encode())
+    show("".join(f"{line}\n" for line in lines))
 
 
 def _refuse(ctx: click.Context, names: Set[str], reason: str) -> None:
@@ -103,7 +103,7 @@ def _init(folder: str, machine: str | None, extensions: tuple[str, ...], schema:
     from polarcheck.commands.progress import Bar
     from polarcheck.machines.job import FILE_NAME
     from polarcheck.reading import files, walking
-    from polarcheck.reading.excerpt import visible
+    from polarcheck.reading.excerpt import head, visible
     from polarcheck.reports.pages import new_job
     from polarcheck.reports.pages import schema as schemas
     from polarcheck.settings import job_files
@@ -129,12 +129,12 @@ def _init(folder: str, machine: str | None, extensions: tuple[str, ...], schema:
     files.write(path, new_job.text(results, written, outer, schema, extensions))
     if is_new:
         files.write(schema_path, schemas.text("job"))
-    lines = [f"{files.shown(str(path))} written: {new_job.summary(results)}"]
+    lines = [f"{head(files.shown(str(path)))} written: {new_job.summary(results)}"]
     if schema:
         lies = "beside it, for editors" if is_new else "is there already, and stays as it is"
-        lines.append(f"{files.shown(str(schema_path))} {lies}")
+        lines.append(f"{head(files.shown(str(schema_path)))} {lies}")
     if outer:
-        lines.append(f"{outer} has applied here so far: `extend` in the new file lets it apply still")
+        lines.append(f"{head(outer)} has applied here so far: `extend` in the new file lets it apply still")
     lines += ["still to fill in:", *(f"  {line}" for line in new_job.left_open(results, written))]
     lines.append(f"then: polarcheck check {files.shown(folder)}")
     return [visible(line) for line in lines]

@@ -35,6 +35,7 @@ def machines(name: str | None, lathe: str | None, inherits: str | None, *, short
     polarcheck machines new NL2000 --from fanuc-30i --short    the same in ten answers
     """
     from polarcheck.machines import profiles
+    from polarcheck.reading.excerpt import head
     from polarcheck.reports.pages import manual
 
     if name in ("new", "check") and not lathe:
@@ -46,7 +47,7 @@ def machines(name: str | None, lathe: str | None, inherits: str | None, *, short
     if name == "check":
         return _check(str(lathe))
     if name == "new":
-        path = _write(str(lathe), inherits or profiles.DEFAULT, short=short)
+        path = head(str(_write(str(lathe), inherits or profiles.DEFAULT, short=short)))
         show(
             f"{path} written; take the # from what you answer, then `polarcheck machines check {path}`;"
             f" check programs with --machine {path}\n"

@@ -28,11 +28,16 @@ def show(text: str | bytes, color: bool | None = None, to_error: bool = False) -
     """
     Write to standard output; return False once the reader has gone, and writing more is useless.
 
+    text: a str is for people, and no line of it is a command to the log of a CI job; bytes are data, as they are.
     color: keep the escapes for color; None keeps them on a terminal only.
     to_error: write to standard error, since standard output holds something else.
 
     Raises OutputError if it cannot be written: a full disk, a closed output.
     """
+    if isinstance(text, str) and ("::" in text or "##" in text):
+        from polarcheck.reading.excerpt import without_commands
+
+        text = without_commands(text)
     if to_error:
         with contextlib.suppress(OSError, ValueError):
             click.echo(text, nl=False, err=True, color=color)
@@ -58,7 +63,7 @@ def show_diff(lines: Sequence[str], color: bool) -> None:
     if color:
         lines = [f"\x1b[{_OF_DIFF[line[0]]}m{line}\x1b[0m" if line[0] in _OF_DIFF else line for line in lines]
     if lines:
-        show("".join(f"{line}\n" for line in lines).encode(), color or None)
+        show("".join(f"{line}\n" for line in lines), color or None)
 
 
 def nobody_reads(error: OSError) -> bool:

@@ -66,7 +66,6 @@ def _part(
     else:
         running.warn_unused(applies.tools, checked.called)
         running.warn_without_part(applies.tolerance, tasks)
-    show(
-        (part_lines.json(checked.readable) if form == "json" else part_lines.text(checked.readable, columns())).encode()
-    )
+    files = checked.readable
+    show(part_lines.json(files).encode() if form == "json" else part_lines.text(files, columns()))
     return status

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import shutil
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import chain
 from typing import TYPE_CHECKING, Any
 
@@ -92,13 +92,14 @@ def trace(
         items = trace_report.without_lines(items) if golden else items
         if form == "json":
             machine = program.settings.machine_id
-            _show_all(trace_report.as_json(items, program.path, machine, which or "tool", golden))
+            pieces = trace_report.as_json(items, program.path, machine, which or "tool", golden)
         else:
-            _show_all((executed.as_jsonl if form == "jsonl" else executed.as_csv)(items))
+            pieces = (executed.as_jsonl if form == "jsonl" else executed.as_csv)(items)
+        _show_all(piece.encode() for piece in pieces)
         return status
 
 
-def _show_all(pieces: Iterator[str]) -> None:
+def _show_all(pieces: Iterable[str | bytes]) -> None:
     """Show text piece by piece, until nobody reads it any more."""
     for piece in pieces:
         if not show(piece):

@@ -11,8 +11,8 @@ from polarcheck.reading.names import code, with_characters
 
 _TAB = 4
 _CUT = "..."
-#: Commands in the log of a CI job: `::` at the head of a line, also behind blanks, and `##[` anywhere.
-_COMMAND = re.compile(r"^([^\S\n]*+):(?=:)|##\[", re.MULTILINE)
+#: Commands in the log of a CI job: `::` at the head of a line, also behind blanks, and `##[` or `##vso[` anywhere.
+_COMMAND = re.compile(r"^([^\S\n]*+):(?=:)|##([A-Za-z]*+)\[", re.MULTILINE)
 #: How many characters before the fault are shown of a line that is too long.
 _BEFORE = 24
 
@@ -38,7 +38,12 @@ def visible(text: str) -> str:
 
 def without_commands(text: str) -> str:
     """Visible lines without commands for the log of a CI job: `::` at a head is `\\x3a:`, `##[` is `##\\x5b`."""
-    return _COMMAND.sub(_spelled_command, text) if "::" in text or "##[" in text else text
+    return _COMMAND.sub(_spelled_command, text) if "::" in text or "##" in text else text
+
+
+def head(path: str) -> str:
+    """Return a path, visible, for the head of a line: one that a CI log would take for a command begins with `./`."""
+    return without_commands(visible(f"./{path}" if path.lstrip().startswith("::") else path))
 
 
 def shortened(text: str, length: int) -> str:
@@ -89,7 +94,7 @@ def _expanded(character: str, width: int) -> str:
 
 
 def _spelled_command(match: re.Match[str]) -> str:
-    return "##\\x5b" if match[1] is None else f"{match[1]}\\x3a"
+    return f"##{match[2]}\\x5b" if match[1] is None else f"{match[1]}\\x3a"
 
 
 def _shown(character: str) -> str:

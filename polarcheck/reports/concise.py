@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from polarcheck.finding import UNREADABLE
-from polarcheck.reading.excerpt import visible, without_commands
+from polarcheck.reading.excerpt import head, visible, without_commands
 from polarcheck.reports import Background, Parts, of_each, painted
 
 if TYPE_CHECKING:
@@ -44,7 +44,7 @@ def lines(file: FileReport, silenced: bool, color: bool = False) -> Iterator[str
 def unreadable_line(file: FileReport, color: bool = False) -> str:
     """Return the line of a file that could not be read or checked."""
     severity = painted("error", "error") if color else "error"
-    return without_commands(f"{_path(file.path)}:1:1: {severity}: {visible(f'{file.reason} [{UNREADABLE}]')}")
+    return without_commands(f"{head(file.path)}:1:1: {severity}: {visible(f'{file.reason} [{UNREADABLE}]')}")
 
 
 def silenced_line(file: FileReport, finding: Silenced) -> str:
@@ -68,9 +68,4 @@ def line(file: FileReport, finding: Finding, color: bool = False) -> str:
 
 def _place(path: str, finding: Finding | Silenced) -> str:
     """Return the position of a finding."""
-    return f"{_path(path)}:{finding.line}:{finding.column}"
-
-
-def _path(path: str) -> str:
-    """Return a path; one that a CI log would take for a command is prefixed with `./`."""
-    return visible(f"./{path}" if path.lstrip().startswith("::") else path)
+    return f"{head(path)}:{finding.line}:{finding.column}"

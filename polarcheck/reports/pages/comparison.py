@@ -9,7 +9,7 @@ import msgspec
 from polarcheck import __version__
 from polarcheck.checking.phrases.part import Sizes
 from polarcheck.pictures.painting import Paint
-from polarcheck.reading.excerpt import visible
+from polarcheck.reading.excerpt import head, visible
 from polarcheck.revisions.report import (
     DIFFERS,
     NOT_COMPARED,
@@ -44,7 +44,7 @@ def text(comparison: Comparison, *, inch: bool, paint: Paint) -> str:
 def _lines(comparison: Comparison, sizes: Sizes, paint: Paint) -> Iterator[str]:
     old, new = comparison.old, comparison.new
     headline = paint(_STYLES[comparison.verdict], _headline(comparison, sizes))
-    yield f"{visible(old.path)} | {visible(new.path)}: {headline}"
+    yield f"{head(old.path)} | {visible(new.path)}: {headline}"
     if old.machine != new.machine:
         yield f"  machines: {visible(old.machine)} | {visible(new.machine)}"
     for section in comparison.sections:
@@ -128,5 +128,5 @@ def _difference(difference: Difference) -> str:
 
 def single_files(only_old: Sequence[str], only_new: Sequence[str]) -> str:
     """Return a line for each program of two folders that the other one does not have."""
-    lines = [f"{visible(name)}: only in the old folder\n" for name in only_old]
-    return "".join([*lines, *(f"{visible(name)}: only in the new folder\n" for name in only_new)])
+    lines = [f"{head(name)}: only in the old folder\n" for name in only_old]
+    return "".join([*lines, *(f"{head(name)}: only in the new folder\n" for name in only_new)])

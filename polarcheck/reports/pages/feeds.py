@@ -11,7 +11,7 @@ from polarcheck.checking.tables import Tables
 from polarcheck.columns.trace import Trace
 from polarcheck.feed_table.table import FeedReport, FeedRow, FeedTable, FeedTotal, highest
 from polarcheck.machines.modal import MM_PER_INCH
-from polarcheck.reading.excerpt import shortened, visible, without_commands
+from polarcheck.reading.excerpt import head, shortened, visible
 from polarcheck.table import dynamics as reasons
 from polarcheck.table.dynamics import Dynamics
 from polarcheck.table.feed_curve import FeedCurve, feed_curve
@@ -33,11 +33,11 @@ def text(report: FeedReport) -> str:
     """Return the tables of a file, for people, in the units of the program."""
     parts = []
     for table in report.tables:
-        name = f"{visible(report.path)}{f' {table.channel}' if table.channel else ''}"
+        name = f"{head(report.path)}{f' {table.channel}' if table.channel else ''}"
         parts.append(
             "\n".join([f"{name} on {visible(report.machine)}: {_limits(table)}", *_table(table), *_totals(table)])
         )
-    return without_commands("\n\n".join(parts) + "\n")
+    return "\n\n".join(parts) + "\n"
 
 
 def _limits(table: FeedTable) -> str:

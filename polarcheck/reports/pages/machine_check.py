@@ -12,7 +12,7 @@ from polarcheck.machines.m_codes import SWITCHED
 from polarcheck.machines.machine import Machine, meanings
 from polarcheck.machines.profiles import Profile, names
 from polarcheck.machines.written_codes import is_list, without_effect
-from polarcheck.reading.excerpt import visible
+from polarcheck.reading.excerpt import head, visible
 
 if TYPE_CHECKING:
     from polarcheck.checking.rule import Rule
@@ -57,7 +57,7 @@ def text(profile: Profile, rules: Mapping[str, Rule]) -> str:
     doubts = [key for key, origin in profile.origins.items() if origin.doubtful]
     in_doubt = f"{len(doubts)}, marked with ? by `polarcheck machines {profile.name}`" if doubts else "none"
     values = "1 value of its own" if count == 1 else f"{count} values of its own"
-    lines = [f"{profile.name}: sound, {behind}{values}; in doubt: {in_doubt}"]
+    lines = [f"{head(profile.name)}: sound, {behind}{values}; in doubt: {in_doubt}"]
     remarks = _remarks(profile, rules) if profile.chain[0] not in names() else ()
     for title, entries in (("to look at", remarks), ("still to be answered", _open(profile))):
         listed = [f"  {line}" for line in entries]

@@ -9,7 +9,7 @@ from typing import Any
 import msgspec
 
 from polarcheck.finding import FileReport
-from polarcheck.reading.excerpt import visible, without_commands
+from polarcheck.reading.excerpt import head, visible
 from polarcheck.reports.json import encoded
 
 #: The rule that compares a part with its drawing.
@@ -48,7 +48,7 @@ def text(files: Sequence[FileReport], columns: int) -> str:
     """Return for each file its path, the part, where it differs from the drawing, and what could not be judged."""
     shown = []
     for file in files:
-        shown.append(visible(file.path))
+        shown.append(head(file.path))
         labelled = [*part_lines(file)]
         labelled += [(finding.severity, f"line {finding.line}: {finding.full_message}") for finding in file.findings]
         reasons = dict.fromkeys(gap.reason for gap in file.not_evaluated if gap.matters)
@@ -59,7 +59,7 @@ def text(files: Sequence[FileReport], columns: int) -> str:
             shown.append(f"{label:>{_GUTTER}}   {first}")
             shown += [" " * (_GUTTER + 3) + line for line in more]
         shown.append("")
-    return without_commands("".join(line + "\n" for line in shown))
+    return "".join(line + "\n" for line in shown)
 
 
 def json(files: Sequence[FileReport]) -> str:

@@ -11,7 +11,7 @@ from polarcheck.pictures.face_view import face_view
 from polarcheck.pictures.painting import Paint, plain
 from polarcheck.pictures.section_view import SectionView
 from polarcheck.pictures.strip import strip
-from polarcheck.reading.excerpt import visible
+from polarcheck.reading.excerpt import head
 
 #: The largest picture in columns and rows, and the rows of the strip.
 _COLUMNS, _ROWS, _STRIP_ROWS = 64, 24, 5
@@ -29,7 +29,7 @@ def path_view(view: SectionView, columns: int, *, dots: bool, paint: Paint = pla
     room = columns - len(_INDENT)
     face = face_view(view.programmed, view.tool, view.marks, min(room, _COLUMNS), _ROWS, dots=dots, paint=paint)
     curve = strip(view.time, view.rate, view.limit, min(room, _COLUMNS), _STRIP_ROWS, dots=dots, paint=paint)
-    yield paint("message", f"{visible(path)}: {view.title}" if path else view.title)
+    yield paint("message", f"{head(path)}: {view.title}" if path else view.title)
     legend, remarks = (
         [line for text in texts for line in textwrap.wrap(text, room)]
         for texts in (_legend(view, dots), (_rate(view), *view.remarks))
