@@ -6,7 +6,10 @@ from collections.abc import Collection, Mapping, Sequence
 
 import msgspec
 
+from polarcheck import bounded
 from polarcheck.batch.tasks import Task, outcome
+from polarcheck.certification import quoting
+from polarcheck.certification.loading import Loaded
 from polarcheck.checking import check
 from polarcheck.checking.settings import Settings
 from polarcheck.errors import PolarcheckError, SourceError
@@ -26,6 +29,7 @@ class CaseRun(msgspec.Struct, frozen=True):
     sense: 1 where C of the machine grows with the angle on the plane, -1 where it falls.
     unknown: the radii that are not known, in one line; empty if none is.
     bug: an internal error.
+    outside: the files it rests on whose text is not quoted, since they lie outside of the folders of a certification.
     """
 
     report: FileReport | None = None
@@ -34,18 +38,38 @@ class CaseRun(msgspec.Struct, frozen=True):
     sense: int = 1
     unknown: str = ""
     bug: Exception | None = None
+    outside: Sequence[str] = ()
 
 
-def run(path: str, settings: Settings, most: int, paths: Collection[str]) -> CaseRun:
+def run(path: str, settings: Settings, most: int, paths: Collection[str], loaded: Loaded) -> CaseRun:
     """
     Check the program at a path, and execute it if its moves are asked for.
 
-    most: its largest size [bytes]. paths: names of the paths whose moves are asked for.
+    most: its largest size [bytes]. paths: names of the paths whose moves are asked for. loaded: the manifest.
     """
     try:
         data = files.read_program(path, most)
     except SourceError as error:
         return CaseRun(failure=str(error))
+    with bounded.recorded() as seen:
+        of_case = _checked(path, data, settings, most, paths)
+    outside = loaded.outside([path, *settings.read, *seen])
+    return _without_text(of_case, files.shown(path), outside) if outside else of_case
+
+
+def _without_text(of_case: CaseRun, title: str, outside: Sequence[str]) -> CaseRun:
+    """Return the same run without any text of its files."""
+    return msgspec.structs.replace(
+        of_case,
+        report=None if of_case.report is None else quoting.without_text(of_case.report),
+        failure=f"{title}: it cannot be checked; {quoting.remark(outside)}" if of_case.failure else "",
+        unknown="",
+        bug=None if of_case.bug is None else RuntimeError(f"{type(of_case.bug).__name__} in {title}"),
+        outside=outside,
+    )
+
+
+def _checked(path: str, data: bytes, settings: Settings, most: int, paths: Collection[str]) -> CaseRun:
     checked = outcome(Task(path, settings), most, data)
     if checked.report is None or checked.report.verdict == UNREADABLE:
         return CaseRun(failure=checked.failure or f"{files.shown(path)}: an internal error", bug=checked.bug)

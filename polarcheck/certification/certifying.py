@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Generator, Iterable, Mapping
+from collections.abc import Collection, Generator, Iterable, Mapping, Sequence
 from pathlib import Path
 
 import msgspec
 
-from polarcheck import __version__
+from polarcheck import __version__, bounded
 from polarcheck.batch.tasks import forget
-from polarcheck.certification import expectations, golden, paths, results
+from polarcheck.certification import expectations, golden, paths, quoting, results
 from polarcheck.certification.case_runs import CaseRun, run
 from polarcheck.certification.conditions import ConditionsOfCases
 from polarcheck.certification.loading import Loaded, load
@@ -17,7 +17,7 @@ from polarcheck.certification.manifest import Case
 from polarcheck.certification.results import FAIL, MISSING, NOT_OFFERED, NOT_RUN, PASS, CaseResult, Cell, Certificate
 from polarcheck.certification.tool_path import ToolPath, tool_path
 from polarcheck.checking.settings import Settings
-from polarcheck.errors import CertificateError, UsageError, suggestion
+from polarcheck.errors import CertificateError, PolarcheckError, UsageError, suggestion
 from polarcheck.finding import Producer
 from polarcheck.reading import files
 
@@ -75,7 +75,20 @@ def conditions(loaded: Loaded, names: Collection[str]) -> dict[str, Settings]:
     Raises a PolarcheckError for those that cannot be used, before anything is run.
     """
     of_case = ConditionsOfCases(loaded)
-    return {name: of_case(loaded.cases[name]) for name in names}
+    settings: dict[str, Settings] = {}
+    with bounded.recorded() as seen:
+        for name in names:
+            try:
+                settings[name] = of_case(loaded.cases[name])
+                continue
+            except PolarcheckError:
+                outside = loaded.outside(seen)
+                if not outside:
+                    raise
+            # Behind the clause: an error raised in it would hold the one that quotes.
+            title = files.shown(str(loaded.path))
+            raise CertificateError(f"{title}: {name}: cannot be checked; {quoting.remark(outside)}")
+    return settings
 
 
 def needed(loaded: Loaded, names: Iterable[str]) -> list[str]:
@@ -100,7 +113,7 @@ def runs(loaded: Loaded, settings: Mapping[str, Settings], most: int) -> Generat
             for each in (name, case.same_path_as):
                 paths_of[each] |= {"programmed", loaded.path_of(case)}
     for name, of_case in settings.items():
-        yield name, run(str(loaded.beside(loaded.cases[name].program)), of_case, most, sorted(paths_of[name]))
+        yield name, run(str(loaded.beside(loaded.cases[name].program)), of_case, most, sorted(paths_of[name]), loaded)
         forget()
 
 
@@ -150,6 +163,8 @@ def _result(
     reasons = list(itself.reasons)
     remarks = [loaded.remarks[case.title]] if case.title in loaded.remarks else []
     same_path, compared = (None, _NOTHING) if report is None else _other(loaded, case, case_runs)
+    outside = [] if report is None else case_runs[case.title].outside
+    not_quoted = [quoting.remark(outside)] if outside else []
     is_golden_there = loaded.has_golden(case)
     # A golden trace that is not there yet is no news of a case that fails anyway.
     if is_golden_there or not (reasons or compared.reasons):
@@ -170,7 +185,7 @@ def _result(
         expected=case.expected,
         verdict=None if report is None else report.verdict,
         reasons=reasons,
-        remarks=[*remarks, *itself.path.remarks, *compared.remarks],
+        remarks=[*remarks, *itself.path.remarks, *compared.remarks, *not_quoted],
         golden=itself.golden,
         same_path=same_path,
     )
@@ -196,6 +211,9 @@ def _golden(loaded: Loaded, case: Case, of_case: CaseRun) -> _Compared:
         else:
             ours = path_of_run(of_case, loaded.path_of(case))
             compared = paths.with_golden(ours, before, tolerance, title)
+        outside = loaded.outside([file])
+        if compared.reasons and (of_case.outside or outside):
+            compared = _without_text(compared, title, outside)
     return _comparison(title, compared, tolerance), compared
 
 
@@ -224,7 +242,15 @@ def _other(loaded: Loaded, case: Case, case_runs: Mapping[str, CaseRun]) -> _Com
                     f"the programmed path is that of {title}: controls lead the tool round corners in different ways; "
                     'path = "programmed" compares what is programmed'
                 )
+        if compared.reasons and (of_case.outside or other.outside):
+            compared = _without_text(compared, title)
     return _comparison(title, compared, tolerance), compared
+
+
+def _without_text(compared: paths.Comparison, title: str, outside: Sequence[str] = ()) -> paths.Comparison:
+    """Return the same comparison without lines, points and feeds, since they come from files that are not quoted."""
+    remarks = [quoting.remark(outside)] if outside else []
+    return paths.Comparison(compared.deviation, [f"the path is not that of {title}"], remarks)
 
 
 def _comparison(reference: str, compared: paths.Comparison, tolerance: float) -> results.PathComparison:

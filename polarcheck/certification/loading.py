@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
+import os
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
 import msgspec
 
+from polarcheck.certification import quoting
 from polarcheck.certification.manifest import PLACE, Case, Conditions, Manifest
 from polarcheck.checking.rule import load_all
 from polarcheck.errors import CertificateError, suggestion
@@ -43,6 +45,10 @@ class Loaded(msgspec.Struct, frozen=True):
     def beside(self, written: str) -> Path:
         """Return the path of a file that the manifest names; backslashes count as slashes, too."""
         return _beside(self.path, written)
+
+    def outside(self, paths: Iterable[str | os.PathLike[str]]) -> list[str]:
+        """Return the files among the paths that lie neither below its folder nor below the working folder."""
+        return quoting.outside((self.path.parent, Path()), paths)
 
     def without_programs(self) -> Iterator[str]:
         """Yield a line for each control whose `programs` finds no file at all, as one with a slip in it."""

@@ -62,7 +62,7 @@ def _updated(loaded: Loaded, entry: Certified) -> tuple[str, bool]:
     is_new = not path.exists()
     if not is_new and path.read_text("utf-8") == text:
         return f"{title}: unchanged", True
-    change = "new" if is_new else _change(loaded, entry)
+    change = "new" if is_new else "rewritten" if entry.run.outside else _change(loaded, entry)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
     except OSError as error:
