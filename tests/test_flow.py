@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import itertools
 import math
-import time
 from pathlib import Path
 
 import numpy as np
 import pytest
+from clocks import Clock
 from programs import report_of, said, tables_of, trace_of
 
 #: The coverage counts all of its cases: each is a way of its own through the package.
@@ -145,8 +144,7 @@ def test_bounds_are_kept(bound: dict[str, int], text: str, blocks: int) -> None:
 
 def test_time_is_a_bound(monkeypatch: pytest.MonkeyPatch) -> None:
     """On a clock that goes on by a second whenever somebody looks at it, so that the work is counted, not the time."""
-    clock, looks = time.monotonic, itertools.count()
-    monkeypatch.setattr(time, "monotonic", lambda: clock() + next(looks))
+    Clock(float).use(monkeypatch)
     report = report_of(ENDLESS["while"], job={"run": {**UNBOUNDED, "max_seconds": 5}})
     assert [finding.rule for finding in report.findings] == ["endless-loop"]
     assert "after 5 seconds;" in report.findings[0].message

@@ -8,16 +8,18 @@ import subprocess
 import sys
 import threading
 import time
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import pytest
 import shapely  # type: ignore[import-untyped]
+from clocks import Clock
 from test_cli import IMPORTED_FROM
 
 from polarcheck.errors import NoAnswerError, StoppedError, TooHardError
 from polarcheck.geometry.polygons import areas
-from polarcheck.geometry.polygons.interruption import interruptible
+from polarcheck.geometry.polygons.interruption import _Watch, interruptible
 from polarcheck.time_limit import time_limit
 
 pytestmark = pytest.mark.slow
@@ -40,14 +42,30 @@ def tangle() -> Any:
     return values["tangle"]
 
 
+def wait_for(holds: Callable[[], bool]) -> None:
+    """Wait until it holds; only what will never hold takes so long that this fails."""
+    end = time.monotonic() + 600
+    while not holds():
+        assert time.monotonic() < end
+        time.sleep(0.01)
+
+
 def test_a_step_ends_when_the_time_is_over() -> None:
-    with pytest.raises(TooHardError, match=r"takes longer than 0\.2 s"), time_limit(0.2):
+    with (
+        pytest.raises(TooHardError, match=r"takes longer than 0\.2 s of processor time, or 2 s in all"),
+        time_limit(0.2),
+    ):
         areas.with_itself(tangle())
 
 
 def test_a_step_ends_when_nobody_waits_any_more() -> None:
-    began = time.monotonic()
-    with pytest.raises(StoppedError), time_limit(1000, lambda: time.monotonic() > began + 0.2):
+    asked_beside: list[bool] = []
+
+    def is_stopped() -> bool:
+        asked_beside.extend([True] * (threading.current_thread() is not threading.main_thread()))
+        return bool(asked_beside)
+
+    with pytest.raises(StoppedError), time_limit(1000, is_stopped):
         areas.with_itself(tangle())
 
 
@@ -79,10 +97,25 @@ def test_the_steps_after_it_are_left_alone() -> None:
 
 
 def test_a_request_that_comes_too_late_is_taken_back() -> None:
-    with time_limit(0.01):
+    with time_limit(0.01) as limit:
         with interruptible():
-            time.sleep(0.3)  # the time is over, and GEOS is asked to stop
+            wait_for(lambda: limit.helper(_Watch)._was_requested)  # the time is over, and GEOS is asked to stop
         assert shapely.union_all(shapely.box(np.arange(50), 0, np.arange(50) + 2, 2)).area == 102
+
+
+def test_a_step_that_waits_for_the_processor_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Until the thread itself has worked for so long, however much passes on the wall; the watch is in another one."""
+    work = wall = 0.0
+    clock = Clock(lambda looks: work, lambda looks: wall)
+    clock.use(monkeypatch)
+    with time_limit(1) as limit, interruptible():
+        watch = limit.helper(_Watch)
+        for passed in (2.0, 4.0, 6.0):
+            wall, clock.looks_at_thread = passed, 0
+            wait_for(lambda: clock.looks_at_thread > 0)
+            assert not watch._was_requested
+        work, wall = 1.1, 8.0
+        wait_for(lambda: watch._was_requested)
 
 
 def test_what_has_no_answer_is_not_called_late() -> None:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import sys
+import threading
+import time
 from pathlib import Path
 from typing import Any
 
@@ -10,9 +12,9 @@ import numpy as np
 import pytest
 import shapely  # type: ignore[import-untyped]
 from click.testing import CliRunner
+from clocks import Clock, even, jump
 from programs import ROOT, report_of, said, tables_of
 
-from polarcheck import time_limit as limits
 from polarcheck.commands import main
 from polarcheck.errors import StoppedError, TooHardError
 from polarcheck.finding import FileReport
@@ -401,19 +403,99 @@ def test_all_that_is_done_for_a_file_has_one_clock() -> None:
         keep_time()
 
 
+# ---- beside other work ----
+
+
+#: Both are given up somewhere: contours, and a loop that no count would end for long.
+GIVEN_UP = {
+    "contours": FAMILIES["overcut-loops"].make(14),
+    "loop": "O1\n#1=0\nWHILE[#1LT900]DO1\n#1=#1+1\nEND1\nM30\n",
+}
+
+
+@pytest.mark.parametrize(
+    "share", [0.5, pytest.param(0.1, marks=pytest.mark.slow), pytest.param(0.9, marks=pytest.mark.slow)]
+)
+@pytest.mark.parametrize("program", GIVEN_UP.values(), ids=list(GIVEN_UP))
+def test_a_program_is_given_up_at_the_same_place_on_a_busy_machine(
+    program: str, share: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def checked_in(seconds: float, busy: float) -> tuple[FileReport, Clock]:
+        """The report, where each step takes `busy` times as long on the wall as at the processor."""
+        clock = Clock(even, lambda looks: busy * even(looks))
+        with monkeypatch.context() as patched:
+            clock.use(patched)
+            with time_limit(seconds):
+                return checked(program), clock
+
+    whole, clock = checked_in(1e6, 1)
+    seconds = even(4 * int(share * clock.looks / 4))
+    alone, _ = checked_in(seconds, 1)
+    assert alone != whole
+    for busy in (1.5, 9):
+        report, clock = checked_in(seconds, busy)
+        assert report == alone
+        # A look at the clock of the thread costs more.
+        assert clock.looks_at_thread < 20 * busy
+    # The last resort is ten times as long on the wall.
+    waiting, quarter = checked_in(seconds, 40)[0], checked_in(seconds / 4 + even(1), 1)[0]
+    assert (said(waiting), given_up(waiting).keys()) == (said(quarter), given_up(quarter).keys())
+    assert waiting.blocks == quarter.blocks
+
+
+@pytest.mark.parametrize(
+    ("work", "wall", "is_late"), [(0, 9.9, False), (0, 10.1, True), (0.9, 9.9, False), (1.1, 1.2, True)]
+)
+@pytest.mark.parametrize("inner", [1, 100])
+def test_work_counts_and_waiting_a_tenth(
+    work: float, wall: float, is_late: bool, inner: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Within another limit as well, which may be longer."""
+    Clock(lambda looks: work * (looks > 2), lambda looks: wall * (looks > 2)).use(monkeypatch)
+    with time_limit(1) as outer, time_limit(inner) as limit:
+        assert limit.is_late() == is_late
+        assert outer.is_late() == is_late
+
+
+def spin(seconds: float) -> None:
+    """Work for so long."""
+    end = time.thread_time() + seconds
+    while time.thread_time() < end:
+        pass
+
+
+@pytest.mark.parametrize("is_seen_by_others", [True, False])
+def test_the_time_of_a_limit_is_that_of_its_thread(is_seen_by_others: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Others read it; where only the thread itself can, they see the work of the process since."""
+    if not is_seen_by_others:
+        monkeypatch.delattr(time, "pthread_getcpuclockid", raising=False)
+    elif not hasattr(time, "pthread_getcpuclockid"):
+        pytest.skip("no thread sees the clock of another")
+    spin(0.05)
+    with time_limit(1) as limit:
+        for _ in range(2):
+            assert limit.clock() == pytest.approx(time.thread_time(), abs=0.05)
+            before = limit.clock()
+            worker = threading.Thread(target=spin, args=[0.15])
+            worker.start()
+            worker.join()
+            assert limit.clock() - before < 0.1
+        before = limit.clock()
+        seen = []
+
+        def look() -> None:
+            seen.append(limit.clock())
+            spin(0.15)
+            seen.append(limit.clock())
+
+        worker = threading.Thread(target=look)
+        worker.start()
+        worker.join()
+        assert seen[0] - before < 0.1
+        assert (seen[1] - seen[0] < 0.1) == is_seen_by_others
+
+
 # ---- the time runs out at any look at the clock ----
-
-
-class Clock:
-    """A clock that stands still, and jumps to the end of all limits at a certain look at it."""
-
-    def __init__(self, last: float) -> None:
-        self.looks = 0
-        self.last = last
-
-    def monotonic(self) -> float:
-        self.looks += 1
-        return 0.0 if self.looks <= self.last else 1e9
 
 
 @pytest.mark.one_in(12)
@@ -431,9 +513,9 @@ def test_every_command_ends_in_a_report_when_the_time_runs_out(
     monkeypatch.chdir(tmp_path)
 
     def looks_of(last: float) -> int:
-        clock = Clock(last)
+        clock = Clock(jump(last))
         with monkeypatch.context() as patched:
-            patched.setattr(limits, "time", clock)
+            clock.use(patched)
             result = CliRunner().invoke(main, [*words, "-", "--no-config", *TOOLS], input=text)
         assert result.exit_code in (0, 1), (last, result.stderr)
         return clock.looks

@@ -41,7 +41,7 @@ class ExecutionKeywords(TypedDict, total=False):
     block_skip: "on", "off" or "both", of blocks with /.
     subprograms: folders in which called programs lie, before those of the job file.
     variables: values of #-variables, {500: 1.5}.
-    max_blocks, max_statements, max_seconds: where a run is given up.
+    max_blocks, max_statements, max_seconds: where a run is given up; seconds of processor time.
     radius_from_comments: take unknown radii from comments.
     encoding: of the programs; else it is found out.
     config: a job file in place of the nearest polarcheck.toml.

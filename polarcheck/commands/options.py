@@ -262,7 +262,7 @@ _max_statements = option(
 )
 _max_seconds = option(
     "--max-seconds", type=_Seconds(0, min_open=True),
-    help="The same for seconds, and for the whole check; a file has so long for each MB.",
+    help="The same for seconds of processor time, and for the whole check; a file has so long for each MB.",
 )  # fmt: skip
 
 

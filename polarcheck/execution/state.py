@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Mapping, Sequence
 from typing import NoReturn, Protocol
 
@@ -17,7 +16,7 @@ from polarcheck.execution.macro import Variables
 from polarcheck.execution.programs import Program, ProgramName
 from polarcheck.execution.run import FlowFault, Remark, is_code
 from polarcheck.machines.job import Running
-from polarcheck.time_limit import current_limit, keep_going, seconds_for
+from polarcheck.time_limit import Limit, current_limit, keep_going, seconds_for
 
 #: After as many endless programs of a file, each later program may execute only _FEW_STATEMENTS.
 _ENDLESS_PROGRAMS = 4
@@ -125,8 +124,7 @@ class State:
         self._limit_of_text = _STATEMENTS_OF_A_CALL * len(listing.stops)
         self._changes_at: dict[tuple[int, int], int] = {}
         self._seconds = seconds_for(len(listing.text.source.code), settings.max_seconds)
-        limit = current_limit()
-        self._end = time.monotonic() + self._seconds if limit is None else limit.end
+        self._time = current_limit() or Limit(self._seconds)
 
     @property
     def depth(self) -> int:
@@ -159,7 +157,7 @@ class State:
             self._break_off("too-many-statements", block, limit=self._limit)
         elif self._count % 256 == 0:
             keep_going()
-            if time.monotonic() > self._end:
+            if self._time.is_late():
                 self._break_off("runs-too-long", block, limit=self._seconds)
 
     def _break_off(self, kind: FaultKind, block: int, limit: float) -> NoReturn:

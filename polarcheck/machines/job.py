@@ -111,7 +111,7 @@ class Running(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     max_statements: Annotated[
         int, msgspec.Meta(ge=1, le=_MOST, description="macro statements, calls and returns, likewise")
     ] = 50_000
-    max_seconds: Annotated[float, msgspec.Meta(gt=0)] = 8.0
+    max_seconds: Annotated[float, msgspec.Meta(gt=0, description="seconds of processor time for each MB")] = 8.0
     variables: Annotated[dict[Variable, float], msgspec.Meta(description="values of #-variables, by number")] = {}
 
 

@@ -63,6 +63,7 @@ class _Watch:
     def begin(self) -> None:
         """A step begins; what has come before it has been handled."""
         self._signals.forget()
+        self._limit.clock()  # where only this thread can read it, the watch counts from here
         self._under_way = True
 
     def end(self) -> None:
