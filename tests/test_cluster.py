@@ -16,7 +16,7 @@ from typing import Any
 
 import pytest
 from click.testing import CliRunner
-from test_jobs import ENDLESS, FOREVER, GOOD, ONLY, RAPID, _is_busy, make, planned, run, start
+from test_jobs import ENDLESS, FOREVER, GOOD, LONG, ONLY, RAPID, _is_busy, make, planned, run, start
 
 import polarcheck
 from polarcheck.batch import cluster, executors
@@ -252,17 +252,20 @@ def test_an_address_where_nobody_is_takes_seconds_at_most(address: str, line: st
 
 
 IMPATIENT = """
+import os
 from polarcheck.batch import cluster
 from polarcheck.commands import run
 
-cluster._LONGEST, cluster._QUIET = {seconds}, 0.5
+in_time = cluster.in_time
+cluster.in_time = lambda call, seconds: in_time(call, 1 if os.path.exists("silent") else 60)
+cluster._LONGEST, cluster._PATIENCE, cluster._QUIET = 1, 60, 0.5
 run()
 """
 
 
-def start_impatient(seconds: int, *arguments: str) -> subprocess.Popen[str]:
-    """polarcheck that waits no longer than this for the answers of a scheduler."""
-    words = [sys.executable, "-c", IMPATIENT.format(seconds=seconds), *arguments]
+def start_impatient(*arguments: str) -> subprocess.Popen[str]:
+    """polarcheck that waits for a scheduler for a second once there is a file `silent`, and long until then."""
+    words = [sys.executable, "-c", IMPATIENT, *arguments]
     environment = {**os.environ, "PYTHONPATH": os.fspath(Path(polarcheck.__file__).parent.parent)}
     pipes = {"stdin": subprocess.DEVNULL, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
     return subprocess.Popen(words, env=environment, text=True, encoding="utf-8", **pipes)  # type: ignore[call-overload]
@@ -306,8 +309,9 @@ def port_that_says(said: bytes, closes: bool) -> Iterator[str]:
 @pytest.mark.parametrize("kind", NO_SCHEDULER)
 def test_a_port_that_is_no_scheduler_is_one_line(kind: str) -> None:
     make(1)
+    Path("silent").touch()
     with port_that_says(*NO_SCHEDULER[kind]) as address:
-        running = start_impatient(1, "check", "f", "--cluster", address)
+        running = start_impatient("check", "f", "--cluster", address)
         shown, told = running.communicate(timeout=60)
     assert (running.returncode, shown) == (2, "")
     assert told.startswith(f"polarcheck: --cluster {address}: ")
@@ -386,7 +390,7 @@ def test_a_worker_that_is_killed_loses_nothing(real_cluster: tuple[str, list[int
     for number in (3, 9, 17):
         Path(f"f/{number:03}.nc").write_text(ENDLESS)
     Path("f/003.nc").write_text(RAPID)
-    words = ("check", "f", *ONLY, "--format", "json", "--max-seconds", "1.5", *FOREVER[2:])
+    words = ("check", "f", *ONLY, "--format", "json", *LONG)
     running = start(*words, "--cluster", address)
     while not (busy := [worker for worker in workers if _is_busy(worker)]):
         assert running.poll() is None
@@ -424,15 +428,16 @@ def test_a_scheduler_that_is_stopped_is_one_line(scheduler: tuple[str, int, subp
     make(2)
     for path in Path("f").glob("*.nc"):
         path.write_text(ENDLESS)
-    running = start_impatient(5, "check", "f", *ONLY, *FOREVER, "--cluster", address)
+    running = start_impatient("check", "f", *ONLY, *FOREVER, "--cluster", address)
     while not _is_busy(worker):
         assert running.poll() is None
     process.send_signal(signal.SIGSTOP)
-    shown, told = running.communicate(timeout=120)
+    Path("silent").touch()
+    shown, told = running.communicate(timeout=240)
     assert (running.returncode, shown) == (2, "")
     assert told == f"polarcheck: the cluster at {address} does not answer any more; 0 of 2 files were checked\n"
 
-    running = start_impatient(1, "check", "f", "--cluster", address)
+    running = start_impatient("check", "f", "--cluster", address)
     shown, told = running.communicate(timeout=60)
     assert (running.returncode, shown) == (2, "")
     assert told.endswith("who accepts there did not answer as a scheduler within 1 s\n")

@@ -605,8 +605,8 @@ def test_a_configuration_that_never_ends_is_given_up(monkeypatch: pytest.MonkeyP
 
 
 def is_gone(number: int) -> bool:
-    """Whether a process ends within seconds; what is left of it until somebody asks for its exit code is no process."""
-    for _ in range(100):
+    """Whether a process ends in a minute; what is left of it until somebody asks for its exit code is no process."""
+    for _ in range(1200):
         try:
             status = Path(f"/proc/{number}/stat").read_text() if sys.platform == "linux" else ""
             os.kill(number, 0)

@@ -177,7 +177,7 @@ def test_a_pipe_that_is_read_gets_the_report() -> None:
     handle = os.open("pipe", os.O_WRONLY)  # waits until it reads
     assert run("check", "b.nc", *ONLY, "-o", "json:pipe")[0] == 0
     os.close(handle)
-    assert json.loads(reader.communicate(timeout=30)[0])["summary"]["files"] == 1
+    assert json.loads(reader.communicate(timeout=120)[0])["summary"]["files"] == 1
 
 
 def own_descriptors(number: int) -> list[str]:

@@ -371,7 +371,9 @@ def test_what_is_refused_stands_in_the_way_of_nothing() -> None:
 
 @pytest.mark.slow
 def test_of_many_that_are_refused_only_some_are_tried() -> None:
-    found = outcome("".join(f"O{number}\n{REFUSED}" for number in range(1, 24)))
+    program = "".join(f"O{number}\n{REFUSED}" for number in range(1, 24))
+    job = job_of("1:radius=4", job={"run": {"max_seconds": 1e6}})
+    found = fixing.with_fixes(program.encode(), msgspec.structs.replace(settings_for(), job=job), "-", unsafe=True)
     assert not found.fixed
     assert len(found.refused) == fixing.MOST_REFUSED
     assert found.is_whole

@@ -43,7 +43,7 @@ class Visitor:
 
     def answer(self, path: str, host: str = "", method: str = "GET", below_token: bool = True) -> Any:
         parts = urlsplit(self.address)
-        connection = http.client.HTTPConnection(parts.netloc, timeout=10)
+        connection = http.client.HTTPConnection(parts.netloc, timeout=120)
         headers = {"Host": host} if host else {}
         connection.request(method, (parts.path if below_token else "/") + path, headers=headers)
         return connection.getresponse()
@@ -620,7 +620,7 @@ def test_a_browser_shows_what_is_saved_and_keeps_what_is_chosen(browser: Any) ->
         page.get_by_text("no findings").first.wait_for()
 
         running.send_signal(signal.SIGINT)
-        assert running.wait(20) == 0
+        assert running.wait(120) == 0
         page.get_by_text("polarcheck does not serve this page any more").wait_for(timeout=30000)
         assert errors == []
         page.close()

@@ -28,46 +28,42 @@ WATCHING = "polarcheck: watching for changes; Ctrl-C ends\n"
 
 
 class Watched:
-    """A process with --watch: what it writes, round by round."""
+    """A process with --watch: what it writes to both of its outputs, which are one here, round by round."""
 
     def __init__(self, running: subprocess.Popen[str]) -> None:
         self.running = running
         self._lines: queue.Queue[str] = queue.Queue()
-        self._threads = [threading.Thread(target=self._read, args=(pipe,)) for pipe in (running.stdout, running.stderr)]
-        for thread in self._threads:
-            thread.start()
+        self._thread = threading.Thread(target=self._read)
+        self._thread.start()
 
-    def _read(self, pipe: Any) -> None:
-        for line in pipe:
+    def _read(self) -> None:
+        for line in self.running.stdout or ():
             self._lines.put(line)
 
     def round(self) -> list[str]:
-        """The lines up to the end of a round, of both outputs; those of standard output were written before."""
+        """The lines up to the end of a round."""
         lines = []
-        while not lines or lines[-1] != WATCHING:
-            lines.append(self._lines.get(timeout=60))
-        with contextlib.suppress(queue.Empty):
-            while True:
-                lines.append(self._lines.get(timeout=0.2))
-        return [line for line in lines if line != WATCHING]
+        while (line := self.line()) != WATCHING:
+            lines.append(line)
+        return lines
 
     def line(self) -> str:
-        """The next line of any output."""
-        return self._lines.get(timeout=60)
+        """The next line."""
+        return self._lines.get(timeout=120)
 
     def end(self, number: int = signal.SIGINT) -> int:
         """The exit code after a signal."""
         self.running.send_signal(number)
         status = self.running.wait(60)
-        for thread in self._threads:
-            thread.join(60)
+        self._thread.join(60)
         return status
 
 
 @contextlib.contextmanager
 def watched(*arguments: str) -> Iterator[Watched]:
     heed = partial(signal.signal, signal.SIGINT, signal.SIG_DFL)
-    with start("check", *arguments, *ONLY, "--format", "concise", "--watch", preexec_fn=heed) as running:
+    words = ("check", *arguments, *ONLY, "--format", "concise", "--watch")
+    with start(*words, preexec_fn=heed, stderr=subprocess.STDOUT) as running:
         found = Watched(running)
         try:
             yield found
