@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 from pictures_by_hand import finding, hexagon, picture
-from test_page_in_browser import CHROMIUM, browser
+from test_page_in_browser import CHROMIUM, browser, frames
 
 from polarcheck.pictures.page import page
 
@@ -27,6 +27,17 @@ document.addEventListener("DOMContentLoaded", () => document.body.classList.add(
 """
 
 
+#: Sends a message, and waits until the one behind it has come.
+SEND = """
+(message) => new Promise((come) => {
+  window.sent = [];
+  window.addEventListener("message", ({ data }) => data === "last" && come());
+  window.postMessage(message, "*");
+  window.postMessage("last", "*");
+})
+"""
+
+
 def test_the_page_follows_the_cursor_and_leads_to_blocks(browser: Any, tmp_path: Path) -> None:
     path = tmp_path / "page.html"
     path.write_text(page([picture(hexagon(), findings=[finding("too fast", line=2)])], plotly.get_plotlyjs()), "utf-8")
@@ -41,8 +52,8 @@ def test_the_page_follows_the_cursor_and_leads_to_blocks(browser: Any, tmp_path:
         return str(opened.locator(".chosen").first.inner_text())
 
     def send(message: Any) -> None:
-        opened.evaluate("(message) => { window.sent = []; window.postMessage(message, '*'); }", message)
-        opened.wait_for_timeout(100)
+        opened.evaluate(SEND, message)
+        frames(opened)
 
     # It has the colors of the editor.
     assert opened.locator("html").get_attribute("data-theme") == "dark"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import shutil
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -32,6 +32,20 @@ pytestmark = [
     pytest.mark.xdist_group("browser"),
 ]
 HOSTILE = "(<script>alert(1)</script> <a href='javascript:alert(1)'>\"b\"</a> \x1b[31m)"
+
+
+def until(page: Any, holds: Callable[[], bool]) -> None:
+    """Wait for something that a page does by itself, however slow the machine is."""
+    for _ in range(1200):
+        if holds():
+            return
+        page.wait_for_timeout(50)
+    assert holds()
+
+
+def frames(page: Any) -> None:
+    """Wait until the page has drawn what it was about to draw."""
+    page.evaluate("() => new Promise((drawn) => requestAnimationFrame(() => requestAnimationFrame(drawn)))")
 
 
 @pytest.fixture(scope="module")

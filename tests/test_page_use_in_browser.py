@@ -11,7 +11,7 @@ from typing import Any
 import msgspec
 import pytest
 from pictures_by_hand import HALF, finding, hexagon, picture
-from test_page_in_browser import CHROMIUM, Opened, browser
+from test_page_in_browser import CHROMIUM, Opened, browser, frames, until
 
 from polarcheck.pictures.page import page
 from polarcheck.pictures.picture import DrawnPart, Picture, Writing
@@ -247,12 +247,11 @@ def test_the_wheel_zooms_at_the_pointer_and_the_face_is_dragged(use: Opened) -> 
     page.wait_for_function(
         "(left) => document.querySelector('.face')._fullLayout.xaxis.range[0] > left + 1", arg=whole[0]
     )
-    page.wait_for_timeout(300)
-    assert use.at(10, 5) == pytest.approx(place, abs=1.5)
+    until(page, lambda: use.at(10, 5) == pytest.approx(place, abs=1.5))
     page.mouse.down()
     page.mouse.move(place[0] + 70, place[1] + 40, steps=4)
     page.mouse.up()
-    assert use.at(10, 5) == pytest.approx((place[0] + 70, place[1] + 40), abs=1.5)
+    until(page, lambda: use.at(10, 5) == pytest.approx((place[0] + 70, place[1] + 40), abs=1.5))
     page.mouse.dblclick(*place)
     page.wait_for_function(
         "(left) => Math.abs(document.querySelector('.face')._fullLayout.xaxis.range[0] - left) < 1e-6", arg=whole[0]
@@ -272,10 +271,14 @@ def test_two_fingers_zoom(use: Opened) -> None:
     for kind, apart in [("Start", 20), ("Move", 40), ("Move", 60)]:
         points = [{"x": x + side * apart, "y": y, "id": number} for number, side in enumerate((-1, 1))]
         session.send("Input.dispatchTouchEvent", {"type": f"touch{kind}", "touchPoints": points})
-        page.wait_for_timeout(60)
+        frames(page)
     session.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
-    after = window(use)
-    assert (before[1] - before[0]) / (after[1] - after[0]) == pytest.approx(3, rel=0.1)
+
+    def times() -> float:
+        after = window(use)
+        return (before[1] - before[0]) / (after[1] - after[0])
+
+    until(page, lambda: times() == pytest.approx(3, rel=0.1))
     assert use.at(0, 0) == pytest.approx((x, y), abs=2)
     page.keyboard.press("0")
 

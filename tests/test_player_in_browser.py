@@ -67,7 +67,7 @@ def opened(browser: Any) -> Iterator[Any]:
     """A page whose clock stands still; nothing may go wrong on it."""
     context = browser.new_context(viewport={"width": 1280, "height": 900})
     tab = context.new_page()
-    tab.set_default_timeout(20_000)
+    tab.set_default_timeout(120_000)
     faults: list[str] = []
     tab.on("pageerror", lambda error: faults.append(str(error)))
     tab.on("console", lambda message: faults.append(message.text))

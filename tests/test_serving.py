@@ -18,7 +18,7 @@ from urllib.parse import urlsplit
 import pytest
 from test_cli import call, make, process
 from test_drawing_options import dxf
-from test_page_in_browser import CHROMIUM, browser
+from test_page_in_browser import CHROMIUM, browser, frames, until
 from test_pictures import GROOVE, HEXAGON
 from test_plot import PLOTLY, RADIUS
 
@@ -595,33 +595,29 @@ def test_a_browser_shows_what_is_saved_and_keeps_what_is_chosen(browser: Any) ->
         page.goto(f"{address}#L8")
         page.locator(".face .main-svg").first.wait_for()
         face = "document.querySelector('.face')"
-        page.wait_for_timeout(500)  # until the face has its height
+        frames(page)  # the face gets its height a moment after it is drawn
+        page.evaluate(f"Plotly.Plots.resize({face})")
         page.evaluate(f"Plotly.relayout({face}, {{'xaxis.range': [0, 40], 'yaxis.range': [-10, 10]}})")
         window = page.evaluate(f"{face}._fullLayout.xaxis.range")
 
         make(a__nc=GROOVE.replace("G12.1", "(NEW)\n(LINES)\nG12.1"))
-        page.locator(".polar h2:has-text('lines 5 to 17')").wait_for(timeout=30000)
+        page.locator(".polar h2:has-text('lines 5 to 17')").wait_for(timeout=120_000)
         page.locator(".face .main-svg").first.wait_for()
-        for _ in range(400):  # not `page.url`, which sometimes misses a changed address
-            if page.evaluate("location.hash") == "#L10":
-                break
-            page.wait_for_timeout(50)
-        assert page.evaluate("location.hash") == "#L10"
-        page.wait_for_timeout(500)
-        assert page.evaluate(f"{face}._fullLayout.xaxis.range") == pytest.approx(window)
+        until(page, lambda: page.evaluate("location.hash") == "#L10")  # `page.url` sometimes misses a changed address
+        until(page, lambda: page.evaluate(f"{face}._fullLayout.xaxis.range") == pytest.approx(window))
 
         Path("a.nc").unlink()
         notice = page.get_by_text("a.nc: No such file or directory. This is the last state")
-        notice.wait_for(timeout=30000)
+        notice.wait_for(timeout=120_000)
         make(a__nc=HEXAGON)
         # Not "no findings", which is also said of a file that is read while it is being written, and still empty.
-        page.locator(".polar h2:has-text('lines 3 to 14')").wait_for(timeout=30000)
+        page.locator(".polar h2:has-text('lines 3 to 14')").wait_for(timeout=120_000)
         assert notice.is_hidden()
         page.get_by_text("no findings").first.wait_for()
 
         running.send_signal(signal.SIGINT)
         assert running.wait(120) == 0
-        page.get_by_text("polarcheck does not serve this page any more").wait_for(timeout=30000)
+        page.get_by_text("polarcheck does not serve this page any more").wait_for(timeout=120_000)
         assert errors == []
         page.close()
     finally:
