@@ -39,7 +39,7 @@ ORDER = (
     ("geometry",),
     ("machines",),
     ("time_limit",),
-    ("arrays", "bounded", "ending", "errors", "finding", "memory"),
+    ("arrays", "bounded", "decoding", "ending", "errors", "finding", "memory"),
 )
 FLOOR = {name: number for number, names in enumerate(reversed(ORDER)) for name in names}
 

@@ -16,6 +16,7 @@ from typing import TypeVar
 import msgspec
 
 from polarcheck import bounded
+from polarcheck.decoding import json_decoder
 from polarcheck.errors import BaselineError, suggestion
 from polarcheck.finding import SEVERITIES
 from polarcheck.reading.files import shown
@@ -154,7 +155,7 @@ def _as_utf8(data: bytes) -> bytes:
 
 def _contents(data: bytes) -> Contents:
     try:
-        head = msgspec.json.decode(data, type=_Head)
+        head = json_decoder(_Head).decode(data)
     except msgspec.ValidationError as error:
         raise ValueError(f"{error}; expected a file that `polarcheck baseline create` has written") from None
     except msgspec.DecodeError as error:
@@ -187,7 +188,7 @@ def _lines(data: bytes, raws: Sequence[msgspec.Raw], kind: type[_Line], noun: st
 
 def _decoded(text: bytes, kind: type[_Line]) -> _Line:
     try:
-        return msgspec.json.decode(text, type=kind)
+        return json_decoder(kind).decode(text)
     except msgspec.ValidationError as error:
         unknown = _UNKNOWN.search(str(error))
         near = suggestion(unknown[1], kind.__struct_fields__) if unknown else ""

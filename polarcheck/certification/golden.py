@@ -8,6 +8,7 @@ from pathlib import Path
 import msgspec
 
 from polarcheck import bounded
+from polarcheck.decoding import json_decoder
 from polarcheck.errors import CertificateError
 from polarcheck.reading import files
 from polarcheck.reports.pages import executed
@@ -46,7 +47,7 @@ def read(path: Path) -> list[GoldenMove]:
         data = bounded.read_file(path, _LARGEST, "no golden trace is")
     except OSError as error:
         raise CertificateError(f"{title}: {error.strerror or error}") from None
-    decoder = msgspec.json.Decoder(GoldenMove)
+    decoder = json_decoder(GoldenMove)
     moves: list[GoldenMove] = []
     for number, line in enumerate(data.splitlines(), 1):
         try:

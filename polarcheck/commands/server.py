@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import importlib.util
 import os
-import threading
 from pathlib import Path
 from typing import Any
 
@@ -71,25 +70,22 @@ class _Settings:
     Returns the settings of a program, read again each time: that takes milliseconds, and they are never stale.
 
     The modules are imported on the first call: an editor waits for the answer to its first message, which needs none.
-    The threads of the server call it one at a time: msgspec crashes where two need a type for the first time at once.
+    Threads may call it at the same time.
     """
 
     def __init__(self, no_config: bool, arguments: dict[str, Any]) -> None:
         self._use_config, self._arguments = not no_config, arguments
-        self._lock = threading.Lock()
 
     def __call__(self, path: Path) -> Any:
         from polarcheck.settings.of_programs import OfPrograms
 
-        with self._lock:
-            return OfPrograms(self._options())(str(path))
+        return OfPrograms(self._options())(str(path))
 
     def fallback(self, path: Path) -> Any:
         """Return the settings that are left while the job file of a program cannot be used."""
         from polarcheck.settings.fallback import fallback
 
-        with self._lock:
-            return fallback(path, self._options())
+        return fallback(path, self._options())
 
     def _options(self) -> Any:
         from polarcheck.settings.of_programs import Options

@@ -13,6 +13,7 @@ from typing import Annotated, Any, Literal, TypeVar, Union, get_args, get_origin
 
 import msgspec
 
+from polarcheck.decoding import converted
 from polarcheck.errors import suggestion
 
 #: Key of `extra` in msgspec.Meta: the expected value in words, where the type and its bounds do not say it well.
@@ -73,7 +74,7 @@ def fitted(table: Any, kind: type[Kind], key: str = "") -> Kind:
     Raises MisfitError for the first value that does not fit.
     """
     try:
-        value = msgspec.convert(table, kind, str_keys=True)
+        value = converted(table, kind)
     except msgspec.ValidationError as error:
         misfit = next(_misfits(_Part(key, table, kind)), None)
         raise misfit or MisfitError(key, _plain(error)) from None
@@ -103,7 +104,7 @@ def _misfits(part: _Part) -> Iterator[MisfitError]:
             key = f"{part.key}.{number}" if isinstance(value, Mapping) else part.key
             yield from _misfits(_Part(key, value, get_args(kind)[0]))
     try:
-        msgspec.convert(part.value, part.kind, str_keys=True)
+        converted(part.value, part.kind)
     except msgspec.ValidationError as error:
         yield _misfit(part, error)
     else:
@@ -129,7 +130,7 @@ def _of_dict(part: _Part, kind: Any) -> Iterator[MisfitError]:
     for name, value in part.value.items():
         key = _below(part.key, name)
         try:
-            msgspec.convert(name, of_keys, strict=False)
+            converted(name, of_keys, strict=False)
         except msgspec.ValidationError:
             yield MisfitError(key, f"{key}: expected {_expected(of_keys)}, found {name}")
         yield from _misfits(_Part(key, value, of_values))

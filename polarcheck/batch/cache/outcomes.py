@@ -16,6 +16,7 @@ from polarcheck.batch.cache.store import NAME, Store, folder_key, user_key
 from polarcheck.batch.tasks import Basis, Outcome, Task
 from polarcheck.bounded import read_file
 from polarcheck.checking.settings import Settings
+from polarcheck.decoding import msgpack_decoder
 from polarcheck.execution import look_ups
 from polarcheck.finding import FileReport, Finding, Undecided
 from polarcheck.reading import files
@@ -41,9 +42,6 @@ class _Entry(msgspec.Struct, frozen=True, array_like=True):
     lines: dict[int, str]
     called: list[str]
     failed: bool
-
-
-_DECODER = msgspec.msgpack.Decoder(_Entry)
 
 
 class Cache:
@@ -133,7 +131,7 @@ class Cache:
         if data is None:
             return None
         try:
-            entry = _DECODER.decode(data)
+            entry = msgpack_decoder(_Entry).decode(data)
             if look_ups.digest(read_file(task.path, self._most, "")) != entry.basis.content:
                 return None
         except (OSError, ValueError):
@@ -196,7 +194,7 @@ def _encoded(outcome: Outcome) -> bytes | None:
 
 
 def _outcome(data: bytes) -> Outcome:
-    entry = _DECODER.decode(data)
+    entry = msgpack_decoder(_Entry).decode(data)
     report = entry.report
     if entry.undecided:
         report = _with_undecided(report, frozenset(entry.undecided))

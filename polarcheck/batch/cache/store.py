@@ -19,6 +19,7 @@ from pathlib import Path
 import msgspec
 
 from polarcheck import bounded
+from polarcheck.decoding import msgpack_decoder
 
 NAME = ".polarcheck_cache"
 #: The largest file, of 256; entries that have not been used for the longest time go first [bytes].
@@ -109,7 +110,7 @@ class Store:
             data = bounded.read_file(self._path(shard), 2 * LARGEST, "")
             if data[:_SEAL] != self._seal(shard, data[_SEAL:]):
                 return {}
-            return msgspec.msgpack.decode(data[_SEAL:], type=Entries)
+            return msgpack_decoder(Entries).decode(data[_SEAL:])
         except (OSError, ValueError):  # a ValueError is that of msgspec, too
             return {}
 
