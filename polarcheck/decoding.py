@@ -34,14 +34,14 @@ def converted(value: Any, kind: type[Kind], *, strict: bool = True) -> Kind:
 def json_decoder(kind: type[Kind]) -> msgspec.json.Decoder[Kind]:
     """Return the decoder from JSON to a type."""
     with _LEARNING:
-        decoder: msgspec.json.Decoder[Kind] = _json_decoder(kind)
+        decoder: msgspec.json.Decoder[Kind] = _json_decoder(kind)  # type: ignore[arg-type]  # a type is hashable
         return decoder
 
 
 def msgpack_decoder(kind: type[Kind]) -> msgspec.msgpack.Decoder[Kind]:
     """Return the decoder from MessagePack to a type."""
     with _LEARNING:
-        decoder: msgspec.msgpack.Decoder[Kind] = _msgpack_decoder(kind)
+        decoder: msgspec.msgpack.Decoder[Kind] = _msgpack_decoder(kind)  # type: ignore[arg-type]  # likewise
         return decoder
 
 
