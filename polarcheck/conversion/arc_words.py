@@ -51,11 +51,11 @@ def arc_between(start: complex, end: complex, center: complex, ccw: bool) -> Arc
 
 def swept(start: complex, end: complex, center: complex, ccw: bool) -> float:
     """The signed angle [rad] from start to end about a center; a full turn where they are the same point."""
-    turn = math.tau if ccw else -math.tau
-    if abs(end - start) <= 1e-9 * max(1.0, abs(start - center)) or not (start - center) * (end - center):
-        return turn
-    angle = cmath.phase((end - center) / (start - center)) % math.tau
-    return angle if ccw else angle + turn
+    sense = 1 if ccw else -1
+    spoke, last = start - center, end - center
+    if abs(end - start) <= 1e-9 * max(1.0, abs(spoke)) or not spoke * last:
+        return sense * math.tau
+    return sense * (sense * cmath.phase(spoke.conjugate() * last) % math.tau)
 
 
 def nearest_center(arc: Arc, start: complex, end: complex, step: float) -> tuple[int, int, float]:

@@ -10,6 +10,7 @@ from polarcheck.conversion.blocks import NewBlock
 from polarcheck.conversion.numbers import Numbers
 from polarcheck.conversion.outcome import Refusal, RefusedError
 from polarcheck.conversion.style import PLAIN, Style
+from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.machines.machine import Machine
 
 #: How often an arc is halved where its words would not come near enough: into 64 parts.
@@ -132,14 +133,22 @@ class Pen:
         """
         An arc about a center to a point, a full circle where that is the present one; in parts as the machine asks for.
 
+        A line where it ends in the direction in which it starts, seen from the center.
+
         z: depth at its end [mm], of a helix. The others are as those of `line`.
-        Raises RefusedError for a helix where `helices` is not so, and for an arc that no words come near to.
+        Raises RefusedError for a helix where `helices` is not so, for an arc without a radius, and for an arc that no
+        words come near to.
         """
+        if min(abs(self.at - center), abs(end - center)) <= ROUNDING:
+            raise RefusedError([Refusal(self.numbers.line, "the center of this arc is its start or its end")])
         arc = arc_between(self.at, end, center, ccw)
         if z is not None and self.numbers.increments(z) == self._z_written(z) and z == self.z:
             z = None
         if z is not None and not self.machine.writing.helices:
             raise RefusedError([self._refusal("Z cannot move in an arc (a helix)")])
+        if abs(arc.sweep) * arc.radius <= ROUNDING:
+            # Its radius at the end is another one: within the tolerance of arcs it leads straight along its radius.
+            return self.line(end, z, feed, codes)
         blocks: list[NewBlock] = []
         count = self._parts(arc)
         from_z = self.z

@@ -1,0 +1,153 @@
+"""Arcs that no setter writes, converted: written as what they are, or refused by name; never by an internal error."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from programs import machine_of, report_of, tables_of
+from test_convert import convert, refused, section
+from test_pen import distance, path_of
+
+from polarcheck.columns.trace import Trace
+from polarcheck.conversion.arc_words import swept
+from polarcheck.conversion.outcome import RefusedError
+from polarcheck.conversion.pen import Pen
+
+#: Those whose sections are not written in the same words.
+OTHER_WORDS = (
+    "haas-lathe",
+    "okuma-osp",
+    "siemens-transmit",
+    "citizen",
+    "mitsubishi-m700",
+    "hurco",
+    "fagor-8055t",
+    "lsis",
+)
+#: Arcs from X40. C0 of a FANUC whose ends, center and R lie where no setter puts them.
+WRITTEN = {
+    "an end an increment nearer to its center": "G3 X39.998 C0 I-10. J0",
+    "an end an increment farther from its center": "G2 X40.002 C0 I-10. J0",
+    "half a circle whose radius grows": "G3 X20.004 C0 I-4.999 J0",
+    "an arc of an increment": "G3 X40. C0.001 R0.001",
+    "R below half the chord": "G3 X40.008 C0 R0.001",
+    "half a circle of an increment": "G3 X39.996 C0 I-0.001 J0",
+    "a full circle of an increment": "G3 X40. C0 I-0.001 J0",
+    "a full circle of two increments": "G2 I0 J-0.002",
+    "nearly straight": "G3 X40. C10. R99999.",
+    "nearly a full circle": "G3 X40. C-0.001 I-5. J0",
+    "an arc about the center of the part": "G2 X-40. C0 I-20. J0",
+    "no length": "G1 X40. C0\nG3 X40. C0 R5.",
+}
+REFUSED = {
+    "its center at its start": "G3 X39.998 C0 I0 J0.",
+    "its center at its start, in steps": "G91 G3 U-0.002 H0 I0 J0.",
+    "its center at its end": "G3 X39.998 C0 I-0.001 J0",
+    "a full circle without a radius": "G3 X40. C0 I0. J0",
+    "its end across from a center at its start": "G2 X40. C0.001 I0. J0",
+}
+
+
+def of_blocks(*blocks: str) -> str:
+    """A program whose section has blocks, each from X40. C0."""
+    moves = [line for block in blocks for line in (*block.split("\n"), "G1 X40. C0")]
+    return section("G1 X80. F1000", "Z-1. F200", "G1 X40.", *moves, "G1 X80.", "Z2.")
+
+
+def moves_of(trace: Trace) -> list[tuple[complex, complex, complex | None, bool]]:
+    """Start, end, center and sense of each move of the sections."""
+    path, rows = trace.path, np.flatnonzero(trace.path.travels & (trace.mode.section >= 0))
+    return [
+        (
+            complex(path.start[row]),
+            complex(path.end[row]),
+            complex(path.center[row]) if path.is_arc[row] else None,
+            bool(trace.axes.motion[row] == 3),
+        )
+        for row in rows.tolist()
+    ]
+
+
+def assert_same_path(program: str, data: bytes, target: str) -> None:
+    """The ends of all moves and the middles of arcs lie on the other path, up to what is rounded."""
+    ours, theirs = (
+        tables_of(text, machine)["trace"] for text, machine in ((program, "fanuc-30i"), (data.decode(), target))
+    )
+    for first, second in ((ours, theirs), (theirs, ours)):
+        moves = moves_of(second)
+        assert max(min(distance(point, *move) for move in moves) for point in path_of(first, 1e-9)) < 0.0021
+
+
+@pytest.mark.slow
+@pytest.mark.one_in(1)
+@pytest.mark.parametrize("target", OTHER_WORDS)
+def test_odd_arcs_are_written_as_what_they_are(target: str) -> None:
+    program = of_blocks(*WRITTEN.values())
+    assert_same_path(program, convert(program, "fanuc-30i", target).data, target)
+
+
+@pytest.mark.one_in(18)
+@pytest.mark.parametrize("target", ["haas-lathe", "okuma-osp", "siemens-transmit"])
+@pytest.mark.parametrize("name", WRITTEN)
+def test_each_odd_arc_is_written_alone(name: str, target: str) -> None:
+    program = of_blocks(WRITTEN[name])
+    assert_same_path(program, convert(program, "fanuc-30i", target).data, target)
+
+
+@pytest.mark.one_in(24)
+@pytest.mark.parametrize("target", OTHER_WORDS)
+@pytest.mark.parametrize("name", REFUSED)
+def test_an_arc_without_a_radius_is_refused_by_its_line(name: str, target: str) -> None:
+    reasons = refused(of_blocks(REFUSED[name]), "fanuc-30i", target)
+    assert (12, "the center of this arc is its start or its end") in reasons
+
+
+@pytest.mark.parametrize("code", ["G2", "G3"])
+@pytest.mark.parametrize("x", ["39.998", "40.002"])
+def test_an_arc_along_its_own_radius_is_a_line(code: str, x: str) -> None:
+    """Its angle is 0: no control is told to go round a full circle."""
+    lines = convert(of_blocks(f"{code} X{x} C0 I-10. J0"), "fanuc-30i", "haas-lathe").data.decode().split("\n")
+    at = lines.index("G1 X20.")
+    assert lines[at + 1] == f"G1 X{float(x) / 2:.3f}"
+    assert not [line for line in lines if line.startswith(("G2 ", "G3 "))]
+
+
+def test_a_program_of_an_arc_below_half_its_chord_is_converted() -> None:
+    program = "O1\nG17 G90 G94 G40 G97\nT0101\nG0 X60. Z2. C0\nG12.1\nG1 X30. F1000\nZ-1. F200\nG1 X20. C0\n"
+    program += "G3 X20.004 C0 R0.001\nG1 X40.\nZ2.\nG13.1\nG0 X100. Z50.\nM30\n"
+    lines = convert(program, "mitsubishi-m700", "siemens-transmit").data.decode().split("\n")
+    assert "G3 X20.004 Y0 CR=0.002" in lines
+
+
+@pytest.mark.parametrize("ccw", [True, False])
+@pytest.mark.parametrize(
+    ("start", "end", "center", "expected"),
+    [
+        (20, 19.999, 10, 0),
+        (20, 20.001, 10, 0),
+        (3 + 4j, 3.0015 + 4.002j, 0, 0),
+        (20, 20, 10, math.tau),
+        (20, 10, 10, math.tau),
+        (20, -1, 10, math.pi),
+    ],
+)
+def test_the_sweep_is_the_same_in_both_senses(
+    start: complex, end: complex, center: complex, expected: float, ccw: bool
+) -> None:
+    assert swept(start, end, center, ccw) == pytest.approx(expected if ccw else -expected, abs=1e-12)
+
+
+@pytest.mark.parametrize(("end", "center"), [(19.999, 20), (20, 20), (19.999, 19.999), (20.001j, 20)])
+def test_the_pen_draws_no_arc_without_a_radius(end: complex, center: complex) -> None:
+    pen = Pen(machine_of("haas-lathe"))
+    pen.enter(20 + 0j)
+    with pytest.raises(RefusedError, match="center of this arc is its start or its end"):
+        pen.arc(end, center, True)
+
+
+def test_an_arc_whose_neighbours_ask_for_an_r_of_0_is_checked() -> None:
+    """Nothing divides by it: a warning of NumPy is an error in tests."""
+    program = "G98 G0 X60. C0\nG12.1\nG1 X2.361 F100\nU-4.7\nG2 X-2.3 R4\nJ0\nG1 X60.\nG13.1\n"
+    assert report_of(program, "fanuc", "1:radius=5", job={"program_units": "mm"}).verdict
