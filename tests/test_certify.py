@@ -15,8 +15,11 @@ from click.testing import CliRunner, Result
 from programs import ROOT
 
 import polarcheck
+from polarcheck.certification import paths
 from polarcheck.commands import main
+from polarcheck.errors import TooHardError
 from polarcheck.machines.part import Part
+from polarcheck.time_limit import current_limit
 
 EXAMPLE = ROOT / "docs" / "certify"
 PAGE = (ROOT / "docs" / "certify.md").read_text("utf-8")
@@ -512,3 +515,24 @@ def test_arguments_that_do_not_fit(arguments: tuple[str, ...], said: str) -> Non
     assert result.exit_code == 2
     assert said in result.stderr
     assert not Path("a").exists()
+
+
+# ---- the time of a case ----
+
+
+def test_paths_are_compared_within_the_time_of_their_case(example: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Two paths that cross each other by the thousand took minutes, in which nothing ended the run."""
+    limits: list[float] = []
+
+    def compared(*arguments: Any) -> Any:
+        limit = current_limit()
+        limits.append(0.0 if limit is None else limit.seconds)
+        raise TooHardError("these take too long")
+
+    edit("post.toml", "[controls.lathe-7]\n", "[controls.lathe-7]\nrun.max_seconds = 6.5\n")
+    monkeypatch.setattr(paths, "path_deviation", compared)
+    found = certificate("post.toml")
+    assert set(limits) == {6.5, 8.0}
+    texts = [reason for case in found["cases"] for reason in case["reasons"]]
+    assert any("not compared with golden/" in text and "these take too long" in text for text in texts)
+    assert any("not compared with" in text and "golden/" not in text for text in texts)

@@ -30,6 +30,7 @@ class CaseRun(msgspec.Struct, frozen=True):
     unknown: the radii that are not known, in one line; empty if none is.
     bug: an internal error.
     outside: the files it rests on whose text is not quoted, since they lie outside of the folders of a certification.
+    size: of the program [bytes].
     """
 
     report: FileReport | None = None
@@ -39,6 +40,7 @@ class CaseRun(msgspec.Struct, frozen=True):
     unknown: str = ""
     bug: Exception | None = None
     outside: Sequence[str] = ()
+    size: int = 0
 
 
 def run(path: str, settings: Settings, most: int, paths: Collection[str], loaded: Loaded) -> CaseRun:
@@ -95,4 +97,4 @@ def _executed(report: FileReport, path: str, settings: Settings, data: bytes, pa
                 moves[name] += executed.moves(trace, tool_center, name)
             unknown.append(executed.without_radius(trace, tool_center))
             sense = tool_center.moves.c_axis.sense
-    return CaseRun(report, "", moves, sense, "; ".join(filter(None, unknown)))
+    return CaseRun(report, "", moves, sense, "; ".join(filter(None, unknown)), size=len(data))

@@ -20,6 +20,7 @@ from polarcheck.checking.settings import Settings
 from polarcheck.errors import CertificateError, PolarcheckError, UsageError, suggestion
 from polarcheck.finding import Producer
 from polarcheck.reading import files
+from polarcheck.time_limit import seconds_for, time_limit
 
 
 class Certified(msgspec.Struct, frozen=True):
@@ -136,13 +137,20 @@ class _Alone(msgspec.Struct, frozen=True):
 
 def judged(loaded: Loaded, settings: Mapping[str, Settings], case_runs: Mapping[str, CaseRun]) -> dict[str, Certified]:
     """Return the cases that were run, each with its result, by name."""
-    alone = {name: _alone(loaded, loaded.cases[name], run) for name, run in case_runs.items()}
-    return {
-        name: Certified(
-            loaded.cases[name], _result(loaded, loaded.cases[name], settings[name], case_runs, alone), case_runs[name]
-        )
-        for name in case_runs
+    limits = {
+        name: seconds_for(of_case.size, settings[name].job.run.max_seconds) for name, of_case in case_runs.items()
     }
+    alone: dict[str, _Alone] = {}
+    for name, of_case in case_runs.items():
+        with time_limit(limits[name]):
+            alone[name] = _alone(loaded, loaded.cases[name], of_case)
+    certified: dict[str, Certified] = {}
+    for name, of_case in case_runs.items():
+        # Paths that are too hard to compare in this time are not compared, which fails the case.
+        with time_limit(limits[name]):
+            result = _result(loaded, loaded.cases[name], settings[name], case_runs, alone)
+        certified[name] = Certified(loaded.cases[name], result, of_case)
+    return certified
 
 
 def _alone(loaded: Loaded, case: Case, of_case: CaseRun) -> _Alone:
