@@ -7,11 +7,12 @@ import contextlib
 import errno
 import os
 import stat
-import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextvars import ContextVar
 from pathlib import Path
-from typing import BinaryIO, NamedTuple
+from typing import BinaryIO
+
+from polarcheck import record
 
 #: Size of one read where the size of the file is unknown [bytes].
 _CHUNK = 1 << 20
@@ -23,38 +24,7 @@ _FLAGS = os.O_RDONLY | sum(getattr(os, name, 0) for name in ("O_BINARY", "O_NOCT
 
 #: The folders that files may be read from, with all links resolved; None for no restriction, as on the command line.
 _FOLDERS: ContextVar[Sequence[Path] | None] = ContextVar("folders", default=None)
-
-#: Modification time [ns], size, number and change time [ns] of a file; None if there is none.
-Version = tuple[int, int, int, int] | None
-
-
-class Seen(NamedTuple):
-    """
-    How a file was before it was read.
-
-    version: its state.
-    content: a hash of its content, if it had just been written: a later change need not differ in its state.
-    """
-
-    version: Version
-    content: int | None = None
-
-
-_SEEN: ContextVar[dict[str, Seen] | None] = ContextVar("seen", default=None)
 _OPEN: ContextVar[Mapping[str, Callable[[], bytes]] | None] = ContextVar("open", default=None)
-#: Some file systems count modification times in steps of two seconds [ns].
-_JUST_WRITTEN = 4_000_000_000
-
-
-@contextlib.contextmanager
-def recorded() -> Iterator[dict[str, Seen]]:
-    """Yield what the code inside reads or looks for, by absolute path: also files that are not there."""
-    seen: dict[str, Seen] = {}
-    token = _SEEN.set(seen)
-    try:
-        yield seen
-    finally:
-        _SEEN.reset(token)
 
 
 @contextlib.contextmanager
@@ -70,48 +40,6 @@ def open_in_editor(texts: Mapping[str, Callable[[], bytes]]) -> Iterator[None]:
 def opened_in(folder: Path) -> list[Path]:
     """Return the files of a folder that are open in the editor, saved or not; its links are resolved."""
     return [path for path in map(Path, _OPEN.get() or ()) if path.parent == folder]
-
-
-def note(path: str | os.PathLike[str]) -> None:
-    """Record the state of a file or folder, for `recorded`; call it before the file is looked for."""
-    seen = _SEEN.get()
-    if seen is not None:
-        with contextlib.suppress(OSError, ValueError):  # without a working folder, or with a name that no file has
-            for name in (os.path.abspath(path), os.path.realpath(path)):  # noqa: PTH100  pathlib is slow
-                seen.setdefault(name, Seen(version(path)))
-
-
-def version(path: str | os.PathLike[str]) -> Version:
-    """Return the state of a file, which differs once it is changed, replaced or removed."""
-    try:
-        status = os.stat(path)  # noqa: PTH116  Path.stat raises for some names
-    except (OSError, ValueError):
-        return None
-    return status.st_mtime_ns, status.st_size, status.st_ino, status.st_ctime_ns
-
-
-def unchanged(path: str, seen: Seen) -> Seen | None:
-    """Return how a file is to be seen from now on if it is still as it was; None if it has changed."""
-    if version(path) != seen.version:
-        return None
-    if seen.content is None or seen.version is None:
-        return seen
-    try:
-        is_same = hash(Path(path).read_bytes()) == seen.content
-    except OSError:
-        return None
-    if not is_same:
-        return None
-    return Seen(seen.version, seen.content if time.time_ns() - seen.version[0] < _JUST_WRITTEN else None)
-
-
-def _note_content(path: str | os.PathLike[str], data: bytes) -> None:
-    """Record the content of a file that was written a moment ago."""
-    seen = _SEEN.get()
-    for name in {os.path.abspath(path), os.path.realpath(path)} if seen is not None else ():  # noqa: PTH100
-        before = seen[name].version if seen is not None and name in seen else None
-        if seen is not None and before is not None and time.time_ns() - before[0] < _JUST_WRITTEN:
-            seen[name] = Seen(before, hash(data))
 
 
 @contextlib.contextmanager
@@ -154,7 +82,7 @@ def read_file(
     is written to during the read. A file that is replaced during the read gives the old or the new content.
     """
     file = path if below is None else Path(below, path)
-    note(file)
+    record.note(file)
     texts = _OPEN.get()
     text = texts.get(os.path.realpath(file)) if texts else None
     if text is not None and (below is not None or may_read(file)):
@@ -162,7 +90,7 @@ def read_file(
             raise _too_large(limit, remark)
         return data
     data = _read_opened(path, limit, remark, pipes, below)
-    _note_content(file, data)
+    record.note_content(file, data)
     return data
 
 

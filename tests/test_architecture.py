@@ -40,6 +40,7 @@ ORDER = (
     ("machines",),
     ("time_limit",),
     ("arrays", "bounded", "decoding", "ending", "errors", "finding", "memory"),
+    ("record",),
 )
 FLOOR = {name: number for number, names in enumerate(reversed(ORDER)) for name in names}
 

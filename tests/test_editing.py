@@ -10,7 +10,7 @@ import pytest
 from editor import Editor, place
 from test_cli import COMPENSATED, RAPID
 
-from polarcheck import bounded
+from polarcheck import record
 from polarcheck.checking import check
 from polarcheck.commands import server as command
 from polarcheck.server import diagnostics
@@ -221,7 +221,7 @@ def test_what_the_options_name_is_trusted_with_what_lies_beside_it(tmp_path: Pat
 
 def test_files_that_have_no_name_are_not_there() -> None:
     Path("a").write_text("", "utf-8")
-    first, second, third = map(bounded.version, ["a", "no", "a\0b"])
+    first, second, third = map(record.version, ["a", "no", "a\0b"])
     assert first is not None
     assert second is None
     assert third is None

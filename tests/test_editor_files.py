@@ -10,7 +10,7 @@ import pytest
 from editor import Editor
 from test_cli import COMPENSATED, RAPID
 
-from polarcheck import bounded
+from polarcheck import bounded, record
 from polarcheck.server import session
 
 pytestmark = pytest.mark.usefixtures("own_folder")
@@ -91,31 +91,34 @@ def test_a_file_that_was_not_there_is_seen_when_it_comes() -> None:
 def test_a_file_written_between_reading_and_looking_again_is_not_missed() -> None:
     """What counts is the state of a file before it was read."""
     Path("t").write_text("half", "utf-8")
-    with bounded.recorded() as seen:
+    with record.recorded(has_states=True) as recorded:
         bounded.read_file("t", 10, "")
         Path("t").write_text("whole", "utf-8")
-    assert all(bounded.unchanged(path, before) is None for path, before in seen.items())
+    seen = recorded.seen
+    assert seen
+    assert all(record.unchanged(path, before) is None for path, before in seen.items())
 
 
 def test_a_state_that_tells_nothing_is_compared_by_content(monkeypatch: pytest.MonkeyPatch) -> None:
     """File systems that count in seconds: size, time and number are as they were."""
     Path("t").write_text("R4.", "utf-8")
-    monkeypatch.setattr(bounded, "version", lambda path: (10**18, 3, 1, 1))
-    monkeypatch.setattr(bounded.time, "time_ns", lambda: 10**18 + 1)
-    with bounded.recorded() as seen:
+    monkeypatch.setattr(record, "version", lambda path: (10**18, 3, 1, 1))
+    monkeypatch.setattr(record.time, "time_ns", lambda: 10**18 + 1)
+    with record.recorded(has_states=True) as recorded:
         bounded.read_file("t", 10, "")
-    path = os.path.realpath("t")
-    assert bounded.unchanged(path, seen[path]) == seen[path]
+    path, seen = os.path.realpath("t"), recorded.seen
+    assert seen
+    assert record.unchanged(path, seen[path]) == seen[path]
     Path("t").write_text("R5.", "utf-8")
-    assert bounded.unchanged(path, seen[path]) is None
+    assert record.unchanged(path, seen[path]) is None
     Path("t").write_text("R4.", "utf-8")
-    monkeypatch.setattr(bounded.time, "time_ns", lambda: 10**18 + 10**10)
-    later = bounded.unchanged(path, seen[path])
+    monkeypatch.setattr(record.time, "time_ns", lambda: 10**18 + 10**10)
+    later = record.unchanged(path, seen[path])
     assert later is not None
     assert later.content is None
-    assert bounded.unchanged(path, later) == later
+    assert record.unchanged(path, later) == later
     Path("t").unlink()
-    assert bounded.unchanged(path, seen[path]) is None
+    assert record.unchanged(path, seen[path]) is None
 
 
 # ---- called programs that are not saved ----

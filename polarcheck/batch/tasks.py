@@ -18,7 +18,6 @@ from polarcheck.checking.polar_sections import with_doubts
 from polarcheck.checking.settings import Settings
 from polarcheck.checking.tables import Tables
 from polarcheck.errors import ClusterError, SourceError, TooHardError
-from polarcheck.execution.look_ups import LookUp, digest, noted
 from polarcheck.finding import (
     ERROR,
     SCHEMA,
@@ -34,6 +33,7 @@ from polarcheck.finding import (
 from polarcheck.reading import files
 from polarcheck.reading.source import Source
 from polarcheck.reading.words import Text
+from polarcheck.record import LookUp, digest, note, recorded
 from polarcheck.time_limit import seconds_for, time_limit
 
 if TYPE_CHECKING:
@@ -68,11 +68,11 @@ class Basis(msgspec.Struct, frozen=True):
     """
     What an outcome rests on beside the settings, so that it can be used again while that is the same.
 
-    content: digest of the file (look_ups.digest). look_ups: the called programs that were looked for in the folders of
-    the job.
+    content: digest of the file (record.digest); None if another run may find otherwise, as of what has ended by its
+    time. look_ups: the called programs that were looked for in the folders of the job.
     """
 
-    content: bytes
+    content: bytes | None
     look_ups: tuple[LookUp, ...] = ()
 
 
@@ -83,7 +83,7 @@ class Outcome(msgspec.Struct, frozen=True):
     called: keys of the offsets that it calls, where it has a job with tools. failed: whether it fails, by its own
     settings. failure: in one line, why it could not be checked; its report says so, too. bug: what polarcheck itself
     did wrong. short_of_memory: where that is why; with more it may be checked. basis: what it rests on; None for what
-    another run may find otherwise, as what has ended by its time.
+    could not be checked.
     """
 
     report: FileReport | None = None
@@ -167,7 +167,7 @@ def plan(
             tasks.setdefault(key, Task(program, settings, named))
     if by_look:
         of_jobs = {id(task.settings): task.settings for task in tasks.values()}
-        read = {real.of(str(path)) for settings in of_jobs.values() for path in settings.read}
+        read = {real.of(path) for settings in of_jobs.values() for path in settings.read}
         for key in by_look:
             if key[0] in read:
                 unread_files.append(_offset_table(tasks.pop(key).path))
@@ -272,7 +272,9 @@ def gather(
                 spool.add(found.report, found.lines)
                 called |= found.called
                 if found.basis is not None:
-                    called_files.update(path for look_up in found.basis.look_ups for path, _ in look_up.files)
+                    its_files = [path for look_up in found.basis.look_ups for path, _ in look_up.files]
+                    note(*its_files)  # a worker may have read them
+                    called_files.update(its_files)
                 failed = failed or found.failed
                 if show is not None:
                     show(found.report, found.lines)
@@ -358,10 +360,10 @@ def fails(report: FileReport, settings: Settings) -> bool:
     return is_severe or (settings.strict and report.verdict == "unverified")
 
 
-def _check(task: Task, data: bytes) -> tuple[FileReport, Source, set[str], Basis | None]:
+def _check(task: Task, data: bytes) -> tuple[FileReport, Source, set[str], Basis]:
     """The report, the text, the keys of the offsets that are called, where the job has any, and what this rests on."""
     settings = task.settings
-    with time_limit(seconds_for(len(data), settings.job.run.max_seconds)) as limit, noted() as look_ups:
+    with time_limit(seconds_for(len(data), settings.job.run.max_seconds)) as limit, recorded() as read:
         found = check.read(data, settings.machine, settings.job, task.title, settings.encoding)
         text: Text = found[0][1]["text"]
         report = check.check_runs(found, settings.rules, settings.severities, settings.inline, settings.deselected)
@@ -375,7 +377,7 @@ def _check(task: Task, data: bytes) -> tuple[FileReport, Source, set[str], Basis
             report = with_outline(report, found)
         offsets = _offsets(found) if settings.job.tools else set()
         # Whoever has left something out because the time was over has done so before this moment.
-        basis = None if limit.is_over() else Basis(digest(data), tuple(look_ups))
+        basis = Basis(None if limit.is_over() else digest(data), tuple(read.look_ups))
         return report, text.source, offsets, basis
 
 

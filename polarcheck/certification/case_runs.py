@@ -6,7 +6,7 @@ from collections.abc import Collection, Mapping, Sequence
 
 import msgspec
 
-from polarcheck import bounded
+from polarcheck import record
 from polarcheck.batch.tasks import Task, outcome
 from polarcheck.certification import quoting
 from polarcheck.certification.loading import Loaded
@@ -53,9 +53,9 @@ def run(path: str, settings: Settings, most: int, paths: Collection[str], loaded
         data = files.read_program(path, most)
     except SourceError as error:
         return CaseRun(failure=str(error))
-    with bounded.recorded() as seen:
+    with record.recorded() as read:
         of_case = _checked(path, data, settings, most, paths)
-    outside = loaded.outside([path, *settings.read, *seen])
+    outside = loaded.outside([path, *settings.read, *read.paths])
     return _without_text(of_case, files.shown(path), outside) if outside else of_case
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import msgspec
 
-from polarcheck import __version__, bounded
+from polarcheck import __version__, record
 from polarcheck.batch.tasks import forget
 from polarcheck.certification import expectations, golden, paths, quoting, results
 from polarcheck.certification.case_runs import CaseRun, run
@@ -77,13 +77,13 @@ def conditions(loaded: Loaded, names: Collection[str]) -> dict[str, Settings]:
     """
     of_case = ConditionsOfCases(loaded)
     settings: dict[str, Settings] = {}
-    with bounded.recorded() as seen:
+    with record.recorded() as read:
         for name in names:
             try:
                 settings[name] = of_case(loaded.cases[name])
                 continue
             except PolarcheckError:
-                outside = loaded.outside(seen)
+                outside = loaded.outside(read.paths)
                 if not outside:
                     raise
             # Behind the clause: an error raised in it would hold the one that quotes.

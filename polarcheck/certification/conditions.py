@@ -14,6 +14,7 @@ from polarcheck.certification.manifest import Case
 from polarcheck.checking.settings import Settings
 from polarcheck.errors import JobError
 from polarcheck.machines.job import Job
+from polarcheck.record import Remembered, recorded
 from polarcheck.settings import job_files, job_layers
 from polarcheck.settings.job_files import JobFile
 from polarcheck.settings.job_layers import Layer, Merged, PartLayer, Written
@@ -76,10 +77,12 @@ class ConditionsOfCases:
         self._loaded = loaded
         self._written = Written(loaded.path, loaded.text)
         self._maker = SettingsMaker(Options(use_config=False))
-        self._configs: dict[Path, JobFile] = {}
+        self._configs: Remembered[Path, JobFile] = Remembered()
 
     def __call__(self, case: Case) -> Settings:
-        return self._maker.settings(_CaseFile(self._loaded.path, (), tuple(self._layers(case))), ())
+        with recorded() as read:
+            settings = self._maker.settings(_CaseFile(self._loaded.path, (), tuple(self._layers(case))), ())
+        return msgspec.structs.replace(settings, read=[*read.paths])
 
     def _layers(self, case: Case) -> Iterator[Layer]:
         """Yield the layers of a case, the nearest last."""
@@ -103,12 +106,10 @@ class ConditionsOfCases:
     def _config(self, written: str, key: str, case: Case) -> Iterator[Layer]:
         """Yield the layers of a job file that apply to the program of a case."""
         path = self._loaded.beside(written)
-        if path not in self._configs:
-            try:
-                self._configs[path] = job_files.load(path)
-            except JobError as error:
-                raise JobError(f"{self._written.at(key)}: {key}: {error}") from None
-        file = self._configs[path]
+        try:
+            file = self._configs.get(path, lambda: job_files.load(path))
+        except JobError as error:
+            raise JobError(f"{self._written.at(key)}: {key}: {error}") from None
         program = self._loaded.beside(case.program)
         for layer in file.layers(os.path.realpath(program.parent), program.name):
             yield file.layer(*layer)

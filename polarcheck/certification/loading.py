@@ -17,6 +17,8 @@ from polarcheck.machines import toml_lines, toml_text
 from polarcheck.machines.fitting import MisfitError, fitted, listed, shown
 from polarcheck.reading import files
 
+#: Keys whose values are files; a machine may be the name of a built-in one.
+_FILES = ("config", "drawing", "machine", "offsets")
 #: How far a path may be from another one unless the manifest says so [mm]: ten least increments.
 _TOLERANCE = 0.01
 
@@ -49,6 +51,17 @@ class Loaded(msgspec.Struct, frozen=True):
     def outside(self, paths: Iterable[str | os.PathLike[str]]) -> list[str]:
         """Return the files among the paths that lie neither below its folder nor below the working folder."""
         return quoting.outside((self.path.parent, Path()), paths)
+
+    def named_files(self) -> Iterator[str]:
+        """Yield the drawings, tables and settings that the manifest names, of each case and of none."""
+        left: list[Any] = [self.table]
+        while left:
+            value = left.pop()
+            if isinstance(value, Mapping):
+                yield from (value[key] for key in _FILES if isinstance(value.get(key), str))
+                left += value.values()
+            elif isinstance(value, list):
+                left += value
 
     def without_programs(self) -> Iterator[str]:
         """Yield a line for each control whose `programs` finds no file at all, as one with a slip in it."""

@@ -67,7 +67,7 @@ def _updated(loaded: Loaded, entry: Certified) -> tuple[str, bool]:
         path.parent.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise OutputError(f"{files.shown(str(path.parent))}: {error.strerror or error}") from None
-    files.write(path, text)
+    files.write(path, text, rewrites=True)
     return f"{title}: {change}", True
 
 

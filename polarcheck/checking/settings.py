@@ -26,7 +26,7 @@ class Settings(msgspec.Struct, frozen=True):
     machine, job: the merged profile and the job.
     rules: the selected rules.
     severities: error, warning, note or off by rule, where they differ from the machine's.
-    read: the files from which the settings were read.
+    read: the files and folders that were read or looked for to make the settings.
     job_file: the nearest job file; None without one.
     fail_on: the lowest severity that fails a file, or never.
     strict: an unverified file fails, too.
@@ -47,7 +47,7 @@ class Settings(msgspec.Struct, frozen=True):
     job: Job
     rules: Sequence[Rule]
     severities: Mapping[str, str]
-    read: Sequence[Path] = ()
+    read: Sequence[str] = ()
     job_file: Path | None = None
     fail_on: str = "warning"
     strict: bool = False

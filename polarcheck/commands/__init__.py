@@ -16,7 +16,7 @@ from typing import Any
 
 import click
 
-from polarcheck import __version__, ending
+from polarcheck import __version__, ending, record
 from polarcheck.commands import options, planted_names, signals
 from polarcheck.commands.exit_codes import BUG, CLEAN, COULD_NOT_RUN
 from polarcheck.commands.output import (
@@ -138,7 +138,8 @@ class Commands(click.Group):
     def invoke(self, ctx: click.Context) -> Any:
         """Run a command; an unexpected exception is a bug of polarcheck, never a finding."""
         try:
-            return super().invoke(ctx)
+            with record.recorded():
+                return super().invoke(ctx)
         except (click.ClickException, click.Abort, click.exceptions.Exit):
             raise
         except Exception as error:

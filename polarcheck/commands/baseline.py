@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -173,7 +174,7 @@ def _run(
     target = output or _of_jobs(tasks)
     contents = read(target)
     tasks = _with_baseline(tasks, target)
-    overwriting.refuse([target], tasks)
+    overwriting.refuse_name(os.path.realpath(target), f"-o {files.shown(str(target))}")
     checked = running.Runner(max_size, workers, cluster).check(tasks, Bar(len(tasks), not quiet), faults)
     status = faults.report()
     if checked.stopped is not None:
@@ -182,7 +183,7 @@ def _run(
         return interrupted
     known = Baseline(contents, target.parent, (task.place for task in tasks), paths)
     updated, summary = make(known, contents, checked, tasks, reason)
-    files.write(target, baseline_file.text_of(updated))
+    files.write(target, baseline_file.text_of(updated), rewrites=True)
     if not quiet:
         show(f"{head(files.shown(str(target)))}: {summary}\n")
     return status
@@ -201,15 +202,14 @@ def _of_jobs(tasks: list[Task]) -> Path:
 
 
 def _with_baseline(tasks: list[Task], path: Path) -> list[Task]:
-    """Return the tasks with a baseline that is written, and not read."""
+    """Return the tasks with a baseline, which is written."""
     import msgspec
 
     of_settings = {}
     for task in tasks:
         old = task.settings
         if id(old) not in of_settings:
-            read = [file for file in old.read if file != old.baseline]
-            of_settings[id(old)] = msgspec.structs.replace(old, baseline=path, read=read)
+            of_settings[id(old)] = msgspec.structs.replace(old, baseline=path)
     return [msgspec.structs.replace(task, settings=of_settings[id(task.settings)]) for task in tasks]
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -15,9 +16,12 @@ from polarcheck.commands.output import COLUMNS
 from polarcheck.errors import UsageError
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from polarcheck.certification.certifying import Certified
     from polarcheck.certification.loading import Loaded
     from polarcheck.certification.results import Certificate
+    from polarcheck.checking.settings import Settings
 
 _INIT = "init"
 _FORMATS = ("text", "json", "html")
@@ -104,7 +108,7 @@ def _certify(
         warn(line)
     chosen = certifying.chosen(loaded, names)
     settings = certifying.conditions(loaded, certifying.needed(loaded, chosen))
-    _refuse(outputs, loaded)
+    _refuse(outputs, loaded, settings)
     bar = Bar(len(settings), True)
     case_runs = dict(bar.watched(certifying.runs(loaded, settings, most)))
     bugs = [run.bug for run in case_runs.values() if run.bug is not None]
@@ -129,21 +133,26 @@ def _certify(
     return BUG if bugs else status
 
 
-def _refuse(outputs: list[tuple[str, Path]], loaded: Loaded) -> None:
-    """Raise OutputError for a report that would overwrite a file of the certification, or another report."""
-    from polarcheck.errors import OutputError
-    from polarcheck.reading import files, walking
+def _refuse(outputs: list[tuple[str, Path]], loaded: Loaded, settings: Mapping[str, Settings]) -> None:
+    """
+    Raise OutputError for a report that would overwrite a file of the certification, or another report.
 
-    read = {loaded.path.resolve()}
-    for case in loaded.cases.values():
-        read |= {loaded.beside(file).resolve() for file in (case.program, case.golden) if file is not None}
+    All files that the manifest names count, those of cases that are not run, too.
+    """
+    from polarcheck import record
+    from polarcheck.batch.tasks import Task
+    from polarcheck.commands import overwriting
+    from polarcheck.errors import OutputError
+    from polarcheck.reading.files import shown
+
+    named = [file for case in loaded.cases.values() for file in (case.program, case.golden) if file is not None]
+    record.note(*map(loaded.beside, [*named, *loaded.named_files()]))
+    tasks = [Task(str(loaded.beside(loaded.cases[name].program)), of_case) for name, of_case in settings.items()]
+    overwriting.refuse([output for _, output in outputs], tasks)
+    goldens = {os.path.realpath(loaded.beside(case.golden)) for case in loaded.cases.values() if case.golden}
     for _, output in outputs:
-        name = files.shown(str(output))
-        if output.resolve() in read:
-            raise OutputError(f"-o {name}: is read by this run, or written by another; name another file")
-        if walking.has_name_of_program(str(output), walking.EXTENSIONS) or output.suffix == ".toml":
-            raise OutputError(f"-o {name}: this is the name of a program or of a manifest; give the report another")
-        read.add(output.resolve())
+        if os.path.realpath(output) in goldens:
+            raise OutputError(f"-o {shown(str(output))}: is a golden trace of the manifest; name another file")
 
 
 def _update(loaded: Loaded, certified: dict[str, Certified], chosen: frozenset[str]) -> int:

@@ -92,7 +92,7 @@ def outputs(wanted: Wanted, tasks: Sequence[Task], paths: Sequence[str]) -> Mapp
     Raises OutputError or UsageError, before anything is computed, for a file that is there already or that the run
     reads, and for one file for several programs.
     """
-    from polarcheck.commands.overwriting import Inputs
+    from polarcheck.commands.overwriting import folders_of, refuse_input
     from polarcheck.reading import files
 
     several = len(tasks) > 1 or len(paths) > 1 or any(map(os.path.isdir, paths))
@@ -104,7 +104,7 @@ def outputs(wanted: Wanted, tasks: Sequence[Task], paths: Sequence[str]) -> Mapp
     is_folder = wanted.out.endswith(_FOLDER_ENDS) or os.path.isdir(wanted.out)  # noqa: PTH112  Path.is_dir raises for some names
     if several and not is_folder and os.path.exists(wanted.out):  # noqa: PTH110
         raise UsageError(f"-o {shown}: expected a folder for several programs, found a file")
-    inputs = Inputs(tasks)
+    folders = folders_of(tasks)
     by_task: dict[str, Path] = {}
     for task in tasks:
         output = Path(wanted.out)
@@ -115,7 +115,7 @@ def outputs(wanted: Wanted, tasks: Sequence[Task], paths: Sequence[str]) -> Mapp
         named = f"-o {files.shown(str(output))}"
         if output in by_task.values():
             raise UsageError(f"{named}: two programs would be written to this file")
-        inputs.refuse(output, named)
+        refuse_input(output, named, folders)
         if not wanted.force:
             _refuse_existing(output)
         by_task[task.place] = output

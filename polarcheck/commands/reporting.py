@@ -107,6 +107,8 @@ def written(outputs: Iterable[tuple[str, Path]], form: str, report: Report, plai
     summary = os.environ.get(STEP_SUMMARY)
     if summary and _OF_GITHUB in forms:
         try:
+            if reason := files.read_by_this_run(Path(summary)):
+                raise ValueError(reason)
             _append(summary, report, plain)
         except (OSError, ValueError) as error:
             said = getattr(error, "strerror", None) or error

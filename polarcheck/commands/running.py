@@ -7,10 +7,12 @@ import itertools
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from polarcheck import record
 from polarcheck.batch import runs
 from polarcheck.commands import silencing
 from polarcheck.commands.exit_codes import BUG, CLEAN, COULD_NOT_RUN
 from polarcheck.commands.output import bug_lines, say, say_lines, warn
+from polarcheck.reading.files import STANDARD_INPUT
 
 if TYPE_CHECKING:
     from polarcheck.batch.baselines import Baselines
@@ -21,6 +23,10 @@ if TYPE_CHECKING:
     from polarcheck.finding import FileReport
     from polarcheck.reading.walking import Skipped
     from polarcheck.settings.of_programs import OfPrograms
+
+
+#: Leads to the file behind standard input, where the system has it.
+_STANDARD_INPUT = "/dev/stdin"
 
 
 class Faults:
@@ -75,6 +81,7 @@ def planned(
     faults.nothing += found.nothing
     for line in found.doubts:
         warn(line)
+    record.note(*(_STANDARD_INPUT if task.place == STANDARD_INPUT else task.place for task in found.tasks))
     return found.tasks
 
 

@@ -74,7 +74,7 @@ class Seen:
     def _of(self, task: Task) -> Look:
         """Return the state of all files that a result depends on: the program, its settings, called programs."""
         settings = task.settings
-        files = {task.path, *(str(path) for path in settings.read)}
+        files = {task.path, *(path for path in settings.read if not os.path.isdir(path))}  # noqa: PTH112
         for folder in settings.job.run.subprograms:
             files |= _inside(folder)
         return {path: self._state(path) for path in sorted(files)}

@@ -2,34 +2,34 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Sequence
 
 from polarcheck.execution.library import Shelf, names_of
-from polarcheck.execution.programs import needs_flow, read_text
+from polarcheck.execution.programs import ProgramName, needs_flow, read_text
 from polarcheck.machines.machine import Machine
 from polarcheck.reading.channels import channels
 from polarcheck.reading.source import Source
+from polarcheck.record import recorded
 
 
-def calls_one_of(source: Source, machine: Machine, folders: Sequence[str], names: Iterable[str]) -> bool:
+def calls_one_of(source: Source, machine: Machine, folders: Sequence[str], names: Collection[str]) -> bool:
     """
-    Whether a file calls one of some files that lie, or lay, in the folders of its job; names: without their folders.
+    Return True if a file calls one of some files that lie, or lay, in the folders of its job.
 
-    A call whose number is computed may be that of any of them.
+    names: of these files, without their folders. A call whose number is computed may be that of any of them.
     """
-    changed = list(names)
-    if not changed:
+    if not names:
         return False
     control = machine.control
     texts = [read_text(one, machine) for one in channels(source, control.channel_mark, control.line_comments)]
     for text in texts:
         if not needs_flow(text, machine.macro.flow_codes):
             continue
-        listing = Shelf(text, machine, folders).listing
-        for file in range(len(listing.files)):
-            wanted = [names_of(called) for called in listing.calls(file)]
-            if any(one is not None and one.fullmatch(name) for one in wanted for name in changed):
-                return True
-            if listing.computes_calls(file):
-                return True
+        with recorded() as read:
+            listing = Shelf(text, machine, folders).listing
+        patterns = [names_of(ProgramName(look_up.number, look_up.name)) for look_up in read.look_ups]
+        if any(pattern is not None and pattern.fullmatch(name) for pattern in patterns for name in names):
+            return True
+        if any(listing.computes_calls(file) for file in range(len(listing.files))):
+            return True
     return False

@@ -14,9 +14,8 @@ from typing import NamedTuple
 
 import msgspec
 
-from polarcheck import bounded
+from polarcheck import bounded, record
 from polarcheck.arrays import cached_property
-from polarcheck.execution import look_ups
 from polarcheck.execution.listing import Listing
 from polarcheck.execution.programs import ProgramName, Programs, find_programs, read_text
 from polarcheck.execution.run import Beside
@@ -93,7 +92,7 @@ class Library:
         """Each folder that can be listed, its title, and what lies in it, by name; backups come last."""
         found = []
         for folder, title in self._folders:
-            bounded.note(folder)
+            record.note(folder)
             with contextlib.suppress(OSError):
                 paths = {*folder.iterdir(), *bounded.opened_in(folder)}
                 found.append((folder, title, sorted(paths, key=lambda path: (_is_backup(path), path))))
@@ -139,6 +138,7 @@ class Library:
         if wanted is None:
             return []
         places: list[Place] = []
+        named: list[tuple[str, bytes]] = []
         left = _MOST_READ
         for folder, title, paths in self._paths:
             for path in paths:
@@ -147,8 +147,9 @@ class Library:
                 data = _read_inside(folder, path)
                 left -= data is not None
                 if data is not None and (not places or _content(data) != _content(places[0].data)):
-                    places.append(Place(path, shown(os.path.join(title, path.name)), data))  # noqa: PTH118
-        look_ups.note(called, [(place.title, place.data) for place in places])
+                    named.append((os.path.join(title, path.name), data))  # noqa: PTH118
+                    places.append(Place(path, shown(named[-1][0]), data))
+        record.note_look_up(called, named)
         return places
 
 

@@ -11,7 +11,7 @@ from typing import Any, get_origin
 
 import msgspec
 
-from polarcheck import bounded
+from polarcheck import record
 from polarcheck.errors import MachineError, suggestion
 from polarcheck.machines import axis_names, parameters, toml_text
 from polarcheck.machines.code_lists import FRAME_LISTS
@@ -172,6 +172,7 @@ def is_meant(path: Path, name: str) -> bool:
     Whether a name means the file at a path: where one lies there, and where something else does that a name of a
     machine cannot mean; reading it then says what it is.
     """
+    record.note(path)
     is_path = name.endswith(".toml") or "/" in name or os.sep in name
     return os.path.isfile(path) or (is_path and os.path.lexists(path))  # noqa: PTH113  Path.is_file raises for some names
 
@@ -181,7 +182,6 @@ def _find(name: str, folder: Path) -> tuple[Path, str]:
     if built_in.parent == FOLDER and os.path.isfile(built_in):  # noqa: PTH113  Path.is_file raises for some names
         return built_in, name
     path = folder / name
-    bounded.note(path)
     if is_meant(path, name):
         return path, str(path)
     if name.endswith(".toml"):

@@ -11,7 +11,7 @@ import sys
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 
-from polarcheck import bounded
+from polarcheck import bounded, record
 from polarcheck.errors import OutputError, SourceError
 from polarcheck.reading.names import spelled
 
@@ -118,15 +118,24 @@ def state(path: str | Path, of_folder: Callable[[str, int], State] | None = None
     return found.st_mtime_ns, found.st_size, found.st_ino
 
 
-def write(path: Path, text: str | bytes | Iterable[str], last: Callable[[Path], None] | None = None) -> None:
+def write(
+    path: Path,
+    text: str | bytes | Iterable[str],
+    last: Callable[[Path], None] | None = None,
+    *,
+    rewrites: bool = False,
+) -> None:
     """
     Write a file whole or not at all, whoever reads it at that moment; a text in UTF-8, which may come in pieces.
 
     A device, a pipe, and what the shell has opened (`>(...)`, /dev/stdout) are written to as they are.
 
-    last: is called with the new file right before it takes the place of the old one, and may raise. Raises OutputError
-    where it cannot be written.
+    last: is called with the new file right before it takes the place of the old one, and may raise. rewrites: the file
+    may be one that this run has read. Raises OutputError for any other file that it has read, and where it cannot be
+    written.
     """
+    if not rewrites and (reason := read_by_this_run(path)):
+        raise OutputError(f"{shown(str(path))}: {reason}")
     data = [text] if isinstance(text, bytes) else _encoded([text] if isinstance(text, str) else text)
     try:
         descriptor = _descriptor(path)
@@ -144,6 +153,16 @@ def write(path: Path, text: str | bytes | Iterable[str], last: Callable[[Path], 
     except (OSError, ValueError) as error:
         said = getattr(error, "strerror", None) or error
         raise OutputError(f"{shown(str(path))}: {said}") from None
+
+
+def read_by_this_run(path: Path) -> str:
+    """Return in words that a file is one that this run has read; empty if it is not."""
+    source = record.read_as(path)
+    if source is None:
+        return ""
+    is_same = os.path.abspath(source) == os.path.abspath(path)  # noqa: PTH100
+    named = "it" if is_same else f"it is {shown(source)}, which"
+    return f"{named} is read by this run; name another file"
 
 
 def _encoded(pieces: Iterable[str]) -> Iterator[bytes]:

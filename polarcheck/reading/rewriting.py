@@ -35,7 +35,7 @@ def rewrite(path: str, old: bytes, new: bytes, *, keep: bool = False) -> None:
             _hand_over(written, status, name)
             _refuse(target, name, old)
 
-        files.write(target, new, finish)
+        files.write(target, new, finish, rewrites=True)
     except (OSError, ValueError) as error:
         raise OutputError(f"{name}: not written: {getattr(error, 'strerror', None) or error}") from None
 

@@ -12,9 +12,9 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
-from polarcheck import bounded
-from polarcheck.bounded import Seen
+from polarcheck import bounded, record
 from polarcheck.errors import StoppedError
+from polarcheck.record import Seen
 from polarcheck.server.open_text import OpenText
 from polarcheck.server.worker import Worker
 
@@ -113,7 +113,7 @@ class Buffers:
     def _touch_callers(self, called: Buffer) -> None:
         """Check the programs again that call a document: its text in the editor counts, saved or not."""
         folder = os.path.dirname(called.real)  # noqa: PTH120
-        is_new = called.is_open and bounded.version(called.real) is None
+        is_new = called.is_open and record.version(called.real) is None
         for buffer in self.open.values():
             if buffer is not called and (called.real in buffer.read or (is_new and folder in buffer.read)):
                 self.touch(buffer, buffer.pause)
@@ -216,7 +216,7 @@ def _unchanged(read: Mapping[str, Seen]) -> dict[str, Seen] | None:
     """Return how files are to be seen from now on; None if one of them has changed."""
     now = {}
     for path, before in read.items():
-        seen = bounded.unchanged(path, before)
+        seen = record.unchanged(path, before)
         if seen is None:
             return None
         now[path] = seen

@@ -9,7 +9,7 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from polarcheck import bounded
+from polarcheck import bounded, record
 from polarcheck.checking import check
 from polarcheck.checking.settings import Settings
 from polarcheck.checking.tables import Tables
@@ -53,7 +53,7 @@ class Judged(NamedTuple):
     settings: Settings | None = None
     runs: Sequence[tuple[str, Tables]] = ()
     report: FileReport | None = None
-    read: Mapping[str, bounded.Seen] = MappingProxyType({})
+    read: Mapping[str, record.Seen] = MappingProxyType({})
     plain: Sequence[Text] = ()
 
     @property
@@ -107,7 +107,8 @@ def judge(
     last: the last settings of the program that could be used.
     """
     settings = None
-    with bounded.only_below(folders), bounded.recorded() as read:
+    with bounded.only_below(folders), record.recorded(has_states=True) as recorded:
+        read = recorded.seen if recorded.seen is not None else {}
         try:
             settings = settings_of(path)
             job = settings.job

@@ -10,12 +10,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import msgspec
 
-from polarcheck import bounded
+from polarcheck import bounded, record
 from polarcheck.errors import JobError
 from polarcheck.machines import toml_text
 from polarcheck.machines.fitting import MisfitError, fitted, shown
 from polarcheck.machines.job import FILE_NAME, PROJECT, Job
 from polarcheck.reading.files import RealPaths
+from polarcheck.record import Remembered
 from polarcheck.settings import job_layers
 from polarcheck.settings.job_layers import Layer, Merged, PartLayer, Written
 
@@ -146,6 +147,7 @@ class Nearest:
 
     def __init__(self) -> None:
         self.real = RealPaths()
+        self._in_folders: Remembered[str, Path | None] = Remembered()
         self._cached: dict[str, Path | None] = {}
 
     def of(self, path: Path) -> Path | None:
@@ -169,11 +171,20 @@ class Nearest:
             return None
         return _relative(nearest) if nearest is not None and nearest.parent != Path(folder) else None
 
+    def note(self, folder: str) -> None:
+        """Record again what the job file of a folder, a real path, was looked for by."""
+        while self._in(folder) is None and (outer := os.path.dirname(folder)) != folder:  # noqa: PTH120
+            folder = outer
+
+    def _in(self, folder: str) -> Path | None:
+        return self._in_folders.get(folder, lambda: in_folder(Path(folder)))
+
     def _from(self, folder: str) -> Path | None:
         passed: list[str] = []
         while folder not in self._cached:
             passed.append(folder)
-            nearest, outer = in_folder(Path(folder)), os.path.dirname(folder)  # noqa: PTH120  pathlib is slow
+            nearest = self._in(folder)
+            outer = os.path.dirname(folder)  # noqa: PTH120  pathlib is slow
             if nearest is not None or outer == folder:
                 self._cached[folder] = nearest
             else:
@@ -194,11 +205,11 @@ def in_folder(folder: Path) -> Path | None:
     """Return the job file in a folder, or None."""
     if not bounded.may_read(folder):
         return None
-    bounded.note(folder / FILE_NAME)
-    bounded.note(folder / PROJECT)
+    record.note(folder / FILE_NAME)
     # A broken link, a folder or a pipe of this name is not skipped: reading it reports the error.
     if os.path.lexists(folder / FILE_NAME):
         return folder / FILE_NAME
+    record.note(folder / PROJECT)
     return folder / PROJECT if _is_job_file(folder / PROJECT) else None
 
 
@@ -247,7 +258,7 @@ def load(path: Path, *, pipes: bool = False) -> JobFile:
 def _extended(path: Path, written: str, named_by: str) -> Path:
     """Return the file that `extend` of a job file means; of a folder, the nearest one in it or above it."""
     meant = Path(os.path.normpath(job_layers.beside(path.parent, written)))
-    bounded.note(meant)
+    record.note(meant)
     if not meant.is_dir():
         return _relative(meant)
     nearest = Nearest().of(meant)

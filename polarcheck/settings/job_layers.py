@@ -20,6 +20,7 @@ from polarcheck.machines.job import Job, Tool, from_table
 from polarcheck.machines.modal import MM_PER_INCH
 from polarcheck.machines.offset_keys import canonical
 from polarcheck.machines.part import LENGTHS, Part
+from polarcheck.record import Remembered, note
 
 #: Keys that select files, and are no settings of a program.
 _OF_FILES = ("extend", "exclude", "programs", "files", "part", "root")
@@ -67,6 +68,7 @@ class Layer:
 
     def __init__(self, written: Written, table: Mapping[str, Any], entry: int = 0) -> None:
         self.written, self.entry, self._table = written, entry, table
+        self._tables: Remembered[str, dict[str, Any]] = Remembered()
 
     @property
     def title(self) -> str:
@@ -119,13 +121,16 @@ class Layer:
         """Return True if this layer sets the units of its lengths."""
         return "units" in self._table
 
-    @cached_property
+    @property
     def table(self) -> dict[str, Any]:
         """
         Return the values, with canonical keys of offsets, and with paths relative to the working folder.
 
         Raises JobError for a folder that does not exist.
         """
+        return self._tables.get("", self._resolved)
+
+    def _resolved(self) -> dict[str, Any]:
         values = {key: value for key, value in self._table.items() if key not in _OF_FILES}
         folder = self.written.path.parent
         if "tools" in values:
@@ -146,6 +151,7 @@ class Layer:
         import os
 
         path = str(beside(folder, written))
+        note(path)
         try:
             os.scandir(path).close()
         except (FileNotFoundError, NotADirectoryError, ValueError):
@@ -160,7 +166,10 @@ class Layer:
 def beside(folder: Path, written: str) -> Path:
     """Return the path of a file or folder that a file in this folder names; backslashes count as slashes, too."""
     path = folder / written
-    if "\\" in written and not path.exists():
+    if "\\" not in written:
+        return path
+    note(path)
+    if not path.exists():
         return folder / written.replace("\\", "/")
     return path
 
@@ -184,8 +193,7 @@ class PartLayer(Layer):
         super().__init__(written, {})
         self.number, self._part = number, table
 
-    @cached_property
-    def table(self) -> dict[str, Any]:
+    def _resolved(self) -> dict[str, Any]:
         """Return a table with the entry as its only part."""
         entry = dict(self._part)
         if "drawing" in entry:

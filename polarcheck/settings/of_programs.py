@@ -21,6 +21,7 @@ from polarcheck.machines.job import Job, PunchedTool, Running, check_tools, chec
 from polarcheck.machines.machine import Machine
 from polarcheck.machines.part import Part
 from polarcheck.reading.files import STANDARD_INPUT
+from polarcheck.record import Remembered, note, recorded
 from polarcheck.settings import decisions, job_files, selection
 from polarcheck.settings.job_files import JobFile
 from polarcheck.settings.job_layers import Merged
@@ -92,6 +93,7 @@ class OfPrograms:
         self._options = options
         self._nearest = job_files.Nearest()
         self._loaded: dict[Path | None, JobFile] = {}
+        self._files: Remembered[Path, JobFile] = Remembered()
         self._of_folder: dict[str, tuple[JobFile, str]] = {}
         # The settings of folders whose programs all have the same settings.
         self._plain: dict[str, Settings] = {}
@@ -108,12 +110,36 @@ class OfPrograms:
         layers = file.layers(real, name)
         key = file.path, layers
         if key not in self._settings:
-            self._settings[key] = self._maker.settings(file, layers)
+            with recorded() as read:
+                settings = self._maker.settings(self._load(file.path), layers)
+            self._settings[key] = msgspec.structs.replace(settings, read=[*read.paths])
         if not file.has_entries:
             self._plain[folder] = self._settings[key]
         elif name and file.path is not None:
             self._matched.setdefault(file.path, []).append((real, name))
         return self._settings[key]
+
+    def looked_for(self, path: str, walked: Iterable[str]) -> list[str]:
+        """
+        Return what the job files of a program were looked for by, and those that say what a walk to it passes over.
+
+        walked: the files and folders of the run.
+        """
+        folder = os.path.dirname(path)  # noqa: PTH120
+        roots = [root for root in map(_as_walked, walked) if path.startswith(root)]
+        with recorded() as read:
+            self._note_job_file(folder)
+            while any(len(root) < len(os.path.join(folder, "")) for root in roots):  # noqa: PTH118
+                folder = os.path.dirname(folder)  # noqa: PTH120
+                self._note_job_file(folder)
+        return [*read.paths]
+
+    def _note_job_file(self, folder: str) -> None:
+        """Record again what the job file of a folder was looked for by, and what it is read from."""
+        file, real = self._job_file(folder)
+        if self._options.use_config and not self._options.config:
+            self._nearest.note(real)
+        self._load(file.path)
 
     def applied(self, path: str) -> Applied:
         """Return the settings with the origin of each value."""
@@ -232,14 +258,27 @@ class OfPrograms:
         if folder not in self._of_folder:
             options = self._options
             nearest = None if not options.use_config else options.config or self._nearest.of(Path(folder))
-            if nearest not in self._loaded:
-                pipes = nearest == options.config
-                self._loaded[nearest] = job_files.load(nearest, pipes=pipes) if nearest else JobFile()
+            file = self._load(nearest)
             with contextlib.suppress(OSError, RuntimeError, ValueError):  # reading the program reports the error
-                self._of_folder[folder] = self._loaded[nearest], self._nearest.real.folder(folder or os.curdir)
+                self._of_folder[folder] = file, self._nearest.real.folder(folder or os.curdir)
                 return self._of_folder[folder]
-            return self._loaded[nearest], folder
+            return file, folder
         return self._of_folder[folder]
+
+    def _load(self, path: Path | None) -> JobFile:
+        """Return a job file, which is read once."""
+        if path is None:
+            self._loaded[None] = JobFile()
+        else:
+            pipes = path == self._options.config
+            self._loaded[path] = self._files.get(path, lambda: job_files.load(path, pipes=pipes))
+        return self._loaded[path]
+
+
+def _as_walked(root: str) -> str:
+    """Return the beginning of the paths that a walk through a folder yields."""
+    root = "" if root == os.curdir else root
+    return os.path.join(root, "") if root else root  # noqa: PTH118
 
 
 def _is_below(path: Path, folders: Iterable[str]) -> bool:
@@ -277,7 +316,7 @@ class SettingsMaker:
         self._options = options
         self._known = load_all()
         self._changes = options.keywords.changes if options.keywords else changes(options.changes)
-        self._profiles: dict[str, profiles.Profile] = {}
+        self._profiles: Remembered[str, profiles.Profile] = Remembered()
         self._rules: dict[str, _Chosen] = {}
         self._hashes: dict[int, str] = {}
 
@@ -297,13 +336,13 @@ class SettingsMaker:
         rules, levels, deselected = self._chosen(job, merged, profile)
         named = options.baseline or (None if job.baseline is None else Path(job.baseline))
         baseline = named if options.use_baseline else None
+        note(*job.run.subprograms, *([baseline] if baseline else []))
         settings = Settings(
             name=name,
             machine=machine,
             job=job,
             rules=rules,
             severities=levels,
-            read=_files_read(options, job, profile, file, baseline),
             job_file=file.path,
             fail_on=job.fail_on,
             strict=job.strict,
@@ -325,16 +364,13 @@ class SettingsMaker:
             limits = layer.table.get("limits")
             if limits:
                 over.append((layer.title, {"limits": limits}))
-        key = repr((name, over))
-        if key not in self._profiles:
-            try:
-                self._profiles[key] = _profile(name, over, self._known)
-            except profiles.UnknownMachineError as error:
-                is_of_job = merged.job.machine and not self._options.machine
-                raise MachineError(f"{merged.at('machine')}: machine: {error}" if is_of_job else str(error)) from None
-            except MachineError as error:
-                raise MachineError(_with_line(str(error), merged)) from None
-        return self._profiles[key]
+        try:
+            return self._profiles.get(repr((name, over)), lambda: _profile(name, over, self._known))
+        except profiles.UnknownMachineError as error:
+            is_of_job = merged.job.machine and not self._options.machine
+            raise MachineError(f"{merged.at('machine')}: machine: {error}" if is_of_job else str(error)) from None
+        except MachineError as error:
+            raise MachineError(_with_line(str(error), merged)) from None
 
     def _decided(
         self, name: str, baseline: Path | None, merged: Merged, profile: profiles.Profile, file: JobFile
@@ -426,15 +462,6 @@ def _parts(parts: Sequence[Part], options: Options) -> list[Part]:
 
 #: Options with the name of the key of a job that they set.
 _OVER_JOB = ("machine", "radius_from_comments", "fail_on", "max_warnings", "strict", "encoding", "inline")
-
-
-def _files_read(
-    options: Options, job: Job, profile: profiles.Profile, file: JobFile, baseline: Path | None
-) -> list[Path]:
-    """Return the job files, offset tables, drawings, the baseline and the user's machine files."""
-    tables = [path for path in (options.offsets, baseline) if path]
-    tables += [Path(part.drawing) for part in job.part if part.drawing is not None]
-    return [*_configuration(profile, file), *tables, *([Path(job.offsets)] if job.offsets else [])]
 
 
 def _configuration(profile: profiles.Profile, file: JobFile) -> list[Path]:

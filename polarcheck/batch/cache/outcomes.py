@@ -11,15 +11,16 @@ from typing import Any
 
 import msgspec
 
+from polarcheck import record
 from polarcheck.batch.cache import digests
 from polarcheck.batch.cache.store import NAME, Store, folder_key, user_key
 from polarcheck.batch.tasks import Basis, Outcome, Task
 from polarcheck.bounded import read_file
 from polarcheck.checking.settings import Settings
 from polarcheck.decoding import msgpack_decoder
-from polarcheck.execution import look_ups
 from polarcheck.finding import FileReport, Finding, Undecided
 from polarcheck.reading import files
+from polarcheck.record import LookUp
 
 #: New entries are written once so many files of the cache have some: of a run that is killed little is lost.
 _AT_A_TIME = 256
@@ -132,7 +133,7 @@ class Cache:
             return None
         try:
             entry = msgpack_decoder(_Entry).decode(data)
-            if look_ups.digest(read_file(task.path, self._most, "")) != entry.basis.content:
+            if record.digest(read_file(task.path, self._most, "")) != entry.basis.content:
                 return None
         except (OSError, ValueError):
             return None
@@ -141,7 +142,7 @@ class Cache:
         store.use(digest)
         return data
 
-    def _holds(self, settings: Settings, before: look_ups.LookUp) -> bool:
+    def _holds(self, settings: Settings, before: LookUp) -> bool:
         """Return True if a called program is found, or missing, as before."""
         if id(settings) not in self._libraries:
             self._libraries[id(settings)] = _Library(settings)
@@ -166,23 +167,23 @@ class _Library:
         from polarcheck.execution.library import Library  # few files call others
 
         self._library = Library(settings.job.run.subprograms, settings.machine)
-        self._known: dict[tuple[int | None, str | None], look_ups.LookUp] = {}
+        self._known: dict[tuple[int | None, str | None], LookUp] = {}
 
-    def look_up(self, number: int | None, name: str | None) -> look_ups.LookUp:
+    def look_up(self, number: int | None, name: str | None) -> LookUp:
         from polarcheck.execution.programs import ProgramName
 
         called = ProgramName(number, name)
         if called not in self._known:
-            with look_ups.noted() as noted:
+            with record.recorded() as read:
                 self._library.places(called)
-            self._known[called] = noted[0]
+            self._known[called] = read.look_ups[0]
         return self._known[called]
 
 
 def _encoded(outcome: Outcome) -> bytes | None:
     """Return the bytes of an outcome that is read back from them as it is; None for any other."""
     report, basis = outcome.report, outcome.basis
-    if report is None or basis is None or type(report) is not FileReport:
+    if report is None or basis is None or basis.content is None or type(report) is not FileReport:
         return None
     undecided = [number for number, finding in enumerate(_in_order(report)) if isinstance(finding, Undecided)]
     entry = _Entry(basis, report, undecided, dict(outcome.lines), sorted(outcome.called), outcome.failed)
