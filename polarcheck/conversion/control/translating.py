@@ -233,7 +233,7 @@ class Translation:
         if number in self._x_switches:
             result.words += [written] if self.same_switches else []
             return
-        if number in self._polar_off:
+        if number in self._polar_off and not key.startswith("plane"):
             result.words += self.target.writing.end.split()
             return
         if key in _OF_DISTANCE:
