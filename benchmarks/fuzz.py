@@ -1,11 +1,14 @@
 """
-Fuzzing that goes on: mutated programs, machine files, jobs and offset tables for as long as asked.
+Fuzzing that goes on, for as long as asked: mutated programs, machine files, jobs and offset tables; and programs drawn
+by grammar for the commands that write programs anew.
 
     python benchmarks/fuzz.py --minutes 60 --jobs 2 [--seed 1] [--keep FOLDER] [--target whole] [--atheris]
 
 Inputs begin with the sample programs, the examples of the rules and the real programs beside the checkout; those that
-reach new lines of polarcheck are mutated further (tests/fuzz_loop.py; what must hold: tests/fuzz_targets.py). With
---atheris, where that is installed, libFuzzer chooses the inputs instead.
+reach new lines of polarcheck are mutated further (tests/fuzz_loop.py; what must hold: tests/fuzz_targets.py). Those of
+convert, unroll, roll, compensate, compare and certify are drawn by tests/odd_programs.py and tests/setter_programs.py
+for each machine (what must hold: tests/fuzz_rewriting.py). With --atheris, where that is installed, libFuzzer chooses
+the inputs instead.
 
 Each job is a process with a bound on its memory, and each input has one on its time: a process that dies or hangs is
 ended, its input kept, and another one begun. --keep writes the smallest input of each distinct failure to a folder,
@@ -29,9 +32,11 @@ from typing import IO, Any
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "tests"))
 
-TARGETS = ("whole", "reader", "statement", "trace", "command", "commands", "settings", "offsets")
+#: Commands that write programs anew, and those that compare.
+REWRITING = ("convert", "unroll", "roll", "compensate", "compare", "certify")
+TARGETS = ("whole", "reader", "statement", "trace", "command", "commands", "settings", "offsets", *REWRITING)
 #: The whole check is what people run.
-WEIGHTED = ("whole", "whole", "whole", "trace", "command", "commands", *TARGETS)
+WEIGHTED = ("whole", "whole", "whole", "trace", "command", "commands", "convert", *TARGETS)
 #: A process that says nothing for so many times the seconds of an input, or for so long [s], hangs.
 PATIENCE, MINIMISING = 4, 90
 

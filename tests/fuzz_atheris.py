@@ -19,7 +19,8 @@ import atheris  # type: ignore[import-not-found]
 
 with atheris.instrument_imports(include=["polarcheck"], enable_loader_override=False):
     from fuzz_loop import Failure, smallest, told_of
-    from fuzz_targets import SETUPS, TARGETS, seeds
+    from fuzz_setups import SETUPS
+    from fuzz_targets import TARGETS, drawn, seeds
 
     import polarcheck
 
@@ -74,8 +75,11 @@ def guided(asked: argparse.Namespace, told: Told) -> int:
     def mutate(data: bytes, most: int, seed: int) -> bytes:
         random = Random(seed)  # noqa: S311
         number = random.randrange(len(targets))
+        new = drawn(targets[number], random)
+        if new is not None:
+            return bytes([number, new[1]]) + new[0][: most - 2]
         if len(data) < 2:
-            rest = random.choice(programs[targets[number]])
+            rest = random.choice(programs[targets[number]] or [b"G1"])
             return bytes([number, random.randrange(256)]) + rest[: most - 2]
         own = programs[targets[data[0] % len(targets)]]
         if random.random() < 0.3:

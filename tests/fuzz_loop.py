@@ -20,7 +20,8 @@ from types import CodeType, FrameType
 from typing import Any, NamedTuple
 
 from fuzz_mutations import mutated
-from fuzz_targets import SETUPS, TARGETS, BrokenError, fits_schema, seeds
+from fuzz_setups import SETUPS, BrokenError
+from fuzz_targets import TARGETS, drawn, fits_schema, seeds
 
 import polarcheck
 
@@ -155,9 +156,12 @@ class Loop:
         self.failures: dict[str, Failure] = {}
         self._lines = Lines()
         self._told: set[str] = set()
-        self._corpus = {target: seeds(target) for target in self.targets}
+        #: With the setup in which an input showed something new; None for one that has run in none.
+        self._corpus: dict[str, list[tuple[bytes, int | None]]] = {
+            target: [(data, None) for data in seeds(target)] for target in self.targets
+        }
         self._begun = {target: len(found) for target, found in self._corpus.items()}
-        self._first = [(target, data) for target in self.targets for data in self._corpus[target]]
+        self._first = [(target, data) for target in self.targets for data, _ in self._corpus[target]]
 
     @property
     def kept(self) -> int:
@@ -171,8 +175,7 @@ class Loop:
         tell is told of each input before it runs, so that somebody knows it if it takes this process with it.
         """
         while time.monotonic() < until:
-            target, data = self._next()
-            setup = self.random.randrange(len(SETUPS))
+            target, data, setup = self._next()
             tell(target, setup, data)
             failure = self.one(target, data, setup)
             if failure is not None and failure.kind not in self.failures:
@@ -192,7 +195,7 @@ class Loop:
         new = {f"{target} {one}" for one in told} - self._told
         if self._lines.new or new:
             self._told |= new
-            self._corpus[target].append(data)
+            self._corpus[target].append((data, setup))
         if target == "whole" and self.inputs % _SCHEMA_EVERY == 0:
             try:
                 fits_schema(data, setup)
@@ -200,14 +203,26 @@ class Loop:
                 return Failure(target, setup, kind_of(error), _reason(error), data)
         return None
 
-    def _next(self) -> tuple[str, bytes]:
-        """The seeds as they are, then mutated ones; of the latest kept ones more often."""
+    def _next(self) -> tuple[str, bytes, int]:
+        """
+        The seeds as they are, inputs by grammar, and mutated ones; of the latest kept ones more often.
+
+        A mutated one runs in the setup of the one that it was made from, or in any.
+        """
+        setup = self.random.randrange(len(SETUPS))
         if self._first and self.random.random() < 0.3:
-            return self._first.pop(self.random.randrange(len(self._first)))
+            return *self._first.pop(self.random.randrange(len(self._first))), setup
         target = self.random.choice(self.targets)
         corpus = self._corpus[target]
-        chosen = corpus[-1 - int(len(corpus) * self.random.random() ** 2)]
-        return target, mutated(chosen, self.random, corpus)
+        new = drawn(target, self.random)
+        while new is None and not corpus:
+            new = drawn(target, self.random)
+        if new is not None:
+            return target, *new
+        chosen, own = corpus[-1 - int(len(corpus) * self.random.random() ** 2)]
+        if own is not None and self.random.random() < 0.8:
+            setup = own
+        return target, mutated(chosen, self.random, [data for data, _ in corpus]), setup
 
     def _small(self, failure: Failure) -> Failure:
         def fails(data: bytes) -> bool:

@@ -19,14 +19,16 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 from random import Random
-from typing import Any, NamedTuple
+from typing import Any
 
 import deep_contours
+import fuzz_rewriting
 import jsonschema
 import msgspec
 import numpy as np
 from click.testing import CliRunner
-from programs import CORPUS, ROOT, job_of, machine_of
+from fuzz_setups import SETUPS, BrokenError, expect, job_of_setup
+from programs import CORPUS, ROOT, machine_of
 
 from polarcheck import reports
 from polarcheck.batch import tasks as batch
@@ -53,72 +55,20 @@ _AGAIN_EVERY = 4
 _NO_NUMBER = re.compile(r"(?<![A-Za-z0-9_])[-+]?(?:inf|nan)(?![A-Za-z0-9_])")
 
 
-class BrokenError(AssertionError):
-    """What must hold does not. kind: in a few words, the same for the same fault; the message says more."""
-
-    def __init__(self, kind: str, more: object = "") -> None:
-        super().__init__(f"{kind}: {more}" if more else kind)
-        self.kind = kind
-
-
-class Setup(NamedTuple):
-    """On which machine, with which tools and job a program is checked."""
-
-    machine: str
-    tools: tuple[str, ...]
-    job: Job
-
-
-def _setups() -> Iterator[Setup]:
-    tools = (
-        ("1:radius=5", "2:radius=3,nose=0", "8:radius=9.525"),
-        (),
-        ("1:radius=0", "8:radius=0"),
-        ("1:radius=0.4,nose=3", "2:radius=-0.1", "8:radius=1000"),
-    )
-    jobs = (
-        {},
-        {"run": {"variables": {"1": 5.0, "100": 1e300}}, "stock": {"diameter": 60.0}},
-        {"units": "mm", "program_units": "inch", "radius_from_comments": True, "work_offsets": {"G54": {"x": 1.5}}},
-    )
-    # Bounds that a small program reaches, and that keep an input from taking long.
-    run = {"max_blocks": 3000, "max_statements": 2000, "max_seconds": 5.0}
-    for number, name in enumerate(sorted(profiles.names())):
-        for more in (0, 1):
-            asked: dict[str, Any] = dict(jobs[(number + more) % len(jobs)])
-            asked["run"] = {**run, **asked.get("run", {})}
-            if "work_offsets" in asked and not machine_of(name).codes("work_offset"):
-                del asked["work_offsets"]
-            yield Setup(name, tools[(number + 2 * more) % len(tools)], job_of(job=asked))
-
-
-SETUPS = tuple(_setups())
-
-
-@functools.cache
-def _job(number: int) -> Job:
-    return job_of(*SETUPS[number].tools, job=SETUPS[number].job)
-
-
-def _expect(holds: bool, kind: str, more: object = "") -> None:
-    if not holds:
-        raise BrokenError(kind, more)
-
-
 # ---- the targets: what each found is told, so that a guide can tell a new kind of input from another ----
 
 
 def reader(data: bytes, setup: int) -> Iterable[str]:
     """Bytes to words: nothing raises, all places lie in the text, every byte survives."""
     read = source.read_source(data)
-    _expect(read.encode(read.text) == data, "bytes lost")
-    _expect(len(read.code) == len(read.text), "characters lost")
+    expect(read.encode(read.text) == data, "bytes lost")
+    expect(len(read.code) == len(read.text), "characters lost")
     text = read_text(read, machine_of(SETUPS[setup].machine))
     for name in ("words", "comments", "strays", "foreign", "dots", "outside", "names"):
         start, end = getattr(text, name).start, getattr(text, name).end
-        _expect(bool(np.all((start >= 0) & (start <= end) & (end <= len(read.code)))), f"{name} outside the text")
-    _expect(bool(np.all(np.diff(text.blocks.start) >= 0)), "blocks out of order")
-    _expect(bool(np.all((text.blocks.line >= 1) & (text.blocks.line <= len(read.line_starts)))), "no such line")
+        expect(bool(np.all((start >= 0) & (start <= end) & (end <= len(read.code)))), f"{name} outside the text")
+    expect(bool(np.all(np.diff(text.blocks.start) >= 0)), "blocks out of order")
+    expect(bool(np.all((text.blocks.line >= 1) & (text.blocks.line <= len(read.line_starts)))), "no such line")
     return [read.encoding]
 
 
@@ -133,14 +83,14 @@ def statement(data: bytes, setup: int) -> Iterable[str]:
             line, calls=macro.flow_codes, loops=macro.loop_numbers, levels=macro.bracket_levels, size=5000
         )
         places = [read, *read.words, *(part for part in (read.value, read.condition, read.fault) if part is not None)]
-        _expect(all(0 <= part.start <= part.end <= len(line) for part in places), "statement outside its block")
+        expect(all(0 <= part.start <= part.end <= len(line) for part in places), "statement outside its block")
         found += [read.kind.name, read.fault.kind if read.fault else ""]
         assign(read, variables, arithmetic)
         values = (word.value for word in read.words if word.address != "<")
         for expression in (read.target, read.value, read.jump, *values):
             if expression is not None:
                 value, _ = evaluate(expression, variables, arithmetic)
-                _expect(value is None or abs(value) != float("inf"), "infinite value")
+                expect(value is None or abs(value) != float("inf"), "infinite value")
     return found
 
 
@@ -153,18 +103,18 @@ def whole(data: bytes, setup: int) -> Iterable[str]:
     for found in every:
         _place_is_in_file(found, lines)
         _told_well(found, text)
-    _expect(all(len(name) < 100 for name in file.programs), "long name of a program")
+    expect(all(len(name) < 100 for name in file.programs), "long name of a program")
     for missing in file.not_evaluated:
-        _expect(not _NO_NUMBER.search(missing.reason) or bool(_NO_NUMBER.search(text)), "no number", missing.reason)
-        _expect(len(missing.reason) < _LONGEST_MESSAGE, "long reason", missing.rule)
+        expect(not _NO_NUMBER.search(missing.reason) or bool(_NO_NUMBER.search(text)), "no number", missing.reason)
+        expect(len(missing.reason) < _LONGEST_MESSAGE, "long reason", missing.rule)
     twice = Counter((found.rule, found.line, found.column) for found in every)
     for place, count in twice.items():
-        _expect(count == 1, f"twice in one place: {place[0]}", place)
+        expect(count == 1, f"twice in one place: {place[0]}", place)
     shown = reports.render("json", report, reports.Background())
     json.loads(shown, parse_constant=functools.partial(BrokenError, "no JSON"))
     if zlib.crc32(data) % _AGAIN_EVERY == 0:
         again = reports.render("json", _report(data, setup)[0], reports.Background())
-        _expect(shown == again, "another result the second time")
+        expect(shown == again, "another result the second time")
     _rendered(report, {file.path: dict(enumerate(lines, 1))})
     kinds = (f"{found.rule} {found.severity}" for found in every)
     return [*kinds, *(f"not {missing.rule}" for missing in file.not_evaluated), file.verdict]
@@ -173,14 +123,14 @@ def whole(data: bytes, setup: int) -> Iterable[str]:
 def trace(data: bytes, setup: int) -> Iterable[str]:
     """The trace of both paths and of the rows, as CSV and JSON lines."""
     machine = machine_of(SETUPS[setup].machine)
-    tables = check.read(data, machine, _job(setup))[0][1]
+    tables = check.read(data, machine, job_of_setup(setup))[0][1]
     of_path = tables["trace"], tables["tool_center"]
     for which in ("tool", "programmed", ""):
         items = list(itertools.islice(executed.moves(*of_path, which) if which else executed.rows(*of_path), 3000))
         for line in executed.as_jsonl(items):
             for part in line.splitlines():
                 json.loads(part, parse_constant=functools.partial(BrokenError, "no JSON"))
-        _expect("inf" not in "".join(executed.as_csv(items)).replace("infeed", ""), "infinite value in CSV")
+        expect("inf" not in "".join(executed.as_csv(items)).replace("infeed", ""), "infinite value in CSV")
     executed.without_radius(*of_path)
     return []
 
@@ -198,7 +148,7 @@ def settings(data: bytes, setup: int) -> Iterable[str]:
             use(table)
             told.append(use.__name__)
         except PolarcheckError as error:
-            _expect("\n" not in str(error), "error of several lines", error)
+            expect("\n" not in str(error), "error of several lines", error)
             told.append(re.sub(r"[^a-z ]+", "", str(error))[:60])
     return told
 
@@ -223,7 +173,7 @@ def offsets(data: bytes, setup: int) -> Iterable[str]:
         try:
             return [str(len(offset_table.read_offset_table(path, "a.txt")))]
         except PolarcheckError as error:
-            _expect("\n" not in str(error), "error of several lines", error)
+            expect("\n" not in str(error), "error of several lines", error)
             return [re.sub(r"[^a-z ]+", "", str(error))[:60]]
 
 
@@ -236,9 +186,9 @@ def command(data: bytes, setup: int) -> Iterable[str]:
     result = CliRunner().invoke(main, arguments, input=data)
     if result.exception is not None and not isinstance(result.exception, SystemExit):
         raise result.exception
-    _expect(result.exit_code in (0, 1, 2), f"exit {result.exit_code}", result.stderr)
-    _expect(form == "concise" or bool(result.stdout), "nothing said", result.stderr)
-    _expect("internal error" not in result.stderr, "internal error", result.stderr)
+    expect(result.exit_code in (0, 1, 2), f"exit {result.exit_code}", result.stderr)
+    expect(form == "concise" or bool(result.stdout), "nothing said", result.stderr)
+    expect("internal error" not in result.stderr, "internal error", result.stderr)
     return [str(result.exit_code)]
 
 
@@ -255,8 +205,8 @@ def commands(data: bytes, setup: int) -> Iterable[str]:
             if result.exception is not None and not isinstance(result.exception, SystemExit):
                 raise result.exception
             name = words[0]
-            _expect(result.exit_code in (0, 1, 2), f"{name}: exit {result.exit_code}", result.stderr)
-            _expect("internal error" not in result.stderr, f"{name}: internal error", result.stderr)
+            expect(result.exit_code in (0, 1, 2), f"{name}: exit {result.exit_code}", result.stderr)
+            expect("internal error" not in result.stderr, f"{name}: internal error", result.stderr)
             endings.append(f"{name} {result.exit_code}")
     return endings
 
@@ -276,7 +226,10 @@ TARGETS: dict[str, Target] = {
     "commands": commands,
     "settings": settings,
     "offsets": offsets,
+    **fuzz_rewriting.TARGETS,
 }
+#: Of the inputs of a target that many are programs drawn by grammar, for the machine of their setup.
+DRAWN_SHARES = dict.fromkeys(("whole", "trace", "commands"), 0.1) | dict.fromkeys(fuzz_rewriting.TARGETS, 0.6)
 
 
 # ---- properties of a report ----
@@ -285,7 +238,7 @@ TARGETS: dict[str, Target] = {
 def _report(data: bytes, setup: int) -> tuple[Report, list[str]]:
     chosen = SETUPS[setup]
     machine = machine_of(chosen.machine)
-    found = check.read(data, machine, _job(setup), "a.nc")
+    found = check.read(data, machine, job_of_setup(setup), "a.nc")
     file = check.check_runs(found, list(load_all().values()))
     text = found[0][1]["trace"].text.source
     count = int(np.searchsorted(text.line_starts, len(source.read_source(data).code), side="left")) or 1
@@ -301,19 +254,19 @@ def _every(findings: Iterable[Finding]) -> Iterator[Finding]:
 
 def _place_is_in_file(found: Finding, lines: Sequence[str]) -> None:
     place = f"{found.rule} {found.line}:{found.column} to {found.end_line}:{found.end_column}"
-    _expect(1 <= found.line <= found.end_line <= len(lines), f"no such line: {found.rule}", place)
-    _expect((found.line, found.column) < (found.end_line, found.end_column), f"empty range: {found.rule}", place)
+    expect(1 <= found.line <= found.end_line <= len(lines), f"no such line: {found.rule}", place)
+    expect((found.line, found.column) < (found.end_line, found.end_column), f"empty range: {found.rule}", place)
     # A block that is only blank has no character to point at, and a line end may be what is wrong.
-    _expect(1 <= found.column <= len(lines[found.line - 1]) + 2, f"no such column: {found.rule}", place)
-    _expect(found.end_column <= len(lines[found.end_line - 1]) + 3, f"no such end column: {found.rule}", place)
+    expect(1 <= found.column <= len(lines[found.line - 1]) + 2, f"no such column: {found.rule}", place)
+    expect(found.end_column <= len(lines[found.end_line - 1]) + 3, f"no such end column: {found.rule}", place)
 
 
 def _told_well(found: Finding, text: str) -> None:
-    _expect(not _NO_NUMBER.search(found.message) or bool(_NO_NUMBER.search(text)), f"no number: {found.rule}", found)
-    _expect(len(found.message) < _LONGEST_MESSAGE, f"long message: {found.rule}", len(found.message))
+    expect(not _NO_NUMBER.search(found.message) or bool(_NO_NUMBER.search(text)), f"no number: {found.rule}", found)
+    expect(len(found.message) < _LONGEST_MESSAGE, f"long message: {found.rule}", len(found.message))
     alone = msgspec.structs.replace(found, follows=[], fix=None)
-    _expect(len(str(alone)) < _LONGEST_FINDING, f"long finding: {found.rule}", len(str(alone)))
-    _expect(bool(found.message.strip()), f"no message: {found.rule}")
+    expect(len(str(alone)) < _LONGEST_FINDING, f"long finding: {found.rule}", len(str(alone)))
+    expect(bool(found.message.strip()), f"no message: {found.rule}")
 
 
 def _rendered(report: Report, lines: dict[str, dict[int, str]]) -> None:
@@ -322,7 +275,7 @@ def _rendered(report: Report, lines: dict[str, dict[int, str]]) -> None:
         shown = reports.render(form, report, background)
         bare = re.sub(r"\x1b\[[0-9;]*m", "", shown) if color else shown
         hidden = next((one for one in bare if not one.isprintable() and one != "\n"), None)
-        _expect(hidden is None, f"unprintable in {form}", repr(hidden))
+        expect(hidden is None, f"unprintable in {form}", repr(hidden))
 
 
 @functools.cache
@@ -340,6 +293,14 @@ def fits_schema(data: bytes, setup: int) -> None:
 # ---- what to begin with ----
 
 
+def drawn(target: str, random: Random) -> tuple[bytes, int] | None:
+    """An input by grammar with its setup, for as many inputs of a target as DRAWN_SHARES has; None for the rest."""
+    if random.random() >= DRAWN_SHARES.get(target, 0.0):
+        return None
+    setup = random.randrange(len(SETUPS))
+    return fuzz_rewriting.program(random, setup), setup
+
+
 def seeds(target: str) -> list[bytes]:
     """Inputs that make sense to a target: sample programs, examples of rules, real programs where they are present."""
     if target == "settings":
@@ -347,6 +308,8 @@ def seeds(target: str) -> list[bytes]:
         return [*(_JOBS), *(path.read_bytes()[:6000] for path in files)]
     if target == "offsets":
         return [b"%\nG10 P1 X0. Z0. R5. Q0\nG10 P10001 X1.5 Z-2. R.4 Q3\n%\n", b"G10 L2 P1 X1.\nG10 P8 R9.525\n"]
+    if target in fuzz_rewriting.TARGETS:
+        return []
     if target == "commands":
         return [deep_contours.program(Random(seed)) for seed in range(300)]  # noqa: S311
     pages = (one.program for rule in load_all().values() for one in examples(rule.page))

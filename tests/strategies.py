@@ -11,7 +11,8 @@ from typing import Any
 
 import msgspec
 from fuzz_mutations import NUMBERS, WORDS, mutated
-from fuzz_targets import SETUPS, seeds
+from fuzz_setups import SETUPS
+from fuzz_targets import seeds
 from hypothesis import strategies as st
 
 from polarcheck.machines.job import Job

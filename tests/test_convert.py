@@ -321,7 +321,9 @@ def test_a_helix_needs_a_control_that_has_one() -> None:
 @pytest.mark.parametrize(("target", "end"), [("fanuc-30i", "G13.1"), ("siemens-transmit", "TRAFOOF")])
 def test_a_plane_that_ends_the_mode_is_a_plane_outside_of_it(plane: str, target: str, end: str) -> None:
     """Any other plane ends G16 XC: only the one that does becomes the word that ends the mode."""
-    program = f"G90 G94 G40 G97 G18\nT1 M6\nG0 X60. C0 Z2.\nG16 XC\nG1 X20. C5. F200\nX30.\nG18\n{plane}\nG0 Z50.\nM30\n"
+    program = (
+        f"G90 G94 G40 G97 G18\nT1 M6\nG0 X60. C0 Z2.\nG16 XC\nG1 X20. C5. F200\nX30.\nG18\n{plane}\nG0 Z50.\nM30\n"
+    )
     lines = convert(program, "fagor-8055t", target).data.decode().split("\n")
     head = next(line for line in lines if "G97" in line)
     assert head.split()[-1] == "G18"

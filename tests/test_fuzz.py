@@ -9,19 +9,28 @@ import json
 import sys
 import time
 import warnings
-from collections.abc import Callable, Iterable
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from random import Random
+from typing import Any
 
+import fuzz_rewriting
 import fuzz_targets
+import msgspec
+import odd_programs
 import pytest
 import strategies
 from fuzz_loop import Loop, smallest, told_of
 from fuzz_mutations import mutated
-from fuzz_targets import SETUPS, TARGETS, BrokenError, fits_schema, seeds
+from fuzz_setups import SETUPS, BrokenError
+from fuzz_targets import TARGETS, drawn, fits_schema, seeds
 from hypothesis import HealthCheck, given, settings
 from programs import ROOT
 from test_cli import IMPORTED_FROM
+from test_every_machine import HANDS
+
+from polarcheck.conversion.outcome import Decision, Figure, Outcome
 
 not_on_windows = pytest.mark.skipif(sys.platform == "win32", reason="no bound on the time or memory of a process")
 
@@ -102,7 +111,75 @@ def test_machine_files_and_jobs(data: bytes) -> None:
     fuzz_targets.settings(data, 0)
 
 
+# ---- the commands that write programs anew ----
+
+
+def endings(target: str, count: int) -> Iterator[str]:
+    """What is told of programs by grammar."""
+    rng = Random(3)  # noqa: S311
+    for _ in range(count):
+        setup = rng.randrange(len(SETUPS))
+        yield from TARGETS[target](fuzz_rewriting.program(rng, setup), setup)
+
+
+@pytest.mark.slow
+@pytest.mark.one_in(1)
+@pytest.mark.parametrize(
+    ("target", "done"),
+    [("convert", "back: done"), ("unroll", "again: "), ("roll", "done"), ("compensate", "center: done")],
+)
+def test_programs_by_grammar_are_rewritten_not_only_refused(target: str, done: str) -> None:
+    assert any(text.startswith(done) for text in endings(target, 60))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("target", "done"), [("compare", "differs"), ("certify", "['--update'] 1")])
+def test_programs_by_grammar_are_compared(target: str, done: str) -> None:
+    assert done in endings(target, 6)
+
+
+@pytest.mark.parametrize("machine", sorted(HANDS))
+def test_a_program_by_grammar_is_the_same_every_time(machine: str) -> None:
+    ours, theirs = ([odd_programs.drawn(Random(seed), machine) for seed in range(8)] for _ in range(2))  # noqa: S311
+    assert ours == theirs
+    assert len(set(ours)) == len(ours)
+
+
+@pytest.mark.parametrize(
+    ("broken", "kind"),
+    [
+        ({"origin": [3, 2, 1]}, "lines out of order"),
+        ({"origin": [1, 1, 900]}, "a line that the original does not have"),
+        ({"origin": [1]}, "not of each line"),
+        ({"figures": [Figure("blocks", float("inf"))]}, "infinite figure"),
+        ({"decisions": [Decision(77, "M8")]}, "a decision in no line"),
+        ({"notes": ["two\nlines"]}, "a note of several lines"),
+        ({"notes": ["nan mm"]}, "no number"),
+        ({"notes": ["\x1b[1m"]}, "unprintable"),
+    ],
+)
+def test_what_is_wrong_with_an_outcome_is_a_failure(
+    broken: dict[str, Any], kind: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    sound = Outcome(b"G1\nG2\nG3", [1, 2, 3], [], [], [])
+    monkeypatch.setattr(fuzz_rewriting, "converted", lambda *_: msgspec.structs.replace(sound, **broken))
+    with pytest.raises(BrokenError) as error:
+        list(TARGETS["convert"](b"G1 X1.\nG1 X2.\nM30", 0))
+    assert error.value.kind == kind
+
+
 # ---- the loop itself ----
+
+
+@not_on_windows
+def test_what_is_kept_runs_again_for_its_own_machine(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A program of one control means nothing on another."""
+    loop = Loop(1, ["convert"], 10)
+    monkeypatch.setitem(TARGETS, "convert", lambda data, setup: [f"{data!r}"])
+    monkeypatch.setitem(fuzz_targets.DRAWN_SHARES, "convert", 0.0)
+    loop.one("convert", b"G1 X1.", 7)
+    setups = Counter(loop._next()[2] for _ in range(200))
+    assert setups[7] > 100
 
 
 def fails_at(wanted: bytes) -> Callable[[bytes, int], Iterable[str]]:
@@ -179,8 +256,13 @@ def test_mutation_of_a_seed_is_the_same_every_time() -> None:
 @pytest.mark.parametrize("target", TARGETS)
 def test_seeds_hold(target: str) -> None:
     """A few of the inputs that the loop begins with, so that a failure later is one of a mutation."""
-    for number, data in enumerate(Random(2).sample(seeds(target), 2)):  # noqa: S311
-        TARGETS[target](data, number % len(SETUPS))
+    rng = Random(2)  # noqa: S311
+    begun = seeds(target)
+    inputs = [(data, number) for number, data in enumerate(rng.sample(begun, 2))] if begun else []
+    while len(inputs) < 2:
+        inputs += filter(None, [drawn(target, rng)])
+    for data, setup in inputs:
+        TARGETS[target](data, setup)
 
 
 # ---- the script ----

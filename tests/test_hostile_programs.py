@@ -10,7 +10,7 @@ import deep_contours
 import fuzz_targets
 import msgspec
 import pytest
-from fuzz_targets import SETUPS
+from fuzz_setups import SETUPS
 from programs import report_of, said
 from test_cli import process
 
