@@ -28,6 +28,10 @@ _LEAST = 3
 class PolarcheckError(Exception):
     """Base of all errors; its text is one line that names the file or option, the key, and what was expected."""
 
+    def __str__(self) -> str:
+        """Return the text with all that would end the line, or act on a terminal, spelled out."""
+        return one_line(super().__str__())
+
 
 class PolarcheckWarning(UserWarning):
     """What the command line would write to standard error beside a report, for callers of the functions for Python."""
@@ -112,6 +116,19 @@ class NoAnswerError(TooHardError):
 
 class RuleError(PolarcheckError):
     """A rule file that is not a valid rule; raised when the rules are loaded."""
+
+
+def one_line(text: str) -> str:
+    """Return a text as the message of an error shows it."""
+    return text if text.isprintable() else "".join(map(_visible, text))
+
+
+def _visible(character: str) -> str:
+    """Return a character of a message as `\\x1b` if it acts; bytes of the names of files stay as Python holds them."""
+    number = ord(character)
+    if character.isprintable() or 0xDC80 <= number <= 0xDCFF:
+        return character
+    return f"\\x{number:02x}" if number < 256 else f"\\u{number:04x}" if number < 65536 else f"\\U{number:08x}"
 
 
 def suggestion(wrong: str, known: Iterable[str], most: int = 3) -> str:

@@ -6,14 +6,15 @@ import warnings
 from collections.abc import Iterable
 from typing import Unpack
 
-from polarcheck.api.keywords import CheckKeywords, PathName, names_of, options, paths_of, takes
+from polarcheck.api.keywords import CheckKeywords, PathName, options, paths_of, takes
 from polarcheck.api.programs import NAMELESS, Call
+from polarcheck.api.values import flag, names, whole
 from polarcheck.batch import runs
 from polarcheck.batch import tasks as batch
 from polarcheck.batch.baselines import Baselines
 from polarcheck.batch.decisions import with_own_settings
 from polarcheck.batch.tasks import Outcome, Task
-from polarcheck.errors import PolarcheckWarning, SourceError, UsageError
+from polarcheck.errors import PolarcheckWarning, SourceError
 from polarcheck.finding import FileReport, Report
 from polarcheck.machines import profiles
 from polarcheck.reading import files
@@ -52,13 +53,15 @@ def check(
     Raises UsageError, JobError or MachineError for a wrong setting, BaselineError for a wrong baseline and SourceError
     for a folder that cannot be read, or that all programs of are excluded, before any file is checked.
     """
-    if isinstance(processes, bool) or not isinstance(processes, int) or processes < 1:
-        raise UsageError(f"{_FUNCTION}: processes: expected a whole number from 1, found {processes!r}")
-    named, endings = paths_of(_FUNCTION, paths), names_of(_FUNCTION, "extensions", extensions)
-    patterns = names_of(_FUNCTION, "exclude", exclude)
+    count = whole(f"{_FUNCTION}: processes", processes, 1, 1)
+    most = whole(f"{_FUNCTION}: max_size", max_size, 0, files.LARGEST)
+    is_forced = flag(f"{_FUNCTION}: force_exclude", False if force_exclude is None else force_exclude)
+    endings = [] if extensions is None else names(f"{_FUNCTION}: extensions", extensions)
+    patterns = [] if exclude is None else names(f"{_FUNCTION}: exclude", exclude)
+    named = paths_of(_FUNCTION, paths)
     settings_of = OfPrograms(options(_FUNCTION, CheckKeywords, keywords, exclude=patterns))
     skipped: list[Skipped] = []
-    planned = runs.planned(named, settings_of, endings, force_exclude=force_exclude, skipped=skipped)
+    planned = runs.planned(named, settings_of, endings, force_exclude=is_forced, skipped=skipped)
     tasks, failures = planned.tasks, [*planned.failures, *planned.nothing]
     for doubt in planned.doubts:
         warnings.warn(doubt, PolarcheckWarning, stacklevel=2)
@@ -68,7 +71,7 @@ def check(
     if settings.differing:
         tasks = with_own_settings(tasks)
     baselines = Baselines(tasks, named) if any(task.settings.baseline for task in tasks) else None
-    with runs.outcomes(tasks, max_size, processes) as outcomes:
+    with runs.outcomes(tasks, most, count) as outcomes:
         reports = [_report(outcome) for outcome in (baselines.outcomes(outcomes) if baselines else outcomes)]
     for doubt in (*baselines.faults, *baselines.leftovers) if baselines else ():
         warnings.warn(doubt, PolarcheckWarning, stacklevel=2)
@@ -97,6 +100,6 @@ def check_text(text: str | bytes, *, name: str = NAMELESS, **keywords: Unpack[Ch
     """
     call = Call("polarcheck.check_text()", CheckKeywords, keywords)
     _, data, settings = call.of_text(text, name)
-    task = Task(paths_of(call.function, [name])[0], settings)
+    task = Task(call.name_of(name), settings)
     report = _report(batch.outcome(task, data=data))
     return report if settings.baseline is None else Baselines([task], []).without_known(report)

@@ -6,12 +6,16 @@ from typing import Unpack
 
 from polarcheck.api.keywords import ExecutionKeywords, PathName, takes
 from polarcheck.api.programs import NAMELESS, Call, Program
+from polarcheck.api.values import length
 from polarcheck.checking import check
-from polarcheck.errors import UsageError
 from polarcheck.reading.files import LARGEST
 from polarcheck.revisions.comparison import Revision, compared, default_tolerance
 from polarcheck.revisions.report import Comparison
 from polarcheck.time_limit import seconds_for, time_limit
+
+#: As for the command [mm].
+_LARGEST_TOLERANCE = 10.0
+_A_LENGTH = f"a length above 0 and up to {_LARGEST_TOLERANCE:g} [mm]"
 
 
 @takes(ExecutionKeywords)
@@ -73,9 +77,7 @@ def _call(function: str, keywords: ExecutionKeywords, machine: PathName | None) 
 
 
 def _compared(function: str, old: Program, new: Program, tolerance: float | None) -> Comparison:
-    is_number = isinstance(tolerance, int | float) and not isinstance(tolerance, bool)
-    if tolerance is not None and not (is_number and 0 < tolerance < float("inf")):
-        raise UsageError(f"{function}: tolerance: expected a length above 0 [mm], found {tolerance!r}")
+    same = None if tolerance is None else length(f"{function}: tolerance", tolerance, _LARGEST_TOLERANCE, _A_LENGTH)
     seconds = sum(each.settings.job.run.max_seconds for each in (old, new))
     with time_limit(seconds_for(len(old.data) + len(new.data), seconds)):
         first, second = (
@@ -86,4 +88,4 @@ def _compared(function: str, old: Program, new: Program, tolerance: float | None
             )
             for each in (old, new)
         )
-        return compared(first, second, tolerance or default_tolerance(first, second))
+        return compared(first, second, same or default_tolerance(first, second))

@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 import inspect
-import math
-import numbers
 import os
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any, Literal, TypeAlias, TypedDict, TypeVar
 
-import msgspec
-
+from polarcheck.api.values import flag, length, names, plain, short
 from polarcheck.errors import UsageError, suggestion
 from polarcheck.machines.job import Running, Stock, Tool, WorkOffset
 from polarcheck.machines.part import Part
@@ -120,6 +117,12 @@ _LISTS = ("drawing_layers", "drawings", "ignore", "select", "subprograms")
 #: Those whose names may stand beside a reason, {"rules": [...], "reason": "..."}.
 _WITH_REASON = ("ignore", "select")
 _LARGEST_TOLERANCE = 100.0
+_A_LENGTH = f"a length above 0 and up to {_LARGEST_TOLERANCE:g}"
+#: The keys that name files or folders; "" for the keyword itself.
+_FILES = {
+    **dict.fromkeys(("baseline", "config", "drawings", "machine", "offsets", "subprograms"), ("",)),
+    "part": ("drawing", "files"),
+}
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -179,20 +182,27 @@ def options(function: str, kind: type, values: Mapping[str, Any], **more: Any) -
     for name in values:
         if name not in known:
             raise UsageError(f"{function}: unknown keyword {name}{suggestion(name, known)}")
-    table = {name: _plain(value) for name, value in values.items() if value is not None}
+    table = {
+        name: plain(f"{function}: {name}", value, files=_FILES.get(name, ()))
+        for name, value in values.items()
+        if value is not None
+    }
     for name in _LISTS:
         if name in table and not (name in _WITH_REASON and isinstance(table[name], dict)):
-            table[name] = names_of(function, name, table[name])
+            table[name] = names(f"{function}: {name}", table[name])
     for name in ("baseline", "config", "machine", "offsets", "encoding"):
         if not isinstance(table.get(name, ""), str):
-            raise UsageError(f"{function}: {name}: expected a name or a path, found {_short(values[name])}")
+            raise UsageError(f"{function}: {name}: expected a name or a path, found {short(values[name])}")
     if "encoding" in table and not _is_encoding(table["encoding"]):
         raise UsageError(
-            f"{function}: encoding: unknown encoding {_short(values['encoding'])}; for example utf-8, cp1252"
+            f"{function}: encoding: unknown encoding {short(values['encoding'])}; for example utf-8, cp1252"
         )
     for name in ("use_baseline", "use_config"):
-        if not isinstance(table.get(name, True), bool):
-            raise UsageError(f"{function}: {name}: expected True or False, found {_short(values[name])}")
+        flag(f"{function}: {name}", table.get(name, True))
+    if "\0" in table.get("config", ""):
+        raise UsageError(f"{function}: config: no file can have the name {short(table['config'])}")
+    if "tolerance" in table:
+        length(f"{function}: tolerance", table["tolerance"], _LARGEST_TOLERANCE, _A_LENGTH)
     # What has a reason stays a value of the job, where reasons belong.
     of_options = {
         name: table.pop(name)
@@ -222,35 +232,6 @@ def _is_encoding(name: str) -> bool:
     return is_encoding(name)
 
 
-def _plain(value: Any) -> Any:
-    """Return a value as a TOML file would give it: tables, lists, numbers and texts."""
-    if isinstance(value, msgspec.Struct):
-        fields = {field.name: (getattr(value, field.name), field.default) for field in msgspec.structs.fields(value)}
-        return {name: _plain(inner) for name, (inner, default) in fields.items() if not _is(inner, default)}
-    if isinstance(value, Mapping):
-        return {_key(key): _plain(inner) for key, inner in value.items() if inner is not None}
-    if isinstance(value, os.PathLike):
-        return os.fspath(value)
-    if isinstance(value, bool | str | bytes):
-        return value
-    if isinstance(value, numbers.Integral):
-        return int(value)
-    if isinstance(value, numbers.Real):
-        return float(value)
-    return [_plain(inner) for inner in value] if isinstance(value, Iterable) else value
-
-
-def _is(value: Any, default: Any) -> bool:
-    """Return True for the default of a field; NaN is unknown, and empty lists and tables are defaults."""
-    if isinstance(value, float):
-        return math.isnan(value) or value == default
-    return value is None or value is default or value in ([], {})
-
-
-def _key(key: Any) -> Any:
-    return str(int(key)) if isinstance(key, numbers.Integral) else key
-
-
 def _job(function: str, table: dict[str, Any]) -> dict[str, Any]:
     """Return keywords as the tables of a job file. Raises UsageError for a tool that is neither R nor a table."""
     of_run = {name: table.pop(name) for name in Running.__struct_fields__ if name in table}
@@ -259,11 +240,11 @@ def _job(function: str, table: dict[str, Any]) -> dict[str, Any]:
     for name, key in (("tools", "radius"), ("work_offsets", "x")):
         entries = table.get(name, {})
         if not isinstance(entries, dict):
-            raise UsageError(f"{function}: {name}: expected {key} by {_KEYED[name]}, found {_short(entries)}")
+            raise UsageError(f"{function}: {name}: expected {key} by {_KEYED[name]}, found {short(entries)}")
         for of, entry in entries.items():
             if not isinstance(entry, dict) and not _is_number(entry):
                 raise UsageError(
-                    f"{function}: {name}.{of}: expected {key} as a number, or a table, found {_short(entry)}"
+                    f"{function}: {name}.{of}: expected {key} as a number, or a table, found {short(entry)}"
                 )
         if entries:
             table[name] = {of: {key: entry} if _is_number(entry) else entry for of, entry in entries.items()}
@@ -279,35 +260,13 @@ def _is_number(value: Any) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool)
 
 
-def names_of(function: str, keyword: str, value: Any) -> list[str]:
-    """Return the names of a keyword that takes one or several. Raises UsageError for what is no name."""
-    names = [value] if isinstance(value, str) else _plain(value)
-    if not isinstance(names, list) or not all(isinstance(element, str) for element in names):
-        raise UsageError(f"{function}: {keyword}: expected names, found {_short(value)}")
-    return names
-
-
 def _check(function: str, values: Mapping[str, Any]) -> None:
     """Raise UsageError for values of keywords that no job file has."""
     if not isinstance(values.get("changes", {}), dict):
-        raise UsageError(f"{function}: changes: expected keys with values, found {_short(values['changes'])}")
+        raise UsageError(f"{function}: changes: expected keys with values, found {short(values['changes'])}")
     for folder in values.get("subprograms", ()):
         if not os.path.isdir(folder):  # noqa: PTH112  Path.is_dir raises for some names
             raise UsageError(f"{function}: subprograms: there is no folder {shown(folder)}")
-    tolerance = values.get("tolerance", 1.0)
-    if not _is_number(tolerance) or not 0 < tolerance <= _LARGEST_TOLERANCE:
-        raise UsageError(
-            f"{function}: tolerance: expected a length above 0 and up to {_LARGEST_TOLERANCE:g}, found "
-            f"{_short(tolerance)}"
-        )
-
-
-def _short(value: Any) -> str:
-    text = repr(value)
-    return text if len(text) <= _LONGEST else f"{text[:_LONGEST]}..."
-
-
-_LONGEST = 60
 
 
 def paths_of(function: str, paths: PathName | Iterable[PathName]) -> list[str]:
@@ -316,17 +275,18 @@ def paths_of(function: str, paths: PathName | Iterable[PathName]) -> list[str]:
 
     Raises UsageError for what is no path.
     """
-    listed: Sequence[Any] = [paths] if isinstance(paths, str | os.PathLike) else list(_iterated(function, paths))
-    names = []
-    for path in listed:
-        name = os.fspath(path) if isinstance(path, str | os.PathLike) else None
-        if not isinstance(name, str) or not name:
-            raise UsageError(f"{function}: expected the path of a program or folder, found {_short(path)}")
-        names.append(os.path.join(os.curdir, name) if name == "-" else name)  # noqa: PTH118
-    return names
+    listed: Iterable[Any] = [paths] if isinstance(paths, str | os.PathLike | bytes) else paths
+    if not isinstance(listed, Iterable) or isinstance(listed, Mapping):
+        raise UsageError(f"{function}: expected {_A_PATH}, found {short(paths)}")
+    return [path_of(function, path) for path in listed]
 
 
-def _iterated(function: str, paths: Any) -> Iterable[Any]:
-    if isinstance(paths, bytes) or not isinstance(paths, Iterable):
-        raise UsageError(f"{function}: expected the path of a program or folder, found {_short(paths)}")
-    return paths
+_A_PATH = "the path of a program or folder"
+
+
+def path_of(place: str, path: Any, expected: str = _A_PATH) -> str:
+    """Return a path as a text, as paths_of does."""
+    name = plain(place, path, files=[""]) if isinstance(path, str | os.PathLike) else None
+    if not isinstance(name, str) or not name:
+        raise UsageError(f"{place}: expected {expected}, found {short(path)}")
+    return os.path.join(os.curdir, name) if name == "-" else name  # noqa: PTH118

@@ -8,7 +8,8 @@ from typing import Any, NamedTuple
 
 import msgspec
 
-from polarcheck.api.keywords import PathName, options, paths_of
+from polarcheck.api.keywords import PathName, options, path_of
+from polarcheck.api.values import whole
 from polarcheck.checking import check
 from polarcheck.checking.settings import Settings
 from polarcheck.checking.tables import Tables
@@ -69,8 +70,13 @@ class Call(NamedTuple):
 
     def of_path(self, path: PathName, max_size: int) -> Program:
         """Return the program of a file. Raises SourceError, UsageError, JobError and MachineError in one line."""
-        (name,) = paths_of(self.function, [path])
-        return of_file(name, options(self.function, self.kind, self.values, **self.more), max_size)
+        name = path_of(self.function, path)
+        most = whole(f"{self.function}: max_size", max_size, 0, files.LARGEST)
+        return of_file(name, options(self.function, self.kind, self.values, **self.more), most)
+
+    def name_of(self, name: str | None) -> str:
+        """Return the path of a text. Raises UsageError for what is none."""
+        return NAMELESS if name is None else path_of(f"{self.function}: name", name)
 
     def of_text(self, text: str | bytes, name: str) -> Program:
         """
@@ -80,7 +86,7 @@ class Call(NamedTuple):
         """
         if not isinstance(text, str | bytes):
             raise UsageError(f"{self.function}: expected a program as str or bytes, found {type(text).__name__}")
-        (path,) = paths_of(self.function, [name])
+        path = self.name_of(name)
         values = self.values if "config" in self.values else {"use_config": False, **self.values}
         settings = OfPrograms(options(self.function, self.kind, values, **self.more))(path)
         if isinstance(text, str):
@@ -92,7 +98,8 @@ class Call(NamedTuple):
 
     def with_one_state(self) -> Call:
         """Return the call of a function that runs a program once: block skip is off unless a keyword sets it."""
-        skip = self.values.get("block_skip") or "off"
-        if skip == "both":
+        given = self.values.get("block_skip")
+        skip = "off" if given is None else given
+        if isinstance(skip, str) and skip == "both":
             raise UsageError(f"{self.function}: block_skip: expected on or off, found both")
         return self._replace(values={**self.values, "block_skip": skip})

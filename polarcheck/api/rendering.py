@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from polarcheck import reports
+from polarcheck.api.values import choice
 from polarcheck.batch import tasks as batch
 from polarcheck.batch.runs import folders
 from polarcheck.checking import rule
@@ -23,8 +24,7 @@ def render(report: Report | FileReport, form: str = "text") -> str:
     Raises UsageError for another format.
     """
     known = [name for name in reports.formats() if name not in reports.PER_FILE]
-    if form not in known:
-        raise UsageError(f"polarcheck.render(): form: expected one of {', '.join(known)}, found {form!r}")
+    form = choice("polarcheck.render(): form", form, known, "text")
     if isinstance(report, FileReport):
         report = batch.report([report], report.machine)
     if not isinstance(report, Report):

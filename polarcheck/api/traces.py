@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Sequence
 from typing import Literal, TypeAlias, Unpack
 
@@ -10,8 +11,8 @@ from numpy.typing import NDArray
 
 from polarcheck.api.keywords import ExecutionKeywords, PathName, takes
 from polarcheck.api.programs import NAMELESS, Call, Program
+from polarcheck.api.values import choice, length
 from polarcheck.arrays import Floats, Points, Rows, Table
-from polarcheck.errors import UsageError
 from polarcheck.geometry.segments import Curves, segments
 from polarcheck.machines.modal import Motion
 from polarcheck.reading.files import LARGEST
@@ -91,11 +92,10 @@ class Trace(Table, frozen=True, eq=False):
 
         Raises UsageError for a tolerance that is not above 0, TooHardError for more than a million chords.
         """
-        if not tolerance > 0:
-            raise UsageError(f"polyline: expected a tolerance above 0, found {tolerance!r}")
+        chord = length("polyline", tolerance, sys.float_info.max, "a tolerance above 0")
         states = np.array([_STATES.get(kind, Motion.LINE) for kind in self.kind.tolist()], np.int16)
         first = np.zeros(len(self), np.int64)
-        parts = segments(Curves(self.start, self.end, self.center, states, first, first), _SAGITTA * tolerance)
+        parts = segments(Curves(self.start, self.end, self.center, states, first, first), _SAGITTA * chord)
         if not len(parts):
             return np.zeros(0, complex)
         apart = np.append(True, np.abs(parts.start[1:] - parts.end[:-1]) > _TOUCH)
@@ -126,7 +126,7 @@ def trace(
     TooHardError if the program takes too long.
     """
     call = Call("polarcheck.trace()", ExecutionKeywords, keywords).with_one_state()
-    return _trace(call.of_path(path, max_size), which)
+    return _trace(call, call.of_path(path, max_size), which)
 
 
 @takes(ExecutionKeywords)
@@ -142,14 +142,13 @@ def trace_text(
     Raises as `trace` does.
     """
     call = Call("polarcheck.trace_text()", ExecutionKeywords, keywords).with_one_state()
-    return _trace(call.of_text(text, name), which)
+    return _trace(call, call.of_text(text, name), which)
 
 
-def _trace(program: Program, which: str) -> Trace:
+def _trace(call: Call, program: Program, given: str) -> Trace:
     from polarcheck.reports.pages.executed import without_radius
 
-    if which not in (TOOL, PROGRAMMED):
-        raise UsageError(f"polarcheck.trace(): which: expected tool or programmed, found {which!r}")
+    which = choice(f"{call.function}: which", given, (TOOL, PROGRAMMED), TOOL)
     with program.runs() as runs:
         tables = [run for _, run in runs]
         parts = [executed_moves(run["trace"], run["tool_center"], which) for run in tables]

@@ -17,7 +17,7 @@ from polarcheck.checking import check
 from polarcheck.checking.polar_sections import with_doubts
 from polarcheck.checking.settings import Settings
 from polarcheck.checking.tables import Tables
-from polarcheck.errors import ClusterError, SourceError, TooHardError
+from polarcheck.errors import ClusterError, SourceError, TooHardError, one_line
 from polarcheck.finding import (
     ERROR,
     SCHEMA,
@@ -317,7 +317,7 @@ def unreadable(task: Task, failure: str, data: bytes | None = None) -> Outcome:
         blocks=0,
         sections=0,
         verdict=UNREADABLE,
-        reason=failure.removeprefix(f"{task.title}: "),
+        reason=failure.removeprefix(f"{one_line(task.title)}: "),
         findings=[],
         not_evaluated=[],
         **_of_task(task, data),

@@ -8,6 +8,9 @@ from pathlib import Path
 import msgspec
 
 from polarcheck import __version__, record
+from polarcheck.api.keywords import path_of
+from polarcheck.api.values import names as names_of
+from polarcheck.api.values import whole
 from polarcheck.batch.tasks import forget
 from polarcheck.certification import expectations, golden, paths, quoting, results
 from polarcheck.certification.case_runs import CaseRun, run
@@ -44,10 +47,14 @@ def certify(path: str | Path, *, cases: Iterable[str] = (), max_size: int = file
     Raises CertificateError, JobError or MachineError for a manifest that cannot be used, UsageError for a case that
     it does not have.
     """
-    loaded = load(Path(path))
-    names = chosen(loaded, cases)
+    function = "polarcheck.certify()"
+    manifest = path_of(function, path, "the path of a manifest")
+    most = whole(f"{function}: max_size", max_size, 0, files.LARGEST)
+    wanted = [] if cases is None else names_of(f"{function}: cases", cases)
+    loaded = load(Path(manifest))
+    names = chosen(loaded, wanted, f"{function}: cases")
     settings = conditions(loaded, needed(loaded, names))
-    case_runs = dict(runs(loaded, settings, max_size))
+    case_runs = dict(runs(loaded, settings, most))
     bug = next((run.bug for run in case_runs.values() if run.bug is not None), None)
     if bug is not None:
         raise bug
@@ -55,12 +62,16 @@ def certify(path: str | Path, *, cases: Iterable[str] = (), max_size: int = file
     return certificate(loaded, {name: certified[name] for name in names})
 
 
-def chosen(loaded: Loaded, names: Iterable[str]) -> list[str]:
-    """Return the names of the cases to run, all of them without any name. Raises UsageError for an unknown one."""
+def chosen(loaded: Loaded, names: Iterable[str], option: str = "--case") -> list[str]:
+    """
+    Return the names of the cases to run, all of them without any name.
+
+    option: what names them. Raises UsageError for an unknown one.
+    """
     wanted = list(dict.fromkeys(names))
     for name in wanted:
         if name not in loaded.cases:
-            raise UsageError(f"--case {name}: the manifest has no case of this name{suggestion(name, loaded.cases)}")
+            raise UsageError(f"{option} {name}: the manifest has no case of this name{suggestion(name, loaded.cases)}")
     if not loaded.cases:
         title = files.shown(str(loaded.path))
         raise CertificateError(

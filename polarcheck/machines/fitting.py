@@ -14,7 +14,7 @@ from typing import Annotated, Any, Literal, TypeVar, Union, get_args, get_origin
 import msgspec
 
 from polarcheck.decoding import converted
-from polarcheck.errors import suggestion
+from polarcheck.errors import UsageError, suggestion
 
 #: Key of `extra` in msgspec.Meta: the expected value in words, where the type and its bounds do not say it well.
 EXPECTED = "expected"
@@ -41,9 +41,9 @@ class MisfitError(Exception):
         self.key = key
 
 
-class KeyedError(ValueError):
+class KeyedError(UsageError, ValueError):
     """
-    Values that each fit their key, but not each other.
+    Values that each fit their key, but not each other; a UsageError for who makes them in Python.
 
     key: the one at fault; empty for the whole table.
     """
@@ -51,6 +51,11 @@ class KeyedError(ValueError):
     def __init__(self, key: str, text: str) -> None:
         super().__init__(text)
         self.key = key
+
+
+def are_numbers(*values: Any) -> bool:
+    """Return True for numbers that floats can be: a value made in Python may be anything."""
+    return all(isinstance(value, float) or (isinstance(value, int) and abs(value) <= LARGEST) for value in values)
 
 
 class _Part(msgspec.Struct, frozen=True):

@@ -10,7 +10,7 @@ from typing import Annotated, Any, ClassVar, Literal
 import msgspec
 
 from polarcheck.errors import JobError, UsageError, suggestion
-from polarcheck.machines.fitting import EXPECTED, MOST, MisfitError, fitted
+from polarcheck.machines.fitting import EXPECTED, MOST, KeyedError, MisfitError, are_numbers, fitted
 from polarcheck.machines.machine import Machine
 from polarcheck.machines.offset_keys import OffsetKey, canonical, is_plain_number
 from polarcheck.machines.part import Part
@@ -83,13 +83,15 @@ class Stock(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     )
 
     def __post_init__(self) -> None:
+        if not are_numbers(self.diameter, self.hexagon, self.bore):
+            return
         if not math.isnan(self.diameter) and not math.isnan(self.hexagon):
-            raise ValueError("stock: give diameter or hexagon, not both")
-        if self.unknown and not (math.isnan(self.diameter) and math.isnan(self.hexagon)):
-            raise ValueError("stock: unknown = true and a size contradict each other")
+            raise KeyedError("", "stock: give diameter or hexagon, not both")
+        if self.unknown is True and not (math.isnan(self.diameter) and math.isnan(self.hexagon)):
+            raise KeyedError("", "stock: unknown = true and a size contradict each other")
         outside = self.hexagon if math.isnan(self.diameter) else self.diameter
         if self.bore >= outside:
-            raise ValueError(f"stock: bore {self.bore:g} leaves nothing of {outside:g}")
+            raise KeyedError("", f"stock: bore {self.bore:g} leaves nothing of {outside:g}")
 
 
 class WorkOffset(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

@@ -9,7 +9,7 @@ from typing import Annotated, Literal
 
 import msgspec
 
-from polarcheck.machines.fitting import KeyedError, listed
+from polarcheck.machines.fitting import KeyedError, are_numbers, listed
 
 #: Sides of each shape that is regular and has a name.
 SIDES: Mapping[str, int] = MappingProxyType(
@@ -116,6 +116,8 @@ class Part(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     ] = []
 
     def __post_init__(self) -> None:
+        if not self._fits_types():
+            return
         given = [name for name in sorted(_OF_SHAPES) if self._is_given(name)]
         if self.drawing is not None:
             if self.shape is not None or given:
@@ -137,6 +139,16 @@ class Part(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
         if "corner_radius" in given and "chamfer" in given:
             raise KeyedError("chamfer", "a corner has corner_radius or chamfer, not both")
         self._check_room()
+
+    def _fits_types(self) -> bool:
+        """Return False for a part made in Python of other types; the function that takes it says what is wrong."""
+        texts = [text for text in (self.shape, self.drawing) if text is not None]
+        given = {name: getattr(self, name) for name in _OF_SHAPES if getattr(self, name) is not _DEFAULTS[name]}
+        center = given.pop("center", ())
+        are_kinds = all(isinstance(text, str) for text in texts) and isinstance(self.layers, list)
+        if not (are_kinds and isinstance(center, tuple | list) and are_numbers(*center, *given.values())):
+            return False
+        return self.shape in (None, *_KEYS) and self.sides != 0
 
     def _is_given(self, key: str) -> bool:
         value = getattr(self, key)
