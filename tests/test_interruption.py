@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import signal
 import subprocess
@@ -116,6 +117,31 @@ def test_a_step_that_waits_for_the_processor_goes_on(monkeypatch: pytest.MonkeyP
             assert not watch._was_requested
         work, wall = 1.1, 8.0
         wait_for(lambda: watch._was_requested)
+
+
+def test_a_step_that_is_late_ends_no_step_of_another_thread() -> None:
+    """GEOS has one flag for all threads, and the first step that looks at it ends."""
+    angles = np.arange(300) * 2.4
+    star = shapely.LineString(np.column_stack((np.cos(angles), np.sin(angles))))
+    alone = shapely.unary_union([star])
+    has_ended = threading.Event()
+    late: list[bool] = []
+
+    def be_late() -> None:
+        while not has_ended.is_set():
+            with contextlib.suppress(TooHardError), time_limit(0.05):
+                areas.with_itself(tangle())
+            late.append(True)
+
+    thread = threading.Thread(target=be_late)
+    thread.start()
+    try:
+        with time_limit(1000):
+            while len(late) < 3:
+                assert areas.with_itself(star).equals_exact(alone, 1e-9)
+    finally:
+        has_ended.set()
+        thread.join()
 
 
 def test_what_has_no_answer_is_not_called_late() -> None:

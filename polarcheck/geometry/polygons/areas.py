@@ -16,7 +16,7 @@ import shapely  # type: ignore[import-untyped]
 from shapely.errors import GEOSException  # type: ignore[import-untyped]
 
 from polarcheck.errors import NoAnswerError, TooHardError
-from polarcheck.geometry.polygons.interruption import interruptible
+from polarcheck.geometry.polygons.interruption import interruptible, is_interrupt
 from polarcheck.time_limit import keep_time
 
 #: Most points of one operation, and points of a batch of areas; about a second each.
@@ -30,14 +30,17 @@ def _bounded(function: Callable[..., Any], points: int, *arguments: Any, **how: 
     keep_time()
     if points > _MOST:
         raise TooHardError(f"areas with {points} points are too many to compare: check fewer contours in a file")
-    try:
-        with interruptible():
-            return function(*arguments, **how)
-    except GEOSException as error:
-        keep_time()  # raises where the time is over: then the step was interrupted
-        if "bad_alloc" in str(error):
-            raise MemoryError from error
-        raise NoAnswerError("the areas of its contours cannot be computed: points of them all but meet") from error
+    while True:
+        try:
+            with interruptible():
+                return function(*arguments, **how)
+        except GEOSException as error:
+            keep_time()  # raises where the time is over: then the step was interrupted
+            if is_interrupt(error):
+                continue
+            if "bad_alloc" in str(error):
+                raise MemoryError from error
+            raise NoAnswerError("the areas of its contours cannot be computed: points of them all but meet") from error
 
 
 def _element_wise(function: Callable[..., Any]) -> Callable[..., Any]:

@@ -47,6 +47,15 @@ def interruptible() -> Iterator[None]:
         watch.end()
 
 
+def is_interrupt(error: Exception) -> bool:
+    """
+    Return True if GEOS was told to stop, rather than failed.
+
+    It has one flag for all threads: whose step looks at it first ends, and that need not be the one that is late.
+    """
+    return "Interrupted" in str(error)
+
+
 class _Watch:
     """A thread that lasts as long as a time limit, and interrupts the step that is under way."""
 
