@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import errno
+import io
 import json
 import os
 import shutil
+import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 from click.testing import Result
@@ -291,6 +295,66 @@ def test_a_link_is_never_followed(tmp_path: Path) -> None:
     version.symlink_to(tmp_path / "other")
     check()
     assert not list((tmp_path / "other").iterdir())
+
+
+def full_disk(monkeypatch: pytest.MonkeyPatch, after: int) -> None:
+    """Let the disk be full once so many files of the cache have been written."""
+    count = 0
+
+    class Full(io.BufferedWriter):
+        def write(self, data: Any) -> int:
+            nonlocal count
+            count += 1
+            if count > after:
+                raise OSError(errno.ENOSPC, "No space left on device")
+            return super().write(data)
+
+    monkeypatch.setattr(store.os, "fdopen", lambda descriptor, mode: Full(io.FileIO(descriptor, mode)))
+
+
+def git_takes() -> list[str]:
+    """What git would take in, of the cache."""
+    subprocess.run(["git", "init", "-q"], check=True)
+    words = ["git", "ls-files", "--others", "--exclude-standard", NAME]
+    return subprocess.run(words, capture_output=True, text=True, check=True).stdout.split()
+
+
+@pytest.mark.parametrize("after", range(5))
+def test_a_full_disk_leaves_no_cache_that_git_takes_in(
+    after: int, checked: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with monkeypatch.context() as patch:
+        full_disk(patch, after)
+        full = shown(check())
+    assert git_takes() == []
+    assert not list(Path(NAME).rglob("*.new"))
+    whole = {path.name: path.stat().st_size > 0 for path in Path(NAME).glob("*") if path.is_file()}
+    assert whole == dict.fromkeys((".gitignore", "CACHEDIR.TAG")[: max(after - 1, 0)], True)  # the key comes first
+    assert shown(check()) == full
+    assert Path(NAME, ".gitignore").read_text() == "*\n"
+    assert git_takes() == []
+    checked.clear()
+    check()
+    assert checked == []
+
+
+@pytest.mark.parametrize("content", ["", "*", "!*\n", "* \n!a\n", "*\n" * 500])
+@pytest.mark.parametrize("name", [".gitignore", "CACHEDIR.TAG"])
+def test_a_file_that_says_what_the_folder_is_is_written_anew(name: str, content: str) -> None:
+    check()
+    before = Path(NAME, name).read_text()
+    Path(NAME, name).write_text(content)
+    check()  # all is known, and nothing else is written
+    assert Path(NAME, name).read_text() == before
+
+
+def test_the_folder_that_the_user_names_keeps_what_it_says() -> None:
+    Path("mine").mkdir()
+    for content, left in (("out\n", "out\n"), ("", "*\n")):
+        Path("mine", ".gitignore").write_text(content)
+        check(".", "--cache-dir", "mine")
+        assert Path("mine", ".gitignore").read_text() == left
+        shutil.rmtree(next(path for path in Path("mine").iterdir() if path.is_dir()))
 
 
 @pytest.mark.skipif(sys.platform == "win32" or not os.getuid(), reason="root may write everywhere")

@@ -90,7 +90,7 @@ class Cache:
                         self._keep(outcome, *slot)
                     yield outcome
             finally:
-                self._write(0)
+                self._write(-1)
 
     def _slot(self, task: Task) -> tuple[Store, bytes] | None:
         """Return where the outcome of a task is kept; None for standard input, pipes and settings without a digest."""

@@ -78,15 +78,18 @@ class Store:
         return len(self._new)
 
     def write(self) -> None:
-        """Write the new entries beside those that other processes have written meanwhile."""
+        """Write the new entries beside those that other processes have written meanwhile; mend the folder."""
         new, self._new = self._new, {}
         with contextlib.suppress(OSError):
+            if not new and os.path.isdir(self._root):  # noqa: PTH112
+                self._prepared()
             for shard, entries in new.items():
                 if not self._prepared():
                     return
                 merged = self._merged(shard, entries)
                 self._shards[shard] = merged
-                self._replace(shard, msgspec.msgpack.encode(merged))
+                data = msgspec.msgpack.encode(merged)
+                _replace(self._path(shard), self._seal(shard, data) + data)
 
     def _merged(self, shard: str, new: Entries) -> Entries:
         """Return the entries of a file: the new ones, those that this run has used, then the others while they fit."""
@@ -137,8 +140,8 @@ class Store:
             return False
         for name, text in ((".gitignore", "*\n"), ("CACHEDIR.TAG", _TAG)):
             path = os.path.join(self._root, name)  # noqa: PTH118
-            if not os.path.lexists(path):
-                _create(path, text.encode())
+            if not self._is_sound(path, text.encode()):
+                _replace(path, text.encode())
         try:
             os.mkdir(self._folder)  # noqa: PTH102
         except FileExistsError:
@@ -146,22 +149,23 @@ class Store:
         self._remove_other_versions()
         return True
 
+    def _is_sound(self, path: str, data: bytes) -> bool:
+        """Return True for a file that holds what it should: a full disk may have left it empty."""
+        if not self._links:
+            return _content(path) == data
+        # A folder that the user has named may have a file of its own, which stays.
+        try:
+            status = os.lstat(path)
+        except OSError:
+            return False
+        return status.st_size > 0 or not stat.S_ISREG(status.st_mode)
+
     def _remove_other_versions(self) -> None:
         with contextlib.suppress(OSError), os.scandir(self._root) as entries:
             for entry in entries:
                 is_other = _IS_VERSION.fullmatch(entry.name) and entry.name != self._version.hex()
                 if is_other and entry.is_dir(follow_symlinks=False):
                     _remove_version(entry.path)
-
-    def _replace(self, shard: str, data: bytes) -> None:
-        beside = os.path.join(self._folder, f".{os.urandom(8).hex()}.new")  # noqa: PTH118
-        try:
-            _create(beside, self._seal(shard, data) + data)
-            os.replace(beside, self._path(shard))  # noqa: PTH105
-        except OSError:
-            with contextlib.suppress(OSError):
-                os.unlink(beside)  # noqa: PTH108
-            raise
 
 
 def _shard(digest: bytes) -> str:
@@ -180,6 +184,26 @@ def _create(path: str, data: bytes, mode: int = 0o666) -> None:
     flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0)
     with os.fdopen(os.open(path, flags, mode), "wb") as file:
         file.write(data)
+
+
+def _replace(path: str, data: bytes) -> None:
+    """Write a file whole or not at all, in the place of one that is there."""
+    beside = os.path.join(os.path.dirname(path), f".{os.urandom(8).hex()}.new")  # noqa: PTH118, PTH120
+    try:
+        _create(beside, data)
+        os.replace(beside, path)  # noqa: PTH105
+    except OSError:
+        with contextlib.suppress(OSError):
+            os.unlink(beside)  # noqa: PTH108
+        raise
+
+
+def _content(path: str) -> bytes:
+    """Return the content of a small file; empty for a link and for what cannot be read."""
+    with contextlib.suppress(OSError):
+        if not os.path.islink(path):  # noqa: PTH114
+            return bounded.read_file(path, len(_TAG), "")
+    return b""
 
 
 def _remove_version(folder: str) -> None:
