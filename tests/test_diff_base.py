@@ -91,7 +91,7 @@ def test_how_many_are_left_is_told() -> None:
     assert result.stderr == (
         "polarcheck: --diff-base HEAD: 1 of 3 programs to check: changed, or calling or judged by what has\n"
     )
-    assert narrowed([], None, None, 1, True) == []
+    assert narrowed([], lambda path: [], None, None, 1, True) == []
 
 
 def test_findings_of_what_has_not_changed_fail_nothing() -> None:
@@ -496,6 +496,89 @@ def test_no_filter_of_a_submodule_is_run(plant: str) -> None:
     assert checked(paths=("a.nc", "b.nc")) == []
     assert checked() == []
     assert not has_run()
+
+
+def with_submodule() -> None:
+    """A submodule `subs`, in which all has changed since the commit that the repository names of it."""
+    git("init", "-q", "-b", "main", "subs")
+    for name in ("O9000.nc", "O9001.nc"):
+        Path("subs", name).write_text(f"{name[:5]}\nM99\n")
+    git("add", "-A", folder="subs")
+    git("commit", "-q", "-m", "x", folder="subs")
+    Path("m.nc").write_text("O0010\nM98 P9000\nM30\n")
+    Path("polarcheck.toml").write_text('[run]\nsubprograms = ["subs"]\n')
+    commit()
+    assert checked() == []
+
+
+@posix
+@pytest.mark.parametrize("way", ["clean", "process", "monitor", "hook"])
+def test_nothing_of_a_changed_submodule_is_run_or_written(plant: str, way: str) -> None:
+    with_submodule()
+    if way == "monitor":
+        git("config", "core.fsmonitor", plant, folder="subs")
+    elif way == "hook":
+        for name in ("post-index-change", "reference-transaction"):
+            Path("subs/.git/hooks").mkdir(exist_ok=True)
+            Path("subs/.git/hooks", name).symlink_to(plant)
+    else:
+        git("config", f"filter.of_sub.{way}", plant, folder="subs")
+        Path("subs/.git/info/attributes").write_text("* filter=of_sub\n")
+    touch("subs/O9001.nc", seconds=1)
+    try_git("-C", "subs", "status")
+    assert has_run()
+    touch("subs/O9001.nc", seconds=2)
+    Path("subs/O9000.nc").write_text("O9000\nG4 X1.\nM99\n")
+    before = Path("subs/.git/index").read_bytes()
+    assert {"m.nc", "subs/O9000.nc"} <= {*checked()} <= {"m.nc", "subs/O9000.nc", "subs/O9001.nc"}
+    assert Path("subs/.git/index").read_bytes() == before
+    assert not has_run()
+
+
+def test_a_submodule_of_which_git_says_nothing_counts_as_changed() -> None:
+    """Its commit is not there, as in a clone that is shallow; its configuration is broken; it is no repository."""
+    with_submodule()
+    everything = ["a.nc", "b.nc", "c.nc", "m.nc", "subs/O9000.nc", "subs/O9001.nc"]
+    git("update-index", "--cacheinfo", f"160000,{'1' * 40},subs")
+    git("commit", "-q", "-m", "x")
+    assert checked() == everything
+    git("update-index", "--cacheinfo", f"160000,{git('rev-parse', 'HEAD', folder='subs').strip()},subs")
+    git("commit", "-q", "-m", "x")
+    assert checked() == []
+    git("config", "filter.a=b.clean", "cat", folder="subs")
+    assert checked() == everything
+    git("config", "--unset", "filter.a=b.clean", folder="subs")
+    assert checked() == []
+    assert checked(paths=("subs",)) == []
+
+
+def test_the_commit_is_that_of_the_repository_around_a_submodule() -> None:
+    """A submodule has no commit of this name, or another one."""
+    with_submodule()
+    git("branch", "before")
+    Path("subs/O9000.nc").write_text("O9000\nG4 X1.\nM99\n")
+    git("commit", "-q", "-a", "-m", "y", folder="subs")
+    commit()
+    for paths in ((".",), ("m.nc", "subs")):
+        assert checked(ref="before", paths=paths) == ["m.nc", "subs/O9000.nc"]
+    assert checked(ref="before", paths=("subs",)) == ["subs/O9000.nc"]
+    assert checked(ref="before", paths=("m.nc",)) == ["m.nc"]
+    assert checked() == []
+
+
+@posix
+def test_a_pyproject_that_says_nothing_of_polarcheck_concerns_nobody() -> None:
+    Path("pyproject.toml").write_text("[project]\nname = 'a'\n")
+    commit()
+    Path("pyproject.toml").write_text("[project]\nname = 'b'\n")
+    assert checked() == []
+    commit()
+    assert checked(ref="HEAD~1") == []
+    Path("pyproject.toml").write_text("[tool.polarcheck]\nunits = 'mm'\n")
+    assert checked() == ["a.nc", "b.nc", "c.nc"]
+    commit()
+    Path("pyproject.toml").write_text("[project]\nname = 'b'\n")
+    assert checked() == ["a.nc", "b.nc", "c.nc"]
 
 
 def lose(name: str) -> None:

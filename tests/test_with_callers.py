@@ -128,7 +128,8 @@ def test_before_the_first_commit_and_without_a_repository() -> None:
     git("init", "-q", "-b", "main")
     git("add", "-A")
     assert checked("one/plain.nc", "one/gone.nc") == ["one/plain.nc"]
-    assert git_of_polarcheck.gone(os.getcwd(), git_of_polarcheck.Reference("--with-callers:", "-x")) == set()  # noqa: PTH109
+    nowhere = git_of_polarcheck.Reference("--with-callers:", "-x")
+    assert git_of_polarcheck.staged(os.getcwd(), nowhere).paths == set()  # noqa: PTH109
 
 
 @pytest.mark.parametrize(

@@ -205,9 +205,10 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
     applies = _options(arguments)
     faults = running.Faults(arguments.debug)
     skipped: list[Skipped] = []
+    settings_of = OfPrograms(applies)
     tasks = running.planned(
         arguments.paths,
-        OfPrograms(applies),
+        settings_of,
         arguments.extensions,
         faults,
         # A hook may find that nothing is left.
@@ -225,7 +226,8 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
         from polarcheck.batch.decisions import with_own_settings
 
         tasks = with_own_settings(tasks)
-    tasks = narrowed(tasks, arguments.diff_base, arguments.changed, arguments.max_size, not arguments.quiet)
+    looked_for = partial(settings_of.looked_for, walked=arguments.paths)
+    tasks = narrowed(tasks, looked_for, arguments.diff_base, arguments.changed, arguments.max_size, not arguments.quiet)
     if arguments.lists_files:
         listed = show_files.text(arguments.form or "text", tasks, skipped)
         show(listed if arguments.form in (None, "text") else listed.encode())

@@ -11,6 +11,7 @@ from polarcheck.commands.output import say
 from polarcheck.errors import UsageError
 
 if TYPE_CHECKING:
+    from polarcheck.batch.changes import LookedFor
     from polarcheck.batch.tasks import Task
 
 diff_base = option(
@@ -48,22 +49,28 @@ def changed_files(paths: Sequence[str], others: Mapping[str, object]) -> Sequenc
 
 
 def narrowed(
-    tasks: list[Task], ref: str | None, names: Sequence[str] | None, max_size: int, is_reported: bool
+    tasks: list[Task],
+    looked_for: LookedFor,
+    ref: str | None,
+    names: Sequence[str] | None,
+    max_size: int,
+    is_reported: bool,
 ) -> list[Task]:
     """
     Return the tasks of concerned programs.
 
-    ref: of --diff-base. names: the changed files of --with-callers. is_reported: write their number to standard error.
+    looked_for: returns the paths by which the job files of a program were looked for. ref: of --diff-base. names: the
+    changed files of --with-callers. is_reported: write their number to standard error.
     """
     if ref is None and names is None:
         return tasks
     from polarcheck.batch import changes
 
     if ref is not None:
-        title, concerned = f"--diff-base {ref}", changes.since(ref, tasks, max_size)
+        title, concerned = f"--diff-base {ref}", changes.since(ref, tasks, looked_for, max_size)
     else:
         title, before = "--with-callers", os.environ.get(_FROM, "HEAD")
-        concerned = changes.by_files(names or (), tasks, title, before, max_size)
+        concerned = changes.by_files(names or (), tasks, looked_for, title, before, max_size)
     if is_reported:
         say(f"{title}: {_how_many(tasks, concerned)}")
     return concerned

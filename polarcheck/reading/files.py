@@ -103,6 +103,30 @@ class RealPaths:
         return self._folders[inside[0] if inside else folder]
 
 
+def trail(path: str) -> list[str]:
+    """
+    Return the paths that lead to a file or folder, which need not be there: each link that is followed, with the links
+    before it resolved, and at last the path that is meant.
+    """
+    links: list[str] = []
+    try:
+        here = os.path.realpath(os.curdir)
+        left = [*reversed(Path(path).parts)]
+        while left:
+            part = left.pop()
+            if part == os.pardir:
+                here = os.path.dirname(here)  # noqa: PTH120
+                continue
+            here = os.path.join(here, part)  # noqa: PTH118  an absolute path begins with its root
+            if os.path.islink(here) and len(links) < _MOST_LINKS:  # noqa: PTH114
+                links.append(here)
+                left += reversed(Path(os.readlink(here)).parts)  # noqa: PTH115
+                here = os.path.dirname(here)  # noqa: PTH120
+    except (OSError, ValueError):  # the working folder is gone, or no file can have this name
+        return [*links, path]
+    return [os.path.normcase(step) for step in (*links, here)]
+
+
 #: What tells whether a file has changed: when it was written, its size and its number; None where there is none.
 State = tuple[int, int, int] | None
 

@@ -6,7 +6,7 @@ import contextlib
 import os
 import signal
 import sys
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 from polarcheck.errors import UsageError, suggestion
@@ -16,6 +16,10 @@ if TYPE_CHECKING:
     import subprocess
 
 _MARK = ".git"
+#: The mode of a submodule in a tree or the index.
+_SUBMODULE = "160000"
+#: Submodules in submodules; of what lies deeper nothing is known.
+_MOST_NESTED = 8
 #: Options of every call: no hook and no monitor that the repository names is run.
 _SAFE = (
     "--no-pager",
@@ -104,68 +108,197 @@ class Reference(NamedTuple):
         return f"{self.option} {self.name}"
 
 
-def changed(root: str, name: str) -> set[str]:
+class Difference(NamedTuple):
     """
-    The files of a repository that differ from the point where its branch left a commit, by absolute path: committed
-    since, staged or not, renamed (both names), deleted, and all whose changes git does not follow.
+    What differs from a commit, by absolute path; a submodule of which no more is known stands for all below it.
+
+    paths: files, links and submodules, those that are gone included.
+    former: the content that the commit holds of files, where git names it: a repository and a name in it.
+    repositories: the folders that were compared: the repository, and its submodules.
+    """
+
+    paths: set[str]
+    former: dict[str, tuple[str, str]]
+    repositories: set[str]
+
+    def add(self, inner: Difference) -> None:
+        """Add what differs in another folder."""
+        self.paths.update(inner.paths)
+        self.former.update(inner.former)
+        self.repositories.update(inner.repositories)
+
+
+def none() -> Difference:
+    """Return no difference, to which others are added."""
+    return Difference(set(), {}, set())
+
+
+def changed(root: str, name: str, separate: Collection[str] = ()) -> Difference:
+    """
+    Return how a repository differs from the point where its branch left a commit: committed since, staged or not,
+    renamed (both names), deleted, and all whose changes git does not follow; its submodules, too.
+
+    separate: repositories below it that are asked themselves.
 
     Runs no program that the repository names, opens no connection, and writes nothing. Raises UsageError, which names
     the option, where git is missing, cannot answer, or has no such commit.
     """
     ref = Reference("--diff-base", name)
     _require_top_level(root, ref)
-    base = _base(root, ref)
-    filters = _without_filters(root, ref)
-    # The index against the commit, then the files against the index. `git diff` would do both at once, but writes the
-    # index where only the time of a file differs, with GIT_OPTIONAL_LOCKS=0 too.
-    compared = ("-z", "--no-renames", "--ignore-submodules=all")
-    staged = _output(root, ref, "diff-index", "--cached", "--name-only", *compared, base, "--")
-    unstaged = _output(root, ref, "status", "--porcelain=v1", "--untracked-files=no", *compared, options=filters)
-    listed = _output(root, ref, "ls-files", "-z", "-v", "--cached", "--others")
-    names = _parts(staged) + [entry[3:] for entry in _parts(unstaged)] + _unfollowed(root, _parts(listed))
-    return {os.path.normcase(os.path.join(root, *name.split("/"))) for name in names}  # noqa: PTH118
+    return _Comparison(root, ref, separate).with_commit(_base(root, ref))
 
 
-def gone(root: str, ref: Reference) -> set[str]:
+def staged(root: str, ref: Reference) -> Difference:
     """
-    The files of a commit that are not there, by absolute path; none where there is no such commit yet.
+    Return how the next commit differs from the point where the branch left a commit; of submodules what lies there.
 
-    Raises UsageError, which names the option, where git is missing or cannot answer.
+    There is no difference where there is no such commit yet. Raises UsageError, which names the option, where git is
+    missing or cannot answer.
     """
     if not ref.name.strip() or ref.name.startswith("-"):
-        return set()
+        return none()
     status, _, _ = _git(root, ref, "rev-parse", "--verify", "--quiet", f"{ref.name}^{{commit}}")
-    if status:
-        return set()
-    names = _absolute(root, _output(root, ref, "ls-tree", "-r", "-z", "--full-tree", "--name-only", ref.name))
-    return {os.path.normcase(name) for name in names if not os.path.lexists(name)}
+    return none() if status else _Comparison(root, ref).with_commit(_base(root, ref), of_index=True)
+
+
+def holds_submodule(root: str, inner: str, ref: Reference) -> bool:
+    """Return True if a repository is a submodule of another one around it, or lies within one."""
+    return any(f"{inner}{os.sep}".startswith(f"{_path(root, name)}{os.sep}") for name in _submodules(root, ref))
 
 
 def tracked(root: str, ref: Reference) -> set[str]:
-    """The files that the next commit holds, by absolute path. Raises UsageError as `gone` does."""
-    return {os.path.normcase(name) for name in _absolute(root, _output(root, ref, "ls-files", "-z", "--cached"))}
+    """Return the files that the next commit holds, by absolute path, those of submodules too. Raises UsageError."""
+    paths: set[str] = set()
+    left = [(root, 0)]
+    while left:
+        here, depth = left.pop()
+        paths.update(_path(here, name) for name in _parts(_output(here, ref, "ls-files", "-z", "--cached")))
+        inner = [_path(here, name) for name in _submodules(here, ref)]
+        left += [(path, depth + 1) for path in inner if depth < _MOST_NESTED and _is_repository(path, ref)]
+    return paths
 
 
-def _absolute(root: str, output: bytes) -> list[str]:
-    return [os.path.join(root, *name.split("/")) for name in _parts(output)]  # noqa: PTH118
+class _Comparison:
+    """Compares a repository and its submodules with a commit. depth: of a submodule in others."""
+
+    def __init__(self, root: str, ref: Reference, separate: Collection[str] = (), depth: int = 0) -> None:
+        self._root, self._ref, self._separate, self._depth = root, ref, separate, depth
+
+    def with_commit(self, base: str, *, of_index: bool = False) -> Difference:
+        """Return the difference. of_index: files of this repository count as they stand in the next commit."""
+        # The index against the commit, then the files against the index. `git diff` would do both at once, but writes
+        # the index where only the time of a file differs, with GIT_OPTIONAL_LOCKS=0 too.
+        compared = ("--cached", "--raw", "-z", "--no-renames", "--ignore-submodules=none", base, "--")
+        raw = _parts(_output(self._root, self._ref, "diff-index", *compared))
+        staged = dict(zip(raw[1::2], (entry.removeprefix(":").split(" ") for entry in raw[::2]), strict=True))
+        others = () if of_index else ("--others",)
+        entries = _entries(_output(self._root, self._ref, "ls-files", "-z", "-v", "--stage", "--cached", *others))
+        names = set(staged)
+        former = {name: entry.content for name, entry in entries.items()}
+        former |= {name: fields[2] for name, fields in staged.items()}  # zeros where there was none
+        if not of_index:
+            names |= {*_unfollowed(self._root, entries), *self._unstaged()}
+        difference = none()
+        difference.repositories.add(os.path.normcase(self._root))
+        for name in [name for name, entry in entries.items() if entry.mode == _SUBMODULE]:
+            fields = staged.get(name)
+            inner = self._inside(name, former[name], is_new=fields is not None and fields[0] != _SUBMODULE)
+            if inner is None:
+                names.add(name)
+                difference.repositories.add(_path(self._root, name))
+            else:
+                names.discard(name)
+                difference.add(inner)
+        for name in names:
+            path = _path(self._root, name)
+            if path not in self._separate or path in difference.repositories:
+                difference.paths.add(path)
+                if name in former:
+                    difference.former[path] = self._root, former[name]
+        return difference
+
+    def _unstaged(self) -> list[str]:
+        compared = ("--porcelain=v1", "--untracked-files=no", "-z", "--no-renames", "--ignore-submodules=all")
+        filters = _without_filters(self._root, self._ref)
+        return [entry[3:] for entry in _parts(_output(self._root, self._ref, "status", *compared, options=filters))]
+
+    def _inside(self, name: str, base: str, *, is_new: bool) -> Difference | None:
+        """
+        Return how the content of a submodule differs from a commit of it; None if that is not known.
+
+        is_new: the submodule was not there.
+        """
+        path = _path(self._root, name)
+        if is_new or self._depth >= _MOST_NESTED or os.path.islink(path):  # noqa: PTH114
+            return None
+        if not os.path.lexists(os.path.join(path, _MARK)):  # noqa: PTH118
+            # Git leaves the folder of a submodule empty that was never fetched.
+            return none() if os.path.isdir(path) and not os.listdir(path) else None  # noqa: PTH112, PTH208
+        try:
+            if not _is_repository(path, self._ref):
+                return None
+            status, _, _ = _git(path, self._ref, "rev-parse", "--verify", "--quiet", f"{base}^{{commit}}")
+            return None if status else _Comparison(path, self._ref, self._separate, self._depth + 1).with_commit(base)
+        except UsageError:
+            return None
+
+
+class _Entry(NamedTuple):
+    """A file of the index, or an untracked one, as `git ls-files -v` lists it: tag, mode, and name of its content."""
+
+    tag: str
+    mode: str = ""
+    content: str = ""
+
+
+def _entries(output: bytes) -> dict[str, _Entry]:
+    entries = {}
+    for part in _parts(output):
+        if part[0] == "?":
+            entries[part[2:]] = _Entry(part[0])
+        else:
+            fields, _, name = part[2:].partition("\t")
+            mode, content, _ = fields.split(" ")
+            entries[name] = _Entry(part[0], mode, content)
+    return entries
+
+
+def _submodules(root: str, ref: Reference) -> list[str]:
+    entries = _entries(_output(root, ref, "ls-files", "-z", "-v", "--stage", "--cached"))
+    return [name for name, entry in entries.items() if entry.mode == _SUBMODULE]
+
+
+def _is_repository(folder: str, ref: Reference) -> bool:
+    """Return True for the top folder of a repository that git reads."""
+    try:
+        _require_top_level(folder, ref)
+    except UsageError:
+        return False
+    return True
+
+
+def content(root: str, name: str, ref: Reference) -> bytes | None:
+    """Return a content that git names in a repository, as it is kept there; None if it is not there."""
+    status, output, _ = _git(root, ref, "cat-file", "blob", name)
+    return None if status else output
+
+
+def _path(root: str, name: str) -> str:
+    """Return the absolute path of a name of git; an untracked repository has a slash at its end."""
+    return os.path.normcase(os.path.join(root, *name.rstrip("/").split("/")))  # noqa: PTH118
 
 
 def _parts(output: bytes) -> list[str]:
     return [os.fsdecode(part) for part in output.split(b"\0") if part]
 
 
-def _unfollowed(root: str, entries: Iterable[str]) -> list[str]:
-    """
-    The files in whose content git does not look for changes: untracked, assumed unchanged, or skipped but present.
-
-    entries: a tag and a name each, as `git ls-files -v` lists them.
-    """
-    names = []
-    for entry in entries:
-        tag, name = entry[0], entry[2:]
-        if tag == "?" or tag.islower() or (tag == "S" and os.path.lexists(os.path.join(root, name))):  # noqa: PTH118
-            names.append(name)
-    return names
+def _unfollowed(root: str, entries: Mapping[str, _Entry]) -> list[str]:
+    """Return the files in which git looks for no changes: untracked, assumed unchanged, or skipped but present."""
+    return [
+        name
+        for name, entry in entries.items()
+        if entry.tag == "?" or entry.tag.islower() or (entry.tag == "S" and os.path.lexists(os.path.join(root, name)))  # noqa: PTH118
+    ]
 
 
 def _require_top_level(root: str, ref: Reference) -> None:

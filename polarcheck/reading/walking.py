@@ -228,6 +228,11 @@ def has_name_of_program(path: str, wanted: Collection[str]) -> bool:
     return _suffix(path) in wanted or re.fullmatch(_O_NAME, Path(path).name) is not None
 
 
+def is_by_look(path: str) -> bool:
+    """Return True for a program that a folder has by its first lines alone: its name may be that of anything."""
+    return _suffix(path) in _SNIFFED and not has_name_of_program(path, ())
+
+
 def may_be_program(path: str, wanted: Collection[str]) -> bool:
     """Return True for a program, and for a file that may be one by its name and first lines, whatever its ending."""
     if has_name_of_program(path, wanted):
