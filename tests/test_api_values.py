@@ -286,7 +286,7 @@ WRONG: list[tuple[str, dict[str, Any], str]] = [
     ("check", {"max_size": "64"}, "max_size: expected a whole number from 0, found '64'"),
     ("check", {"force_exclude": 1}, "force_exclude: expected True or False, found 1"),
     ("check", {"processes": 10**400}, "processes: expected a number of 18 digits at most"),
-    ("compare", {"tolerance": 1e308}, "tolerance: expected a length above 0 and up to 10 [mm], found 1e+308"),
+    ("compare", {"tolerance": 1e308}, "tolerance: expected 10 mm at most, found 1e+308"),
     ("trace", {"which": ["tool"]}, "which: expected tool or programmed, found ['tool']"),
     ("trace_text", {"which": "cut"}, "which: expected tool or programmed, found 'cut'"),
     ("certify", {"path": None}, "expected the path of a manifest, found None"),

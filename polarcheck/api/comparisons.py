@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import sys
 from typing import Unpack
 
 from polarcheck.api.keywords import ExecutionKeywords, PathName, takes
 from polarcheck.api.programs import NAMELESS, Call, Program
-from polarcheck.api.values import length
+from polarcheck.api.values import length, short
 from polarcheck.checking import check
+from polarcheck.errors import UsageError
 from polarcheck.reading.files import LARGEST
 from polarcheck.revisions.comparison import Revision, compared, default_tolerance
 from polarcheck.revisions.report import Comparison
@@ -15,7 +17,6 @@ from polarcheck.time_limit import seconds_for, time_limit
 
 #: As for the command [mm].
 _LARGEST_TOLERANCE = 10.0
-_A_LENGTH = f"a length above 0 and up to {_LARGEST_TOLERANCE:g} [mm]"
 
 
 @takes(ExecutionKeywords)
@@ -77,7 +78,10 @@ def _call(function: str, keywords: ExecutionKeywords, machine: PathName | None) 
 
 
 def _compared(function: str, old: Program, new: Program, tolerance: float | None) -> Comparison:
-    same = None if tolerance is None else length(f"{function}: tolerance", tolerance, _LARGEST_TOLERANCE, _A_LENGTH)
+    place = f"{function}: tolerance"
+    same = None if tolerance is None else length(place, tolerance, sys.float_info.max, "a length above 0 [mm]")
+    if same is not None and same > _LARGEST_TOLERANCE:
+        raise UsageError(f"{place}: expected {_LARGEST_TOLERANCE:g} mm at most, found {short(tolerance)}")
     seconds = sum(each.settings.job.run.max_seconds for each in (old, new))
     with time_limit(seconds_for(len(old.data) + len(new.data), seconds)):
         first, second = (
