@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from polarcheck import errors as errors
+    from polarcheck.api.certificates import certify as certify
     from polarcheck.api.checks import check as check
     from polarcheck.api.checks import check_text as check_text
     from polarcheck.api.comparisons import compare as compare
@@ -31,7 +32,6 @@ if TYPE_CHECKING:
     from polarcheck.api.traces import Trace as Trace
     from polarcheck.api.traces import trace as trace
     from polarcheck.api.traces import trace_text as trace_text
-    from polarcheck.certification.certifying import certify as certify
     from polarcheck.certification.results import Certificate as Certificate
     from polarcheck.finding import FileReport as FileReport
     from polarcheck.finding import Finding as Finding
@@ -47,7 +47,7 @@ __version__ = "0.1.0"
 
 #: What is public, and the module of each; the imports above tell type checkers the same.
 _MODULES = {
-    "certify": "certification.certifying",
+    "certify": "api.certificates",
     "check": "api.checks",
     "check_text": "api.checks",
     "compare": "api.comparisons",

@@ -3,19 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Generator, Iterable, Mapping, Sequence
-from pathlib import Path
 
 import msgspec
 
 from polarcheck import __version__, record
-from polarcheck.api.keywords import path_of
-from polarcheck.api.values import names as names_of
-from polarcheck.api.values import whole
 from polarcheck.batch.tasks import forget
 from polarcheck.certification import expectations, golden, paths, quoting, results
 from polarcheck.certification.case_runs import CaseRun, run
 from polarcheck.certification.conditions import ConditionsOfCases
-from polarcheck.certification.loading import Loaded, load
+from polarcheck.certification.loading import Loaded
 from polarcheck.certification.manifest import Case
 from polarcheck.certification.results import FAIL, MISSING, NOT_OFFERED, NOT_RUN, PASS, CaseResult, Cell, Certificate
 from polarcheck.certification.tool_path import ToolPath, tool_path
@@ -36,30 +32,6 @@ class Certified(msgspec.Struct, frozen=True):
     case: Case
     result: CaseResult
     run: CaseRun
-
-
-def certify(path: str | Path, *, cases: Iterable[str] = (), max_size: int = files.LARGEST) -> Certificate:
-    """
-    Return the certificate of a post: its programs beside what a manifest says of them. Golden traces are read only.
-
-    path: of the manifest. cases: names of the cases to run; all without any. max_size: of a program [bytes].
-
-    Raises CertificateError, JobError or MachineError for a manifest that cannot be used, UsageError for a case that
-    it does not have.
-    """
-    function = "polarcheck.certify()"
-    manifest = path_of(function, path, "the path of a manifest")
-    most = whole(f"{function}: max_size", max_size, 0, files.LARGEST)
-    wanted = [] if cases is None else names_of(f"{function}: cases", cases)
-    loaded = load(Path(manifest))
-    names = chosen(loaded, wanted, f"{function}: cases")
-    settings = conditions(loaded, needed(loaded, names))
-    case_runs = dict(runs(loaded, settings, most))
-    bug = next((run.bug for run in case_runs.values() if run.bug is not None), None)
-    if bug is not None:
-        raise bug
-    certified = judged(loaded, settings, case_runs)
-    return certificate(loaded, {name: certified[name] for name in names})
 
 
 def chosen(loaded: Loaded, names: Iterable[str], option: str = "--case") -> list[str]:
