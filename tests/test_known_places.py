@@ -346,7 +346,7 @@ def test_an_editor_and_what_watches_files_know_the_baseline() -> None:
         return OfPrograms(Options(ignore=("setup", "silence")))(str(path))
 
     path = Path.cwd() / "a.nc"
-    assert Path(FILE) in settings_of(Path("a.nc")).read
+    assert FILE in settings_of(Path("a.nc")).read
     shown = [
         judge(OpenText(now), path, settings_of, [Path.cwd()]).report
         for now in (text, program(open_ended(60), open_ended(66)))
