@@ -1,19 +1,28 @@
-"""Arcs that no setter writes, converted: written as what they are, or refused by name; never by an internal error."""
+"""Arcs that no setter writes, rewritten: written as what they are, or refused by name; never by an internal error."""
 
 from __future__ import annotations
 
 import math
+from functools import partial
 
 import numpy as np
 import pytest
 from programs import machine_of, report_of, tables_of
+from rolled_programs import cam_contour
 from test_convert import convert, refused, section
 from test_pen import distance, path_of
+from unrolled_contours import hexagon
 
 from polarcheck.columns.trace import Trace
 from polarcheck.conversion.arc_words import swept
+from polarcheck.conversion.compensating.compensating import Compensating, compensated
+from polarcheck.conversion.compensating.contours import SIDES
 from polarcheck.conversion.outcome import RefusedError
 from polarcheck.conversion.pen import Pen
+from polarcheck.conversion.rewriting import rewritten
+from polarcheck.conversion.rolling import measuring
+from polarcheck.conversion.rolling.rolling import Rolling, rolled
+from polarcheck.settings.of_programs import OfPrograms, Options
 
 #: Those whose sections are not written in the same words.
 OTHER_WORDS = (
@@ -151,3 +160,32 @@ def test_an_arc_whose_neighbours_ask_for_an_r_of_0_is_checked() -> None:
     """Nothing divides by it: a warning of NumPy is an error in tests."""
     program = "G98 G0 X60. C0\nG12.1\nG1 X2.361 F100\nU-4.7\nG2 X-2.3 R4\nJ0\nG1 X60.\nG13.1\n"
     assert report_of(program, "fanuc", "1:radius=5", job={"program_units": "mm"}).verdict
+
+
+@pytest.mark.one_in(8)
+@pytest.mark.parametrize("side", SIDES)
+@pytest.mark.parametrize(
+    "blocks", ["G3 X2. I7.", "G2 X2. I7.", "G3 X2. Y.2 I7. J0", "G3 X4. Y.2 I0. J0", "G3 X3.999 Y.2 I-1. J0"]
+)
+def test_odd_arcs_are_compensated_or_refused(blocks: str, side: str) -> None:
+    """An arc from X4. Y.2 without a sweep or a radius is no part of a contour: it stays, or all is refused."""
+    program = f"T1 M6\nG98 G0 X60. C0\nG101\nG1 X4. F100\nY.2\n{blocks}\nG109\nM30\n"
+    settings = OfPrograms(Options(machine="hurco", tools=("1:radius=0.4",), use_config=False))("")
+    try:
+        work = partial(compensated, options=Compensating(side))
+        outcome = rewritten("a.nc", program.encode(), settings, work)
+    except RefusedError as error:
+        assert error.refusals  # noqa: PT017
+    else:
+        assert blocks in outcome.data.decode().split("\n")
+
+
+def test_a_block_that_no_move_of_the_rolled_program_stands_for_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Nothing is inf mm away."""
+    away = measuring._away
+    monkeypatch.setattr(measuring, "_away", lambda each, *others: away(each, *others) + np.inf)
+    settings = OfPrograms(Options(machine="fanuc-30i", use_config=False))("")
+    with pytest.raises(RefusedError, match="no move of the result leads to the end of this block"):
+        rewritten(
+            "a.nc", cam_contour(hexagon()).encode(), settings, partial(rolled, options=Rolling(0.01, "per-minute"))
+        )

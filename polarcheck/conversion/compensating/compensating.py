@@ -163,7 +163,7 @@ def _require_level(trace: Trace, move: Move, rest: Piece | None = None) -> None:
     rest: what of the contour is left beside it; it goes down by as much on a way that is shorter by all but nothing.
     """
     share = 1.0
-    if rest is not None and move.piece.center is not None:
+    if rest is not None and move.piece.sweep:
         share = 1 - rest.sweep / move.piece.sweep
     if not move.is_level and abs(move.ends - move.begins) * share > _SAME_DEPTH:
         raise refused_at(trace, move.row, "Z moves here, where the contour has no move of its own: move Z alone")

@@ -45,8 +45,10 @@ class _Parallel(msgspec.Struct, frozen=True):
         if whole.center is None:
             return ((until - self.begins) * whole.leaving.conjugate()).real > _LEAST
         spokes = whole.start - whole.center, whole.end - whole.center
-        sweep = whole.sweep - whole.turning * cmath.phase((self.begins - whole.center) / spokes[0])
-        return sweep + whole.turning * cmath.phase((until - whole.center) / spokes[1]) > _LEAST / whole.radius
+        sweep = whole.sweep - whole.turning * cmath.phase(spokes[0].conjugate() * (self.begins - whole.center))
+        return (
+            sweep + whole.turning * cmath.phase(spokes[1].conjugate() * (until - whole.center)) > _LEAST / whole.radius
+        )
 
 
 def contour_beside(path: Sequence[Piece], aside: float) -> list[Piece]:

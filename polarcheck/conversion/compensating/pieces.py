@@ -57,7 +57,9 @@ class Piece(msgspec.Struct, frozen=True):
             return 0.0
         if self.is_full:
             return math.tau
-        return (self.turning * cmath.phase((self.end - self.center) / (self.start - self.center))) % math.tau
+        return (
+            self.turning * cmath.phase((self.start - self.center).conjugate() * (self.end - self.center))
+        ) % math.tau
 
     @property
     def length(self) -> float:

@@ -131,7 +131,7 @@ class _Search:
             piece = self.path[last]
             if piece.center is not None:
                 spoke = start - piece.center
-                if abs(abs(spoke) - piece.radius) > self.tolerance:
+                if not (spoke and piece.sweep) or abs(abs(spoke) - piece.radius) > self.tolerance:
                     continue
                 share = _angle(piece, start) / piece.sweep
                 tangent = 1j * piece.turning * spoke / abs(spoke)
@@ -199,7 +199,7 @@ def _same_center(one: Piece, other: Piece, tolerance: float) -> bool:
 def _angle(arc: Piece, point: complex) -> float:
     """The angle from the start of an arc to a point of its circle as it turns [rad]."""
     center = 0j if arc.center is None else arc.center
-    return (arc.turning * cmath.phase((point - center) / (arc.start - center))) % math.tau
+    return (arc.turning * cmath.phase((arc.start - center).conjugate() * (point - center))) % math.tau
 
 
 def _area(piece: Piece, origin: complex) -> float:

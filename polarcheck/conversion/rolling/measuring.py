@@ -97,6 +97,8 @@ def measured_of(
         if not at_ends[worst] <= tolerance:
             line = int(lines[each.way.row[worst]])
             text = f"the path would be {at_ends[worst]:.4f} mm away from the end of this block"
+            if np.isinf(at_ends[worst]):
+                text = "no move of the result leads to the end of this block"
             differences.append(Refusal(line, text))
         behind = of_line >= each.stretch.line
         differences += _feeds(each, own[behind], of_line[behind], trace)
