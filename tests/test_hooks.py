@@ -112,6 +112,7 @@ def test_a_commit_that_changes_the_lathe_checks_all_programs(tmp_path: Path, mon
         assert commit(tmp_path) == (False, {"polarcheck": "Failed", "polarcheck-config": "Failed"})
 
 
+@pytest.mark.one_in(6)
 @pytest.mark.parametrize("args", [[], ["--strict", "--machine", "fanuc-30i"]])
 @pytest.mark.parametrize(
     "name",

@@ -85,6 +85,7 @@ golden = "golden.jsonl"
 """
 
 FUNCTIONS = [name for name in polarcheck.__all__ if inspect.isfunction(getattr(polarcheck, name))]
+FUNCTIONS.sort(key=lambda name: name != "machine")  # the quickest, which each run takes
 PROCESSES = 20
 
 
@@ -111,7 +112,7 @@ def test_threads_may_begin_with_the_same_function(post: None) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.one_in(14)
+@pytest.mark.one_in(28)
 @pytest.mark.parametrize("threads", [2, 8])
 @pytest.mark.parametrize("name", FUNCTIONS)
 def test_threads_of_many_processes_begin_with_the_same_function(name: str, threads: int, post: None) -> None:
