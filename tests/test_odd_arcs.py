@@ -156,10 +156,17 @@ def test_the_pen_draws_no_arc_without_a_radius(end: complex, center: complex) ->
         pen.arc(end, center, True)
 
 
-def test_an_arc_whose_neighbours_ask_for_an_r_of_0_is_checked() -> None:
+@pytest.mark.parametrize(
+    ("machine", "moves"),
+    [
+        ("fanuc", "G12.1\nG1 X2.361 F100\nU-4.7\nG2 X-2.3 R4\nJ0\nG1 X60.\nG13.1"),
+        ("siemens-transmit", "TRANSMIT\nX0\nG2 I.01\nG2 X.02 R1\nTRAFOOF"),
+    ],
+)
+def test_an_arc_whose_neighbours_ask_for_an_r_of_0_is_checked(machine: str, moves: str) -> None:
     """Nothing divides by it: a warning of NumPy is an error in tests."""
-    program = "G98 G0 X60. C0\nG12.1\nG1 X2.361 F100\nU-4.7\nG2 X-2.3 R4\nJ0\nG1 X60.\nG13.1\n"
-    assert report_of(program, "fanuc", "1:radius=5", job={"program_units": "mm"}).verdict
+    tools = ("1:radius=0.4,nose=3", "2:radius=-0.1", "8:radius=1000")
+    assert report_of(f"{moves}\nM30\n", machine, *tools, job={"program_units": "mm"}).verdict
 
 
 @pytest.mark.one_in(8)

@@ -122,7 +122,7 @@ class SameCircle(Columns, frozen=True):
         """The R that is written is the R that is meant but for a slip, or nearly that."""
         passes = self.passes
         written = np.abs(passes.start[move] - passes.center[move])
-        ratio = written / radius
+        ratio = _ratio(written, radius)
         slip = np.abs(ratio - 1) <= _NEAR
         slip |= (np.abs(ratio[:, None] - _FACTORS) <= 2e-3 * _FACTORS).any(axis=1)
         scale = self.trace.lengths.scale[passes.row[move]]
@@ -151,7 +151,7 @@ class SameCircle(Columns, frozen=True):
         halves = np.abs(passes.start[one] - passes.end[two]) <= _SAME
         center = np.where(halves, (passes.start[one] + passes.end[one]) / 2, center)
         radius = np.abs(passes.end[one] - center)
-        ratio = size[one] / radius
+        ratio = _ratio(size[one], radius)
         chosen = (np.abs(ratio[:, None] - _FACTORS) <= 2e-3 * _FACTORS).any(axis=1)
         # The sides of a rectangle may bulge; a circle is parted at round angles.
         spoke = np.degrees(np.angle(passes.end[one] - center))
@@ -173,6 +173,12 @@ class SameCircle(Columns, frozen=True):
         sweep = np.angle(last / spoke) * np.where(left, 1, -1) % (2 * np.pi)
         tolerance = 4 * passes.half_of_last_digit[move] + 2e-3
         return Meant(move, np.where(sweep > np.pi + 2e-3, -radius, radius), center, tolerance)
+
+
+def _ratio(written: Floats, radius: Floats) -> Floats:
+    """By which factor each R is mistaken; an R of 0 is mistaken by none."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.asarray(written / radius)
 
 
 def _circumcenter(one: Points, two: Points, three: Points) -> Points:

@@ -265,7 +265,7 @@ class Tangency(Columns, frozen=True):
         if len(rows):
             written = np.zeros(len(self.trace))
             written[self.passes.row] = self._written
-            with np.errstate(divide="ignore"):  # an R of 0 is a factor of nothing
+            with np.errstate(divide="ignore", invalid="ignore"):  # an R of 0 is a factor of nothing
                 ratio = np.abs(written[rows] / self.radius_needed[rows])
                 factor = np.array(_FACTORS)[np.argmin(np.abs(np.log(ratio[:, None] / np.array(_FACTORS))), axis=1)]
             of_factor = (np.abs(ratio / factor - 1) < _LIKE) & (self.radius_needed[rows] * written[rows] > 0)
