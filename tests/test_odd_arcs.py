@@ -161,6 +161,7 @@ def test_the_pen_draws_no_arc_without_a_radius(end: complex, center: complex) ->
     [
         ("fanuc", "G12.1\nG1 X2.361 F100\nU-4.7\nG2 X-2.3 R4\nJ0\nG1 X60.\nG13.1"),
         ("siemens-transmit", "TRANSMIT\nX0\nG2 I.01\nG2 X.02 R1\nTRAFOOF"),
+        ("siemens-transmit", "TRANSMIT\nX0\nG2 X.01 R2\nX0 R.01"),
     ],
 )
 def test_an_arc_whose_neighbours_ask_for_an_r_of_0_is_checked(machine: str, moves: str) -> None:
@@ -185,6 +186,14 @@ def test_odd_arcs_are_compensated_or_refused(blocks: str, side: str) -> None:
         assert error.refusals  # noqa: PT017
     else:
         assert blocks in outcome.data.decode().split("\n")
+
+
+def test_a_section_without_a_move_has_no_contour() -> None:
+    program = "T1\nG98 G0 X60. C0\nG112\nG3 U\nG113\nM30\n"
+    settings = OfPrograms(Options(machine="lsis", tools=("1:radius=0.4",), use_config=False))("")
+    with pytest.raises(RefusedError) as error:
+        rewritten("a.nc", program.encode(), settings, partial(compensated, options=Compensating("")))
+    assert error.value.refusals[0].line == 3
 
 
 def test_a_block_that_no_move_of_the_rolled_program_stands_for_is_named(monkeypatch: pytest.MonkeyPatch) -> None:

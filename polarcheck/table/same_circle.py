@@ -170,7 +170,7 @@ class SameCircle(Columns, frozen=True):
         passes = self.passes
         spoke, last = passes.start[move] - center, passes.end[move] - center
         left = passes.motion[move] == Motion.CCW
-        sweep = np.angle(last / spoke) * np.where(left, 1, -1) % (2 * np.pi)
+        sweep = np.angle(last * spoke.conj()) * np.where(left, 1, -1) % (2 * np.pi)
         tolerance = 4 * passes.half_of_last_digit[move] + 2e-3
         return Meant(move, np.where(sweep > np.pi + 2e-3, -radius, radius), center, tolerance)
 

@@ -76,7 +76,8 @@ def _paths(trace: Trace, section: Section, swept: Swept, side: str) -> Iterator[
     candidates = candidates_of(trace, section, swept, side)
     if not candidates:
         text = "nothing of its path is a contour: it does not close, and has no moves to it and away from it"
-        raise refused_at(trace, section.moves[0].row, text)
+        row = section.moves[0].row if section.moves else int(trace.mode.sections.enter[section.number])
+        raise refused_at(trace, row, text)
     frame, turn = swept.frame_of(section.number)
     for candidate in candidates:
         pieces = [move.piece for move in section.moves[candidate.first : candidate.last + 1]]
