@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import math
 from functools import partial
+from pathlib import Path
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 from programs import machine_of, report_of, tables_of
 from rolled_programs import cam_contour
 from test_convert import convert, refused, section
@@ -14,6 +16,7 @@ from test_pen import distance, path_of
 from unrolled_contours import hexagon
 
 from polarcheck.columns.trace import Trace
+from polarcheck.commands import main
 from polarcheck.conversion.arc_words import swept
 from polarcheck.conversion.compensating.compensating import Compensating, compensated
 from polarcheck.conversion.compensating.contours import SIDES
@@ -205,3 +208,20 @@ def test_a_block_that_no_move_of_the_rolled_program_stands_for_is_named(monkeypa
         rewritten(
             "a.nc", cam_contour(hexagon()).encode(), settings, partial(rolled, options=Rolling(0.01, "per-minute"))
         )
+
+
+def test_an_arc_whose_ends_lie_on_no_circle_has_no_keyway() -> None:
+    """Its center is not known, and nothing is divided by that."""
+    program = "G12.1\nG42X20C-20\nG2X1J5C1\nX20C-20.5"
+    result = CliRunner().invoke(main, ["check", "--part", "-", "--no-config", "--no-cache"], input=program)
+    assert (result.exit_code, "internal error" in result.stderr) == (1, False)
+
+
+@pytest.mark.usefixtures("own_folder")
+@pytest.mark.parametrize("first", ["G0 X1 Z4\nG112 Z7", "G0 X50. Z4.\nG112\nG0 Z5.\nG0 C0"])
+def test_a_section_whose_cuts_are_not_known_is_compared_by_its_rapids(first: str) -> None:
+    for name, text in (("a.nc", f"{first}\n=\nG1 Z"), ("b.nc", f"G112\nG1 X5.\nG113\n{first}\nG1 X#500")):
+        Path(name).write_text(text)
+    for pair in (("a.nc", "a.nc"), ("a.nc", "b.nc"), ("b.nc", "a.nc"), ("b.nc", "b.nc")):
+        result = CliRunner().invoke(main, ["compare", *pair, "--machine", "haas-lathe", "--no-config"])
+        assert result.exit_code in (0, 1, 2), (pair, result.stderr)

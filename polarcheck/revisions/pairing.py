@@ -8,7 +8,6 @@ import numpy as np
 
 from polarcheck.arrays import Floats, Rows
 from polarcheck.geometry.comparison.anchors import longest_rise
-from polarcheck.geometry.comparison.polyline import SpacePath
 from polarcheck.revisions.stretches import Stretch
 
 #: Sections whose sizes differ by more than this share of them are not the same one, unless nothing else is left.
@@ -47,12 +46,13 @@ def _features(sections: Sequence[Stretch]) -> Floats:
     """Per section [mm]: where it begins, the box that it fills on the part, its lowest Z; for one without moves 0."""
     rows = []
     for section in sections:
-        path: SpacePath = section.path[section.path.is_known]
+        is_known = section.path.is_known
+        path, rapid = section.path[is_known], section.rapid[is_known]
         if not len(path):
             rows.append([0.0] * 8)
             continue
         points = np.append(path.start[:1], path.end)
-        cuts = points[1:][~section.rapid[section.path.is_known]] if not section.rapid.all() else points
+        cuts = points if rapid.all() else points[1:][~rapid]
         box = [cuts.real.min(), cuts.real.max(), cuts.imag.min(), cuts.imag.max()]
         rows.append([*box, points[0].real, points[0].imag, path.z_end.min(), np.abs(np.diff(points)).sum() / 4])
     return np.array(rows, np.float64).reshape(-1, 8)

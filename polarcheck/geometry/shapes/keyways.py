@@ -76,7 +76,7 @@ def _keyway_of(piece: Ring, center: complex, radius: float) -> _Keyway | None:
         return None
     # In the direction of the first wall, and to the left of it; walls may be too short to tell their direction.
     along = complex(piece.start[0] + piece.end[last]) / 2 - center
-    if abs(along) <= _TOUCHES:
+    if not abs(along) > _TOUCHES:  # arcs whose ends lie on no circle have no center
         return None
     along *= np.sign(((piece.end[0] - piece.start[0]) * along.conjugate()).real) / abs(along)
     if not along:
