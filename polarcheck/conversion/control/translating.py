@@ -344,10 +344,13 @@ class Translation:
         return any(self._code(index) in self._x_switches for index in codes)
 
     def _is_spelling(self, index: int, words: Sequence[str]) -> bool:
-        """What is written for a code is the code itself, be it G01 for G1."""
+        """What is written for a code is the code itself, be it G01 for G1, or G18 for G18 ZC on the same control."""
+        written = self.measures.written(index)
+        native = self.target.control.native_words
+        if native == self.source.control.native_words and native.get(" ".join(words)) == written.upper():
+            return True
         if len(words) != 1 or words[0][0] not in "GM":
             return False
-        written = self.measures.written(index)
         is_plain = written[:1].upper() == words[0][0] and written[1:].replace(".", "", 1).isdigit()
         return is_plain and words[0][1:].replace(".", "", 1).isdigit() and float(written[1:]) == float(words[0][1:])
 
