@@ -164,7 +164,6 @@ def test_a_plane_without_its_axes_stays_on_its_own_control() -> None:
     assert convert(text, "fagor-8055t", "fagor-8055t").data == text.encode()
 
 
-
 def test_blanks_line_ends_letters_and_comments_stay() -> None:
     program = (
         "%\r\no1 (Fl\u00e4che)\r\ng21g98g40\r\n/g0x60.z2.c0\r\ng12.1\r\ng1x40.c5.f200 (a)\r\ng13.1\r\nm30\r\n%\r\n"
