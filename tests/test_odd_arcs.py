@@ -225,3 +225,15 @@ def test_a_section_whose_cuts_are_not_known_is_compared_by_its_rapids(first: str
     for pair in (("a.nc", "a.nc"), ("a.nc", "b.nc"), ("b.nc", "a.nc"), ("b.nc", "b.nc")):
         result = CliRunner().invoke(main, ["compare", *pair, "--machine", "haas-lathe", "--no-config"])
         assert result.exit_code in (0, 1, 2), (pair, result.stderr)
+
+
+@pytest.mark.parametrize("count", [400, 5000])
+@pytest.mark.parametrize("word", ["Z", "X20. Z", "F"])
+def test_a_number_of_any_length_is_written_or_refused(word: str, count: int) -> None:
+    program = f"G21 G98\nG1 {word}{'9' * count}\nM30\n"
+    try:
+        outcome = convert(program, "fanuc-30i", "okuma-osp")
+    except RefusedError as error:
+        assert all(refusal.line == 2 or "line 2" in refusal.text for refusal in error.refusals)  # noqa: PT017
+    else:
+        assert outcome.data.strip()

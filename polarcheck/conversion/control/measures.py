@@ -10,6 +10,7 @@ import numpy as np
 from polarcheck.columns.lengths import RADIUS_FACTOR
 from polarcheck.columns.trace import Trace
 from polarcheck.conversion.control.number_text import number_of, rescaled, rounded
+from polarcheck.conversion.outcome import refused_at
 from polarcheck.machines.axes import INCREMENTS
 from polarcheck.machines.machine import Machine
 from polarcheck.machines.modal import Distance, Units
@@ -17,6 +18,8 @@ from polarcheck.machines.modal import Distance, Units
 _MM_PER_INCH = Fraction(254, 10)
 #: To which F in other units is rounded.
 _FEED_STEP = Fraction(1, 10000)
+#: Python converts no longer ones; no control reads as many.
+_LONGEST = 1000
 
 
 class AxisWord(msgspec.Struct, frozen=True):
@@ -116,6 +119,8 @@ class Measures:
         written = number_of(self.trace.text.source.excerpt(*self.span(index)))
         if written is None:
             return None
+        if len(written) > _LONGEST:
+            raise refused_at(self.trace, row, f"a number of {len(written)} characters is no coordinate")
         is_zero = not Fraction(written)
         same_reading = "." in written or is_zero or self.pointless_is_same
         if ratio == 1 and same_reading:
@@ -127,9 +132,11 @@ class Measures:
         return rescaled(written, ratio, least, self.target.control.number_without_point == "least-increment")
 
     def feed(self, index: int, ratio: Fraction) -> str | None:
-        """F in other units of length; None where it is computed."""
+        """F in other units of length; None where it is computed, or no number that a control has."""
         number = number_of(self.written(index))
-        return None if number is None else rescaled(number, ratio, _FEED_STEP, needs_point=True)
+        return (
+            None if number is None or len(number) > _LONGEST else rescaled(number, ratio, _FEED_STEP, needs_point=True)
+        )
 
     def place(self, row: int, axis: str) -> str | None:
         """Where an axis stands at the end of a row, as the other machine reads it; None where that is not known."""
