@@ -128,6 +128,11 @@ def _visible(character: str) -> str:
     number = ord(character)
     if character.isprintable() or 0xDC80 <= number <= 0xDCFF:
         return character
+    return escaped(number)
+
+
+def escaped(number: int) -> str:
+    """Return a character that cannot be shown, or a byte, as its number: `\\x1b`, `\\u202e`."""
     return f"\\x{number:02x}" if number < 256 else f"\\u{number:04x}" if number < 65536 else f"\\U{number:08x}"
 
 

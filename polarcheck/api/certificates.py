@@ -25,7 +25,7 @@ def certify(path: str | Path, *, cases: Iterable[str] = (), max_size: int = file
     function = "polarcheck.certify()"
     manifest = path_of(function, path, "the path of a manifest")
     most = whole(f"{function}: max_size", max_size, 0, files.LARGEST)
-    wanted = [] if cases is None else names(f"{function}: cases", cases)
+    wanted = names(f"{function}: cases", cases)
     loaded = load(Path(manifest))
     chosen = certifying.chosen(loaded, wanted, f"{function}: cases")
     settings = certifying.conditions(loaded, certifying.needed(loaded, chosen))

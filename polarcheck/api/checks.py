@@ -56,8 +56,8 @@ def check(
     count = whole(f"{_FUNCTION}: processes", processes, 1, 1)
     most = whole(f"{_FUNCTION}: max_size", max_size, 0, files.LARGEST)
     is_forced = flag(f"{_FUNCTION}: force_exclude", False if force_exclude is None else force_exclude)
-    endings = [] if extensions is None else names(f"{_FUNCTION}: extensions", extensions)
-    patterns = [] if exclude is None else names(f"{_FUNCTION}: exclude", exclude)
+    endings = names(f"{_FUNCTION}: extensions", extensions)
+    patterns = names(f"{_FUNCTION}: exclude", exclude)
     named = paths_of(_FUNCTION, paths)
     settings_of = OfPrograms(options(_FUNCTION, CheckKeywords, keywords, exclude=patterns))
     skipped: list[Skipped] = []

@@ -112,8 +112,8 @@ def _elements(place: str, value: Iterable[Any]) -> Iterable[Any]:
 
 
 def names(place: str, value: Any) -> list[str]:
-    """Return the names of a keyword that takes one or several, of files, too."""
-    listed = value if value is None else plain(place, value, files=[""])
+    """Return the names of a keyword that takes one or several, of files, too; none for None."""
+    listed = [] if value is None else plain(place, value, files=[""])
     listed = [listed] if isinstance(listed, str) else listed
     if not isinstance(listed, list) or not all(isinstance(element, str) for element in listed):
         raise UsageError(f"{place}: expected names, found {short(value)}")

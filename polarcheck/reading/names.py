@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import re
 
+from polarcheck.errors import escaped
+
 #: Bytes that the locale has no character for, as Python holds them.
 _BYTES = re.compile("[\udc80-\udcff]+")
 _FIRST_BYTE = 0xDC00
@@ -39,7 +41,7 @@ def code(character: str) -> str:
     number = ord(character)
     if _BYTES.match(character):
         number -= _FIRST_BYTE
-    return f"\\x{number:02x}" if number < 256 else f"\\u{number:04x}" if number < 65536 else f"\\U{number:08x}"
+    return escaped(number)
 
 
 def _in_text(character: str) -> str:
