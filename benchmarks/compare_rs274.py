@@ -29,8 +29,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from polarcheck.foundation.states import Motion, Side
 from polarcheck.geometry.cutter_compensation.compensation import Method, Path, Phase, ToolPath, tool_center_path
-from polarcheck.machines.modal import Motion, Side
 
 NAN = complex(math.nan, math.nan)
 

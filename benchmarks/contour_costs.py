@@ -171,9 +171,9 @@ def measure(path: Path, radius: float) -> Cost:
     import shapely  # type: ignore[import-untyped] # noqa: F401 - that its import is not measured
 
     from polarcheck.checking import check
-    from polarcheck.checking.rule import load_all
-    from polarcheck.machines import profiles
-    from polarcheck.machines.job import Job, Tool
+    from polarcheck.program.machines import profiles
+    from polarcheck.program.machines.job import Job, Tool
+    from polarcheck.rules.rule import load_all
 
     data = path.read_bytes()
     lathe, rules = profiles.load(MACHINE).machine, list(load_all().values())

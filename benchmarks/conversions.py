@@ -28,11 +28,11 @@ from twin_sections import CONTROLS, written  # noqa: E402
 from twin_sections import drawn as drawn_sections  # noqa: E402
 
 from polarcheck.checking.settings import Settings  # noqa: E402
-from polarcheck.conversion.control.converting import converted  # noqa: E402
-from polarcheck.conversion.rewriting import rewritten  # noqa: E402
-from polarcheck.errors import PolarcheckError, RefusedError  # noqa: E402
-from polarcheck.machines import profiles  # noqa: E402
-from polarcheck.settings.of_programs import OfPrograms, Options, on_machine  # noqa: E402
+from polarcheck.files.settings.of_programs import OfPrograms, Options, on_machine  # noqa: E402
+from polarcheck.foundation.errors import PolarcheckError, RefusedError  # noqa: E402
+from polarcheck.program.machines import profiles  # noqa: E402
+from polarcheck.rewrite.convert.converting import converted  # noqa: E402
+from polarcheck.rewrite.writing.rewriting import rewritten  # noqa: E402
 
 BASE = "fanuc-30i"
 #: Of the programs of a machine so many are random sections.

@@ -12,13 +12,13 @@ from mutations import Mutation
 ROOT = Path(__file__).resolve().parent.parent
 #: What is looked at, by patterns of files; the first that matches counts.
 ROOMS = {
-    "rules": ("polarcheck/rules/*",),
+    "rules": ("polarcheck/rules/*/*",),
     "compensation": (
         "polarcheck/geometry/cutter_compensation/*",
-        "polarcheck/columns/compensation.py",
-        "polarcheck/columns/lengths.py",
+        "polarcheck/columns/path/compensation.py",
+        "polarcheck/columns/path/lengths.py",
         *(
-            f"polarcheck/table/{name}.py"
+            f"polarcheck/columns/*/{name}.py"
             for name in (
                 "fitting",
                 "infeed",
@@ -30,16 +30,16 @@ ROOMS = {
                 "tool_center",
             )
         ),
-        *(f"polarcheck/table/{name}.py" for name in ("coverage", "senses", "trial", "uncompensated_cuts")),
+        *(f"polarcheck/columns/*/{name}.py" for name in ("coverage", "senses", "trial", "uncompensated_cuts")),
     ),
     "metal": (
         *(f"polarcheck/geometry/polygons/{name}.py" for name in ("cleared", "finished_part", "standing_metal")),
-        *(f"polarcheck/table/{name}.py" for name in ("bar", "finished", "milled", "stock_comments", "workpiece")),
-        "polarcheck/inspection/*",
+        *(f"polarcheck/columns/*/{name}.py" for name in ("bar", "finished", "milled", "stock_comments", "workpiece")),
         "polarcheck/parts/*",
+        "polarcheck/reports/made_parts/*",
     ),
     "geometry": ("polarcheck/geometry/*",),
-    "tables": ("polarcheck/table/*",),
+    "tables": ("polarcheck/columns/*",),
 }
 #: Files of tests that see all of these rooms, the quickest and sharpest first.
 TESTS = (
@@ -90,7 +90,7 @@ TESTS = (
     "corpus",
 )
 #: Packages in which a module is followed to the modules that import it.
-UPWARD = ("geometry", "table", "inspection", "parts")
+UPWARD = ("geometry", "columns", "parts")
 
 
 def modules() -> list[str]:

@@ -2,7 +2,7 @@
 Would a test notice? Plants one small fault at a time in rules, compensation, metal, geometry and tables, and runs the
 tests on it.
 
-    python benchmarks/mutants.py --count 100 --seed 1 [--only rules --only polarcheck/table/ramps.py:158] [--jobs 2]
+    python benchmarks/mutants.py --count 100 --seed 1 [--only rules --only columns/path/ramps.py:158] [--jobs 2]
     python benchmarks/mutants.py --count 100 --only metal --only tables --write docs/reliability.md
     python benchmarks/mutants.py --list --only geometry/cutter_compensation/corner.py
 

@@ -21,22 +21,18 @@ from measuring import ROOT, output, table
 
 #: In the order of the data.
 STAGES = ("start", "reading", "execution", "columns", "tool path", "faces", "rules", "report")
-#: By package of polarcheck.
-OF_PACKAGE = {
+#: By room of polarcheck; a room within a room comes first.
+OF_ROOM = {
     "__main__": "start",
     "commands": "start",
-    "machines": "start",
-    "reading": "reading",
-    "execution": "execution",
+    "program/machines": "start",
+    "program/reading": "reading",
+    "program/execution": "execution",
     "columns": "columns",
-    "table": "columns",
-    "silence": "rules",
-    "inspection": "faces",
-    "checking": "rules",
-    "parts": "report",
-    "feed_table": "report",
+    "parts": "faces",
     "rules": "rules",
-    "batch": "start",
+    "checking": "rules",
+    "files": "start",
     "reports": "report",
 }
 #: Modules whose tables are more than columns.
@@ -82,8 +78,9 @@ def stage_of(function: Function) -> str | None:
         return "start"
     if not Path(file).is_relative_to(ROOT / "polarcheck"):
         return None
-    package, *inner = Path(file).relative_to(ROOT / "polarcheck").with_suffix("").parts
-    return OF_TABLE.get(inner[-1], "columns") if package == "table" else OF_PACKAGE.get(package)
+    path = Path(file).relative_to(ROOT / "polarcheck").with_suffix("")
+    stage = next((stage for room, stage in OF_ROOM.items() if path.is_relative_to(room)), None)
+    return OF_TABLE.get(path.name, stage) if stage == "columns" else stage
 
 
 def seconds_by_stage(stats: dict[Function, Any]) -> dict[str, float]:

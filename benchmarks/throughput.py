@@ -21,14 +21,14 @@ from bare import WORD
 from generate import program
 
 from polarcheck.checking import check
-from polarcheck.checking.rule import load_all
-from polarcheck.checking.tables import Tables
 from polarcheck.columns.trace import Trace
-from polarcheck.execution.run import straight
-from polarcheck.machines import profiles
-from polarcheck.machines.job import Job, Tool
-from polarcheck.reading import source
-from polarcheck.reading.words import read_words
+from polarcheck.program.execution.run import straight
+from polarcheck.program.machines import profiles
+from polarcheck.program.machines.job import Job, Tool
+from polarcheck.program.reading import source
+from polarcheck.program.reading.words import read_words
+from polarcheck.rules.rule import load_all
+from polarcheck.rules.tables import Tables
 
 CUTTERS = range(4, 13)
 

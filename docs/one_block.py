@@ -14,17 +14,18 @@ from typing import Any
 
 import numpy as np
 
-from polarcheck.checking import check, places
+from polarcheck.checking import check
 from polarcheck.checking.engine import Engine
-from polarcheck.checking.rule import load_all
-from polarcheck.checking.tables import Tables
+from polarcheck.columns.path.moves import Moves
 from polarcheck.columns.trace import Trace
-from polarcheck.machines import profiles
-from polarcheck.machines.job import Job, Tool
-from polarcheck.machines.modal import FeedMode, Motion, Side
-from polarcheck.reading import source
+from polarcheck.foundation.states import FeedMode, Motion, Side
+from polarcheck.program.machines import profiles
+from polarcheck.program.machines.job import Job, Tool
+from polarcheck.program.reading import source
 from polarcheck.reports.concise import concise
-from polarcheck.table.moves import Moves
+from polarcheck.rules import places
+from polarcheck.rules.rule import load_all
+from polarcheck.rules.tables import Tables
 
 #: A flat at 1 mm from the center, compensated, with an F that is too high there; cutter radius 4 mm.
 PROGRAM = b"""O1 (FLAT)
@@ -118,7 +119,7 @@ def _bytes_and_words() -> Iterator[str]:
 
 def source_text() -> Any:
     """The text of the program, as the reader has it."""
-    from polarcheck.reading.words import read_words
+    from polarcheck.program.reading.words import read_words
 
     return read_words(source.read_source(PROGRAM, "flat.nc"))
 
@@ -170,8 +171,8 @@ def _moves(tables: Tables, row: int) -> Iterator[str]:
     yield from _heading("Row to move of the tool center", "table/, geometry/")
     yield from _wrapped(
         "Cutter compensation moves the path to the right of the programmed one, by the radius. "
-        "`table/tool_center.py` passes the columns of the section to `geometry/cutter_compensation/`, which "
-        "knows arrays only; `table/moves.py` holds the result, one element per move of the tool center. "
+        "`columns/path/tool_center.py` passes the columns of the section to `geometry/cutter_compensation/`, which "
+        "knows arrays only; `columns/path/moves.py` holds the result, one element per move of the tool center. "
         "`geometry/polar.py` and `geometry/rates.py` compute the distance from the center and the rate "
         "of C."
     )
@@ -241,7 +242,7 @@ def _report(tables: Tables, row: int) -> Iterator[str]:
 
 
 def _concise(report: Any) -> list[str]:
-    from polarcheck.batch.tasks import report as of_files
+    from polarcheck.files.batch.tasks import report as of_files
 
     text = concise(of_files([report], "fanuc"))
     return [line for line in text.splitlines() if line.startswith("flat.nc")]
@@ -255,7 +256,7 @@ def _where_to_look() -> Iterator[str]:
     )
     yield from _wrapped(
         "- A table: a class in `table/` whose arguments name the tables that it needs, and its line in "
-        "`checking/tables.py`."
+        "`rules/tables.py`."
     )
     yield from _wrapped("- A rule: one file under `rules/`, see [adding_a_rule.md](adding_a_rule.md).")
     yield from _wrapped("- A report: a module in `reports/` with a function of its own name.")

@@ -6,15 +6,18 @@ polarcheck: checks NC programs that use polar coordinate interpolation, before t
     >>> trace = polarcheck.trace("O1234.NC", tools={8: 6.35})
 
 All that is public is listed in `polarcheck.__all__`; docs/api.md says what is promised. A function is imported when it
-is first used: `import polarcheck` alone loads no other module.
+is first used: `import polarcheck` alone loads the errors and the version.
 """
 
 from __future__ import annotations
 
+import sys
 from typing import TYPE_CHECKING, Any
 
+from polarcheck.foundation import errors as errors
+from polarcheck.foundation.version import __version__ as __version__
+
 if TYPE_CHECKING:
-    from polarcheck import errors as errors
     from polarcheck.api.certificates import certify as certify
     from polarcheck.api.checks import check as check
     from polarcheck.api.checks import check_text as check_text
@@ -32,18 +35,18 @@ if TYPE_CHECKING:
     from polarcheck.api.traces import Trace as Trace
     from polarcheck.api.traces import trace as trace
     from polarcheck.api.traces import trace_text as trace_text
-    from polarcheck.certification.results import Certificate as Certificate
-    from polarcheck.finding import FileReport as FileReport
-    from polarcheck.finding import Finding as Finding
-    from polarcheck.finding import Report as Report
-    from polarcheck.machines.job import Stock as Stock
-    from polarcheck.machines.job import Tool as Tool
-    from polarcheck.machines.job import WorkOffset as WorkOffset
-    from polarcheck.machines.machine import Machine as Machine
-    from polarcheck.machines.part import Part as Part
-    from polarcheck.revisions.report import Comparison as Comparison
+    from polarcheck.foundation.finding import FileReport as FileReport
+    from polarcheck.foundation.finding import Finding as Finding
+    from polarcheck.foundation.finding import Report as Report
+    from polarcheck.program.machines.job import Stock as Stock
+    from polarcheck.program.machines.job import Tool as Tool
+    from polarcheck.program.machines.job import WorkOffset as WorkOffset
+    from polarcheck.program.machines.machine import Machine as Machine
+    from polarcheck.program.machines.part import Part as Part
+    from polarcheck.rewrite.certify.results import Certificate as Certificate
+    from polarcheck.rewrite.compare.report import Comparison as Comparison
 
-__version__ = "0.1.0"
+sys.modules[errors.__name__] = errors  # `from polarcheck.errors import UsageError`: the public name of the module
 
 #: What is public, and the module of each; the imports above tell type checkers the same.
 _MODULES = {
@@ -61,19 +64,19 @@ _MODULES = {
     "render": "api.rendering",
     "trace": "api.traces",
     "trace_text": "api.traces",
-    "Comparison": "revisions.report",
+    "Comparison": "rewrite.compare.report",
     "Feeds": "api.feed_tables",
-    "Certificate": "certification.results",
-    "FileReport": "finding",
-    "Finding": "finding",
-    "Machine": "machines.machine",
+    "Certificate": "rewrite.certify.results",
+    "FileReport": "foundation.finding",
+    "Finding": "foundation.finding",
+    "Machine": "program.machines.machine",
     "MadePart": "api.parts",
-    "Part": "machines.part",
-    "Report": "finding",
-    "Stock": "machines.job",
-    "Tool": "machines.job",
+    "Part": "program.machines.part",
+    "Report": "foundation.finding",
+    "Stock": "program.machines.job",
+    "Tool": "program.machines.job",
     "Trace": "api.traces",
-    "WorkOffset": "machines.job",
+    "WorkOffset": "program.machines.job",
 }
 __all__ = [*_MODULES, "errors", "__version__"]
 
@@ -84,8 +87,6 @@ if not TYPE_CHECKING:  # a name that is not public is an error for type checkers
         """Import what is public when it is first used."""
         import importlib
 
-        if name == "errors":
-            return importlib.import_module("polarcheck.errors")
         if name not in _MODULES:
             raise AttributeError(f"module 'polarcheck' has no attribute {name!r}")
         value = getattr(importlib.import_module(f"polarcheck.{_MODULES[name]}"), name)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 
 try:
-    from polarcheck import ending
+    from polarcheck.foundation import ending
 except KeyboardInterrupt:
     os.write(2, b"polarcheck: interrupted\n")
     os._exit(130)

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import pytest
 
-from polarcheck import time_limit
+from polarcheck.foundation import time_limit
 
 
 class Clock:

@@ -31,7 +31,7 @@ settings.register_profile(
     suppress_health_check=[HealthCheck.too_slow],
 )
 
-# slipcover counts modules that are searched for; rules are loaded without a search (checking/rule.py).
+# slipcover counts modules that are searched for; rules are loaded without a search (rules/rule.py).
 if "SLIPCOVER_ENABLED" in os.environ:
     import polarcheck.rules
 

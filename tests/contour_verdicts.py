@@ -15,10 +15,10 @@ from contour_families import Program, Twin, program_of
 from part_reference import Verdict, judge
 
 from polarcheck.checking import check
-from polarcheck.checking.rule import load_all
-from polarcheck.finding import Finding
-from polarcheck.machines import profiles
-from polarcheck.machines.job import Job, Stock, Tool
+from polarcheck.foundation.finding import Finding
+from polarcheck.program.machines import profiles
+from polarcheck.program.machines.job import Job, Stock, Tool
+from polarcheck.rules.rule import load_all
 
 #: Errors that say that the part is cut into.
 GOUGES = frozenset(

@@ -19,12 +19,12 @@ from typing import NamedTuple
 
 from msgspec.structs import replace
 
-from polarcheck.batch.baseline import Baseline
-from polarcheck.batch.baseline_file import Contents
-from polarcheck.batch.tasks import Task, outcome
 from polarcheck.checking.settings import Settings
-from polarcheck.finding import FileReport, Finding
-from polarcheck.settings.of_programs import OfPrograms, Options
+from polarcheck.files.baselines.baseline import Baseline
+from polarcheck.files.baselines.baseline_file import Contents
+from polarcheck.files.batch.tasks import Task, outcome
+from polarcheck.files.settings.of_programs import OfPrograms, Options
+from polarcheck.foundation.finding import FileReport, Finding
 
 RULES = ("polar-switched-in-offset-mode", "rapid-in-polar", "c-feed-above-limit", "arc-end-off-circle")
 KINDS = dict(zip(("offset", "rapid", "feed", "arc"), RULES, strict=True))

@@ -20,7 +20,7 @@ from typing import Any
 import pytest
 
 from polarcheck.commands import main
-from polarcheck.server import process
+from polarcheck.editor import process
 
 #: Long enough for any machine: what is never said ends the test [s].
 PATIENCE = 60

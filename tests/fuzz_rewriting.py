@@ -22,6 +22,7 @@ from click.testing import CliRunner
 from fuzz_mutations import mutated
 from fuzz_setups import SETUPS, BrokenError, expect, job_of_setup
 from odd_programs import drawn
+from polarcheck.errors import PolarcheckError
 from setter_dialects import DIALECTS
 from setter_programs import FAMILIES
 from setter_programs import drawn as drawn_by_setter
@@ -29,25 +30,24 @@ from setter_programs import drawn as drawn_by_setter
 from polarcheck.checking import check
 from polarcheck.checking.settings import Settings
 from polarcheck.commands import main
-from polarcheck.conversion.compensating.centering import centered
-from polarcheck.conversion.compensating.compensating import Compensating, compensated
-from polarcheck.conversion.control.converting import converted
-from polarcheck.conversion.original import Original
-from polarcheck.conversion.outcome import Outcome, RefusedError
-from polarcheck.conversion.rewriting import Work, rewritten
-from polarcheck.conversion.rolling.rolling import Rolling, rolled
-from polarcheck.conversion.unrolling.rates import FEEDS
-from polarcheck.conversion.unrolling.unrolling import Unrolling, unrolled
-from polarcheck.errors import PolarcheckError
-from polarcheck.machines import profiles
-from polarcheck.machines.feed_keys import WITH_ROTARY
-from polarcheck.pictures.painting import plain
-from polarcheck.reading.source import read_source
-from polarcheck.reports.pages import comparison
-from polarcheck.revisions.comparison import Revision, compared, default_tolerance
-from polarcheck.revisions.report import DIFFERS, SAME_METAL
-from polarcheck.settings.of_programs import OfPrograms, Options, on_machine
-from polarcheck.time_limit import time_limit
+from polarcheck.files.settings.of_programs import OfPrograms, Options, on_machine
+from polarcheck.foundation.time_limit import time_limit
+from polarcheck.program.machines import profiles
+from polarcheck.program.machines.feed_keys import WITH_ROTARY
+from polarcheck.program.reading.source import read_source
+from polarcheck.reports.pages.painting import plain
+from polarcheck.rewrite.compare import page as comparison
+from polarcheck.rewrite.compare.comparison import Revision, compared, default_tolerance
+from polarcheck.rewrite.compare.report import DIFFERS, SAME_METAL
+from polarcheck.rewrite.compensate.centering import centered
+from polarcheck.rewrite.compensate.compensating import Compensating, compensated
+from polarcheck.rewrite.convert.converting import converted
+from polarcheck.rewrite.roll.rolling import Rolling, rolled
+from polarcheck.rewrite.unroll.rates import FEEDS
+from polarcheck.rewrite.unroll.unrolling import Unrolling, unrolled
+from polarcheck.rewrite.writing.original import Original
+from polarcheck.rewrite.writing.outcome import Outcome, RefusedError
+from polarcheck.rewrite.writing.rewriting import Work, rewritten
 
 #: As long as a check in SETUPS may take [s].
 _SECONDS = 5.0

@@ -8,8 +8,8 @@ from typing import Any, NamedTuple
 
 from programs import job_of, machine_of
 
-from polarcheck.machines import profiles
-from polarcheck.machines.job import Job
+from polarcheck.program.machines import profiles
+from polarcheck.program.machines.job import Job
 
 
 class BrokenError(AssertionError):

@@ -28,25 +28,25 @@ import msgspec
 import numpy as np
 from click.testing import CliRunner
 from fuzz_setups import SETUPS, BrokenError, expect, job_of_setup
+from polarcheck.errors import PolarcheckError
 from programs import CORPUS, ROOT, machine_of
 
 from polarcheck import reports
-from polarcheck.batch import tasks as batch
 from polarcheck.checking import check
-from polarcheck.checking.examples import examples
-from polarcheck.checking.rule import load_all
 from polarcheck.commands import main
-from polarcheck.errors import PolarcheckError
-from polarcheck.execution.arithmetic import Arithmetic
-from polarcheck.execution.custom_macro import read_statement
-from polarcheck.execution.expression import evaluate
-from polarcheck.execution.macro import Variables, assign
-from polarcheck.execution.programs import read_text
-from polarcheck.finding import Finding, Report
-from polarcheck.machines import offset_table, profiles
-from polarcheck.machines.job import Job, check_work_offsets, from_table
-from polarcheck.reading import source
+from polarcheck.files.batch import tasks as batch
+from polarcheck.foundation.finding import Finding, Report
+from polarcheck.program.execution.arithmetic import Arithmetic
+from polarcheck.program.execution.custom_macro import read_statement
+from polarcheck.program.execution.expression import evaluate
+from polarcheck.program.execution.macro import Variables, assign
+from polarcheck.program.execution.programs import read_text
+from polarcheck.program.machines import offset_table, profiles
+from polarcheck.program.machines.job import Job, check_work_offsets, from_table
+from polarcheck.program.reading import source
 from polarcheck.reports.pages import executed, schema
+from polarcheck.rules.examples import examples
+from polarcheck.rules.rule import load_all
 
 #: Of a message, and of one finding without its fix, which has an edit for each word that it mends [characters].
 _LONGEST_MESSAGE, _LONGEST_FINDING = 700, 2500
@@ -304,7 +304,7 @@ def drawn(target: str, random: Random) -> tuple[bytes, int] | None:
 def seeds(target: str) -> list[bytes]:
     """Inputs that make sense to a target: sample programs, examples of rules, real programs where they are present."""
     if target == "settings":
-        files = sorted((ROOT / "polarcheck" / "machines").glob("*.toml"))
+        files = sorted((ROOT / "polarcheck" / "program" / "machines").glob("*.toml"))
         return [*(_JOBS), *(path.read_bytes()[:6000] for path in files)]
     if target == "offsets":
         return [b"%\nG10 P1 X0. Z0. R5. Q0\nG10 P10001 X1.5 Z-2. R.4 Q3\n%\n", b"G10 L2 P1 X1.\nG10 P8 R9.525\n"]

@@ -7,13 +7,13 @@ from typing import Any
 import msgspec
 from programs import machine_of
 
-from polarcheck.execution import custom_macro, macro
-from polarcheck.execution.arithmetic import Value
-from polarcheck.execution.expression import Expression, evaluate
-from polarcheck.execution.expression_reader import read_expression
-from polarcheck.execution.macro import Arguments, ProgramCall
-from polarcheck.execution.macro_tokens import GRAMMAR, Characters, MacroLexer
-from polarcheck.execution.statement import Statement
+from polarcheck.program.execution import custom_macro, macro
+from polarcheck.program.execution.arithmetic import Value
+from polarcheck.program.execution.expression import Expression, evaluate
+from polarcheck.program.execution.expression_reader import read_expression
+from polarcheck.program.execution.macro import Arguments, ProgramCall
+from polarcheck.program.execution.macro_tokens import GRAMMAR, Characters, MacroLexer
+from polarcheck.program.execution.statement import Statement
 
 MACRO = machine_of().macro
 

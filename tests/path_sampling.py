@@ -12,8 +12,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Points
-from polarcheck.machines.modal import Motion
+from polarcheck.foundation.arrays import Floats, Points
+from polarcheck.foundation.states import Motion
 
 
 def point_at(start: complex, end: complex, center: complex, kind: int) -> tuple[float, Callable[[Floats], Points]]:

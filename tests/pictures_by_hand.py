@@ -7,16 +7,7 @@ from typing import Any
 
 import msgspec
 
-from polarcheck.pictures.picture import (
-    FindingPicture,
-    Mark,
-    MoveTable,
-    PartPicture,
-    Picture,
-    Points,
-    Rates,
-    SectionPicture,
-)
+from polarcheck.view.picture import FindingPicture, Mark, MoveTable, PartPicture, Picture, Points, Rates, SectionPicture
 
 FLATS = 6
 R = 4.0

@@ -19,15 +19,15 @@ from pathlib import Path
 from typing import Any
 
 from polarcheck.checking import check
-from polarcheck.checking.examples import Example
-from polarcheck.checking.rule import Rule, find, load_all
-from polarcheck.checking.tables import Tables
+from polarcheck.columns.path.moves import Moves
 from polarcheck.columns.trace import Trace
-from polarcheck.finding import FileReport
-from polarcheck.machines import profiles
-from polarcheck.machines.job import Job, from_table, with_tool
-from polarcheck.machines.machine import Machine
-from polarcheck.table.moves import Moves
+from polarcheck.foundation.finding import FileReport
+from polarcheck.program.machines import profiles
+from polarcheck.program.machines.job import Job, from_table, with_tool
+from polarcheck.program.machines.machine import Machine
+from polarcheck.rules.examples import Example
+from polarcheck.rules.rule import Rule, find, load_all
+from polarcheck.rules.tables import Tables
 
 ROOT = Path(__file__).parent.parent
 SHARED = ROOT.parent / "shared"

@@ -20,12 +20,12 @@ from typing import Any, NamedTuple
 import numpy as np
 import shapely  # type: ignore[import-untyped]
 
-from polarcheck.checking.tables import Tables
-from polarcheck.finding import MadeInSection, MadeShape
+from polarcheck.columns.path.moves import z_along
+from polarcheck.foundation.finding import MadeInSection, MadeShape
+from polarcheck.foundation.states import Motion
 from polarcheck.geometry.cutter_compensation.compensation import Phase
 from polarcheck.geometry.plane import arc_sweep
-from polarcheck.machines.modal import Motion
-from polarcheck.table.moves import z_along
+from polarcheck.rules.tables import Tables
 
 #: How far a drawn outline may be from what the cutters leave, and the sagitta of chords [mm].
 TOLERANCE, SAGITTA = 0.01, 0.001

@@ -17,10 +17,10 @@ from setter_programs import Program, drawn
 from single_slips import SLIPS, planted
 from slip_words import Draw, Plant, block_changed, block_missing, digit_wrong, point_moved, word_changed
 
-from polarcheck.checking.rule import load_all
 from polarcheck.checking.settings import Settings
-from polarcheck.finding import FileReport, Finding
-from polarcheck.fixes.fixing import with_fixes
+from polarcheck.foundation.finding import FileReport, Finding
+from polarcheck.rewrite.fixes.fixing import with_fixes
+from polarcheck.rules.rule import load_all
 
 GRADES = ("right", "place", "else there", "no advice", "elsewhere")
 #: What begins an advice in a message.

@@ -15,8 +15,8 @@ from fuzz_setups import SETUPS
 from fuzz_targets import seeds
 from hypothesis import strategies as st
 
-from polarcheck.machines.job import Job
-from polarcheck.machines.machine import Machine
+from polarcheck.program.machines.job import Job
+from polarcheck.program.machines.machine import Machine
 
 ADDRESSES = "GMXYZCUVWHIJKRFSTNOPQLEABD"
 #: Which of fuzz_targets.SETUPS.

@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 from programs import job_of, machine_of, report_of, said
 
 from polarcheck.checking import check
-from polarcheck.checking.rule import load_all
-from polarcheck.finding import FileReport
-from polarcheck.silence.allow_syntax import grouped, read_allow
+from polarcheck.columns.words.allow_syntax import grouped, read_allow
+from polarcheck.foundation.finding import FileReport
+from polarcheck.rules.rule import load_all
 
 RULES = load_all()
 NAMES = grouped({rule.name: rule.group for rule in RULES.values()})

@@ -20,10 +20,10 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from polarcheck.errors import PolarcheckError, PolarcheckWarning, UsageError
 
 import polarcheck
 from polarcheck.api.values import short
-from polarcheck.errors import PolarcheckError, PolarcheckWarning, UsageError
 
 TEXT = "G98 G0 X60. C0 T0808\nG12.1\nG42 G1 X40. F100\nG1 C10.\nG40 X60.\nG13.1\nM30\n"
 MANIFEST = """

@@ -11,36 +11,26 @@ from pathlib import Path
 
 import pytest
 
-from polarcheck.checking.rule import rule_files
+from polarcheck.rules.rule import rule_files
 
 PACKAGE = Path(__file__).parent.parent / "polarcheck"
-#: From the top down; each may import those below it, and those that stand beside it in one tuple not.
+#: From the top down; each may import those below it, and those that stand beside it in one tuple not. The wings stand
+#: above the core: `reports` and what is below it import none of them.
 ORDER = (
     ("__main__",),
     ("commands",),
-    ("server",),
     ("api",),
-    ("certification",),
+    ("editor",),
+    ("rewrite", "view"),
     ("reports",),
-    ("pictures",),
-    ("conversion",),
-    ("batch",),
-    ("settings",),
-    ("fixes",),
-    ("rules",),
-    ("parts", "feed_table", "revisions"),
+    ("files",),
     ("checking",),
-    ("silence",),
-    ("inspection",),
-    ("table",),
+    ("rules",),
+    ("parts",),
     ("columns",),
-    ("execution",),
-    ("reading",),
+    ("program",),
     ("geometry",),
-    ("machines",),
-    ("time_limit",),
-    ("arrays", "bounded", "decoding", "ending", "errors", "finding", "memory"),
-    ("record",),
+    ("foundation",),
 )
 FLOOR = {name: number for number, names in enumerate(reversed(ORDER)) for name in names}
 
@@ -75,7 +65,7 @@ def imports_of_package() -> Imports:
 def imports(folder: Path) -> Imports:
     """
     Every import of a module of the package by another: at the top, in functions, under TYPE_CHECKING, by
-    import_module with a constant name. `from polarcheck.table import moves` is an import of polarcheck.table.moves.
+    import_module with a constant name. `from polarcheck.geometry import plane` imports geometry.plane.
     """
     known = modules(folder)
     found: Imports = {}
@@ -133,26 +123,37 @@ def test_every_package_has_its_floor() -> None:
     assert {name.partition(".")[0] for name in modules(PACKAGE)} - {""} == set(FLOOR)
 
 
-#: Rules and repairs are found by the name of their package; that is no import of any of them.
-DISCOVERY = ["checking.repair imports rules", "checking.rule imports rules"]
+#: The table of formats names the one that a wing makes, and loads it late.
+LATE_BY_NAME = ["reports imports view.html"]
 
 
 def test_imports_go_downwards_only() -> None:
-    assert upward(imports_of_package()) == DISCOVERY
+    assert upward(imports_of_package()) == LATE_BY_NAME
+
+
+def test_the_top_shows_the_rooms_alone() -> None:
+    rooms = {*FLOOR, "__init__"} - {"__main__"}
+    shown = {path.name for path in PACKAGE.iterdir()} - {"__pycache__"}
+    assert shown == {*(rooms - {"__init__"}), "__init__.py", "__main__.py", "py.typed"}
+
+
+def test_each_room_says_what_it_is_for() -> None:
+    assert all(ast.get_docstring(tree_of(path.read_text("utf-8"))) for path in PACKAGE.rglob("__init__.py"))
 
 
 def test_imports_have_no_circles() -> None:
-    assert not circles(imports_of_package())
+    late = dict(line.split(" imports ") for line in LATE_BY_NAME)
+    assert not circles({name: found - {late.get(name)} for name, found in imports_of_package().items()})
 
 
 @pytest.fixture
 def house(tmp_path: Path) -> Path:
     """Two rooms and a module each, to plant faults in."""
-    for name in ("table/__init__", "table/trace", "checking/__init__", "checking/engine"):
+    for name in ("columns/__init__", "columns/trace", "checking/__init__", "checking/engine"):
         path = tmp_path / f"{name}.py"
         path.parent.mkdir(exist_ok=True)
         path.write_text("", "utf-8")
-    (tmp_path / "checking" / "engine.py").write_text("from polarcheck.table.trace import Trace\n", "utf-8")
+    (tmp_path / "checking" / "engine.py").write_text("from polarcheck.columns.trace import Trace\n", "utf-8")
     assert not upward(imports(tmp_path))
     assert not circles(imports(tmp_path))
     return tmp_path
@@ -172,18 +173,18 @@ def house(tmp_path: Path) -> Path:
     ],
 )
 def test_a_planted_upward_import_is_seen(house: Path, planted: str) -> None:
-    (house / "table" / "trace.py").write_text(planted + "\n", "utf-8")
-    assert upward(imports(house)) == ["table.trace imports checking.engine"]
-    assert circles(imports(house)) == ["checking.engine", "table.trace"]
+    (house / "columns" / "trace.py").write_text(planted + "\n", "utf-8")
+    assert upward(imports(house)) == ["columns.trace imports checking.engine"]
+    assert circles(imports(house)) == ["checking.engine", "columns.trace"]
 
 
-@pytest.mark.parametrize("planted", ["from polarcheck.table import trace", "from . import trace"])
+@pytest.mark.parametrize("planted", ["from polarcheck.columns import trace", "from . import trace"])
 def test_a_planted_circle_inside_a_package_is_seen(house: Path, planted: str) -> None:
-    (house / "table" / "trace.py").write_text(
-        "if TYPE_CHECKING:\n    from polarcheck.table.moves import Moves\n", "utf-8"
+    (house / "columns" / "trace.py").write_text(
+        "if TYPE_CHECKING:\n    from polarcheck.columns.moves import Moves\n", "utf-8"
     )
-    (house / "table" / "moves.py").write_text(planted + "\n", "utf-8")
-    assert circles(imports(house)) == ["table.moves", "table.trace"]
+    (house / "columns" / "moves.py").write_text(planted + "\n", "utf-8")
+    assert circles(imports(house)) == ["columns.moves", "columns.trace"]
     assert not upward(imports(house))
 
 
@@ -206,7 +207,7 @@ def test_array_types_are_defined_once(path: Path) -> None:
 @pytest.mark.parametrize("path", [*map(Path, rule_files())], ids=name_of)
 def test_rules_neither_loop_nor_load_numpy(path: Path) -> None:
     tree = tree_of(path.read_text("utf-8"))
-    allowed = {"checking.rule", "checking.causes", "machines.modal", "geometry.tolerances"}
+    allowed = {"rules.rule", "rules.causes", "foundation.states", "geometry.tolerances"}
     name = ".".join(path.relative_to(PACKAGE).with_suffix("").parts)
     assert imports_of_package()[name.removesuffix(".__init__")] <= allowed
     assert not any(isinstance(node, ast.For | ast.While) for node in ast.walk(tree))
@@ -231,9 +232,13 @@ LATE = (
     *("shapely", "numpy.ma", "rich", "plotly", "ezdxf", "multiprocessing"),
     *("polarcheck.geometry.polygons", "polarcheck.geometry.material_left", "polarcheck.geometry.comparison"),
     *("polarcheck.geometry.overcuts.cuts", "polarcheck.geometry.overcuts.own_loop"),
-    *("polarcheck.checking.message", "polarcheck.checking.repair", "polarcheck.silence.allow_comments"),
-    *("polarcheck.batch.baseline", "polarcheck.parts.part_report", "polarcheck.batch.executors"),
-    *("polarcheck.execution.macro", "polarcheck.pictures", "polarcheck.fixes", "polarcheck.server"),
+    *("polarcheck.rules.message", "polarcheck.rules.repair", "polarcheck.columns.words.allow_comments"),
+    *(
+        "polarcheck.files.baselines.baseline",
+        "polarcheck.reports.made_parts.part_report",
+        "polarcheck.files.batch.executors",
+    ),
+    *("polarcheck.program.execution.macro", "polarcheck.view", "polarcheck.rewrite.fixes", "polarcheck.editor"),
 )
 #: Modules of the package beside those of rules, of which each takes a third of a millisecond: 221 are what the path of
 #: a program with one compensated contour goes through, and a few more may come. Tests run without the cache (4 more).
@@ -251,7 +256,7 @@ def test_a_clean_check_of_a_small_program_loads_little() -> None:
         [sys.executable, "-c", code], check=True, capture_output=True, text=True, cwd=PACKAGE.parent, encoding="utf-8"
     )
     loaded = run.stderr.split()
-    assert "polarcheck.table.overcuts" in loaded
+    assert "polarcheck.columns.contour.overcuts" in loaded
     ours = {name.removeprefix("polarcheck.") for name in LATE if name.startswith("polarcheck.")}
     assert ours <= set(modules(PACKAGE))
     assert not set(LATE) & set(loaded)

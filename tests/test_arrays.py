@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from polarcheck.arrays import computed, different, is_among, is_uniform, repeated
+from polarcheck.foundation.arrays import computed, different, is_among, is_uniform, repeated
 
 NUMBERS = st.lists(st.one_of(st.integers(-5, 5).map(float), st.floats(allow_nan=False)), max_size=9)
 

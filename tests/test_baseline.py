@@ -13,15 +13,15 @@ from typing import Any
 import msgspec
 import pytest
 from click.testing import CliRunner, Result
+from polarcheck.errors import BaselineError
 from programs import ROOT, report_of
 
 import polarcheck
-from polarcheck.batch.baseline_file import Contents, Entry, Place, program_of, read, text_of
 from polarcheck.checking.fingerprints import normal
 from polarcheck.commands import baseline as baseline_command
 from polarcheck.commands import main
-from polarcheck.errors import BaselineError
-from polarcheck.settings.of_programs import Options
+from polarcheck.files.baselines.baseline_file import Contents, Entry, Place, program_of, read, text_of
+from polarcheck.files.settings.of_programs import Options
 
 pytestmark = pytest.mark.usefixtures("own_folder")
 

@@ -10,13 +10,13 @@ import pytest
 from programs import job_of, machine_of, settings_of
 from test_known_places import FILE, call, write
 
-from polarcheck.batch.baseline import Baseline
-from polarcheck.batch.baseline_file import Contents, read
 from polarcheck.checking import check
-from polarcheck.checking.examples import Example, examples
 from polarcheck.checking.outline import with_outline
-from polarcheck.checking.rule import Rule, load_all
-from polarcheck.finding import FileReport
+from polarcheck.files.baselines.baseline import Baseline
+from polarcheck.files.baselines.baseline_file import Contents, read
+from polarcheck.foundation.finding import FileReport
+from polarcheck.rules.examples import Example, examples
+from polarcheck.rules.rule import Rule, load_all
 
 pytestmark = pytest.mark.usefixtures("own_folder")
 

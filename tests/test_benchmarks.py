@@ -120,7 +120,10 @@ def test_the_page_is_written_without_any_peer(tmp_path: Path, monkeypatch: pytes
 def test_time_of_libraries_counts_for_the_stages_that_call_them() -> None:
     """Through several functions of libraries, one that calls itself among them, in proportion to the calls."""
     package = ROOT / "polarcheck"
-    trace, overcuts = ((str(package / f"{name}.py"), 1, "column") for name in ("columns/path", "table/overcuts"))
+    modules = "columns/path/path", "columns/contour/overcuts"
+    trace, overcuts = (
+        (str(package / f"{name}.py"), 1, "column") for name in modules
+    )
     contour, numpy, loaded = (
         (str(package / "geometry" / "contour.py"), 1, "cuts"),
         ("numpy.py", 1, "sort"),
@@ -141,10 +144,10 @@ def test_time_of_libraries_counts_for_the_stages_that_call_them() -> None:
 def test_each_package_and_table_has_a_stage() -> None:
     package = ROOT / "polarcheck"
     for name in stages.OF_TABLE:
-        assert (package / "table" / f"{name}.py").exists(), name
-    for name in stages.OF_PACKAGE:
+        assert [*(package / "columns").glob(f"*/{name}.py")], name
+    for name in stages.OF_ROOM:
         assert (package / name).exists() or (package / f"{name}.py").exists(), name
-    assert {*stages.OF_PACKAGE.values(), *stages.OF_TABLE.values()} <= {*stages.STAGES}
+    assert {*stages.OF_ROOM.values(), *stages.OF_TABLE.values()} <= {*stages.STAGES}
 
 
 @pytest.mark.slow

@@ -13,7 +13,7 @@ from typing import Any
 
 import pytest
 
-from polarcheck import bounded
+from polarcheck.foundation import bounded
 
 needs_pipes = pytest.mark.skipif(sys.platform == "win32", reason="named pipes and devices are files of POSIX")
 LIMIT = 3_000_000

@@ -15,10 +15,10 @@ from click.testing import CliRunner
 from programs import report_of, report_of_example, tables_of
 
 from polarcheck.checking.check import verdict
-from polarcheck.checking.examples import Example, examples
-from polarcheck.checking.rule import load_all
 from polarcheck.commands import main
-from polarcheck.finding import FileReport, Finding
+from polarcheck.foundation.finding import FileReport, Finding
+from polarcheck.rules.examples import Example, examples
+from polarcheck.rules.rule import load_all
 
 CUTTER = "1:radius=5"
 BOUNDED = {"run": {"max_blocks": 2000, "max_statements": 400}}

@@ -9,7 +9,7 @@ import pytest
 from guide_programs import METHOD_A, METHOD_B, PROGRAMS, SAMPLE, in_mm, without
 from programs import Changes, machine_of, report_of, said
 
-from polarcheck.checking.rule import load_all
+from polarcheck.rules.rule import load_all
 
 MACHINE = "turning-center"
 

@@ -19,9 +19,9 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from test_cli import GOOD, RAPID, call
 
-from polarcheck.batch import tasks
-from polarcheck.batch.cache import digests, outcomes, store
-from polarcheck.batch.cache.store import NAME, Store
+from polarcheck.files.batch import tasks
+from polarcheck.files.cache import digests, outcomes, store
+from polarcheck.files.cache.store import NAME, Store
 from polarcheck.reports import formats
 
 pytestmark = pytest.mark.usefixtures("archive")

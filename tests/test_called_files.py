@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 from programs import ROOT, report_of, said, tables_of, trace_of
 
-from polarcheck.execution import execute, library, programs
-from polarcheck.execution.library import Library
-from polarcheck.execution.programs import ProgramName
-from polarcheck.reading import source
-from polarcheck.reading.joining import joined
-from polarcheck.reading.words import read_words
+from polarcheck.program.execution import execute, library, programs
+from polarcheck.program.execution.library import Library
+from polarcheck.program.execution.programs import ProgramName
+from polarcheck.program.reading import source
+from polarcheck.program.reading.joining import joined
+from polarcheck.program.reading.words import read_words
 
 SUB = "G0 X{}.\nM99\n"
 

@@ -10,10 +10,10 @@ from typing import Any
 import msgspec
 import pytest
 
-from polarcheck.certification.golden import GoldenMove
-from polarcheck.certification.paths import with_golden, with_other
-from polarcheck.certification.tool_path import tool_path
 from polarcheck.geometry.comparison import polyline
+from polarcheck.rewrite.certify.golden import GoldenMove
+from polarcheck.rewrite.certify.paths import with_golden, with_other
+from polarcheck.rewrite.certify.tool_path import tool_path
 
 #: The coverage counts all cases: each is a way of its own through the package.
 pytestmark = pytest.mark.one_in(1)

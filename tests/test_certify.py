@@ -12,14 +12,14 @@ import jsonschema
 import msgspec
 import pytest
 from click.testing import CliRunner, Result
+from polarcheck.errors import TooHardError
 from programs import ROOT
 
 import polarcheck
-from polarcheck.certification import paths
 from polarcheck.commands import main
-from polarcheck.errors import TooHardError
-from polarcheck.machines.part import Part
-from polarcheck.time_limit import current_limit
+from polarcheck.foundation.time_limit import current_limit
+from polarcheck.program.machines.part import Part
+from polarcheck.rewrite.certify import paths
 
 EXAMPLE = ROOT / "docs" / "certify"
 PAGE = (ROOT / "docs" / "certify.md").read_text("utf-8")
@@ -443,9 +443,9 @@ def test_python_gives_the_certificate_of_the_command(example: Path) -> None:
 
 @pytest.mark.slow
 def test_the_suite_is_a_manifest_with_drawings(tmp_path: Path) -> None:
-    from polarcheck.certification.jobs import JOBS
-    from polarcheck.certification.manifest import FEATURES
-    from polarcheck.machines import drawing
+    from polarcheck.program.machines import drawing
+    from polarcheck.rewrite.certify.jobs import JOBS
+    from polarcheck.rewrite.certify.manifest import FEATURES
 
     result = certify("init", "suite", "--machine", "fanuc-30i", "--machine", "siemens-transmit")
     assert result.exit_code == 0

@@ -15,10 +15,10 @@ from programs import job_of, machine_of, moves_of, report_of, said
 from polarcheck.checking import check
 from polarcheck.columns.trace import Trace
 from polarcheck.commands import main
-from polarcheck.finding import FileReport, Finding
-from polarcheck.machines import profiles
-from polarcheck.reading.channels import channels
-from polarcheck.reading.source import read_source
+from polarcheck.foundation.finding import FileReport, Finding
+from polarcheck.program.machines import profiles
+from polarcheck.program.reading.channels import channels
+from polarcheck.program.reading.source import read_source
 
 FIRST = """G98 G40 G97
 T0101

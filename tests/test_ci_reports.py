@@ -21,16 +21,16 @@ from hypothesis import strategies as st
 from test_cli import COMPENSATED, GOOD, RAPID, RAPID_ONLY, call, check, make
 from test_reports import file, finding, missing, report
 
-from polarcheck.checking.rule import load_all
-from polarcheck.finding import Edit, FileReport, Fix, Silenced, Undecided
-from polarcheck.reading import files
-from polarcheck.reading.excerpt import visible, without_commands
-from polarcheck.reading.names import spelled, unspelled
+from polarcheck.foundation.finding import Edit, FileReport, Fix, Silenced, Undecided
+from polarcheck.program.reading import files
+from polarcheck.program.reading.excerpt import visible, without_commands
+from polarcheck.program.reading.names import spelled, unspelled
 from polarcheck.reports import PER_FILE, Background, formats, pieces, render
 from polarcheck.reports.ci import rule_help
 from polarcheck.reports.ci.paths import from_root, uri
 from polarcheck.reports.ci.step_summary import step_summary
 from polarcheck.reports.github import MOST
+from polarcheck.rules.rule import load_all
 
 pytestmark = pytest.mark.usefixtures("own_folder")
 

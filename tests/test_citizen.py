@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 from programs import Changes, report_of, said, trace_of
 
-from polarcheck.finding import FileReport
-from polarcheck.table import live_tool
+from polarcheck.columns.modes import live_tool
+from polarcheck.foundation.finding import FileReport
 
 CONTOUR = """G1 X10. Y0 F200
 G42 X6. Y0

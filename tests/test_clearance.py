@@ -8,9 +8,9 @@ import shapely
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from polarcheck.foundation.states import Motion
 from polarcheck.geometry.overcuts import clearance
 from polarcheck.geometry.segments import Curves
-from polarcheck.machines.modal import Motion
 
 TOLERANCE = 0.002
 COORDINATE = st.integers(-20, 20).map(float)

@@ -8,16 +8,16 @@ import math
 import numpy as np
 import pytest
 import shapely  # type: ignore[import-untyped]
+from polarcheck.errors import TooHardError
 from programs import tables_of
 
-from polarcheck.arrays import Points, Rows
-from polarcheck.errors import TooHardError
+from polarcheck.foundation.arrays import Points, Rows
+from polarcheck.foundation.states import Motion
 from polarcheck.geometry.plane import arc_sweep
 from polarcheck.geometry.polygons import cleared as geometry_of_paths
 from polarcheck.geometry.polygons.cleared import cleared
 from polarcheck.geometry.segments import Curves, Segments
-from polarcheck.machines.modal import Motion
-from polarcheck.parts.part_report import made_by
+from polarcheck.reports.made_parts.part_report import made_by
 
 HEAD = "G21 G98 G40 T0808\nG0 X120. Z2. C0\nG12.1\n"
 END = "\nG1 Z2.\nG13.1\nM30\n"

@@ -21,13 +21,13 @@ from click.testing import CliRunner, Result
 from programs import ROOT
 
 import polarcheck
-from polarcheck.batch import tasks as batch
-from polarcheck.checking.rule import load_all
 from polarcheck.commands import main
-from polarcheck.machines import profiles
-from polarcheck.machines.machine import Machine
-from polarcheck.machines.profiles import names
+from polarcheck.files.batch import tasks as batch
+from polarcheck.program.machines import profiles
+from polarcheck.program.machines.machine import Machine
+from polarcheck.program.machines.profiles import names
 from polarcheck.reports.pages import schema
+from polarcheck.rules.rule import load_all
 
 #: What processes import is what these tests import, wherever they run.
 IMPORTED_FROM = os.fspath(Path(polarcheck.__file__).parent.parent)
@@ -878,7 +878,7 @@ def test_a_report_fits_its_schema() -> None:
         (["--help"], {"numpy", "shapely", "rich", "msgspec", "tomllib"}),
         (["--version"], {"numpy", "shapely", "rich", "msgspec", "tomllib"}),
         (["check", "--help"], {"numpy", "shapely", "rich"}),
-        (["explain", "unverified"], {"numpy", "shapely", "rich", "polarcheck.checking.rule"}),
+        (["explain", "unverified"], {"numpy", "shapely", "rich", "polarcheck.rules.rule"}),
         (["explain", "rapid-in-polar"], {"numpy", "shapely", "rich"}),
         (["rules"], {"numpy", "shapely", "rich"}),
         (["machines", "fanuc"], {"numpy", "shapely", "rich"}),

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from polarcheck.foundation.states import Motion
 from polarcheck.geometry.contour_ends import Loops, crossings, gaps_of, may_be_open, may_leave_strips, middles
 from polarcheck.geometry.segments import Curves
-from polarcheck.machines.modal import Motion
 
 
 def square(half: float, middle: complex = 0j) -> np.ndarray:

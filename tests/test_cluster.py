@@ -16,14 +16,14 @@ from typing import Any
 
 import pytest
 from click.testing import CliRunner
+from polarcheck.errors import ClusterError
 from test_jobs import ENDLESS, FOREVER, GOOD, LONG, ONLY, RAPID, _is_busy, make, planned, run, start
 
 import polarcheck
-from polarcheck.batch import cluster, executors
-from polarcheck.batch import tasks as batch
-from polarcheck.batch.cluster import Answer, Batch, Cluster, check_batch
 from polarcheck.commands import main
-from polarcheck.errors import ClusterError
+from polarcheck.files.batch import cluster, executors
+from polarcheck.files.batch import tasks as batch
+from polarcheck.files.batch.cluster import Answer, Batch, Cluster, check_batch
 
 pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("own_folder")]
 
@@ -253,7 +253,7 @@ def test_an_address_where_nobody_is_takes_seconds_at_most(address: str, line: st
 
 IMPATIENT = """
 import os
-from polarcheck.batch import cluster
+from polarcheck.files.batch import cluster
 from polarcheck.commands import run
 
 in_time = cluster.in_time

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from programs import report_of, said, tables_of, trace_of
 
-from polarcheck.machines.modal import FeedMode, Motion, Side, Units
+from polarcheck.foundation.states import FeedMode, Motion, Side, Units
 
 PROGRAM = "O1\nG20 G98\nT0808 M3\nG0 X1. Z.5 (FAST)\nG1 X.5 ,R.1 F2\nG2 X.6 R.1\nG41\nM5\nO2\nX9.\n"
 

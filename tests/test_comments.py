@@ -7,8 +7,8 @@ import math
 import pytest
 from programs import report_of, said, trace_of
 
-from polarcheck.columns.radius_comments import radius_in
-from polarcheck.finding import FileReport
+from polarcheck.columns.words.radius_comments import radius_in
+from polarcheck.foundation.finding import FileReport
 
 
 @pytest.mark.parametrize(

@@ -15,6 +15,7 @@ from typing import Any
 import jsonschema
 import pytest
 from click.testing import CliRunner, Result
+from polarcheck.errors import UsageError
 from programs import ROOT, job_of, machine_of
 from setter_programs import drawn as program_of_setter
 from single_slips import SLIPS
@@ -23,13 +24,12 @@ from twin_sections import CONTROLS, Control, drawn, written
 import polarcheck
 from polarcheck.checking import check
 from polarcheck.commands import main
-from polarcheck.errors import UsageError
-from polarcheck.pictures.painting import plain
-from polarcheck.reports.pages import comparison as page
-from polarcheck.reports.pages.schema import schema
-from polarcheck.revisions import differences
-from polarcheck.revisions.comparison import Revision, compared, default_tolerance
-from polarcheck.revisions.report import DIFFERS, NOT_COMPARED, SAME_METAL, SAME_WORDS, Comparison
+from polarcheck.reports.pages.painting import plain
+from polarcheck.rewrite.compare import differences
+from polarcheck.rewrite.compare import page as page
+from polarcheck.rewrite.compare.comparison import Revision, compared, default_tolerance
+from polarcheck.rewrite.compare.report import DIFFERS, NOT_COMPARED, SAME_METAL, SAME_WORDS, Comparison
+from polarcheck.rewrite.schemas import schema
 
 HEXAGON = (ROOT / "sample_programs" / "hexagon.nc").read_text()
 RADIUS = ("1:radius=4,nose=0", "2:radius=4,nose=0")

@@ -15,11 +15,11 @@ from setter_programs import drawn
 
 from polarcheck.checking.settings import Settings
 from polarcheck.commands import main
-from polarcheck.conversion.compensating.centering import centered
-from polarcheck.conversion.compensating.compensating import Compensating, compensated
-from polarcheck.conversion.compensating.contours import SIDES
-from polarcheck.conversion.outcome import Outcome, RefusedError
-from polarcheck.conversion.rewriting import rewritten
+from polarcheck.rewrite.compensate.centering import centered
+from polarcheck.rewrite.compensate.compensating import Compensating, compensated
+from polarcheck.rewrite.compensate.contours import SIDES
+from polarcheck.rewrite.writing.outcome import Outcome, RefusedError
+from polarcheck.rewrite.writing.rewriting import rewritten
 
 R = 4.0
 #: Two words may each be off by half a least increment, and both ends of a line.

@@ -16,9 +16,9 @@ from msgspec.structs import fields, replace
 from plane_moves import path_of_rows, points_along, turn_of
 from programs import SHARED
 
+from polarcheck.foundation.states import Motion, Side
 from polarcheck.geometry.cutter_compensation.compensation import Method, Path, Phase, ToolPath, tool_center_path
 from polarcheck.geometry.plane import arc_sweep
-from polarcheck.machines.modal import Motion, Side
 
 CASES = SHARED / "facts" / "compensation_cases.json"
 NAN = complex(math.nan, math.nan)

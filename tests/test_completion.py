@@ -16,10 +16,10 @@ from click.testing import CliRunner, Result
 from shells import COMMANDS, Typed, is_there, put_command, put_told
 from test_cli import call, process
 
-from polarcheck.checking.rule import load_all
 from polarcheck.commands import NAMES, completing, completion, main
-from polarcheck.machines import profiles
+from polarcheck.program.machines import profiles
 from polarcheck.reports import formats
+from polarcheck.rules.rule import load_all
 
 pytestmark = pytest.mark.usefixtures("own_folder")
 

@@ -24,9 +24,9 @@ from polarcheck.commands import main
 from polarcheck.commands.check import check as check_command
 from polarcheck.commands.config import show as show_command
 from polarcheck.commands.trace import trace as trace_command
-from polarcheck.machines import toml_lines
-from polarcheck.machines.job import Job, Programs, Running, Stock, Tool, WorkOffset
-from polarcheck.reading.globs import Globs, is_pattern
+from polarcheck.program.machines import toml_lines
+from polarcheck.program.machines.job import Job, Programs, Running, Stock, Tool, WorkOffset
+from polarcheck.program.reading.globs import Globs, is_pattern
 from polarcheck.reports.pages import schema
 
 pytestmark = pytest.mark.usefixtures("own_folder")
@@ -179,8 +179,8 @@ def test_a_pattern_that_matches_nothing_in_a_folder_that_was_walked_is_a_warning
 
 
 def test_what_applies_to_thousands_is_made_once_for_each_set_of_entries() -> None:
-    from polarcheck.batch import tasks as batch
-    from polarcheck.settings.of_programs import OfPrograms, Options
+    from polarcheck.files.batch import tasks as batch
+    from polarcheck.files.settings.of_programs import OfPrograms, Options
 
     make(*(f"O{number:04d}.nc" for number in range(60)), text="O1\nM30\n")
     job("[[programs]]\nfiles = ['O000*']\nstrict = true\n[[programs]]\nfiles = ['O0005.nc', 'O0055.nc']\nstrict = true")
@@ -494,7 +494,7 @@ def test_a_folder_that_is_excluded_is_not_entered() -> None:
     make("a.nc", "old/b.nc")
     job("exclude = ['old']\n")
     told: list[str] = []
-    from polarcheck.reading import walking
+    from polarcheck.program.reading import walking
 
     entered: list[str] = []
 
@@ -702,7 +702,9 @@ def test_faults_are_told_with_file_line_and_key(text: str, told: str) -> None:
     assert refused("check", "a.nc").startswith(told)
 
 
-@pytest.mark.parametrize("path", [*sorted((ROOT / "polarcheck" / "machines").glob("*.toml")), ROOT / "pyproject.toml"])
+@pytest.mark.parametrize(
+    "path", [*sorted((ROOT / "polarcheck" / "program" / "machines").glob("*.toml")), ROOT / "pyproject.toml"]
+)
 def test_the_line_of_each_key_of_a_file_is_known(path: Path) -> None:
     text = path.read_text("utf-8")
     lines, rows = toml_lines.of_keys(text), text.split("\n")
@@ -1031,10 +1033,10 @@ def test_a_small_check_loads_nothing_for_it() -> None:
     loaded = set(result.stderr.split())
     assert not loaded & {
         *(
-            "polarcheck.machines.toml_lines",
+            "polarcheck.program.machines.toml_lines",
             "polarcheck.checking.survey",
-            "polarcheck.machines.offset_table",
-            "polarcheck.machines.offset_page",
+            "polarcheck.program.machines.offset_table",
+            "polarcheck.program.machines.offset_page",
         ),
-        *("polarcheck.settings.origins", "polarcheck.commands.init", "polarcheck.reports.pages.new_job"),
+        *("polarcheck.files.settings.origins", "polarcheck.commands.init", "polarcheck.reports.pages.new_job"),
     }

@@ -9,8 +9,8 @@ from collections.abc import Callable, Sequence
 
 import pytest
 
-from polarcheck.conversion.compensating.parallel import NoContourError, contour_beside
-from polarcheck.conversion.compensating.pieces import Piece
+from polarcheck.rewrite.compensate.parallel import NoContourError, contour_beside
+from polarcheck.rewrite.compensate.pieces import Piece
 
 R = 4.0
 #: Corners of a part, counterclockwise, with the tool outside; no two sides are alike, one corner is acute.

@@ -7,10 +7,10 @@ import math
 import numpy as np
 import pytest
 
+from polarcheck.foundation.states import Motion
 from polarcheck.geometry.overcuts.cuts import Cuts
 from polarcheck.geometry.overcuts.own_loop import overcuts
 from polarcheck.geometry.segments import Curves
-from polarcheck.machines.modal import Motion
 
 RADIUS = 5.0
 FIRST, LAST = 20 + 10j, -60 + 10j

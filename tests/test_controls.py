@@ -7,9 +7,9 @@ import pytest
 from document_programs import GSK_1, M700V
 from programs import machine_of, moves_of, report_of, said, tables_of, trace_of
 
-from polarcheck.finding import FileReport
-from polarcheck.machines.modal import Motion
-from polarcheck.reading import source, translation
+from polarcheck.foundation.finding import FileReport
+from polarcheck.foundation.states import Motion
+from polarcheck.program.reading import source, translation
 from polarcheck.reports.pages.executed import rows
 
 GSK_CYCLE = """

@@ -22,12 +22,12 @@ from twin_sections import CONTROLS, OUT, Section, written
 from twin_sections import drawn as drawn_sections
 
 from polarcheck.commands import main
-from polarcheck.conversion.control import converting
-from polarcheck.conversion.control.converting import converted
-from polarcheck.conversion.outcome import Outcome, RefusedError
-from polarcheck.conversion.pen import Pen
-from polarcheck.conversion.rewriting import rewritten
-from polarcheck.settings.of_programs import OfPrograms, Options, on_machine
+from polarcheck.files.settings.of_programs import OfPrograms, Options, on_machine
+from polarcheck.rewrite.convert import converting
+from polarcheck.rewrite.convert.converting import converted
+from polarcheck.rewrite.writing.outcome import Outcome, RefusedError
+from polarcheck.rewrite.writing.pen import Pen
+from polarcheck.rewrite.writing.rewriting import rewritten
 
 #: A hexagon with an arc, in compensation, as a post for a Takisawa writes it.
 HEXAGON = """\

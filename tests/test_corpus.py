@@ -9,7 +9,7 @@ import msgspec
 import pytest
 from programs import CORPUS, report_of
 
-from polarcheck.finding import FileReport
+from polarcheck.foundation.finding import FileReport
 
 FILES = sorted(path for path in CORPUS.rglob("*") if path.is_file() and path.name != "MANIFEST.tsv")
 POLAR = CORPUS / "polar"

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from polarcheck.foundation.states import Motion
 from polarcheck.geometry.overcuts.cuts import Cuts, cuts_into, endless, shortened, with_walls
 from polarcheck.geometry.polygons.finished_part import Contours, FinishedParts, finished_parts
 from polarcheck.geometry.segments import Curves, Segments
-from polarcheck.machines.modal import Motion
 
 TOLERANCE = 0.001
 

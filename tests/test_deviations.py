@@ -27,12 +27,12 @@ from polarcheck.commands import main
 from polarcheck.geometry.comparison.deviation import turned_radius
 from polarcheck.geometry.comparison.measured_path import way_of_curves
 from polarcheck.geometry.tolerances import ADJUSTMENT
-from polarcheck.inspection.comparison import Comparison
-from polarcheck.inspection.deviations import Deviations
-from polarcheck.machines import drawing
-from polarcheck.machines.job import Job, Stock
-from polarcheck.machines.part import DrawnPart
-from polarcheck.parts.comparison import compared
+from polarcheck.parts.comparison import Comparison
+from polarcheck.parts.deviations import Deviations
+from polarcheck.program.machines import drawing
+from polarcheck.program.machines.job import Job, Stock
+from polarcheck.program.machines.part import DrawnPart
+from polarcheck.reports.made_parts.comparison import compared
 
 HEAD = "O1\nG21 G40 G97 G98 G18\nT0101\nG0 X150. Z2. C0\nG12.1\n"
 TAIL = "G13.1\nG0 X160.\nM30\n"

@@ -14,9 +14,9 @@ from programs import machine_of
 from test_cli import call, make
 
 from polarcheck.commands.diff_base import narrowed
-from polarcheck.execution.dependence import calls_one_of
-from polarcheck.reading import git as git_of_polarcheck
-from polarcheck.reading import source
+from polarcheck.files import git as git_of_polarcheck
+from polarcheck.program.execution.dependence import calls_one_of
+from polarcheck.program.reading import source
 
 GOOD = "O0001\nG98 G0 X60. C0\nG12.1\nG1 X40. F200\nC5.\nG13.1\nM30\n"
 ONLY = ("--select", "rapid-in-polar")

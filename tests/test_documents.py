@@ -7,12 +7,12 @@ import runpy
 from itertools import groupby
 
 import pytest
+from polarcheck.errors import RuleError
 from programs import ROOT, tables_of
 
-from polarcheck.checking.rule import load_all
-from polarcheck.checking.tables import Tables
-from polarcheck.errors import RuleError
 from polarcheck.reports.pages import executed
+from polarcheck.rules.rule import load_all
+from polarcheck.rules.tables import Tables
 
 TESTS = "\n".join(path.read_text("utf-8") for path in sorted((ROOT / "tests").glob("test_*.py")))
 RELIABILITY = (ROOT / "docs" / "reliability.md").read_text("utf-8")

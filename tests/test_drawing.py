@@ -14,11 +14,11 @@ import ezdxf
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from polarcheck.errors import JobError
 
 from polarcheck.commands import main
-from polarcheck.errors import JobError
-from polarcheck.machines import drawing
-from polarcheck.machines.chains import joined
+from polarcheck.program.machines import drawing
+from polarcheck.program.machines.chains import joined
 
 Draw = Callable[[Any], object]
 
@@ -281,7 +281,9 @@ def test_reading_a_drawing_leaves_nothing_behind(tmp_path: Path) -> None:
     """ezdxf would write a list of all fonts into the home folder."""
     path = written(tmp_path / "part.dxf", d_shaft)
     (tmp_path / "home").mkdir()
-    code = f"from polarcheck.machines.drawing import *; print(len(read_drawing(Path({str(path)!r}), '').curves))"
+    code = (
+        f"from polarcheck.program.machines.drawing import *; print(len(read_drawing(Path({str(path)!r}), '').curves))"
+    )
     environment = {key: value for key, value in os.environ.items() if not key.startswith("XDG_")}
     environment |= {"HOME": str(tmp_path / "home"), "USERPROFILE": str(tmp_path / "home")}
     done = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=True)

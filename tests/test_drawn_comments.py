@@ -8,10 +8,10 @@ from collections.abc import Callable
 
 import pytest
 
-from polarcheck.columns.bar_comments import bar_in
-from polarcheck.columns.part_comments import depth_in, shape_in
-from polarcheck.columns.radius_comments import radius_in
-from polarcheck.columns.tool_numbers import named_tool
+from polarcheck.columns.words.bar_comments import bar_in
+from polarcheck.columns.words.part_comments import depth_in, shape_in
+from polarcheck.columns.words.radius_comments import radius_in
+from polarcheck.columns.words.tool_numbers import named_tool
 
 COUNT = 60
 CUTTERS = (

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from programs import report_of, tables_of
 
-from polarcheck.checking.tables import Tables
 from polarcheck.reports.pages import resting
+from polarcheck.rules.tables import Tables
 
 #: A section on each control, with room for a dwell between two moves at F100.
 SECTIONS = {

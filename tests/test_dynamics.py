@@ -12,10 +12,10 @@ from hypothesis import strategies as st
 from path_sampling import sampled
 from programs import tables_of
 
+from polarcheck.columns.feed.dynamics import Dynamics
+from polarcheck.foundation.states import Motion
 from polarcheck.geometry import automatic_override, polar
-from polarcheck.machines.modal import Motion
 from polarcheck.reports.pages import executed, trace_columns
-from polarcheck.table.dynamics import Dynamics
 
 RATES = ("c_feed", "x_feed", "c_acceleration", "x_acceleration")
 RAPIDS = {"limits": {"x_rapid": 6000, "z_rapid": 12000, "c_rapid": 18000}}

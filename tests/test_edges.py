@@ -8,11 +8,11 @@ from typing import Any
 
 import jsonschema
 import pytest
+from polarcheck.errors import JobError, UsageError
 from programs import job_of, report_of, said, tables_of, trace_of
 from test_cli import call, check, make
 
-from polarcheck.errors import JobError, UsageError
-from polarcheck.machines.offset_keys import canonical, key_of
+from polarcheck.program.machines.offset_keys import canonical, key_of
 from polarcheck.reports.pages import executed, schema
 
 pytestmark = pytest.mark.usefixtures("own_folder")

@@ -10,10 +10,10 @@ import pytest
 from editor import Editor, place
 from test_cli import COMPENSATED, RAPID
 
-from polarcheck import record
 from polarcheck.checking import check
 from polarcheck.commands import server as command
-from polarcheck.server import diagnostics
+from polarcheck.editor import diagnostics
+from polarcheck.foundation import record
 
 pytestmark = pytest.mark.usefixtures("own_folder")
 
@@ -186,7 +186,7 @@ def test_who_waits_for_a_document_that_is_closed_gets_an_answer(monkeypatch: pyt
     slow = [True]
 
     def waiting(*given: object) -> object:
-        from polarcheck.time_limit import keep_time
+        from polarcheck.foundation.time_limit import keep_time
 
         while slow[0]:
             time.sleep(0.01)

@@ -12,8 +12,8 @@ from test_cli import COMPENSATED
 from test_editor_features import judged_of
 from test_editor_names import MAIN, files
 
-from polarcheck.server import inlay_hints
-from polarcheck.server.structure import call_hierarchy
+from polarcheck.editor import inlay_hints
+from polarcheck.editor.structure import call_hierarchy
 
 pytestmark = pytest.mark.usefixtures("own_folder")
 

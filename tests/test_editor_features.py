@@ -13,17 +13,17 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from lsprotocol import types
+from polarcheck.errors import StoppedError
 from test_cli import COMPENSATED, GOOD, RAPID
 
-from polarcheck.checking.rule import load_all
 from polarcheck.commands import server as command
-from polarcheck.errors import StoppedError
-from polarcheck.finding import Edit, FileReport, Fix
-from polarcheck.server import actions, allowing, definition, diagnostics, hover, markdown, outline
-from polarcheck.server.judged import Judged, judge
-from polarcheck.server.open_text import OpenText, path_of
-from polarcheck.server.structure.document import Document
-from polarcheck.server.words.completions import completions
+from polarcheck.editor import actions, allowing, definition, diagnostics, hover, markdown, outline
+from polarcheck.editor.judged import Judged, judge
+from polarcheck.editor.open_text import OpenText, path_of
+from polarcheck.editor.structure.document import Document
+from polarcheck.editor.words.completions import completions
+from polarcheck.foundation.finding import Edit, FileReport, Fix
+from polarcheck.rules.rule import load_all
 
 pytestmark = pytest.mark.usefixtures("own_folder")
 

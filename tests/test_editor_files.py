@@ -10,8 +10,8 @@ import pytest
 from editor import Editor
 from test_cli import COMPENSATED, RAPID
 
-from polarcheck import bounded, record
-from polarcheck.server import session
+from polarcheck.editor import session
+from polarcheck.foundation import bounded, record
 
 pytestmark = pytest.mark.usefixtures("own_folder")
 

@@ -15,9 +15,9 @@ from editor import Editor
 from test_cli import RAPID
 
 from polarcheck.commands.server import _Settings
-from polarcheck.server import features, process
-from polarcheck.server.messages import NoEditorError, handle_all
-from polarcheck.server.session import Server
+from polarcheck.editor import features, process
+from polarcheck.editor.messages import NoEditorError, handle_all
+from polarcheck.editor.session import Server
 
 pytestmark = pytest.mark.usefixtures("own_folder")
 

@@ -11,16 +11,16 @@ import pytest
 from editor import Editor, place
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from polarcheck.errors import PolarcheckError
 
 from polarcheck.commands.server import _Settings
-from polarcheck.errors import PolarcheckError
-from polarcheck.machines import profiles
-from polarcheck.server.buffers import Buffer
-from polarcheck.server.open_text import OpenText
-from polarcheck.server.session import Server
-from polarcheck.server.structure import references, rename
-from polarcheck.server.structure.document import Document
-from polarcheck.server.structure.workspace import Opened, Workspace
+from polarcheck.editor.buffers import Buffer
+from polarcheck.editor.open_text import OpenText
+from polarcheck.editor.session import Server
+from polarcheck.editor.structure import references, rename
+from polarcheck.editor.structure.document import Document
+from polarcheck.editor.structure.workspace import Opened, Workspace
+from polarcheck.program.machines import profiles
 
 pytestmark = pytest.mark.usefixtures("own_folder")
 

@@ -17,9 +17,9 @@ import pytest
 from programs import ROOT, report_of
 from test_cli import RAPID, call
 
-from polarcheck.batch import tasks as batch
 from polarcheck.commands import main
-from polarcheck.reading.walking import EXTENSIONS
+from polarcheck.files.batch import tasks as batch
+from polarcheck.program.reading.walking import EXTENSIONS
 from polarcheck.reports import Background, render
 
 pytestmark = pytest.mark.usefixtures("own_folder")

@@ -10,12 +10,12 @@ from editor import Editor, place
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from lsprotocol import types
+from polarcheck.errors import PolarcheckError
 from test_editor_names import files
 from test_editor_structure import document
 
-from polarcheck.errors import PolarcheckError
-from polarcheck.server.open_text import OpenText
-from polarcheck.server.structure import formatting, renumber
+from polarcheck.editor.open_text import OpenText
+from polarcheck.editor.structure import formatting, renumber
 
 pytestmark = pytest.mark.usefixtures("own_folder")
 

@@ -11,11 +11,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from lsprotocol import types
 
-from polarcheck.machines import profiles
-from polarcheck.server.color_names import KINDS, MODIFIERS
-from polarcheck.server.open_text import OpenText
-from polarcheck.server.structure import colors, folding, symbols
-from polarcheck.server.structure.document import Document
+from polarcheck.editor.color_names import KINDS, MODIFIERS
+from polarcheck.editor.open_text import OpenText
+from polarcheck.editor.structure import colors, folding, symbols
+from polarcheck.editor.structure.document import Document
+from polarcheck.program.machines import profiles
 
 pytestmark = pytest.mark.usefixtures("own_folder")
 

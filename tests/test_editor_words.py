@@ -10,13 +10,13 @@ from editor import Editor, place
 from lsprotocol import types
 
 from polarcheck.commands import server as command
-from polarcheck.machines import profiles
-from polarcheck.server import actions
-from polarcheck.server.hover import hover
-from polarcheck.server.judged import Judged, judge
-from polarcheck.server.open_text import OpenText
-from polarcheck.server.structure.document import Document
-from polarcheck.server.words.completions import completions
+from polarcheck.editor import actions
+from polarcheck.editor.hover import hover
+from polarcheck.editor.judged import Judged, judge
+from polarcheck.editor.open_text import OpenText
+from polarcheck.editor.structure.document import Document
+from polarcheck.editor.words.completions import completions
+from polarcheck.program.machines import profiles
 
 pytestmark = pytest.mark.usefixtures("own_folder")
 

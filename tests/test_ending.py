@@ -77,10 +77,10 @@ heeding = partial(heed, signal.SIG_DFL, signal.SIG_DFL)
     "module",
     [
         "click",
-        "polarcheck.errors",
-        "polarcheck.memory",
+        "polarcheck.foundation.record",
+        "polarcheck.foundation.memory",
         "polarcheck.commands.check",
-        "polarcheck.batch",
+        "polarcheck.files.batch",
         "numpy",
     ],
 )
@@ -160,7 +160,7 @@ def test_too_little_data_is_one_line_and_help_needs_little() -> None:
     assert run(RUN, "check", "--help", preexec_fn=most)[::2] == (0, "")
 
 
-@pytest.mark.parametrize("module", ["click", "polarcheck.commands.part", "polarcheck.reading.excerpt", "numpy"])
+@pytest.mark.parametrize("module", ["click", "polarcheck.commands.part", "polarcheck.program.reading.excerpt", "numpy"])
 @pytest.mark.parametrize(
     "error",
     ["MemoryError", "ImportError('x.so: failed to map segment from shared object')", "OSError(12, 'Cannot allocate')"],
@@ -169,7 +169,7 @@ def test_want_of_memory_during_any_import_is_one_line(module: str, error: str) -
     Path("a.nc").write_text(GOOD)
     code = AT_IMPORT.format(module=module, happens=f"raise {error}")
     # The module of excerpts is imported for the line itself.
-    arguments = ("check", "--no-such") if module == "polarcheck.reading.excerpt" else ("part", "a.nc")
+    arguments = ("check", "--no-such") if module == "polarcheck.program.reading.excerpt" else ("part", "a.nc")
     assert run(code, *arguments)[0::2] == (2, NO_MEMORY)
 
 

@@ -14,18 +14,18 @@ from typing import Any
 import msgspec
 import numpy as np
 import pytest
+from polarcheck.errors import RuleError, TooHardError
 from programs import machine_of, report_of, said, tables_of, tables_of_example
 
-from polarcheck.checking import message, tables
 from polarcheck.checking.engine import LISTED, Engine
-from polarcheck.checking.examples import Example, examples
-from polarcheck.checking.other_machine import OtherMachine
-from polarcheck.checking.rule import Hits, Rule, graded, load_all, rule, rule_files
-from polarcheck.checking.tables import MAKERS, OF_CAUSE, OF_TEXT, ONLY_WITH, PARTS, SPANS, Tables
-from polarcheck.errors import RuleError, TooHardError
-from polarcheck.finding import ERROR, NOTE, WARNING, Finding
-from polarcheck.silence.allow_comments import Allows
-from polarcheck.time_limit import keep_time, time_limit
+from polarcheck.columns.words.allow_comments import Allows
+from polarcheck.foundation.finding import ERROR, NOTE, WARNING, Finding
+from polarcheck.foundation.time_limit import keep_time, time_limit
+from polarcheck.rules import message, tables
+from polarcheck.rules.examples import Example, examples
+from polarcheck.rules.other_machine import OtherMachine
+from polarcheck.rules.rule import Hits, Rule, graded, load_all, rule, rule_files
+from polarcheck.rules.tables import MAKERS, OF_CAUSE, OF_TEXT, ONLY_WITH, PARTS, SPANS, Tables
 
 RULES = load_all()
 #: Two sections, one begun by G112 and never left; a program of inch words before one in mm.

@@ -13,9 +13,9 @@ from hypothesis import strategies as st
 from programs import job_of, machine_of, tables_of
 
 from polarcheck.checking import check
-from polarcheck.checking.rule import load_all
-from polarcheck.machines import profiles
-from polarcheck.table.moves import Moves, programmed_moves
+from polarcheck.columns.path.moves import Moves, programmed_moves
+from polarcheck.program.machines import profiles
+from polarcheck.rules.rule import load_all
 
 EXAMPLES = 2
 #: Half the width of the part [mm].

@@ -11,10 +11,10 @@ from typing import Any
 import pytest
 from programs import ROOT
 
-from polarcheck.checking.rule import load_all
 from polarcheck.commands import NAMES, completion
-from polarcheck.machines import profiles
-from polarcheck.reports import formats
+from polarcheck.program.machines import profiles
+from polarcheck.reports import OF_WINGS, formats
+from polarcheck.rules.rule import load_all
 
 SPEC = ROOT / ".ci" / "executable.spec"
 
@@ -41,7 +41,7 @@ def analysis() -> dict[str, Any]:
 def test_all_that_is_loaded_by_name_is_in_it(analysis: dict[str, Any]) -> None:
     modules = set(analysis["hiddenimports"])
     assert {rule.function.__module__ for rule in load_all().values()} <= modules
-    assert {f"polarcheck.reports.{name}" for name in formats()} <= modules
+    assert {OF_WINGS.get(name, f"polarcheck.reports.{name}") for name in formats()} <= modules
     assert {f"polarcheck.commands.{name}" for name in NAMES} <= modules
     files = [path.relative_to(ROOT).with_suffix("") for path in (ROOT / "polarcheck").rglob("*.py")]
     assert modules == {".".join(path.parts).removesuffix(".__init__") for path in files}
@@ -53,7 +53,7 @@ def test_the_sources_lie_in_it_where_folders_are_listed(analysis: dict[str, Any]
 
 def test_machines_and_scripts_are_in_it(analysis: dict[str, Any]) -> None:
     found = {f"{folder}/{Path(source).name}".replace(os.sep, "/") for source, folder in analysis["datas"]}
-    assert {f"polarcheck/machines/{name}.toml" for name in profiles.names()} <= found
+    assert {f"polarcheck/program/machines/{name}.toml" for name in profiles.names()} <= found
     assert {f"polarcheck/commands/completions/polarcheck.{shell}" for shell in completion.SHELLS} <= found
     assert not any(name.endswith((".py", ".pyc")) for name in found)
 

@@ -10,8 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from macro_values import Variables, expression, same, value, variables
 
-from polarcheck.execution.arithmetic import UNKNOWN, Arithmetic, round_to
-from polarcheck.execution.expression import decide, evaluate
+from polarcheck.program.execution.arithmetic import UNKNOWN, Arithmetic, round_to
+from polarcheck.program.execution.expression import decide, evaluate
 
 WIDE = Arithmetic(largest=1e308)
 

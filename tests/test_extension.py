@@ -15,7 +15,7 @@ import pytest
 from programs import ROOT
 
 from polarcheck import __version__
-from polarcheck.reading.walking import EXTENSIONS
+from polarcheck.program.reading.walking import EXTENSIONS
 
 EXTENSION = ROOT / "editors" / "vscode"
 DECLARED: dict[str, Any] = json.loads((EXTENSION / "package.json").read_text("utf-8"))

@@ -16,16 +16,16 @@ from typing import Any
 
 import pytest
 from click.testing import CliRunner, Result
+from polarcheck.errors import SourceError
 
 import polarcheck
-from polarcheck import bounded
-from polarcheck.batch import tasks as batch
 from polarcheck.commands import main
-from polarcheck.errors import SourceError
-from polarcheck.reading import files, walking
-from polarcheck.reading.excerpt import visible
-from polarcheck.settings import job_files
-from polarcheck.settings.of_programs import OfPrograms, Options
+from polarcheck.files.batch import tasks as batch
+from polarcheck.files.settings import job_files
+from polarcheck.files.settings.of_programs import OfPrograms, Options
+from polarcheck.foundation import bounded
+from polarcheck.program.reading import files, walking
+from polarcheck.program.reading.excerpt import visible
 
 IMPORTED_FROM = os.fspath(Path(polarcheck.__file__).parent.parent)
 RAPID = "G98 G0 X60. C0\nG12.1\nG1 X40. F200\nG0 C5.\nG1 C-5.\nG13.1\n"

@@ -19,10 +19,10 @@ import pytest
 from test_jobs import UNVERIFIED
 
 import polarcheck
-from polarcheck.batch import tasks as batch
-from polarcheck.checking.rule import load_all
 from polarcheck.columns.trace import Trace
-from polarcheck.settings.of_programs import OfPrograms, Options
+from polarcheck.files.batch import tasks as batch
+from polarcheck.files.settings.of_programs import OfPrograms, Options
+from polarcheck.rules.rule import load_all
 
 GOOD = "G98 G0 X60. C0\nG12.1\nG1 X40. F200\nC5.\nC-5.\nG13.1\n"
 RAPID = GOOD.replace("\nC5.", "\nG0 C5.")
@@ -257,7 +257,7 @@ def test_two_reports_to_one_stream_are_refused() -> None:
 _WRITES = """
 import sys
 from pathlib import Path
-from polarcheck.reading import files
+from polarcheck.program.reading import files
 print("begun", flush=True)
 while True:
     for letter in "xy":

@@ -12,11 +12,11 @@ from hypothesis import strategies as st
 from path_sampling import point_at, sampled
 from programs import report_of, tables_of
 
-from polarcheck.feed_table.table import feed_table
-from polarcheck.machines.modal import Motion
+from polarcheck.columns.feed.dynamics import Dynamics
+from polarcheck.columns.feed.feed_curve import feed_curve
+from polarcheck.foundation.states import Motion
 from polarcheck.reports.pages import executed
-from polarcheck.table.dynamics import Dynamics
-from polarcheck.table.feed_curve import feed_curve
+from polarcheck.rewrite.feeds.table import feed_table
 
 SPACE = {"polar": {"feed_measures": "space", "other_axes": "together"}}
 

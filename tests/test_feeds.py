@@ -17,10 +17,10 @@ from test_cli import call, make
 from test_dynamics import contours, inside
 from test_feed_in_space import SPACE, helices
 
-from polarcheck.feed_table.edits import feed_below
-from polarcheck.feed_table.table import FeedRow, FeedTable, feed_number, feed_table, highest
-from polarcheck.fixes.feeds import WithFeeds, with_feeds
-from polarcheck.reports.pages import schema
+from polarcheck.rewrite import schemas as schema
+from polarcheck.rewrite.feeds.feeds import WithFeeds, with_feeds
+from polarcheck.rewrite.feeds.table import FeedRow, FeedTable, feed_number, feed_table, highest
+from polarcheck.rules.feed_words import feed_below
 
 pytestmark = pytest.mark.usefixtures("own_folder")
 

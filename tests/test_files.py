@@ -7,9 +7,9 @@ import re
 from pathlib import Path
 
 import pytest
-
 from polarcheck.errors import PolarcheckError, SourceError
-from polarcheck.reading import files, walking
+
+from polarcheck.program.reading import files, walking
 
 HOOKS = Path(__file__).parent.parent / ".pre-commit-hooks.yaml"
 BLOCKS = "G98 G0 X60. C0\nG12.1\nG1 X40. F200\nG13.1\n"

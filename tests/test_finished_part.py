@@ -10,9 +10,9 @@ import pytest
 import shapely
 from programs import report_of
 
+from polarcheck.foundation.states import Motion
 from polarcheck.geometry.polygons.finished_part import Contours, FinishedParts, finished_parts
 from polarcheck.geometry.segments import Curves
-from polarcheck.machines.modal import Motion
 
 HEAD = "O1\nG21 G40 G97 G98 G18\nT0101\nG0 X150. Z2. C0\nG12.1\n"
 TAIL = "G13.1\nG0 X160.\nM30\n"

@@ -9,10 +9,10 @@ import pytest
 from numpy.typing import NDArray
 from unrolled_contours import Piece, as_x_and_c, hexagon, oval, places, slot
 
+from polarcheck.foundation.states import Motion
 from polarcheck.geometry.fitted_curves.curves import Curves, fitted
 from polarcheck.geometry.fitted_curves.spirals import MOST_BOW, bows, counts, sampled
 from polarcheck.geometry.polar import length
-from polarcheck.machines.modal import Motion
 
 TOLERANCE, RESERVE = 0.005, 0.001
 NOISE = 0.0005

@@ -16,8 +16,8 @@ import pytest
 from document_programs import FANUC, GSK_1, GSK_2, M700V, METHOD_A, METHOD_B, RECTANGLE, SAMPLE, Printed
 from programs import ROOT, expected, report_of, tables_of, without_expectations
 
-from polarcheck.finding import FileReport, Finding
-from polarcheck.machines.modal import FeedMode, Motion, Side
+from polarcheck.foundation.finding import FileReport, Finding
+from polarcheck.foundation.states import FeedMode, Motion, Side
 from polarcheck.reports.pages import executed
 
 INCH = 25.4

@@ -21,23 +21,23 @@ import pytest
 from click.testing import CliRunner, Result
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from polarcheck.errors import OutputError
 from programs import CORPUS, ROOT, job_of, machine_of, report_of
 from test_samples import SAMPLES
 from test_samples import settings as settings_of_sample
 
 import polarcheck
-from polarcheck.checking import repair
-from polarcheck.checking.editing import Replace
-from polarcheck.checking.repair import Mended, Repair
-from polarcheck.checking.rule import load_all
 from polarcheck.checking.settings import Settings
 from polarcheck.columns.trace import Trace
 from polarcheck.commands import main
-from polarcheck.errors import OutputError
-from polarcheck.finding import FileReport
-from polarcheck.fixes import edits, fixing
-from polarcheck.fixes.comparison import _VERDICTS
-from polarcheck.reading import rewriting, source
+from polarcheck.foundation.finding import FileReport
+from polarcheck.program.reading import rewriting, source
+from polarcheck.rewrite.fixes import edits, fixing
+from polarcheck.rewrite.fixes.comparison import _VERDICTS
+from polarcheck.rules import repair
+from polarcheck.rules.editing import Replace
+from polarcheck.rules.repair import Mended, Repair
+from polarcheck.rules.rule import load_all
 
 pytestmark = pytest.mark.usefixtures("own_folder")
 

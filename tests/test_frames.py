@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from programs import moves_of, report_of, said, trace_of
 
-from polarcheck.arrays import Points
+from polarcheck.foundation.arrays import Points
 
 MACHINE = "siemens-transmit"
 HEAD = "T8 D1\nG94 G0 X{x} {c}Z20\n{before}DIAMOF\nTRANSMIT\nG17\n"

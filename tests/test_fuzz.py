@@ -30,7 +30,7 @@ from programs import ROOT
 from test_cli import IMPORTED_FROM
 from test_every_machine import HANDS
 
-from polarcheck.conversion.outcome import Decision, Figure, Outcome
+from polarcheck.rewrite.writing.outcome import Decision, Figure, Outcome
 
 not_on_windows = pytest.mark.skipif(sys.platform == "win32", reason="no bound on the time or memory of a process")
 

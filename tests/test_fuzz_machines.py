@@ -15,19 +15,20 @@ from typing import Any
 
 import msgspec
 import pytest
+from polarcheck.errors import MachineError
 from programs import job_of
 from test_cli import call
 from test_every_machine import HANDS
 
 from polarcheck.checking import check
-from polarcheck.checking.rule import load_all
-from polarcheck.errors import MachineError
-from polarcheck.feed_table.table import FeedReport, feed_table
-from polarcheck.machines import profiles
-from polarcheck.machines.machine import Machine
-from polarcheck.parts.part_report import part_of
-from polarcheck.reports.pages import executed, feeds, machine_check, manual, new_machine
-from polarcheck.settings import selection
+from polarcheck.files.settings import selection
+from polarcheck.program.machines import profiles
+from polarcheck.program.machines.machine import Machine
+from polarcheck.reports.made_parts.part_report import part_of
+from polarcheck.reports.pages import executed, machine_check, manual, new_machine
+from polarcheck.rewrite.feeds import page as feeds
+from polarcheck.rewrite.feeds.table import FeedReport, feed_table
+from polarcheck.rules.rule import load_all
 
 #: Of each type of TOML, what people write and what nobody means.
 VALUES = (

@@ -12,7 +12,7 @@ import pytest
 from document_programs import GSK_1, GSK_2
 from programs import moves_of, report_of, said, trace_of
 
-from polarcheck.machines.modal import FeedMode
+from polarcheck.foundation.states import FeedMode
 
 SINGLE, CYCLE = GSK_1.text, GSK_2.text
 TOOL = "2:radius=5,nose=0"

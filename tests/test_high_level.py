@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from programs import moves_of, report_of, said, trace_of
 
-from polarcheck.machines import profiles
+from polarcheck.program.machines import profiles
 
 #: The coverage counts all of its cases: each is a way of its own through the package.
 pytestmark = pytest.mark.one_in(1)

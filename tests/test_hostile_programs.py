@@ -14,7 +14,7 @@ from fuzz_setups import SETUPS
 from programs import report_of, said
 from test_cli import process
 
-from polarcheck.finding import FileReport, Finding
+from polarcheck.foundation.finding import FileReport, Finding
 
 HEAD = "O1\nG21 G40 G97 G98 G18\nT0101\nG0 X80. C0 Z2.\n"
 CONTOUR = "G1 G42 X60. C0 F100\nC20.\nG3 X40. C30. R10.\nG1 X-60.\nC-30.\nX60.\nC5.\nG40 X80. C0\n"

@@ -14,8 +14,8 @@ import pytest
 from programs import machine_of, report_of
 from test_cli import COMPENSATED, GOOD, call, findings, make, process
 
-from polarcheck import bounded
-from polarcheck.machines import offset_table, profiles, toml_text
+from polarcheck.foundation import bounded
+from polarcheck.program.machines import offset_table, profiles, toml_text
 
 needs_pipes = pytest.mark.skipif(sys.platform == "win32", reason="named pipes and devices are files of POSIX")
 needs_links = pytest.mark.skipif(sys.platform == "win32", reason="links need a privilege there")

@@ -16,7 +16,7 @@ from test_placements import on
 
 from polarcheck.commands import main
 from polarcheck.parts.job_entry import NoEntryError, job_entry
-from polarcheck.parts.part_report import made_by
+from polarcheck.reports.made_parts.part_report import made_by
 
 
 def run(*words: object) -> Result:

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from polarcheck.foundation.states import Motion
 from polarcheck.geometry.polygons.depth_inside import depth_inside
 from polarcheck.geometry.segments import Curves
-from polarcheck.machines.modal import Motion
 
 LONG = 40.0
 

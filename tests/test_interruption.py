@@ -16,12 +16,12 @@ import numpy as np
 import pytest
 import shapely  # type: ignore[import-untyped]
 from clocks import Clock
+from polarcheck.errors import NoAnswerError, StoppedError, TooHardError
 from test_cli import IMPORTED_FROM
 
-from polarcheck.errors import NoAnswerError, StoppedError, TooHardError
+from polarcheck.foundation.time_limit import time_limit
 from polarcheck.geometry.polygons import areas
 from polarcheck.geometry.polygons.interruption import _Watch, interruptible
-from polarcheck.time_limit import time_limit
 
 pytestmark = pytest.mark.slow
 
@@ -31,7 +31,7 @@ not_on_windows = pytest.mark.skipif(sys.platform == "win32", reason="signals of 
 TANGLE = """
 import numpy as np, shapely
 from polarcheck.geometry.polygons import areas
-from polarcheck.time_limit import time_limit
+from polarcheck.foundation.time_limit import time_limit
 ends = np.random.default_rng(1).uniform(-50, 50, (40000, 2, 2))
 tangle = shapely.multilinestrings(shapely.linestrings(ends))
 """

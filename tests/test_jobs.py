@@ -20,18 +20,18 @@ from typing import Any
 
 import msgspec
 import pytest
+from polarcheck.errors import ClusterError
 from programs import ROOT
 
 import polarcheck
 from polarcheck import reports
-from polarcheck.batch import executors, runs
-from polarcheck.batch import tasks as batch
-from polarcheck.checking.rule import load_all
 from polarcheck.columns.trace import Trace
 from polarcheck.commands import progress
-from polarcheck.errors import ClusterError
-from polarcheck.finding import UNREADABLE
-from polarcheck.settings.of_programs import OfPrograms, Options
+from polarcheck.files.batch import executors, runs
+from polarcheck.files.batch import tasks as batch
+from polarcheck.files.settings.of_programs import OfPrograms, Options
+from polarcheck.foundation.finding import UNREADABLE
+from polarcheck.rules.rule import load_all
 
 RAPID = "G98 G0 X60. C0\nG12.1\nG1 X40. F200\nG0 C5.\nG1 C-5.\nG13.1\n"
 GOOD = RAPID.replace("G0 C5.", "C5.")

@@ -10,16 +10,16 @@ import drawn_baselines
 import pytest
 from click.testing import CliRunner, Result
 
-from polarcheck.batch.alignment import aligned
-from polarcheck.batch.baseline_file import read
 from polarcheck.checking.outline import outline
-from polarcheck.checking.rule import load_all
 from polarcheck.checking.settings import Settings
-from polarcheck.checking.vocabulary import Kind, kinds
 from polarcheck.commands import main
-from polarcheck.server.judged import judge
-from polarcheck.server.open_text import OpenText
-from polarcheck.settings.of_programs import OfPrograms, Options
+from polarcheck.editor.judged import judge
+from polarcheck.editor.open_text import OpenText
+from polarcheck.files.baselines.alignment import aligned
+from polarcheck.files.baselines.baseline_file import read
+from polarcheck.files.settings.of_programs import OfPrograms, Options
+from polarcheck.rules.rule import load_all
+from polarcheck.rules.vocabulary import Kind, kinds
 
 pytestmark = pytest.mark.usefixtures("own_folder")
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import pytest
 from programs import machine_of, report_of, said
 
-from polarcheck.reading.languages import recognised
-from polarcheck.reading.source import read_source
-from polarcheck.reading.words import Text, read_words
-from polarcheck.table.dialect import Dialect
+from polarcheck.columns.words.dialect import Dialect
+from polarcheck.program.reading.languages import recognised
+from polarcheck.program.reading.source import read_source
+from polarcheck.program.reading.words import Text, read_words
 
 FILES = {
     "LinuxCNC": [

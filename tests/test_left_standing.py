@@ -11,7 +11,7 @@ from contour_families import program_of
 from programs import tables_of
 
 from polarcheck.geometry.segments import Curves, segments
-from polarcheck.parts.part_report import made_by
+from polarcheck.reports.made_parts.part_report import made_by
 
 #: What chords and rounding leave beside walls [mm]; how much of R squared is worth telling.
 NEAR, WORTH = 0.004, 0.02

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from programs import report_of, said, tables_of
 
-from polarcheck.reading.letters import read_as_digits
+from polarcheck.program.reading.letters import read_as_digits
 
 READ = [
     ("GO X60.", "G0 X60."),

@@ -9,11 +9,11 @@ from pathlib import Path
 import pytest
 from programs import report_of, said
 
-from polarcheck import bounded
-from polarcheck.execution import library
-from polarcheck.execution.library import Library
-from polarcheck.execution.programs import ProgramName
-from polarcheck.machines.profiles import load
+from polarcheck.foundation import bounded
+from polarcheck.program.execution import library
+from polarcheck.program.execution.library import Library
+from polarcheck.program.execution.programs import ProgramName
+from polarcheck.program.machines.profiles import load
 
 needs_links = pytest.mark.skipif(sys.platform == "win32", reason="links and pipes need more than files there")
 SUB = "G0 X5.\nM99\n"

@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from polarcheck.errors import MachineError
 from programs import machine_of, moves_of, report_of, said, trace_of
 
-from polarcheck.errors import MachineError
-from polarcheck.machines import profiles
+from polarcheck.program.machines import profiles
 
 #: The first example of the description of G12.1 with P and Q: a square with rounded corners.
 SQUARE = """O0001

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from test_cli import call
 
-from polarcheck.machines.profiles import names
+from polarcheck.program.machines.profiles import names
 from polarcheck.reports.pages import new_machine
 
 

@@ -15,9 +15,9 @@ import msgspec
 import pytest
 from programs import report_of, tables_of
 
-from polarcheck.feed_table.table import feed_table
-from polarcheck.machines.machine import Machine
+from polarcheck.program.machines.machine import Machine
 from polarcheck.reports.pages import executed
+from polarcheck.rewrite.feeds.table import feed_table
 
 TABLES = {
     field.name: [key.name for key in msgspec.structs.fields(field.type)]

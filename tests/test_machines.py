@@ -10,17 +10,18 @@ from typing import Any
 import msgspec
 import pytest
 from click.testing import CliRunner, Result
+from polarcheck.errors import MachineError
 from programs import report_of
 
-from polarcheck.checking.rule import load_all
 from polarcheck.commands import main
-from polarcheck.errors import MachineError
-from polarcheck.finding import ERROR
-from polarcheck.machines import codes, modal, profiles
-from polarcheck.machines.machine import Machine, OwnMachine, meanings
-from polarcheck.machines.parameters import Origin
-from polarcheck.machines.renamed import RENAMED
+from polarcheck.foundation import states as modal
+from polarcheck.foundation.finding import ERROR
+from polarcheck.program.machines import codes, profiles
+from polarcheck.program.machines.machine import Machine, OwnMachine, meanings
+from polarcheck.program.machines.parameters import Origin
+from polarcheck.program.machines.renamed import RENAMED
 from polarcheck.reports.pages import controls, new_machine
+from polarcheck.rules.rule import load_all
 
 PACKAGE = Path(__file__).parent.parent / "polarcheck"
 GROUPS = [field for field in msgspec.structs.fields(Machine) if isinstance(field.type, type)]
@@ -112,7 +113,7 @@ def test_every_value_that_is_known_is_in_the_profile(name: str) -> None:
 def test_every_key_says_what_it_means_in_the_class_and_in_the_file(field: msgspec.structs.FieldInfo) -> None:
     if field.name in ("g_code_system_b", "g_code_system_c"):
         pytest.skip("said at system A")
-    text = (PACKAGE / "machines" / "fanuc.toml").read_text("utf-8")
+    text = (PACKAGE / "program" / "machines" / "fanuc.toml").read_text("utf-8")
     table = text.partition(f"\n[{field.name}]\n")[2].partition("\n[")[0]
     said = meanings(field.type)
     assert list(said) == [key.name for key in msgspec.structs.fields(field.type)]

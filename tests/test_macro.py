@@ -7,10 +7,10 @@ import math
 import pytest
 from macro_values import Variables, assign_arguments, called_program, read_statement, same, value, variables
 
-from polarcheck.execution.arithmetic import UNKNOWN
-from polarcheck.execution.expression import Fault
-from polarcheck.execution.macro import assign, word_value
-from polarcheck.execution.programs import ProgramName
+from polarcheck.program.execution.arithmetic import UNKNOWN
+from polarcheck.program.execution.expression import Fault
+from polarcheck.program.execution.macro import assign, word_value
+from polarcheck.program.execution.programs import ProgramName
 
 
 def test_numbers_of_variables() -> None:

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from programs import report_of, said, tables_of
 
-from polarcheck.checking.macro_faults import RULES, Faults
-from polarcheck.checking.rule import load_all
-from polarcheck.execution.kinds import KINDS
+from polarcheck.columns.words.macro_faults import RULES, Faults
+from polarcheck.program.execution.kinds import KINDS
+from polarcheck.rules.rule import load_all
 
 #: Kind -> the statement at fault, on line 3.
 _ONE_STATEMENT = {

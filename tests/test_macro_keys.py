@@ -6,10 +6,10 @@ from typing import Any
 
 import msgspec
 import pytest
+from polarcheck.errors import MachineError
 from programs import machine_of, report_of, said, trace_of
 
-from polarcheck.errors import MachineError
-from polarcheck.machines.macro_keys import Macro
+from polarcheck.program.machines.macro_keys import Macro
 
 _SUB = "M30\nO2\nG0 X#24 Z#4 U#7\nM99\n"
 #: Key -> what it is changed to, and the program; X, Z and U of its rows, or what is said, are no longer the same.

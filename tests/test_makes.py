@@ -139,6 +139,6 @@ def test_a_clean_file_with_two_passes_needs_no_more_than_that() -> None:
         "import sys, polarcheck.commands\n"
         f"sys.argv = ['polarcheck', 'check', 'a.nc', '--tool', {tool(4)!r}]\n"
         "try:\n    polarcheck.commands.run()\nexcept SystemExit as end:\n    assert not end.code, end.code\n"
-        "assert not {'shapely', 'polarcheck.parts.part_report'} & set(sys.modules)\n"
+        "assert not {'shapely', 'polarcheck.reports.made_parts.part_report'} & set(sys.modules)\n"
     )
     subprocess.run([sys.executable, "-c", code], check=True, capture_output=True)

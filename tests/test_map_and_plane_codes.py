@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from programs import moves_of, report_of, said, tables_of, trace_of
 
-from polarcheck.reading import source
-from polarcheck.reading.translation import spans, translated
+from polarcheck.program.reading import source
+from polarcheck.program.reading.translation import spans, translated
 
 SQUARE = ((30.0, 10.0), (10.0, 10.0), (10.0, -10.0), (-10.0, -10.0), (-10.0, 10.0), (30.0, 10.0))
 FANUC = "O1\nT0101\nG98 G0 X{} C0 Z5.\nG12.1\n{}G13.1\nM30\n"

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from programs import report_of, said, tables_of
 
-from polarcheck.finding import Finding
+from polarcheck.foundation.finding import Finding
 
 HEAD = "O1\nG21 G40 G97 G98 G18\nT0101\nG0 X150. Z2. C0\nG12.1\n"
 

@@ -7,7 +7,7 @@ import textwrap
 import pytest
 from programs import report_of_example, said
 
-from polarcheck.checking.examples import examples
+from polarcheck.rules.examples import examples
 
 PROGRAMS = {
     "a forgotten G13.1 says nothing of what follows": """

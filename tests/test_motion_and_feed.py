@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 from programs import moves_of, report_of, said
 
-from polarcheck.finding import FileReport
+from polarcheck.foundation.finding import FileReport
 
 #: The coverage counts all of its cases: each is a way of its own through the package.
 pytestmark = pytest.mark.one_in(1)

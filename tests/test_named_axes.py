@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 from programs import machine_of, report_of, said, trace_of
 
-from polarcheck.execution.custom_macro import read_statement
-from polarcheck.execution.expression import evaluate
-from polarcheck.execution.macro import Variables
-from polarcheck.machines import profiles
+from polarcheck.program.execution.custom_macro import read_statement
+from polarcheck.program.execution.expression import evaluate
+from polarcheck.program.execution.macro import Variables
+from polarcheck.program.machines import profiles
 
 #: A contour, with X and C as plain words.
 PLAIN = """%

@@ -8,11 +8,11 @@ import pytest
 from programs import CORPUS, machine_of, tables_of
 
 from polarcheck.checking.settings import Settings
-from polarcheck.conversion import original
-from polarcheck.conversion.blocks import NewBlock, edit_behind, edits_of, edits_of_signs, with_edits
-from polarcheck.conversion.style import PLAIN, Style
-from polarcheck.conversion.style_of import style_of
-from polarcheck.machines.job import Job, Running
+from polarcheck.program.machines.job import Job, Running
+from polarcheck.rewrite.writing import original
+from polarcheck.rewrite.writing.blocks import NewBlock, edit_behind, edits_of, edits_of_signs, with_edits
+from polarcheck.rewrite.writing.style import PLAIN, Style
+from polarcheck.rewrite.writing.style_of import style_of
 
 NEW = {
     "none": (),

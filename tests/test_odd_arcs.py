@@ -17,15 +17,15 @@ from unrolled_contours import hexagon
 
 from polarcheck.columns.trace import Trace
 from polarcheck.commands import main
-from polarcheck.conversion.arc_words import swept
-from polarcheck.conversion.compensating.compensating import Compensating, compensated
-from polarcheck.conversion.compensating.contours import SIDES
-from polarcheck.conversion.outcome import RefusedError
-from polarcheck.conversion.pen import Pen
-from polarcheck.conversion.rewriting import rewritten
-from polarcheck.conversion.rolling import measuring
-from polarcheck.conversion.rolling.rolling import Rolling, rolled
-from polarcheck.settings.of_programs import OfPrograms, Options
+from polarcheck.files.settings.of_programs import OfPrograms, Options
+from polarcheck.rewrite.compensate.compensating import Compensating, compensated
+from polarcheck.rewrite.compensate.contours import SIDES
+from polarcheck.rewrite.roll import measuring
+from polarcheck.rewrite.roll.rolling import Rolling, rolled
+from polarcheck.rewrite.writing.arc_words import swept
+from polarcheck.rewrite.writing.outcome import RefusedError
+from polarcheck.rewrite.writing.pen import Pen
+from polarcheck.rewrite.writing.rewriting import rewritten
 
 #: Those whose sections are not written in the same words.
 OTHER_WORDS = (

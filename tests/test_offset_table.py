@@ -7,10 +7,10 @@ from typing import Any
 
 import pytest
 from click.testing import CliRunner
+from polarcheck.errors import JobError
 
 from polarcheck.commands import main
-from polarcheck.errors import JobError
-from polarcheck.machines import offset_table
+from polarcheck.program.machines import offset_table
 
 pytestmark = pytest.mark.usefixtures("own_folder")
 

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from plane_moves import path_of_rows
 
+from polarcheck.foundation.states import Motion, Side
 from polarcheck.geometry.cutter_compensation.compensation import Method, Phase, tool_center_path
-from polarcheck.machines.modal import Motion, Side
 
 NAN = complex(math.nan, math.nan)
 SQUARE = [20, 20 + 20j, -20 + 20j, -20 - 20j, 20 - 20j, 20]

@@ -17,9 +17,9 @@ import pytest
 from programs import machine_of, report_of
 from test_cli import call, make
 
-from polarcheck.checking.rule import load_all
-from polarcheck.checking.tables import OF_CAUSE
-from polarcheck.finding import SEVERITIES, FileReport, Finding
+from polarcheck.foundation.finding import SEVERITIES, FileReport, Finding
+from polarcheck.rules.rule import load_all
+from polarcheck.rules.tables import OF_CAUSE
 
 HEAD = ["O1", "G21 G40 G97 G98 G18", "T0101"]
 END = ["G0 Z50.", "M30"]

@@ -7,7 +7,7 @@ import re
 import pytest
 from programs import report_of
 
-from polarcheck.finding import Finding
+from polarcheck.foundation.finding import Finding
 
 HEAD, END = "O1/G21 G40 G97 G98 G18/T0101/", "/M30/"
 #: Sound sections for R 4 mm; `/` separates blocks.

@@ -10,8 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from lsprotocol import types
 
-from polarcheck.reading import source
-from polarcheck.server.open_text import Change, OpenText, path_of
+from polarcheck.editor.open_text import Change, OpenText, path_of
+from polarcheck.program.reading import source
 
 UNITS = ("utf-8", "utf-16", "utf-32")
 #: All that ends a line for somebody, half a pair, a character of two units, one of three bytes.

@@ -9,10 +9,10 @@ from collections.abc import Iterator
 import pytest
 from programs import ROOT, machine_of, report_of, said, tables_of
 
-from polarcheck.checking.remedies import enumerated
-from polarcheck.finding import FileReport, Finding
-from polarcheck.machines import profiles
-from polarcheck.table import other_mode
+from polarcheck.columns.modes import other_mode
+from polarcheck.foundation.finding import FileReport, Finding
+from polarcheck.program.machines import profiles
+from polarcheck.rules.remedies import enumerated
 
 RULE = "polar-code-of-another-control"
 SAMPLES = ROOT / "sample_programs"

@@ -16,9 +16,9 @@ import pytest
 from plane_moves import points_along
 from programs import moves_of, report_of, tables_of
 
+from polarcheck.columns.path.moves import Moves
+from polarcheck.foundation.states import Motion
 from polarcheck.geometry.cutter_compensation.compensation import Phase
-from polarcheck.machines.modal import Motion
-from polarcheck.table.moves import Moves
 
 MACHINE = "siemens-transmit"
 FEED, RADIUS = 300.0, 4.0

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from programs import tables_of
 
-from polarcheck.table.finished import Finished, Level
+from polarcheck.columns.metal.finished import Finished, Level
 
 HEAD = "G21 G98 G40 T0808\nG0 X80. C0\nG12.1\nG1 Z-2. F300\n"
 END = "\nG40 X80.\nG13.1\n"

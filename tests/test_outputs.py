@@ -10,15 +10,15 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from polarcheck.errors import OutputError
 from programs import ROOT
 from test_certify import certify
 from test_cli import call
 from test_deviations import polygon, program
 from test_drawing_options import dxf
 
-from polarcheck import record
-from polarcheck.errors import OutputError
-from polarcheck.reading import files
+from polarcheck.foundation import record
+from polarcheck.program.reading import files
 
 pytestmark = [
     pytest.mark.usefixtures("own_folder"),

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 from pictures_by_hand import finding, hexagon, notch, picture
 
-from polarcheck.pictures.page import page
+from polarcheck.view.page import page
 
 LIBRARY = "var Plotly = {};"
 HOSTILE = [
@@ -143,7 +143,7 @@ def test_the_same_pictures_make_the_same_page() -> None:
 
 def test_all_scripts_and_styles_are_part_of_the_page_and_no_name_is_defined_twice() -> None:
     """The scripts share one scope: a second function of a name would take the place of the first."""
-    folder = resources.files("polarcheck.pictures").joinpath("browser")
+    folder = resources.files("polarcheck.view").joinpath("browser")
     texts = {file.name: file.read_text("utf-8") for file in folder.iterdir()}
     made = page([picture(hexagon())], library=LIBRARY)
     parts = [name for name in texts if name.endswith((".js", ".css"))]

@@ -9,7 +9,7 @@ import pytest
 from pictures_by_hand import finding, hexagon, picture
 from test_page_in_browser import CHROMIUM, browser, frames
 
-from polarcheck.pictures.page import page
+from polarcheck.view.page import page
 
 playwright = pytest.importorskip("playwright.sync_api")
 plotly = pytest.importorskip("plotly.offline")

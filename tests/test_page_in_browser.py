@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 from pictures_by_hand import finding, hexagon, notch, picture
 
-from polarcheck.pictures.page import page
+from polarcheck.view.page import page
 
 playwright = pytest.importorskip("playwright.sync_api")
 plotly = pytest.importorskip("plotly.offline")

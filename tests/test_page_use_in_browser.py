@@ -13,8 +13,8 @@ import pytest
 from pictures_by_hand import HALF, finding, hexagon, picture
 from test_page_in_browser import CHROMIUM, Opened, browser, frames, until
 
-from polarcheck.pictures.page import page
-from polarcheck.pictures.picture import DrawnPart, Picture, Writing
+from polarcheck.view.page import page
+from polarcheck.view.picture import DrawnPart, Picture, Writing
 
 playwright = pytest.importorskip("playwright.sync_api")
 plotly = pytest.importorskip("plotly.offline")
@@ -44,7 +44,7 @@ const walls = {
 def blank(browser: Any) -> Iterator[Any]:
     """A page with the scripts that measure alone."""
     opened = browser.new_page()
-    folder = resources.files("polarcheck.pictures").joinpath("browser")
+    folder = resources.files("polarcheck.view").joinpath("browser")
     scripts = [folder.joinpath(f"{name}.js").read_text("utf-8") for name in ("positions", "shapes", "distances")]
     opened.add_script_tag(content="\n".join([*scripts, SHAPES]))
     yield opened

@@ -11,12 +11,12 @@ from click.testing import CliRunner
 from programs import tables_of
 from test_cli import call
 
-from polarcheck.checking.examples import examples
-from polarcheck.checking.phrases.part import Sizes
-from polarcheck.checking.rule import load_all
 from polarcheck.commands import main
-from polarcheck.finding import MadeShape
-from polarcheck.parts.part_report import made_by
+from polarcheck.foundation.finding import MadeShape
+from polarcheck.reports.made_parts.part_report import made_by
+from polarcheck.rules.examples import examples
+from polarcheck.rules.rule import load_all
+from polarcheck.rules.wording.phrases.part import Sizes
 
 pytestmark = pytest.mark.usefixtures("own_folder")
 

@@ -10,8 +10,8 @@ from indexed_programs import NAMES, Section, flat, polygon, program, tool
 from programs import tables_of
 from test_cli import call
 
-from polarcheck.finding import MadeShape
-from polarcheck.parts.part_report import made_by
+from polarcheck.foundation.finding import MadeShape
+from polarcheck.reports.made_parts.part_report import made_by
 
 pytestmark = pytest.mark.usefixtures("own_folder")
 

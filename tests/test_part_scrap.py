@@ -9,8 +9,8 @@ from typing import Any, NamedTuple
 import pytest
 from programs import report_of, tables_of
 
-from polarcheck.finding import FileReport
-from polarcheck.parts.comparison import compared
+from polarcheck.foundation.finding import FileReport
+from polarcheck.reports.made_parts.comparison import compared
 
 RULE = "part-differs-from-drawing"
 HEAD = "G21 G40 G98 T0303\n"

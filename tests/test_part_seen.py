@@ -14,9 +14,9 @@ from overlapped_contours import LEADS, Overlapped, contour, overlapped
 from programs import tables_of
 from test_cli import call
 
-from polarcheck.finding import MadeShape
-from polarcheck.parts.part_report import made_by
-from polarcheck.pictures.section_view import views_of
+from polarcheck.foundation.finding import MadeShape
+from polarcheck.reports.made_parts.part_report import made_by
+from polarcheck.view.section_view import views_of
 
 #: Of what is told of a contour, the share of the length of its walls by which its area may be off: points are rounded,
 #: and sides that are straight but for that are one [mm].

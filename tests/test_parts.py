@@ -7,12 +7,12 @@ from typing import Any
 
 import pytest
 from click.testing import CliRunner
+from polarcheck.errors import JobError
 
 from polarcheck.commands import main
-from polarcheck.errors import JobError
-from polarcheck.machines.job import from_table
-from polarcheck.machines.part import SIDES, Part
-from polarcheck.settings.of_programs import OfPrograms, Options
+from polarcheck.files.settings.of_programs import OfPrograms, Options
+from polarcheck.program.machines.job import from_table
+from polarcheck.program.machines.part import SIDES, Part
 
 HEXAGON = {"shape": "hexagon", "across_flats": 27.0}
 

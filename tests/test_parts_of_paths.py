@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from polarcheck.checking.check import read
+from polarcheck.columns.path.moves import compensation_path, tool_center_path
 from polarcheck.columns.trace import Trace
 from polarcheck.geometry.cutter_compensation import compensation
-from polarcheck.machines import profiles
-from polarcheck.machines.job import Job, Tool
-from polarcheck.table.moves import compensation_path, tool_center_path
+from polarcheck.program.machines import profiles
+from polarcheck.program.machines.job import Job, Tool
 
 SAMPLES = Path(__file__).parents[1] / "sample_programs"
 TOOLS = Job(tools={str(number): Tool(radius=3) for number in range(1, 20)})

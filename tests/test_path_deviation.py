@@ -8,10 +8,10 @@ from random import Random
 import numpy as np
 import pytest
 
+from polarcheck.foundation.states import Motion
 from polarcheck.geometry.comparison import paths
 from polarcheck.geometry.comparison.paths import SpacePath, path_deviation
 from polarcheck.geometry.comparison.polyline import polyline
-from polarcheck.machines.modal import Motion
 
 TOLERANCE = 0.001
 NOWHERE = complex("nan+nanj")

@@ -11,16 +11,15 @@ from click.testing import CliRunner, Result
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from polarcheck.arrays import Floats, Points
 from polarcheck.checking import check
-from polarcheck.checking.tables import Tables
 from polarcheck.commands import main
-from polarcheck.machines import profiles
-from polarcheck.machines.job import Job, with_tool
-from polarcheck.pictures.face_view import face_view
-from polarcheck.pictures.section_view import SectionView, views_of
-from polarcheck.pictures.strip import strip
-from polarcheck.reports.pages.path_view import path_view
+from polarcheck.foundation.arrays import Floats, Points
+from polarcheck.program.machines import profiles
+from polarcheck.program.machines.job import Job, with_tool
+from polarcheck.rules.tables import Tables
+from polarcheck.view.face_view import face_view
+from polarcheck.view.section_view import SectionView, views_of
+from polarcheck.view.strip import strip
 
 SAMPLES = Path(__file__).parent.parent / "sample_programs"
 NOTHING = np.zeros(0, complex)
@@ -232,7 +231,7 @@ def test_without_the_radius_the_programmed_path_is_shown_and_that_is_said() -> N
     program = HEAD + "G1 G42 X30. F100\nG3 X30. C0 I-15. J0\nG40 X60.\nG13.1\nM30\n"
     view = only_view(program)
     assert len(view.tool) == 0 < len(view.programmed)
-    text = "\n".join(path_view(view, 80, dots=False))
+    text = "\n".join(view.lines(80, dots=False))
     assert "oo contour as programmed; no path of the tool is known" in text
     assert "R, or a position, is not known" in text.replace("\n ", "")
     assert "rate of C over time: not known" in text
@@ -250,7 +249,7 @@ def test_without_the_radius_the_programmed_path_is_shown_and_that_is_said() -> N
 )
 def test_sections_with_little_or_much_to_show(program: str, said: str) -> None:
     for with_dots in (True, False):
-        lines = list(path_view(only_view(program), 70, dots=with_dots))
+        lines = list(only_view(program).lines(70, dots=with_dots))
         assert max(map(len, lines)) <= 70
         assert said in " ".join(" ".join(lines).split())
 

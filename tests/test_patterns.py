@@ -16,22 +16,22 @@ from pattern_growth import (
     recorded,
     worst,
 )
+from polarcheck.errors import UsageError
 from programs import report_of
 
 from polarcheck.checking import survey
-from polarcheck.columns import bar_comments, called_comments, comment_lengths, part_comments
-from polarcheck.conversion.control import calls, heads
-from polarcheck.errors import UsageError
-from polarcheck.execution import library, spoken_block
-from polarcheck.execution.programs import ProgramName
-from polarcheck.machines import profiles
-from polarcheck.machines.job import Job, with_tool
-from polarcheck.machines.machine import Machine
-from polarcheck.reading import language_blocks, languages, surroundings, translation, walking
-from polarcheck.reading.globs import Globs
-from polarcheck.reading.source import read_source
-from polarcheck.server.structure import mentions, workspace
-from polarcheck.server.words import completions
+from polarcheck.columns.words import bar_comments, called_comments, comment_lengths, part_comments
+from polarcheck.editor.structure import mentions, workspace
+from polarcheck.editor.words import completions
+from polarcheck.program.execution import library, spoken_block
+from polarcheck.program.execution.programs import ProgramName
+from polarcheck.program.machines import profiles
+from polarcheck.program.machines.job import Job, with_tool
+from polarcheck.program.machines.machine import Machine
+from polarcheck.program.reading import language_blocks, languages, surroundings, translation, walking
+from polarcheck.program.reading.globs import Globs
+from polarcheck.program.reading.source import read_source
+from polarcheck.rewrite.convert import calls, heads
 
 pytestmark = pytest.mark.slow
 
@@ -109,7 +109,7 @@ def test_every_pattern_of_the_package_is_tried() -> None:
     places = {used.place for used in patterns().values()}
     assert not {site.place for site in constant_patterns()[1]} - places
     assert len(patterns()) > 200
-    assert {"polarcheck.table", "polarcheck.server", "polarcheck.machines"} <= {
+    assert {"polarcheck.columns.words", "polarcheck.editor", "polarcheck.program.machines"} <= {
         place.rpartition(".")[0] for place in places
     }
 
@@ -131,7 +131,7 @@ def test_no_pattern_costs_more_than_the_length_of_its_text(part: int) -> None:
 
 #: Modules whose patterns see comments of at most comment_lengths.LONGEST characters.
 OF_SHORT_TEXTS = tuple(
-    f"polarcheck.columns.{name}:"
+    f"polarcheck.columns.words.{name}:"
     for name in ("bar_comments", "called_comments", "comment_lengths", "cutter_comments", "part_comments")
 )
 

@@ -11,9 +11,9 @@ from programs import machine_of, report_of, tables_of
 from setter_dialects import DIALECTS
 
 from polarcheck.columns.trace import Trace
-from polarcheck.conversion.pen import Pen
-from polarcheck.conversion.style import Style
-from polarcheck.machines import profiles
+from polarcheck.program.machines import profiles
+from polarcheck.rewrite.writing.pen import Pen
+from polarcheck.rewrite.writing.style import Style
 
 #: A straight move and arcs of 90, 36.87, 180 and 360 deg, as (end, center, counterclockwise).
 CONTOUR = [

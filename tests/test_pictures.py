@@ -11,16 +11,16 @@ import pytest
 import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from polarcheck.errors import TooHardError
 from programs import job_of, machine_of, report_of
 
 from polarcheck.checking import check
-from polarcheck.checking.rule import load_all
-from polarcheck.errors import TooHardError
+from polarcheck.foundation.states import Motion
 from polarcheck.geometry.segments import Curves
-from polarcheck.machines.modal import Motion
-from polarcheck.pictures import paths
-from polarcheck.pictures.drawing import drawn, split
-from polarcheck.pictures.picture import Drawn, SectionPicture
+from polarcheck.rules.rule import load_all
+from polarcheck.view import paths
+from polarcheck.view.drawing import drawn, split
+from polarcheck.view.picture import Drawn, SectionPicture
 
 HEAD = "G21 G98 G40 T0808\nG0 X80. C0 Z2.\nG12.1\n"
 END = "G40 X80. F500\nG13.1\nM30\n"
@@ -349,7 +349,7 @@ def test_where_the_part_is_too_hard_the_path_is_drawn_and_it_is_said(monkeypatch
     def never(*arguments: Any) -> Any:
         raise TooHardError("its walls cross too often")
 
-    monkeypatch.setattr("polarcheck.table.finished.Finished._levels_of", never)
+    monkeypatch.setattr("polarcheck.columns.metal.finished.Finished._levels_of", never)
     found = drawn_of(HEXAGON, "8:radius=4")
     assert len(found.sections[0].tool.x) == 10
     assert found.remarks == ["the finished part is not drawn: its walls cross too often"]
@@ -399,8 +399,8 @@ def test_of_two_runs_it_is_said_which_is_drawn() -> None:
 
 
 def test_findings_are_never_thinned(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("polarcheck.pictures.sections._OF_PROGRAM", 30)
-    monkeypatch.setattr("polarcheck.pictures.sections._LEAST", 30)
+    monkeypatch.setattr("polarcheck.view.sections._OF_PROGRAM", 30)
+    monkeypatch.setattr("polarcheck.view.sections._LEAST", 30)
     angle = 2 * np.pi * np.arange(1, 401) / 400
     blocks = [f"X{40 * math.cos(one):.4f}C{20 * math.sin(one):.4f}" for one in angle]
     blocks[137] = "G0" + blocks[137] + "\nG1"

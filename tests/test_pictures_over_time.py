@@ -16,8 +16,8 @@ from test_pictures import ARCS, GROOVE, HEAD, HEXAGON, column, drawn_of, section
 
 import polarcheck
 from polarcheck.commands import main
-from polarcheck.pictures import rates
-from polarcheck.pictures.picture import SectionPicture
+from polarcheck.view import rates
+from polarcheck.view.picture import SectionPicture
 
 SAMPLES = Path("sample_programs")
 NEAR_CENTER = HEAD + "G1 X50. C.05 F400\nX-50.\nC10.\nX3.\nG2 X-1. C-.4 R12.\nG1 X80.\nG13.1\nM30\n"

@@ -13,8 +13,8 @@ import shapely
 from programs import job_of, report_of
 from test_deviations import HEAD, RULE, TAIL, drawn, polygon, program
 
-from polarcheck.machines.job import Job
-from polarcheck.machines.part import DrawnPart
+from polarcheck.program.machines.job import Job
+from polarcheck.program.machines.part import DrawnPart
 
 EGG = [complex(20, -9), complex(20, 12), complex(-12, 18), complex(-15, -11)]
 TURN = cmath.exp(1j * math.radians(30))

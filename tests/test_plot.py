@@ -14,8 +14,8 @@ from test_nothing_acts import ACTING, acting
 from test_pictures import GROOVE, HEXAGON
 
 from polarcheck.commands import picturing
-from polarcheck.pictures import library
-from polarcheck.reports.pages.picture_index import page_names
+from polarcheck.view import library
+from polarcheck.view.picture_index import page_names
 
 #: Stands for plotly, of which five megabytes need not be written so often.
 PLOTLY = "/* plotly */"

@@ -12,8 +12,8 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from plane_moves import points_along
 
+from polarcheck.foundation.states import Motion
 from polarcheck.geometry import plane, polar, rates
-from polarcheck.machines.modal import Motion
 
 NAN = complex(math.nan, math.nan)
 LINE, CW, CCW = Motion.LINE, Motion.CW, Motion.CCW

@@ -12,7 +12,7 @@ import pytest
 from programs import report_of
 from test_cli import call, make
 
-from polarcheck.finding import FileReport, PolarSection
+from polarcheck.foundation.finding import FileReport, PolarSection
 
 HEAD = "O1\nG21 G40 G97 G98 G18\nT0101\n"
 INCH = HEAD.replace("G21", "G20")

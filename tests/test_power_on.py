@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
+from polarcheck.errors import MachineError
 from programs import report_of, said, trace_of
 
-from polarcheck.errors import MachineError
-from polarcheck.machines import profiles
-from polarcheck.machines.modal import Motion
+from polarcheck.foundation.states import Motion
+from polarcheck.program.machines import profiles
 
 WHOLE = "O1\nG98 X60. C0 F200\nG12.1\nX40.\nC10.\nX60.\nG13.1\nM30\n"
 

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from msgspec.structs import replace
 from programs import machine_of, moves_of, report_of, tables_of, trace_of
 
-from polarcheck.table.moves import Moves, programmed_moves
+from polarcheck.columns.path.moves import Moves, programmed_moves
 
 LIMITS = {"limits": {"c_feed": 7200.0}}
 FANUC = machine_of("fanuc", LIMITS)

@@ -7,11 +7,11 @@ import re
 import pytest
 from programs import SHARED, report_of, said, trace_of
 
-from polarcheck.finding import FileReport
-from polarcheck.machines import profiles
-from polarcheck.reading.joining import joined
-from polarcheck.reading.source import read_source
-from polarcheck.reading.words import Text, read_words
+from polarcheck.foundation.finding import FileReport
+from polarcheck.program.machines import profiles
+from polarcheck.program.reading.joining import joined
+from polarcheck.program.reading.source import read_source
+from polarcheck.program.reading.words import Text, read_words
 
 RULE = "text-without-parentheses"
 BUILDER = SHARED / "seeds" / "000_e3b190100e7e6eb2.txt"

@@ -10,13 +10,13 @@ from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
+from polarcheck.errors import PolarcheckError
 from test_certify import EXAMPLE
 from test_cli import GOOD, RAPID
 
 import polarcheck
 from polarcheck.checking import check
 from polarcheck.commands import main
-from polarcheck.errors import PolarcheckError
 
 #: Stands in each file outside, where a message quotes it if the file lies inside.
 MARK = "7177"

@@ -9,11 +9,11 @@ import pytest
 from programs import job_of, machine_of, tables_of
 
 from polarcheck.checking.settings import Settings
-from polarcheck.checking.tables import Tables
-from polarcheck.conversion.original import Original, read
-from polarcheck.conversion.part_paths import PartPath, path_on_part
-from polarcheck.conversion.reading_back import read_back
 from polarcheck.geometry.comparison.paths import path_deviation
+from polarcheck.rewrite.writing.original import Original, read
+from polarcheck.rewrite.writing.part_paths import PartPath, path_on_part
+from polarcheck.rewrite.writing.reading_back import read_back
+from polarcheck.rules.tables import Tables
 
 HEXAGON = """\
 G98

@@ -16,10 +16,10 @@ from programs import tables_of
 from redrawn_parts import Mismatch, mismatches
 from test_samples import NAMES, SAMPLES, settings
 
-from polarcheck.checking.tables import Tables
-from polarcheck.finding import MadeShape
-from polarcheck.machines.job import Job, Stock, Tool
-from polarcheck.parts.part_report import made_by
+from polarcheck.foundation.finding import MadeShape
+from polarcheck.program.machines.job import Job, Stock, Tool
+from polarcheck.reports.made_parts.part_report import made_by
+from polarcheck.rules.tables import Tables
 
 #: Samples with a fault by which the tool does something else than the words say, and it.
 FAULTY = {

@@ -21,7 +21,7 @@ from drawn_regular import (
 )
 from programs import report_of
 
-from polarcheck.table.slips import slip_of
+from polarcheck.columns.words.slips import slip_of
 
 RULES = {"nearly-regular-contour", "diameter-radius-mixed"}
 #: What moves no corner farther than this is no slip [mm].

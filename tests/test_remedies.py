@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from programs import report_of, said
 
-from polarcheck.machines import profiles
+from polarcheck.program.machines import profiles
 
 PROGRAM = "O1\nT0101\n{}\nG98 G0 X60. C0\nG12.1\nG1 X40. F{}\nC10.\nX60.\nG13.1\nM30\n"
 IN_FILE, IN_NEW = "lathe.toml", "a file of your own (polarcheck machines new)"

@@ -10,10 +10,10 @@ from pathlib import Path
 import pytest
 from programs import report_of, report_of_example, said
 
-from polarcheck.checking.examples import Example, examples
-from polarcheck.checking.repair import CHANGES, repair_of, repairs
-from polarcheck.checking.rule import load_all
-from polarcheck.finding import Edit, FileReport, Finding, Fix
+from polarcheck.foundation.finding import Edit, FileReport, Finding, Fix
+from polarcheck.rules.examples import Example, examples
+from polarcheck.rules.repair import CHANGES, repair_of, repairs
+from polarcheck.rules.rule import load_all
 
 #: The coverage counts all of its cases: each is a way of its own through the package.
 pytestmark = pytest.mark.one_in(1)

@@ -14,14 +14,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from polarcheck import finding as polarcheck_finding
-from polarcheck.batch import tasks as batch
-from polarcheck.checking.rule import load_all
-from polarcheck.finding import Edit, FileReport, Finding, Fix, NotEvaluated, Report
-from polarcheck.reading.excerpt import Excerpt, cells, excerpt, visible
+from polarcheck.files.batch import tasks as batch
+from polarcheck.foundation import finding as polarcheck_finding
+from polarcheck.foundation.finding import Edit, FileReport, Finding, Fix, NotEvaluated, Report
+from polarcheck.program.reading.excerpt import Excerpt, cells, excerpt, visible
 from polarcheck.reports import Background, formats, render
 from polarcheck.reports.pages import report_fields, schema
 from polarcheck.reports.text import first_sentence
+from polarcheck.rules.rule import load_all
 
 PAGE_WHY = "The control stops with an alarm at a block with G0, and just so at a move without a code of its own"
 

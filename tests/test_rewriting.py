@@ -10,15 +10,15 @@ import click
 import jsonschema
 import pytest
 from click.testing import CliRunner, Result
+from polarcheck.errors import MachineError, TooHardError
 
 from polarcheck.commands import Commands
 from polarcheck.commands.rewriting import Command, length, rewriting
-from polarcheck.conversion.original import Original
-from polarcheck.conversion.outcome import Decision, Figure, Outcome, Refusal, RefusedError
-from polarcheck.conversion.rewriting import in_mm
-from polarcheck.errors import MachineError, TooHardError
-from polarcheck.reports.pages.schema import schema
-from polarcheck.settings.of_programs import OfPrograms, Options, on_machine, profile_of
+from polarcheck.files.settings.of_programs import OfPrograms, Options, on_machine, profile_of
+from polarcheck.rewrite.schemas import schema
+from polarcheck.rewrite.writing.original import Original
+from polarcheck.rewrite.writing.outcome import Decision, Figure, Outcome, Refusal, RefusedError
+from polarcheck.rewrite.writing.rewriting import in_mm
 
 pytestmark = pytest.mark.usefixtures("own_folder")
 

@@ -12,16 +12,16 @@ from setter_programs import FAMILIES, drawn
 from test_convert import END, HEAD, MILLED, SIEMENS, convert
 
 from polarcheck.checking.settings import Settings
-from polarcheck.conversion.compensating import centering, compensating
-from polarcheck.conversion.compensating.compensating import Compensating, centered, compensated
-from polarcheck.conversion.original import Original
-from polarcheck.conversion.outcome import Outcome, RefusedError
-from polarcheck.conversion.rewriting import rewritten
-from polarcheck.conversion.rolling import rolling
-from polarcheck.conversion.rolling.rolling import Rolling, rolled
-from polarcheck.conversion.unrolling import unrolling
-from polarcheck.conversion.unrolling.unrolling import Unrolling, unrolled
-from polarcheck.settings.of_programs import OfPrograms, Options
+from polarcheck.files.settings.of_programs import OfPrograms, Options
+from polarcheck.rewrite.compensate import centering, compensating
+from polarcheck.rewrite.compensate.compensating import Compensating, centered, compensated
+from polarcheck.rewrite.roll import rolling
+from polarcheck.rewrite.roll.rolling import Rolling, rolled
+from polarcheck.rewrite.unroll import unrolling
+from polarcheck.rewrite.unroll.unrolling import Unrolling, unrolled
+from polarcheck.rewrite.writing.original import Original
+from polarcheck.rewrite.writing.outcome import Outcome, RefusedError
+from polarcheck.rewrite.writing.rewriting import rewritten
 
 
 def settings_of(machine: str, *tools: str) -> Settings:

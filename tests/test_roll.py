@@ -18,13 +18,13 @@ from unrolled_contours import hexagon, oval, places, slot
 
 from polarcheck.checking.settings import Settings
 from polarcheck.commands import main
-from polarcheck.conversion.original import Original, read
-from polarcheck.conversion.outcome import Outcome, RefusedError
-from polarcheck.conversion.part_paths import path_on_part
-from polarcheck.conversion.rolling.rolling import Rolling, rolled
-from polarcheck.conversion.unrolling.unrolling import Unrolling, unrolled
+from polarcheck.foundation.states import Motion
 from polarcheck.geometry.comparison.paths import path_deviation
-from polarcheck.machines.modal import Motion
+from polarcheck.rewrite.roll.rolling import Rolling, rolled
+from polarcheck.rewrite.unroll.unrolling import Unrolling, unrolled
+from polarcheck.rewrite.writing.original import Original, read
+from polarcheck.rewrite.writing.outcome import Outcome, RefusedError
+from polarcheck.rewrite.writing.part_paths import path_on_part
 
 TOLERANCE = 0.01
 

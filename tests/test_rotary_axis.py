@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 import pytest
 from msgspec.structs import replace
+from polarcheck.errors import MachineError
 from programs import ROOT, machine_of, report_of, said, tables_of, trace_of
 
-from polarcheck.errors import MachineError
-from polarcheck.finding import FileReport
-from polarcheck.machines import profiles
+from polarcheck.foundation.finding import FileReport
+from polarcheck.program.machines import profiles
 
 SAMPLES = ROOT / "sample_programs"
 #: Sample programs by the lathe that they are written for, where C is the virtual and the rotary axis.

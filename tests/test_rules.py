@@ -14,10 +14,10 @@ import pytest
 from programs import machine_of, report_of_example, report_of_whole_example, said
 from syrupy.assertion import SnapshotAssertion
 
-from polarcheck.checking.examples import Example, examples
-from polarcheck.checking.rule import OVER, Hits, Rule, load_all
-from polarcheck.finding import SEVERITIES
-from polarcheck.machines import profiles
+from polarcheck.foundation.finding import SEVERITIES
+from polarcheck.program.machines import profiles
+from polarcheck.rules.examples import Example, examples
+from polarcheck.rules.rule import OVER, Hits, Rule, load_all
 
 RULES = load_all()
 EXAMPLES = [

@@ -11,10 +11,10 @@ import pytest
 from programs import ROOT, expected, report_of, said, tables_of, without_expectations
 from syrupy.assertion import SnapshotAssertion
 
-from polarcheck.finding import FileReport
-from polarcheck.machines import profiles
+from polarcheck.files.settings import job_files
+from polarcheck.foundation.finding import FileReport
+from polarcheck.program.machines import profiles
 from polarcheck.reports.pages import executed
-from polarcheck.settings import job_files
 
 FOLDER = ROOT / "sample_programs"
 SAMPLES = sorted(path for path in FOLDER.rglob("*") if path.suffix in (".nc", ".mpf"))

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from polarcheck.foundation.states import Motion
 from polarcheck.geometry.segments import Curves, reach_from_start, segments
-from polarcheck.machines.modal import Motion
 
 
 def curves(*moves: tuple[complex, complex, complex | None, Motion], loops: list[int] | None = None) -> Curves:

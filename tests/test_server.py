@@ -282,7 +282,7 @@ async def test_it_opens_nothing_outside_its_folders(tmp_path: Path) -> None:
 TROUBLED = """
 import sys, time
 from polarcheck.checking import check
-from polarcheck.time_limit import keep_time
+from polarcheck.foundation.time_limit import keep_time
 sound = check.check_runs
 def troubled(found, *more):
     text = found[0][1]["text"].source.text
@@ -430,7 +430,7 @@ def test_without_the_extra_it_says_what_to_install(monkeypatch: pytest.MonkeyPat
 def test_the_first_answer_needs_no_tables() -> None:
     """An editor waits for it; what a check needs is loaded behind it."""
     code = (
-        "import sys, polarcheck.server.process, polarcheck.server.session, polarcheck.commands.server\n"
+        "import sys, polarcheck.editor.process, polarcheck.editor.session, polarcheck.commands.server\n"
         "assert not {'numpy', 'shapely', 'rich', 'polarcheck.checking.check'} & set(sys.modules)\n"
     )
     subprocess.run([sys.executable, "-c", code], check=True, env=environment())

@@ -10,7 +10,7 @@ import pytest
 AT_ONCE = """
 import sys, threading
 from pathlib import Path
-from polarcheck.checking.rule import load_all
+from polarcheck.rules.rule import load_all
 from polarcheck.commands.server import _Settings
 
 settings = _Settings(False, {})

@@ -23,8 +23,8 @@ from test_pictures import GROOVE, HEXAGON
 from test_plot import PLOTLY, RADIUS
 
 from polarcheck.commands import serving, watching
-from polarcheck.pictures import connections, library
-from polarcheck.pictures import serving as served
+from polarcheck.view import connections, library
+from polarcheck.view import serving as served
 
 pytestmark = pytest.mark.usefixtures("own_folder")
 __all__ = ["browser"]  # a fixture

@@ -15,9 +15,9 @@ from hypothesis import strategies as st
 from programs import tables_of
 from shapely import affinity
 
+from polarcheck.columns.metal.finished import Level
 from polarcheck.geometry.shapes.shape import POLYGONS, Shape
 from polarcheck.geometry.shapes.shapes import shapes_of
-from polarcheck.table.finished import Level
 
 #: How near what is drawn from a shape must be to the part: what the issue asks for, and the chords of both [mm].
 NEAR = 0.005 + 0.003

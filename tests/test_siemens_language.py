@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from programs import report_of, trace_of
 
-from polarcheck.finding import FileReport
+from polarcheck.foundation.finding import FileReport
 
 #: The coverage counts all of its cases: each is a way of its own through the package.
 pytestmark = pytest.mark.one_in(1)

@@ -11,8 +11,8 @@ import pytest
 from click.testing import CliRunner
 from programs import ROOT, report_of
 
-from polarcheck.batch.baseline_file import Entry, read
 from polarcheck.commands import main
+from polarcheck.files.baselines.baseline_file import Entry, read
 
 PAGE = (ROOT / "docs" / "silence.md").read_text("utf-8")
 PARTS = ["\n".join(line[4:] for line in part.splitlines()) + "\n" for part in re.findall(r"(?:^    .*\n)+", PAGE, re.M)]

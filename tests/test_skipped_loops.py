@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from polarcheck.table.skipped_loops import SkippedLoops, SkipReason
+from polarcheck.columns.contour.skipped_loops import SkippedLoops, SkipReason
 
 FAR, CHORDS, CROSSES = SkipReason.TOO_FAR, SkipReason.TOO_MANY_CHORDS, SkipReason.CROSSES
 

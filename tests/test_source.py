@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-
 from polarcheck.errors import SourceError, UsageError
-from polarcheck.reading.source import DASH, OTHER, read_source
-from polarcheck.reading.words import read_words
+
+from polarcheck.program.reading.source import DASH, OTHER, read_source
+from polarcheck.program.reading.words import read_words
 
 PROGRAM = "O0001 (D\u00fcse \u2013 \u00d860)\nG0 X60.\nM30\n"
 ENCODED = [

@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from polarcheck.errors import MachineError
 from programs import report_of, said, tables_of
 
-from polarcheck.errors import MachineError
-from polarcheck.machines import profiles
+from polarcheck.program.machines import profiles
 
 #: One M3 for three spindles, which P tells apart.
 BY_P = {

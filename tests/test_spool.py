@@ -8,11 +8,11 @@ import pytest
 from programs import ROOT, report_of
 
 from polarcheck import reports
-from polarcheck.batch import tasks as batch
-from polarcheck.batch.spool import Spool
-from polarcheck.checking.rule import load_all
-from polarcheck.finding import FileReport
-from polarcheck.reading import files
+from polarcheck.files.batch import tasks as batch
+from polarcheck.files.batch.spool import Spool
+from polarcheck.foundation.finding import FileReport
+from polarcheck.program.reading import files
+from polarcheck.rules.rule import load_all
 
 SAMPLES = ["rapid_in_polar.nc", "hexagon.nc", "degrees.nc", "narrow_groove.nc", "macro_polygon.nc"]
 

@@ -10,9 +10,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from macro_values import assign_arguments, called_program, read_statement, variables
 
-from polarcheck.execution.expression import Fault, decide
-from polarcheck.execution.macro import assign, word_value
-from polarcheck.execution.statement import Kind, Number, Statement
+from polarcheck.program.execution.expression import Fault, decide
+from polarcheck.program.execution.macro import assign, word_value
+from polarcheck.program.execution.statement import Kind, Number, Statement
 
 #: The coverage counts all of its cases: each is a way of its own through the package.
 pytestmark = pytest.mark.one_in(1)

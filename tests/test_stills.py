@@ -17,12 +17,12 @@ from test_cli import call, make
 from test_pictures import GROOVE, HEXAGON
 from test_plot import RADIUS, names_in
 
-from polarcheck.pictures.picture import DrawnPart, FindingPicture, Mark
-from polarcheck.pictures.stills import still as stills
-from polarcheck.pictures.stills.colors import ABOVE, PLAIN, SHADES, coloring, round_bounds
-from polarcheck.pictures.stills.numbering import entries, labels
-from polarcheck.pictures.stills.still import still
-from polarcheck.pictures.stills.text import printable, wrapped
+from polarcheck.view.picture import DrawnPart, FindingPicture, Mark
+from polarcheck.view.stills import still as stills
+from polarcheck.view.stills.colors import ABOVE, PLAIN, SHADES, coloring, round_bounds
+from polarcheck.view.stills.numbering import entries, labels
+from polarcheck.view.stills.still import still
+from polarcheck.view.stills.text import printable, wrapped
 
 pytestmark = pytest.mark.usefixtures("own_folder")
 

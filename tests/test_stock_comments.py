@@ -7,8 +7,8 @@ import math
 import pytest
 from programs import tables_of
 
-from polarcheck.columns.bar_comments import bar_in
-from polarcheck.table.stock_comments import StockComments
+from polarcheck.columns.words.bar_comments import bar_in
+from polarcheck.columns.words.stock_comments import StockComments
 
 
 @pytest.mark.parametrize(

@@ -7,9 +7,9 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from polarcheck.foundation.states import Motion
 from polarcheck.geometry.straight_axes.division import Pieces, divide
 from polarcheck.geometry.straight_axes.spans import Spans, spans_of
-from polarcheck.machines.modal import Motion
 
 NO_CENTER = complex("nan+nanj")
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from programs import moves_of, report_of, said
 
-from polarcheck.finding import FileReport
+from polarcheck.foundation.finding import FileReport
 
 TOOL = "1:radius=4,nose=0"
 CONTOUR = """G1 G42 X{0}. F200

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from programs import report_of, tables_of
 
-from polarcheck.table.angles import Angles
+from polarcheck.columns.words.angles import Angles
 
 #: The angles that one writes, as a list of its own.
 USUAL = [30, 45, 60, 90, 120, 135, 150, 180, 210, 225, 240, 270, 300, 315, 330, 360]

@@ -12,8 +12,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from programs import report_of, tables_of
 
-from polarcheck.checking.rule import load_all
-from polarcheck.checking.tables import Tables
+from polarcheck.rules.rule import load_all
+from polarcheck.rules.tables import Tables
 
 HEAD = "G98 G0 X60. C0\nG12.1\nG1 X40. C10. F200\n"
 """Leads to the plane point 20 + 10j."""

@@ -9,7 +9,7 @@ import re
 import pytest
 from programs import report_of
 
-from polarcheck.finding import Finding
+from polarcheck.foundation.finding import Finding
 
 HEAD = "O1\nG21 G40 G97 G98 G18\nT0101\nG0 X200. Z2. C0\nG12.1\n"
 END = "\nG13.1\nM30\n"

@@ -7,8 +7,8 @@ from typing import Any
 import pytest
 from programs import report_of, tables_of, trace_of
 
-from polarcheck.checking.phrases import setup
-from polarcheck.table.origin import Origin
+from polarcheck.columns.modes.origin import Origin
+from polarcheck.rules.wording.phrases import setup
 
 SECTION = "G12.1\nG1 X40. F200\nC10.\nX60.\nG13.1\n"
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from programs import tables_of
 
-from polarcheck.table import fitting
-from polarcheck.table.fitting import Fitting
+from polarcheck.columns.contour import fitting
+from polarcheck.columns.contour.fitting import Fitting
 
 HEAD, END = "T0101\nG98 G0 X100. C0\n", "M30\n"
 

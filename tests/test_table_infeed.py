@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 from programs import moves_of, report_of, said, tables_of
 
-from polarcheck.machines.modal import Motion
-from polarcheck.table.infeed import MOST_PASSES, Infeed
+from polarcheck.columns.path.infeed import MOST_PASSES, Infeed
+from polarcheck.foundation.states import Motion
 
 #: Around a square of 20 mm half width, from X60. (30 mm) to the last point and out again.
 SQUARE = "G98 G0 X60. C0\nG12.1 {}\nG1 X40. F100\nC20.\nX-40.\nC-20.\nX40.\n{}\nX60.\nG13.1\n"

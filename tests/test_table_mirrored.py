@@ -7,7 +7,7 @@ import re
 import pytest
 from programs import report_of, said
 
-from polarcheck.finding import FileReport
+from polarcheck.foundation.finding import FileReport
 
 MIRRORED = "side-of-compensation-mirrored"
 

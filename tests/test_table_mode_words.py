@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from programs import report_of, said, tables_of
 
-from polarcheck.arrays import Mask
-from polarcheck.table.mode_words import ModeWords
+from polarcheck.columns.modes.mode_words import ModeWords
+from polarcheck.foundation.arrays import Mask
 
 #: The modes of the parametrized programs: rows 0 to 2, then their block at row 3, and the way out.
 INTO = "G98 G0 X60. C0\nG12.1\nG1 X40. F200\n"

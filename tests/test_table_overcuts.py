@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from programs import report_of, said, tables_of
 
-from polarcheck.checking.tables import Tables
-from polarcheck.table.overcuts import CutsOfRows, loop_of_row, objected
+from polarcheck.columns.contour.overcuts import CutsOfRows, loop_of_row, objected
+from polarcheck.rules.tables import Tables
 
 #: A groove of 6 mm between C3 and C-3 through the middle of a square of 40, gone round on the outside.
 GROOVE = (

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from programs import machine_of, report_of, said, trace_of
 
-from polarcheck.arrays import Mask
-from polarcheck.columns.sections import Marks, Sections, find_sections, section_column
+from polarcheck.columns.modes.sections import Marks, Sections, find_sections, section_column
+from polarcheck.foundation.arrays import Mask
 
 HEAD = "O1\nG21 G98\nT0101\nG0 X60. C0\n"
 

@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from polarcheck.errors import MachineError
 from programs import report_of, said, tables_of
 
+from polarcheck.columns.modes.switch_words import SwitchWords
 from polarcheck.commands import main
-from polarcheck.errors import MachineError
-from polarcheck.machines import profiles
-from polarcheck.table.switch_words import SwitchWords
+from polarcheck.program.machines import profiles
 
 CONTOUR = "G42 G1 X80. F200\nC40.\nX-80.\nC-40.\nX80.\nC0\nG40 X120.\n"
 PROGRAM = f"T0202\nG98 G0 X120. C0\n{{}}\n{CONTOUR}{{}}\n"

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from programs import tables_of
 
-from polarcheck.checking.tables import Tables
+from polarcheck.rules.tables import Tables
 
 HEAD = "T0101\nG98 G0 X100. C0\nG12.1\nG1 C20. F500\n"
 TAIL = "G40 X100.\nG13.1\n"

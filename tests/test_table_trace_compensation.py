@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from programs import trace_of
 
-from polarcheck.machines.modal import Side
+from polarcheck.foundation.states import Side
 
 OFF, LEFT, RIGHT = Side.OFF, Side.LEFT, Side.RIGHT
 SIDES = {"G40": OFF, "G41": LEFT, "G42": RIGHT}

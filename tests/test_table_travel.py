@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from programs import tables_of
 
-from polarcheck.checking.rule import load_all
+from polarcheck.rules.rule import load_all
 
 INF, NAN = math.inf, math.nan
 PROGRAM = """\

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from programs import tables_of
 
-from polarcheck.arrays import Floats
-from polarcheck.table.tool_center import OtherRadius
-from polarcheck.table.trial import Trial
+from polarcheck.columns.path.tool_center import OtherRadius
+from polarcheck.columns.path.trial import Trial
+from polarcheck.foundation.arrays import Floats
 
 HEAD, TAIL = "T0101\nG98 G0 X100. C0\nG12.1\nG1 C20. F500\n", "G40 X100.\nG13.1\n"
 

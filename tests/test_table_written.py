@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from programs import report_of, said
 
-from polarcheck.finding import Finding
+from polarcheck.foundation.finding import Finding
 
 
 def findings(program: str | bytes, *only: str, **control: int) -> list[Finding]:

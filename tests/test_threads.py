@@ -16,8 +16,8 @@ import pytest
 from click.testing import CliRunner
 
 import polarcheck
-from polarcheck import decoding
 from polarcheck.commands import main
+from polarcheck.foundation import decoding
 
 PACKAGE = Path(polarcheck.__file__).parent
 
@@ -173,7 +173,7 @@ def test_only_one_module_decodes_by_msgspec() -> None:
     found = [
         path.relative_to(PACKAGE).as_posix() for path, text in texts.items() if SIGNS.search(text) and decoded_by(text)
     ]
-    assert found == ["decoding.py"]
+    assert found == ["foundation/decoding.py"]
 
 
 @pytest.fixture

@@ -13,18 +13,18 @@ import pytest
 import shapely  # type: ignore[import-untyped]
 from click.testing import CliRunner
 from clocks import Clock, even, jump
+from polarcheck.errors import StoppedError, TooHardError
 from programs import ROOT, report_of, said, tables_of
 
+from polarcheck.columns.contour import fitting
 from polarcheck.commands import main
-from polarcheck.errors import StoppedError, TooHardError
-from polarcheck.finding import FileReport
+from polarcheck.foundation.finding import FileReport
+from polarcheck.foundation.states import Motion
+from polarcheck.foundation.time_limit import keep_time, time_limit
 from polarcheck.geometry import segments
 from polarcheck.geometry.overcuts import bounds
 from polarcheck.geometry.polygons import areas, noding
 from polarcheck.geometry.segments import Curves
-from polarcheck.machines.modal import Motion
-from polarcheck.table import fitting
-from polarcheck.time_limit import keep_time, time_limit
 
 sys.path.insert(0, str(ROOT / "benchmarks"))
 

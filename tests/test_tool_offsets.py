@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 from programs import report_of, said, trace_of
 
-from polarcheck.finding import PolarSection
-from polarcheck.settings.of_programs import OfPrograms, Options
+from polarcheck.files.settings.of_programs import OfPrograms, Options
+from polarcheck.foundation.finding import PolarSection
 
 MM = "O1\nG21 G40 G97 G98 G18\n"
 #: The sample program of the builder's guide, with blocks before and behind its T word.

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from programs import moves_of, report_of, tables_of, trace_of
 
-from polarcheck.table.moves import Moves
+from polarcheck.columns.path.moves import Moves
 
 MACHINE = "siemens-transmit"
 HEAD = "G94 S2=1000\nDIAMOF\nG0 X40 {c} Z5\n"

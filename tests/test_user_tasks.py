@@ -9,8 +9,8 @@ import pytest
 from programs import moves_of, report_of, said, tables_of, trace_of
 
 from polarcheck.columns.trace import Trace
-from polarcheck.execution.programs import Program, find_programs
-from polarcheck.finding import FileReport
+from polarcheck.foundation.finding import FileReport
+from polarcheck.program.execution.programs import Program, find_programs
 
 #: The coverage counts all of its cases: each is a way of its own through the package.
 pytestmark = pytest.mark.one_in(1)

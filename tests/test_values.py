@@ -13,17 +13,17 @@ from typing import Any
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from polarcheck.errors import RuleError
 from programs import report_of, report_of_whole_example
 
-from polarcheck.checking import message
-from polarcheck.checking.examples import examples
-from polarcheck.checking.message import as_data
-from polarcheck.checking.rule import Rule, load_all
-from polarcheck.checking.tables import MAKERS, PARTS
-from polarcheck.checking.vocabulary import VOCABULARY, Kind, kinds
 from polarcheck.commands import main
-from polarcheck.errors import RuleError
-from polarcheck.finding import Finding
+from polarcheck.foundation.finding import Finding
+from polarcheck.rules import message
+from polarcheck.rules.examples import examples
+from polarcheck.rules.message import as_data
+from polarcheck.rules.rule import Rule, load_all
+from polarcheck.rules.tables import MAKERS, PARTS
+from polarcheck.rules.vocabulary import VOCABULARY, Kind, kinds
 
 RULES = load_all()
 TYPES: dict[Kind, tuple[type, ...]] = {

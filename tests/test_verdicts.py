@@ -14,12 +14,12 @@ import pytest
 from click.testing import CliRunner, Result
 from programs import ROOT
 
-from polarcheck.batch import tasks as batch
-from polarcheck.checking.rule import load_all
 from polarcheck.commands import main
-from polarcheck.finding import Interrupted
+from polarcheck.files.batch import tasks as batch
+from polarcheck.foundation.finding import Interrupted
 from polarcheck.reports import Background, formats, render
 from polarcheck.reports.pages import schema
+from polarcheck.rules.rule import load_all
 
 pytestmark = pytest.mark.usefixtures("own_folder")
 
@@ -400,8 +400,8 @@ def test_folders_and_what_takes_too_much_are_named_as_well() -> None:
 
 def test_a_bug_and_a_lost_worker_leave_a_file_that_did_not_pass(monkeypatch: pytest.MonkeyPatch) -> None:
     make(a__nc=GOOD)
-    from polarcheck.batch import executors
-    from polarcheck.settings.of_programs import OfPrograms, Options
+    from polarcheck.files.batch import executors
+    from polarcheck.files.settings.of_programs import OfPrograms, Options
 
     tasks = batch.plan(["a.nc"], OfPrograms(Options()), (), pytest.fail, pytest.fail)
     lost = executors._Schedule(tasks, mock.Mock(), 1)._lost(0)

@@ -16,8 +16,8 @@ from typing import Any
 import pytest
 from test_jobs import ENDLESS, FOREVER, GOOD, ONLY, RAPID, UNVERIFIED, planned, run, start
 
-from polarcheck.batch import tasks as batch
 from polarcheck.commands import watching
+from polarcheck.files.batch import tasks as batch
 
 pytestmark = [
     pytest.mark.slow,

@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 import shapely  # type: ignore[import-untyped]
 
+from polarcheck.foundation.states import Motion
 from polarcheck.geometry.polygons import areas
 from polarcheck.geometry.polygons.cleared import cleared
 from polarcheck.geometry.polygons.widened import widened
 from polarcheck.geometry.segments import Curves, segments
-from polarcheck.machines.modal import Motion
 
 TOLERANCE = 0.004
 

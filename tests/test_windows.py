@@ -13,12 +13,12 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
+from polarcheck.errors import OutputError
 from test_cli import IMPORTED_FROM, RAPID, call, check, make
 
-from polarcheck import bounded, memory
 from polarcheck.commands import main, output, overwriting, signals, wildcards
-from polarcheck.errors import OutputError
-from polarcheck.reading import files, walking
+from polarcheck.foundation import bounded, memory
+from polarcheck.program.reading import files, walking
 
 pytestmark = pytest.mark.usefixtures("own_folder")
 

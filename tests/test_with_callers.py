@@ -11,7 +11,7 @@ import pytest
 from test_cli import call
 from test_diff_base import GOOD, ONLY, commit, git
 
-from polarcheck.reading import git as git_of_polarcheck
+from polarcheck.files import git as git_of_polarcheck
 
 CALLER = "O0002\nG98 G0 X60. C0\nG12.1\nG1 X40. F200\nM98 P9001\nG13.1\nM30\n"
 JOB = "machine = 'lathe.toml'\noffsets = 'TOOLOFST'\n[run]\nsubprograms = ['subs', 'more']\n"

@@ -10,10 +10,10 @@ import words_oracle as oracle
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from polarcheck.checking.phrases.text import number_fault
-from polarcheck.reading import words as reader
-from polarcheck.reading.source import read_source
-from polarcheck.reading.words import NumberFault, Spans, Text, read_words
+from polarcheck.program.reading import words as reader
+from polarcheck.program.reading.source import read_source
+from polarcheck.program.reading.words import NumberFault, Spans, Text, read_words
+from polarcheck.rules.wording.phrases.text import number_fault
 
 
 def text_of(program: str | bytes, line_comments: str = "") -> Text:

@@ -12,7 +12,7 @@ import pytest
 from pictures_by_hand import finding, hexagon, notch, picture
 from test_page_in_browser import CHROMIUM, browser
 
-from polarcheck.pictures.page import page
+from polarcheck.view.page import page
 
 plotly = pytest.importorskip("plotly.offline")
 pytest.importorskip("axe_playwright_python")

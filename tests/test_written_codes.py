@@ -9,12 +9,12 @@ from typing import Any
 
 import msgspec
 import pytest
+from polarcheck.errors import MachineError
 from programs import report_of, said
 
-from polarcheck.errors import MachineError
-from polarcheck.machines import code_keys, profiles, written_codes
-from polarcheck.machines.code_lists import FRAME_LISTS
-from polarcheck.machines.machine import Machine
+from polarcheck.program.machines import code_keys, profiles, written_codes
+from polarcheck.program.machines.code_lists import FRAME_LISTS
+from polarcheck.program.machines.machine import Machine
 
 ALLOWED = profiles.load("fanuc-30i").machine.polar.allowed_codes
 

@@ -18,7 +18,7 @@ from path_sampling import point_at, sampled
 from programs import job_of, machine_of, tables_of
 from test_every_machine import HANDS, number
 
-from polarcheck.machines.modal import Motion
+from polarcheck.foundation.states import Motion
 
 CONTROLS = (
     *("fanuc", "haas-lathe", "okuma-osp", "siemens-transmit", "mazak-quick-turn", "mazak-integrex", "citizen"),

@@ -7,10 +7,10 @@ from pathlib import Path
 
 from polarcheck.api.keywords import path_of
 from polarcheck.api.values import names, whole
-from polarcheck.certification import certifying
-from polarcheck.certification.loading import load
-from polarcheck.certification.results import Certificate
-from polarcheck.reading import files
+from polarcheck.program.reading import files
+from polarcheck.rewrite.certify import certifying
+from polarcheck.rewrite.certify.loading import load
+from polarcheck.rewrite.certify.results import Certificate
 
 
 def certify(path: str | Path, *, cases: Iterable[str] = (), max_size: int = files.LARGEST) -> Certificate:

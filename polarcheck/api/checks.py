@@ -9,18 +9,18 @@ from typing import Unpack
 from polarcheck.api.keywords import CheckKeywords, PathName, options, paths_of, takes
 from polarcheck.api.programs import NAMELESS, Call
 from polarcheck.api.values import flag, names, whole
-from polarcheck.batch import runs
-from polarcheck.batch import tasks as batch
-from polarcheck.batch.baselines import Baselines
-from polarcheck.batch.decisions import with_own_settings
-from polarcheck.batch.tasks import Outcome, Task
-from polarcheck.errors import PolarcheckWarning, SourceError
-from polarcheck.finding import FileReport, Report
-from polarcheck.machines import profiles
-from polarcheck.reading import files
-from polarcheck.reading.walking import Skipped
-from polarcheck.settings.decisions import shared
-from polarcheck.settings.of_programs import OfPrograms
+from polarcheck.files.baselines.baselines import Baselines
+from polarcheck.files.batch import runs
+from polarcheck.files.batch import tasks as batch
+from polarcheck.files.batch.decisions import with_own_settings
+from polarcheck.files.batch.tasks import Outcome, Task
+from polarcheck.files.settings.decisions import shared
+from polarcheck.files.settings.of_programs import OfPrograms
+from polarcheck.foundation.errors import PolarcheckWarning, SourceError
+from polarcheck.foundation.finding import FileReport, Report
+from polarcheck.program.machines import profiles
+from polarcheck.program.reading import files
+from polarcheck.program.reading.walking import Skipped
 
 _FUNCTION = "polarcheck.check()"
 

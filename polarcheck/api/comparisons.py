@@ -9,11 +9,11 @@ from polarcheck.api.keywords import ExecutionKeywords, PathName, takes
 from polarcheck.api.programs import NAMELESS, Call, Program
 from polarcheck.api.values import length, short
 from polarcheck.checking import check
-from polarcheck.errors import UsageError
-from polarcheck.reading.files import LARGEST
-from polarcheck.revisions.comparison import Revision, compared, default_tolerance
-from polarcheck.revisions.report import Comparison
-from polarcheck.time_limit import seconds_for, time_limit
+from polarcheck.foundation.errors import UsageError
+from polarcheck.foundation.time_limit import seconds_for, time_limit
+from polarcheck.program.reading.files import LARGEST
+from polarcheck.rewrite.compare.comparison import Revision, compared, default_tolerance
+from polarcheck.rewrite.compare.report import Comparison
 
 #: As for the command [mm].
 _LARGEST_TOLERANCE = 10.0

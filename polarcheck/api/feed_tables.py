@@ -10,13 +10,13 @@ import msgspec
 from polarcheck.api.keywords import ExecutionKeywords, PathName, takes
 from polarcheck.api.programs import NAMELESS, Call, Program
 from polarcheck.checking import check
-from polarcheck.checking.causes import READ_OTHERWISE
-from polarcheck.checking.rule import load_all
-from polarcheck.checking.tables import Tables
-from polarcheck.feed_table.table import FeedTable, feed_table
-from polarcheck.finding import Finding
-from polarcheck.reading.files import LARGEST
+from polarcheck.foundation.finding import Finding
+from polarcheck.program.reading.files import LARGEST
 from polarcheck.reports.pages.executed import without_radius
+from polarcheck.rewrite.feeds.table import FeedTable, feed_table
+from polarcheck.rules.causes import READ_OTHERWISE
+from polarcheck.rules.rule import load_all
+from polarcheck.rules.tables import Tables
 
 
 class Feeds(msgspec.Struct, frozen=True, kw_only=True):

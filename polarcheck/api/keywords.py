@@ -9,12 +9,12 @@ from pathlib import Path
 from typing import Any, Literal, TypeAlias, TypedDict, TypeVar
 
 from polarcheck.api.values import flag, length, names, plain, short
-from polarcheck.errors import UsageError, suggestion
-from polarcheck.machines.job import Running, Stock, Tool, WorkOffset
-from polarcheck.machines.part import Part
-from polarcheck.reading.files import shown
-from polarcheck.settings.keywords import keywords
-from polarcheck.settings.of_programs import Options
+from polarcheck.files.settings.keywords import keywords
+from polarcheck.files.settings.of_programs import Options
+from polarcheck.foundation.errors import UsageError, suggestion
+from polarcheck.program.machines.job import Running, Stock, Tool, WorkOffset
+from polarcheck.program.machines.part import Part
+from polarcheck.program.reading.files import shown
 
 PathName: TypeAlias = str | os.PathLike[str]
 Values: TypeAlias = Mapping[str, Any]
@@ -227,7 +227,7 @@ def options(function: str, kind: type, values: Mapping[str, Any], **more: Any) -
 
 
 def _is_encoding(name: str) -> bool:
-    from polarcheck.reading.source import is_encoding  # late: it loads NumPy
+    from polarcheck.program.reading.source import is_encoding  # late: it loads NumPy
 
     return is_encoding(name)
 

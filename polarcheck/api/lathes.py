@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from typing import Any
 
 from polarcheck.api.keywords import ExecutionKeywords, PathName, options
-from polarcheck.machines import profiles
-from polarcheck.machines.machine import Machine
-from polarcheck.settings.of_programs import OfPrograms
+from polarcheck.files.settings.of_programs import OfPrograms
+from polarcheck.program.machines import profiles
+from polarcheck.program.machines.machine import Machine
 
 
 def machine(name: PathName, *, changes: Mapping[str, Any] | None = None) -> Machine:

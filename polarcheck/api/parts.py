@@ -9,11 +9,11 @@ import msgspec
 from polarcheck.api.keywords import PartKeywords, PathName, takes
 from polarcheck.api.programs import NAMELESS, Call, Program
 from polarcheck.checking import check
-from polarcheck.checking.causes import READ_OTHERWISE
-from polarcheck.finding import Finding, MadeShape, NotEvaluated, PartComparison
-from polarcheck.parts.comparison import compared_in
-from polarcheck.parts.part_report import part_of
-from polarcheck.reading.files import LARGEST
+from polarcheck.foundation.finding import Finding, MadeShape, NotEvaluated, PartComparison
+from polarcheck.program.reading.files import LARGEST
+from polarcheck.reports.made_parts.comparison import compared_in
+from polarcheck.reports.made_parts.part_report import part_of
+from polarcheck.rules.causes import READ_OTHERWISE
 
 #: The rule that compares a part with its drawing. Rules whose findings make the part doubtful run beside it.
 RULES = ("part-differs-from-drawing", *READ_OTHERWISE)

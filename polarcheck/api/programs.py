@@ -12,11 +12,11 @@ from polarcheck.api.keywords import PathName, options, path_of
 from polarcheck.api.values import whole
 from polarcheck.checking import check
 from polarcheck.checking.settings import Settings
-from polarcheck.checking.tables import Tables
-from polarcheck.errors import UsageError
-from polarcheck.reading import files
-from polarcheck.settings.of_programs import OfPrograms, Options
-from polarcheck.time_limit import seconds_for, time_limit
+from polarcheck.files.settings.of_programs import OfPrograms, Options
+from polarcheck.foundation.errors import UsageError
+from polarcheck.foundation.time_limit import seconds_for, time_limit
+from polarcheck.program.reading import files
+from polarcheck.rules.tables import Tables
 
 #: The name of a text that has none.
 NAMELESS = "text"

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from polarcheck import reports
 from polarcheck.api.values import choice
-from polarcheck.batch import tasks as batch
-from polarcheck.batch.runs import folders
-from polarcheck.checking import rule
-from polarcheck.errors import UsageError
-from polarcheck.finding import FileReport, Report
+from polarcheck.files.batch import tasks as batch
+from polarcheck.files.batch.runs import folders
+from polarcheck.foundation.errors import UsageError
+from polarcheck.foundation.finding import FileReport, Report
 from polarcheck.reports import Background
+from polarcheck.rules import rule
 
 
 def render(report: Report | FileReport, form: str = "text") -> str:

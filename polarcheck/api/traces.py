@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 from polarcheck.api.keywords import ExecutionKeywords, PathName, takes
 from polarcheck.api.programs import NAMELESS, Call, Program
 from polarcheck.api.values import choice, length
-from polarcheck.arrays import Floats, Points, Rows, Table
+from polarcheck.columns.path.executed_moves import KINDS, PROGRAMMED, TOOL, executed_moves
+from polarcheck.foundation.arrays import Floats, Points, Rows, Table
+from polarcheck.foundation.states import Motion
 from polarcheck.geometry.segments import Curves, segments
-from polarcheck.machines.modal import Motion
-from polarcheck.reading.files import LARGEST
-from polarcheck.table.executed_moves import KINDS, PROGRAMMED, TOOL, executed_moves
+from polarcheck.program.reading.files import LARGEST
 
 Texts: TypeAlias = NDArray[np.str_]
 Which: TypeAlias = Literal["tool", "programmed"]

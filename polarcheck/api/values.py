@@ -16,9 +16,9 @@ from typing import Any
 
 import msgspec
 
-from polarcheck.errors import UsageError
+from polarcheck.foundation.errors import UsageError
 
-#: Tables and lists within each other, digits of a whole number: the limits of TOML files (machines/toml_text.py).
+#: Tables and lists within each other, digits of a whole number: the limits of TOML files (toml_text.py).
 _DEEPEST, _BEYOND = 12, 10**18
 #: Values of a list or table.
 _MOST = 1_000_000

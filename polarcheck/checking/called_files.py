@@ -10,9 +10,9 @@ from collections.abc import Callable, Mapping, Sequence
 import msgspec
 import numpy as np
 
-from polarcheck.arrays import Rows
 from polarcheck.columns.trace import Trace
-from polarcheck.finding import Finding, Silenced
+from polarcheck.foundation.arrays import Rows
+from polarcheck.foundation.finding import Finding, Silenced
 
 #: What a finding is at the block of the file that calls: that may allow it.
 Answered = Callable[[Finding, int], Finding]

@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING, TypeVar
 
 from msgspec.structs import replace
 
-from polarcheck.finding import FileReport, Finding, NotEvaluated, PolarSection
-from polarcheck.reading.channels import stands_in
-from polarcheck.reading.source import Source
+from polarcheck.foundation.finding import FileReport, Finding, NotEvaluated, PolarSection
+from polarcheck.program.reading.channels import stands_in
+from polarcheck.program.reading.source import Source
 
 if TYPE_CHECKING:
-    from polarcheck.checking.tables import Tables
+    from polarcheck.rules.tables import Tables
 
 Part = TypeVar("Part", NotEvaluated, PolarSection)
 Found = TypeVar("Found", bound=Finding)

@@ -12,17 +12,13 @@ from typing import TypeVar
 import msgspec
 
 from polarcheck.checking.called_files import in_the_file
-from polarcheck.checking.causes import READ_OTHERWISE
 from polarcheck.checking.channels import united
 from polarcheck.checking.engine import Engine, in_order, with_following
 from polarcheck.checking.not_evaluated import all_unevaluated, bounds_not_reported
-from polarcheck.checking.other_machine import OtherMachine
 from polarcheck.checking.polar_sections import known_stock, polar_sections
-from polarcheck.checking.rule import Hits, Rule, load_all
-from polarcheck.checking.tables import Tables
-from polarcheck.execution.run import is_code
-from polarcheck.execution.runs import runs
-from polarcheck.finding import (
+from polarcheck.checking.suppression import UNUSED, divided
+from polarcheck.columns.words.allow_mention import Used, mentions_allow
+from polarcheck.foundation.finding import (
     DESELECTED,
     ERROR,
     FAIL,
@@ -35,11 +31,16 @@ from polarcheck.finding import (
     PolarSection,
     Undecided,
 )
-from polarcheck.machines.job import Job
-from polarcheck.machines.machine import Machine
-from polarcheck.reading import source
-from polarcheck.reading.words import Text
-from polarcheck.silence.suppression import UNUSED, Used, divided, mentions_allow
+from polarcheck.program.execution.run import is_code
+from polarcheck.program.execution.runs import runs
+from polarcheck.program.machines.job import Job
+from polarcheck.program.machines.machine import Machine
+from polarcheck.program.reading import source
+from polarcheck.program.reading.words import Text
+from polarcheck.rules.causes import READ_OTHERWISE
+from polarcheck.rules.other_machine import OtherMachine
+from polarcheck.rules.rule import Hits, Rule, load_all
+from polarcheck.rules.tables import Tables
 
 _SKIP = re.compile(r"\s*(?:N\s*\d+\s*)?/", re.IGNORECASE)
 #: Areas checked in every program.
@@ -188,7 +189,7 @@ def engine_of(
         # The file is in another language: what its words seem to say is not worth reporting.
         active = of_dialect
     if inline and mentions_allow(tables["text"].source):
-        from polarcheck.silence.allow_comments import Allows  # imported late: most files have no allow comment
+        from polarcheck.columns.words.allow_comments import Allows  # imported late: most files have no allow comment
 
         allows = Allows(tables["text"], {rule.name: rule.group for rule in load_all().values()})
         tables.give("allows", allows)

@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from polarcheck.arrays import Floats
-from polarcheck.checking import places
 from polarcheck.checking.called_files import in_the_file
-from polarcheck.checking.rule import load_all
 from polarcheck.columns.trace import Trace
-from polarcheck.finding import FASTEST, FASTEST_PER_REVOLUTION, LOWEST_Z, Outline
-from polarcheck.machines.modal import Motion
+from polarcheck.foundation.arrays import Floats
+from polarcheck.foundation.finding import FASTEST, FASTEST_PER_REVOLUTION, LOWEST_Z, Outline
+from polarcheck.foundation.states import Motion
+from polarcheck.rules import places
+from polarcheck.rules.rule import load_all
 
 if TYPE_CHECKING:
     from polarcheck.checking.engine import Listed
-    from polarcheck.checking.tables import Tables
+    from polarcheck.rules.tables import Tables
 
 
 def _depth(trace: Trace) -> Floats:

@@ -11,24 +11,25 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import msgspec
 import numpy as np
 
-from polarcheck.arrays import Mask, Rows, cached_property, is_uniform, repeated
-from polarcheck.checking import places
 from polarcheck.checking.called_files import in_call
-from polarcheck.checking.places import PLACES, Place
-from polarcheck.checking.rule import Hits, Rule
-from polarcheck.checking.tables import OF_CAUSE, Tables
+from polarcheck.checking.suppression import allowed
 from polarcheck.columns.trace import Trace
-from polarcheck.errors import TooHardError
-from polarcheck.execution.programs import name_at_head
-from polarcheck.execution.run import begins_program
-from polarcheck.finding import NOTE, SEVERITIES, Finding, NotEvaluated, Severity, Silenced, Undecided
-from polarcheck.machines.codes import code_numbers, code_set
-from polarcheck.reading.excerpt import shortened
-from polarcheck.silence.suppression import Used, allowed
-from polarcheck.time_limit import keep_going
+from polarcheck.columns.words.allow_mention import Used
+from polarcheck.foundation.arrays import Mask, Rows, cached_property, is_uniform, repeated
+from polarcheck.foundation.errors import TooHardError
+from polarcheck.foundation.finding import NOTE, SEVERITIES, Finding, NotEvaluated, Severity, Silenced, Undecided
+from polarcheck.foundation.time_limit import keep_going
+from polarcheck.program.execution.programs import name_at_head
+from polarcheck.program.execution.run import begins_program
+from polarcheck.program.machines.codes import code_numbers, code_set
+from polarcheck.program.reading.excerpt import shortened
+from polarcheck.rules import places
+from polarcheck.rules.places import PLACES, Place
+from polarcheck.rules.rule import Hits, Rule
+from polarcheck.rules.tables import OF_CAUSE, Tables
 
 if TYPE_CHECKING:
-    from polarcheck.silence.allow_comments import Allows
+    from polarcheck.columns.words.allow_comments import Allows
 
 #: Findings listed per rule and file. Further ones are only counted: nobody reads them, and memory stays bounded.
 LISTED = 1000
@@ -337,8 +338,8 @@ class Engine:
 
     def _finding(self, rule: Rule, place: Place, hits: Hits, count: int) -> Finding:
         from polarcheck.checking.fingerprints import fingerprint
-        from polarcheck.checking.message import fill
-        from polarcheck.checking.repair import fix_of
+        from polarcheck.rules.message import fill
+        from polarcheck.rules.repair import fix_of
 
         trace = self.trace
         at = (

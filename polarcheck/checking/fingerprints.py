@@ -11,9 +11,9 @@ import re
 
 import numpy as np
 
-from polarcheck.checking.places import Place
-from polarcheck.checking.rule import Rule
-from polarcheck.reading.words import Text
+from polarcheck.program.reading.words import Text
+from polarcheck.rules.places import Place
+from polarcheck.rules.rule import Rule
 
 #: Of a block that is looked at; no longer one was written by hand [characters].
 _LONGEST = 4000

@@ -9,12 +9,23 @@ from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Rows
-from polarcheck.checking.macro_faults import ENDLESS_LOOP, Faults, reason_of
 from polarcheck.checking.not_known import OF_MOVES, cause_of, of_variables, why
-from polarcheck.checking.phrases.common import block_and_line
-from polarcheck.checking.phrases.offsets import offset, to_give
-from polarcheck.checking.phrases.polar import (
+from polarcheck.columns.contour.skipped_loops import SkipReason
+from polarcheck.columns.filling import before
+from polarcheck.columns.trace import Trace
+from polarcheck.columns.words.macro_faults import ENDLESS_LOOP, Faults, reason_of
+from polarcheck.foundation.arrays import Floats, Mask, Rows
+from polarcheck.foundation.errors import TooHardError
+from polarcheck.foundation.finding import Finding, NotEvaluated, Undecided
+from polarcheck.geometry.tolerances import CHORDS, CROSSINGS, FARTHEST
+from polarcheck.program.execution.run import Remark
+from polarcheck.program.machines.machine import Machine, OwnMachine
+from polarcheck.rules.remedies import option_or_place, place, unlisted_codes
+from polarcheck.rules.rule import Rule
+from polarcheck.rules.tables import Tables
+from polarcheck.rules.wording.phrases.common import block_and_line
+from polarcheck.rules.wording.phrases.offsets import offset, to_give
+from polarcheck.rules.wording.phrases.polar import (
     axes_not_followed,
     contours_outside,
     extrudes,
@@ -25,17 +36,6 @@ from polarcheck.checking.phrases.polar import (
     on_cylinder,
     on_sub_spindle,
 )
-from polarcheck.checking.remedies import option_or_place, place, unlisted_codes
-from polarcheck.checking.rule import Rule
-from polarcheck.checking.tables import Tables
-from polarcheck.columns.filling import before
-from polarcheck.columns.trace import Trace
-from polarcheck.errors import TooHardError
-from polarcheck.execution.run import Remark
-from polarcheck.finding import Finding, NotEvaluated, Undecided
-from polarcheck.geometry.tolerances import CHORDS, CROSSINGS, FARTHEST
-from polarcheck.machines.machine import Machine, OwnMachine
-from polarcheck.table.skipped_loops import SkipReason
 
 #: Extra reasons that a rule could not be evaluated.
 _ExtraReasons: TypeAlias = Callable[[Tables, Rule], Iterator["Missing"]]
@@ -314,7 +314,7 @@ def _parts_not_compared(tables: Tables, rule: Rule) -> Iterator[Missing]:
     deviations = tables["deviations"]
     if not deviations.parts:
         return
-    from polarcheck.checking.phrases.drawing import compared_with  # late: few programs have a part to compare
+    from polarcheck.rules.wording.phrases.drawing import compared_with  # late: few programs have a part to compare
 
     crosses = f"crosses itself or others more than {CROSSINGS} times a block: no part can be told from it"
     yield from _skipped_loops(tables, rule, deviations.where & deviations.crosses, crosses)

@@ -7,13 +7,13 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from polarcheck.arrays import Rows
-from polarcheck.checking.phrases.common import block_and_line, linear
-from polarcheck.checking.phrases.offsets import called_tool, example, offset, to_give
-from polarcheck.checking.places import block_in_line
-from polarcheck.checking.tables import Tables
 from polarcheck.columns.trace import Trace
-from polarcheck.machines.machine import Machine
+from polarcheck.foundation.arrays import Rows
+from polarcheck.program.machines.machine import Machine
+from polarcheck.rules.places import block_in_line
+from polarcheck.rules.tables import Tables
+from polarcheck.rules.wording.phrases.common import block_and_line, linear
+from polarcheck.rules.wording.phrases.offsets import called_tool, example, offset, to_give
 
 #: Why a column is not known in a row.
 _Reason: TypeAlias = Callable[[Tables, int], str]

@@ -11,10 +11,10 @@ import msgspec
 
 from polarcheck.checking.channels import first_runs
 from polarcheck.checking.cuts import cuts
-from polarcheck.checking.tables import Tables
-from polarcheck.finding import FileReport, Finding, Outline
-from polarcheck.reading.source import Source
-from polarcheck.reading.words import Text
+from polarcheck.foundation.finding import FileReport, Finding, Outline
+from polarcheck.program.reading.source import Source
+from polarcheck.program.reading.words import Text
+from polarcheck.rules.tables import Tables
 
 #: The most hashes of an outline: of a longer file a part of the blocks is listed.
 MOST = 2000

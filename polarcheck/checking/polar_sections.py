@@ -10,23 +10,23 @@ import msgspec
 import numpy as np
 from msgspec import UNSET
 
-from polarcheck.arrays import Floats, Mask, Rows
-from polarcheck.checking.phrases.offsets import key_of
-from polarcheck.checking.quantity import rounded
-from polarcheck.checking.tables import Tables
-from polarcheck.columns.sections import Sections
+from polarcheck.columns.feed.dynamics import Dynamics
+from polarcheck.columns.metal.bar import Bar
+from polarcheck.columns.modes.sections import Sections
+from polarcheck.columns.path.center import Center
+from polarcheck.columns.path.ramps import Ramps
 from polarcheck.columns.trace import Trace
-from polarcheck.errors import TooHardError
-from polarcheck.finding import FileReport, KnownStock, PolarSection
-from polarcheck.machines.code_lists import expanded
-from polarcheck.machines.codes import CODE_LIMIT, code_numbers
-from polarcheck.machines.machine import Machine
-from polarcheck.machines.modal import Units
-from polarcheck.reading.words import Text
-from polarcheck.table.bar import Bar
-from polarcheck.table.center import Center
-from polarcheck.table.dynamics import Dynamics
-from polarcheck.table.ramps import Ramps
+from polarcheck.foundation.arrays import Floats, Mask, Rows
+from polarcheck.foundation.errors import TooHardError
+from polarcheck.foundation.finding import FileReport, KnownStock, PolarSection
+from polarcheck.foundation.states import Units
+from polarcheck.program.machines.code_lists import expanded
+from polarcheck.program.machines.codes import CODE_LIMIT, code_numbers
+from polarcheck.program.machines.machine import Machine
+from polarcheck.program.reading.words import Text
+from polarcheck.rules.quantity import rounded
+from polarcheck.rules.tables import Tables
+from polarcheck.rules.wording.phrases.offsets import key_of
 
 
 def polar_sections(tables: Tables) -> list[PolarSection]:

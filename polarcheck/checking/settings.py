@@ -7,12 +7,12 @@ from pathlib import Path
 
 import msgspec
 
-from polarcheck.checking.rule import Rule
-from polarcheck.checking.tables import Tables
-from polarcheck.finding import Decided, FileReport
-from polarcheck.machines import profiles
-from polarcheck.machines.job import Job
-from polarcheck.machines.machine import Machine
+from polarcheck.foundation.finding import Decided, FileReport
+from polarcheck.program.machines import profiles
+from polarcheck.program.machines.job import Job
+from polarcheck.program.machines.machine import Machine
+from polarcheck.rules.rule import Rule
+from polarcheck.rules.tables import Tables
 
 #: A function that adds a requested section to the report of a file, from the tables of its runs (check.read).
 Extra = Callable[[FileReport, Sequence[tuple[str, Tables]]], FileReport]

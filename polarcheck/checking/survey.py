@@ -9,17 +9,17 @@ import msgspec
 import numpy as np
 
 from polarcheck.checking import check
-from polarcheck.checking.other_machine import reads_well
-from polarcheck.checking.tables import Tables
 from polarcheck.columns.trace import Trace
-from polarcheck.errors import PolarcheckError
-from polarcheck.machines import profiles
-from polarcheck.machines.job import Job
-from polarcheck.machines.machine import Machine
-from polarcheck.machines.modal import Side, Units
-from polarcheck.machines.profiles import Profile
-from polarcheck.reading import files
-from polarcheck.time_limit import time_limit
+from polarcheck.foundation.errors import PolarcheckError
+from polarcheck.foundation.states import Side, Units
+from polarcheck.foundation.time_limit import time_limit
+from polarcheck.program.machines import profiles
+from polarcheck.program.machines.job import Job
+from polarcheck.program.machines.machine import Machine
+from polarcheck.program.machines.profiles import Profile
+from polarcheck.program.reading import files
+from polarcheck.rules.other_machine import reads_well
+from polarcheck.rules.tables import Tables
 
 #: A program that takes longer tells nothing [s].
 _SECONDS = 5.0

@@ -1,1 +1,1 @@
-"""The executed program as columns: a table of one element per executed block for each subject."""
+"""The executed program as columns and tables, which rules compare."""

@@ -7,7 +7,7 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from polarcheck.arrays import Floats, Mask, Rows, is_uniform, repeated
+from polarcheck.foundation.arrays import Floats, Mask, Rows, is_uniform, repeated
 
 Scalar = TypeVar("Scalar", bound=np.generic)
 

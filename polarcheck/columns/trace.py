@@ -2,22 +2,22 @@
 
 from __future__ import annotations
 
-from polarcheck.arrays import Columns
-from polarcheck.columns.axes import PlaneAxes
-from polarcheck.columns.blocks import ExecutedBlocks
-from polarcheck.columns.compensation import CutterCompensation
-from polarcheck.columns.coordinates import Coordinates
-from polarcheck.columns.feedrate import Feedrate
-from polarcheck.columns.lengths import Lengths
-from polarcheck.columns.modal import ModalStates
-from polarcheck.columns.mode import PolarMode
-from polarcheck.columns.offsets import ToolOffsets
-from polarcheck.columns.path import ProgrammedPath
-from polarcheck.columns.tools import CalledTools
-from polarcheck.execution.run import Run
-from polarcheck.machines.job import Job
-from polarcheck.machines.machine import Machine
-from polarcheck.reading.words import Text
+from polarcheck.columns.feed.feedrate import Feedrate
+from polarcheck.columns.modes.blocks import ExecutedBlocks
+from polarcheck.columns.modes.modal import ModalStates
+from polarcheck.columns.modes.mode import PolarMode
+from polarcheck.columns.modes.offsets import ToolOffsets
+from polarcheck.columns.modes.tools import CalledTools
+from polarcheck.columns.path.axes import PlaneAxes
+from polarcheck.columns.path.compensation import CutterCompensation
+from polarcheck.columns.path.coordinates import Coordinates
+from polarcheck.columns.path.lengths import Lengths
+from polarcheck.columns.path.path import ProgrammedPath
+from polarcheck.foundation.arrays import Columns
+from polarcheck.program.execution.run import Run
+from polarcheck.program.machines.job import Job
+from polarcheck.program.machines.machine import Machine
+from polarcheck.program.reading.words import Text
 
 
 class Trace(Columns, frozen=True):

@@ -16,7 +16,6 @@ from typing import Any
 
 import click
 
-from polarcheck import __version__, ending, record
 from polarcheck.commands import options, planted_names, signals
 from polarcheck.commands.exit_codes import BUG, CLEAN, COULD_NOT_RUN
 from polarcheck.commands.output import (
@@ -28,8 +27,10 @@ from polarcheck.commands.output import (
     say,
     say_lines,
 )
-from polarcheck.errors import PolarcheckError, RuleError
-from polarcheck.memory import keep_room_for_numpy
+from polarcheck.foundation import ending, record
+from polarcheck.foundation.errors import PolarcheckError, RuleError
+from polarcheck.foundation.memory import keep_room_for_numpy
+from polarcheck.foundation.version import __version__
 
 NAMES = (
     "baseline",

@@ -15,9 +15,9 @@ from polarcheck.commands.exit_codes import COULD_NOT_RUN
 from polarcheck.commands.output import say, show
 
 if TYPE_CHECKING:
-    from polarcheck.batch.baseline import Baseline
-    from polarcheck.batch.baseline_file import Contents
-    from polarcheck.batch.tasks import Checked, Task
+    from polarcheck.files.baselines.baseline import Baseline
+    from polarcheck.files.baselines.baseline_file import Contents
+    from polarcheck.files.batch.tasks import Checked, Task
 
 #: The argument and options of `check` that decide what is found.
 DECIDING = (
@@ -120,9 +120,9 @@ def prune(ctx: click.Context, /, paths: tuple[str, ...], **arguments: Any) -> No
 
 def _none_yet(path: Path) -> Contents:
     """Return an empty baseline. Raises BaselineError for a file that is there."""
-    from polarcheck.batch.baseline_file import Contents
-    from polarcheck.errors import BaselineError
-    from polarcheck.reading import files
+    from polarcheck.files.baselines.baseline_file import Contents
+    from polarcheck.foundation.errors import BaselineError
+    from polarcheck.program.reading import files
 
     if path.exists() or path.is_symlink():
         name = files.shown(str(path))
@@ -131,9 +131,9 @@ def _none_yet(path: Path) -> Contents:
 
 
 def _known(path: Path) -> Contents:
-    from polarcheck.batch import baseline_file
-    from polarcheck.errors import BaselineError
-    from polarcheck.reading import files
+    from polarcheck.files.baselines import baseline_file
+    from polarcheck.foundation.errors import BaselineError
+    from polarcheck.program.reading import files
 
     if not path.exists():
         raise BaselineError(f"-o {files.shown(str(path))}: there is none; `polarcheck baseline create` writes it")
@@ -156,14 +156,14 @@ def _run(
     reason: str = "",
     **arguments: Any,
 ) -> int:
-    from polarcheck.batch import baseline_file
-    from polarcheck.batch.baseline import Baseline
     from polarcheck.commands import overwriting, running, signals
     from polarcheck.commands.progress import Bar
-    from polarcheck.memory import keep_within_memory
-    from polarcheck.reading import files
-    from polarcheck.reading.excerpt import head
-    from polarcheck.settings.of_programs import OfPrograms, Options
+    from polarcheck.files.baselines import baseline_file
+    from polarcheck.files.baselines.baseline import Baseline
+    from polarcheck.files.settings.of_programs import OfPrograms, Options
+    from polarcheck.foundation.memory import keep_within_memory
+    from polarcheck.program.reading import files
+    from polarcheck.program.reading.excerpt import head
 
     keep_within_memory()
     if output is not None:
@@ -191,8 +191,8 @@ def _run(
 
 def _of_jobs(tasks: list[Task]) -> Path:
     """Return the baseline that the job files name. Raises UsageError if they name several."""
-    from polarcheck.errors import UsageError
-    from polarcheck.reading import files
+    from polarcheck.foundation.errors import UsageError
+    from polarcheck.program.reading import files
 
     named = {str(task.settings.baseline) for task in tasks if task.settings.baseline is not None}
     if len(named) > 1:
@@ -214,8 +214,8 @@ def _with_baseline(tasks: list[Task], path: Path) -> list[Task]:
 
 
 def _updated(known: Baseline, before: Contents, checked: Checked, tasks: list[Task], reason: str) -> _Result:
-    from polarcheck.batch.baselines import evaluated
-    from polarcheck.batch.tasks import settings_of
+    from polarcheck.files.baselines.baselines import evaluated
+    from polarcheck.files.batch.tasks import settings_of
 
     settings = settings_of(tasks)
     updated = known.updated(((report, evaluated(report, settings[report.path])) for report in checked.files), reason)
@@ -225,8 +225,8 @@ def _updated(known: Baseline, before: Contents, checked: Checked, tasks: list[Ta
 
 
 def _pruned(known: Baseline, before: Contents, checked: Checked, tasks: list[Task], reason: str) -> _Result:
-    from polarcheck.batch.baselines import evaluated
-    from polarcheck.batch.tasks import settings_of
+    from polarcheck.files.baselines.baselines import evaluated
+    from polarcheck.files.batch.tasks import settings_of
 
     settings = settings_of(tasks)
     for report in checked.files:
@@ -236,7 +236,7 @@ def _pruned(known: Baseline, before: Contents, checked: Checked, tasks: list[Tas
 
 
 def _counts(contents: Contents) -> str:
-    from polarcheck.batch.baseline import Baseline
+    from polarcheck.files.baselines.baseline import Baseline
     from polarcheck.reports import counted
 
     files = len({entry.file for entry in contents.entries})

@@ -13,15 +13,15 @@ from polarcheck.commands import options
 from polarcheck.commands.exit_codes import BUG, CLEAN, COULD_NOT_RUN, FINDINGS
 from polarcheck.commands.options import narrower, option
 from polarcheck.commands.output import COLUMNS
-from polarcheck.errors import UsageError
+from polarcheck.foundation.errors import UsageError
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from polarcheck.certification.certifying import Certified
-    from polarcheck.certification.loading import Loaded
-    from polarcheck.certification.results import Certificate
     from polarcheck.checking.settings import Settings
+    from polarcheck.rewrite.certify.certifying import Certified
+    from polarcheck.rewrite.certify.loading import Loaded
+    from polarcheck.rewrite.certify.results import Certificate
 
 _INIT = "init"
 _FORMATS = ("text", "json", "html")
@@ -95,12 +95,12 @@ def _certify(
     most: int,
     debug: bool,
 ) -> int:
-    from polarcheck.certification import certifying, loading
-    from polarcheck.certification.results import NOT_RUN
     from polarcheck.commands.output import bug_lines, columns, in_color, say_lines, show, warn
     from polarcheck.commands.progress import Bar
-    from polarcheck.memory import keep_within_memory
-    from polarcheck.reading import files
+    from polarcheck.foundation.memory import keep_within_memory
+    from polarcheck.program.reading import files
+    from polarcheck.rewrite.certify import certifying, loading
+    from polarcheck.rewrite.certify.results import NOT_RUN
 
     keep_within_memory()
     loaded = loading.load(path)
@@ -139,11 +139,11 @@ def _refuse(outputs: list[tuple[str, Path]], loaded: Loaded, settings: Mapping[s
 
     All files that the manifest names count, those of cases that are not run, too.
     """
-    from polarcheck import record
-    from polarcheck.batch.tasks import Task
     from polarcheck.commands import overwriting
-    from polarcheck.errors import OutputError
-    from polarcheck.reading.files import shown
+    from polarcheck.files.batch.tasks import Task
+    from polarcheck.foundation import record
+    from polarcheck.foundation.errors import OutputError
+    from polarcheck.program.reading.files import shown
 
     named = [file for case in loaded.cases.values() for file in (case.program, case.golden) if file is not None]
     record.note(*map(loaded.beside, [*named, *loaded.named_files()]))
@@ -157,8 +157,8 @@ def _refuse(outputs: list[tuple[str, Path]], loaded: Loaded, settings: Mapping[s
 
 def _update(loaded: Loaded, certified: dict[str, Certified], chosen: frozenset[str]) -> int:
     """Write the golden traces; say what changes."""
-    from polarcheck.certification.updating import updates
     from polarcheck.commands.output import say_lines, warn
+    from polarcheck.rewrite.certify.updating import updates
 
     any_golden = False
     for line, _ in updates(loaded, certified, chosen):
@@ -172,24 +172,24 @@ def _update(loaded: Loaded, certified: dict[str, Certified], chosen: frozenset[s
 def _report(certificate: Certificate, form: str, columns: int = COLUMNS, is_colored: bool = False) -> str:
     """Return the report in a format."""
     if form == "html":
-        from polarcheck.certification.html import html
+        from polarcheck.rewrite.certify.html import html
 
         return html(certificate)
     if form == "json":
         from polarcheck.reports.json import encoded
 
         return f"{encoded(certificate, indent=2)}\n"
-    from polarcheck.certification.text import text
-    from polarcheck.pictures.painting import plain
     from polarcheck.reports import painted
+    from polarcheck.reports.pages.painting import plain
+    from polarcheck.rewrite.certify.text import text
 
     return text(certificate, columns, painted if is_colored else plain)
 
 
 def _init(folder: Path, machines: tuple[str, ...]) -> int:
-    from polarcheck.certification import suite
     from polarcheck.commands.output import show
-    from polarcheck.reading.excerpt import head
+    from polarcheck.program.reading.excerpt import head
+    from polarcheck.rewrite.certify import suite
 
     written = suite.write(folder, machines)
     manifest, words, *drawings = map(head, written)

@@ -27,11 +27,11 @@ from polarcheck.commands.output import COLUMNS, columns, draws_dots, in_color, s
 from polarcheck.reports import formats
 
 if TYPE_CHECKING:
-    from polarcheck.batch.tasks import Task
-    from polarcheck.finding import Report
-    from polarcheck.reading.walking import Skipped
+    from polarcheck.files.batch.tasks import Task
+    from polarcheck.files.settings.of_programs import Options
+    from polarcheck.foundation.finding import Report
+    from polarcheck.program.reading.walking import Skipped
     from polarcheck.reports import Background
-    from polarcheck.settings.of_programs import Options
 
 #: With more files than this the default format is short.
 _LONG = 3
@@ -188,12 +188,12 @@ def _quoted(value: object) -> str:
 
 
 def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
-    from polarcheck.batch import tasks as batch
     from polarcheck.commands import live, overwriting, progress, signals
-    from polarcheck.machines import profiles
-    from polarcheck.memory import keep_within_memory
-    from polarcheck.settings import decisions
-    from polarcheck.settings.of_programs import OfPrograms
+    from polarcheck.files.batch import tasks as batch
+    from polarcheck.files.settings import decisions
+    from polarcheck.files.settings.of_programs import OfPrograms
+    from polarcheck.foundation.memory import keep_within_memory
+    from polarcheck.program.machines import profiles
 
     keep_within_memory()
     reporting.refuse(arguments.form, arguments.statistics)
@@ -223,7 +223,7 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
     overwriting.refuse(written, tasks)
     run_settings = decisions.shared((task.settings for task in tasks), arguments.diff_base)
     if run_settings.differing:
-        from polarcheck.batch.decisions import with_own_settings
+        from polarcheck.files.batch.decisions import with_own_settings
 
         tasks = with_own_settings(tasks)
     looked_for = partial(settings_of.looked_for, walked=arguments.paths)
@@ -285,14 +285,14 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
 
 def _options(arguments: _Arguments) -> Options:
     """Return the options that apply to programs, with what reports ask of each."""
-    from polarcheck.settings.of_programs import Options
+    from polarcheck.files.settings.of_programs import Options
 
     extras = reporting.extras(arguments.shown_too, arguments.form, arguments.outputs)
     if picturing.FORMAT in (arguments.form, *(form for form, _ in arguments.outputs)):
         extras += picturing.extras()
     if arguments.part:
-        from polarcheck.parts.comparison import compared_in
-        from polarcheck.parts.part_report import part_of
+        from polarcheck.reports.made_parts.comparison import compared_in
+        from polarcheck.reports.made_parts.part_report import part_of
 
         extras = (*extras, part_of, compared_in)
     return Options(
@@ -312,7 +312,7 @@ def _background(
     fixed: how many fixes were written.
     """
     from polarcheck import reports
-    from polarcheck.checking import rule
+    from polarcheck.rules import rule
 
     return reporting.background(
         reports.Background(
@@ -335,7 +335,7 @@ def _excesses(report: Report, tasks: Sequence[Task]) -> Sequence[str]:
     """Return a line for each --max-warnings that is exceeded."""
     if all(task.settings.decided.max_warnings is None for task in tasks):
         return ()
-    from polarcheck.batch.decisions import too_many_warnings
+    from polarcheck.files.batch.decisions import too_many_warnings
 
     return [*too_many_warnings(report.files, tasks)]
 

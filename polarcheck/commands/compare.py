@@ -10,14 +10,14 @@ import click
 
 from polarcheck.commands import options
 from polarcheck.commands.options import narrower, option
-from polarcheck.errors import PolarcheckError, TooHardError, UsageError
+from polarcheck.foundation.errors import PolarcheckError, TooHardError, UsageError
 
 if TYPE_CHECKING:
-    from polarcheck.batch.tasks import Task
     from polarcheck.commands.running import Faults
-    from polarcheck.revisions.comparison import Revision
-    from polarcheck.revisions.report import Comparison
-    from polarcheck.settings.of_programs import OfPrograms
+    from polarcheck.files.batch.tasks import Task
+    from polarcheck.files.settings.of_programs import OfPrograms
+    from polarcheck.rewrite.compare.comparison import Revision
+    from polarcheck.rewrite.compare.report import Comparison
 
 #: What git gives a diff driver: path, then file, hash and mode of both sides.
 _GIT_ARGUMENTS = 7
@@ -96,13 +96,13 @@ def _compare(
     from polarcheck.commands.exit_codes import CLEAN, COULD_NOT_RUN, FINDINGS
     from polarcheck.commands.output import in_color, show
     from polarcheck.commands.running import Faults
-    from polarcheck.memory import keep_within_memory
-    from polarcheck.pictures.painting import plain
-    from polarcheck.reading.excerpt import head
+    from polarcheck.files.settings.of_programs import OfPrograms, Options
+    from polarcheck.foundation.memory import keep_within_memory
+    from polarcheck.program.reading.excerpt import head
     from polarcheck.reports import painted
-    from polarcheck.reports.pages import comparison as page
-    from polarcheck.revisions.report import DIFFERS, NOT_COMPARED
-    from polarcheck.settings.of_programs import OfPrograms, Options
+    from polarcheck.reports.pages.painting import plain
+    from polarcheck.rewrite.compare import page as page
+    from polarcheck.rewrite.compare.report import DIFFERS, NOT_COMPARED
 
     keep_within_memory()
     pair = _arguments(paths, named or "", is_git)
@@ -154,7 +154,7 @@ def _files(
 ) -> tuple[list[tuple[Task, Task]], list[str], list[str]]:
     """The pairs of programs, and those of a folder that the other one does not have."""
     from polarcheck.commands.running import planned
-    from polarcheck.reading.files import STANDARD_INPUT
+    from polarcheck.program.reading.files import STANDARD_INPUT
 
     are_folders = [os.path.isdir(path) for path in pair[:2]]  # noqa: PTH112  Path.is_dir raises for some names
     if are_folders[0] != are_folders[1]:
@@ -173,7 +173,7 @@ def _files(
 
 
 def _of_files(pair: _Pair, settings: Sequence[OfPrograms]) -> list[tuple[Task, Task]]:
-    from polarcheck.batch.tasks import Task
+    from polarcheck.files.batch.tasks import Task
 
     places = [pair.named or path for path in pair[:2]]
     if not pair.named:
@@ -187,10 +187,10 @@ def _of_files(pair: _Pair, settings: Sequence[OfPrograms]) -> list[tuple[Task, T
 
 def _compared(old: Task, new: Task, tolerance: float | None, max_size: int) -> tuple[Comparison, bool]:
     """The comparison of two programs, and whether its lengths are shown in inch."""
-    from polarcheck.machines.modal import MM_PER_INCH, Units
-    from polarcheck.reading import files
-    from polarcheck.revisions.comparison import compared, default_tolerance
-    from polarcheck.time_limit import seconds_for, time_limit
+    from polarcheck.foundation.states import MM_PER_INCH, Units
+    from polarcheck.foundation.time_limit import seconds_for, time_limit
+    from polarcheck.program.reading import files
+    from polarcheck.rewrite.compare.comparison import compared, default_tolerance
 
     data = [files.read_program(task.path, max_size) for task in (old, new)]
     seconds = max(task.settings.job.run.max_seconds for task in (old, new))
@@ -205,7 +205,7 @@ def _compared(old: Task, new: Task, tolerance: float | None, max_size: int) -> t
 
 def _revision(task: Task, data: bytes) -> Revision:
     from polarcheck.checking import check
-    from polarcheck.revisions.comparison import Revision
+    from polarcheck.rewrite.compare.comparison import Revision
 
     settings = task.settings
     runs = check.read(data, settings.machine, settings.job, task.title, settings.encoding)

@@ -9,13 +9,13 @@ import click
 
 from polarcheck.commands.options import option
 from polarcheck.commands.rewriting import Command, rewriting
-from polarcheck.errors import UsageError
+from polarcheck.foundation.errors import UsageError
 
 if TYPE_CHECKING:
     from polarcheck.checking.settings import Settings
-    from polarcheck.conversion.rewriting import Work
+    from polarcheck.rewrite.writing.rewriting import Work
 
-#: Those of polarcheck.conversion.compensating.contours, which is imported late.
+#: Those of polarcheck.rewrite.compensate.contours, which is imported late.
 _SIDES = ("left", "right", "part-inside", "part-outside")
 
 
@@ -45,8 +45,8 @@ def compensate(center: bool, side: str | None) -> Command:
 
 def _work(center: bool, side: str) -> Callable[[Settings], Work]:
     def work(settings: Settings) -> Work:
-        from polarcheck.conversion.compensating.centering import centered
-        from polarcheck.conversion.compensating.compensating import Compensating, compensated
+        from polarcheck.rewrite.compensate.centering import centered
+        from polarcheck.rewrite.compensate.compensating import Compensating, compensated
 
         return centered if center else lambda original: compensated(original, Compensating(side))
 

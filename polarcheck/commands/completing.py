@@ -62,7 +62,7 @@ def _drawings(begun: str) -> Iterator[Item]:
 
 def _machines(begun: str) -> Iterator[Item]:
     """Yield the built-in machines, and machine files."""
-    from polarcheck import machines
+    from polarcheck.program import machines
 
     titles = {path.stem: _title_of_machine(path) for path in Path(machines.__file__).parent.glob("*.toml")}
     yield from (_item(name, title) for name, title in sorted(titles.items()) if name.startswith(begun))
@@ -97,7 +97,7 @@ def _names_of_rules() -> Iterator[tuple[str, str]]:
     """
     Groups and rules with their titles, from the files: to load them all takes longer than a user waits for a word.
     """
-    from polarcheck.checking.rule import rule_files
+    from polarcheck.rules.rule import rule_files
 
     paths = list(map(Path, rule_files()))
     for group in sorted({path.parent.name for path in paths}):
@@ -108,7 +108,7 @@ def _names_of_rules() -> Iterator[tuple[str, str]]:
 
 
 def _levels(begun: str) -> Iterator[Item]:
-    from polarcheck.settings.selection import LEVELS
+    from polarcheck.files.settings.selection import LEVELS
 
     name, equals, level = begun.partition("=")
     if equals:
@@ -132,7 +132,7 @@ def _keys(begun: str) -> Iterator[Item]:
     """Yield TABLE.KEY= of a machine."""
     import msgspec
 
-    from polarcheck.machines.machine import Machine, meanings
+    from polarcheck.program.machines.machine import Machine, meanings
 
     for field in msgspec.structs.fields(Machine):
         if isinstance(field.type, type) and issubclass(field.type, msgspec.Struct):

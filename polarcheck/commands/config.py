@@ -54,10 +54,10 @@ def show(ctx: click.Context, /, path: str, **arguments: Any) -> None:
 def _shown(
     ctx: click.Context, path: str, *, form: str, no_config: bool, extensions: tuple[str, ...], **arguments: Any
 ) -> str:
-    from polarcheck.reading import files
+    from polarcheck.files.settings import origins
+    from polarcheck.files.settings.of_programs import OfPrograms, Options
+    from polarcheck.program.reading import files
     from polarcheck.reports.pages import applied as page
-    from polarcheck.settings import origins
-    from polarcheck.settings.of_programs import OfPrograms, Options
 
     exclude: tuple[str, ...] = arguments["exclude"]
     settings_of = OfPrograms(Options(use_config=not no_config, **arguments))

@@ -12,7 +12,7 @@ from polarcheck.commands.rewriting import Command, rewriting
 
 if TYPE_CHECKING:
     from polarcheck.checking.settings import Settings
-    from polarcheck.conversion.rewriting import Work
+    from polarcheck.rewrite.writing.rewriting import Work
 
 
 @click.command(short_help="Write programs for another control, or say why not.")
@@ -33,13 +33,13 @@ def convert(to: str) -> Command:
     the angles of C must be those of the original to the least increment. Otherwise nothing is written, the reasons are
     said with their lines, and the exit code is 2.
     """
-    from polarcheck.settings.of_programs import default_machine
+    from polarcheck.files.settings.of_programs import default_machine
 
     machine_id, machine = default_machine(to)
 
     def work(settings: Settings) -> Work:
-        from polarcheck.conversion.control.converting import converted
-        from polarcheck.settings.of_programs import on_machine
+        from polarcheck.files.settings.of_programs import on_machine
+        from polarcheck.rewrite.convert.converting import converted
 
         target = on_machine(settings, to)
         return lambda original: converted(original, target)

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 
 from polarcheck.commands.options import option
 from polarcheck.commands.output import say
-from polarcheck.errors import UsageError
+from polarcheck.foundation.errors import UsageError
 
 if TYPE_CHECKING:
-    from polarcheck.batch.changes import LookedFor
-    from polarcheck.batch.tasks import Task
+    from polarcheck.files.batch.tasks import Task
+    from polarcheck.files.changes import LookedFor
 
 diff_base = option(
     "--diff-base", metavar="REF",
@@ -64,7 +64,7 @@ def narrowed(
     """
     if ref is None and names is None:
         return tasks
-    from polarcheck.batch import changes
+    from polarcheck.files import changes
 
     if ref is not None:
         title, concerned = f"--diff-base {ref}", changes.since(ref, tasks, looked_for, max_size)

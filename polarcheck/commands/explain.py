@@ -33,10 +33,10 @@ def explain(rule: str, program: str | None, machine: str | None, max_size: int) 
     if page:
         show(page)
         return
-    from polarcheck.checking.rule import load_all
+    from polarcheck.files.settings import selection
+    from polarcheck.files.settings.of_programs import OfPrograms, Options, default_machine
     from polarcheck.reports.pages import manual
-    from polarcheck.settings import selection
-    from polarcheck.settings.of_programs import OfPrograms, Options, default_machine
+    from polarcheck.rules.rule import load_all
 
     applied = OfPrograms(Options(machine=machine))(program) if program else None
     profile = applied.machine if applied else default_machine(machine)[1]
@@ -55,9 +55,9 @@ def explain(rule: str, program: str | None, machine: str | None, max_size: int) 
 def _reported(program: str, applied: Settings, max_size: int) -> set[str]:
     """The rules that report something in a program."""
     from polarcheck.checking import check
-    from polarcheck.memory import keep_within_memory
-    from polarcheck.reading import files
-    from polarcheck.time_limit import seconds_for, time_limit
+    from polarcheck.foundation.memory import keep_within_memory
+    from polarcheck.foundation.time_limit import seconds_for, time_limit
+    from polarcheck.program.reading import files
 
     keep_within_memory()
     data = files.read_program(program, max_size)

@@ -10,10 +10,10 @@ from polarcheck.commands import options
 from polarcheck.commands.exit_codes import CLEAN, COULD_NOT_RUN
 from polarcheck.commands.options import narrower, option
 from polarcheck.commands.output import say, show, warn
-from polarcheck.errors import UsageError
+from polarcheck.foundation.errors import UsageError
 
 if TYPE_CHECKING:
-    from polarcheck.checking.tables import Tables
+    from polarcheck.rules.tables import Tables
 
 
 @click.command(short_help="Show the highest F of each block that keeps C and X within their limits.")
@@ -37,8 +37,8 @@ def feeds(path: str, form: str, diff: bool, no_config: bool, max_size: int, **ar
     of the table can be believed, standard error says so.
     """
     from polarcheck.api import feed_tables, programs
-    from polarcheck.memory import keep_within_memory
-    from polarcheck.settings.of_programs import Options
+    from polarcheck.files.settings.of_programs import Options
+    from polarcheck.foundation.memory import keep_within_memory
 
     keep_within_memory()
     if diff and form != "text":
@@ -60,8 +60,8 @@ def feeds(path: str, form: str, diff: bool, no_config: bool, max_size: int, **ar
 def _show_table(title: str, machine: str, runs: list[Tables], form: str) -> None:
     import msgspec
 
-    from polarcheck.feed_table.table import FeedReport, feed_table
-    from polarcheck.reports.pages import feeds as pages
+    from polarcheck.rewrite.feeds import page as pages
+    from polarcheck.rewrite.feeds.table import FeedReport, feed_table
 
     if form == "csv":
         for line in pages.as_csv(runs):
@@ -74,7 +74,7 @@ def _show_table(title: str, machine: str, runs: list[Tables], form: str) -> None
 
 
 def _show_diff(title: str, data: bytes, runs: list[Tables], encoding: str | None) -> int:
-    from polarcheck.fixes.feeds import with_feeds
+    from polarcheck.rewrite.feeds.feeds import with_feeds
 
     edited = with_feeds(title, data, runs, encoding)
     if edited is None:

@@ -15,12 +15,12 @@ import click
 from polarcheck.commands.exit_codes import BUG, CLEAN, COULD_NOT_RUN, FINDINGS
 from polarcheck.commands.options import option
 from polarcheck.commands.output import bug_lines, say, say_lines, show, show_diff, warn
-from polarcheck.errors import OutputError, PolarcheckError, SourceError, TooHardError, UsageError
+from polarcheck.foundation.errors import OutputError, PolarcheckError, SourceError, TooHardError, UsageError
 
 if TYPE_CHECKING:
-    from polarcheck.batch.tasks import Task
-    from polarcheck.finding import FileReport
-    from polarcheck.fixes.fixing import Outcome
+    from polarcheck.files.batch.tasks import Task
+    from polarcheck.foundation.finding import FileReport
+    from polarcheck.rewrite.fixes.fixing import Outcome
 
 #: The most fixes of a file that are listed.
 _LISTED = 20
@@ -163,7 +163,7 @@ class _Work:
 
     def do(self, task: Task) -> None:
         """Fix one program; an error concerns this program only, and the report that follows says more."""
-        from polarcheck.reading import files
+        from polarcheck.program.reading import files
 
         is_input = files.is_standard_input(task.path)
         try:
@@ -188,7 +188,7 @@ class _Work:
             self._count(outcome, task.title)
 
     def _outcome(self, task: Task, data: bytes, path: str) -> Outcome | None:
-        from polarcheck.fixes.fixing import with_fixes
+        from polarcheck.rewrite.fixes.fixing import with_fixes
 
         try:
             return with_fixes(
@@ -216,7 +216,7 @@ class _Work:
             self.status = max(self.status, COULD_NOT_RUN)
 
     def _written(self, path: str, old: bytes, new: bytes) -> bool:
-        from polarcheck.reading.rewriting import rewrite
+        from polarcheck.program.reading.rewriting import rewrite
 
         try:
             rewrite(path, old, new, keep=self.wanted.backup)
@@ -227,7 +227,7 @@ class _Work:
         return True
 
     def _show(self, task: Task, old: bytes, outcome: Outcome | None) -> None:
-        from polarcheck.fixes.difference import difference
+        from polarcheck.rewrite.fixes.difference import difference
 
         if outcome is None:
             return

@@ -13,7 +13,7 @@ from click.core import ParameterSource
 from polarcheck.commands import options
 from polarcheck.commands.options import option
 from polarcheck.commands.output import show, warn
-from polarcheck.errors import UsageError
+from polarcheck.foundation.errors import UsageError
 
 
 @click.command(short_help="Write a commented polarcheck.toml for the programs of a folder.")
@@ -74,12 +74,12 @@ def _refuse(ctx: click.Context, names: Set[str], reason: str) -> None:
 
 def _parts(paths: tuple[str, ...], *, debug: bool, max_size: int, no_config: bool, **arguments: Any) -> int:
     """Show the [[part]] entries of what programs make; return the exit code."""
-    from polarcheck.checking.causes import READ_OTHERWISE
     from polarcheck.commands import progress, running
-    from polarcheck.memory import keep_within_memory
-    from polarcheck.parts.part_report import part_of
+    from polarcheck.files.settings.of_programs import OfPrograms, Options
+    from polarcheck.foundation.memory import keep_within_memory
+    from polarcheck.reports.made_parts.part_report import part_of
     from polarcheck.reports.pages import new_parts
-    from polarcheck.settings.of_programs import OfPrograms, Options
+    from polarcheck.rules.causes import READ_OTHERWISE
 
     keep_within_memory()
     applies = Options(
@@ -101,13 +101,13 @@ def _parts(paths: tuple[str, ...], *, debug: bool, max_size: int, no_config: boo
 def _init(folder: str, machine: str | None, extensions: tuple[str, ...], schema: bool, quiet: bool) -> list[str]:
     from polarcheck.checking import survey
     from polarcheck.commands.progress import Bar
-    from polarcheck.machines.job import FILE_NAME
-    from polarcheck.reading import files, walking
-    from polarcheck.reading.excerpt import head, visible
+    from polarcheck.files.settings import job_files
+    from polarcheck.files.settings.of_programs import profile_of
+    from polarcheck.program.machines.job import FILE_NAME
+    from polarcheck.program.reading import files, walking
+    from polarcheck.program.reading.excerpt import head, visible
     from polarcheck.reports.pages import new_job
     from polarcheck.reports.pages import schema as schemas
-    from polarcheck.settings import job_files
-    from polarcheck.settings.of_programs import profile_of
 
     path = Path(folder, FILE_NAME)
     existing = job_files.in_folder(Path(folder))
@@ -128,7 +128,7 @@ def _init(folder: str, machine: str | None, extensions: tuple[str, ...], schema:
     is_new = schema and not os.path.lexists(schema_path)
     files.write(path, new_job.text(results, written, outer, schema, extensions))
     if is_new:
-        files.write(schema_path, schemas.text("job"))
+        files.write(schema_path, schemas.as_text(schemas.schema("job")))
     lines = [f"{head(files.shown(str(path)))} written: {new_job.summary(results)}"]
     if schema:
         lies = "beside it, for editors" if is_new else "is there already, and stays as it is"
@@ -142,6 +142,6 @@ def _init(folder: str, machine: str | None, extensions: tuple[str, ...], schema:
 
 def _name(machine: str, folder: Path) -> str:
     """Return a machine as a file in this folder must name it."""
-    from polarcheck.machines import profiles
+    from polarcheck.program.machines import profiles
 
     return machine if machine in profiles.names() else Path(os.path.relpath(machine, folder)).as_posix()

@@ -6,8 +6,8 @@ from collections.abc import Callable, Mapping
 
 from polarcheck import reports
 from polarcheck.commands.output import show
-from polarcheck.errors import OutputError
-from polarcheck.finding import FileReport, Report
+from polarcheck.foundation.errors import OutputError
+from polarcheck.foundation.finding import FileReport, Report
 from polarcheck.reports import Background
 
 #: With more files than this the report is written file by file; with fewer, text says more about each (reports.text).

@@ -12,10 +12,10 @@ from polarcheck.commands import options
 from polarcheck.commands.exit_codes import CLEAN, COULD_NOT_RUN
 from polarcheck.commands.options import option
 from polarcheck.commands.output import say, show
-from polarcheck.errors import MachineError, UsageError
+from polarcheck.foundation.errors import MachineError, UsageError
 
 if TYPE_CHECKING:
-    from polarcheck.machines.profiles import Profile
+    from polarcheck.program.machines.profiles import Profile
 
 
 @click.command(short_help="List the machines, show one, write or check one of your own.")
@@ -34,8 +34,8 @@ def machines(name: str | None, lathe: str | None, inherits: str | None, *, short
     polarcheck machines new NL2000 --from fanuc-30i    write NL2000.toml for a lathe of your own
     polarcheck machines new NL2000 --from fanuc-30i --short    the same in ten answers
     """
-    from polarcheck.machines import profiles
-    from polarcheck.reading.excerpt import head
+    from polarcheck.program.machines import profiles
+    from polarcheck.program.reading.excerpt import head
     from polarcheck.reports.pages import manual
 
     if name in ("new", "check") and not lathe:
@@ -67,10 +67,10 @@ def _profile(name: str) -> str:
 
 def _check(name: str) -> int:
     """Show what is to say about a sound file, or all faults of one that is not; return the exit code."""
-    from polarcheck.checking.rule import load_all
-    from polarcheck.machines import faults, profiles
+    from polarcheck.files.settings import selection
+    from polarcheck.program.machines import faults, profiles
     from polarcheck.reports.pages import machine_check
-    from polarcheck.settings import selection
+    from polarcheck.rules.rule import load_all
 
     rules = load_all()
     try:
@@ -87,14 +87,14 @@ def _check(name: str) -> int:
 
 def _loaded(name: str) -> Profile:
     """Load a profile. Raises MachineError if it cannot be used, or names unknown rules."""
-    from polarcheck.settings.of_programs import profile_of
+    from polarcheck.files.settings.of_programs import profile_of
 
     return profile_of(name)
 
 
 def _write(name: str, inherits: str, *, short: bool) -> Path:
     """Write NAME.toml into the working folder; an existing file is not overwritten."""
-    from polarcheck.reading import files
+    from polarcheck.program.reading import files
     from polarcheck.reports.pages import new_machine
 
     _loaded(inherits)

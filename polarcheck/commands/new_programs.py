@@ -12,10 +12,10 @@ import click
 
 from polarcheck.commands.options import Decorator, narrower, option
 from polarcheck.commands.output import is_terminal, show, warn
-from polarcheck.errors import OutputError, UsageError
+from polarcheck.foundation.errors import OutputError, UsageError
 
 if TYPE_CHECKING:
-    from polarcheck.batch.tasks import Task
+    from polarcheck.files.batch.tasks import Task
 
 _FOLDER_ENDS = ("/", os.sep)
 
@@ -62,7 +62,7 @@ OPTIONS: Sequence[Decorator] = (
 
 def refuse(wanted: Wanted, paths: Sequence[str]) -> None:
     """Raise UsageError for options that exclude each other; warn of those without effect."""
-    from polarcheck.reading import files
+    from polarcheck.program.reading import files
 
     if wanted.diff:
         others = {"-o": wanted.out, "--in-place": wanted.in_place, "--format json": wanted.form == "json"}
@@ -93,7 +93,7 @@ def outputs(wanted: Wanted, tasks: Sequence[Task], paths: Sequence[str]) -> Mapp
     reads, and for one file for several programs.
     """
     from polarcheck.commands.overwriting import folders_of, refuse_input
-    from polarcheck.reading import files
+    from polarcheck.program.reading import files
 
     several = len(tasks) > 1 or len(paths) > 1 or any(map(os.path.isdir, paths))
     if wanted.out is None:
@@ -129,7 +129,7 @@ def _name_in_folder(path: str, paths: Sequence[str]) -> str:
 
 
 def _refuse_existing(output: Path) -> None:
-    from polarcheck.reading import files
+    from polarcheck.program.reading import files
 
     if output.is_file():
         raise OutputError(f"-o {files.shown(str(output))}: it is there already; --force replaces it")
@@ -141,7 +141,7 @@ def write(wanted: Wanted, task: Task, old: bytes, new: bytes, output: Path | Non
 
     Raises OutputError if it cannot be written; then the file is as it was.
     """
-    from polarcheck.reading import files, rewriting
+    from polarcheck.program.reading import files, rewriting
 
     if wanted.in_place:
         if new == old:
@@ -167,8 +167,8 @@ def write(wanted: Wanted, task: Task, old: bytes, new: bytes, output: Path | Non
 
 def print_program(data: bytes, path: str, encoding: str | None) -> None:
     """Write a program to standard output: its bytes, but to a terminal no character that controls it."""
-    from polarcheck.reading.excerpt import visible
-    from polarcheck.reading.source import read_source
+    from polarcheck.program.reading.excerpt import visible
+    from polarcheck.program.reading.source import read_source
 
     if not is_terminal(sys.stdout):
         show(data)

@@ -86,7 +86,7 @@ def encoding(what: str) -> Decorator:
 def _known_encoding(ctx: click.Context, parameter: click.Parameter, value: str | None) -> str | None:
     if value is None:
         return None
-    from polarcheck.reading.source import is_encoding
+    from polarcheck.program.reading.source import is_encoding
 
     if not is_encoding(value):
         raise click.BadParameter(f"unknown encoding {value!r}; for example utf-8, cp1252, shift_jis")

@@ -11,7 +11,7 @@ from typing import TextIO
 
 import click
 
-from polarcheck.errors import OutputError
+from polarcheck.foundation.errors import OutputError
 
 ON_WINDOWS = os.name == "nt"
 #: The width of reports outside a terminal, and the largest width on one [characters].
@@ -35,7 +35,7 @@ def show(text: str | bytes, color: bool | None = None, to_error: bool = False) -
     Raises OutputError if it cannot be written: a full disk, a closed output.
     """
     if isinstance(text, str) and ("::" in text or "##" in text):
-        from polarcheck.reading.excerpt import without_commands
+        from polarcheck.program.reading.excerpt import without_commands
 
         text = without_commands(text)
     if to_error:
@@ -101,7 +101,7 @@ def bug_lines(error: Exception, with_traceback: bool) -> list[str]:
         import traceback
 
         return [line for text in traceback.format_exception(error) for line in text.splitlines()]
-    from polarcheck.reading.excerpt import shortened
+    from polarcheck.program.reading.excerpt import shortened
 
     where = "".join(f", {note}" for note in getattr(error, "__notes__", ()))
     summary = f"{type(error).__name__}: {shortened(str(error), _LONGEST_ERROR)}{where}"
@@ -117,7 +117,7 @@ def say_lines(lines: Iterable[str]) -> None:
 def _write_error(line: str) -> None:
     """Write a line to standard error without characters that control a terminal or the log of a CI job."""
     # Imported late: most runs do not need its tables of characters.
-    from polarcheck.reading.excerpt import visible, without_commands
+    from polarcheck.program.reading.excerpt import visible, without_commands
 
     shown = without_commands(visible(line))
     if len(shown) > _LONGEST:

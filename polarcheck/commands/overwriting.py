@@ -6,9 +6,9 @@ import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from polarcheck.batch.tasks import Task
-from polarcheck.errors import OutputError
-from polarcheck.reading import files
+from polarcheck.files.batch.tasks import Task
+from polarcheck.foundation.errors import OutputError
+from polarcheck.program.reading import files
 
 
 def folders_of(tasks: Sequence[Task]) -> dict[str, str]:
@@ -33,7 +33,7 @@ def refuse_input(output: Path, named: str, folders: Mapping[str, str]) -> None:
 
 def refuse_name(output: str | Path, named: str) -> None:
     """Raise OutputError for an output with the name of a program, or of a job or machine file."""
-    from polarcheck.reading import walking
+    from polarcheck.program.reading import walking
 
     if walking.has_name_of_program(str(output), walking.EXTENSIONS) or str(output).endswith(".toml"):
         raise OutputError(f"{named}: this is the name of a program or of a job file; give the report another")

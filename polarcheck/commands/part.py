@@ -50,9 +50,9 @@ def _part(
     from polarcheck.api.parts import EXTRAS, RULES
     from polarcheck.commands import progress, running, signals
     from polarcheck.commands.output import columns, say, show
-    from polarcheck.memory import keep_within_memory
+    from polarcheck.files.settings.of_programs import OfPrograms, Options
+    from polarcheck.foundation.memory import keep_within_memory
     from polarcheck.reports.pages import part_lines
-    from polarcheck.settings.of_programs import OfPrograms, Options
 
     keep_within_memory()
     applies = Options(use_config=not no_config, select=RULES, gives_verdicts=False, extras=EXTRAS, **arguments)

@@ -8,15 +8,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from polarcheck.commands.output import is_terminal
-from polarcheck.errors import OutputError, UsageError
-from polarcheck.reading.files import shown, write
+from polarcheck.foundation.errors import OutputError, UsageError
+from polarcheck.program.reading.files import shown, write
 
 if TYPE_CHECKING:
-    from polarcheck.batch.tasks import Outcome, Task
     from polarcheck.checking.settings import Extra
-    from polarcheck.finding import FileReport
-    from polarcheck.pictures.picture import Drawn
+    from polarcheck.files.batch.tasks import Outcome, Task
+    from polarcheck.foundation.finding import FileReport
     from polarcheck.reports import Background
+    from polarcheck.view.picture import Drawn
 
 #: The format that holds pictures.
 FORMAT = "html"
@@ -28,8 +28,8 @@ def extras(*, for_page: bool = True) -> tuple[Extra, ...]:
 
     for_page: they are drawn on a page. Raises UsageError if plotly is missing, which pages need.
     """
-    from polarcheck.pictures.drawing import drawn
-    from polarcheck.pictures.library import require
+    from polarcheck.view.drawing import drawn
+    from polarcheck.view.library import require
 
     if for_page:
         require()
@@ -72,7 +72,7 @@ class Pictures:
 
     def split(self, outcomes: Iterable[Outcome]) -> Iterator[Outcome]:
         """Yield the outcomes without their pictures, which are stored."""
-        from polarcheck.finding import UNREADABLE, FileReport
+        from polarcheck.foundation.finding import UNREADABLE, FileReport
 
         for outcome in outcomes:
             if outcome.report is None or type(outcome.report) is FileReport:
@@ -82,7 +82,7 @@ class Pictures:
                 continue
             import msgspec
 
-            from polarcheck.pictures.drawing import split  # not needed without pictures
+            from polarcheck.view.drawing import split  # not needed without pictures
 
             report, drawn = split(outcome.report)
             plain = msgspec.structs.replace(outcome, report=report)
@@ -122,7 +122,7 @@ class Folder(Pictures):
 
     def __init__(self, folder: Path, tasks: Sequence[Task]) -> None:
         from polarcheck.reports import Background
-        from polarcheck.reports.pages.picture_index import Entry, page_names
+        from polarcheck.view.picture_index import Entry, page_names
 
         super().__init__()
         self._folder, self._background = folder, Background()
@@ -132,14 +132,14 @@ class Folder(Pictures):
     @property
     def outputs(self) -> list[Path]:
         """Return all files that will be written."""
-        from polarcheck.pictures.library import FILE_NAME
-        from polarcheck.reports.pages.picture_index import INDEX
+        from polarcheck.view.library import FILE_NAME
+        from polarcheck.view.picture_index import INDEX
 
         return [self._folder / name for name in (INDEX, FILE_NAME, *self._names.values())]
 
     def begin(self, background: Background) -> None:
         """Create the folder, and write the library that all pages share."""
-        from polarcheck.pictures.library import FILE_NAME, library
+        from polarcheck.view.library import FILE_NAME, library
 
         self._background = background
         create_folder(self._folder)
@@ -147,10 +147,10 @@ class Folder(Pictures):
 
     def store(self, outcome: Outcome, drawn: Drawn) -> None:
         """Write the page of a program."""
-        from polarcheck.pictures.library import FILE_NAME
-        from polarcheck.pictures.page import page
-        from polarcheck.reports.pages.picture_index import entry
-        from polarcheck.reports.pages.pictured import picture
+        from polarcheck.view.library import FILE_NAME
+        from polarcheck.view.page import page
+        from polarcheck.view.picture_index import entry
+        from polarcheck.view.pictured import picture
 
         report = outcome.report
         assert report is not None
@@ -163,13 +163,13 @@ class Folder(Pictures):
 
     def miss(self, report: FileReport) -> None:
         """List a program that has no page."""
-        from polarcheck.reports.pages.picture_index import entry
+        from polarcheck.view.picture_index import entry
 
         self._entries.append(entry(report, ""))
 
     def end(self, notes: Sequence[str] = ()) -> None:
         """Write the index page."""
-        from polarcheck.reports.pages.picture_index import INDEX, index
+        from polarcheck.view.picture_index import INDEX, index
 
         write(self._folder / INDEX, index(self._entries, notes))
 

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 
 import click
 
-from polarcheck.errors import UsageError
+from polarcheck.foundation.errors import UsageError
 
 #: The end of the options: arguments behind it are paths.
 _END = "--"

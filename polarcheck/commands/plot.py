@@ -61,14 +61,14 @@ def plot(
     bug.
     """
     from polarcheck import reports
-    from polarcheck.batch import tasks as batch
-    from polarcheck.checking import rule
     from polarcheck.commands import overwriting, progress, reporting, running, signals
     from polarcheck.commands.output import say, show
-    from polarcheck.machines import profiles
-    from polarcheck.memory import keep_within_memory
-    from polarcheck.reading import files
-    from polarcheck.settings.of_programs import OfPrograms, Options
+    from polarcheck.files.batch import tasks as batch
+    from polarcheck.files.settings.of_programs import OfPrograms, Options
+    from polarcheck.foundation.memory import keep_within_memory
+    from polarcheck.program.machines import profiles
+    from polarcheck.program.reading import files
+    from polarcheck.rules import rule
 
     keep_within_memory()
     serving.refuse(

@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING
 import click
 
 from polarcheck.commands.options import option
-from polarcheck.errors import OutputError, UsageError
+from polarcheck.foundation.errors import OutputError, UsageError
 
 if TYPE_CHECKING:
-    from polarcheck.batch.tasks import Task
     from polarcheck.checking.settings import Extra, Settings
-    from polarcheck.finding import Report, Summary
+    from polarcheck.files.batch.tasks import Task
+    from polarcheck.foundation.finding import Report, Summary
     from polarcheck.reports import Background
 
 #: The variable with the file of a step's summary in GitHub Actions, and the format for GitHub Actions.
@@ -52,7 +52,7 @@ def extras(shown_too: str | None, form: str | None, outputs: Iterable[tuple[str,
     for other in (form or _TEXT, *(form for form, _ in outputs)):
         if other != _TEXT:
             raise UsageError(f"--show {shown_too}: expected --format {_TEXT}, found {other}")
-    from polarcheck.pictures.section_view import with_views
+    from polarcheck.view.section_view import with_views
 
     return (with_views,)
 
@@ -63,7 +63,7 @@ def with_makes(tasks: Sequence[Task], forms: Iterable[str]) -> list[Task]:
         return list(tasks)
     import msgspec
 
-    from polarcheck.parts.makes import with_makes
+    from polarcheck.reports.made_parts.makes import with_makes
 
     of_settings: dict[int, Settings] = {}
     for task in tasks:
@@ -85,8 +85,8 @@ def unread(summary: Summary) -> list[str]:
 
 def background(plain: Background, tasks: Iterable[Task]) -> Background:
     """Add the settings of each file, and the folders that paths are relative to, to a background."""
-    from polarcheck.batch.runs import folders
-    from polarcheck.batch.tasks import settings_of
+    from polarcheck.files.batch.runs import folders
+    from polarcheck.files.batch.tasks import settings_of
 
     root, folder = folders()
     return plain._replace(settings=settings_of(tasks), root=root, folder=folder)
@@ -95,7 +95,7 @@ def background(plain: Background, tasks: Iterable[Task]) -> Background:
 def written(outputs: Iterable[tuple[str, Path]], form: str, report: Report, plain: Background) -> Iterator[OutputError]:
     """Write the reports that go to files, and the summary of GitHub Actions; yield the errors."""
     from polarcheck import reports
-    from polarcheck.reading import files
+    from polarcheck.program.reading import files
 
     forms = [form]
     for kind, path in outputs:

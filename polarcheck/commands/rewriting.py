@@ -15,15 +15,15 @@ from polarcheck.commands.exit_codes import CLEAN, COULD_NOT_RUN, FINDINGS
 from polarcheck.commands.new_programs import Wanted
 from polarcheck.commands.options import Decorator, option
 from polarcheck.commands.output import in_color, say, show, show_diff
-from polarcheck.errors import OutputError, RefusedError, SourceError, TooHardError
+from polarcheck.foundation.errors import OutputError, RefusedError, SourceError, TooHardError
 
 if TYPE_CHECKING:
-    from polarcheck.batch.tasks import Task
     from polarcheck.checking.settings import Settings
     from polarcheck.commands.running import Faults
-    from polarcheck.conversion.outcome import Figure, Outcome
-    from polarcheck.conversion.report import Rewriting
-    from polarcheck.conversion.rewriting import Work
+    from polarcheck.files.batch.tasks import Task
+    from polarcheck.rewrite.writing.outcome import Figure, Outcome
+    from polarcheck.rewrite.writing.report import Rewriting
+    from polarcheck.rewrite.writing.rewriting import Work
 
 #: The most lines about one program of each kind.
 _LISTED = 20
@@ -107,8 +107,8 @@ def _run(
 ) -> int:
     from polarcheck.commands.progress import Bar
     from polarcheck.commands.running import Faults, planned
-    from polarcheck.memory import keep_within_memory
-    from polarcheck.settings.of_programs import OfPrograms, Options
+    from polarcheck.files.settings.of_programs import OfPrograms, Options
+    from polarcheck.foundation.memory import keep_within_memory
 
     keep_within_memory()
     new_programs.refuse(wanted, paths)
@@ -137,7 +137,7 @@ class _Original(NamedTuple):
 
     def line_count(self, data: bytes) -> int:
         """Return the lines of a program; 0 where it cannot be read in its encoding."""
-        from polarcheck.reading.source import read_source
+        from polarcheck.program.reading.source import read_source
 
         try:
             return len(read_source(data, self.title, self.task.settings.encoding).line_starts)
@@ -162,8 +162,8 @@ class _Programs:
 
     def rewrite(self, task: Task) -> None:
         """Rewrite a program, write the new one, and say what was done."""
-        from polarcheck.conversion.rewriting import rewritten
-        from polarcheck.reading import files
+        from polarcheck.program.reading import files
+        from polarcheck.rewrite.writing.rewriting import rewritten
 
         work = self._command.work(task.settings)
         original = _Original(task, b"")
@@ -189,7 +189,7 @@ class _Programs:
         """Write what has come of the programs to standard output."""
         import msgspec
 
-        from polarcheck.conversion.report import RewritingReport
+        from polarcheck.rewrite.writing.report import RewritingReport
 
         report = RewritingReport(schema=1, command=self._command.name, files=self._of_json)
         show(msgspec.json.format(msgspec.json.encode(report), indent=2) + b"\n")
@@ -203,7 +203,7 @@ class _Programs:
             self._of_json.append(self._entry(original, [], outcome, written))
             return
         if wanted.diff:
-            from polarcheck.fixes.difference import difference
+            from polarcheck.rewrite.fixes.difference import difference
 
             lines = difference(original.title, original.data, outcome.data, outcome.origin, settings.encoding)
             show_diff(lines, in_color(wanted.color))
@@ -226,7 +226,7 @@ class _Programs:
         _list(outcome.notes, lambda note: f"{title}: {note}", f"{title}: {{}} more notes")
 
     def _refused(self, original: _Original, error: RefusedError) -> None:
-        from polarcheck.conversion.report import Reason
+        from polarcheck.rewrite.writing.report import Reason
 
         title = original.title
         self.status = max(self.status, COULD_NOT_RUN)
@@ -240,7 +240,7 @@ class _Programs:
             say(f"{title}: not {self._command.done}: nothing is written")
 
     def _failed(self, original: _Original, line: str) -> None:
-        from polarcheck.conversion.report import Reason
+        from polarcheck.rewrite.writing.report import Reason
 
         self.status = max(self.status, COULD_NOT_RUN)
         self._of_json.append(self._entry(original, [Reason(None, line)]))
@@ -249,7 +249,7 @@ class _Programs:
     def _entry(
         self, original: _Original, refusals: Sequence[Any], outcome: Outcome | None = None, written: str | None = None
     ) -> Rewriting:
-        from polarcheck.conversion.report import Rewriting
+        from polarcheck.rewrite.writing.report import Rewriting
 
         machine = original.task.settings.machine_id
         return Rewriting(

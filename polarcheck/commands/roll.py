@@ -8,13 +8,13 @@ import click
 
 from polarcheck.commands.options import option
 from polarcheck.commands.rewriting import Command, length, rewriting
-from polarcheck.machines.feed_keys import WITH_ROTARY
+from polarcheck.program.machines.feed_keys import WITH_ROTARY
 
 if TYPE_CHECKING:
     from polarcheck.checking.settings import Settings
-    from polarcheck.conversion.original import Original
-    from polarcheck.conversion.outcome import Outcome
-    from polarcheck.conversion.rewriting import Work
+    from polarcheck.rewrite.writing.original import Original
+    from polarcheck.rewrite.writing.outcome import Outcome
+    from polarcheck.rewrite.writing.rewriting import Work
 
 
 @click.command(short_help="Write plain moves of X and C as polar sections of lines and arcs.")
@@ -47,8 +47,8 @@ def roll(tolerance: float | None, feed: str | None, keep_c: bool) -> Command:
     """
 
     def work(settings: Settings) -> Work:
-        from polarcheck.conversion.rewriting import in_mm
-        from polarcheck.conversion.rolling.rolling import Rolling, rolled
+        from polarcheck.rewrite.roll.rolling import Rolling, rolled
+        from polarcheck.rewrite.writing.rewriting import in_mm
 
         def rolls(original: Original) -> Outcome:
             allowed = 0.01 if tolerance is None else in_mm(original, tolerance)

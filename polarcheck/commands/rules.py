@@ -14,7 +14,7 @@ from polarcheck.commands.output import show
 @options.debug
 def rules(form: str) -> None:
     """List all rules: severity, name, title."""
-    from polarcheck.checking.rule import load_all
     from polarcheck.reports.pages import manual
+    from polarcheck.rules.rule import load_all
 
     show(manual.catalogue(load_all()) if form == "text" else manual.catalogue_json(load_all()).encode())

@@ -7,22 +7,22 @@ import itertools
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from polarcheck import record
-from polarcheck.batch import runs
 from polarcheck.commands import silencing
 from polarcheck.commands.exit_codes import BUG, CLEAN, COULD_NOT_RUN
 from polarcheck.commands.output import bug_lines, say, say_lines, warn
-from polarcheck.reading.files import STANDARD_INPUT
+from polarcheck.files.batch import runs
+from polarcheck.foundation import record
+from polarcheck.program.reading.files import STANDARD_INPUT
 
 if TYPE_CHECKING:
-    from polarcheck.batch.baselines import Baselines
-    from polarcheck.batch.cache.outcomes import Cache
-    from polarcheck.batch.tasks import Checked, Outcome, Task
     from polarcheck.commands.progress import Bar
     from polarcheck.commands.watching import Seen
-    from polarcheck.finding import FileReport
-    from polarcheck.reading.walking import Skipped
-    from polarcheck.settings.of_programs import OfPrograms
+    from polarcheck.files.baselines.baselines import Baselines
+    from polarcheck.files.batch.tasks import Checked, Outcome, Task
+    from polarcheck.files.cache.outcomes import Cache
+    from polarcheck.files.settings.of_programs import OfPrograms
+    from polarcheck.foundation.finding import FileReport
+    from polarcheck.program.reading.walking import Skipped
 
 
 #: Leads to the file behind standard input, where the system has it.
@@ -123,7 +123,7 @@ class Runner:
 
         Raises ClusterError if the cluster cannot be used.
         """
-        from polarcheck.batch import tasks as batch
+        from polarcheck.files.batch import tasks as batch
 
         with (
             self._outcomes(tasks) if self._before is None else self._before.outcomes(tasks, self._outcomes) as outcomes,
@@ -139,7 +139,7 @@ class Runner:
 
 def cache(most: int, folder: str | None) -> Cache:
     """Return the outcomes of earlier runs. most: bytes of a program. folder: instead of those beside job files."""
-    from polarcheck.batch.cache.outcomes import Cache
+    from polarcheck.files.cache.outcomes import Cache
 
     return Cache(most, folder)
 
@@ -152,7 +152,7 @@ def warn_without_part(tolerance: float | None, tasks: Sequence[Task]) -> None:
 
 def warn_unused(tools: Iterable[str], called: set[str]) -> None:
     """Warn of each --tool that no program of the run calls."""
-    from polarcheck.machines.job import key_of_option
+    from polarcheck.program.machines.job import key_of_option
 
     for key in dict.fromkeys(map(key_of_option, tools)):
         if key not in called:

@@ -7,7 +7,8 @@ import click
 from polarcheck.commands import options
 from polarcheck.commands.output import show
 
-_NAMES = ("report", "job", "machine", "feeds", "trace", "comparison", "rewriting", "manifest", "certificate")
+_OF_WINGS = ("feeds", "comparison", "rewriting", "manifest", "certificate")
+_NAMES = ("report", "job", "machine", "feeds", "trace", *_OF_WINGS[1:])
 
 
 @click.command(short_help="Show the JSON Schema of a report, the job, a machine, feed table, trace, ...")
@@ -20,9 +21,10 @@ def schema(name: str) -> None:
     """
     from polarcheck.reports.pages import schema as schemas
 
-    if name in ("manifest", "certificate"):
-        from polarcheck.certification.schemas import schema as of_post
+    if name in _OF_WINGS:
+        from polarcheck.rewrite.schemas import schema as of_wing
 
-        show(schemas.as_text(of_post(name)).encode())
+        content = of_wing(name)
     else:
-        show(schemas.text(name).encode())
+        content = schemas.schema(name)
+    show(schemas.as_text(content).encode())

@@ -12,7 +12,7 @@ import click
 from polarcheck.commands import options
 from polarcheck.commands.options import option
 from polarcheck.commands.output import say
-from polarcheck.errors import UsageError
+from polarcheck.foundation.errors import UsageError
 
 _NEEDED = ("pygls", "lsprotocol")
 
@@ -45,8 +45,8 @@ def _serve(no_config: bool, trust: tuple[Path, ...], arguments: dict[str, Any]) 
         raise UsageError("the server needs pygls, of the extra [server]: pip install pygls")
     import gc
 
-    from polarcheck.memory import keep_within_memory
-    from polarcheck.server import process
+    from polarcheck.editor import process
+    from polarcheck.foundation.memory import keep_within_memory
 
     try:
         streams = process.take_streams()
@@ -54,8 +54,8 @@ def _serve(no_config: bool, trust: tuple[Path, ...], arguments: dict[str, Any]) 
         raise UsageError(f"standard input or output: {error.strerror}: an editor starts the server") from None
     if os.isatty(streams.source):
         say("an editor starts the server, and speaks to it over standard input; Ctrl-C ends it")
-    from polarcheck.server.features import register
-    from polarcheck.server.session import Server
+    from polarcheck.editor.features import register
+    from polarcheck.editor.session import Server
 
     # The server runs for hours, so garbage is collected, which other commands leave to the end of the process.
     gc.enable()
@@ -77,18 +77,18 @@ class _Settings:
         self._use_config, self._arguments = not no_config, arguments
 
     def __call__(self, path: Path) -> Any:
-        from polarcheck.settings.of_programs import OfPrograms
+        from polarcheck.files.settings.of_programs import OfPrograms
 
         return OfPrograms(self._options())(str(path))
 
     def fallback(self, path: Path) -> Any:
         """Return the settings that are left while the job file of a program cannot be used."""
-        from polarcheck.settings.fallback import fallback
+        from polarcheck.files.settings.fallback import fallback
 
         return fallback(path, self._options())
 
     def _options(self) -> Any:
-        from polarcheck.settings.of_programs import Options
+        from polarcheck.files.settings.of_programs import Options
 
         return Options(use_config=self._use_config, **self._arguments)
 

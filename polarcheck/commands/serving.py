@@ -15,16 +15,16 @@ import click
 from polarcheck.commands import picturing, running, watching
 from polarcheck.commands.options import option
 from polarcheck.commands.output import bug_lines, say_lines, show
-from polarcheck.errors import PolarcheckError, UsageError
-from polarcheck.reading.files import size, write
+from polarcheck.foundation.errors import PolarcheckError, UsageError
+from polarcheck.program.reading.files import size, write
 
 if TYPE_CHECKING:
-    from polarcheck.batch.tasks import Outcome, Task
-    from polarcheck.finding import FileReport
-    from polarcheck.pictures.picture import Drawn
-    from polarcheck.pictures.serving import Site
+    from polarcheck.files.batch.tasks import Outcome, Task
+    from polarcheck.files.settings.of_programs import Options
+    from polarcheck.foundation.finding import FileReport
     from polarcheck.reports import Background
-    from polarcheck.settings.of_programs import Options
+    from polarcheck.view.picture import Drawn
+    from polarcheck.view.serving import Site
 
 #: The length of a version.
 _DIGITS = 16
@@ -95,7 +95,7 @@ def serve(wish: Wish) -> int:
 
     Raises OutputError if the port is taken; UsageError or Exit if there is nothing to serve.
     """
-    from polarcheck.pictures.serving import Server, Site
+    from polarcheck.view.serving import Server, Site
 
     site = Site()
     server = Server(site, wish.port, lambda error: say_lines(bug_lines(error, wish.debug)))
@@ -148,11 +148,11 @@ class _Rounds:
 
     def _run(self, seen: watching.Seen) -> int:
         from polarcheck import reports
-        from polarcheck.batch import tasks as batch
-        from polarcheck.checking import rule
         from polarcheck.commands import reporting, signals
-        from polarcheck.reports.pages.picture_index import page_names
-        from polarcheck.settings.of_programs import OfPrograms
+        from polarcheck.files.batch import tasks as batch
+        from polarcheck.files.settings.of_programs import OfPrograms
+        from polarcheck.rules import rule
+        from polarcheck.view.picture_index import page_names
 
         faults = running.Faults(self._wish.debug)
         tasks = running.planned(self._wish.paths, OfPrograms(self._wish.applies), self._wish.extensions, faults)
@@ -186,7 +186,7 @@ class _Rounds:
     @contextlib.contextmanager
     def _outcomes(self, tasks: Sequence[Task]) -> Iterator[Generator[Outcome, None, None]]:
         """Yield a generator of outcomes without their drawings, whose pages are put on the site."""
-        from polarcheck.batch import runs
+        from polarcheck.files.batch import runs
 
         workers = self._wish.workers if self.count == 1 else 1
         with runs.outcomes(tasks, self._wish.most, workers) as outcomes:
@@ -207,8 +207,8 @@ class _Pages(picturing.Pictures):
 
     def begin(self, background: Background) -> None:
         """Prepare for a run, and put plotly on the site."""
-        from polarcheck.pictures.library import FILE_NAME, library
-        from polarcheck.pictures.serving import Served
+        from polarcheck.view.library import FILE_NAME, library
+        from polarcheck.view.serving import Served
 
         self._background = background
         if self._site.get(FILE_NAME) is None:
@@ -223,9 +223,9 @@ class _Pages(picturing.Pictures):
         """Put the page of a program on the site."""
         import msgspec
 
-        from polarcheck.pictures.library import FILE_NAME
-        from polarcheck.pictures.page import page
-        from polarcheck.reports.pages.pictured import picture
+        from polarcheck.view.library import FILE_NAME
+        from polarcheck.view.page import page
+        from polarcheck.view.pictured import picture
 
         report = outcome.report
         assert report is not None
@@ -241,13 +241,13 @@ class _Pages(picturing.Pictures):
 
     def keep(self, name: str, reason: str) -> None:
         """Say on a page why it is that of an earlier state."""
-        from polarcheck.reading.excerpt import visible
+        from polarcheck.program.reading.excerpt import visible
 
         self._site.notice(name, f"{visible(reason)}. This is the last state that could be read.")
 
     def put_index(self, reports: Sequence[FileReport]) -> None:
         """Put the index page on the site."""
-        from polarcheck.reports.pages.picture_index import entry, index
+        from polarcheck.view.picture_index import entry, index
 
         entries = [
             entry(report, self.names[report.path] if self._site.get(self.names[report.path]) else "")
@@ -257,7 +257,7 @@ class _Pages(picturing.Pictures):
         self._put(_FIRST, index(entries, version=version), version)
 
     def _put(self, name: str, text: str, version: str) -> None:
-        from polarcheck.pictures.serving import Served
+        from polarcheck.view.serving import Served
 
         path = self._folder / (name or _FIRST_FILE)
         write(path, text)

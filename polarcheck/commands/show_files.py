@@ -6,11 +6,11 @@ import os
 from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
-from polarcheck.errors import UsageError
+from polarcheck.foundation.errors import UsageError
 
 if TYPE_CHECKING:
-    from polarcheck.batch.tasks import Task
-    from polarcheck.reading.walking import Skipped
+    from polarcheck.files.batch.tasks import Task
+    from polarcheck.program.reading.walking import Skipped
 
 #: The formats that can hold the list.
 _FORMATS = ("text", "json", "jsonl")
@@ -43,7 +43,7 @@ def refuse(form: str | None, others: dict[str, object]) -> None:
 
 def text(form: str, tasks: Sequence[Task], skipped: Sequence[Skipped]) -> str:
     """Return the list in a format, those that are read first."""
-    from polarcheck.reading.excerpt import visible
+    from polarcheck.program.reading.excerpt import visible
     from polarcheck.reports.json import encoded
 
     entries = [*_read(tasks), *_not_read(skipped, tasks)]
@@ -63,7 +63,7 @@ def _read(tasks: Iterable[Task]) -> Iterator[Listed]:
 
 
 def _not_read(skipped: Iterable[Skipped], tasks: Iterable[Task]) -> Iterator[Listed]:
-    from polarcheck.reading.files import RealPaths, shown
+    from polarcheck.program.reading.files import RealPaths, shown
 
     real = RealPaths()
     of_jobs = {id(task.settings): task.settings.job.run.subprograms for task in tasks}

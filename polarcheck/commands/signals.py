@@ -7,7 +7,7 @@ import sys
 import threading
 from typing import Any
 
-from polarcheck.ending import INTERRUPTED, TERMINATED, Terminated
+from polarcheck.foundation.ending import INTERRUPTED, TERMINATED, Terminated
 
 #: After this time the destructor or callback has returned [s].
 _UNTIL_AGAIN = 0.01

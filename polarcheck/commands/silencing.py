@@ -12,14 +12,14 @@ from polarcheck.commands.options import option
 from polarcheck.commands.output import warn
 
 if TYPE_CHECKING:
-    from polarcheck.batch.baselines import Baselines
-    from polarcheck.batch.tasks import Outcome, Task
+    from polarcheck.files.baselines.baselines import Baselines
+    from polarcheck.files.batch.tasks import Outcome, Task
 
 
 def _readable(ctx: click.Context, parameter: click.Parameter, value: Path | None) -> Path | None:
     """Read the file before anything is checked, since a check of many files takes minutes."""
     if value is not None:
-        from polarcheck.batch import baseline_file
+        from polarcheck.files.baselines import baseline_file
 
         baseline_file.read(value)
     return value
@@ -47,7 +47,7 @@ def of_run(tasks: Iterable[Task], walked: Sequence[str]) -> Baselines | None:
     tasks = [task for task in tasks if task.settings.baseline is not None]
     if not tasks:
         return None
-    from polarcheck.batch.baselines import Baselines
+    from polarcheck.files.baselines.baselines import Baselines
 
     baselines = Baselines(tasks, walked)
     for line in baselines.faults:

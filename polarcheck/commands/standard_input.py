@@ -9,8 +9,8 @@ from typing import Any
 import click
 
 from polarcheck.commands.options import option
-from polarcheck.errors import UsageError
-from polarcheck.reading import files
+from polarcheck.foundation.errors import UsageError
+from polarcheck.program.reading import files
 
 
 def _named(ctx: click.Context, parameter: click.Parameter, value: str | None) -> str | None:

@@ -12,14 +12,14 @@ import click
 from polarcheck.commands import picturing
 from polarcheck.commands.options import option
 from polarcheck.commands.output import warn
-from polarcheck.errors import UsageError
-from polarcheck.reading.files import shown, write
+from polarcheck.foundation.errors import UsageError
+from polarcheck.program.reading.files import shown, write
 
 if TYPE_CHECKING:
-    from polarcheck.batch.tasks import Task
-    from polarcheck.finding import FileReport
-    from polarcheck.pictures.picture import Drawn
+    from polarcheck.files.batch.tasks import Task
+    from polarcheck.foundation.finding import FileReport
     from polarcheck.reports import Background
+    from polarcheck.view.picture import Drawn
 
 _FORMATS = ("png", "svg")
 
@@ -75,8 +75,8 @@ class Stills:
         """Write the pictures of a program. Raises OutputError if one cannot be written."""
         if not self._names:
             return
-        from polarcheck.pictures.stills.still import MOST, still
-        from polarcheck.reports.pages.pictured import picture
+        from polarcheck.view.pictured import picture
+        from polarcheck.view.stills.still import MOST, still
 
         pictured = picture(report, background._replace(drawn={report.path: drawn}))
         count = len(drawn.sections)
@@ -110,7 +110,7 @@ def _names(wanted: Sequence[tuple[str, Path]], tasks: Sequence[Task]) -> Iterato
     """Yield each program and the format and file of its pictures."""
     if not wanted:
         return
-    from polarcheck.reports.pages.picture_index import page_names
+    from polarcheck.view.picture_index import page_names
 
     pages = page_names(task.title for task in tasks)
     for task, page in zip(tasks, pages, strict=True):

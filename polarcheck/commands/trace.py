@@ -14,12 +14,12 @@ from polarcheck.commands import options
 from polarcheck.commands.exit_codes import CLEAN, FINDINGS
 from polarcheck.commands.options import narrower, option
 from polarcheck.commands.output import COLUMNS, draws_dots, in_color, is_terminal, show, warn
-from polarcheck.errors import UsageError
+from polarcheck.foundation.errors import UsageError
 
 if TYPE_CHECKING:
-    from polarcheck.checking.tables import Tables
+    from polarcheck.columns.path.tool_center import ToolCenter
     from polarcheck.columns.trace import Trace
-    from polarcheck.table.tool_center import ToolCenter
+    from polarcheck.rules.tables import Tables
 
 
 @click.command(short_help="Show what a program does, block by block or move by move.")
@@ -60,9 +60,9 @@ def trace(
     is 1. --format json always shows moves, without --path those of the tool center.
     """
     from polarcheck.api import programs
-    from polarcheck.memory import keep_within_memory
+    from polarcheck.files.settings.of_programs import Options
+    from polarcheck.foundation.memory import keep_within_memory
     from polarcheck.reports.pages import executed, trace_report
-    from polarcheck.settings.of_programs import Options
 
     keep_within_memory()
     if shown_too and (golden or form not in (None, "table")):
@@ -108,17 +108,14 @@ def _show_all(pieces: Iterable[str | bytes]) -> None:
 
 def _show_paths(channels: Sequence[Tables], is_colored: bool) -> None:
     """Show each section, as wide as the terminal."""
-    from polarcheck.pictures.painting import plain
-    from polarcheck.pictures.section_view import views_of
     from polarcheck.reports import painted
-    from polarcheck.reports.pages.path_view import path_view
+    from polarcheck.reports.pages.painting import plain
+    from polarcheck.view.section_view import views_of
 
     columns = shutil.get_terminal_size().columns if is_terminal(sys.stdout) else COLUMNS
     dots, paint = draws_dots(), painted if is_colored else plain
     for view in (view for tables in channels for view in views_of(tables)):
-        if not show(
-            "".join(f"{line}\n" for line in path_view(view, columns, dots=dots, paint=paint)), is_colored or None
-        ):
+        if not show("".join(f"{line}\n" for line in view.lines(columns, dots=dots, paint=paint)), is_colored or None):
             return
 
 

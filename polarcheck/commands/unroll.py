@@ -11,9 +11,9 @@ from polarcheck.commands.rewriting import Command, length, rewriting
 
 if TYPE_CHECKING:
     from polarcheck.checking.settings import Settings
-    from polarcheck.conversion.rewriting import Work
+    from polarcheck.rewrite.writing.rewriting import Work
 
-#: Those of polarcheck.conversion.unrolling.rates, which is imported late.
+#: Those of polarcheck.rewrite.unroll.rates, which is imported late.
 _FEEDS = ("inverse-time", "per-minute", "per-minute-c", "per-minute-diameter", "stepwise")
 
 
@@ -41,8 +41,8 @@ def unroll(chord_error: float | None, feed: str | None) -> Command:
     """
 
     def work(settings: Settings) -> Work:
-        from polarcheck.conversion.rewriting import in_mm
-        from polarcheck.conversion.unrolling.unrolling import DEFAULT_CHORD_ERROR, Unrolling, unrolled
+        from polarcheck.rewrite.unroll.unrolling import DEFAULT_CHORD_ERROR, Unrolling, unrolled
+        from polarcheck.rewrite.writing.rewriting import in_mm
 
         return lambda original: unrolled(
             original,

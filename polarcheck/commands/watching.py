@@ -19,12 +19,12 @@ import click
 from polarcheck.commands.exit_codes import CLEAN, COULD_NOT_RUN
 from polarcheck.commands.options import option
 from polarcheck.commands.output import is_terminal, say
-from polarcheck.ending import INTERRUPTED
-from polarcheck.errors import PolarcheckError, UsageError
-from polarcheck.reading.files import State, state
+from polarcheck.foundation.ending import INTERRUPTED
+from polarcheck.foundation.errors import PolarcheckError, UsageError
+from polarcheck.program.reading.files import State, state
 
 if TYPE_CHECKING:
-    from polarcheck.batch.tasks import Outcome, Task
+    from polarcheck.files.batch.tasks import Outcome, Task
 
 watch = option("--watch", is_flag=True, help="Check again whenever a file changes, until Ctrl-C.")
 
@@ -120,7 +120,7 @@ def _inside(folder: str) -> set[str]:
 
 def _surroundings(paths: Iterable[str]) -> Iterator[str]:
     """Yield the paths where programs and job files can appear: the folders, and job files in the folders above."""
-    from polarcheck.machines.job import FILE_NAME, PROJECT
+    from polarcheck.program.machines.job import FILE_NAME, PROJECT
 
     for path in paths:
         yield path

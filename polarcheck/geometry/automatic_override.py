@@ -15,11 +15,11 @@ from collections.abc import Callable
 import msgspec
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Points, Rows, States, Table
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, States, Table
+from polarcheck.foundation.states import Motion
 from polarcheck.geometry import polar, rates
 from polarcheck.geometry.plane import arcs_from_center, cross, dot, lines_from_center, quiet, rows_of_arcs
 from polarcheck.geometry.tolerances import ZERO
-from polarcheck.machines.modal import Motion
 
 #: Pieces shorter than this are left out [mm]: an arc shorter than ZERO would be a full circle, and rounding shifts the
 #: ends of pieces.

@@ -9,7 +9,7 @@ from __future__ import annotations
 import msgspec
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Points, Rows, States, Table
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, States, Table
 from polarcheck.geometry.segments import Curves, directions, first_of_its_kind, segments
 from polarcheck.geometry.tolerances import TOUCH
 

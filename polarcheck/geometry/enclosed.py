@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from polarcheck.arrays import Mask, Points, Rows, States
+from polarcheck.foundation.arrays import Mask, Points, Rows, States
 from polarcheck.geometry.plane import angle_between, arc_sweep, quiet
 from polarcheck.geometry.polar import c_sweep
 

@@ -9,10 +9,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Points, Rows, States, Table
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, States, Table
+from polarcheck.foundation.states import Motion
 from polarcheck.geometry.segments import Curves
 from polarcheck.geometry.tolerances import CORNER
-from polarcheck.machines.modal import Motion
 
 #: More open chains than these are not linked to each other.
 _MOST_OPEN = 100

@@ -5,9 +5,9 @@ from __future__ import annotations
 import msgspec
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Points, Rows, States
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, States
+from polarcheck.foundation.states import Motion
 from polarcheck.geometry.tolerances import ZERO
-from polarcheck.machines.modal import Motion
 
 #: As plain numbers: NumPy compares a column with an enum slowly (arrays.is_among).
 _CW, _CCW = int(Motion.CW), int(Motion.CCW)

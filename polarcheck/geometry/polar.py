@@ -22,7 +22,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from polarcheck.arrays import Floats, Points, States
+from polarcheck.foundation.arrays import Floats, Points, States
+from polarcheck.foundation.states import Motion
 from polarcheck.geometry.plane import (
     NOISE,
     angle_between,
@@ -36,7 +37,6 @@ from polarcheck.geometry.plane import (
     rows_of_arcs,
 )
 from polarcheck.geometry.tolerances import ZERO
-from polarcheck.machines.modal import Motion
 
 
 class CAxis(NamedTuple):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Points, States
+from polarcheck.foundation.arrays import Floats, Points, States
 from polarcheck.geometry.plane import (
     ArcsFromCenter,
     arcs_from_center,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Points, Rows
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows
 
 #: How wide a strip passes for straight, in roundings to either side: so wide that, where the contour bends, its chords
 #: turn clearly more than the rounding of their ends turns them.

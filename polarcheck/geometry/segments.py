@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from polarcheck.arrays import Floats, Mask, Points, Rows, States, Table
-from polarcheck.errors import TooHardError
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, States, Table
+from polarcheck.foundation.errors import TooHardError
+from polarcheck.foundation.states import Motion
+from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.plane import arc_sweep
 from polarcheck.geometry.tolerances import CHORDS_OF_FILE, TOUCH, ZERO
-from polarcheck.machines.modal import Motion
-from polarcheck.time_limit import keep_time
 
 #: A chord shorter than this share of the others is merged with its neighbour.
 _STUB = 1e-3

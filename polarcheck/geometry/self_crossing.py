@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Points, Rows
+from polarcheck.foundation.arrays import Floats, Points, Rows
 from polarcheck.geometry.plane import cross
 
 #: How far before and behind a crossing the path is looked at [mm].

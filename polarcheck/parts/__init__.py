@@ -1,1 +1,1 @@
-"""What a program makes, and whether it is the part asked for."""
+"""What a job asks for, beside what its program makes of it: contours, and the metal that is left."""

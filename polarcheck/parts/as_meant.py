@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from polarcheck.machines.modal import Units
+from polarcheck.foundation.states import Units
 
 if TYPE_CHECKING:
     from polarcheck.columns.trace import Trace

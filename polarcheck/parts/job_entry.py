@@ -7,11 +7,11 @@ from collections.abc import Callable, Mapping
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
-from polarcheck.errors import JobError
-from polarcheck.finding import MadeShape
-from polarcheck.machines.job import from_table
-from polarcheck.machines.modal import MM_PER_INCH
-from polarcheck.machines.part import SIDES
+from polarcheck.foundation.errors import JobError
+from polarcheck.foundation.finding import MadeShape
+from polarcheck.foundation.states import MM_PER_INCH
+from polarcheck.program.machines.job import from_table
+from polarcheck.program.machines.part import SIDES
 
 #: Names of regular polygons by their number of sides.
 _NAMES = {count: name for name, count in SIDES.items()}

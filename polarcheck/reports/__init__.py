@@ -6,19 +6,20 @@ import importlib
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from types import MappingProxyType, ModuleType
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 if TYPE_CHECKING:
-    from polarcheck.checking.rule import Rule
     from polarcheck.checking.settings import Settings
-    from polarcheck.finding import FileReport, Report
-    from polarcheck.pictures.picture import Drawn
+    from polarcheck.foundation.finding import FileReport, Report
+    from polarcheck.rules.rule import Rule
 
 SEVERITIES = ("error", "warning", "note")
 #: Formats for people, in the encoding of the terminal, listed first; all others are UTF-8, for programs.
 FOR_PEOPLE = ("text", "short", "concise")
 #: Formats that hold one checked file each; several files need a folder.
 PER_FILE = ("html",)
+#: Formats that a wing makes: loaded late, as no room of the core imports a wing.
+OF_WINGS = {"html": "polarcheck.view.html"}
 _STYLES = {
     "error": "1;31",
     "warning": "1;33",
@@ -69,7 +70,7 @@ class Background(NamedTuple):
     folder: str = ""
     fixed: int = 0
     has_baseline: bool = False
-    drawn: Mapping[str, Drawn] = MappingProxyType({})
+    drawn: Mapping[str, Any] = MappingProxyType({})
 
 
 class Parts(NamedTuple):
@@ -85,8 +86,8 @@ class Parts(NamedTuple):
 
 
 def formats() -> list[str]:
-    """Return the names of the formats: the modules of this package, those for people first."""
-    names = {path.stem for path in Path(__file__).parent.glob("*.py")} - {"__init__"}
+    """Return the names of the formats: the modules of this package and those of wings, those for people first."""
+    names = {path.stem for path in Path(__file__).parent.glob("*.py")} - {"__init__"} | OF_WINGS.keys()
     return [*FOR_PEOPLE, *sorted(names.difference(FOR_PEOPLE))]
 
 
@@ -116,7 +117,7 @@ def of_each(parts: Parts, report: Report, background: Background) -> Iterator[st
 
 
 def _module(form: str) -> ModuleType:
-    return importlib.import_module(f"polarcheck.reports.{form}")
+    return importlib.import_module(OF_WINGS.get(form, f"polarcheck.reports.{form}"))
 
 
 def settings_lines(report: Report) -> Iterator[str]:

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 
 from msgspec import UNSET
 
-from polarcheck.finding import UNREADABLE
+from polarcheck.foundation.finding import UNREADABLE
 from polarcheck.reports.ci import xml
 from polarcheck.reports.ci.paths import from_root
 
 if TYPE_CHECKING:
-    from polarcheck.finding import FileReport, Report
+    from polarcheck.foundation.finding import FileReport, Report
     from polarcheck.reports import Background
 
 _SEVERITIES = {"error": "error", "warning": "warning", "note": "info"}

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from polarcheck.finding import UNREADABLE
-from polarcheck.reading.excerpt import head, visible, without_commands
+from polarcheck.foundation.finding import UNREADABLE
+from polarcheck.program.reading.excerpt import head, visible, without_commands
 from polarcheck.reports import Background, Parts, of_each, painted
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from polarcheck.finding import FileReport, Finding, Report, Silenced
+    from polarcheck.foundation.finding import FileReport, Finding, Report, Silenced
 
 
 def concise(report: Report, background: Background | None = None) -> str:

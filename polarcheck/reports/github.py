@@ -8,16 +8,16 @@ from typing import TYPE_CHECKING
 
 from msgspec import UNSET
 
-from polarcheck.finding import UNREADABLE
-from polarcheck.reading.excerpt import visible
-from polarcheck.reading.files import STANDARD_INPUT
+from polarcheck.foundation.finding import UNREADABLE
+from polarcheck.program.reading.excerpt import visible
+from polarcheck.program.reading.files import STANDARD_INPUT
 from polarcheck.reports import SEVERITIES, counted, settings_lines
 from polarcheck.reports.ci.paths import from_root
 from polarcheck.reports.concise import line, unreadable_line
 from polarcheck.reports.text import summary, verdict
 
 if TYPE_CHECKING:
-    from polarcheck.finding import FileReport, Finding, Report
+    from polarcheck.foundation.finding import FileReport, Finding, Report
     from polarcheck.reports import Background
 
 _LEVELS = {"error": "error", "warning": "warning", "note": "notice"}

@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Any
 
 from msgspec import UNSET
 
-from polarcheck.finding import UNREADABLE
-from polarcheck.reading.excerpt import visible
+from polarcheck.foundation.finding import UNREADABLE
+from polarcheck.program.reading.excerpt import visible
 from polarcheck.reports.ci.paths import from_root
 from polarcheck.reports.json import encoded
 
 if TYPE_CHECKING:
-    from polarcheck.finding import Report
+    from polarcheck.foundation.finding import Report
     from polarcheck.reports import Background
 
 _SEVERITIES = {"error": "major", "warning": "minor", "note": "info"}

@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING, Any
 
 import msgspec
 
-from polarcheck.reading.names import with_characters
+from polarcheck.program.reading.names import with_characters
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from polarcheck.finding import FileReport, Report
+    from polarcheck.foundation.finding import FileReport, Report
     from polarcheck.reports import Background
 
 #: Characters that JSON need not escape, but that control a terminal or an editor, or are invisible: escape sequences,

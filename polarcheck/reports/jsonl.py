@@ -11,7 +11,7 @@ from polarcheck.reports import Background, Parts, of_each
 from polarcheck.reports.json import encoded, without_text
 
 if TYPE_CHECKING:
-    from polarcheck.finding import FileReport, Report
+    from polarcheck.foundation.finding import FileReport, Report
 
 _LISTED = ("findings", "silenced")
 

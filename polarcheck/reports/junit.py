@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING, NamedTuple
 from msgspec import UNSET
 
 from polarcheck.checking.check import FAILING, reaches
-from polarcheck.finding import FAIL, UNREADABLE, Undecided
+from polarcheck.foundation.finding import FAIL, UNREADABLE, Undecided
 from polarcheck.reports.ci import xml
 from polarcheck.reports.ci.paths import from_root
 from polarcheck.reports.concise import line
 from polarcheck.reports.pages.resting import resting
 
 if TYPE_CHECKING:
-    from polarcheck.finding import FileReport, Finding, NotEvaluated, Report
+    from polarcheck.foundation.finding import FileReport, Finding, NotEvaluated, Report
     from polarcheck.reports import Background
 
 #: The test of a file without a polar section.

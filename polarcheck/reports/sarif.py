@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING, Any
 
 from msgspec import UNSET
 
-from polarcheck.finding import ALLOW, BASELINE, UNREADABLE, Silenced
-from polarcheck.reading.excerpt import visible
+from polarcheck.foundation.finding import ALLOW, BASELINE, UNREADABLE, Silenced
+from polarcheck.program.reading.excerpt import visible
 from polarcheck.reports import settings_lines
 from polarcheck.reports.ci import rule_help
 from polarcheck.reports.ci.paths import uri
 from polarcheck.reports.json import encoded
 
 if TYPE_CHECKING:
-    from polarcheck.checking.rule import Rule
-    from polarcheck.finding import FileReport, Finding, Fix, Report
+    from polarcheck.foundation.finding import FileReport, Finding, Fix, Report
     from polarcheck.reports import Background
+    from polarcheck.rules.rule import Rule
 
 _SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
 #: The base of all paths, by the name that readers of SARIF know.

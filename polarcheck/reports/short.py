@@ -6,14 +6,14 @@ import shlex
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
-from polarcheck.reading.excerpt import visible
-from polarcheck.reading.files import STANDARD_INPUT
+from polarcheck.program.reading.excerpt import visible
+from polarcheck.program.reading.files import STANDARD_INPUT
 from polarcheck.reports import Background, Parts, of_each, painted, settings_lines
 from polarcheck.reports.concise import lines
 from polarcheck.reports.text import summary
 
 if TYPE_CHECKING:
-    from polarcheck.finding import FileReport, Report
+    from polarcheck.foundation.finding import FileReport, Report
 
 _FULL = {"fail": "What is wrong with one of them, in full", "unverified": "Why one of them is unverified"}
 

@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from msgspec import UNSET
 
-from polarcheck.finding import DESELECTED, FAIL, PASS, UNREADABLE, UNVERIFIED
-from polarcheck.reading.excerpt import excerpt, visible, without_commands
+from polarcheck.foundation.finding import DESELECTED, FAIL, PASS, UNREADABLE, UNVERIFIED
+from polarcheck.program.reading.excerpt import excerpt, visible, without_commands
 from polarcheck.reports import SEVERITIES, Background, Parts, counted, of_each, painted, settings_lines
 from polarcheck.reports.pages.resting import resting
 
 if TYPE_CHECKING:
-    from polarcheck.checking.rule import Rule
-    from polarcheck.finding import FileReport, Finding, Fix, NotEvaluated, Report
+    from polarcheck.foundation.finding import FileReport, Finding, Fix, NotEvaluated, Report
+    from polarcheck.rules.rule import Rule
 
 #: Line numbers and labels end at this column; the text beside them begins three columns further.
 _GUTTER = 6
@@ -116,13 +116,8 @@ def _parts(background: Background, are_listed: bool) -> Parts:
 
 def _views(file: FileReport, page: _Page, dots: bool) -> Iterator[str]:
     """Yield the paths of each section, if they were requested."""
-    views = getattr(file, "views", ())
-    if not views:
-        return
-    from polarcheck.reports.pages.path_view import path_view
-
-    for view in views:
-        yield from path_view(view, page.columns, dots=dots, paint=page.paint, path=file.path)
+    for view in getattr(file, "views", ()):
+        yield from view.lines(page.columns, dots=dots, paint=page.paint, path=file.path)
 
 
 def _silenced(file: FileReport, page: _Page) -> Iterator[str]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Points
+from polarcheck.foundation.arrays import Floats, Mask, Points
 from polarcheck.geometry.comparison.measured_path import Way
 
 #: Directions from the center in which distances are compared; points sampled along a way.

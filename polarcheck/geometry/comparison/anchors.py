@@ -6,8 +6,8 @@ from bisect import bisect_left
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Points, Rows
-from polarcheck.time_limit import keep_time
+from polarcheck.foundation.arrays import Floats, Points, Rows
+from polarcheck.foundation.time_limit import keep_time
 
 _MIX = np.uint64(0x9E3779B97F4A7C15)
 

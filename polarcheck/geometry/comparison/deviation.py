@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import shapely  # type: ignore[import-untyped]
 
-from polarcheck.arrays import Floats, Mask, Points, Rows
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows
 from polarcheck.geometry import polar
 from polarcheck.geometry.comparison.measured_path import Way, way_of_outline
 from polarcheck.geometry.outline import Outline

@@ -12,7 +12,7 @@ import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from polarcheck.time_limit import keep_time
+from polarcheck.foundation.time_limit import keep_time
 
 #: x, c and z of a corner [mm].
 Corner = tuple[float, float, float]

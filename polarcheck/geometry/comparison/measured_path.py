@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 import shapely  # type: ignore[import-untyped]
 
-from polarcheck.arrays import Floats, Points, Rows
+from polarcheck.foundation.arrays import Floats, Points, Rows
+from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.outline import Outline
 from polarcheck.geometry.segments import Curves, segments
-from polarcheck.time_limit import keep_time
 
 #: Points along a way, beside the ends of its segments.
 _SAMPLES = 2000

@@ -12,14 +12,14 @@ from typing import Any, NamedTuple
 import numpy as np
 import shapely  # type: ignore[import-untyped]
 
-from polarcheck.arrays import Floats, Points
-from polarcheck.errors import TooHardError
+from polarcheck.foundation.arrays import Floats, Points
+from polarcheck.foundation.errors import TooHardError
+from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.polygons import areas
 from polarcheck.geometry.polygons.faces import coordinates
 from polarcheck.geometry.polygons.widened import widened
 from polarcheck.geometry.segments import Curves, segments
 from polarcheck.geometry.tolerances import ZERO
-from polarcheck.time_limit import keep_time
 
 #: Four times by how much the chords of a round may leave it [mm].
 _CHORDS = 0.008

@@ -13,12 +13,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Points
+from polarcheck.foundation.arrays import Floats, Points
+from polarcheck.foundation.states import MM_PER_INCH
+from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.comparison.alignment import best_turn
 from polarcheck.geometry.comparison.deviation import Difference, Made, difference
 from polarcheck.geometry.comparison.measured_path import Way, way_of
-from polarcheck.machines.modal import MM_PER_INCH
-from polarcheck.time_limit import keep_time
 
 #: Another placement is named if it reduces the difference at least to this share.
 _FAR_LESS = 0.05

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Points, Rows, States, Table
-from polarcheck.errors import TooHardError
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, States, Table
+from polarcheck.foundation.errors import TooHardError
+from polarcheck.foundation.states import Motion
+from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.plane import arc_sweep
 from polarcheck.geometry.tolerances import CHORDS_OF_FILE, ZERO
-from polarcheck.machines.modal import Motion
-from polarcheck.time_limit import keep_time
 
 #: The fewest chords of a full circle are three, the flattest chord turns by this angle [rad].
 _LEAST_TURN, _LARGEST_TURN = 1e-6, 2 * np.pi / 3

@@ -15,11 +15,11 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from polarcheck.arrays import Floats, Mask, Points, Rows, States, Table
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, States, Table
+from polarcheck.foundation.states import Motion
 from polarcheck.geometry.cutter_compensation.offset_vectors import Vectors, end_vectors
 from polarcheck.geometry.cutter_compensation.programmed_path import Method, Path, Programmed, fits, moving_rows
 from polarcheck.geometry.tolerances import ROUNDING, ZERO
-from polarcheck.machines.modal import Motion
 
 __all__ = ["Method", "Path", "Phase", "ToolPath", "tool_center_path"]
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Points, Table
+from polarcheck.foundation.arrays import Floats, Mask, Points, Table
 from polarcheck.geometry.tolerances import ROUNDING
 
 #: A turn below this [rad] is no corner; rounding in the arithmetic only, a program's last digit turns by 1e-4 and more.

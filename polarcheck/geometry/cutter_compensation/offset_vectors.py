@@ -8,7 +8,8 @@ from __future__ import annotations
 import msgspec
 import numpy as np
 
-from polarcheck.arrays import Mask, Points, Rows
+from polarcheck.foundation.arrays import Mask, Points, Rows
+from polarcheck.foundation.states import Corner
 from polarcheck.geometry.cutter_compensation.corner import (
     STRAIGHT,
     Corners,
@@ -20,7 +21,6 @@ from polarcheck.geometry.cutter_compensation.corner import (
 )
 from polarcheck.geometry.cutter_compensation.programmed_path import Method, Programmed, fits
 from polarcheck.geometry.tolerances import ROUNDING
-from polarcheck.machines.modal import Corner
 
 #: The places that a vector can take at the end of a move, in the order in which the tool center passes them.
 BEFORE, CORNER, ACROSS, AFTER = range(4)

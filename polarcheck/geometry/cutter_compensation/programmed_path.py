@@ -8,9 +8,9 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from polarcheck.arrays import Floats, Mask, Points, Rows, States, Table
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, States, Table
+from polarcheck.foundation.states import Motion, Side
 from polarcheck.geometry.tolerances import ROUNDING, ZERO
-from polarcheck.machines.modal import Motion, Side
 
 
 class Method(msgspec.Struct, frozen=True):

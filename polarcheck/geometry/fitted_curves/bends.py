@@ -13,7 +13,7 @@ import math
 
 import numpy as np
 
-from polarcheck.arrays import Floats
+from polarcheck.foundation.arrays import Floats
 from polarcheck.geometry.fitted_curves.spirals import Samples
 from polarcheck.geometry.plane import quiet
 

@@ -7,12 +7,12 @@ import math
 import msgspec
 import numpy as np
 
-from polarcheck.arrays import Floats, Points, Rows, States, Table
+from polarcheck.foundation.arrays import Floats, Points, Rows, States, Table
+from polarcheck.foundation.states import Motion
 from polarcheck.geometry.fitted_curves.bends import bend
 from polarcheck.geometry.fitted_curves.elements import Element, longest_elements
 from polarcheck.geometry.fitted_curves.spirals import Samples
 from polarcheck.geometry.plane import quiet
-from polarcheck.machines.modal import Motion
 
 #: A closer fit is taken where it needs no more than this many times the elements of the widest tolerance.
 _MORE_ELEMENTS = 1.15

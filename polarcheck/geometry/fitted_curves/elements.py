@@ -7,10 +7,10 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from polarcheck.arrays import Rows
+from polarcheck.foundation.arrays import Rows
+from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.fitted_curves.bends import bend, error
 from polarcheck.geometry.fitted_curves.spirals import Samples
-from polarcheck.time_limit import keep_time
 
 #: A line is taken where an arc would reach no farther than this many times as far.
 _ARC_GAIN = 1.25

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Points, Rows, Table
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, Table
 from polarcheck.geometry.plane import quiet
 from polarcheck.geometry.tolerances import ZERO
 

@@ -14,14 +14,14 @@ import msgspec
 import numpy as np
 import shapely  # type: ignore[import-untyped]
 
-from polarcheck.arrays import Floats, Mask, Points, Rows, Table
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, Table
+from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.contour_ends import WITNESS, Corners
 from polarcheck.geometry.polygons import areas
 from polarcheck.geometry.polygons.faces import GRID, Geometries, coordinates, gathered
 from polarcheck.geometry.polygons.finished_part import FinishedParts
 from polarcheck.geometry.segments import Segments
 from polarcheck.geometry.tolerances import CORNER, ROUNDING, ZERO
-from polarcheck.time_limit import keep_time
 
 #: Distance [mm] that counts as a touch; larger than the error of chords and of two roundings.
 _CONTACT = 0.003

@@ -16,14 +16,14 @@ import msgspec
 import numpy as np
 import shapely  # type: ignore[import-untyped]
 
-from polarcheck.arrays import Mask, Rows
+from polarcheck.foundation.arrays import Mask, Rows
+from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.contour_ends import WITNESS
 from polarcheck.geometry.material_left.ribs import Swept, first_tool
 from polarcheck.geometry.polygons import areas
 from polarcheck.geometry.polygons.faces import GRID, coordinates, lines_through
 from polarcheck.geometry.segments import Segments
 from polarcheck.geometry.tolerances import ZERO
-from polarcheck.time_limit import keep_time
 
 #: Two outlines touch if they are this near [mm]; larger than the error of chords.
 _BESIDE = 0.01

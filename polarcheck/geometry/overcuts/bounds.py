@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from polarcheck.arrays import Rows, different
+from polarcheck.foundation.arrays import Rows, different
 from polarcheck.geometry.segments import Curves, chord_counts, first_of_its_kind
 from polarcheck.geometry.tolerances import CHORDS, CHORDS_OF_FILE, FARTHEST, FARTHEST_CENTER
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Points
+from polarcheck.foundation.arrays import Floats, Mask, Points
 from polarcheck.geometry.plane import cross, dot
 from polarcheck.geometry.segments import Curves, segments
 from polarcheck.geometry.tolerances import ROUNDING, ZERO

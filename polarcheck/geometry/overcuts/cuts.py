@@ -14,13 +14,13 @@ import msgspec
 import numpy as np
 import shapely  # type: ignore[import-untyped]
 
-from polarcheck.arrays import Floats, Mask, Points, Rows, Table
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, Table
+from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.polygons import areas
 from polarcheck.geometry.polygons.faces import Geometries, coordinates, edges_of, ends_of, gathered, lines_of, polylines
 from polarcheck.geometry.polygons.finished_part import FinishedParts
 from polarcheck.geometry.segments import Segments
 from polarcheck.geometry.tolerances import CORNER, ZERO
-from polarcheck.time_limit import keep_time
 
 #: Pieces of path that are first compared as one polyline; pieces processed at a time, to limit memory.
 _RUN, _BATCH = 64, 4096

@@ -12,7 +12,7 @@ import msgspec
 import numpy as np
 import shapely  # type: ignore[import-untyped]
 
-from polarcheck.arrays import Floats, Mask, Rows
+from polarcheck.foundation.arrays import Floats, Mask, Rows
 from polarcheck.geometry.overcuts.cuts import Cuts, cuts_into, endless, shortened, with_walls
 from polarcheck.geometry.polygons import areas
 from polarcheck.geometry.polygons.faces import lines_of

@@ -16,14 +16,14 @@ import msgspec
 import numpy as np
 import shapely  # type: ignore[import-untyped]
 
-from polarcheck.arrays import Floats, Mask, Points, Rows
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows
+from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.overcuts.cuts import Cuts, cuts_into, with_facing_walls
 from polarcheck.geometry.polygons import areas
 from polarcheck.geometry.polygons.faces import ends_of, gathered, lines_of, polylines
 from polarcheck.geometry.polygons.finished_part import Contours, FinishedParts, finished_parts
 from polarcheck.geometry.segments import Curves, Segments, first_of_its_kind, members, segments
 from polarcheck.geometry.tolerances import ZERO
-from polarcheck.time_limit import keep_time
 
 #: Overcuts up to this depth [mm] are not reported: two roundings to the least increment.
 TOLERANCE = 0.002

@@ -9,7 +9,7 @@ from __future__ import annotations
 import msgspec
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Rows, Table
+from polarcheck.foundation.arrays import Floats, Mask, Rows, Table
 from polarcheck.geometry.segments import Curves, boxes
 from polarcheck.geometry.tolerances import ROUNDING
 

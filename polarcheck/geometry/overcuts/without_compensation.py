@@ -12,14 +12,14 @@ import msgspec
 import numpy as np
 import shapely  # type: ignore[import-untyped]
 
-from polarcheck.arrays import Floats, Mask, Rows
+from polarcheck.foundation.arrays import Floats, Mask, Rows
+from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.overcuts.cuts import Cuts, cuts_into, endless, shortened, with_walls
 from polarcheck.geometry.overcuts.uncompensated_moves import Bare, FlatLoops
 from polarcheck.geometry.polygons.faces import coordinates, lines_of
 from polarcheck.geometry.polygons.finished_part import Contours, FinishedParts, finished_parts
 from polarcheck.geometry.segments import Curves, Segments, boxes, members, reach_from_start, segments
 from polarcheck.geometry.tolerances import ROUNDING, ZERO
-from polarcheck.time_limit import keep_time
 
 #: Sums over a loop are equal if they differ by less [mm]: their rounding grows with the square of its blocks.
 _SAME_SUM = 1e-3

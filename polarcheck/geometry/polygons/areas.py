@@ -15,9 +15,9 @@ import numpy as np
 import shapely  # type: ignore[import-untyped]
 from shapely.errors import GEOSException  # type: ignore[import-untyped]
 
-from polarcheck.errors import NoAnswerError, TooHardError
+from polarcheck.foundation.errors import NoAnswerError, TooHardError
+from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.polygons.interruption import interruptible, is_interrupt
-from polarcheck.time_limit import keep_time
 
 #: Most points of one operation, and points of a batch of areas; about a second each.
 _MOST, _AT_A_TIME = 1_000_000, 200_000

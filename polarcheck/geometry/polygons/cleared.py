@@ -15,16 +15,16 @@ import msgspec
 import numpy as np
 import shapely  # type: ignore[import-untyped]
 
-from polarcheck.arrays import Floats, Mask, Points, Rows
-from polarcheck.errors import TooHardError
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows
+from polarcheck.foundation.errors import TooHardError
+from polarcheck.foundation.states import Motion
+from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.outline import Outline, outline_of
 from polarcheck.geometry.plane import arc_sweep
 from polarcheck.geometry.polygons.faces import coordinates, edges_of, lines_of
 from polarcheck.geometry.polygons.widened import widened
 from polarcheck.geometry.segments import Curves, Segments, first_of_its_kind, segments
 from polarcheck.geometry.tolerances import ROUNDING, TOUCH
-from polarcheck.machines.modal import Motion
-from polarcheck.time_limit import keep_time
 
 #: Arcs of the path have chords with a quarter of this as sagitta at most, and round corners too [mm].
 _TOLERANCE = 0.004

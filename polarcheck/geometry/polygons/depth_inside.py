@@ -6,7 +6,7 @@ import msgspec
 import numpy as np
 import shapely  # type: ignore[import-untyped]
 
-from polarcheck.arrays import Floats, Mask, Points, Rows
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows
 from polarcheck.geometry.polygons import areas
 from polarcheck.geometry.polygons.faces import coordinates
 from polarcheck.geometry.polygons.finished_part import Contours, FinishedParts, finished_parts

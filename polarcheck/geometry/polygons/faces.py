@@ -16,11 +16,11 @@ import numpy as np
 import shapely  # type: ignore[import-untyped]
 from numpy.typing import NDArray
 
-from polarcheck.arrays import Floats, Mask, Points, Rows, Table
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, Table
+from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.polygons import areas
 from polarcheck.geometry.polygons.noding import Edges, merged, noded
 from polarcheck.geometry.tolerances import ROUNDING
-from polarcheck.time_limit import keep_time
 
 Geometries = NDArray[Any]
 #: Rings of a group up to which they are put on or taken away one by one, and how many are compared at a time.

@@ -17,7 +17,7 @@ import msgspec
 import numpy as np
 import shapely  # type: ignore[import-untyped]
 
-from polarcheck.arrays import Floats, Mask, Points, Rows
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows
 from polarcheck.geometry.contour_ends import gaps_between_ends
 from polarcheck.geometry.polygons import areas
 from polarcheck.geometry.polygons.faces import GRID, Geometries, Standing, Walls, standing

@@ -20,7 +20,7 @@ from typing import Any
 
 import shapely  # type: ignore[import-untyped]
 
-from polarcheck import time_limit
+from polarcheck.foundation import time_limit
 
 #: How often the thread looks [s].
 _PERIOD = 0.05

@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Points, Rows, Table
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, Table
+from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.contour_ends import CLOSED
 from polarcheck.geometry.polygons.faces import Walls
 from polarcheck.geometry.tolerances import TOUCH
-from polarcheck.time_limit import keep_time
 
 #: Pairs of ends and walls to compare at a time.
 _PAIRS = 1_000_000

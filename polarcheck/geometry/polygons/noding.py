@@ -13,9 +13,9 @@ import msgspec
 import numpy as np
 import shapely  # type: ignore[import-untyped]
 
-from polarcheck.arrays import Floats, Mask, Points, Rows, Table
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, Table
+from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.tolerances import CROSSINGS, FREE_CROSSINGS, TOUCH
-from polarcheck.time_limit import keep_time
 
 #: Pairs of walls to compare for each wall of a group, and beyond that, before it is taken to cross too often.
 _PAIRS, _FREE_PAIRS = 64, 4_000_000

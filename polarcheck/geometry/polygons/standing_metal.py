@@ -12,14 +12,14 @@ from typing import Any
 import numpy as np
 import shapely  # type: ignore[import-untyped]
 
-from polarcheck.arrays import Floats, Mask, Points, Rows, Table
-from polarcheck.errors import TooHardError
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, Table
+from polarcheck.foundation.errors import TooHardError
+from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.polygons import areas
 from polarcheck.geometry.polygons.faces import coordinates
 from polarcheck.geometry.polygons.widened import widened
 from polarcheck.geometry.segments import Curves, segments
 from polarcheck.geometry.tolerances import ROUNDING, ZERO
-from polarcheck.time_limit import keep_time
 
 #: What the rounding of the words and of chords may leave between two passes [mm].
 _TOLERANCE = 0.05

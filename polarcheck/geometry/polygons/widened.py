@@ -15,8 +15,8 @@ import numpy as np
 import shapely  # type: ignore[import-untyped]
 from numpy.typing import NDArray
 
-from polarcheck.arrays import Mask, Points, Rows
-from polarcheck.errors import NoAnswerError
+from polarcheck.foundation.arrays import Mask, Points, Rows
+from polarcheck.foundation.errors import NoAnswerError
 from polarcheck.geometry.polygons import areas
 from polarcheck.geometry.polygons.faces import GRID, Geometries, coordinates, lines_of
 from polarcheck.geometry.segments import Curves, Segments

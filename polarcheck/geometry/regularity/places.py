@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from polarcheck.arrays import Mask, Points
+from polarcheck.foundation.arrays import Mask, Points
 
 #: Parts of a turn that are tried: every symmetric turn has one of these in it.
 _PARTS = (2, 3, 5, 7, 11, 13)

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Points
+from polarcheck.foundation.arrays import Floats, Mask, Points
 
 #: Ends that are nearer to each other are one point, and points so near to the line of a side lie on it [mm].
 _SAME = 0.004

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Points, Rows
+from polarcheck.foundation.arrays import Floats, Points, Rows
 from polarcheck.geometry.regularity.rings import Ring
 
 #: Axes of symmetry lie in steps of this angle where they are along an axis, or as those of a polygon on it [rad].

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Points, Rows
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows
 from polarcheck.geometry.shapes.rings import Ring
 from polarcheck.geometry.shapes.shape import SAME
 

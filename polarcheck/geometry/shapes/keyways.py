@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from polarcheck.arrays import Mask
+from polarcheck.foundation.arrays import Mask
 from polarcheck.geometry.shapes.rings import Ring
 from polarcheck.geometry.shapes.shape import SAME, SAME_DIRECTION, Shape, off_axis, turned_by
 

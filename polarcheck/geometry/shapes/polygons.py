@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Points
+from polarcheck.foundation.arrays import Floats, Mask, Points
 from polarcheck.geometry.shapes.corners import Sides, is_at, without_chamfers
 from polarcheck.geometry.shapes.rings import Ring, extents_of
 from polarcheck.geometry.shapes.shape import SAME, SAME_DIRECTION, OddSide, Shape, off_axis, polygon_name, turned_by

@@ -13,7 +13,7 @@ from typing import Self
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Points, Rows
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows
 from polarcheck.geometry.outline import Outline
 from polarcheck.geometry.plane import arc_sweep, passes_toward
 from polarcheck.geometry.rounding import kept_ends

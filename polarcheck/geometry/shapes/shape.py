@@ -6,7 +6,7 @@ import cmath
 import math
 from typing import NamedTuple
 
-from polarcheck.arrays import Floats, Points
+from polarcheck.foundation.arrays import Floats, Points
 
 #: Sizes and places that agree in this [mm] are the same: what the last digit of a program in inches may move a side by.
 SAME = 0.004

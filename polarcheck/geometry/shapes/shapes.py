@@ -6,7 +6,8 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from polarcheck.arrays import Mask
+from polarcheck.foundation.arrays import Mask
+from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.outline import Outline
 from polarcheck.geometry.shapes.corners import sides_of
 from polarcheck.geometry.shapes.keyways import keyed_round_of
@@ -15,7 +16,6 @@ from polarcheck.geometry.shapes.polygons import cross_of, in_chords, polygon_of
 from polarcheck.geometry.shapes.rings import SHARP, Ring, directions, extents_of, rings
 from polarcheck.geometry.shapes.rounds import round_of, two_rounds_of
 from polarcheck.geometry.shapes.shape import Shape
-from polarcheck.time_limit import keep_time
 
 
 def shapes_of(outline: Outline, gap: float = 0.0, bar: float = np.nan) -> list[Shape]:

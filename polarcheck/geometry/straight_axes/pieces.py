@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Points
+from polarcheck.foundation.arrays import Floats, Points
 from polarcheck.geometry.plane import cross, dot, quiet
 
 #: Places on a piece, between its ends, at which it is measured, as shares of its time.

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from polarcheck.arrays import Floats, Mask, Points, Rows, States, Table, cached_property
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, States, Table, cached_property
 from polarcheck.geometry.plane import arc_sweep, cross, dot, quiet
 
 #: Places on a span where density and turn are looked at.

@@ -7,9 +7,9 @@ import re
 from typing import TYPE_CHECKING
 from urllib.parse import quote
 
-from polarcheck.reading.excerpt import visible
-from polarcheck.reading.files import STANDARD_INPUT
-from polarcheck.reading.names import spelled, unspelled
+from polarcheck.program.reading.excerpt import visible
+from polarcheck.program.reading.files import STANDARD_INPUT
+from polarcheck.program.reading.names import spelled, unspelled
 
 if TYPE_CHECKING:
     from polarcheck.reports import Background

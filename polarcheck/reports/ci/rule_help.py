@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from polarcheck.reports.pages.markdown import prose
 
 if TYPE_CHECKING:
-    from polarcheck.checking.rule import Rule
+    from polarcheck.rules.rule import Rule
 
 _EXAMPLE = re.compile(r"(Bad|Good)\b[^\n]*:")
 _INDENT = "    "

@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING
 
 from msgspec import UNSET
 
-from polarcheck.finding import UNREADABLE
-from polarcheck.reading.excerpt import visible
+from polarcheck.foundation.finding import UNREADABLE
+from polarcheck.program.reading.excerpt import visible
 from polarcheck.reports import SEVERITIES, counted, settings_lines
 from polarcheck.reports.ci.paths import from_root
 from polarcheck.reports.pages.statistics import counts
 from polarcheck.reports.text import summary
 
 if TYPE_CHECKING:
-    from polarcheck.finding import Report
+    from polarcheck.foundation.finding import Report
     from polarcheck.reports import Background
 
 #: The largest page that GitHub accepts, all steps together [bytes].

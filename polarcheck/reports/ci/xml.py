@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from polarcheck.reading.excerpt import visible
+from polarcheck.program.reading.excerpt import visible
 
 HEAD = '<?xml version="1.0" encoding="UTF-8"?>\n'
 _SPECIAL = str.maketrans({"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;"})

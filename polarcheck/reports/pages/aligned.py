@@ -8,8 +8,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from polarcheck.arrays import Floats, Mask
-from polarcheck.reading.excerpt import cells, excerpt
+from polarcheck.foundation.arrays import Floats, Mask
+from polarcheck.program.reading.excerpt import cells, excerpt
 
 #: The space between two columns.
 _GAP = "  "

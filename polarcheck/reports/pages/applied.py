@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import msgspec
 
-from polarcheck.reading.excerpt import visible
+from polarcheck.program.reading.excerpt import visible
 
 #: A longer line does not widen the column of the values [characters].
 _LONGEST = 48

@@ -12,10 +12,10 @@ from typing import Any
 
 import msgspec
 
-from polarcheck.machines import profiles
-from polarcheck.machines.machine import Machine, meanings
-from polarcheck.machines.parameters import Origin
-from polarcheck.machines.profiles import Profile
+from polarcheck.program.machines import profiles
+from polarcheck.program.machines.machine import Machine, meanings
+from polarcheck.program.machines.parameters import Origin
+from polarcheck.program.machines.profiles import Profile
 
 _COLUMNS = (
     "polar.on",

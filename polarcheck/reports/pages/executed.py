@@ -11,12 +11,12 @@ import msgspec
 import numpy as np
 from msgspec import UNSET, UnsetType
 
-from polarcheck.checking.phrases.offsets import called_tool, key_of, option
-from polarcheck.checking.quantity import rounded
+from polarcheck.columns.path.executed_moves import KINDS, PROGRAMMED, executed_moves
+from polarcheck.columns.path.tool_center import ToolCenter
 from polarcheck.columns.trace import Trace
-from polarcheck.machines.modal import FeedMode, Motion, Side
-from polarcheck.table.executed_moves import KINDS, PROGRAMMED, executed_moves
-from polarcheck.table.tool_center import ToolCenter
+from polarcheck.foundation.states import FeedMode, Motion, Side
+from polarcheck.rules.quantity import rounded
+from polarcheck.rules.wording.phrases.offsets import called_tool, key_of, option
 
 
 class Move(msgspec.Struct, frozen=True):

@@ -7,15 +7,15 @@ from collections.abc import Callable, Iterator, Mapping
 from itertools import combinations
 from typing import TYPE_CHECKING, Any
 
-from polarcheck.machines.code_lists import expanded, is_code
-from polarcheck.machines.m_codes import SWITCHED
-from polarcheck.machines.machine import Machine, meanings
-from polarcheck.machines.profiles import Profile, names
-from polarcheck.machines.written_codes import is_list, without_effect
-from polarcheck.reading.excerpt import head, visible
+from polarcheck.program.machines.code_lists import expanded, is_code
+from polarcheck.program.machines.m_codes import SWITCHED
+from polarcheck.program.machines.machine import Machine, meanings
+from polarcheck.program.machines.profiles import Profile, names
+from polarcheck.program.machines.written_codes import is_list, without_effect
+from polarcheck.program.reading.excerpt import head, visible
 
 if TYPE_CHECKING:
-    from polarcheck.checking.rule import Rule
+    from polarcheck.rules.rule import Rule
 
 #: Keys that matter, and that the manual of a control cannot answer.
 _OPEN_KEYS = (

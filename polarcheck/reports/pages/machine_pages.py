@@ -8,10 +8,10 @@ from typing import Any
 
 import msgspec
 
-from polarcheck.machines import profiles
-from polarcheck.machines.machine import Machine, meanings
-from polarcheck.machines.parameters import Origin
-from polarcheck.machines.profiles import Profile
+from polarcheck.program.machines import profiles
+from polarcheck.program.machines.machine import Machine, meanings
+from polarcheck.program.machines.parameters import Origin
+from polarcheck.program.machines.profiles import Profile
 from polarcheck.reports.pages.controls import shown
 from polarcheck.reports.pages.markdown import GENERATED, prose, row, rule_under
 

@@ -11,16 +11,16 @@ from typing import TYPE_CHECKING, Any
 
 import msgspec
 
-from polarcheck.checking.vocabulary import kinds
-from polarcheck.machines import profiles
-from polarcheck.machines.machine import Machine
-from polarcheck.machines.own_language import shown
-from polarcheck.machines.profiles import Profile
-from polarcheck.reading.excerpt import visible
+from polarcheck.program.machines import profiles
+from polarcheck.program.machines.machine import Machine
+from polarcheck.program.machines.own_language import shown
+from polarcheck.program.machines.profiles import Profile
+from polarcheck.program.reading.excerpt import visible
+from polarcheck.rules.vocabulary import kinds
 
 if TYPE_CHECKING:
-    from polarcheck.checking.rule import Rule
-    from polarcheck.machines.parameters import Origin
+    from polarcheck.program.machines.parameters import Origin
+    from polarcheck.rules.rule import Rule
 
 _COLUMNS = 100
 #: The column where the comments of a profile begin.

@@ -8,10 +8,10 @@ from collections.abc import Iterator, Mapping, Sequence
 import msgspec
 
 from polarcheck.checking.survey import Survey, Told
-from polarcheck.machines import profiles
-from polarcheck.machines.modal import MM_PER_INCH
-from polarcheck.reading import files
-from polarcheck.reading.excerpt import shortened, visible
+from polarcheck.foundation.states import MM_PER_INCH
+from polarcheck.program.machines import profiles
+from polarcheck.program.reading import files
+from polarcheck.program.reading.excerpt import shortened, visible
 from polarcheck.reports import counted
 
 SCHEMA_FILE = "polarcheck.schema.json"

@@ -10,11 +10,11 @@ from typing import Any
 
 import msgspec
 
-from polarcheck.checking.rule import load_all
-from polarcheck.machines.machine import meanings
-from polarcheck.machines.parameters import Meaning
-from polarcheck.machines.profiles import MERGED, Profile, load
-from polarcheck.reading.excerpt import visible
+from polarcheck.program.machines.machine import meanings
+from polarcheck.program.machines.parameters import Meaning
+from polarcheck.program.machines.profiles import MERGED, Profile, load
+from polarcheck.program.reading.excerpt import visible
+from polarcheck.rules.rule import load_all
 
 #: The keys that a shop may want to set, by table, each with an example for an unknown value.
 _QUESTIONS: dict[str, dict[str, Any]] = {

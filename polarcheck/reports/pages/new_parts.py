@@ -8,9 +8,9 @@ from typing import Any
 
 import msgspec
 
-from polarcheck.finding import FileReport, MadeShape
+from polarcheck.foundation.finding import FileReport, MadeShape
 from polarcheck.parts.job_entry import NoEntryError, job_entry
-from polarcheck.reading.excerpt import visible
+from polarcheck.program.reading.excerpt import visible
 from polarcheck.reports.pages.new_job import toml
 
 _COLUMNS = 100

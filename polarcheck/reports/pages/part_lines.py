@@ -8,8 +8,8 @@ from typing import Any
 
 import msgspec
 
-from polarcheck.finding import FileReport
-from polarcheck.reading.excerpt import head, visible
+from polarcheck.foundation.finding import FileReport
+from polarcheck.program.reading.excerpt import head, visible
 from polarcheck.reports.json import encoded
 
 #: The rule that compares a part with its drawing.

@@ -10,7 +10,7 @@ from typing import Any
 
 import msgspec
 
-from polarcheck import finding
+from polarcheck.foundation import finding
 from polarcheck.reports.pages import schema
 from polarcheck.reports.pages.markdown import GENERATED, prose, row, rule_under
 

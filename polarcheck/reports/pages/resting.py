@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
-from polarcheck.checking.quantity import Quantity
 from polarcheck.reports import counted
+from polarcheck.rules.quantity import Quantity
 
 if TYPE_CHECKING:
-    from polarcheck.finding import FileReport, KnownStock, PolarSection
+    from polarcheck.foundation.finding import FileReport, KnownStock, PolarSection
 
 #: At most this many sections, or keys of the machine, are listed; the others are counted. JSON has them all.
 _LISTED = 5

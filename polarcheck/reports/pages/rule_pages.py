@@ -9,14 +9,14 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from polarcheck.checking import check
-from polarcheck.checking.examples import Example, examples, options_of
-from polarcheck.checking.rule import Rule, load_all
-from polarcheck.finding import Finding
-from polarcheck.machines import profiles, toml_text
-from polarcheck.machines.job import from_table, with_tool
-from polarcheck.machines.machine import Machine
-from polarcheck.machines.profiles import Profile
+from polarcheck.foundation.finding import Finding
+from polarcheck.program.machines import profiles, toml_text
+from polarcheck.program.machines.job import from_table, with_tool
+from polarcheck.program.machines.machine import Machine
+from polarcheck.program.machines.profiles import Profile
 from polarcheck.reports.pages.markdown import GENERATED, prose, row, rule_under
+from polarcheck.rules.examples import Example, examples, options_of
+from polarcheck.rules.rule import Rule, load_all
 
 _HEADING = re.compile(r"^(Bad|Good)(?:, (.*))?:$")
 

@@ -7,10 +7,10 @@ from typing import Any
 
 import msgspec
 
-from polarcheck.checking.vocabulary import VOCABULARY, Kind
-from polarcheck.finding import SCHEMA, SILENCED_BY, VERDICTS, Report, Severity
-from polarcheck.machines.job import Job
-from polarcheck.machines.machine import Machine, meanings
+from polarcheck.foundation.finding import SCHEMA, SILENCED_BY, VERDICTS, Report, Severity
+from polarcheck.program.machines.job import Job
+from polarcheck.program.machines.machine import Machine, meanings
+from polarcheck.rules.vocabulary import VOCABULARY, Kind
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
@@ -27,16 +27,14 @@ _TYPES: dict[Kind | None, str | list[str]] = {
 
 
 def schema(name: str) -> Schema:
-    """Return the schema of `report`, `job`, `machine`, `feeds`, `trace`, `comparison` or `rewriting`."""
-    makers = {"report": _report, "job": _job, "machine": _machine, "feeds": _feeds, "trace": _trace}
-    content = {**makers, "comparison": _comparison, "rewriting": _rewriting}[name]()
-    number = SCHEMA if name == "report" else 1
+    """Return the schema of `report`, `job`, `machine` or `trace`."""
+    content = {"report": _report, "job": _job, "machine": _machine, "trace": _trace}[name]()
+    return headed(name, content, SCHEMA if name == "report" else 1)
+
+
+def headed(name: str, content: Schema, number: int = 1) -> Schema:
+    """Return a schema with its dialect and its identifier, which ends with the number of its version."""
     return {"$schema": DIALECT, "$id": f"urn:polarcheck:{name}:{number}", **content}
-
-
-def text(name: str) -> str:
-    """Return the schema as JSON."""
-    return as_text(schema(name))
 
 
 def as_text(content: Schema) -> str:
@@ -67,38 +65,6 @@ def _values() -> Schema:
         unit = f" [{kind.value}]" if kind and types is None else ""
         properties[name] = {"type": types or "number", "description": f"{meaning}{unit}"}
     return {"type": "object", "properties": properties, "additionalProperties": False, "default": {}}
-
-
-def _feeds() -> Schema:
-    # Imports NumPy, which the other schemas do not need.
-    from polarcheck.feed_table.table import LIMITED_BY, FeedReport
-
-    content: Schema = msgspec.json.schema(FeedReport)
-    content["$defs"]["FeedReport"]["properties"]["schema"] = {"const": 1}
-    content["$defs"]["FeedRow"]["properties"]["limited_by"] = {"enum": list(LIMITED_BY)}
-    return content
-
-
-def _comparison() -> Schema:
-    from polarcheck.revisions.report import CHANGES, VERDICTS, ComparisonReport
-
-    content: Schema = msgspec.json.schema(ComparisonReport)
-    content["$defs"]["ComparisonReport"]["properties"]["schema"] = {"const": 1}
-    content["$defs"]["Comparison"]["properties"]["verdict"] = {"enum": list(VERDICTS)}
-    content["$defs"]["SectionPair"]["properties"]["change"] = {"enum": list(CHANGES)}
-    return content
-
-
-def _rewriting() -> Schema:
-    from polarcheck.conversion.report import COMMANDS, RewritingReport
-
-    content: Schema = msgspec.json.schema(RewritingReport)
-    properties = content["$defs"]["RewritingReport"]["properties"]
-    properties["schema"] = {"const": 1}
-    properties["command"] = {"enum": list(COMMANDS)}
-    # What is not known is NaN, which JSON writes as null.
-    content["$defs"]["Figure"]["properties"]["value"] = {"type": ["number", "null"]}
-    return content
 
 
 def _trace() -> Schema:

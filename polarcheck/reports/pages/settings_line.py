@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from polarcheck.reading.excerpt import visible
+from polarcheck.program.reading.excerpt import visible
 
 if TYPE_CHECKING:
-    from polarcheck.finding import Report, RunSettings
+    from polarcheck.foundation.finding import Report, RunSettings
 
 #: Settings that change verdicts or the exit code, in the order of the line. Others stand in the JSON report only.
 _SHOWN = (

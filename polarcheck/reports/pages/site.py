@@ -10,9 +10,9 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-from polarcheck.checking.rule import load_all
-from polarcheck.reading import files
+from polarcheck.program.reading import files
 from polarcheck.reports.pages import controls, machine_pages, report_fields, rule_pages, values
+from polarcheck.rules.rule import load_all
 
 #: Folders below docs/ that hold nothing else.
 FOLDERS = ("rules", "machines")

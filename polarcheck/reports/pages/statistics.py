@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
-from polarcheck.reading.excerpt import visible
+from polarcheck.program.reading.excerpt import visible
 from polarcheck.reports import SEVERITIES, painted
 from polarcheck.reports.json import encoded
 from polarcheck.reports.text import summary
 
 if TYPE_CHECKING:
-    from polarcheck.finding import Report
+    from polarcheck.foundation.finding import Report
     from polarcheck.reports import Background
 
 _HEADS = ("findings", "files", "fixable", "silenced", "severity", "rule")

@@ -8,16 +8,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from polarcheck.arrays import Floats, Mask
-from polarcheck.checking.phrases.offsets import key_of
+from polarcheck.columns.path.executed_moves import KINDS, running
+from polarcheck.columns.path.moves import Moves, z_along
+from polarcheck.columns.path.tool_center import ToolCenter
 from polarcheck.columns.trace import Trace
-from polarcheck.machines.modal import FeedMode, Motion, Side
-from polarcheck.reading.excerpt import visible
+from polarcheck.foundation.arrays import Floats, Mask
+from polarcheck.foundation.states import FeedMode, Motion, Side
+from polarcheck.program.reading.excerpt import visible
 from polarcheck.reports.pages.aligned import Column, table
 from polarcheck.reports.pages.executed import FEED_MODES, SIDES
-from polarcheck.table.executed_moves import KINDS, running
-from polarcheck.table.moves import Moves, z_along
-from polarcheck.table.tool_center import ToolCenter
+from polarcheck.rules.wording.phrases.offsets import key_of
 
 MM, FEED, DEG, C_FEED = "mm", "mm/min", "deg", "deg/min"
 #: The decimals of rates and accelerations of axes.

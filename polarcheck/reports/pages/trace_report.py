@@ -8,7 +8,7 @@ from typing import Any
 import msgspec
 from msgspec import UNSET, UnsetType
 
-from polarcheck import __version__
+from polarcheck.foundation.version import __version__
 from polarcheck.reports.json import encoded
 from polarcheck.reports.pages.executed import Move, as_jsonl
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import os
 
-from polarcheck.finding import NotRead, Summary
-from polarcheck.reading.excerpt import visible
-from polarcheck.reading.walking import is_known_ending
+from polarcheck.foundation.finding import NotRead, Summary
+from polarcheck.program.reading.excerpt import visible
+from polarcheck.program.reading.walking import is_known_ending
 
 #: The most endings in a line.
 _NAMED = 8

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from polarcheck.checking.rule import Rule
-from polarcheck.checking.vocabulary import LIMIT, VOCABULARY, Kind, kinds
 from polarcheck.reports.pages.markdown import GENERATED, prose, row, rule_under
+from polarcheck.rules.rule import Rule
+from polarcheck.rules.vocabulary import LIMIT, VOCABULARY, Kind, kinds
 
 _BEGINNING = f"""# The values of findings
 

@@ -1,15 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import (
-    ERROR,
-    CutterCompensation,
-    Hits,
-    Machine,
-    ProgrammedPath,
-    Ramps,
-    graded,
-    rule,
-)
+from polarcheck.rules.rule import ERROR, CutterCompensation, Hits, Machine, ProgrammedPath, Ramps, graded, rule
 
 
 @rule(

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, CalledTools, Entry, Mask, ModalStates, PolarMode, rule
+from polarcheck.rules.rule import ERROR, CalledTools, Entry, Mask, ModalStates, PolarMode, rule
 
 
 @rule(

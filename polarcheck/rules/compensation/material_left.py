@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Coverage, Mask, rule
+from polarcheck.rules.rule import WARNING, Coverage, Mask, rule
 
 
 @rule(

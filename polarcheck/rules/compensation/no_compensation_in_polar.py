@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import NOTE, CutterCompensation, Mask, PolarMode, ProgrammedPath, Sections, rule
+from polarcheck.rules.rule import NOTE, CutterCompensation, Mask, PolarMode, ProgrammedPath, Sections, rule
 
 
 @rule(

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, CutterCompensation, Mask, ToolOffsets, rule
+from polarcheck.rules.rule import ERROR, CutterCompensation, Mask, ToolOffsets, rule
 
 
 @rule(

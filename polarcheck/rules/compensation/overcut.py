@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Mask, Overcuts, rule
+from polarcheck.rules.rule import ERROR, Mask, Overcuts, rule
 
 
 @rule(

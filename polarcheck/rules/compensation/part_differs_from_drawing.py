@@ -1,7 +1,7 @@
 from __future__ import annotations
 
-from polarcheck.checking.causes import FAULTS_OF_CONTOUR, FAULTS_OF_METAL
-from polarcheck.checking.rule import ERROR, Deviations, Mask, rule
+from polarcheck.rules.causes import FAULTS_OF_CONTOUR, FAULTS_OF_METAL
+from polarcheck.rules.rule import ERROR, Deviations, Mask, rule
 
 
 @rule(

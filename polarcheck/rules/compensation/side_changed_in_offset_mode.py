@@ -1,7 +1,7 @@
 from __future__ import annotations
 
-from polarcheck.checking.causes import UNIT
-from polarcheck.checking.rule import WARNING, CutterCompensation, Mask, Ramps, rule
+from polarcheck.rules.causes import UNIT
+from polarcheck.rules.rule import WARNING, CutterCompensation, Mask, Ramps, rule
 
 
 @rule(

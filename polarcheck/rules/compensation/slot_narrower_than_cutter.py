@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Mask, Slots, rule
+from polarcheck.rules.rule import ERROR, Mask, Slots, rule
 
 
 @rule(

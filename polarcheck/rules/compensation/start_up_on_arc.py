@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, CutterCompensation, Mask, ProgrammedPath, rule
+from polarcheck.rules.rule import ERROR, CutterCompensation, Mask, ProgrammedPath, rule
 
 
 @rule(

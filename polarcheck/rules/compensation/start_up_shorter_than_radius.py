@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, CutterCompensation, Mask, ProgrammedPath, Ramps, rule
+from polarcheck.rules.rule import ERROR, CutterCompensation, Mask, ProgrammedPath, Ramps, rule
 
 
 @rule(

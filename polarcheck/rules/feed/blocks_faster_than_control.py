@@ -1,7 +1,7 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Feeds, Mask, rule
 from polarcheck.geometry.tolerances import SHARE
+from polarcheck.rules.rule import WARNING, Feeds, Mask, rule
 
 
 @rule(

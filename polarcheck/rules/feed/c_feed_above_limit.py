@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, WARNING, Center, Hits, Machine, ToolCenter, graded, rule
+from polarcheck.rules.rule import ERROR, WARNING, Center, Hits, Machine, ToolCenter, graded, rule
 
 
 @rule(

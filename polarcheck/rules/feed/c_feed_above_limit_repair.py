@@ -4,13 +4,13 @@ import math
 
 import numpy as np
 
-from polarcheck.arrays import Mask
-from polarcheck.checking.editing import Replace, in_place_of, is_plain, with_word, written_word
-from polarcheck.checking.repair import FEED, Mended, repair
+from polarcheck.columns.feed.feeds import Feeds
+from polarcheck.columns.path.tool_center import ToolCenter
 from polarcheck.columns.trace import Trace
-from polarcheck.feed_table.edits import feed_below, feed_in_force, takes_feed
-from polarcheck.table.feeds import Feeds
-from polarcheck.table.tool_center import ToolCenter
+from polarcheck.foundation.arrays import Mask
+from polarcheck.rules.editing import Replace, in_place_of, is_plain, with_word, written_word
+from polarcheck.rules.feed_words import feed_below, feed_in_force, takes_feed
+from polarcheck.rules.repair import FEED, Mended, repair
 
 
 @repair(FEED)

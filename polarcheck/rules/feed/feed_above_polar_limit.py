@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import NOTE, WARNING, Feedrate, Feeds, Hits, Machine, rule
+from polarcheck.rules.rule import NOTE, WARNING, Feedrate, Feeds, Hits, Machine, rule
 
 
 @rule(

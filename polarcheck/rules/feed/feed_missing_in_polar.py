@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Feeds, Mask, PolarMode, ProgrammedPath, rule
+from polarcheck.rules.rule import ERROR, Feeds, Mask, PolarMode, ProgrammedPath, rule
 
 
 @rule(

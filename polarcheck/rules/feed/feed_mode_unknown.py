@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Feeds, Mask, ProgrammedPath, rule
+from polarcheck.rules.rule import WARNING, Feeds, Mask, ProgrammedPath, rule
 
 
 @rule(

@@ -1,7 +1,7 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import NOTE, Feedrate, Feeds, Hits, PolarMode, ProgrammedPath, graded, rule
-from polarcheck.machines.modal import FeedMode
+from polarcheck.foundation.states import FeedMode
+from polarcheck.rules.rule import NOTE, Feedrate, Feeds, Hits, PolarMode, ProgrammedPath, graded, rule
 
 
 @rule(

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Center, Hits, Machine, ToolCenter, rule
+from polarcheck.rules.rule import WARNING, Center, Hits, Machine, ToolCenter, rule
 
 
 @rule(

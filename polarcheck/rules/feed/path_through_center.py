@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Arcs, Center, Mask, ProgrammedPath, rule
+from polarcheck.rules.rule import ERROR, Arcs, Center, Mask, ProgrammedPath, rule
 
 
 @rule(ERROR, "tool center {meeting}", at=("X", "U", "C", "H"), doubts=(("move", "X before"),), gouges=True)

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Center, Feedrate, Feeds, Mask, rule
+from polarcheck.rules.rule import WARNING, Center, Feedrate, Feeds, Mask, rule
 
 
 @rule(

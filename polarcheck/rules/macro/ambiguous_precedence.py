@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import NOTE, Faults, Mask, rule
+from polarcheck.rules.rule import NOTE, Faults, Mask, rule
 
 
 @rule(

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Faults, Hits, graded, rule
+from polarcheck.rules.rule import ERROR, Faults, Hits, graded, rule
 
 
 @rule(ERROR, "{shown} {reason}", over="faults")

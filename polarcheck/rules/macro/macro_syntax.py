@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Faults, Mask, rule
+from polarcheck.rules.rule import ERROR, Faults, Mask, rule
 
 
 @rule(ERROR, "{shown} {reason}; the control stops here", over="faults", once="name")

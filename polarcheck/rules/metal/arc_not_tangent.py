@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Arcs, Mask, Tangency, rule
+from polarcheck.rules.rule import WARNING, Arcs, Mask, Tangency, rule
 
 
 @rule(

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, ArcWords, Hits, rule
+from polarcheck.rules.rule import WARNING, ArcWords, Hits, rule
 
 
 @rule(

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, EntryAngles, Mask, rule
+from polarcheck.rules.rule import WARNING, EntryAngles, Mask, rule
 
 
 @rule(

@@ -1,7 +1,7 @@
 from __future__ import annotations
 
-from polarcheck.checking.causes import OUT_OF_PLACE
-from polarcheck.checking.rule import WARNING, Crossings, Mask, rule
+from polarcheck.rules.causes import OUT_OF_PLACE
+from polarcheck.rules.rule import WARNING, Crossings, Mask, rule
 
 
 @rule(

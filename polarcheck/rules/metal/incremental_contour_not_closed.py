@@ -1,7 +1,7 @@
 from __future__ import annotations
 
-from polarcheck.checking.causes import OUT_OF_PLACE
-from polarcheck.checking.rule import WARNING, Increments, Mask, rule
+from polarcheck.rules.causes import OUT_OF_PLACE
+from polarcheck.rules.rule import WARNING, Increments, Mask, rule
 
 
 @rule(

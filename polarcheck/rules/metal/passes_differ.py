@@ -1,7 +1,7 @@
 from __future__ import annotations
 
-from polarcheck.checking.causes import FAULTS_OF_CONTOUR
-from polarcheck.checking.rule import WARNING, Mask, PassDifferences, rule
+from polarcheck.rules.causes import FAULTS_OF_CONTOUR
+from polarcheck.rules.rule import WARNING, Mask, PassDifferences, rule
 
 
 @rule(

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Hits, Workpiece, graded, rule
+from polarcheck.rules.rule import ERROR, Hits, Workpiece, graded, rule
 
 
 @rule(

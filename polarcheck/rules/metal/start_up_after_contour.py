@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Mask, MisplacedRamps, ProgrammedPath, rule
+from polarcheck.rules.rule import WARNING, Mask, MisplacedRamps, ProgrammedPath, rule
 
 
 @rule(

@@ -1,8 +1,8 @@
 from __future__ import annotations
 
-from polarcheck.checking.causes import END_IN_DOUBT
-from polarcheck.checking.rule import ERROR, Arcs, Mask, rule
 from polarcheck.geometry.tolerances import ROUNDING
+from polarcheck.rules.causes import END_IN_DOUBT
+from polarcheck.rules.rule import ERROR, Arcs, Mask, rule
 
 
 @rule(

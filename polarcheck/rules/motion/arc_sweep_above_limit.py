@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Arcs, Hits, Machine, graded, rule
+from polarcheck.rules.rule import WARNING, Arcs, Hits, Machine, graded, rule
 
 #: What the last digit of the coordinates may turn an arc by [deg].
 LAST_DIGIT = 0.1

@@ -1,7 +1,7 @@
 from __future__ import annotations
 
-from polarcheck.checking.causes import END_IN_DOUBT
-from polarcheck.checking.rule import ERROR, Arcs, Mask, ProgrammedPath, rule
+from polarcheck.rules.causes import END_IN_DOUBT
+from polarcheck.rules.rule import ERROR, Arcs, Mask, ProgrammedPath, rule
 
 
 @rule(

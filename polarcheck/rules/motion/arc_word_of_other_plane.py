@@ -1,7 +1,7 @@
 from __future__ import annotations
 
-from polarcheck.checking.causes import NO_SUCH_ARC
-from polarcheck.checking.rule import ERROR, Arcs, Hits, PlaneAxes, ProgrammedPath, rule
+from polarcheck.rules.causes import NO_SUCH_ARC
+from polarcheck.rules.rule import ERROR, Arcs, Hits, PlaneAxes, ProgrammedPath, rule
 
 
 @rule(

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, ExecutedBlocks, Mask, PolarMode, rule
+from polarcheck.rules.rule import WARNING, ExecutedBlocks, Mask, PolarMode, rule
 
 
 @rule(WARNING, "chamfer, corner or angle word in the polar mode", at=(",C", ",R", ",A"))

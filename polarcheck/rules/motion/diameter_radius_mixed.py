@@ -1,7 +1,7 @@
 from __future__ import annotations
 
-from polarcheck.checking.causes import SECTION_READ_OTHERWISE
-from polarcheck.checking.rule import WARNING, Arcs, Mask, Regularity, rule
+from polarcheck.rules.causes import SECTION_READ_OTHERWISE
+from polarcheck.rules.rule import WARNING, Arcs, Mask, Regularity, rule
 
 
 @rule(

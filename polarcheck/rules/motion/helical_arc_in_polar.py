@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Arcs, Mask, ProgrammedPath, rule
+from polarcheck.rules.rule import WARNING, Arcs, Mask, ProgrammedPath, rule
 
 
 @rule(WARNING, "arc that moves Z, too: only with the helical option, else an alarm", at=("Z", "W"), subject="")

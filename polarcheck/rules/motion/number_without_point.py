@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Hits, Unpointed, graded, rule
+from polarcheck.rules.rule import WARNING, Hits, Unpointed, graded, rule
 
 
 @rule(

@@ -2,9 +2,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from polarcheck.checking.repair import FEED, Mended, repair
-from polarcheck.reading.words import Text
-from polarcheck.table.unpointed import Unpointed
+from polarcheck.columns.words.unpointed import Unpointed
+from polarcheck.program.reading.words import Text
+from polarcheck.rules.repair import FEED, Mended, repair
 
 
 @repair(FEED)

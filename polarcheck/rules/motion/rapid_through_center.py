@@ -1,17 +1,8 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import (
-    WARNING,
-    Entry,
-    ExecutedBlocks,
-    Mask,
-    PlaneAxes,
-    PolarMode,
-    ProgrammedPath,
-    rule,
-)
+from polarcheck.foundation.states import Motion
 from polarcheck.geometry.tolerances import ROUNDING
-from polarcheck.machines.modal import Motion
+from polarcheck.rules.rule import WARNING, Entry, ExecutedBlocks, Mask, PlaneAxes, PolarMode, ProgrammedPath, rule
 
 
 @rule(

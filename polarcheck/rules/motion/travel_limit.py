@@ -1,7 +1,7 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Machine, Mask, ProgrammedPath, Travel, rule
 from polarcheck.geometry.tolerances import ROUNDING
+from polarcheck.rules.rule import ERROR, Machine, Mask, ProgrammedPath, Travel, rule
 
 
 @rule(

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Hits, Machine, ModeWords, graded, rule
+from polarcheck.rules.rule import ERROR, Hits, Machine, ModeWords, graded, rule
 
 
 @rule(

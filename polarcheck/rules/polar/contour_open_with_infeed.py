@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Infeed, Mask, rule
+from polarcheck.rules.rule import ERROR, Infeed, Mask, rule
 
 
 @rule(

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Angles, Entry, ExecutedBlocks, Hits, PlaneAxes, rule
+from polarcheck.rules.rule import WARNING, Angles, Entry, ExecutedBlocks, Hits, PlaneAxes, rule
 
 #: A length that many times as far out as the rest of the section is taken for an angle, and with G0 beside it.
 _FAR, _FAR_IN_RAPID = 2.0, 1.5

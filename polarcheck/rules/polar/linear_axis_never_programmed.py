@@ -1,16 +1,7 @@
 from __future__ import annotations
 
-from polarcheck.checking.causes import SECTION_READ_OTHERWISE
-from polarcheck.checking.rule import (
-    ERROR,
-    ExecutedBlocks,
-    Mask,
-    ModalStates,
-    PlaneAxes,
-    PolarMode,
-    Sections,
-    rule,
-)
+from polarcheck.rules.causes import SECTION_READ_OTHERWISE
+from polarcheck.rules.rule import ERROR, ExecutedBlocks, Mask, ModalStates, PlaneAxes, PolarMode, Sections, rule
 
 
 @rule(

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, ExecutedBlocks, Machine, Mask, ModeWords, PolarMode, rule
+from polarcheck.rules.rule import ERROR, ExecutedBlocks, Machine, Mask, ModeWords, PolarMode, rule
 
 
 @rule(

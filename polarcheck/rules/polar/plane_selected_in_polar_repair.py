@@ -2,11 +2,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from polarcheck.checking.editing import blocks_behind, is_plain, without, written_word
-from polarcheck.checking.repair import Mended, repair
 from polarcheck.columns.filling import before
 from polarcheck.columns.trace import Trace
-from polarcheck.machines.codes import code_numbers
+from polarcheck.program.machines.codes import code_numbers
+from polarcheck.rules.editing import blocks_behind, is_plain, without, written_word
+from polarcheck.rules.repair import Mended, repair
 
 
 @repair()

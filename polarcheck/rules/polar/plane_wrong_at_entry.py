@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Entry, Mask, PolarMode, rule
+from polarcheck.rules.rule import ERROR, Entry, Mask, PolarMode, rule
 
 
 @rule(

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Hits, PlaneAxes, Procedure, SwitchSlips, rule
+from polarcheck.rules.rule import ERROR, Hits, PlaneAxes, Procedure, SwitchSlips, rule
 
 
 @rule(

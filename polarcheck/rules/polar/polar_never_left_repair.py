@@ -1,12 +1,12 @@
 from __future__ import annotations
 
-from polarcheck.checking.editing import begins_program, blocks_before, blocks_behind, skip_sign
-from polarcheck.checking.phrases.common import switch_off
-from polarcheck.checking.repair import Mended, repair
-from polarcheck.columns.blocks import ExecutedBlocks
-from polarcheck.columns.mode import PolarMode
-from polarcheck.execution.run import Run
-from polarcheck.machines.machine import Machine
+from polarcheck.columns.modes.blocks import ExecutedBlocks
+from polarcheck.columns.modes.mode import PolarMode
+from polarcheck.program.execution.run import Run
+from polarcheck.program.machines.machine import Machine
+from polarcheck.rules.editing import begins_program, blocks_before, blocks_behind, skip_sign
+from polarcheck.rules.repair import Mended, repair
+from polarcheck.rules.wording.phrases.common import switch_off
 
 
 @repair()

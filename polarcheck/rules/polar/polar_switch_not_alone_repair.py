@@ -1,6 +1,13 @@
 from __future__ import annotations
 
-from polarcheck.checking.editing import (
+from polarcheck.columns.modes.blocks import ExecutedBlocks
+from polarcheck.columns.modes.mode import PolarMode
+from polarcheck.columns.modes.mode_words import ModeWords
+from polarcheck.columns.path.axes import PlaneAxes
+from polarcheck.foundation.states import Motion
+from polarcheck.program.execution.run import Run
+from polarcheck.program.machines.machine import Machine
+from polarcheck.rules.editing import (
     blocks_before,
     is_head,
     is_plain,
@@ -10,15 +17,8 @@ from polarcheck.checking.editing import (
     words_of,
     written_word,
 )
-from polarcheck.checking.phrases.common import switch
-from polarcheck.checking.repair import Mended, repair
-from polarcheck.columns.axes import PlaneAxes
-from polarcheck.columns.blocks import ExecutedBlocks
-from polarcheck.columns.mode import PolarMode
-from polarcheck.execution.run import Run
-from polarcheck.machines.machine import Machine
-from polarcheck.machines.modal import Motion
-from polarcheck.table.mode_words import ModeWords
+from polarcheck.rules.repair import Mended, repair
+from polarcheck.rules.wording.phrases.common import switch
 
 
 @repair()
@@ -113,7 +113,7 @@ def polar_switch_not_alone(
 
 def _must_be_outside(run: Run, machine: Machine, index: int) -> bool:
     """A G code that cannot stand in the mode."""
-    from polarcheck.machines.codes import NO_CODE, code_numbers, code_set
+    from polarcheck.program.machines.codes import NO_CODE, code_numbers, code_set
 
     words = run.words
     if chr(int(words.address[index])) != "G":

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Hits, SwitchSlips, graded, rule
+from polarcheck.rules.rule import WARNING, Hits, SwitchSlips, graded, rule
 
 
 @rule(WARNING, "{slip}", values={"code_needed": "switch_meant"})

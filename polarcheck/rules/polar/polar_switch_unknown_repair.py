@@ -1,9 +1,9 @@
 from __future__ import annotations
 
-from polarcheck.checking.editing import in_place_of, is_plain, written_word
-from polarcheck.checking.repair import Mended, repair
-from polarcheck.execution.run import Run
-from polarcheck.table.switch_slips import SwitchSlips
+from polarcheck.columns.modes.switch_slips import SwitchSlips
+from polarcheck.program.execution.run import Run
+from polarcheck.rules.editing import in_place_of, is_plain, written_word
+from polarcheck.rules.repair import Mended, repair
 
 
 @repair()

@@ -1,7 +1,7 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, CutterCompensation, Mask, PolarMode, rule
-from polarcheck.machines.modal import Side
+from polarcheck.foundation.states import Side
+from polarcheck.rules.rule import ERROR, CutterCompensation, Mask, PolarMode, rule
 
 
 @rule(

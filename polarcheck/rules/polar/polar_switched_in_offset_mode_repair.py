@@ -2,12 +2,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from polarcheck.checking.editing import begins_program, blocks_before, is_head, is_plain, separator, skip_sign, words_of
-from polarcheck.checking.phrases.common import code_of
-from polarcheck.checking.repair import WAY, Mended, repair
 from polarcheck.columns.trace import Trace
+from polarcheck.foundation.states import Motion
 from polarcheck.geometry.tolerances import ROUNDING
-from polarcheck.machines.modal import Motion
+from polarcheck.rules.editing import begins_program, blocks_before, is_head, is_plain, separator, skip_sign, words_of
+from polarcheck.rules.repair import WAY, Mended, repair
+from polarcheck.rules.wording.phrases.common import code_of
 
 #: A move goes outward where so much of its length adds to the distance from the center: within 45 deg.
 OUTWARD = 0.7

@@ -1,7 +1,7 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Angles, ExecutedBlocks, Hits, ModalStates, PlaneAxes, PolarMode, rule
-from polarcheck.machines.modal import Motion
+from polarcheck.foundation.states import Motion
+from polarcheck.rules.rule import ERROR, Angles, ExecutedBlocks, Hits, ModalStates, PlaneAxes, PolarMode, rule
 
 
 @rule(

@@ -4,11 +4,11 @@ import re
 
 import numpy as np
 
-from polarcheck.checking.editing import in_place_of, is_head, is_plain, separator, with_word, words_of, written_word
-from polarcheck.checking.repair import FEED, Mended, repair
+from polarcheck.columns.path.tool_center import ToolCenter
 from polarcheck.columns.trace import Trace
-from polarcheck.feed_table.edits import feed_below, feed_text, restored, takes_feed
-from polarcheck.table.tool_center import ToolCenter
+from polarcheck.rules.editing import in_place_of, is_head, is_plain, separator, with_word, words_of, written_word
+from polarcheck.rules.feed_words import feed_below, feed_text, restored, takes_feed
+from polarcheck.rules.repair import FEED, Mended, repair
 
 _RAPID = re.compile(r"(G\s*0*?)0", re.IGNORECASE)
 

@@ -1,17 +1,7 @@
 from __future__ import annotations
 
-from polarcheck.checking.causes import SECTION_READ_OTHERWISE
-from polarcheck.checking.rule import (
-    ERROR,
-    Arcs,
-    Center,
-    Mask,
-    PlaneAxes,
-    PolarMode,
-    ProgrammedPath,
-    Sections,
-    rule,
-)
+from polarcheck.rules.causes import SECTION_READ_OTHERWISE
+from polarcheck.rules.rule import ERROR, Arcs, Center, Mask, PlaneAxes, PolarMode, ProgrammedPath, Sections, rule
 
 #: One arc or one way across the center may be a slip of its own.
 _SEVERAL = 2

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Hits, ModeWords, PolarMode, rule
+from polarcheck.rules.rule import ERROR, Hits, ModeWords, PolarMode, rule
 
 
 @rule(

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import (
+from polarcheck.foundation.states import Motion
+from polarcheck.rules.rule import (
     ERROR,
     NOTE,
     WARNING,
@@ -12,7 +13,6 @@ from polarcheck.checking.rule import (
     ProgrammedPath,
     rule,
 )
-from polarcheck.machines.modal import Motion
 
 
 @rule(

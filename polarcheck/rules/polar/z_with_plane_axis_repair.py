@@ -1,6 +1,13 @@
 from __future__ import annotations
 
-from polarcheck.checking.editing import (
+from polarcheck.columns.filling import before
+from polarcheck.columns.modes.blocks import ExecutedBlocks
+from polarcheck.columns.path.axes import PlaneAxes
+from polarcheck.columns.path.path import ProgrammedPath
+from polarcheck.program.execution.run import Run
+from polarcheck.program.machines.codes import code_numbers, code_set
+from polarcheck.program.machines.machine import Machine
+from polarcheck.rules.editing import (
     begins_program,
     blocks_behind,
     is_plain,
@@ -10,14 +17,7 @@ from polarcheck.checking.editing import (
     words_of,
     written_word,
 )
-from polarcheck.checking.repair import Mended, Z, repair
-from polarcheck.columns.axes import PlaneAxes
-from polarcheck.columns.blocks import ExecutedBlocks
-from polarcheck.columns.filling import before
-from polarcheck.columns.path import ProgrammedPath
-from polarcheck.execution.run import Run
-from polarcheck.machines.codes import code_numbers, code_set
-from polarcheck.machines.machine import Machine
+from polarcheck.rules.repair import Mended, Z, repair
 
 
 @repair(Z)

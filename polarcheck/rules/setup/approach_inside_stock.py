@@ -1,7 +1,7 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Entry, Hits, ProgrammedPath, graded, rule
 from polarcheck.geometry.tolerances import ROUNDING
+from polarcheck.rules.rule import ERROR, Entry, Hits, ProgrammedPath, graded, rule
 
 
 @rule(

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Mask, Spindles, rule
+from polarcheck.rules.rule import WARNING, Mask, Spindles, rule
 
 
 @rule(

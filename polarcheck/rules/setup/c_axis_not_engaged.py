@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Entry, Hits, Machine, PlaneAxes, PolarMode, Spindles, rule
+from polarcheck.rules.rule import WARNING, Entry, Hits, Machine, PlaneAxes, PolarMode, Spindles, rule
 
 
 @rule(

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Entry, Hits, Machine, ModalStates, PolarMode, ProgrammedPath, rule
+from polarcheck.rules.rule import ERROR, Entry, Hits, Machine, ModalStates, PolarMode, ProgrammedPath, rule
 
 
 @rule(

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, ExecutedBlocks, Hits, Machine, Procedure, rule
+from polarcheck.rules.rule import WARNING, ExecutedBlocks, Hits, Machine, Procedure, rule
 
 
 @rule(

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Hits, Machine, PolarMode, Spindles, graded, rule
+from polarcheck.rules.rule import ERROR, Hits, Machine, PolarMode, Spindles, graded, rule
 
 
 @rule(

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Entry, Hits, rule
+from polarcheck.rules.rule import WARNING, Entry, Hits, rule
 
 #: So far wear and a path of the tool center may take R from what a comment tells, or from 0 [mm].
 _WEAR = 0.25

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import NOTE, CalledTools, Mask, ToolOffsets, rule
+from polarcheck.rules.rule import NOTE, CalledTools, Mask, ToolOffsets, rule
 
 
 @rule(NOTE, "R {taken:length} is taken {origin}", values={"offset": "offset", "radius": "taken"}, at=("T",))

@@ -1,7 +1,7 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Mask, PolarMode, ProgrammedPath, rule
 from polarcheck.geometry.tolerances import ROUNDING
+from polarcheck.rules.rule import WARNING, Mask, PolarMode, ProgrammedPath, rule
 
 
 @rule(

@@ -1,15 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import (
-    WARNING,
-    Entry,
-    ExecutedBlocks,
-    Mask,
-    ModalStates,
-    PlaneAxes,
-    PolarMode,
-    rule,
-)
+from polarcheck.rules.rule import WARNING, Entry, ExecutedBlocks, Mask, ModalStates, PlaneAxes, PolarMode, rule
 
 
 @rule(

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Allows, Hits, rule
+from polarcheck.rules.rule import WARNING, Allows, Hits, rule
 
 
 @rule(WARNING, "this allow comment is not heeded: {fault}", over="allows")

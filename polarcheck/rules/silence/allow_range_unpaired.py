@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import NOTE, Allows, Hits, rule
+from polarcheck.rules.rule import NOTE, Allows, Hits, rule
 
 
 @rule(NOTE, "{unpaired}", over="allows")

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import NOTE, Hits, UnusedAllows, rule
+from polarcheck.rules.rule import NOTE, Hits, UnusedAllows, rule
 
 
 @rule(

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import NOTE, Allows, Mask, rule
+from polarcheck.rules.rule import NOTE, Allows, Mask, rule
 
 
 @rule(NOTE, "say behind the names why this is right: who reads it next must decide whether it still is", over="allows")

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, Hits, OtherMode, Written, rule
+from polarcheck.rules.rule import ERROR, Hits, OtherMode, Written, rule
 
 
 @rule(

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Mask, Written, rule
+from polarcheck.rules.rule import WARNING, Mask, Written, rule
 
 
 @rule(WARNING, "there is no block in this file", over="files")

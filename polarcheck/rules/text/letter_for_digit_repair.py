@@ -2,12 +2,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from polarcheck.arrays import stretch
-from polarcheck.checking.phrases.text import meant
-from polarcheck.checking.places import Place
-from polarcheck.checking.repair import Mended, repair
-from polarcheck.reading.words import Text
-from polarcheck.table.written import Written
+from polarcheck.columns.words.written import Written
+from polarcheck.foundation.arrays import stretch
+from polarcheck.program.reading.words import Text
+from polarcheck.rules.places import Place
+from polarcheck.rules.repair import Mended, repair
+from polarcheck.rules.wording.phrases.text import meant
 
 
 @repair()

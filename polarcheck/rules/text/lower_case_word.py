@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import NOTE, Mask, Written, rule
+from polarcheck.rules.rule import NOTE, Mask, Written, rule
 
 
 @rule(NOTE, "words in lower case from here on; older controls do not read them", over="words")

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import NOTE, Mask, Written, rule
+from polarcheck.rules.rule import NOTE, Mask, Written, rule
 
 
 @rule(NOTE, "stands for blocks left out; what follows is judged as if nothing had happened there", over="dots")

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import NOTE, Dialect, Hits, rule
+from polarcheck.rules.rule import NOTE, Dialect, Hits, rule
 
 
 @rule(NOTE, "{written_for}; no rule looked at it: convert it for this lathe before it is checked", over="files")

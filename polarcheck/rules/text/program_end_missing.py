@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import WARNING, Mask, Written, rule
+from polarcheck.rules.rule import WARNING, Mask, Written, rule
 
 
 @rule(WARNING, "the program ends here without M30, M02 or M99", over="words")

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import NOTE, Mask, Written, rule
+from polarcheck.rules.rule import NOTE, Mask, Written, rule
 
 
 @rule(NOTE, "not stored by the control: it stands outside the program", over="outside")

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.checking.rule import ERROR, NOTE, Hits, Machine, OtherMode, SwitchSlips, Words, Written, graded, rule
+from polarcheck.rules.rule import ERROR, NOTE, Hits, Machine, OtherMode, SwitchSlips, Words, Written, graded, rule
 
 #: From here on controls have few codes of their own, and programs call macros of the builder (parameter 6050).
 OWN_CODES_END = 100

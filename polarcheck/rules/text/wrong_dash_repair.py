@@ -2,10 +2,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from polarcheck.checking.repair import Mended, repair
-from polarcheck.reading.source import DASH
-from polarcheck.reading.words import Text
-from polarcheck.table.written import Written
+from polarcheck.columns.words.written import Written
+from polarcheck.program.reading.source import DASH
+from polarcheck.program.reading.words import Text
+from polarcheck.rules.repair import Mended, repair
 
 
 @repair()

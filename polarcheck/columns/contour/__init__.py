@@ -1,0 +1,1 @@
+"""Contours: their loops, passes and ramps, and the faults in their shape."""

@@ -1,0 +1,78 @@
+"""The largest R with which a loop that is cut into would be whole, for the message that says what to write."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from polarcheck.columns.contour.overcuts import Overcuts
+from polarcheck.columns.modes.since import Since
+from polarcheck.columns.path.tool_center import OtherRadius
+from polarcheck.columns.path.trial import Trial
+from polarcheck.columns.trace import Trace
+from polarcheck.foundation.arrays import Columns, Floats, Mask, cached_property
+from polarcheck.foundation.time_limit import keep_time
+
+#: Share of R that is taken for a cutter that goes in everywhere; how near the answer comes; how often it is asked for.
+_SMALL, _NEAR, _TRIALS = 1 / 16, 0.01, 9
+#: More rows than this are not run again and again.
+_MANY = 20_000
+
+
+class Fitting(Columns, frozen=True):
+    """Columns of one trace, one value per row, for loops that are cut into."""
+
+    trace: Trace
+    overcuts: Overcuts
+    since: Since
+
+    def _worst(self, values: Floats) -> Floats:
+        """The largest of these values in the loop of each row."""
+        loop = self.since.compensation
+        found = np.zeros(int(loop.max(initial=0)) + 1)
+        np.maximum.at(found, loop, values)
+        return found[loop]
+
+    def _any(self, rows: Mask) -> Mask:
+        return self._worst(rows.astype(float)) > 0
+
+    @cached_property
+    def _asked(self) -> Mask:
+        """The rows of the loops that are cut into; none if they are too many."""
+        asked = self._any(self.overcuts.depth > 0)
+        return asked & (np.count_nonzero(asked) <= _MANY)
+
+    def _trial(self, radius: Floats) -> Trial:
+        signed = radius * np.sign(self.trace.compensation.radius)
+        return Trial(self.trace, OtherRadius(self._asked, self.since.compensation, signed))
+
+    @cached_property
+    def never(self) -> Mask:
+        """Rows of loops that any cutter cuts into, so that a point of the contour is wrong."""
+        cut = np.zeros(len(self.trace), bool)
+        if self._asked.any():
+            cut[self._trial(np.abs(self.trace.compensation.radius) * _SMALL).cuts.row] = True
+        return self._asked & self._any(cut)
+
+    @cached_property
+    def radius(self) -> Floats:
+        """The largest R that leaves the loop of the row whole [mm]; NaN where there is none, or it is not known."""
+        own = np.abs(self.trace.compensation.radius)
+        wanted = self._asked & ~self.never
+        low, high = np.where(wanted, 0.0, np.nan), own
+        if not wanted.any():
+            return low
+        depth = self.overcuts.depth
+        tried = own - self._worst(depth) / 2  # between parallel walls that is it
+        for _ in range(_TRIALS):
+            keep_time()
+            trial = self._trial(tried)
+            fails = self._any(trial.fails)
+            low, high = np.where(fails, low, tried), np.where(fails, tried, high)
+            depth = np.zeros(len(own))
+            np.maximum.at(depth, trial.cuts.row, trial.cuts.depth)
+            nearer = tried - self._worst(depth) / 2
+            half = np.where(low > 0, (low + high) / 2, np.where(nearer < tried, nearer, tried / 2))
+            tried = np.where(fails, half, np.minimum(low * (1 + _NEAR), half))
+            if not (high - low > _NEAR * high).any():
+                break
+        return np.where(wanted & (low > 0) & (high - low <= 2 * _NEAR * high), low, np.nan)

@@ -1,0 +1,261 @@
+"""Ramps of cutter compensation that stand in the wrong block of a contour, or in none."""
+
+from __future__ import annotations
+
+import msgspec
+import numpy as np
+
+from polarcheck.columns.filling import last_row
+from polarcheck.columns.path.arcs import Arcs
+from polarcheck.columns.trace import Trace
+from polarcheck.foundation.arrays import Columns, Floats, Mask, Points, Rows, cached_property
+from polarcheck.foundation.states import Motion, Side
+from polarcheck.geometry.tolerances import SHARE
+
+#: Points nearer than this [mm] are meant to be one point: words are rounded.
+_SAME = 0.005
+#: Least number of moves at feed of a contour that a cancel ends: one of them may be the ramp.
+_MOVES_OF_CONTOUR = 2
+#: Least number of blocks of a loop that tells where its start-up should have ended.
+_MOVES_OF_LOOP = 3
+#: A contour begins with so many moves of an approach.
+_LEADS = 4
+#: A size that is meant is a multiple of this share of a unit (mm, inch).
+_DIGITS = (0, 1, 2, 3, 4)
+_ROUND = 2e-4
+#: Sizes of drawings in inch are parts of this.
+_FRACTION = 32
+#: So many rows are looked at one by one; a program with more is written so on purpose.
+_MOST = 2000
+
+
+class _Moves(msgspec.Struct, frozen=True):
+    """
+    The moves on the plane in the mode, n of them, in order.
+
+    row: int[n]. section: int[n]. start, end: complex128[n] [mm]. compensated: bool[n], G41 or G42 is in force in it.
+    starts_up, cancels: bool[n]. at_feed: bool[n]. feed: float64[n].
+    """
+
+    row: Rows
+    section: Rows
+    start: Points
+    end: Points
+    compensated: Mask
+    starts_up: Mask
+    cancels: Mask
+    at_feed: Mask
+    feed: Floats
+
+
+class MisplacedRamps(Columns, frozen=True):
+    """Columns of one trace, one value per row."""
+
+    trace: Trace
+    arcs: Arcs
+
+    @cached_property
+    def _moves(self) -> _Moves:
+        trace = self.trace
+        row = np.flatnonzero(trace.path.on_plane)
+        return _Moves(
+            row=row,
+            section=trace.mode.section[row],
+            start=trace.path.start[row],
+            end=trace.path.end[row],
+            compensated=(trace.compensation.side != Side.OFF)[row],
+            starts_up=trace.compensation.starts_up[row],
+            cancels=trace.compensation.cancels[row],
+            at_feed=trace.path.cuts[row],
+            feed=trace.feedrate.feed_number[row],
+        )
+
+    # ---- a cancel without its start-up ----
+
+    @cached_property
+    def cancel_alone(self) -> Mask:
+        """
+        G40 with a move in the mode, nothing in force since G12.1 or the cancel before, and a contour cut in between.
+
+        Many write G40 for safety. So it counts only where another witness stands beside it: the move leaves the contour
+        as a ramp does, or another section of the program compensates; and not where R is 0, or where the contour is a
+        size with R taken off it, and none as it is written.
+        """
+        trace = self.trace
+        rows = trace.compensation.writes_cancel & trace.path.on_plane & (trace.axes.motion == Motion.LINE)
+        rows &= (trace.compensation.side_of_move_before == Side.OFF) & (trace.compensation.side_before == Side.OFF)
+        if not rows.any():
+            return np.zeros(len(trace), bool)
+        since = last_row(trace.mode.enters | trace.compensation.cancels, trace.blocks.starts)
+        count = np.cumsum(trace.path.cuts)
+        rows &= count - trace.path.cuts - np.where(since >= 0, count[since], 0) >= _MOVES_OF_CONTOUR
+        rows &= ~(trace.offsets.radius_of_offset == 0)
+        at = np.flatnonzero(rows)[:_MOST]
+        rows = np.zeros(len(trace), bool)
+        rows[[row for row in at.tolist() if self._has_witness(row, int(since[row]))]] = True
+        return rows
+
+    def _has_witness(self, row: int, since: int) -> bool:
+        trace, moves = self.trace, self._moves
+        first, last = np.searchsorted(moves.row, (since, row), side="right").tolist()
+        last -= 1  # the contour, the move of G40 excluded
+        if self._is_path_of_center(row, first, last):
+            return False
+        if bool(np.any(trace.compensation.starts_up & (trace.mode.section != trace.mode.section[row]))):
+            return True
+        leaves_from, leaves_to = trace.path.start[row], trace.path.end[row]
+        before_end = np.append(moves.start[first : first + 1], moves.end[first : last - 1])
+        closes = bool(np.any(np.abs(before_end - leaves_from) <= _SAME))
+        # Above Z0 nothing is cut on most programs: only a contour that closes shows there that one is meant.
+        in_air = float(trace.path.z[row]) > 0
+        return closes or (
+            not in_air and any(_mirrors(leaves_to, place) for place in self._approaches(row, since, first, last))
+        )
+
+    def _approaches(self, row: int, since: int, first: int, last: int) -> list[complex]:
+        """Where the tool stands behind G12.1, where it goes down to the contour, and where its first moves begin."""
+        trace = self.trace
+        down = np.flatnonzero(trace.path.moves_z[since:row] & ~trace.path.travels[since:row]) + since
+        leads = self._moves.start[first : min(first + _LEADS, last)]
+        return [*(complex(trace.path.end[at]) for at in (since, *down.tolist()[-_LEADS:])), *leads.tolist()]
+
+    def _is_path_of_center(self, row: int, first: int, last: int) -> bool:
+        """The contour is no round size as written, and one with R taken off either side."""
+        radius = abs(float(self.trace.offsets.radius_of_offset[row]))
+        if np.isnan(radius) or last - first < 2:
+            return False
+        scale = float(self.trace.lengths.scale[row])
+        ends = self._moves.end[first:last]
+        same = np.flatnonzero(np.abs(ends - self.trace.path.start[row]) <= _SAME)
+        ends = ends[same[0] :] if len(same) > 1 else ends  # a closed contour without its lead
+        sizes = [size for size in (float(np.ptp(ends.real)), float(np.ptp(ends.imag)), _across_flats(ends)) if size > 0]
+        written = [_digits(size / scale) for size in sizes]
+        meant = [min(_digits((size + sign * 2 * radius) / scale) for sign in (-1, 1)) for size in sizes]
+        return bool(sizes) and min(written) > min(meant) + 1
+
+    # ---- a start-up that comes late, or is taken back at once ----
+
+    @cached_property
+    def cancelled_at_once(self) -> Mask:
+        """Start-ups after which the next move on the plane is the offset cancel."""
+        trace, moves = self.trace, self._moves
+        follows = np.zeros(len(moves.row), bool)
+        follows[:-1] = moves.starts_up[:-1] & moves.cancels[1:] & (moves.section[:-1] == moves.section[1:])
+        # Between them nothing may move but Z: a block of which it is not known where it leads may be the contour.
+        opens = np.append(0, np.cumsum((trace.axes.moves & ~trace.axes.commands_z) | trace.run.unknown))
+        at = np.flatnonzero(follows)
+        follows[at] = opens[moves.row[at + 1]] == opens[moves.row[at] + 1]
+        return trace.blocks.mask_of(moves.row[follows])
+
+    @cached_property
+    def begun_without(self) -> Rows:
+        """
+        Start-ups behind a block that cuts the contour without compensation: the row of that block; -1 elsewhere.
+
+        The contour comes back to a point from which a move without compensation has led, and not to the end of its own
+        start-up; or the move before the start-up is the mirror image of the way out, and F of the contour begins there.
+        """
+        trace, moves = self.trace, self._moves
+        late = np.full(len(trace), -1)
+        n = len(moves.row)
+        if n < _MOVES_OF_LOOP:
+            return late
+        starts = np.flatnonzero(moves.starts_up)
+        # A G40 ends the pass before, be it one that takes nothing back.
+        bare = ~moves.compensated & moves.at_feed & ~trace.compensation.writes_cancel[moves.row]
+        has_bare = np.zeros(n, bool)
+        has_bare[1:] = bare[:-1] & (moves.section[1:] == moves.section[:-1])
+        starts = starts[has_bare[starts]]
+        if not len(starts):
+            return late
+        # The last move of each loop with compensation: the one before the next move without.
+        ends = np.flatnonzero(~moves.compensated | np.append(moves.section[1:] != moves.section[:-1], True))
+        until = np.append(ends, n)[np.searchsorted(ends, starts)]
+        whole = until - starts >= 2  # fewer are judged by cancelled_at_once
+        starts, until = starts[whole], until[whole]
+        final = moves.start[np.minimum(until, n - 1)]
+        near = np.abs(moves.end[starts] - final) <= _SAME
+        for at, end, place, closes in zip(starts.tolist(), until.tolist(), final.tolist(), near.tolist(), strict=True):
+            row = -1 if closes else self._cut_before(at, end, place, bare)
+            if row >= 0:
+                late[moves.row[at]] = row
+        return late
+
+    def _cut_before(self, at: int, end: int, final: complex, bare: Mask) -> int:
+        """The row of the move that has cut the contour of the start-up `at` before it; -1 for none."""
+        moves = self._moves
+        first = at
+        while first and bare[first - 1] and moves.section[first - 1] == moves.section[at] and at - first < _MOST:
+            first -= 1
+        vertices = moves.end[at:end]
+        if np.any(np.abs(vertices[1:] - vertices[0]) <= _SAME):
+            return -1
+        touched = np.flatnonzero(np.abs(moves.end[first:at] - final) <= _SAME)
+        if len(touched):
+            return int(moves.row[first + int(touched[0])])
+        lead, leave = at - 1, end
+        if leave >= len(moves.row) or not moves.cancels[leave] or first == lead:
+            return -1
+        begins = moves.feed[lead] < moves.feed[lead - 1] * (1 - SHARE) and moves.feed[at] == moves.feed[lead]
+        symmetrical = _mirrors(complex(moves.start[lead]), complex(moves.end[leave])) and _mirrors(
+            complex(moves.end[lead]), complex(moves.start[leave])
+        )
+        return int(moves.row[lead]) if begins and symmetrical else -1
+
+    # ---- a start-up that ends off the contour ----
+
+    @cached_property
+    def x_of_contour(self) -> Floats:
+        """
+        Start-ups that end at half or twice the X at which their contour ends: that X [mm]; NaN elsewhere.
+
+        The contour would be closed with it, and the way out leads back to where the start-up began.
+        """
+        trace, moves = self.trace, self._moves
+        column = np.full(len(trace), np.nan)
+        n = len(moves.row)
+        starts = np.flatnonzero(moves.starts_up)
+        if not len(starts):
+            return column
+        cancels = np.flatnonzero(moves.cancels)
+        leave = np.append(cancels, n)[np.searchsorted(cancels, starts)]
+        keep = (leave < n) & (leave - starts > _MOVES_OF_LOOP)
+        starts, leave = starts[keep], leave[keep]
+        keep = moves.section[starts] == moves.section[leave]
+        starts, leave = starts[keep], leave[keep]
+        begin, end = moves.end[starts], moves.start[leave]
+        halved = (np.abs(begin.imag - end.imag) <= _SAME) & (np.abs(begin.real) > _SAME)
+        halved &= (np.abs(begin.real * 2 - end.real) <= _SAME) | (np.abs(begin.real - end.real * 2) <= _SAME)
+        halved &= np.abs(moves.start[starts] - moves.end[leave]) <= _SAME
+        # The arc that begins at this X is no circle; another one tells of another mistake.
+        wrong = np.append(0, np.cumsum(self.arcs.is_no_circle[moves.row]))
+        halved &= wrong[leave] == wrong[np.minimum(starts + 2, leave)]
+        column[moves.row[starts[halved]]] = end.real[halved]
+        return column
+
+
+def _mirrors(one: complex, other: complex) -> bool:
+    """The points are the same, or mirror images about an axis of the plane or the center."""
+    return abs(abs(one.real) - abs(other.real)) <= _SAME and abs(abs(one.imag) - abs(other.imag)) <= _SAME
+
+
+def _across_flats(ends: Points) -> float:
+    """Twice the distance of the nearest long side of a path to the center [mm]; 0 where it has none."""
+    side = np.diff(ends)
+    length = np.abs(side)
+    long = length > length.max(initial=0.0) / 2
+    if not long.any():
+        return 0.0
+    distance = np.abs((np.conj(side[long]) * ends[:-1][long]).imag) / length[long]
+    return 2 * float(distance.min())
+
+
+def _digits(size: float) -> int:
+    """
+    How many digits behind the point a size needs; one more than all of _DIGITS where none suffice.
+
+    Fractions as 1 5/16 are as round as a size of one digit.
+    """
+    if abs(size - round(size)) > _ROUND and abs(size - round(size * _FRACTION) / _FRACTION) <= _ROUND / 2:
+        return 1
+    return next((digits for digits in _DIGITS if abs(size - round(size, digits)) <= _ROUND), len(_DIGITS))

@@ -1,0 +1,130 @@
+"""The depths of the passes of a contour: one pass that is far off the steps of the others."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from polarcheck.columns.metal.air_cuts import AirCuts
+from polarcheck.columns.trace import Trace
+from polarcheck.foundation.arrays import Columns, Floats, Mask, Rows, Table, cached_property
+from polarcheck.geometry.tolerances import ROUNDING
+
+#: A step is far off the others if it is as many times as large.
+_FAR = 3.0
+#: Passes of a contour that show its step; of fewer, down from Z0, the digits must show what is wrong.
+_LEAST, _FEWEST = 3, 2
+#: A step that is as many times as large as the least has left out a pass.
+_SKIPPED = 1.5
+#: Points that are nearer than this are one [mm].
+_SAME = 2e-3
+
+
+class Passes(Table, frozen=True):
+    """
+    Passes, n of them in order: cuts at one Z of one section.
+
+    row: int[n], the first cut. z: float64[n] [mm]. contour: int[n], equal for the same contour of one section.
+    """
+
+    row: Rows
+    z: Floats
+    contour: Rows
+
+
+class PassDepths(Columns, frozen=True):
+    """Columns of one trace, one value per row."""
+
+    trace: Trace
+    air_cuts: AirCuts
+
+    @cached_property
+    def passes(self) -> Passes:
+        """All passes."""
+        trace, rows = self.trace, np.flatnonzero(self.air_cuts.walls)
+        if not len(rows):
+            return Passes(rows, np.zeros(0), rows)
+        z, section = trace.path.z[rows], trace.mode.section[rows]
+        first = np.flatnonzero((np.diff(section, prepend=-1) != 0) | (np.abs(np.diff(z, prepend=np.inf)) > ROUNDING))
+        if len(first) < _FEWEST:
+            return Passes(rows[first], z[first], np.zeros(len(first), np.int64))
+        count = np.diff(np.append(first, len(rows)))
+        ends = trace.path.end[rows]
+        sums = [np.add.reduceat(part, first) for part in (ends.real, ends.imag, np.abs(ends))]
+        keys = np.stack([section[first], count, *(np.rint(column / _SAME / 4) for column in sums)], axis=1)
+        _, contour = np.unique(keys, axis=0, return_inverse=True)
+        return Passes(rows[first], z[first], contour.ravel())
+
+    @cached_property
+    def expected(self) -> Floats:
+        """Per row: Z that would be in step with the other passes, at a pass that is off; NaN elsewhere [mm]."""
+        expected = np.full(len(self.trace), np.nan)
+        for row, z in self._off():
+            expected[row] = z
+        return expected
+
+    @cached_property
+    def is_off(self) -> Mask:
+        """Rows with the first cut of a pass that is off."""
+        return ~np.isnan(self.expected)
+
+    def _off(self) -> Iterator[tuple[int, float]]:
+        passes = self.passes
+        if len(passes) < _FEWEST:
+            return
+        order = np.argsort(passes.contour, kind="stable")
+        passes = passes[order]
+        first = np.flatnonzero(np.diff(passes.contour, prepend=-1))
+        for group in np.split(np.arange(len(passes)), first[1:]):
+            z = passes.z[group]
+            if len(z) < _FEWEST:
+                continue
+            off = _outlier(z)
+            if off is None:
+                continue
+            number, value = off
+            row = int(passes.row[group[number]])
+            scale = float(self.trace.lengths.scale[row])
+            if len(z) >= _LEAST or _is_slip(z[number] / scale, value / scale):
+                yield row, value
+
+
+def _is_slip(written: float, meant: float) -> bool:
+    """The digits of one number are those of the other and one more, or its point is elsewhere."""
+    long, short = (f"{abs(value):.4f}".replace(".", "").strip("0") for value in (written, meant))
+    if (written < 0) != (meant < 0) or not short:
+        return False
+    return long == short or any(long[:at] + long[at + 1 :] == short for at in range(len(long)))
+
+
+def _outlier(z: Floats) -> tuple[int, float] | None:
+    """
+    The pass without which all go down from Z0 in like steps, and the Z that it would have; None where there is not one.
+
+    Of two passes at one Z it is the later one, if the next step is as large as two.
+    """
+    levels = np.append(0.0, z) if z.max() < 0 else z
+    if len(levels) < _LEAST:
+        return None
+    ahead = len(levels) - len(z)
+    off: dict[float, tuple[int, float]] = {}
+    for number in range(ahead, len(levels)):
+        steps = -np.diff(np.delete(levels, number))
+        step = float(steps.min())
+        if step <= ROUNDING or steps.max() > _FAR * step:
+            continue
+        before = levels[number - 1] if number else np.inf
+        behind = levels[number + 1] if number + 1 < len(levels) else -np.inf
+        if behind + ROUNDING < levels[number] < before - ROUNDING and (
+            behind > -np.inf or before - levels[number] <= _FAR * steps.max()
+        ):
+            continue
+        is_again = abs(levels[number] - before) <= ROUNDING
+        if abs(levels[number] - behind) <= ROUNDING:
+            continue  # the later one counts
+        if is_again and (number + 1 == len(levels) or before - behind < _SKIPPED * step):
+            continue  # a spring pass
+        fits = (before + behind) / 2 if np.isfinite(before + behind) else before - step if number else behind + step
+        off[float(levels[number])] = number - ahead, float(fits)
+    return next(iter(off.values())) if len(off) == 1 else None

@@ -1,0 +1,175 @@
+"""The same contour in several passes, of which one differs from the others in a block or two."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from polarcheck.columns.contour.passes import Passes, numbered
+from polarcheck.columns.trace import Trace
+from polarcheck.columns.words.slips import plain_number, slip_of
+from polarcheck.foundation.arrays import Columns, Mask, Points, Rows, cached_property
+
+#: Points nearer to each other than this [mm] are the same, and how far off a point is that differs.
+_SAME, _OTHER = 1e-4, 0.004
+#: Moves that may differ, and the least number that agree.
+_MOST_DIFFERING, _LEAST_AGREEING = 3, 2
+#: Digits of a number from which on one other digit is a slip, and no other dimension.
+_FINE = 4
+#: Different passes with one beginning and end that are compared with each other.
+_MOST = 12
+
+
+class Difference(NamedTuple):
+    """
+    A pass that differs from another one.
+
+    row: the row that differs. other: that of the other pass. is_missing: the other pass has a block more, row `other`.
+    first, last: the rows of the other pass.
+    """
+
+    row: int
+    other: int
+    is_missing: bool
+    first: int
+    last: int
+
+
+class PassDifferences(Columns, frozen=True):
+    """Columns of one trace, one value per row."""
+
+    trace: Trace
+    passes: Passes
+
+    @cached_property
+    def found(self) -> dict[int, Difference]:
+        """The differences, by the row that differs."""
+        return {one.row: one for differences in reversed(self._by_group) for one in reversed(differences)}
+
+    @cached_property
+    def _by_group(self) -> list[list[Difference]]:
+        """The differences of each group of passes."""
+        return [self._differences_of(group) for group in self._groups]
+
+    @cached_property
+    def twin(self) -> Rows:
+        """The same number for all rows of passes that are compared, where one of them differs; -1 for other rows."""
+        column = np.full(len(self.trace), -1)
+        passes = self.passes
+        for number, (group, differences) in enumerate(zip(self._groups, self._by_group, strict=True)):
+            for which in group.tolist() if differences else ():
+                column[passes.row[passes.first[which]] : passes.row[passes.last[which]] + 1] = number
+        return column
+
+    @cached_property
+    def differs(self) -> Mask:
+        """Rows that differ."""
+        return self.trace.blocks.mask_of(np.array(sorted(self.found), np.int64))
+
+    @cached_property
+    def _groups(self) -> list[Rows]:
+        """Passes of a program that begin and end at the same points, where there are several shapes of them."""
+        passes = self.passes
+        count = passes.last - passes.first + 1
+        long = np.flatnonzero(count > _LEAST_AGREEING)
+        if len(long) < 2:
+            return []
+        ends = passes.start[passes.first[long]], passes.end[passes.last[long]]
+        program = self.trace.blocks.program[passes.row[passes.first[long]]]
+        keys = [np.round(part / _OTHER) for point in ends for part in (point.real, point.imag)]
+        group = numbered([*keys, program.astype(np.float64), passes.compensated[long].astype(np.float64)])
+        if np.bincount(group).max() < 2:
+            return []
+        shape = passes.shape[long]
+        order = np.lexsort((shape, group))
+        several = np.zeros(int(group.max()) + 1, bool)
+        several[group[order][1:][(np.diff(group[order]) == 0) & (np.diff(shape[order]) != 0)]] = True
+        return [long[group == number] for number in np.flatnonzero(several).tolist()]
+
+    def _differences_of(self, group: Rows) -> list[Difference]:
+        """Each shape against the most frequent one that it differs from in a block or two; the rarer one is wrong."""
+        shape = self.passes.shape[group]
+        kinds, first, count = np.unique(shape, return_index=True, return_counts=True)
+        if len(kinds) > _MOST:
+            return []
+        # The most frequent first; of those as frequent the one above.
+        order = np.lexsort((first, -count))
+        differences = []
+        for place, kind in enumerate(order.tolist()):
+            for model in order[:place].tolist():
+                found = self._difference(
+                    int(group[first[kind]]), int(group[first[model]]), bool(count[model] > count[kind])
+                )
+                if found is not None:
+                    differences.append(found)
+                    break
+        return differences
+
+    def _items(self, number: int) -> Points:
+        """Per move of a pass its end, its center, and its motion: complex128[moves, 3]."""
+        passes = self.passes
+        moves = np.arange(passes.first[number], passes.last[number] + 1)
+        center = np.where(np.isnan(passes.center[moves]), 0, passes.center[moves])
+        return np.stack((passes.end[moves], center, passes.motion[moves].astype(np.complex128)), axis=1)
+
+    def _difference(self, number: int, model: int, is_rare: bool) -> Difference | None:
+        """Where a pass differs from a model of it, if a slip explains that; is_rare: more passes are as the model."""
+        one, two = self._items(number), self._items(model)
+        shorter = min(len(one), len(two))
+        head = _agreeing(one[:shorter], two[:shorter])
+        tail = min(_agreeing(one[::-1][:shorter], two[::-1][:shorter]), shorter - head)
+        differing = len(one) - head - tail, len(two) - head - tail
+        if not 0 < max(differing) <= _MOST_DIFFERING or head + tail < max(_LEAST_AGREEING, max(differing)):
+            return None
+        if not tail:
+            return None
+        row, other = (int(self.passes.row[self.passes.first[which] + head]) for which in (number, model))
+        if self.trace.run.block[row] == self.trace.run.block[other] and differing[0] == differing[1]:
+            return None
+        if differing[0] == differing[1]:
+            here, there = one[head : head + differing[0]], two[head : head + differing[0]]
+            if np.abs(here - there).max() < _OTHER:
+                return None
+            explained = is_rare or self._is_slip(here, there, row, other)
+        else:
+            explained = sorted(differing) == [0, 1] and self._turns_at(number if differing[0] else model, head)
+        if not explained:
+            return None
+        passes = self.passes
+        first, last = (int(passes.row[ends[model]]) for ends in (passes.first, passes.last))
+        return Difference(row, other, differing[0] < differing[1], first, last)
+
+    def _turns_at(self, number: int, place: int) -> bool:
+        """The pass turns where a block of it ends that the other one does not have: it is no point on a line."""
+        passes = self.passes
+        move = int(passes.first[number]) + place
+        start, corner, end = passes.start[move], passes.end[move], passes.end[move + 1]
+        off = ((corner - start) * np.conj(end - start)).imag / max(abs(end - start), _SAME)
+        return bool(abs(off) > _OTHER or passes.is_arc[move] or passes.is_arc[move + 1])
+
+    def _is_slip(self, here: Points, there: Points, row: int, other: int) -> bool:
+        """
+        One point that differs, or an arc with other words; or a coordinate of several points, where the words are those
+        of a slip: a side that is moved on purpose moves two points.
+        """
+        apart = here[:, 0] - there[:, 0]
+        moved = np.abs(apart) > _SAME
+        if moved.sum() <= 1:
+            return True
+        along_x, along_c = bool((np.abs(apart.imag) <= _SAME).all()), bool((np.abs(apart.real) <= _SAME).all())
+        if not (along_x or along_c) or np.ptp(np.abs(apart[moved])) > _SAME:
+            return False
+        blocks = self.trace.blocks
+        address = chr(int(self.trace.axes.linear_axis[row])) if along_x else self.trace.axes.virtual_axis_of(row)
+        words = float(blocks.word(address)[row]), float(blocks.word(address)[other])
+        if np.isnan(sum(words)):
+            return False
+        slip = slip_of(plain_number(words[0]), words[1], _SAME)
+        return slip is not None and (slip.plain or len(plain_number(words[0]).strip("-").replace(".", "")) >= _FINE)
+
+
+def _agreeing(one: Points, two: Points) -> int:
+    """How many moves agree from the first on."""
+    same: Mask = np.all(np.abs(one - two) <= _SAME, axis=1)
+    return int(np.argmin(same)) if not same.all() else len(same)

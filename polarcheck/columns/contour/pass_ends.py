@@ -1,0 +1,73 @@
+"""Passes that begin outside the bar and end inside it, and then leave it another way: metal stays beyond their end."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from polarcheck.columns.metal.air_cuts import AirCuts
+from polarcheck.columns.metal.bar import Bar
+from polarcheck.columns.metal.workpiece import Workpiece
+from polarcheck.columns.trace import Trace
+from polarcheck.foundation.arrays import Columns, Mask, Points, Rows, cached_property
+from polarcheck.geometry.tolerances import ROUNDING
+
+#: A pass that ends no deeper inside the bar is meant for its edge [mm].
+_EDGE = 0.5
+#: A feed is one to position if it is as many times as large as that of the cut before.
+_FASTER = 3.0
+
+
+class PassEnds(Columns, frozen=True):
+    """Columns of one trace, one value per row."""
+
+    trace: Trace
+    bar: Bar
+    air_cuts: AirCuts
+    workpiece: Workpiece
+
+    @cached_property
+    def leaves_metal(self) -> Mask:
+        """The last cut of a pass that begins outside the bar and ends inside it; the next move leads out of it."""
+        trace, bar = self.trace, self.bar.known
+        result = np.zeros(len(trace), bool)
+        if np.isnan(bar.smallest) or not self.air_cuts.walls.any():
+            return result
+        half = bar.smallest / 2
+        moving = np.flatnonzero(trace.mode.in_polar & trace.path.travels)
+        cuts = self._cuts[moving]
+        begins = cuts & ~np.append(False, cuts[:-1] & (np.diff(trace.mode.section[moving]) == 0))
+        ends = cuts & ~np.append(cuts[1:] & (np.diff(trace.mode.section[moving]) == 0), False)
+        first, last = np.flatnonzero(begins), np.flatnonzero(ends)
+        has_next = last + 1 < len(moving)
+        first, last = first[has_next], last[has_next]
+        start, end = trace.path.start[moving[first]], trace.path.end[moving[last]]
+        out = moving[last + 1]
+        leads_out = np.abs(trace.path.end[out]) > half + ROUNDING
+        leads_out &= (trace.mode.section[out] == trace.mode.section[moving[last]]) & ~trace.path.moves_z[out]
+        # An arc at the end leads away from a contour.
+        leads_out &= ~trace.path.is_arc[moving[last]]
+        below = trace.path.z[moving[last]] < self.workpiece.top - ROUNDING
+        found = (np.abs(start) > half - ROUNDING) & (np.abs(end) < half - _EDGE) & leads_out & below
+        found &= ~self._goes_back(out, start)
+        result[moving[last[found]]] = True
+        return result
+
+    @property
+    def _cuts(self) -> Mask:
+        """Cuts of passes: in offset mode, or without compensation at no more than the feed of a cut."""
+        trace = self.trace
+        compensated = trace.compensation.compensates
+        slowest = np.full(len(trace.mode.sections) + 1, np.inf)
+        rows = np.flatnonzero(self.air_cuts.walls & ~np.isnan(trace.feedrate.feed))
+        np.minimum.at(slowest, trace.mode.section[rows], trace.feedrate.feed[rows])
+        slow = trace.feedrate.feed < _FASTER * slowest[trace.mode.section]
+        return np.asarray(self.air_cuts.walls & (compensated | slow))
+
+    def _goes_back(self, out: Rows, start: Points) -> Mask:
+        """The way out comes back to where the pass began: it runs in what the pass has cut."""
+        path = self.trace.path
+        way = path.end[out] - path.start[out]
+        with np.errstate(invalid="ignore", divide="ignore"):
+            share = np.clip(((start - path.start[out]) * way.conj()).real / np.abs(way) ** 2, 0, 1)
+        apart = np.abs(start - path.start[out] - share * way)
+        return np.asarray(apart <= np.nan_to_num(self.workpiece.radius[out]) / 2)

@@ -1,0 +1,112 @@
+"""Contours that are nearly regular or symmetric, and what makes them so: a word, a block, the reading of X."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from polarcheck.columns.contour.plane_loops import PlaneLoop, loops_of, smooth_share
+from polarcheck.columns.trace import Trace
+from polarcheck.foundation.arrays import Columns, Mask, cached_property
+from polarcheck.foundation.time_limit import keep_time
+from polarcheck.geometry.regularity.symmetry import Symmetry
+
+if TYPE_CHECKING:
+    from polarcheck.columns.contour.correction_search import Correction
+
+
+#: What is regular has more turns than a rectangle, which is one however long; and so many corners.
+_PLAIN_ORDER, _FEWEST_CORNERS = 2, 5
+#: Share of the ends of arcs that may be tangent by chance.
+_SMOOTH_BY_CHANCE = 0.25
+
+
+class XReading(NamedTuple):
+    """
+    A section that is regular with another reading of X.
+
+    factor: by which X is to be multiplied. becomes: the symmetry that it then has; None where its arcs are tangent.
+    """
+
+    factor: float
+    becomes: Symmetry | None
+
+
+class Regularity(Columns, frozen=True):
+    """Columns of one trace, one value per row."""
+
+    trace: Trace
+
+    @cached_property
+    def _loops(self) -> list[tuple[PlaneLoop, Symmetry | None]]:
+        """The loops that may be regular, with their symmetry as they are written."""
+        return [(loop, loop.symmetry()) for loop in loops_of(self.trace)]
+
+    # ---- X of all words ----
+
+    @cached_property
+    def x_readings(self) -> dict[int, XReading]:
+        """By section how its contours are regular with X as the other of diameter and radius, and not as it is read."""
+        found: dict[int, XReading] = {}
+        objects: set[int] = set()
+        for loop, written in self._loops:
+            section = int(self.trace.mode.section[loop.row[-1]])
+            reading = self._other_reading(loop, written)
+            if reading is not None:
+                found.setdefault(section, reading)
+            elif written is not None and (written.order > _PLAIN_ORDER or smooth_share(loop, loop.point) == 1):
+                objects.add(section)
+        return {section: reading for section, reading in found.items() if section not in objects}
+
+    def _other_reading(self, loop: PlaneLoop, written: Symmetry | None) -> XReading | None:
+        """How a loop is regular with all of X twice or half as large."""
+        if written is not None and written.order > _PLAIN_ORDER:
+            return None
+        turn = self.trace.path.frames.turn[loop.row[-1]] if self.trace.path.frames is not None else 1
+        if turn != 1:
+            return None
+        for factor in (2.0, 0.5):
+            point = np.asarray(loop.point.real * factor + 1j * loop.point.imag)
+            symmetry = loop.symmetry(point)
+            if symmetry is None:
+                continue
+            if symmetry.order > _PLAIN_ORDER and symmetry.corners >= _FEWEST_CORNERS:
+                return XReading(factor, symmetry)
+            if smooth_share(loop, point) == 1 and smooth_share(loop, loop.point) <= _SMOOTH_BY_CHANCE:
+                return XReading(factor, None)
+        return None
+
+    @cached_property
+    def x_is_misread(self) -> Mask:
+        """The rows of sections that are regular with X as the other of diameter and radius."""
+        section = self.trace.mode.section
+        return np.isin(section, [*self.x_readings]) if self.x_readings else np.zeros(len(section), bool)
+
+    # ---- one word or block ----
+
+    @cached_property
+    def corrections(self) -> dict[int, Correction]:
+        """By row what makes a contour regular."""
+        found: dict[int, Correction] = {}
+        for loop, written in self._loops:
+            if written is not None and written.is_turned:
+                continue
+            keep_time()
+            from polarcheck.columns.contour.correction_search import correction_of
+
+            correction = correction_of(self.trace, loop, written)
+            if correction is not None:
+                found.setdefault(correction.row, correction)
+        return found
+
+    @cached_property
+    def is_wrong(self) -> Mask:
+        """Rows with a word that makes a contour irregular, or before which a block is missing."""
+        return self.trace.blocks.mask_of(np.array(sorted(self.corrections), np.int64))
+
+    @cached_property
+    def wrong_words(self) -> Mask:
+        """Per executed word: it makes a contour irregular."""
+        words = [correction.word for correction in self.corrections.values() if correction.word >= 0]
+        return self.trace.blocks.words_at(np.array(sorted(words), np.int64))

@@ -1,0 +1,286 @@
+"""
+Arcs that are not tangent at their ends, where the blocks on both sides, and the other arcs of the contour, show which
+arc would be.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from polarcheck.columns.contour.passes import Passes
+from polarcheck.columns.contour.same_circle import Meant, SameCircle
+from polarcheck.columns.path.arcs import Arcs
+from polarcheck.columns.trace import Trace
+from polarcheck.columns.words.slips import plain_number, slip_of
+from polarcheck.foundation.arrays import Columns, Floats, Mask, Points, Rows, cached_property, different
+from polarcheck.foundation.states import Motion, Units
+from polarcheck.geometry.plane import angle_between
+
+#: A turn that is meant as a corner [rad], and this many times what rounding turns a tangent by.
+_CORNER, _CLEARLY = np.radians(1.5), 4
+#: A contour with a single arc: from this turn on a factor alone speaks for another R [rad].
+_SHARP = np.radians(5)
+#: What else turns a tangent [rad], as an I that is rounded to another digit.
+_SLACK = 2e-3
+#: Arcs that are nearly straight, or nearly a full circle, have no R that can be read from their neighbours [rad].
+_FLAT = 0.02
+#: Centers nearer to each other than this [mm], and radii, are the same.
+_SAME = 0.02
+#: Factors by which an R is mistaken: radius for diameter, a point that moved.
+_FACTORS = (2.0, 0.5, 10.0, 0.1)
+#: Ratios that differ by less than this share are one factor.
+_LIKE = 0.02
+#: The least step of R on drawings, in mm and in inch.
+_STEP, _STEP_INCH = 0.5, 1 / 32
+#: Passes in which arcs are judged.
+_MOST = 2000
+
+
+class _Judged(NamedTuple):
+    """
+    The judged arcs, n of them: circles with a move on either side.
+
+    move: int[n], the move of the pass. tolerance: float64[n] [rad], by which rounding turns a tangent.
+    radius: float64[n] [mm], with its sign, of the arc that would be tangent on both sides; NaN where none is.
+    center: complex128[n] [mm], of that arc.
+    """
+
+    move: Rows
+    tolerance: Floats
+    radius: Floats
+    center: Points
+
+
+class Tangency(Columns, frozen=True):
+    """Columns of one trace, one value per row."""
+
+    trace: Trace
+    arcs: Arcs
+    passes: Passes
+    same_circle: SameCircle
+
+    @cached_property
+    def _judged(self) -> _Judged:
+        passes, arcs = self.passes, self.arcs
+        previous, following = passes.beside
+        is_circle = ~(arcs.is_no_circle | arcs.ends_at_start)[passes.row] & ~np.isnan(passes.center)
+        move = np.flatnonzero(passes.is_arc & is_circle & (previous >= 0) & (following >= 0))
+        begins, ends = passes.tangents
+        start, end, written = passes.start[move], passes.end[move], passes.center[move]
+        chord, digit = end - start, 2 * passes.half_of_last_digit[move]
+        half_chord, radius = np.abs(chord) / 2, np.abs(start - written)
+        length = self.trace.path.length[passes.row]
+        shortest = np.minimum(length[previous[move]], length[following[move]])
+        apart = np.sqrt(np.maximum(radius**2 - half_chord**2, digit * radius))
+        with np.errstate(divide="ignore", invalid="ignore"):
+            tolerance = np.asarray(_SLACK + digit * (1 / shortest + 1 / apart + 1 / half_chord))
+            fits_within = _SLACK + digit * (1 / shortest + 1 / half_chord)
+            into, out = angle_between(ends[previous[move]], chord), angle_between(chord, begins[following[move]])
+            half = (into + out) / 2
+            fits = (np.abs(into - out) <= 2 * fits_within) & (np.abs(half) > _FLAT) & (np.abs(half) < np.pi - _FLAT)
+            fits &= (half > 0) == (passes.motion[move] == Motion.CCW)
+            size = np.where(fits, half_chord / np.sin(np.abs(half)), np.nan)
+            way = chord / np.abs(chord) * np.exp(-1j * half)
+        center = start + 1j * np.sign(half) * size * way
+        # Half a circle is one by either sign.
+        signed = np.where(np.abs(half) > np.pi / 2 + fits_within, -size, size)
+        return _Judged(move, tolerance, signed, center)
+
+    # ---- as it is written ----
+
+    @cached_property
+    def is_tangent(self) -> Mask:
+        """Arcs that are tangent to the moves on both sides."""
+        judged, (into, out) = self._judged, self.passes.turns
+        turn = np.maximum(np.abs(into), np.abs(out))[judged.move]
+        return self._column(judged.move[turn <= judged.tolerance])
+
+    def _column(self, moves: Rows) -> Mask:
+        return self.trace.blocks.mask_of(self.passes.row[moves])
+
+    # ---- as it would be ----
+
+    @cached_property
+    def _misfits(self) -> Rows:
+        """The judged arcs, by their number there, for which another arc is meant."""
+        passes, judged = self.passes, self._judged
+        into, out = (np.abs(turn[judged.move]) for turn in passes.turns)
+        corner = np.minimum(into, out)
+        candidate = ~np.isnan(judged.radius) & (corner > np.maximum(_CORNER, _CLEARLY * judged.tolerance))
+        # Arcs about the center of C are what is left of the bar.
+        candidate &= np.abs(passes.center[judged.move]) > _SAME
+        number = passes.number[judged.move]
+        chosen = [self._misfits_of(which, candidate) for which in different(number[candidate])[:_MOST].tolist()]
+        return np.concatenate([np.zeros(0, np.int64), *chosen])
+
+    def _misfits_of(self, number: int, candidate: Mask) -> Rows:
+        """Of the candidates of a pass those for which the rest of the pass shows that another arc is meant."""
+        passes, judged = self.passes, self._judged
+        begin, until = np.searchsorted(passes.number[judged.move], (number, number + 1)).tolist()
+        at = np.arange(begin, until)
+        wrong = at[candidate[begin:until]]
+        written, size = passes.center[judged.move], self._written[judged.move]
+        single = [
+            index
+            for index in wrong.tolist()
+            if not _shares_circle(
+                written[index],
+                abs(size[index]),
+                np.delete(written[at], index - begin),
+                np.delete(np.abs(size[at]), index - begin),
+            )
+        ]
+        if not single:
+            return np.zeros(0, np.int64)
+        limit = judged.tolerance[at]
+        previous, following = (beside[judged.move[at]] for beside in passes.beside)
+        into, out = (np.abs(turn[judged.move[at]]) <= limit for turn in passes.turns)
+        tangent_before = into & out
+        if not tangent_before.any() and len(single) == len(at) > 1:
+            return np.array(single) if self._all_mistaken(at) else np.zeros(0, np.int64)
+        chosen = []
+        for index in single:
+            move = judged.move[index]
+            tangent = (into | (previous == move)) & (out | (following == move)) & (at != index)
+            others, corners = int(tangent.sum()), len(at) - 1 - int(tangent.sum())
+            needed, had = float(judged.radius[index]), float(size[index])
+            near = self._tolerance_of(index)
+            is_sign = abs(needed + had) <= near
+            is_like = bool((np.abs(size[at][tangent] - needed) <= near).any())
+            is_factor = any(abs(abs(needed) * factor - abs(had)) <= near * factor for factor in _FACTORS)
+            is_slip = is_factor or self._is_mistyped(index, near)
+            if others >= 2:
+                shown = is_sign or corners == 0 or (is_slip and others >= corners) or (is_like and others > corners)
+            else:
+                # One end of a slot may be flatter than the other one on purpose.
+                sharp = min(abs(passes.turns[0][move]), abs(passes.turns[1][move])) > _SHARP
+                shown = is_sign or (is_slip and is_like) or (is_factor and corners == 0 and sharp)
+            if shown:
+                chosen.append((needed < 0, index))
+        # Of two halves of a circle each would fit the other one: the shorter way round is meant.
+        return np.array([index for is_long, index in chosen if not is_long or len(chosen) == 1], np.int64)
+
+    def _all_mistaken(self, at: Rows) -> bool:
+        """No arc of a pass is tangent, and all would be with an R that is mistaken in the same way."""
+        judged = self._judged
+        needed, had = judged.radius[at], self._written[judged.move[at]]
+        ratio = np.abs(had / needed)
+        near = max(self._tolerance_of(index) for index in at.tolist())
+        if np.ptp(ratio) > 2 * near / np.abs(needed).min():
+            return False
+        if (np.abs(ratio.mean() - np.array(_FACTORS)) <= 2 * near / np.abs(needed).min() * ratio.mean()).any():
+            return True
+        row = self.passes.row[judged.move[at[0]]]
+        step = _STEP_INCH if self.trace.lengths.units[row] == Units.INCH else _STEP
+        whole = needed / self.trace.lengths.scale[row] / step
+        return bool(len(at) > 2 and np.ptp(had) <= near and (np.abs(whole - np.rint(whole)) <= near / step).all())
+
+    def _tolerance_of(self, index: int) -> float:
+        """What rounding leaves open of the R that would be tangent [mm]."""
+        judged, passes = self._judged, self.passes
+        move, needed = judged.move[index], abs(float(judged.radius[index]))
+        half = np.arcsin(min(1.0, abs(passes.end[move] - passes.start[move]) / 2 / needed))
+        slack = min(float(judged.tolerance[index]), 0.05)
+        return float(2 * passes.half_of_last_digit[move] / np.sin(half) + needed * slack / np.tan(half) + 1e-3)
+
+    def _is_mistyped(self, index: int, near: float) -> bool:
+        """The R that would be tangent is the one that is written but for a slip that no other design explains."""
+        row = self.passes.row[self._judged.move[index]]
+        scale = float(self.trace.lengths.scale[row])
+        had, needed = (abs(float(of[index])) / scale for of in (self._written[self._judged.move], self._judged.radius))
+        slip = slip_of(plain_number(had), needed, near / scale)
+        return slip is not None and slip.plain
+
+    @cached_property
+    def _written(self) -> Floats:
+        """Per move R of an arc as it is written, or the distance to its center, negative above 180 deg [mm]."""
+        passes = self.passes
+        size = np.abs(passes.start - passes.center)
+        return np.where(self.arcs.sweep[passes.row] > 180 + 1e-3, -size, size)
+
+    @cached_property
+    def _meant(self) -> Meant:
+        """All arcs for which another one is meant: on the circle of other arcs, else tangent to its neighbours."""
+        judged, chosen = self._judged, self._misfits
+        tolerance = np.array([self._tolerance_of(index) for index in chosen.tolist()])
+        tangent = Meant(judged.move[chosen], judged.radius[chosen], judged.center[chosen], tolerance)
+        parts = [self.same_circle.mistaken_together, self.same_circle.leaves_circle, tangent]
+        parts = [part for part in parts if len(part.move)] or [tangent]
+        if len(parts) == 1:
+            return parts[0]
+        move, first = np.unique(np.concatenate([part.move for part in parts]), return_index=True)
+        columns = (np.concatenate([part[at] for part in parts])[first] for at in range(1, 4))
+        return Meant(move, *columns)
+
+    @cached_property
+    def misfits(self) -> Mask:
+        """Arcs that turn a corner where another R, or center, would be tangent, as the rest of the contour shows."""
+        return self._column(self._meant.move)
+
+    def _of_meant(self, values: Floats) -> Floats:
+        column = np.full(len(self.trace), np.nan)
+        column[self.passes.row[self._meant.move]] = values
+        return column
+
+    @cached_property
+    def radius_needed(self) -> Floats:
+        """R of the arc that is meant, negative above 180 deg [mm]; NaN for rows that are no misfits."""
+        return self._of_meant(self._meant.radius)
+
+    @cached_property
+    def center_needed(self) -> Points:
+        """Its center [mm]."""
+        column = np.full(len(self.trace), complex("nan+nanj"))
+        column[self.passes.row[self._meant.move]] = self._meant.center
+        return column
+
+    @cached_property
+    def radius_tolerance(self) -> Floats:
+        """What rounding leaves open of that R [mm]."""
+        return self._of_meant(self._meant.tolerance)
+
+    @cached_property
+    def on_circle(self) -> Mask:
+        """Misfits that are meant on the circle of other arcs."""
+        circle = self.same_circle
+        return self._column(np.concatenate([circle.mistaken_together.move, circle.leaves_circle.move]))
+
+    @cached_property
+    def corner(self) -> Floats:
+        """The larger turn at the ends of an arc that does not fit [deg]."""
+        into, out = (np.abs(turn[self._meant.move]) for turn in self.passes.turns)
+        return self._of_meant(np.degrees(np.fmax(into, out)))
+
+    @cached_property
+    def size(self) -> Rows:
+        """
+        The same number for misfits of a section that one mistake explains; -1 for other rows.
+
+        One R stands for one other R, or several are mistaken by one factor.
+        """
+        number = np.full(len(self.trace), -1)
+        rows = np.flatnonzero(self.misfits)
+        if len(rows):
+            written = np.zeros(len(self.trace))
+            written[self.passes.row] = self._written
+            with np.errstate(divide="ignore", invalid="ignore"):  # an R of 0 is a factor of nothing
+                ratio = np.abs(written[rows] / self.radius_needed[rows])
+                factor = np.array(_FACTORS)[np.argmin(np.abs(np.log(ratio[:, None] / np.array(_FACTORS))), axis=1)]
+            of_factor = (np.abs(ratio / factor - 1) < _LIKE) & (self.radius_needed[rows] * written[rows] > 0)
+            keys = np.stack(
+                (
+                    self.trace.mode.section[rows],
+                    np.where(of_factor, factor, 0),
+                    np.where(of_factor, 0, written[rows].round(2)),
+                    np.where(of_factor, 0, self.radius_needed[rows].round(1)),
+                )
+            )
+            number[rows] = np.unique(keys, axis=1, return_inverse=True)[1].reshape(-1)
+        return number
+
+
+def _shares_circle(center: complex, radius: float, centers: Points, radii: Floats) -> bool:
+    """One of the other arcs lies on the same circle, so that the corners between them are cut off from it."""
+    return bool(((np.abs(centers - center) <= _SAME) & (np.abs(radii - radius) <= _SAME)).any())

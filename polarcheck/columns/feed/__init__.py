@@ -1,0 +1,1 @@
+"""F, rates of the axes, accelerations and times."""

@@ -1,0 +1,1 @@
+"""Metal: the bar, what mills take off, and the part that they leave."""

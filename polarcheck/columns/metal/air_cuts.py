@@ -1,0 +1,278 @@
+"""
+Sections and passes that take nothing off: above the metal, beside it, or where the same section has cut before.
+
+Each reason needs a witness: the words of the section itself, the face, the bar, or the other sections of the program.
+"""
+
+from __future__ import annotations
+
+from enum import IntEnum
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from polarcheck.columns.metal.bar import Bar
+from polarcheck.columns.metal.workpiece import Workpiece
+from polarcheck.columns.trace import Trace
+from polarcheck.foundation.arrays import Columns, Floats, Mask, Rows, States, cached_property
+from polarcheck.foundation.states import Motion
+from polarcheck.geometry import polar
+from polarcheck.geometry.tolerances import ROUNDING
+
+#: Z is above something if it is so by more than this [mm]: rounding of words, and finishing passes over a face.
+_ABOVE = 0.01
+#: An approach that stands higher shows nothing of the path: it is one of many in manuals [mm].
+_FARTHEST = 10.0
+#: A section at the height of its entry is in air beside others that cut below Z0, if it is as high as this [mm].
+_CLEAR = 0.9
+#: Points that are nearer than this are one, and angles [mm, deg].
+_SAME, _SAME_ANGLE = 2e-3, 1e-3
+
+
+class Reason(IntEnum):
+    """Why a section cuts nothing: NOT_IN_AIR, and the witnesses."""
+
+    NOT_IN_AIR = 0
+    DEPTH_MISSING = 1
+    SIGN_WRONG = 2
+    ABOVE_FACE = 3
+    OTHERS_BELOW = 4
+    REPEATED = 5
+    OUTSIDE_BAR = 6
+
+
+class AirCuts(Columns, frozen=True):
+    """Columns of one trace, one value per row."""
+
+    trace: Trace
+    bar: Bar
+    workpiece: Workpiece
+
+    @property
+    def is_outside_bar(self) -> Mask:
+        """Rows of sections that cut nothing since they run outside the bar."""
+        return np.asarray(self.reason == Reason.OUTSIDE_BAR)
+
+    @cached_property
+    def walls(self) -> Mask:
+        """Rows that cut the contour: in offset mode, or all cuts of sections without compensation."""
+        trace = self.trace
+        compensated = trace.compensation.compensates & trace.path.travels & ~trace.compensation.starts_up
+        bare = trace.path.cuts & trace.path.travels & ~trace.mode.anywhere_in_section(trace.compensation.compensates)
+        cuts = (compensated | bare) & (trace.mode.section >= 0) & ~trace.modal.on_sub_spindle & trace.mode.is_followed
+        return np.asarray(cuts & ~trace.mode.anywhere_in_section(cuts & np.isnan(trace.path.z)))
+
+    @cached_property
+    def _entry(self) -> Floats:
+        """Z at the G12.1 of the section of each row [mm]."""
+        enter = self.trace.mode.sections.enter
+        return np.append(self.trace.path.z[enter], np.nan)[self.trace.mode.section]
+
+    def _of_section(self, values: Floats, rows: Mask, fold: np.ufunc, none: float) -> Floats:
+        """The least or largest of the values of some rows of each section, for each row of the section."""
+        result = np.full(len(self.trace.mode.sections) + 1, none)
+        fold.at(result, self.trace.mode.section[rows], values[rows])
+        result[-1] = none
+        return np.asarray(result[self.trace.mode.section])
+
+    @cached_property
+    def reason(self) -> States:
+        """Per row a Reason, at the first cut of a section or pass that takes nothing off."""
+        trace = self.trace
+        reason = np.zeros(len(trace), np.int16)
+        if not self.walls.any():
+            return reason
+        for mask, why in (
+            (self._outside_bar, Reason.OUTSIDE_BAR),
+            (self._is_repeated, Reason.REPEATED),
+            (self._others_below, Reason.OTHERS_BELOW),
+            (self._above_face, Reason.ABOVE_FACE),
+            (self._sign_wrong, Reason.SIGN_WRONG),
+            (self._depth_missing, Reason.DEPTH_MISSING),
+        ):
+            reason[mask & self.walls] = why
+        # A bar that is too small, or another unit, is one mistake of the whole program.
+        outside = np.flatnonzero(reason == Reason.OUTSIDE_BAR)
+        reason[outside[1:]] = Reason.NOT_IN_AIR
+        first = trace.mode.first_in_section(reason > 0)
+        return np.where(first, reason, 0).astype(np.int16)
+
+    @cached_property
+    def _highest(self) -> Floats:
+        return self._of_section(self.trace.path.z, self.walls, np.maximum, -np.inf)
+
+    @cached_property
+    def _lowest(self) -> Floats:
+        return self._of_section(self.trace.path.z, self.walls, np.minimum, np.inf)
+
+    @property
+    def _depth_missing(self) -> Mask:
+        """
+        Z stays at its entry above Z0, nothing of Z is written before the cuts, and a Z word alone behind them, the
+        retract, moves nowhere.
+        """
+        trace = self.trace
+        inside = trace.mode.in_polar
+        still = ~trace.mode.anywhere_in_section(inside & (np.abs(trace.path.z - self._entry) > ROUNDING))
+        rows = np.arange(len(trace), dtype=np.float64)
+        first = self._of_section(rows, self.walls, np.minimum, np.inf)
+        last = self._of_section(rows, self.walls, np.maximum, -np.inf)
+        writes_z = inside & trace.axes.commands_z
+        alone = writes_z & ~trace.axes.moves_plane & (rows > last)
+        earlier = trace.mode.anywhere_in_section(writes_z & (rows < first))
+        near = (self._entry > _ABOVE) & (self._entry < _FARTHEST)
+        return np.asarray(still & near & trace.mode.anywhere_in_section(alone) & ~earlier)
+
+    @property
+    def _sign_wrong(self) -> Mask:
+        """The cut stands above the entry of its section, above Z0, and Z goes down behind it."""
+        trace = self.trace
+        z, entry = trace.path.z, self._entry
+        above = (z > entry + _ABOVE) & (entry > -_ABOVE) & self.walls
+        if not above.any():
+            return above
+        # Z goes down behind it, in the section or with its first move afterwards.
+        down = np.flatnonzero((z < trace.path.z_before - ROUNDING) & (trace.mode.section >= 0))
+        section = trace.mode.section
+        latest = np.full(len(trace.mode.sections) + 1, -1)
+        np.maximum.at(latest, section[down], down)
+        return np.asarray(above & (latest[section] > np.arange(len(trace))))
+
+    @property
+    def _above_face(self) -> Mask:
+        """The face is known, and the cut stands above it; without compensation all cuts of the section do."""
+        face = self.bar.known.face
+        if np.isnan(face):
+            return np.zeros(len(self.trace), bool)
+        compensated = self.trace.compensation.compensates
+        return np.asarray(np.where(compensated, self.trace.path.z, self._lowest) > face + _ABOVE)
+
+    @property
+    def _others_below(self) -> Mask:
+        """
+        The cut stands no lower than the entry of its section above Z0, and other cuts or the turning go below Z0.
+
+        Without compensation that counts of all cuts of the section: some may be on the way to it.
+        """
+        height = np.where(self.trace.compensation.compensates, self.trace.path.z, self._lowest)
+        stays = (height >= self._entry - ROUNDING) & (height > _CLEAR)
+        lowest = np.full(len(self.trace.mode.sections) + 1, np.inf)
+        np.minimum.at(lowest, self.trace.mode.section[self.walls], self.trace.path.z[self.walls])
+        below = bool((lowest < -_ABOVE).any()) or self.bar.deepest_turned < -_ABOVE
+        return np.asarray(stays & below)
+
+    @property
+    def is_cut_below(self) -> Mask:
+        """Rows at whose Z with the other sign the program cuts elsewhere."""
+        depths = np.sort(self.trace.path.z[self.walls])
+        wanted = -self.trace.path.z
+        near = [np.searchsorted(depths, wanted + way * ROUNDING) for way in (-1, 1)]
+        return np.asarray((near[1] > near[0]) & (self.trace.path.z > ROUNDING))
+
+    @property
+    def _outside_bar(self) -> Mask:
+        """All cuts of the section run outside the circle that holds the bar."""
+        trace, largest = self.trace, self.bar.known.largest
+        if np.isnan(largest):
+            return np.zeros(len(trace), bool)
+        rows = np.flatnonzero(self.walls)
+        nearest = np.full(len(trace), np.inf)
+        path, motion = trace.path, trace.axes.motion
+        nearest[rows] = polar.nearest(path.start[rows], path.end[rows], path.center[rows], motion[rows])
+        # Of a tool center path with G41 and G42 for small corrections the cutter reaches R farther in, too.
+        reach = nearest - self.workpiece.radius
+        inner = self._of_section(np.where(np.isnan(reach), -np.inf, reach), self.walls, np.minimum, np.inf)
+        return np.asarray(inner > largest / 2 + ROUNDING)
+
+    # ---- the same section again ----
+
+    @cached_property
+    def _is_repeated(self) -> Mask:
+        """
+        The section has been cut before at the same angle of C with the same tool, feed and depths.
+
+        It is no spring pass: its like are cut at other angles, and not each of them as often; or a block that indexes C
+        alone and moves nothing stands before it.
+        """
+        trace = self.trace
+        repeated = np.zeros(len(trace.mode.sections) + 1, bool)
+        if len(trace.mode.sections) < 2:
+            return repeated[trace.mode.section]
+        angle = self._angle_of_plane
+        for members in self._alike:
+            angles = angle[members]
+            _, number, count = np.unique(angles, return_inverse=True, return_counts=True)
+            later = np.array([index not in number[:place] for place, index in enumerate(number)]) == 0
+            if len(count) > 1 and count.min() < count.max():
+                repeated[members[later]] = True
+            repeated[members[later & self._idle_index[members]]] = True
+        return repeated[trace.mode.section]
+
+    @property
+    def _angle_of_plane(self) -> Floats:
+        """The angle of the plane of each section, so that equal angles are equal numbers."""
+        angle = np.rint(np.mod(self.trace.path.section_entry, 360) / _SAME_ANGLE)
+        return np.mod(angle, round(360 / _SAME_ANGLE))
+
+    @property
+    def _alike(self) -> list[Rows]:
+        """Sections that cut the same, relative to their planes, by tool, feed and depth; two or more of a kind."""
+        trace = self.trace
+        rows = np.flatnonzero(self.walls)
+        section, count = trace.mode.section[rows], len(trace.mode.sections)
+        moves = np.bincount(section, minlength=count)
+        tool = trace.tools.tool_called[trace.mode.sections.enter]
+
+        def sums(section: Rows, *columns: NDArray[Any]) -> list[Floats]:
+            parts = [part for one in columns for part in ((one.real, one.imag) if np.iscomplexobj(one) else (one,))]
+            return [np.rint(np.bincount(section, weights=part, minlength=count) / _SAME) for part in parts]
+
+        # Most sections differ in the number or the depth of their moves: the others alone are compared by their places.
+        keys = np.stack([moves, tool, *sums(section, trace.path.z[rows] * _place(section))], axis=1).astype(np.float64)
+        alike = _groups(keys)
+        if not alike:
+            return []
+        kept = np.zeros(count, bool)
+        kept[np.concatenate(alike)] = True
+        rows, section = rows[kept[section]], section[kept[section]]
+        path, place = trace.path, _place(section)
+        more = sums(
+            section,
+            path.start[rows],
+            path.end[rows] * place,
+            np.nan_to_num(path.center[rows]) * place,
+            np.nan_to_num(trace.feedrate.feed[rows]) * place,
+            trace.axes.motion[rows] * place,
+        )
+        return _groups(np.concatenate([keys, np.stack(more, axis=1)], axis=1))
+
+    @cached_property
+    def _idle_index(self) -> Mask:
+        """Per section: a block of G0 and C alone stands between it and the section before, and C does not move."""
+        trace = self.trace
+        axis, increment = trace.machine.polar.rotary_words
+        c = trace.path.c_angle
+        alone = trace.blocks.has(axis) & (trace.mode.section < 0) & trace.blocks.consists_of("G", axis, increment)
+        alone &= (trace.axes.motion == Motion.RAPID) & (np.abs(c - trace.path.c_angle_before) <= _SAME_ANGLE)
+        idle = np.concatenate([[0], np.cumsum(alone)])
+        turns = np.concatenate([[0], np.cumsum(np.abs(c - trace.path.c_angle_before) > _SAME_ANGLE)])
+        enter, last = trace.mode.sections.enter, trace.mode.sections.last
+        since = np.append(-1, np.minimum(last, len(trace) - 1)[:-1]) + 1
+        result = (idle[enter] > idle[since]) & (turns[enter] == turns[since])
+        result[:1] = False
+        return np.asarray(result)
+
+
+def _place(section: Rows) -> Rows:
+    """The number of each element within its section, from 1; section rises."""
+    return np.arange(1, len(section) + 1) - np.searchsorted(section, section)
+
+
+def _groups(keys: Floats) -> list[Rows]:
+    """The sections with equal keys, two or more of them, that cut anything."""
+    _, number, count = np.unique(keys, axis=0, return_inverse=True, return_counts=True)
+    number = number.ravel()
+    order = np.argsort(number, kind="stable")
+    groups = np.split(order, np.cumsum(count)[:-1])
+    return [group for group in groups if len(group) > 1 and keys[group[0], 0] > 0]

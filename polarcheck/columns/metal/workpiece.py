@@ -1,0 +1,514 @@
+"""
+The workpiece through a program: what the mills have taken off the bar, and what they touch on their way to a place.
+
+Followed are mills along Z whose R is known. Other tools are not: a turning tool or a drill may go where metal seems to
+stand. All places are on the plane that turns with the part: X as a radius, at the angle of C.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import msgspec
+import numpy as np
+
+from polarcheck.columns.contour.overcuts import Overcuts
+from polarcheck.columns.metal.bar import Bar
+from polarcheck.columns.metal.finished import Finished, Level
+from polarcheck.columns.metal.milled import Milled
+from polarcheck.columns.path.moves import z_along
+from polarcheck.columns.path.tool_center import ToolCenter
+from polarcheck.columns.trace import Trace
+from polarcheck.foundation.arrays import Columns, Floats, Mask, Points, Rows, States, Table, cached_property, is_among
+from polarcheck.foundation.errors import TooHardError
+from polarcheck.foundation.states import Motion
+from polarcheck.geometry import polar
+from polarcheck.geometry.plane import arc_sweep
+from polarcheck.geometry.tolerances import ROUNDING
+
+if TYPE_CHECKING:
+    from polarcheck.geometry.polygons.standing_metal import Sweeps
+
+#: A tip less far below the face than this touches nothing [mm].
+_CLEARANCE = 0.01
+#: How far away a reference point is, at least [mm]. The slowest X beside Z in rapid traverse, as a share of Z: where
+#: both go at once, X does so by this share of Z, or on the straight line.
+_FAR, _SLOWEST_X = 200.0, 0.4
+#: The share of the way up to the face at which such a move is looked at.
+_SHARE = 0.75
+#: What rounding moves an axis by [mm, deg].
+_STILL = 1e-4
+#: More ways to a place within the bar than these are not followed, nor more moves that cut.
+_MOST_WAYS, _MOST_MOVES = 200, 20_000
+
+
+class Ways(Table, frozen=True):
+    """
+    Moves that take a mill to a place, n of them in the order of the program.
+
+    row: int[n]. start, end, center: complex128[n] [mm], the part of the move that is known whatever the order of the
+    axes: the whole way of X or of C alone, a place on a way up and aside, else its end. kind: int16[n], Motion. tip:
+    float64[n], Z of the tip [mm]. radius: float64[n], R [mm]. is_rapid: bool[n]. plunges: bool[n], it goes down.
+    is_sure: bool[n], False for a way that is taken if the axes move in one order, and not in the other.
+    """
+
+    row: Rows
+    start: Points
+    end: Points
+    center: Points
+    kind: States
+    tip: Floats
+    radius: Floats
+    is_rapid: Mask
+    plunges: Mask
+    is_sure: Mask
+
+    @property
+    def nearest(self) -> Floats:
+        """Smallest distance of the center of the cutter from X0 [mm]."""
+        return polar.nearest(self.start, self.end, self.center, self.kind)
+
+    @property
+    def farthest(self) -> Floats:
+        """Largest distance of the center of the cutter from X0 [mm]."""
+        return polar.farthest(self.start, self.end, self.center, self.kind)
+
+
+class Hits(Table, frozen=True):
+    """
+    What ways lead through, n of them.
+
+    row: int[n]. place: complex128[n] [mm], on the plane of the part. is_sure: bool[n], as in Ways.
+    """
+
+    row: Rows
+    place: Points
+    is_sure: Mask
+
+    @classmethod
+    def none(cls) -> Hits:
+        return cls(np.zeros(0, np.int64), np.zeros(0, np.complex128), np.zeros(0, bool))
+
+
+class Workpiece(Columns, frozen=True):
+    """What the ways of mills to a place lead through, by rows of one trace."""
+
+    trace: Trace
+    tool_center: ToolCenter
+    overcuts: Overcuts
+    finished: Finished
+    bar: Bar
+    milled: Milled
+
+    # ---- the tools ----
+
+    @cached_property
+    def is_mill(self) -> Mask:
+        """Rows of tool calls that enter the mode, along Z of the main spindle."""
+        trace = self.trace
+        call = self.bar.tool_call
+        has_section = np.zeros(int(call.max(initial=0)) + 1, bool)
+        has_section[call[trace.mode.sections.enter]] = True
+        return np.asarray(has_section[call] & self.milled.is_along_z & ~trace.modal.on_sub_spindle)
+
+    @cached_property
+    def radius(self) -> Floats:
+        """R of the mill in force [mm], NaN where it is not known or only adjusts a path."""
+        return np.where(self.is_mill, self.milled.radius, np.nan)
+
+    # ---- where they go ----
+
+    @cached_property
+    def _outside(self) -> Ways:
+        """All moves of mills outside of sections of which the end or the way is known."""
+        trace = self.trace
+        path, axes = trace.path, trace.axes
+        returns = trace.blocks.listed("reference_return") & trace.blocks.has("X", "U") & (trace.mode.section < 0)
+        moves = axes.moves & is_among(axes.motion, (Motion.RAPID, Motion.LINE)) & (trace.mode.section < 0)
+        moves &= ~trace.modal.in_cycle
+        row = np.flatnonzero((moves | returns) & ~np.isnan(self.radius))
+        returns = returns[row]
+        x_from, c_from, z_from = path.x_before[row], path.c_angle_before[row], path.z_before[row]
+        x_to = np.where(returns, x_from + _FAR, path.x[row])
+        z_to = np.where(returns & trace.blocks.has("Z", "W")[row], z_from + _FAR, path.z[row])
+        z_to = np.where(returns & ~trace.blocks.has("Z", "W")[row], z_from, z_to)
+        # Controls show the angle of C from 0 to 360 deg, however far a section has turned it.
+        c_from = np.where((c_from < 0) | (c_from > 360), np.mod(c_from, 360), c_from)
+        c_to = c_from + np.where(returns | ~path.moves_c[row], 0.0, path.c_turn_from(c_from, row))
+        c_from, c_to = (path.c_axis.sense * c for c in (c_from, c_to))
+        with np.errstate(invalid="ignore"):
+            begin, end = (x * np.exp(1j * np.radians(c)) for x, c in ((x_from, c_from), (x_to, c_to)))
+        moves_x, moves_c, moves_z = (
+            ~(np.abs(to - start) <= _STILL) for start, to in ((x_from, x_to), (c_from, c_to), (z_from, z_to))
+        )
+        arc, line = moves_c & ~moves_x & ~moves_z, moves_x & ~moves_c & ~moves_z
+        arc &= ~np.isnan(begin) & (x_to > ROUNDING)
+        line &= ~np.isnan(begin)
+        # Up from below the face and along X at once: a place on the way to the face.
+        rise = (self.top - z_from) * _SHARE
+        slope = moves_x & ~moves_c & (rise > 0) & (z_to > self.top) & ~np.isnan(begin + x_to)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            linear = (x_to - x_from) * rise / (z_to - z_from)
+        aside = np.sign(linear) * np.minimum(np.abs(linear), _SLOWEST_X * np.abs(rise))
+        turn = c_to - c_from
+        full = arc & (np.abs(turn) >= 360)
+        kind = np.where(arc, np.where(turn > 0, Motion.CCW, Motion.CW), Motion.LINE).astype(np.int16)
+        with np.errstate(invalid="ignore"):
+            on_slope = (x_from + aside) * np.exp(1j * np.radians(c_from))
+        end = np.where(slope, on_slope, np.where(full, begin, end))
+        ways = Ways(
+            row=row,
+            start=np.asarray(np.where(arc | line, begin, end), np.complex128),
+            end=np.asarray(end, np.complex128),
+            center=np.where(arc, 0j, np.nan + 0j),
+            kind=kind,
+            tip=np.where(slope, z_from + rise, z_to),
+            radius=self.radius[row],
+            is_rapid=(axes.motion[row] == Motion.RAPID) | returns,
+            plunges=moves_z & ~(z_to > z_from),
+            is_sure=np.ones(len(row), bool),
+        )
+        several = [ways[~np.isnan(ways.end + ways.tip) & (moves_x | moves_c | moves_z)]]
+        # X and Z, or X and C, below the face at once: in which order nobody knows.
+        with np.errstate(invalid="ignore"):
+            one = x_to * np.exp(1j * np.radians(c_from))
+        low = moves_x & (z_from < self.top - _CLEARANCE) & ~np.isnan(begin + one)
+        upward, sideways = low & moves_z & (z_to > z_from), low & moves_c & ~moves_z & ~np.isnan(end)
+        for chosen in (upward, sideways):
+            several.append(
+                msgspec.structs.replace(
+                    ways,
+                    start=begin,
+                    end=one,
+                    center=np.full(len(row), np.nan + 0j),
+                    kind=np.full(len(row), Motion.LINE, np.int16),
+                    tip=z_from,
+                    is_sure=np.zeros(len(row), bool),
+                )[chosen]
+            )
+        ways = Ways.concatenated(several)
+        return ways[np.argsort(ways.row, kind="stable")]
+
+    @property
+    def _z_alone(self) -> Mask:
+        """Rows in sections that move Z and nothing on the plane."""
+        path = self.trace.path
+        return np.asarray(self.trace.mode.in_polar & path.moves_z & ~path.travels)
+
+    @cached_property
+    def _inside(self) -> Ways:
+        """All moves of the tool center in sections, those of Z alone as places."""
+        trace, moves = self.trace, self.tool_center.moves
+        low = np.minimum(*z_along(trace, moves))
+        turn = np.exp(1j * np.radians(trace.path.section_entry))
+        known = moves.is_of_tool & ~np.isnan(self.radius[moves.row] + low) & ~np.isnan(moves.start + moves.end)
+        moves, low = moves[known], low[known]
+        of_move = turn[moves.section]
+        row = np.flatnonzero(
+            self._z_alone & ~np.isnan(self.radius) & ~trace.modal.in_cycle & ~np.isnan(trace.path.end + trace.path.z)
+        )
+        # With compensation in force the tool stands beside the programmed point.
+        last = np.searchsorted(moves.row, row) - 1
+        same = (
+            (last >= 0) & (moves.section[last] == trace.mode.section[row]) if len(moves) else np.zeros(len(row), bool)
+        )
+        place = np.where(same, moves.end[last], trace.path.end[row]) if len(moves) else trace.path.end[row]
+        place = place * turn[trace.mode.section[row]]
+        is_rapid = trace.axes.motion == Motion.RAPID
+        rows = np.concatenate([moves.row, row])
+        order = np.argsort(rows, kind="stable")
+        ways = Ways(
+            row=rows,
+            start=np.concatenate([moves.start * of_move, place]),
+            end=np.concatenate([moves.end * of_move, place]),
+            center=np.concatenate([moves.center * of_move, np.full(len(row), np.nan + 0j)]),
+            kind=np.concatenate([moves.kind, np.full(len(row), Motion.LINE)]).astype(np.int16),
+            tip=np.concatenate([low, np.minimum(trace.path.z[row], trace.path.z_before[row])]),
+            radius=self.radius[rows],
+            is_rapid=is_rapid[rows],
+            plunges=np.concatenate([np.zeros(len(moves), bool), ~(trace.path.z[row] >= trace.path.z_before[row])]),
+            is_sure=np.ones(len(rows), bool),
+        )
+        return ways[order]
+
+    @cached_property
+    def _all(self) -> Ways:
+        """Both, in the order of the program."""
+        ways = Ways.concatenated([self._outside, self._inside])
+        return ways[np.argsort(ways.row, kind="stable")]
+
+    @cached_property
+    def _with_all_rapids(self) -> Ways:
+        """
+        The moves outside of sections, and those in sections, too, where one of these is in rapid traverse.
+
+        In most programs none is, and to compute them takes long.
+        """
+        rapid_on_plane = self.is_rapid[self.tool_center.moves.row].any()
+        return self._all if rapid_on_plane or (self.is_rapid & self._z_alone).any() else self._outside
+
+    def _sweeps(self, ways: Ways) -> Sweeps:
+        from polarcheck.geometry.polygons.standing_metal import Sweeps
+        from polarcheck.geometry.segments import Curves
+
+        loop = np.zeros(len(ways), np.int64)
+        return Sweeps(Curves(ways.start, ways.end, ways.center, ways.kind, loop, ways.row), ways.radius, ways.tip)
+
+    # ---- the bar ----
+
+    @cached_property
+    def top(self) -> float:
+        """Z of the face of the bar [mm]; at Z0, as is usual on lathes, where nothing says another."""
+        face = self.bar.known.face
+        return 0.0 if np.isnan(face) else face
+
+    @cached_property
+    def _into_bar(self) -> Ways:
+        """Moves in rapid traverse with the tip below the face and the cutter within the circle of the bar."""
+        bar, ways = self.bar.known, self._with_all_rapids
+        low = ways.is_rapid & (ways.tip < self.top - _CLEARANCE)
+        if not low.any():
+            return ways[low]
+        within = (ways.nearest - ways.radius < bar.smallest / 2 - ROUNDING) & (
+            ways.farthest + ways.radius > bar.bore / 2 + ROUNDING
+        )
+        return ways[low & within]
+
+    @cached_property
+    def through_bar(self) -> Hits:
+        """Ways in rapid traverse through what stands of the bar."""
+        bar = self.bar.known
+        if np.isnan(bar.smallest + bar.bore):
+            return Hits.none()
+        ways = self._into_bar
+        ways = ways[ways.row < self._unknown_from]
+        if not len(ways):
+            return Hits.none()
+        self._bound(ways)
+        from polarcheck.geometry.polygons.standing_metal import disc, hits_on_bar
+
+        stands = disc(bar.smallest, bar.bore)
+        lower = self._all[(self._all.tip < self.top) & self._all.is_sure]
+        hit, place = hits_on_bar(self._sweeps(ways), stands, self._sweeps(lower), *self._holes)
+        return Hits(ways.row[hit], place[hit], ways.is_sure[hit])
+
+    def _bound(self, ways: Ways) -> None:
+        if len(ways) > _MOST_WAYS or len(self._all) > _MOST_MOVES:
+            raise TooHardError(
+                f"{len(ways)} ways of mills at depth and {len(self._all)} moves are too many to follow the metal: "
+                "check its sections in separate files"
+            )
+
+    @cached_property
+    def _drills(self) -> Mask:
+        """Moves of other tools that drill along Z at a place of C."""
+        trace = self.trace
+        down = (trace.axes.motion == Motion.LINE) & trace.path.moves_z & (trace.path.z < trace.path.z_before - ROUNDING)
+        drilled = (trace.modal.drilling != 0) & trace.axes.moves
+        return np.asarray((down | drilled) & (trace.mode.section < 0) & ~self.is_mill & ~self.bar.turns)
+
+    @cached_property
+    def _holes(self) -> tuple[Rows, Points]:
+        """Rows that drill, and where [mm]; places that are not known are left out."""
+        trace = self.trace
+        row = np.flatnonzero(self._drills & ~np.isnan(trace.path.x + trace.path.c_angle))
+        return row, np.asarray(
+            trace.path.x[row] * np.exp(1j * np.radians(trace.path.c_axis.sense * trace.path.c_angle[row])),
+            np.complex128,
+        )
+
+    @cached_property
+    def _unknown_from(self) -> int:
+        """The first row that cuts the bar and is not followed: a mill of unknown R, a drill, a tool across."""
+        trace = self.trace
+        mills = trace.mode.in_polar & trace.path.cuts
+        unknown = mills & np.isnan(self.radius) & ~np.isnan(trace.path.z)
+        drills = self._drills & np.isnan(trace.path.x + trace.path.c_angle)
+        rows = np.flatnonzero(unknown | drills | trace.mode.on_cylinder)
+        return int(rows[0]) if len(rows) else len(trace)
+
+    def not_followed(self) -> Iterator[tuple[int, int, str]]:
+        """
+        Ways in rapid traverse below the face that are not compared with the bar: the first row, their number, and why.
+        """
+        trace, bar = self.trace, self.bar.known
+        if not len(trace.mode.sections) or np.isnan(bar.smallest):
+            return
+        down = self.is_rapid & (trace.mode.section < 0) & (trace.path.z < self.top - _CLEARANCE)
+        down &= (np.abs(trace.path.x) < bar.smallest / 2) & trace.axes.moves
+        calls = np.zeros(int(self.bar.tool_call.max(initial=0)) + 1, bool)
+        calls[self.bar.tool_call[trace.mode.sections.enter]] = True
+        mills = calls[self.bar.tool_call]
+        why_not = [
+            (mills & trace.modal.on_sub_spindle, "the sub-spindle has a Z of its own"),
+            (mills & ~self.is_mill & ~trace.modal.on_sub_spindle, "the tool is not a mill along Z"),
+        ]
+        if np.isnan(bar.bore):
+            why_not.append((self.is_mill, "the program drills on X0, and how large that hole is nobody knows"))
+        else:
+            rest = self.is_mill & (np.arange(len(trace)) >= self._unknown_from)
+            line = int(trace.blocks.line[min(self._unknown_from, len(trace) - 1)])
+            why_not.append((rest, f"what line {line} takes off the bar is not known"))
+        for mask, reason in why_not:
+            rows = np.flatnonzero(down & mask)
+            if len(rows):
+                yield int(rows[0]), len(rows), reason
+
+    # ---- the finished part ----
+
+    @cached_property
+    def _over_contour(self) -> Ways:
+        """
+        Moves outside of sections to a place within the reach of a contour and no higher than it.
+
+        Rapid traverse, and the first move behind a section at feed: a retract is missing there.
+        """
+        trace, ways, walls = self.trace, self._outside, self.overcuts.walls[0]
+        if not len(walls) or not len(ways):
+            return ways[np.zeros(len(ways), bool)]
+        top = self._highest_wall
+        first = np.zeros(len(trace), bool)
+        moving = np.flatnonzero(trace.axes.moves | trace.mode.enters)
+        after = np.searchsorted(moving, np.flatnonzero(trace.mode.leaves), side="right")
+        first[moving[after[after < len(moving)]]] = True
+        low = (ways.is_rapid | first[ways.row]) & (ways.tip <= top + _CLEARANCE)
+        if not low.any():
+            return ways[low]
+        farthest = polar.farthest(walls.start, walls.end, walls.center, walls.kind)
+        reach = float(np.max(farthest + np.where(self._walls_of_pockets, 2 * self.overcuts.radius[walls.row], 0)))
+        return ways[low & (ways.nearest - ways.radius < reach)]
+
+    @property
+    def _highest_wall(self) -> float:
+        """The highest Z at which a contour is milled, or the face if it is known [mm]."""
+        walls, _ = self.overcuts.walls
+        highest = float(np.nanmax(np.append(self.trace.path.z[walls.row], -np.inf)))
+        if (self.trace.path.z[self.trace.mode.sections.enter] > 0).any():
+            highest = max(highest, 0.0)
+        face = self.bar.known.face
+        return highest if np.isnan(face) else max(face - 2 * _CLEARANCE, highest)
+
+    @property
+    def _walls_of_pockets(self) -> Mask:
+        """Walls of loops that close with the tool inside."""
+        walls, left = self.overcuts.walls
+        first = np.flatnonzero(np.diff(walls.loop, prepend=-1))
+        last = np.append(first[1:], len(walls)) - 1
+        twice = (np.conj(walls.start) * walls.end).imag
+        arc = ~np.isnan(walls.center)
+        spoke = np.abs(walls.start - walls.center) ** 2
+        sweep = arc_sweep(walls.start[arc], walls.end[arc], walls.center[arc], walls.kind[arc])
+        twice[arc] += spoke[arc] * (sweep - np.sin(sweep))
+        area = np.add.reduceat(twice, first)
+        closed = np.abs(walls.end[last] - walls.start[first]) <= 2 * np.abs(self.overcuts.radius[walls.row[first]])
+        inside = closed & ((area > 0) == left[first])
+        return np.asarray(np.repeat(inside, last - first + 1))
+
+    @cached_property
+    def through_part(self) -> Hits:
+        """Ways to a place through the finished part."""
+        ways = self._over_contour
+        if not len(ways):
+            return Hits.none()
+        self._bound(ways)
+        from polarcheck.geometry.polygons.standing_metal import hits_on_part, lines_along, turned
+
+        moves = self._inside
+        cleared = self._sweeps(moves[~moves.is_rapid])
+        hit, place = np.zeros(len(ways), bool), np.full(len(ways), np.nan + 0j)
+        sweeps = self._sweeps(ways)
+        for level, top in self._levels:
+            angle = float(np.radians(self.trace.path.section_entry[level.section]))
+            part, walls = turned(level.polygon, angle), turned(lines_along(level.walls), angle)
+            more, where = hits_on_part(sweeps, part, walls, level.radius, top, level.z, cleared)
+            place[more & ~hit] = where[more & ~hit]
+            hit |= more
+        return Hits(ways.row[hit], place[hit], ways.is_sure[hit])
+
+    @property
+    def _levels(self) -> list[tuple[Level, float]]:
+        """Levels of known Z, of mills that are followed, and the highest Z at which their part stands for certain."""
+        face = self.bar.known.face
+        levels = [
+            level
+            for level in self.finished.levels
+            if not level.tangled and not np.isnan(level.z) and self.is_mill[level.walls.row[0]]
+        ]
+        tops: dict[int, float] = {}
+        for level in levels:
+            tops[level.section] = max(tops.get(level.section, -np.inf), level.z)
+        if not np.isnan(face):
+            return [(level, max(face - 2 * _CLEARANCE, level.z)) for level in levels]
+        # The tool comes from above Z0: there is the face, as is usual on lathes.
+        enters = self.trace.path.z[self.trace.mode.sections.enter]
+        return [(level, 0.0 if enters[level.section] > 0 > level.z else tops[level.section]) for level in levels]
+
+    # ---- columns ----
+
+    def _mask(self, rows: Rows) -> Mask:
+        mask = np.zeros(len(self.trace), bool)
+        mask[rows] = True
+        return mask
+
+    @cached_property
+    def hits_part(self) -> Mask:
+        """Rows whose way leads through the finished part, or may, if the axes move in that order."""
+        return self._mask(self.through_part.row)
+
+    @cached_property
+    def hits_bar(self) -> Mask:
+        """Rows whose way in rapid traverse leads through what stands of the bar, or may."""
+        return self._mask(self.through_bar.row)
+
+    @cached_property
+    def may_miss_part(self) -> Mask:
+        """Of those, the rows that may not."""
+        hits = self.through_part
+        return self.hits_part & ~self._mask(hits.row[hits.is_sure])
+
+    @cached_property
+    def may_miss_bar(self) -> Mask:
+        """Of those, the rows that may not."""
+        hits = self.through_bar
+        return self.hits_bar & ~self._mask(hits.row[hits.is_sure])
+
+    @cached_property
+    def precedes_idle_plunge(self) -> Mask:
+        """
+        Moves in rapid traverse down below the face, to where a section mills a pocket and its own plunge at feed, a Z
+        word alone before anything moves on the plane, then moves nowhere.
+        """
+        trace, mask = self.trace, np.zeros(len(self.trace), bool)
+        walls, _ = self.overcuts.walls
+        if not len(walls):
+            return mask
+        pockets = np.zeros(len(trace.mode.sections) + 1, bool)
+        is_wall = np.zeros(len(trace), bool)
+        is_wall[walls.row] = True
+        first = trace.mode.first_in_section(is_wall)
+        pockets[trace.mode.section[walls.row[self._walls_of_pockets & first[walls.row]]]] = True
+        moving = trace.mode.first_in_section(trace.mode.in_polar & trace.axes.moves)
+        idle = moving & trace.axes.commands_z & ~trace.path.moves_z & ~trace.path.travels
+        idle &= (trace.axes.motion == Motion.LINE) & (trace.path.z < -_CLEARANCE) & pockets[trace.mode.section]
+        down = np.flatnonzero(self.is_rapid & trace.path.moves_z & ~(trace.path.z >= trace.path.z_before))
+        down = np.append(-1, down)[np.searchsorted(down, np.flatnonzero(idle), side="right")]
+        down = down[down >= 0]
+        mask[down[trace.mode.section[down] < 0]] = True
+        return mask
+
+    @property
+    def bar_is_certain(self) -> bool:
+        """The bar is that of the job, or the program turns it; what a comment says may be another one."""
+        return self.bar.known.source in ("job", "turning")
+
+    @cached_property
+    def plunges(self) -> Mask:
+        """Rows that go down to their place, of those with all moves in rapid traverse."""
+        ways = self._with_all_rapids
+        return self._mask(ways.row[ways.plunges])
+
+    @cached_property
+    def is_rapid(self) -> Mask:
+        """Rows in rapid traverse."""
+        return np.asarray(self.trace.axes.motion == Motion.RAPID)

@@ -1,0 +1,295 @@
+"""The moves of the programmed path and of the tool center path inside sections, with what they ask of the lathe."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from polarcheck.columns.filling import before
+from polarcheck.columns.trace import Trace
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, States, Table, cached_property, is_among
+from polarcheck.foundation.states import ArcFeed, Motion
+from polarcheck.geometry import polar, rates
+from polarcheck.geometry.cutter_compensation import compensation
+from polarcheck.geometry.tolerances import ZERO
+
+
+class Moves(Table, frozen=True, dict=True):
+    """
+    One element per move, in order.
+
+    row: the row of the trace that it belongs to. section: its polar section. kind: int16, Motion. start, end, center:
+    plane points [mm]. feed: F in force [mm/min]. rise: way of Z beside that on the plane, where F measures both [mm];
+    0 where F measures the plane alone. arc_share: share of F with which the tool center runs along an arc; 1 elsewhere,
+    and where F is that of the tool center. known: False where the radius or a position is unknown. phase:
+    compensation.Phase. corner: a line or an arc that the control adds. allowance: what a pass of an infeed cycle leaves
+    on the contour [mm], 0 elsewhere. entry: float64[sections], C angle of the linear axis of each section [deg].
+    c_axis: how C stands to the angles of the plane.
+    """
+
+    _shared = ("entry", "c_axis")
+
+    row: Rows
+    section: Rows
+    kind: States
+    start: Points
+    end: Points
+    center: Points
+    feed: Floats
+    rise: Floats
+    arc_share: Floats
+    known: Mask
+    phase: States
+    corner: Mask
+    allowance: Floats
+    entry: Floats
+    c_axis: polar.CAxis
+
+    @property
+    def shape(self) -> tuple[Points, Points, Points, States]:
+        """start, end, center, kind: what the functions of `polar` take."""
+        return self.start, self.end, self.center, self.kind
+
+    @cached_property
+    def length(self) -> Floats:
+        """Way on the plane [mm]."""
+        return polar.length(*self.shape)
+
+    @cached_property
+    def way(self) -> Floats:
+        """Way along which F is measured [mm]: on the plane, or in space."""
+        return np.hypot(self.length, self.rise)
+
+    @cached_property
+    def plane_share(self) -> Floats:
+        """Share of F with which the tool center moves on the plane: 1 unless F measures Z, too, or the contour."""
+        return self.arc_share * np.divide(self.length, self.way, out=np.ones(len(self)), where=self.rise != 0)
+
+    @cached_property
+    def plane_feed(self) -> Floats:
+        """Feed on the plane [mm/min]."""
+        return np.asarray(self.feed * self.plane_share)
+
+    @cached_property
+    def nearest(self) -> Floats:
+        """L, smallest distance of the tool center to the center of C [mm]; NaN where it is not known."""
+        return np.where(self.known, polar.nearest(*self.shape), np.nan)
+
+    @cached_property
+    def farthest(self) -> Floats:
+        """Largest distance of the tool center to the center of C [mm]; NaN where it is not known."""
+        return np.where(self.known, polar.farthest(*self.shape), np.nan)
+
+    @cached_property
+    def c_feed(self) -> Floats:
+        """Highest rate of C on the way [deg/min]; NaN where feed, radius or position is not known."""
+        return np.where(self.known, rates.c_feed(*self.shape, self.plane_feed), np.nan)
+
+    @cached_property
+    def c_acceleration(self) -> Floats:
+        """Highest acceleration of C on the way [deg/s2]."""
+        return np.where(self.known, rates.c_acceleration(*self.shape, self.plane_feed), np.nan)
+
+    @cached_property
+    def x_feed(self) -> Floats:
+        """Highest rate of X on the way [mm/min, radius]; NaN where feed, radius or position is not known."""
+        return np.where(self.known, rates.x_feed(*self.shape, self.plane_feed), np.nan)
+
+    @cached_property
+    def x_acceleration(self) -> Floats:
+        """Highest acceleration of X on the way [mm/s2, radius]."""
+        return np.where(self.known, rates.x_acceleration(*self.shape, self.plane_feed), np.nan)
+
+    @cached_property
+    def is_of_tool(self) -> Mask:
+        """The tool center runs there: its path is known or, without G41 and G42, the programmed one."""
+        return np.asarray(self.known | (self.phase == compensation.Phase.CANCELLED))
+
+    @cached_property
+    def time(self) -> Floats:
+        """How long the move takes [s]."""
+        return polar.time(self.way, self.feed * self.arc_share)
+
+    @cached_property
+    def c_angles(self) -> tuple[Floats, Floats]:
+        """C before and after the move [deg], continuous along the section."""
+        return polar.c_angles(*self.shape, self.section, self.entry, self.c_axis)
+
+    def feed_allowed(self, limit: float | Floats) -> Floats:
+        """Highest F that keeps C at or below the limit [mm/min]."""
+        with np.errstate(divide="ignore", invalid="ignore"):  # Z alone moves: nothing turns C
+            allowed = rates.feed_allowed(*self.shape, limit) / self.plane_share
+        return np.where(self.known, allowed, np.nan)
+
+
+def z_along(trace: Trace, moves: Moves) -> tuple[Floats, Floats]:
+    """Z before and after each move [mm], NaN unknown; where a block is several moves, it goes as the way does."""
+    begins, _, after_move = _shares_of_block(moves.row, moves.length)
+    z_from, z_to = before(trace.path.z, trace.blocks.starts, np.nan)[moves.row], trace.path.z[moves.row]
+    ends = np.append(begins[1:], True)[: len(moves)]
+    after = np.where(ends, z_to, z_from + after_move * (z_to - z_from))
+    return np.where(begins, z_from, np.append(np.nan, after[:-1])[: len(moves)]), after
+
+
+def _shares_of_block(row: Rows, length: Floats) -> tuple[Mask, Floats, Floats]:
+    """
+    The moves with which a block begins, and the share of the way of its block before and after each move.
+
+    The last move of a block without a way has all of it.
+    """
+    begins = np.ones(len(row), bool)
+    begins[1:] = np.diff(row) != 0
+    first, ends = np.flatnonzero(begins), np.append(begins[1:], True)[: len(row)]
+    way = np.cumsum(np.nan_to_num(length))
+    count = np.diff(np.append(first, len(row)))
+    done = way - np.repeat((way - np.nan_to_num(length))[first], count)
+    whole = np.repeat(done[ends], count)
+    after = np.where(ends, 1.0, np.divide(done, whole, out=np.zeros(len(row)), where=whole > 0))
+    return begins, np.where(begins, 0.0, np.append(0.0, after[:-1])[: len(row)]), after
+
+
+def rise_of(trace: Trace, row: Rows, length: Floats) -> Floats:
+    """
+    Way of Z beside moves of these rows [mm], where F measures it; 0 elsewhere, NaN where Z is not known.
+
+    length: their ways on the plane [mm]; a block of several moves shares its Z out by them, as z_along does.
+    """
+    rises = trace.path.rise[row]
+    if not rises.any():
+        return rises
+    _, from_share, to_share = _shares_of_block(row, length)
+    return np.asarray(rises * (to_share - from_share))
+
+
+def per_row(values: Floats, moves: Moves, count: int, none: float, largest: bool = True) -> Floats:
+    """
+    One value per row of the trace: the largest (smallest) of its moves, NaN if one of them is unknown, `none` without.
+
+    The moves of a row need not be neighbours.
+    """
+    column = np.full(count, -np.inf if largest else np.inf)
+    with np.errstate(invalid="ignore"):  # NaN is meant
+        (np.maximum if largest else np.minimum).at(column, moves.row, values)
+    return np.where(np.isinf(column) & ~_has(moves, count), none, column)
+
+
+def _has(moves: Moves, count: int) -> Mask:
+    return any_in_row(np.ones(len(moves), bool), moves, count)
+
+
+def any_in_row(hit: Mask, moves: Moves, count: int) -> Mask:
+    """The rows of the trace with a move that is hit."""
+    rows = np.zeros(count, bool)
+    rows[moves.row[hit]] = True
+    return rows
+
+
+def programmed_moves(trace: Trace) -> Moves:
+    """The programmed path: one move per row that moves on the polar plane."""
+    row = np.flatnonzero(trace.path.on_plane)
+    kind, start, end, center = _kind(trace, row), trace.path.start[row], trace.path.end[row], trace.path.center[row]
+    return Moves(
+        row=row,
+        section=trace.mode.section[row],
+        kind=kind,
+        start=start,
+        end=end,
+        center=center,
+        feed=trace.feedrate.feed[row],
+        rise=trace.path.rise[row],
+        arc_share=np.ones(len(row)),
+        known=~np.isnan(end - start),
+        phase=np.zeros(len(row), np.int16),
+        corner=np.zeros(len(row), bool),
+        allowance=np.zeros(len(row)),
+        entry=trace.path.section_entry,
+        c_axis=trace.path.c_axis,
+    )
+
+
+def _kind(trace: Trace, row: Rows) -> States:
+    """Motion of each move; an arc whose center is not known is followed along its chord."""
+    kind = trace.axes.motion[row]
+    return np.where(trace.path.is_arc[row] & np.isnan(trace.path.center[row]), Motion.LINE, kind).astype(np.int16)
+
+
+def compensation_path(trace: Trace, row: Rows) -> compensation.Path:
+    """Some rows as cutter compensation takes them."""
+    return compensation.Path(
+        section=trace.mode.section[row],
+        motion=_kind(trace, row),
+        moves=trace.axes.moves_plane[row],
+        start=trace.path.start[row],
+        end=trace.path.end[row],
+        center=trace.path.center[row],
+        side=trace.compensation.side[row],
+        side_written=trace.compensation.writes_side[row],
+        radius=trace.compensation.radius[row],
+        cancel_vector=_cancel_vector(trace, row),
+        corner=trace.compensation.corner[row],
+        stops_reading=trace.blocks.codes(*trace.machine.m_codes.stops_reading_ahead)[row],
+    )
+
+
+def tool_center_path(trace: Trace, path: compensation.Path) -> compensation.ToolPath:
+    """The path of the tool center as this machine compensates."""
+    settings = trace.machine.compensation
+    return compensation.tool_center_path(
+        path,
+        compensation.Method(
+            start_up=settings.start_up,
+            start_up_moving=settings.start_up_with_move,
+            read_ahead=settings.read_ahead,
+            interference=settings.interference,
+            tangent_tolerance=settings.tangent_tolerance,
+            arc_above=math.radians(settings.corner_arc_above),
+            arc_from=math.radians(settings.corner_arc_from),
+        ),
+    )
+
+
+def of_tool(trace: Trace, tool: compensation.ToolPath, row: Rows) -> Moves:
+    """The moves of a tool center path; row: the rows of the trace that it was given."""
+    at = row[tool.row]
+    length = polar.length(tool.start, tool.end, tool.center, tool.kind)
+    return Moves(
+        row=at,
+        section=trace.mode.section[at],
+        kind=tool.kind,
+        start=tool.start,
+        end=tool.end,
+        center=tool.center,
+        feed=trace.feedrate.feed[at],
+        rise=rise_of(trace, at, length),
+        arc_share=_arc_share(trace, tool, at),
+        known=tool.known,
+        phase=tool.phase,
+        corner=tool.corner,
+        allowance=np.zeros(len(at)),
+        entry=trace.path.section_entry,
+        c_axis=trace.path.c_axis,
+    )
+
+
+def _arc_share(trace: Trace, tool: compensation.ToolPath, row: Rows) -> Floats:
+    """Share of F with which the tool center runs along arcs where F is that of the contour: R of its arc by that."""
+    where = trace.modal.state("arc_feed")[row]
+    share = np.ones(len(row))
+    if not where.any():
+        return share
+    of_contour = np.abs(trace.path.start - trace.path.center)[row]
+    of_center = np.abs(tool.start - tool.center)
+    arcs = (where != ArcFeed.CENTER) & is_among(tool.kind, (Motion.CW, Motion.CCW)) & ~tool.corner & (of_contour > ZERO)
+    np.divide(of_center, of_contour, out=share, where=arcs)
+    return np.where(where == ArcFeed.INNER_CONTOUR, np.minimum(share, 1.0), share)
+
+
+def _cancel_vector(trace: Trace, row: Rows) -> Points:
+    """I and J beside G40 say where the tool leaves (B-63324EN/03 p. 402)."""
+    vector = np.full(len(row), complex("nan+nanj"))
+    cancels = np.flatnonzero(trace.compensation.writes_cancel[row])
+    i, j = (words[row[cancels]] for words in trace.path.to_center)
+    written = ~np.isnan(i) | ~np.isnan(j)
+    vector[cancels[written]] = (np.nan_to_num(i) + 1j * np.nan_to_num(j))[written]
+    return vector

@@ -1,0 +1,79 @@
+"""Loops as they would run with another R, or on the other side, to see what is wrong with them as they are."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from polarcheck.columns.contour.overcuts import Overcuts
+from polarcheck.columns.contour.skipped_loops import SkipReason
+from polarcheck.columns.path.infeed import Infeed
+from polarcheck.columns.path.tool_center import OtherRadius, ToolCenter
+from polarcheck.columns.trace import Trace
+from polarcheck.foundation.arrays import Mask, cached_property
+
+#: What two points may differ by that are meant as one [tolerances].
+_ROUNDINGS = 10
+
+
+class Trial(Overcuts):
+    """
+    Overcuts of some rows with another R, as columns of the whole trace; the walls of the other rows stay as they are.
+
+    The table of the tool center is made again with that R (ToolCenter.other_radius), and the cuts from it; what the
+    trace says stays as programmed.
+    """
+
+    def __init__(self, trace: Trace, other: OtherRadius) -> None:
+        super().__init__(trace, ToolCenter(trace, Infeed(trace), other_radius=other))
+        self.tried = other.rows
+
+    @property
+    def bar(self) -> float:
+        """A ramp through the part comes through it wherever the bar ends."""
+        return np.nan
+
+    @cached_property
+    def faulty(self) -> Mask:
+        """Rows to which the control would object, or that would cut into the part; and those of which nobody knows."""
+        faulty = np.zeros(len(self.trace), bool)
+        faulty[self.sweeps.row] = True
+        return faulty | self.fails
+
+    @cached_property
+    def fails(self) -> Mask:
+        """The same without the ramps."""
+        faulty = self.skipped.rows(self.loop, SkipReason.CROSSES) | self.objects
+        faulty[self.cuts.row] = True
+        return faulty
+
+    @cached_property
+    def objects(self) -> Mask:
+        """Rows to which the control would object, and those of which nobody knows, without what is cut."""
+        tool = self.tool_center
+        faulty = tool.inside_arc_too_small | tool.interferes | tool.no_intersection
+        faulty |= tool.movement_missing | tool.arc_center_on_path
+        faulty[tool.moves.row[~tool.moves.known]] = True
+        return faulty
+
+    @cached_property
+    def comes_out_of_part(self) -> Mask:
+        """
+        Start-ups and offset cancels that run through the part as programmed, if they lie at the depth of their contour;
+        others, if the contour begins or ends within the part.
+
+        The part is that for a cutter of any size: only a gap that rounding leaves is closed.
+        """
+        from polarcheck.geometry.polygons.depth_inside import depth_inside
+
+        trace, tolerance = self.trace, self.trace.machine.compensation.overcut_tolerance
+        has_walls = np.isin(self._loop_of_ramps, self.walls[0].loop)
+        ramp = np.flatnonzero(
+            has_walls & self.tried & (trace.compensation.starts_up | trace.compensation.cancels) & ~trace.path.is_arc
+        )
+        contour_at = np.where(trace.compensation.starts_up, trace.path.end, trace.path.start)[ramp]
+        far = np.where(trace.compensation.starts_up, trace.path.start, trace.path.end)[ramp]
+        way = np.where(self._at_depth[ramp], far, contour_at), contour_at
+        depth = depth_inside(*self.walls, way, self._loop_of_ramps[ramp], tolerance, _ROUNDINGS * tolerance)
+        result = np.zeros(len(trace), bool)
+        result[ramp[depth > _ROUNDINGS * tolerance]] = True
+        return result

@@ -1,0 +1,1 @@
+"""Words, characters and comments of the text."""

@@ -1,0 +1,101 @@
+"""Comments that name another tool than the one that is called beside them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from polarcheck.columns.modes.blocks import ExecutedBlocks
+from polarcheck.columns.modes.tools import CalledTools
+from polarcheck.columns.words.tool_numbers import named_tool
+from polarcheck.foundation.arrays import Columns, Mask, Rows, cached_property
+from polarcheck.program.execution.run import Run
+from polarcheck.program.reading.words import Text
+
+
+class ToolComments(Columns, frozen=True):
+    """The comments beside the words that call tools, one value per row."""
+
+    run: Run
+    text: Text
+    blocks: ExecutedBlocks
+    tools: CalledTools
+
+    @property
+    def named_tool(self) -> Rows:
+        """The number of the tool in the comment, as it is written; -1 where no comment names another one."""
+        return self._beside[1]
+
+    @property
+    def comment(self) -> Rows:
+        """The number in text.comments of the comment that names another tool than T calls; -1 for none."""
+        return self._beside[0]
+
+    @cached_property
+    def _beside(self) -> tuple[Rows, Rows]:
+        comment, named = np.full(len(self.run), -1, np.int64), np.full(len(self.run), -1, np.int64)
+        calls = np.flatnonzero(self.tools.calls_tool & (self.tools.tool > 0) & ~self.run.unknown)
+        if not len(calls) or not len(self.text.comments):
+            return comment, named
+        of_block = self._comments_of_block(self.run.block[calls])
+        if not of_block:
+            return comment, named
+        tools, offsets, blocks = (
+            c[calls].tolist() for c in (self.tools.tool, self.tools.offset_number, self.run.block)
+        )
+        words = np.abs(np.nan_to_num(self.blocks.word("T")[calls])).tolist()
+        called = {*tools, *words}
+        for row, tool, offset, block, word in zip(calls.tolist(), tools, offsets, blocks, words, strict=True):
+            if tool in self.run.names:
+                continue
+            for place in (block, block - 1, block + 1):
+                number, other = of_block.get(place, (-1, -1))
+                if other >= 0 and (place == block or self._stands_alone(place, of_block)):
+                    # Alone on a line, it may be the list of the tools of the program.
+                    known = {tool, word, offset} | (called if place != block else set())
+                    if other not in known:
+                        comment[row], named[row] = number, other
+                    break
+        return comment, named
+
+    def _comments_of_block(self, calls: Rows) -> dict[int, tuple[int, int]]:
+        """By block the comment there that speaks of a tool, and the number of that: of the blocks beside calls."""
+        comments, code = self.text.comments, self.text.source.code
+        # Two blocks off stand the neighbors of a comment, by which a list of tools is seen.
+        is_near = np.zeros(len(self.text.blocks) + 4, bool)
+        for step in range(5):
+            is_near[calls + step] = True
+        first = code[np.minimum(comments.start + 1, len(code) - 1)]
+        upper = first & 0xDF
+        begins = (upper == ord("T")) | (upper < ord("A")) | (upper > ord("Z"))
+        of_block: dict[int, tuple[int, int]] = {}
+        for number in np.flatnonzero(begins & is_near[comments.block + 2]).tolist():
+            comment = self.text.source.excerpt(int(comments.start[number]), int(comments.end[number]))
+            tool = named_tool(comment.strip("();% "))
+            if tool is None:
+                continue
+            from polarcheck.columns.words.called_comments import (
+                speaks_of_tool,  # imported late, as most files need none
+            )
+
+            if speaks_of_tool(comment):
+                of_block.setdefault(int(comments.block[number]), (number, tool))
+        return of_block
+
+    def _stands_alone(self, block: int, of_block: dict[int, tuple[int, int]]) -> bool:
+        """A comment with its block for itself, beside one call of a tool, and in no list of tools."""
+        if self._has_words[block]:
+            return False
+        beside = [place for place in (block - 1, block + 1) if 0 <= place < len(self._has_words)]
+        return not any(place in of_block for place in beside) and sum(self._calls_tool[place] for place in beside) == 1
+
+    @cached_property
+    def _has_words(self) -> Mask:
+        mask = self.text.blocks.is_macro.copy()
+        mask[self.text.words.block] = True
+        return mask
+
+    @cached_property
+    def _calls_tool(self) -> Mask:
+        mask = np.zeros(len(self.text.blocks), bool)
+        mask[self.text.words.block[self.text.words.address == ord("T")]] = True
+        return mask

@@ -1,0 +1,40 @@
+"""Marks in settings files: what keeps programs from being checked."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from lsprotocol import types
+
+if TYPE_CHECKING:
+    from polarcheck.editor.buffers import Buffer
+    from polarcheck.editor.judged import Judged
+    from polarcheck.editor.session import Server
+
+
+def register(server: Server) -> None:
+    """Register the feature."""
+    marks: dict[str, tuple[str, types.Diagnostic]] = {}
+
+    def publish(uri: str) -> None:
+        shown: list[types.Diagnostic] = []
+        for file, mark in marks.values():
+            if file == uri and mark not in shown:
+                shown.append(mark)
+        server.text_document_publish_diagnostics(types.PublishDiagnosticsParams(uri, shown))
+
+    def update(document: str, mark: tuple[str, types.Diagnostic] | None) -> None:
+        before = marks.pop(document, None)
+        if mark is not None:
+            marks[document] = mark
+        if mark != before:
+            for uri in {file for file, _ in filter(None, (before, mark))}:
+                publish(uri)
+
+    def checked(buffer: Buffer, judged: Judged) -> None:
+        from polarcheck.editor.broken_settings import broken
+
+        update(buffer.uri, broken(judged.error, judged.read) if judged.error else None)
+
+    server.published.append(checked)
+    server.gone.append(lambda uri: update(uri, None))

@@ -1,0 +1,33 @@
+"""Code lenses: a line above each polar section."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from lsprotocol import types
+
+if TYPE_CHECKING:
+    from polarcheck.editor.buffers import Buffer
+    from polarcheck.editor.judged import Judged
+    from polarcheck.editor.session import Server
+
+
+def register(server: Server) -> None:
+    """Register the feature."""
+
+    @server.feature(types.TEXT_DOCUMENT_CODE_LENS, types.CodeLensOptions())
+    async def code_lens(params: types.CodeLensParams) -> list[types.CodeLens]:
+        def find(judged: Judged) -> list[types.CodeLens]:
+            from polarcheck.editor.outline import code_lenses
+
+            return code_lenses(judged)
+
+        return await server.ask(params.text_document.uri, find, [])
+
+    def refresh(buffer: Buffer, judged: Judged) -> None:
+        of_workspace = server.client_capabilities.workspace
+        lens = of_workspace.code_lens if of_workspace is not None else None
+        if lens is not None and lens.refresh_support:
+            server.workspace_code_lens_refresh(None)
+
+    server.published.append(refresh)

@@ -1,0 +1,35 @@
+"""Go to definition."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from lsprotocol import types
+
+if TYPE_CHECKING:
+    from polarcheck.editor.judged import Judged
+    from polarcheck.editor.session import Server
+    from polarcheck.editor.structure.document import Document
+
+
+def register(server: Server) -> None:
+    """Register the feature."""
+
+    @server.feature(types.TEXT_DOCUMENT_DEFINITION)
+    async def definition(params: types.DefinitionParams) -> list[types.Location]:
+        def find(judged: Judged) -> list[types.Location]:
+            from polarcheck.editor.definition import definition
+
+            return definition(judged, params.text_document.uri, params.position)
+
+        def find_assignments(document: Document) -> list[types.Location]:
+            from polarcheck.editor.structure.references import assignments
+
+            # Variables stand in macro blocks alone; elsewhere the text need not be searched for them.
+            if not any(listing.text.blocks.is_macro[block] for listing, block in document.at(params.position)):
+                return []
+            return assignments(document, params.position, server.documents.workspace(document))
+
+        uri = params.text_document.uri
+        found: list[types.Location] = await server.documents.ask(uri, find_assignments, [])
+        return found or await server.ask(uri, find, [], soon=True)

@@ -1,0 +1,55 @@
+"""What an extension shows beside the text: the page with the picture, and the verdict of each check."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from polarcheck.editor.buffers import Buffer
+    from polarcheck.editor.judged import Judged
+    from polarcheck.editor.session import Server
+
+#: Requests and a notification of our own.
+PICTURE, LIBRARY, VERDICT = "polarcheck/picture", "polarcheck/library", "polarcheck/verdict"
+
+
+def register(server: Server) -> None:
+    """Register the feature."""
+
+    @server.feature(PICTURE)
+    async def picture(params: Any) -> dict[str, str]:
+        from polarcheck.editor import pictured
+
+        uri, address, sources = (
+            pictured.text_of(params, "uri"),
+            pictured.text_of(params, "library", ""),
+            pictured.text_of(params, "sources", ""),
+        )
+        buffer = server.buffers.open.get(uri)
+        if buffer is None:
+            raise pictured.RequestFailed("the program is not open in the editor")
+
+        def draw(judged: Judged) -> str:
+            return pictured.picture(
+                judged, server.folders_of(judged.path), lambda: buffer.judged is not judged, address, sources
+            )
+
+        html = await server.ask(uri, draw, None)
+        if html is None:
+            raise pictured.Changed("the program has been closed")
+        return {"html": html}
+
+    @server.feature(LIBRARY)
+    def library(params: Any) -> dict[str, str]:
+        from polarcheck.editor import pictured
+
+        return {"path": pictured.library()}
+
+    def publish(buffer: Buffer, judged: Judged) -> None:
+        from polarcheck.editor import pictured
+
+        extras = pictured.member(server.client_capabilities.experimental, "polarcheck")
+        if pictured.member(extras, "verdict") is True:
+            server.protocol.notify(VERDICT, pictured.verdict(judged, buffer.uri, buffer.version))
+
+    server.published.append(publish)

@@ -1,0 +1,70 @@
+"""The code action that renumbers the N numbers of a program."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from lsprotocol import types
+from pygls.exceptions import JsonRpcException
+
+if TYPE_CHECKING:
+    from polarcheck.editor.session import Server
+    from polarcheck.editor.structure.document import Document
+
+#: RequestFailed of the protocol: the editor shows the message.
+_FAILED = -32803
+
+
+def register(server: Server) -> None:
+    """Register the feature."""
+
+    async def offered(params: types.CodeActionParams) -> list[types.CodeAction]:
+        """Return the action for the program at the cursor; its edits follow once it is chosen, if the editor asks."""
+        uri, position = params.text_document.uri, params.range.start
+
+        def find(document: Document) -> tuple[str, str] | None:
+            from polarcheck.editor.structure.renumber import title
+
+            return title(document, position)
+
+        found = await server.documents.ask(uri, find, None)
+        if found is None:
+            return []
+        action = types.CodeAction(found[0], types.CodeActionKind.RefactorRewrite)
+        if found[1]:
+            action.disabled = types.CodeActionDisabled(found[1])
+        elif _can_resolve(server):
+            action.data = {"uri": uri, "line": position.line, "character": position.character}
+        else:
+            action.edit = await edits(uri, position)
+        return [action]
+
+    async def edits(uri: str, position: types.Position) -> types.WorkspaceEdit | None:
+        from polarcheck.editor.structure.renumber import RenumberError
+        from polarcheck.editor.workspace_edits import workspace_edit
+
+        def find(document: Document) -> types.WorkspaceEdit | None:
+            from polarcheck.editor.structure.renumber import renumber
+
+            return workspace_edit(server, renumber(document, position, server.documents.workspace(document)))
+
+        try:
+            return await server.documents.ask(uri, find, None)
+        except RenumberError as error:
+            raise JsonRpcException(str(error), _FAILED) from None
+
+    server.rewritings.append(offered)
+
+    @server.feature(types.CODE_ACTION_RESOLVE)
+    async def resolve(action: types.CodeAction) -> types.CodeAction:
+        if isinstance(action.data, dict) and isinstance(action.data.get("uri"), str):
+            position = types.Position(int(action.data["line"]), int(action.data["character"]))
+            action.edit = await edits(action.data["uri"], position)
+        return action
+
+
+def _can_resolve(server: Server) -> bool:
+    of_text = server.client_capabilities.text_document
+    of_actions = of_text.code_action if of_text is not None else None
+    resolved = of_actions.resolve_support if of_actions is not None else None
+    return bool(resolved is not None and "edit" in resolved.properties and of_actions and of_actions.data_support)

@@ -1,0 +1,203 @@
+"""The tokens of blocks with statements, by the language of the control, in the classes that editors tell apart."""
+
+from __future__ import annotations
+
+import functools
+import re
+from collections.abc import Iterable, Iterator
+from typing import Final, NamedTuple
+
+from polarcheck.program.execution.custom_macro import KEYWORD
+from polarcheck.program.execution.high_level import is_custom_macro
+from polarcheck.program.execution.high_level_tokens import GRAMMAR, tokens_of
+from polarcheck.program.execution.keywords import KEYWORDS
+from polarcheck.program.execution.listing import Listing
+from polarcheck.program.execution.macro_tokens import NAMES, NUMBER, Characters
+from polarcheck.program.execution.programs import block_text
+from polarcheck.program.execution.task_values import NO_VALUES, SYSTEM, Values
+from polarcheck.program.execution.task_values import is_function as is_task_function
+
+#: The most tokens of a block.
+_MOST: Final = 5_000
+
+
+class Token(NamedTuple):
+    """
+    A token and its characters in the text.
+
+    kind: address (a letter), number, variable, system (a variable of the control), keyword, operator, function, string,
+    label (where it stands), target (a label that a jump names), name (of a program or anything else), computed (the
+    sign before the brackets of a variable whose number is computed).
+    text: in capitals, without blanks.
+    start, end: its characters within the text, end exclusive.
+    """
+
+    kind: str
+    text: str
+    start: int
+    end: int
+
+
+def tokens(listing: Listing, block: int, text: str | None = None) -> list[Token]:
+    """Return the tokens of a block, without comments; text: of the block, if it is at hand (programs.block_text)."""
+    written, language = block_text(listing.text, block) if text is None else text, listing.macro.language
+    found: Iterable[Token]
+    if language == "high-level" and not is_custom_macro(written):
+        found = _high_level(written, listing)
+    elif language == "user-task":
+        found = _user_task(written, listing)
+    else:
+        found = _custom_macro(written)
+    start = int(listing.text.blocks.start[block])
+    return [Token(kind, name, begin + start, end + start) for kind, name, begin, end in found]
+
+
+# ---- custom macro ----
+
+_OPERATORS: Final = "EQ|NE|GT|GE|LT|LE|AND|AN|XOR|XO|OR|MOD"
+_CUSTOM: Final = re.compile(
+    rf"(?P<system>#_[A-Z0-9_]+)|(?P<variable>#[0-9]+)|(?P<number>[-+]?(?:{NUMBER}))|(?P<function>(?:{'|'.join(NAMES)})(?=\[))"
+    rf"|(?P<operator>{_OPERATORS}|[-+*/=])|(?P<keyword>{KEYWORD.pattern})|(?P<address>,?[A-Z]|:)|(?P<sign>[#\[\]])"
+    r"|(?P<name><[^>]*>)"
+)
+_OPERANDS: Final = ("variable", "number", "system")
+
+
+@functools.lru_cache(20_000)
+def _custom_macro(block: str) -> tuple[Token, ...]:
+    """Return the tokens of a block; remembered, since a key press changes one block of many."""
+    return tuple(_custom_macro_tokens(block))
+
+
+def _custom_macro_tokens(block: str) -> Iterator[Token]:
+    characters = Characters.of_block(block)
+    text, places, at, last, count = characters.text, characters.places, 0, "", 0
+    while at < len(text) and count < _MOST:
+        match = _CUSTOM.match(text, at)
+        if match is None:
+            at += 1
+            continue
+        kind, end = match.lastgroup or "", match.end()
+        if kind == "operator" and match[0].isalpha() and last not in _OPERANDS and last != "]":
+            # A word such as M0 in a block that has no expression before it.
+            keyword = KEYWORD.match(text, at)
+            kind, end = ("keyword", keyword.end()) if keyword else ("address", at + 1)
+        elif kind == "number" and match[0][0] in "+-" and last in (*_OPERANDS, "]"):
+            kind, end = "operator", at + 1
+        start, after = places[at], places[end - 1] + 1
+        if match[0] == "#":
+            yield Token("computed", "#", start, after)
+        elif kind != "sign":
+            yield Token(kind, text[at:end], start, after)
+        last = text[end - 1 : end] if kind == "sign" else kind
+        at, count = end, count + 1
+
+
+# ---- a high-level language ----
+
+#: Behind these words stands the name of a label.
+_LEADING: Final = ("GOTO", "GOTOF", "GOTOB", "GOTOC")
+
+
+def _high_level(block: str, listing: Listing) -> Iterator[Token]:
+    found = tokens_of(block, _MOST)
+    letter = listing.macro.parameter_letter
+    skips = 0
+    for index, token in enumerate(found[:-1]):
+        if skips:
+            skips -= 1
+            continue
+        last, following = found[index - 1] if index else None, found[index + 1]
+        if token.kind == "name":
+            kind = _kind_of_name(token.text, following.text, listing)
+            is_led_to = last is not None and kind == "name" and last.text in _LEADING
+            yield Token("target" if is_led_to else kind, *token[1:])
+        elif token.kind == "letter":
+            is_value = last is not None and (
+                (last.kind == "sign" and last.text not in ")]:") or (last.kind == "name" and last.end < token.start)
+            )
+            is_target = index + 2 < len(found) and found[index + 2].text == "="
+            if token.text == letter and following.kind == "number" and (is_value or is_target):
+                skips = 1
+                yield Token("variable", f"{token.text}{following.text}", token.start, following.end)
+            elif token.text == letter and following.text == "[":
+                yield Token("computed", *token[1:])
+            elif listing.names.is_declared(token.text):
+                yield Token("variable", *token[1:])
+            else:
+                yield Token("address", *token[1:])
+        elif token.kind in ("number", "coded"):
+            yield Token("number", *token[1:])
+        elif token.kind == "string":
+            yield Token("string", *token[1:])
+        elif token.kind == "sign" and token.text not in ("(", ")", "[", "]", ",", ":"):
+            yield Token("operator", *token[1:])
+
+
+def _kind_of_name(name: str, following: str, listing: Listing) -> str:
+    if name[:1] == "$":
+        return "system"
+    if following == ":":
+        return "label"
+    if listing.names.is_declared(name):
+        return "variable"
+    if name in KEYWORDS or name in ("TO", "OF", "DEFAULT", "REAL", "INT", "BOOL", "CHAR", "STRING", "AXIS", "FRAME"):
+        return "keyword"
+    if name in GRAMMAR.operators or name in GRAMMAR.prefixes:
+        return "operator"
+    if name in GRAMMAR.functions:
+        return "function"
+    return "name"
+
+
+# ---- user tasks ----
+
+_FLOW: Final = ("IF", "GOTO", "CALL", "MODIN", "MODOUT", "RTS", "NOEX")
+_SEQUENCE_NAME: Final = re.compile(r"N[A-Z][A-Z0-9]{0,3}")
+
+
+def _user_task(block: str, listing: Listing) -> Iterator[Token]:
+    found = Values(block, listing.names).tokens[:_MOST]
+    skips = depth = 0
+    is_head = True
+    for index, token in enumerate(found):
+        if skips:
+            skips -= 1
+            continue
+        last = found[index - 1] if index else None
+        following = found[index + 1] if index + 1 < len(found) else None
+        is_target = following is not None and following.text == "="
+        if token.kind == "sign":
+            depth += {"[": 1, "]": -1}.get(token.text, 0)
+            if token.text not in "[],":
+                yield Token("operator", token.text, token.start, token.end)
+        elif token.kind == "number":
+            yield Token("number", token.text, token.start, token.end)
+        elif token.kind == "letter" and token.text == "V" and following is not None and following.kind == "number":
+            skips = 1
+            yield Token("variable", f"V{following.text}", token.start, following.end)
+        elif token.kind == "letter":
+            yield Token("address", token.text, token.start, token.end)
+        elif token.kind == "name":
+            in_value = depth > 0 or (last is not None and last.kind == "sign" and last.text in "=+-*/,[")
+            kind = _kind_of_task(token.text, listing, is_target, in_value)
+            yield Token("label" if kind == "target" and is_head else kind, token.text, token.start, token.end)
+        is_head = is_head and token.text in "/123456789"
+
+
+def _kind_of_task(name: str, listing: Listing, is_target: bool, in_value: bool) -> str:
+    if name in _FLOW:
+        return "keyword"
+    if SYSTEM.fullmatch(name):
+        return "system"
+    if name in NO_VALUES:
+        return "operator"
+    if in_value and is_task_function(name):
+        return "function"
+    if name.startswith("VC") and name[2:].isdigit():
+        return "variable"
+    if is_target:
+        return "address" if name in listing.macro.named_words else "variable"
+    if in_value:
+        return "variable"
+    return "target" if _SEQUENCE_NAME.fullmatch(name) else "name"

@@ -1,0 +1,306 @@
+"""Completion of codes, tools, jump targets, programs and variables: what this control and this program know."""
+
+from __future__ import annotations
+
+import itertools
+import re
+from collections.abc import Callable, Iterable, Iterator
+from typing import NamedTuple
+
+import numpy as np
+from lsprotocol import types
+
+from polarcheck.checking.settings import Settings
+from polarcheck.editor.open_text import OpenText
+from polarcheck.editor.structure.document import Document, block_at
+from polarcheck.editor.words import called_files, codes, variables
+from polarcheck.editor.words.at_cursor import is_in
+from polarcheck.program.execution.listing import Listing
+from polarcheck.program.execution.programs import Program, block_text
+from polarcheck.program.machines.machine import Machine
+from polarcheck.program.reading.excerpt import shortened, visible
+
+#: The most items of a list; beyond them the editor asks again.
+_MOST = 500
+#: What stands beside an item [characters].
+_LONGEST = 60
+_VARIABLES = re.compile(r"#\d{1,8}(?!\d)|\b(?:R|VC)\d{1,5}(?!\d)", re.ASCII | re.IGNORECASE)
+#: A block with an N number, up to a comment.
+_NUMBERED = re.compile(
+    r"(?:^|(?<=[\n\r;]))[ \t]{0,9}(?:/\d?[ \t]{0,9})?N[ \t]{0,9}0{0,9}(\d{1,9})(?!\d)[^\n\r;(]{0,80}",
+    re.ASCII | re.IGNORECASE,
+)
+
+
+class Item(NamedTuple):
+    """
+    What can be written.
+
+    label: as it is written.
+    detail: what it is.
+    kind: for the editor's sign.
+    """
+
+    label: str
+    detail: str
+    kind: types.CompletionItemKind
+
+
+class Place(NamedTuple):
+    """
+    Where somebody writes.
+
+    document: as its control reads it.
+    listing: the channel.
+    block: of the listing.
+    program: the program around it.
+    settings: of the last check; None before the first.
+    """
+
+    document: Document
+    listing: Listing
+    block: int
+    program: Program
+    settings: Settings | None
+
+
+def completions(document: Document, settings: Settings | None, position: types.Position) -> types.CompletionList:
+    """Return what can be written at a position; nothing in comments, and nothing where no list of it would help."""
+    before = _before(document, position)
+    found: list[Item] = []
+    typed = ""
+    if before is not None:
+        for pattern, find in _FINDERS:
+            match = pattern.search(before)
+            if match is None:
+                continue
+            listing, block = next(iter(document.at(position)))
+            if listing.programs.programs:
+                program = listing.programs.around(block_at(listing, document.text.character_of(position)))
+                place_of_cursor = Place(document, listing, block, program, settings)
+                found = list(itertools.islice(find(place_of_cursor, match[1]), _MOST + 1))
+            typed = match[1]
+            break
+    offset = document.text.offset(position)
+    place = document.text.range(offset - len(typed), offset)
+    shown = [item for item in found if item.label.upper().startswith(typed.upper()[:1])]
+    return types.CompletionList(
+        is_incomplete=len(shown) > _MOST,
+        items=[_item(item, number, place) for number, item in enumerate(_nearest(shown, typed)[:_MOST])],
+    )
+
+
+def _nearest(items: list[Item], typed: str) -> list[Item]:
+    """Return the items, those that begin as it is typed first; of a long list they alone can be shown."""
+    return sorted(items, key=lambda item: not item.label.upper().startswith(typed.upper()))
+
+
+def _item(item: Item, number: int, place: types.Range) -> types.CompletionItem:
+    return types.CompletionItem(
+        label=visible(item.label),
+        kind=item.kind,
+        detail=visible(shortened(item.detail, _LONGEST)) or None,
+        sort_text=f"{number:05d}",
+        filter_text=item.label,
+        text_edit=types.TextEdit(place, item.label),
+    )
+
+
+def _before(document: Document, position: types.Position) -> str | None:
+    """Return what stands in the line before a position; None in a comment."""
+    text: OpenText = document.text
+    offset = text.offset(position)
+    written = text.text[text.offset_of(text.line_of(position)) : offset]
+    for mark in document.machine.control.line_comments:
+        if mark in written:
+            return None
+    if document.machine.control.parentheses_are_comments:
+        return None if written.rfind("(") > written.rfind(")") else written[written.rfind(")") + 1 :]
+    return written
+
+
+# ---- what can be written ----
+
+
+def _codes(place: Place, typed: str) -> Iterator[Item]:
+    """Yield the codes of the control; those that switch the polar mode, and those of the program, come first."""
+    machine, letter = place.document.machine, typed[0].upper()
+    known = {code: text for code, text in codes.known_codes(machine).items() if code[0] == letter}
+    switches = [code for code in (*machine.polar.on, *machine.polar.off) if code in known]
+    used = [code for code in _used(place.listing, letter) if code in known]
+    explained = [code for code, text in known.items() if text]
+    for code in dict.fromkeys([*switches, *sorted(used, key=_number), *sorted(explained, key=_number)]):
+        yield Item(code, known[code], types.CompletionItemKind.Function)
+    # The others mean nothing to polarcheck; they follow once a digit is typed.
+    for code in sorted(set(known) - set(explained), key=_number) if len(typed) > 1 else ():
+        if code not in used:
+            yield Item(code, "", types.CompletionItemKind.Function)
+
+
+def _number(code: str) -> float:
+    return float(code[1:])
+
+
+def _used(listing: Listing, letter: str) -> list[str]:
+    words = listing.text.words
+    values = np.unique(np.round(words.value[words.address == ord(letter)], 1))
+    return [f"{letter}{value:g}" for value in values[np.isfinite(values)].tolist() if 0 <= value < 10_000]
+
+
+def _tools(place: Place, typed: str) -> Iterator[Item]:
+    """Yield the tools of the job and of the program, as T calls them."""
+    machine = place.document.machine
+    by_edge = machine.offsets.called_by == "edge"
+    found: dict[str, str] = {}
+    words = place.listing.text.words
+    is_tool = np.flatnonzero((words.address == ord("T")) & np.isfinite(words.value))
+    for index in is_tool[:_MOST].tolist():
+        written = place.listing.text.source.excerpt(int(words.start[index]), int(words.end[index])).upper()
+        label = "".join(written.split())
+        found.setdefault(label, _comment(place.listing, int(words.block[index])))
+    digits = machine.control.offset_digits
+    units = f" {place.settings.job.units or place.settings.machine.control.units}" if place.settings else ""
+    for key, tool in place.settings.job.tools.items() if place.settings is not None else ():
+        name = str(key)
+        if by_edge:
+            label = (
+                f"T{name.partition('/')[0]}" if name.partition("/")[0].isdecimal() else f'T="{name.partition("/")[0]}"'
+            )
+        elif name.isdecimal():
+            label = _label(int(name), digits, found)
+        else:
+            continue
+        radius = f"R {tool.radius:g}{units} ({tool.source})" if tool.radius == tool.radius else ""
+        found[label] = ", ".join(filter(None, (radius, found.get(label, ""))))
+    for label, detail in found.items():
+        yield Item(label, detail, types.CompletionItemKind.EnumMember)
+
+
+def _label(number: int, digits: int, found: Iterable[str]) -> str:
+    """Return how the program calls an offset, or how it would by the number of the tool."""
+    own = f"{number:0{digits}d}"[-digits:]
+    return next((label for label in found if len(label) > digits and label.endswith(own)), f"T{number:02d}{own}")
+
+
+def _comment(listing: Listing, block: int) -> str:
+    """Return the comment beside a block."""
+    comments = listing.text.comments
+    low, high = np.searchsorted(comments.block, (block, block + 1)).tolist()
+    if low == high:
+        return ""
+    return listing.text.source.excerpt(int(comments.start[low]), int(comments.end[low])).strip("();")
+
+
+def _sequence_numbers(place: Place, typed: str) -> Iterator[Item]:
+    """Yield the N numbers of the program, with what stands behind them."""
+    text, program = place.listing.text, place.program
+    begin, end = int(text.blocks.start[program.first]), int(text.blocks.end[program.end - 1])
+    found: dict[int, str] = {}
+    # By the characters: no answer at a key waits for the statements of a long program.
+    for match in _NUMBERED.finditer(text.source.text, begin, end):
+        if match[1].startswith(typed):
+            found.setdefault(int(match[1]), match[0])
+    for number in sorted(found):
+        yield Item(str(number), " ".join(found[number].split()), types.CompletionItemKind.Reference)
+
+
+def _labels(place: Place, typed: str) -> Iterator[Item]:
+    """Yield the labels of the program, then its N numbers."""
+    has_labels = place.document.machine.macro.language != "custom-macro"
+    labels = place.listing.programs.labels(place.program) if has_labels else {}
+    for name, blocks in sorted(labels.items()):
+        yield Item(name, _shown(place.listing, blocks[0]), types.CompletionItemKind.Reference)
+    prefix = "N" if has_labels else ""
+    for item in _sequence_numbers(place, typed.upper().removeprefix("N")):
+        yield item._replace(label=f"{prefix}{item.label}")
+
+
+def _returns(place: Place, typed: str) -> Iterator[Item]:
+    """Yield the N numbers to which M99 P returns: those of the other programs of the file, or of its own."""
+    others = [program for program in place.listing.programs.programs if program.first != place.program.first]
+    for program in others[:_MOST] or [place.program]:
+        yield from _sequence_numbers(place._replace(program=program), typed)
+
+
+def _programs(place: Place, typed: str) -> Iterator[Item]:
+    """Yield the programs of the file and of the folders of called programs, by their numbers."""
+    own = place.listing.programs.programs
+    found = {
+        program.number: _comment(place.listing, program.first)
+        for program in own
+        if program.number is not None and program.first != place.program.first
+    }
+    for number, name in called_files.numbers(place.document.folders):
+        found.setdefault(number, name)
+    for number, detail in sorted(found.items()):
+        yield Item(str(number), detail, types.CompletionItemKind.Module)
+
+
+def _variables(place: Place, typed: str) -> Iterator[Item]:
+    """Yield the variables of the program, those with a value from the settings, and those that act by themselves."""
+    machine, first = place.document.machine, typed[0].upper()
+    used = _used_variables(place, first, typed.upper())
+    for name, block in sorted(used.items(), key=lambda found: (len(found[0]), found[0])):
+        yield Item(name, _of_variable(name, machine, _shown(place.listing, block)), _VARIABLE)
+    if first == "#":
+        macro = machine.macro
+        given = {**macro.given, **(place.settings.job.run.variables if place.settings is not None else {})}
+        for number in [*given, *macro.alarm_variables, *macro.stop_variables]:
+            if f"#{number}" not in used:
+                value = f"= {given[number]:g}" if number in given else ""
+                yield Item(f"#{number}", _of_variable(f"#{number}", machine, value), _VARIABLE)
+
+
+def _used_variables(place: Place, first: str, current: str) -> dict[str, int]:
+    """Return the first block of each variable that the program uses, but for the one that is being typed."""
+    text = place.listing.text
+    used: dict[str, int] = {}
+    for match in _VARIABLES.finditer(text.source.text):
+        name = match[0].upper()
+        if name in used or name[0] != first:
+            continue
+        block = block_at(place.listing, match.start())
+        is_new = name == current and block == place.block
+        if text.blocks.is_macro[block] and not is_new and not is_in(match.start(), text.comments, block):
+            used[name] = block
+    return used
+
+
+_VARIABLE = types.CompletionItemKind.Variable
+
+
+def _of_variable(name: str, machine: Machine, more: str) -> str:
+    number = variables.number_of(name)
+    kind = variables.kind_of(number, machine) if number is not None and name[0] == "#" else ""
+    return ": ".join(filter(None, (more, kind)))
+
+
+def _words(place: Place, typed: str) -> Iterator[Item]:
+    """Yield the words of the control's own language that stand for codes."""
+    for word, meant in place.document.machine.control.native_words.items():
+        if word.upper().startswith(typed.upper()):
+            detail = codes.known_codes(place.document.machine).get(meant, "") or f"read as {meant}"
+            yield Item(word, detail, types.CompletionItemKind.Keyword)
+
+
+def _shown(listing: Listing, block: int) -> str:
+    """Return the text of a block in one line."""
+    return " ".join(block_text(listing.text, block).split())
+
+
+#: What stands before the cursor, with what is replaced, and what can stand there; the first that fits counts.
+_FINDERS: tuple[tuple[re.Pattern[str], Callable[[Place, str], Iterator[Item]]], ...] = tuple(
+    (re.compile(pattern, re.IGNORECASE | re.ASCII), find)
+    for pattern, find in (
+        (r"GOTO[FBC]?[ ]{0,9}(\w{0,40})$", _labels),
+        (r"(?<![A-Z])M0?99[^A-Z]{0,9}P[ ]?(\d{0,9})$", _returns),
+        (r"(?<![A-Z])(?:M0?98|M198|G65|G66(?:\.1)?)(?![\d.])[^\n]{0,60}?(?<![A-Z])P[ ]?(\d{0,9})$", _programs),
+        (r"(?<![A-Z])(?:G7[0-3])(?![\d.])[^\n]{0,60}?(?<![A-Z])[PQ][ ]?(\d{0,9})$", _sequence_numbers),
+        (r"(?<![A-Z])M0?97[^A-Z]{0,9}P[ ]?(\d{0,9})$", _sequence_numbers),
+        (r"(#\d{0,8})$", _variables),
+        (r"(?<![A-Z0-9_])((?:R|VC)\d{1,5})$", _variables),
+        (r"(?<![A-Z_])([GM]\d{0,3}\.?\d?)$", _codes),
+        (r"(?<![A-Z_])(T\d{0,8})$", _tools),
+        (r"(?<![A-Z0-9_])([A-Z][A-Z_]{1,30})$", _words),
+    )
+)

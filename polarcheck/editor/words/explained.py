@@ -1,0 +1,165 @@
+"""What a word means on this machine, at its block."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from polarcheck.columns.trace import Trace
+from polarcheck.editor.judged import Judged
+from polarcheck.editor.words import beside, codes, in_force, variables
+from polarcheck.editor.words.at_cursor import CursorWord
+from polarcheck.foundation.arrays import Rows
+from polarcheck.foundation.states import FeedMode, Units
+from polarcheck.program.machines.code_lists import expanded
+from polarcheck.program.machines.machine import Machine
+from polarcheck.rules.wording.phrases import common
+
+Facts = list[tuple[str, str]]
+#: The longest number that is repeated as a code [characters].
+_LONGEST_CODE = 8
+_AXES = {"X": "X", "Y": "Y", "Z": "Z", "U": "X", "V": "Y", "W": "Z"}
+
+
+def explained(word: CursorWord, judged: Judged, trace: Trace | None, row: int | None) -> tuple[str, Facts]:
+    """
+    Return a word with its meaning, and facts by name; the meaning is empty if nothing is known of it.
+
+    trace, row: the run that executes its block, and the first row of the block there; None if no run does.
+    """
+    assert judged.settings is not None
+    machine = judged.settings.machine
+    if word.kind == "variable":
+        return word.letter, list(variables.facts_of(word, judged, row, trace))
+    if word.kind == "name":
+        meant = machine.control.native_words.get(word.letter)
+        if meant is None:
+            return "", []
+        return f"{word.letter}: read as {meant}", list(_of_code(meant, judged, trace, row)) if meant[0] in "GM" else []
+    if word.letter in ("G", "M"):
+        code = _code(word)
+        if code:
+            known = codes.known_codes(machine).get(code)
+            written = "".join(word.text.source.excerpt(word.start, word.end).split()).upper()
+            name = code if written.startswith(word.letter) else f"{written} ({code})"
+            title = f"{name}: {known}" if known else name
+            return title, list(_of_code(code, judged, trace, row))
+    title = beside.meaning_of(word, machine) or _title(word, machine, trace, row)
+    return (f"{word.letter}: {title}" if title else ""), list(_more(word, trace, row))
+
+
+def _code(word: CursorWord) -> str:
+    """Return a G or M word as the profile writes it; empty for a computed one."""
+    if word.value is None or not 0 <= word.value < 10 ** (_LONGEST_CODE - 1):
+        return ""
+    return f"{word.letter}{word.value:g}" if word.value < 1e5 else ""
+
+
+def _of_code(code: str, judged: Judged, trace: Trace | None, row: int | None) -> Iterator[tuple[str, str]]:
+    """Yield sources and effects of a code."""
+    assert judged.settings is not None
+    machine = judged.settings.machine
+    found = codes.meanings_of(code, machine)
+    if not found:
+        if codes.is_known(code, machine):
+            yield "meaning", "a code of this control; polarcheck follows nothing of it"
+        elif code[0] == "G":
+            yield "meaning", f"not among the codes of {machine.title}"
+        else:
+            yield "meaning", f"not in the profile of {machine.title}; [m_codes] of a machine file says what it does"
+    for meaning in found[:2]:
+        source = codes.source_of(meaning.key, judged)
+        yield "source", f"{source} ({meaning.key})" if source else meaning.key
+    if code[0] != "G":
+        return
+    group = in_force.group_of(code, machine)
+    if trace is not None and row is not None:
+        if trace.mode.in_polar[row] and found and found[0].key not in ("polar.on", "polar.off"):
+            is_allowed = code in set(expanded(machine.polar.allowed_codes))
+            yield "in the polar mode", "allowed" if is_allowed else "not among the codes that may be used"
+        if group:
+            before = in_force.code_in_force(trace, group, row - 1) if not trace.blocks.starts[row] else ""
+            was = f"; before it {before}" if before and before != code else ""
+            yield "modal", f"group of {in_force.title_of(group)}{was}"
+
+
+def _title(word: CursorWord, machine: Machine, trace: Trace | None, row: int | None) -> str:
+    """Return what the address of a word stands for."""
+    letter = word.letter
+    in_polar = trace is not None and row is not None and bool(trace.mode.in_polar[row])
+    if letter in ("N", "O"):
+        return "sequence number, the target of jumps" if letter == "N" else "program number"
+    if letter == "T":
+        return "tool and tool offset" if machine.offsets.called_by != "edge" else "tool; D calls its edge"
+    if letter == "F":
+        return _feed(trace, row)
+    if letter == "S":
+        speed = in_force.code_in_force(trace, "speed", row) if trace is not None and row is not None else ""
+        is_surface = speed in machine.codes("constant_surface_speed")
+        return f"surface speed, since {speed} is in force" if is_surface else "spindle speed [1/min]"
+    return _of_axis(letter, machine, trace, row, in_polar)
+
+
+def _feed(trace: Trace | None, row: int | None) -> str:
+    if trace is None or row is None:
+        return "feed"
+    if trace.blocks.listed("dwell")[row]:
+        return "time of the dwell"
+    mode = FeedMode(int(trace.feedrate.feed_mode[row]))
+    unit = "inch" if trace.lengths.feed_units[row] == Units.INCH else "mm"
+    if mode == FeedMode.PER_REVOLUTION:
+        return f"feed per revolution [{unit}/rev]"
+    if mode == FeedMode.INVERSE_TIME:
+        return "inverse of the time of the block [1/min]"
+    along = " along the path in the plane of X and C" if trace.mode.in_polar[row] else ""
+    return f"feed per minute{along} [{unit}/min]"
+
+
+def _of_axis(letter: str, machine: Machine, trace: Trace | None, row: int | None, in_polar: bool) -> str:
+    """Return what an axis, an arc word, or any other address stands for."""
+    polar = machine.polar
+    if in_polar and trace is not None and row is not None:
+        virtual = common.virtual(trace.axes, row)
+        if letter in (virtual, polar.virtual_axis_incremental):
+            how = "distance" if letter == polar.virtual_axis_incremental and letter != virtual else "coordinate"
+            return f"virtual axis, a length as a {polar.virtual_axis_programming} and no angle ({how})"
+    if letter in polar.rotary_words:
+        return "rotary axis [deg]" + (", incremental" if letter == polar.rotary_incremental else "")
+    if letter in _AXES:
+        how = "distance" if letter in "UVW" else "coordinate"
+        if _AXES[letter] == "X":
+            is_diameter = (
+                bool(trace.lengths.x_factor[row] < 1)
+                if trace is not None and row is not None
+                else (polar.x if in_polar else machine.control.x) == "diameter"
+            )
+            return f"X axis, {'a diameter' if is_diameter else 'a radius'} ({how})"
+        return f"{_AXES[letter]} axis ({how})"
+    if letter == machine.arcs.radius_word:
+        return "radius of an arc"
+    if letter in "IJK":
+        return "center of an arc, from its start"
+    if letter in ("P", "Q"):
+        return "number of a program, of a block, or a time, as the code beside it says"
+    if letter == "/":
+        return "block skip: the block is left out while the switch is on"
+    return ""
+
+
+def _more(word: CursorWord, trace: Trace | None, row: int | None) -> Iterator[tuple[str, str]]:
+    """Yield what else there is to say of a word: how its number counts."""
+    if trace is None or row is None or word.value is None or word.has_point or len(word.letter) != 1:
+        return
+    run = trace.run
+    low, high = (int(index) for index in _stretch(run.row, row))
+    for index in range(low, high):
+        if int(run.words.start[index]) == word.start and bool(trace.coordinates.is_unpointed[index]):
+            counts = "least input increments" if trace.machine.control.number_without_point == "least-increment" else ""
+            if counts:
+                yield "without a decimal point", f"{word.value:g} counts {counts}"
+
+
+def _stretch(rows: Rows, row: int) -> tuple[int, int]:
+    low, high = np.searchsorted(rows, (row, row + 1)).tolist()
+    return low, high

@@ -1,0 +1,29 @@
+"""Edits of several documents, in the form that the editor supports."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+from lsprotocol import types
+
+if TYPE_CHECKING:
+    from polarcheck.editor.session import Server
+
+
+def workspace_edit(server: Server, edits: Mapping[str, list[types.TextEdit]]) -> types.WorkspaceEdit:
+    """Return edits by URI as one change; with the versions of open documents if the editor knows them."""
+    of_workspace = server.client_capabilities.workspace
+    of_edits = of_workspace.workspace_edit if of_workspace is not None else None
+    if of_edits is None or not of_edits.document_changes:
+        return types.WorkspaceEdit(changes=dict(edits))
+    opened = server.buffers.open
+    return types.WorkspaceEdit(
+        document_changes=[
+            types.TextDocumentEdit(
+                types.OptionalVersionedTextDocumentIdentifier(uri, opened[uri].version if uri in opened else None),
+                list(found),
+            )
+            for uri, found in edits.items()
+        ]
+    )

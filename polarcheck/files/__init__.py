@@ -1,0 +1,1 @@
+"""Many files: their settings, workers, cache, git and baselines."""

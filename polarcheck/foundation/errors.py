@@ -1,0 +1,158 @@
+"""
+What can go wrong on our side. What is wrong in a program is a finding, never an exception.
+
+    PolarcheckError
+    |-- UsageError        an option or argument that means nothing
+    |-- SourceError       a file that cannot be read
+    |-- OutputError       a report that cannot be written
+    |-- MachineError      a machine profile: unknown machine, key, type
+    |-- JobError          polarcheck.toml, pyproject.toml, an offset table
+    |-- StoppedError      the check was cancelled
+    |-- RefusedError      a program that is not rewritten, since the result would not be the same
+    |-- BaselineError     a file of known findings
+    |-- ClusterError      a cluster that cannot check
+    |-- TooHardError      a table that would exceed its limit of time or size
+    |   `-- NoAnswerError     areas for which the geometry library finds no answer
+    `-- RuleError         a rule without severity, message, docstring: a bug in a rule file
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import NamedTuple
+
+__name__ = "polarcheck.errors"  # the public name of the module, which tracebacks and filters of warnings show
+
+#: The fewest letters of a partial name for which a suggestion is made.
+_LEAST = 3
+
+
+class PolarcheckError(Exception):
+    """Base of all errors; its text is one line that names the file or option, the key, and what was expected."""
+
+    def __str__(self) -> str:
+        """Return the text with all that would end the line, or act on a terminal, spelled out."""
+        return one_line(super().__str__())
+
+
+class PolarcheckWarning(UserWarning):
+    """What the command line would write to standard error beside a report, for callers of the functions for Python."""
+
+
+class UsageError(PolarcheckError):
+    """An option or argument without a meaning."""
+
+
+class SourceError(PolarcheckError):
+    """A program file that cannot be read."""
+
+
+class OutputError(PolarcheckError):
+    """A report that cannot be written, or must not be written where it would go."""
+
+
+class MachineError(PolarcheckError):
+    """
+    A machine profile that cannot be used.
+
+    others: further faults that were seen together with it, each in one line of the same form.
+    """
+
+    def __init__(self, text: str, others: Iterable[str] = ()) -> None:
+        super().__init__(text)
+        self.others = tuple(others)
+
+
+class JobError(PolarcheckError):
+    """A job file or offset table that cannot be used."""
+
+
+class StoppedError(PolarcheckError):
+    """A check that was cancelled, since nobody waits for its result any more."""
+
+
+class Refusal(NamedTuple):
+    """Why a program is not rewritten. line: in the original, from 1; 0 for the whole program. text: what it says."""
+
+    line: int
+    text: str
+
+
+class RefusedError(PolarcheckError):
+    """
+    A program that is not rewritten as it was asked for, since the result would not be the same.
+
+    refusals: the reasons.
+    """
+
+    def __init__(self, refusals: Iterable[Refusal]) -> None:
+        self.refusals = tuple(refusals)
+        super().__init__(
+            "; ".join(f"line {each.line}: {each.text}" if each.line else each.text for each in self.refusals)
+        )
+
+
+class BaselineError(PolarcheckError):
+    """A file of known findings that cannot be used, or must not be written."""
+
+
+class CertificateError(PolarcheckError):
+    """A manifest or a golden trace that cannot be used, or must not be written."""
+
+
+class ClusterError(PolarcheckError):
+    """A cluster that cannot be reached, has no workers, or does not answer any more."""
+
+
+class TooHardError(PolarcheckError):
+    """
+    A table that would exceed its limit of time or size; its text is a reason for "not evaluated".
+
+    The rules that compare this table are not evaluated; all others are.
+    """
+
+
+class NoAnswerError(TooHardError):
+    """Areas that the geometry library cannot compute, since some of their points nearly coincide."""
+
+
+class RuleError(PolarcheckError):
+    """A rule file that is not a valid rule; raised when the rules are loaded."""
+
+
+def one_line(text: str) -> str:
+    """Return a text as the message of an error shows it."""
+    return text if text.isprintable() else "".join(map(_visible, text))
+
+
+def _visible(character: str) -> str:
+    """Return a character of a message as `\\x1b` if it acts; bytes of the names of files stay as Python holds them."""
+    number = ord(character)
+    if character.isprintable() or 0xDC80 <= number <= 0xDCFF:
+        return character
+    return escaped(number)
+
+
+def escaped(number: int) -> str:
+    """Return a character that cannot be shown, or a byte, as its number: `\\x1b`, `\\u202e`."""
+    return f"\\x{number:02x}" if number < 256 else f"\\u{number:04x}" if number < 65536 else f"\\U{number:08x}"
+
+
+def suggestion(wrong: str, known: Iterable[str], most: int = 3) -> str:
+    """
+    Return a hint such as `; did you mean fanuc-30i?`; empty if no known name is similar.
+
+    In this order: the names that begin with the written one, in any case; else the nearest name; else the names that
+    contain it. most: how many names are listed.
+    """
+    names = {name.lower(): name for name in known}
+    word = wrong.strip().lower()
+    near = [word] if word in names else [name for name in names if name.startswith(word)]
+    if not near or len(word) < _LEAST:
+        import difflib
+
+        near = difflib.get_close_matches(word, names, 1)
+    if not near and len(word) >= _LEAST:
+        near = [name for name in names if word in name]
+    *others, last = [names[name] for name in near[:most]] or [""]
+    return f"; did you mean {', '.join(others)}{' or ' if others else ''}{last}?" if last else ""

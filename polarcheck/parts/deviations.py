@@ -1,0 +1,116 @@
+"""How what is made differs from the parts of the job: drawings, or shapes with dimensions."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from polarcheck.columns.contour.overcuts import Overcuts
+from polarcheck.columns.contour.skipped_loops import SkipReason
+from polarcheck.columns.trace import Trace
+from polarcheck.foundation.arrays import Columns, Floats, Mask, cached_property
+from polarcheck.parts.area_comparisons import AreaComparisons
+from polarcheck.parts.comparison import Comparison, Fit
+from polarcheck.parts.contour_comparisons import ContourComparisons
+from polarcheck.parts.nominal_parts import NominalParts
+from polarcheck.program.machines.part import Part
+
+
+class Deviations(Columns, frozen=True):
+    """Columns of one trace, one value per row: the largest differences of the part; and all comparisons."""
+
+    trace: Trace
+    overcuts: Overcuts
+    nominal_parts: NominalParts
+    contour_comparisons: ContourComparisons
+    area_comparisons: AreaComparisons
+
+    @property
+    def parts(self) -> tuple[Part, ...]:
+        """What the job asks for."""
+        return tuple(self.nominal_parts.job.part)
+
+    @property
+    def where(self) -> Mask:
+        """Rows in offset mode in the sections for which the job states a part."""
+        return self.nominal_parts.in_offset_mode
+
+    @cached_property
+    def crosses(self) -> Mask:
+        """Rows of loops that cross themselves too often to have a part."""
+        return self.overcuts.skipped.rows(self.overcuts.loop, SkipReason.CROSSES)
+
+    @cached_property
+    def comparisons(self) -> list[Comparison]:
+        """
+        All comparisons, in program order: of contours, and of the metal where no contour differs.
+
+        Raises TooHardError if the faces of the contours or their areas cannot be computed.
+        """
+        if not self.nominal_parts.parts:
+            return []
+        results = sorted(self.area_comparisons.all, key=lambda result: result.section)
+        return [result._replace(fit=self._fit(result)) if result.differs else result for result in results]
+
+    def _fit(self, result: Comparison) -> Fit | None:
+        """The change with which the part would agree, or nearly agree; None if there is none."""
+        if result.target is None:
+            from polarcheck.parts.metal_fit import metal_fit  # imported late: most programs agree
+
+            return metal_fit(result, self.nominal_parts, self.area_comparisons.milled)
+        return self.contour_comparisons.fit(result)
+
+    @cached_property
+    def _worst(self) -> dict[int, Comparison]:
+        """The comparison with the largest difference of each row, by row."""
+        worst: dict[int, Comparison] = {}
+        for result in self.comparisons:
+            if result.differs and (
+                result.row not in worst or worst[result.row].difference.largest < result.difference.largest
+            ):
+                worst[result.row] = result
+        return worst
+
+    @cached_property
+    def differs(self) -> Mask:
+        """Rows where the difference of a part is largest."""
+        column = np.zeros(len(self.trace), bool)
+        column[list(self._worst)] = True
+        return column
+
+    @cached_property
+    def largest(self) -> Floats:
+        """The largest difference in such a row [mm], 0 elsewhere."""
+        column = np.zeros(len(self.trace))
+        for row, result in self._worst.items():
+            column[row] = result.difference.largest
+        return column
+
+    @cached_property
+    def tolerance(self) -> Floats:
+        """The tolerance in such a row [mm], NaN elsewhere."""
+        column = np.full(len(self.trace), np.nan)
+        for row, result in self._worst.items():
+            column[row] = result.tolerance
+        return column
+
+    def of_row(self, row: int) -> Comparison:
+        """The comparison that is reported in a row that differs."""
+        return self._worst[row]
+
+    def missing(self) -> Iterator[tuple[int, str]]:
+        """Parts that nothing was compared with, each with the reason; none where walls are tangled."""
+        count = len(self.trace.mode.sections)
+        if not count or self.crosses.any():
+            return
+        compared = {comparison.number for comparison in self.comparisons}
+        for number, part in enumerate(self.parts):
+            if number in compared:
+                continue
+            if part.section is not None and part.section > count:
+                yield number, f"it is for section {part.section}, and the program has {count}"
+            else:
+                reason = self.area_comparisons.why_not(number)
+                if reason:
+                    yield number, reason

@@ -1,0 +1,1 @@
+"""From the bytes of a file to executed rows: reading, machines and jobs, execution."""

@@ -1,0 +1,168 @@
+"""The result of an execution: the executed blocks in order, their words, faults and remarks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import NamedTuple
+
+import msgspec
+import numpy as np
+from numpy.typing import NDArray
+
+from polarcheck.foundation.arrays import Mask, Rows, is_among, repeated
+from polarcheck.program.execution.kinds import FaultKind, RemarkKind
+from polarcheck.program.machines.codes import code_numbers, code_set
+from polarcheck.program.reading.words import Text, Words
+
+#: M2, M30, M99: the end of a program.
+_ENDS = (2, 30, 99)
+
+
+class FlowFault(msgspec.Struct, frozen=True):
+    """
+    Something wrong in a macro statement or in the flow.
+
+    block, start, end: its block and its characters in the text, end exclusive. values: for a message, by name, as the
+    N number that a jump does not find. row: that was about to be executed when it was found, -1 where none was.
+    """
+
+    kind: FaultKind
+    block: int
+    start: int
+    end: int
+    values: dict[str, str | int | float] = {}
+    row: int = -1
+
+
+class Remark(msgspec.Struct, frozen=True):
+    """Why a block was not executed, or not as the control would; values: for the reason, by name."""
+
+    kind: RemarkKind
+    block: int
+    values: dict[str, str | int | float] = {}
+
+
+#: The number of a variable where nobody knows which is assigned.
+NO_VARIABLE = -1
+
+
+class Assigned(msgspec.Struct, frozen=True):
+    """
+    A variable of an offset that a row assigns, or one that may be of an offset since its number is not known.
+
+    value: in the units of the program; NaN where it is not known. is_step: it is added to what the variable held.
+    """
+
+    variable: int
+    value: float
+    is_step: bool = False
+
+    @property
+    def name(self) -> str:
+        """As it is written: #2001."""
+        return f"#{self.variable}"
+
+
+class ValueSet(NamedTuple):
+    """
+    A variable that has got a value.
+
+    row: how many rows had been executed before.
+    block: that sets it; of an argument that of the call.
+    number: of the variable.
+    value: None for vacant, NaN for unknown.
+    level: how many macro calls deep.
+    """
+
+    row: int
+    block: int
+    number: int
+    value: float | None
+    level: int
+
+
+class Beside(msgspec.Struct, frozen=True):
+    """
+    The other channels of a file: their texts, whose programs can be called; and what they call, by numbers and names.
+    """
+
+    texts: Sequence[Text] = ()
+    called: frozenset[int | str] = frozenset()
+
+
+class Run(msgspec.Struct, frozen=True):
+    """
+    The executed blocks of one file in order.
+
+    words: in order of execution. row: the row of each word, ascending. block: the index into text.blocks of each row.
+    starts: rows at which a program begins, so that nothing before them counts. unknown: rows whose effect is not known.
+    depth: of calls. faults: what macro and flow found. remarks: what was not evaluated. assigned: row -> the variable
+    of an offset that it assigns, with its value. distance: per word what it says of itself (modal.Distance), 0 where it
+    says nothing; None where no word does. names: of tools that T calls by name, by the number that stands for them.
+    broken_off: rows at which a bound of the check has ended a program; None where it has ended none. values: the
+    values that variables have got, in order, up to a bound.
+    """
+
+    text: Text
+    words: Words
+    row: Rows
+    block: Rows
+    starts: Mask
+    unknown: Mask
+    depth: Rows
+    faults: tuple[FlowFault, ...] = ()
+    remarks: tuple[Remark, ...] = ()
+    assigned: Mapping[int, Assigned] = {}
+    distance: NDArray[np.int16] | None = None
+    names: Mapping[int, str] = {}
+    broken_off: Mask | None = None
+    values: Sequence[ValueSet] = ()
+
+    def __len__(self) -> int:
+        return len(self.block)
+
+
+def straight(text: Text, ends: Iterable[str]) -> Run:
+    """
+    The rows of programs that run from top to bottom: one per block that has words.
+
+    ends: the M codes that end a program.
+    """
+    has_row = text.blocks.is_macro.copy()
+    has_row[text.words.block] = True
+    block = np.flatnonzero(has_row)
+    row = (np.cumsum(has_row) - 1)[text.words.block]
+    starts = np.zeros(len(block), bool)
+    if len(block):
+        starts[0] = True
+        starts[row[begins_program(text.words)]] = True
+        after = row[is_code(text.words, ends)] + 1
+        starts[after[after < len(block)]] = True
+    return Run(text, text.words, row, block, starts, text.blocks.is_macro[block], repeated(np.int64(0), len(block)))
+
+
+def is_code(words: Words, codes: Iterable[str]) -> Mask:
+    """Per word: whether it is one of some G or M codes."""
+    mask = np.zeros(len(words), bool)
+    for letter in "GM":
+        index = np.flatnonzero(words.address == ord(letter))
+        table = code_set([code for code in codes if code[0] == letter])
+        mask[index] = table[code_numbers(words.value[index])]
+    return mask
+
+
+def begins_program(words: Words) -> Mask:
+    """
+    Per word: an O at the head of its block, be it behind a / or an N word; elsewhere it is no program number.
+
+    But behind the M code that ends a program: what a control puts out may lack the line end there, as in M99O0810.
+    """
+    found = words.address == ord("O")
+    at = np.flatnonzero(found)
+    first = np.searchsorted(words.block, words.block[at])
+    inside = at > first
+    if np.any(inside):
+        before = np.append(0, np.cumsum(is_among(words.address, list(b"N/"))))
+        is_end = (words.address[at - 1] == ord("M")) & is_among(words.value[at - 1], _ENDS)
+        found[at] = (before[at] - before[first] == at - first) | (inside & is_end)
+    return np.asarray(found)

@@ -1,0 +1,114 @@
+"""
+The ways in which a file runs: each of its channels, as it stands or executed, with block skip off and on, with the
+programs that it calls.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Sequence
+from itertools import chain
+
+import msgspec
+import numpy as np
+
+from polarcheck.program.execution.arithmetic import UNKNOWN
+from polarcheck.program.execution.programs import block_text, needs_flow, read_text
+from polarcheck.program.execution.run import Beside, Run, straight
+from polarcheck.program.machines.job import Job
+from polarcheck.program.machines.machine import Machine
+from polarcheck.program.reading.channels import channels
+from polarcheck.program.reading.source import Source
+from polarcheck.program.reading.words import Text
+
+#: What stands in a channel for the text of the others.
+_BLANK = 32
+#: An assignment of a variable by its number.
+_ASSIGNED = re.compile(rb"#[ \t]*+(\d{1,6})[ \t]*+=")
+
+
+def runs(source: Source, machine: Machine, job: Job) -> list[tuple[str, Run]]:
+    """
+    The runs of a file, each with the state of block skip ("" where it makes no difference); those of a channel
+    together, the channels by their numbers.
+
+    The file and each file that it calls are read once, and executed once for each state of block skip; once more only
+    where a program whose number is computed lies in a file that was not read yet. A channel runs for itself, from the
+    power-on states on. It can call the programs of the others.
+    """
+    texts = texts_of(source, machine)
+    called = [_called(text, machine) for text in texts] if len(texts) > 1 else [frozenset[int | str]()]
+    found = []
+    for number, text in enumerate(texts):
+        others = range(len(texts))[:number], range(len(texts))[number + 1 :]
+        at = list(chain(*others))
+        beside = Beside([texts[one] for one in at], frozenset[int | str]().union(*(called[one] for one in at)))
+        found += _runs(text, machine, job, beside)
+    return found
+
+
+def texts_of(source: Source, machine: Machine) -> list[Text]:
+    """Return the text of each channel of a file; nothing is executed."""
+    control = machine.control
+    texts = [read_text(one, machine) for one in channels(source, control.channel_mark, control.line_comments)]
+    return _with_programs(texts) if len(texts) > 1 else texts
+
+
+def _with_programs(channels: Sequence[Text]) -> list[Text]:
+    """The channels that have more than what stands before the first mark of one; a single one is the file itself."""
+
+    def has_own(text: Text) -> bool:
+        other = next(one for one in channels if one is not text).source.code
+        own = np.flatnonzero(text.source.code != other)
+        own = own[text.source.code[own] != _BLANK]
+        blocks = np.searchsorted(text.blocks.start, own, side="right") - 1
+        return bool(np.isin(text.words.start, own).any() or text.blocks.is_macro[blocks].any())
+
+    found = [text for text in channels if has_own(text)] or [channels[0]]
+    if len(found) > 1:
+        return found
+    (only,) = found
+    return [msgspec.structs.replace(only, source=msgspec.structs.replace(only.source, channel=""))]
+
+
+def _called(text: Text, machine: Machine) -> frozenset[int | str]:
+    """The numbers and names of the programs that a channel calls."""
+    if not needs_flow(text, machine.macro.flow_codes):
+        return frozenset()
+    from polarcheck.program.execution.listing import Listing  # most files need none of it
+
+    return frozenset(Listing([text], machine).named_by([0], by_number_only=True))
+
+
+def _runs(text: Text, machine: Machine, job: Job, beside: Beside) -> list[tuple[str, Run]]:
+    """The runs of one channel; beside: the others."""
+    if not needs_flow(text, machine.macro.flow_codes):
+        return [("", straight(text, machine.m_codes.program_end))]
+    from polarcheck.program.execution.executions import executed  # most files need none of it
+
+    states: tuple[str, ...] = ("off", "on") if job.run.block_skip == "both" else (job.run.block_skip,)
+    if not (np.any(text.words.address == ord("/")) or _skips_macro(text)):
+        states = ("off",)
+    found = executed(text, machine, _without_values(job, machine, beside.texts), states, beside)
+    return list(zip(states, found, strict=True)) if len(found) > 1 else [("", found[0])]
+
+
+def _without_values(job: Job, machine: Machine, others: Iterable[Text]) -> Job:
+    """The job of a channel: common variables that another channel assigns may hold anything, unless the job says it."""
+    common = (*machine.macro.common_variables, *machine.macro.retained_variables)
+    assigned = {
+        number: UNKNOWN
+        for text in others
+        for number in (int(digits) for digits in set(_ASSIGNED.findall(text.source.code.tobytes())))
+        if any(first <= number <= last for first, last in common)
+    }
+    if not assigned:
+        return job
+    run = msgspec.structs.replace(job.run, variables={**assigned, **job.run.variables})
+    return msgspec.structs.replace(job, run=run)
+
+
+def _skips_macro(text: Text) -> bool:
+    """Return True if a macro block of the text begins with / or has one that is no division."""
+    blocks = np.flatnonzero(text.blocks.is_macro).tolist()
+    return any(re.match(r"\s*(?:N\s*\d+\s*)?/", block_text(text, block), re.IGNORECASE) for block in blocks)

@@ -1,0 +1,133 @@
+"""TOML that nobody vouches for: job files, machine files and values of options, within bounds that are named."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from os import PathLike
+from typing import Any
+
+from polarcheck.foundation import bounded
+
+#: Of a job file or machine file, which have some kB [bytes].
+LARGEST = 1_000_000
+#: Levels of tables and lists, and parts of a key with points: no file of ours has more than four.
+_LEVELS = 12
+#: Digits of a whole number; TOML itself ends at 2**63.
+_DIGITS = 18
+_LARGEST_NUMBER = 10**_DIGITS
+_TOO_LONG = f"a whole number has at most {_DIGITS} digits"
+_SHOWN = 40
+
+_STRING_OR_COMMENT = re.compile(
+    r'"""(?:[^\\]|\\.)*?(?:"""|\\?\Z)' + r"|'''.*?(?:'''|\Z)" + r'|"(?:[^"\\\n]|\\.)*+"?' + r"|'[^'\n]*+'?|#[^\n]*+",
+    re.DOTALL,
+)
+# tomllib takes time and memory by the square of the parts. Nothing here goes back, which would cost the same.
+_LONG_KEY = re.compile(rf"(?<![\w-])[\w-]++(?:[ \t]*+\.[ \t]*+[\w-]++){{{_LEVELS}}}", re.ASCII)
+_LONG_NUMBER = re.compile(r"(?<![\d_])\d[\d_]{1000,}+")
+
+#: 3401#0, the bit of a parameter, as a key without quotes.
+_BIT = r"^[ \t]*+(\w{1,20}#\w{1,20})[ \t]*+="
+
+#: 1,5 for 1.5.
+_COMMA = re.compile(r"=[ \t]*+([-+]?\d{1,9}+),(\d{1,9}+)[ \t]*+(?:#.*)?$")
+#: M35 without quotes.
+_UNQUOTED = re.compile(r"[=\[,][ \t]*+([A-Za-z][\w.-]{0,20}+)[ \t]*+(?:[,\]#]|$)")
+
+#: A key without its value, as a commented line of a written file is when only its # was taken away.
+_BARE = re.compile(r"[ \t]*+([\w.-]{1,40}+)[ \t]*+=[ \t]*+(?:#.*)?$")
+
+
+def read_toml(path: str | PathLike[str], what: str, *, pipes: bool = False) -> dict[str, Any]:
+    """
+    The table of a file. what: `job file`, for the message. pipes: whether it may be a pipe.
+
+    Raises ValueError, which says in one line what is wrong, but not with which file.
+    """
+    return parsed(text_of(path, what, pipes=pipes))
+
+
+def text_of(path: str | PathLike[str], what: str, *, pipes: bool = False) -> str:
+    """
+    The text of a file in any encoding of an editor; lines end with LF. Arguments and errors as of read_toml.
+    """
+    try:
+        data = bounded.read_file(path, LARGEST, f"no {what} is", pipes=pipes)
+    except OSError as error:
+        raise ValueError(error.strerror or str(error)) from None
+    return bounded.decoded(data).replace("\r\n", "\n")
+
+
+def parsed(text: str) -> dict[str, Any]:
+    """
+    The table of a text, not nested deeper and without longer numbers than anybody means.
+
+    Raises ValueError, which says in one line what is wrong.
+    """
+    import tomllib
+
+    long_key = _LONG_KEY.search(_STRING_OR_COMMENT.sub(_blank, text))
+    if long_key:
+        raise ValueError(f"a key has more than {_LEVELS} parts: {long_key[0][:_SHOWN]}...")
+    try:
+        table = tomllib.loads(text)
+    except RecursionError:
+        raise ValueError(_too_deep("")) from None
+    except tomllib.TOMLDecodeError as error:
+        raise ValueError(f"{error}{_hint(text, str(error))}") from None
+    except ValueError as error:  # a number that Python does not read: its own text means nothing to a setter
+        raise ValueError(_long_number(text) or str(error)) from None
+    for key, value, level in _values(table):
+        if level > _LEVELS:
+            raise ValueError(_too_deep(key))
+        if isinstance(value, int) and abs(value) >= _LARGEST_NUMBER:
+            raise ValueError(f"{key}: {_TOO_LONG}")
+    return table
+
+
+def _hint(text: str, said: str) -> str:
+    """What to write in the line at fault."""
+    if "'\\'" in said:
+        return "; write / between folders, or the text in single quotes"
+    number = re.search(r"\bline (\d+)", said)
+    line = text.split("\n")[min(int(number[1]), text.count("\n") + 1) - 1] if number else ""
+    if bit := re.match(_BIT, line):
+        return f'; write "{bit[1]}" in quotes: # begins a comment'
+    if bare := _BARE.match(line):
+        return f'; "{bare[1]}" has no value behind the =: write one, or # before the line'
+    if comma := _COMMA.search(line):
+        return f"; write {comma[1]}.{comma[2]}, with a decimal point"
+    if code := _UNQUOTED.search(line):
+        return f'; write "{code[1]}", in quotes'
+    return ""
+
+
+def _blank(match: re.Match[str]) -> str:
+    """A text may be part of a key; a comment is not."""
+    return "" if match[0].startswith("#") else "x"
+
+
+def _too_deep(key: str) -> str:
+    return f"{key}{': ' if key else ''}tables or lists are nested more than {_LEVELS} deep"
+
+
+def _long_number(text: str) -> str:
+    found = _LONG_NUMBER.search(text)
+    if found is None:
+        return ""
+    line = text.count("\n", 0, found.start()) + 1
+    before = text[: found.start()].rpartition("\n")[2].strip()
+    return f"line {line}: {_TOO_LONG}: {before[:_SHOWN]} {found[0][:_SHOWN]}..."
+
+
+def _values(table: dict[str, Any]) -> Iterator[tuple[str, Any, int]]:
+    """All values with their keys and levels, those on the deepest level that is allowed without what is in them."""
+    left: list[tuple[str, Any, int]] = [(key, value, 1) for key, value in reversed(table.items())]
+    while left:
+        key, value, level = left.pop()
+        yield key, value, level
+        if isinstance(value, dict):
+            left += [(f"{key}.{name}", inner, level + 1) for name, inner in reversed(value.items())]
+        elif isinstance(value, list):
+            left += [(key, inner, level + 1) for inner in reversed(value)]

@@ -1,0 +1,1 @@
+"""What a program makes, and whether it is the part asked for."""

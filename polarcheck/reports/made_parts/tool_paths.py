@@ -1,0 +1,133 @@
+"""What sections without cutter compensation make: there the programmed path is that of the tool center."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from polarcheck.columns.contour.overcuts import level_of_rows
+from polarcheck.columns.filling import before
+from polarcheck.columns.metal.finished import turned_columns
+from polarcheck.foundation.arrays import Floats, Mask, Rows
+from polarcheck.foundation.time_limit import keep_time
+from polarcheck.geometry.segments import Curves
+from polarcheck.geometry.shapes.shape import Shape
+from polarcheck.geometry.tolerances import ZERO
+from polarcheck.reports.made_parts.differing_depths import within
+from polarcheck.reports.made_parts.made_depths import Depth, put_together
+from polarcheck.rules.tables import Tables
+from polarcheck.rules.wording.phrases.offsets import called_tool, to_give
+
+if TYPE_CHECKING:
+    from polarcheck.columns.metal.milled import Milled
+    from polarcheck.columns.path.moves import Moves
+    from polarcheck.columns.trace import Trace
+
+
+def depths_of_paths(tables: Tables) -> Iterator[Depth]:
+    """
+    Each Z of sections that never use compensation, with what the cutter leaves and clears there.
+
+    In the frame of the part, as the finished part is: sections at one Z with one R are put together.
+    """
+    trace: Trace = tables["trace"]
+    moves: Moves = tables["tool_center"].moves
+    plain = ~trace.mode.anywhere_in_section(trace.compensation.compensates)[moves.row] & trace.path.cuts[moves.row]
+    plain &= ~(_changes_depth(trace) | above_the_face(trace))[moves.row]
+    chosen = np.flatnonzero(plain & ~np.isnan(moves.start + moves.end) & (moves.length > ZERO))
+    if not len(chosen):
+        return
+    section = trace.mode.section[moves.row]
+    radius = np.fmax(np.abs(trace.compensation.radius_of_move), trace.offsets.cutter_diameter / 2)[moves.row]
+    milled: Milled = tables["milled"]
+    z = trace.path.z[moves.row]
+    is_known, frame = ~np.isnan(z), milled.frame_of_section[section]
+    # Where Z is not known, depths of different sections cannot be compared.
+    level = np.where(is_known, np.round(z, 6), level_of_rows(trace, moves.row))
+    for own in _levels(np.where(is_known, frame, -1), level, radius, chosen):
+        keep_time()
+        # Sections without much more than a step aside, or what is left of a ramp, make nothing.
+        parts = [own[section[own] == number] for number in dict.fromkeys(section[own].tolist())]
+        parts = [part for part in parts if not float(moves.length[part].sum()) < 2 * float(radius[part[0]])]
+        if not parts:
+            continue
+        single = [_depth(trace, moves, part, float(radius[own[0]])) for part in parts]
+        if len(parts) == 1 or single[0].needs:
+            yield from single
+        else:
+            yield from put_together(_depth(trace, moves, np.concatenate(parts), float(radius[own[0]])), single)
+
+
+def _depth(trace: Trace, moves: Moves, own: Rows, cutter: float) -> Depth:
+    """What these moves of a cutter at one Z make."""
+    row = int(moves.row[own[0]])
+    sections = tuple(dict.fromkeys(trace.mode.section[moves.row[own]].tolist()))
+    z = float(trace.path.z[row])
+    if np.isnan(cutter) or not cutter:
+        return Depth(sections, z, np.nan, [], _needs_radius(trace, row))
+    path = Curves(
+        moves.start[own], moves.end[own], moves.center[own], moves.kind[own], np.zeros(len(own), int), moves.row[own]
+    )
+    entry = np.where(trace.path.knows_section_entry, trace.path.section_entry, 0.0)
+    parts = [
+        turned_columns(path[trace.mode.section[path.row] == number], complex(np.exp(1j * np.radians(entry[number]))))
+        for number in sections
+    ]
+    bar = float(trace.lengths.stock_diameter[row])
+    shapes, polygon, is_cleared, swept = _left(Curves.concatenated(parts), cutter, bar)
+    return Depth(sections, z, cutter, shapes, polygon=polygon, is_cleared=is_cleared, swept=swept)
+
+
+def _changes_depth(trace: Trace) -> Mask:
+    """A ramp clears its way at the Z of its end at that end alone, where what follows begins."""
+    return np.asarray(
+        trace.path.moves_z & (np.abs(trace.path.z - before(trace.path.z, trace.blocks.starts, np.nan)) > ZERO)
+    )
+
+
+def above_the_face(trace: Trace) -> Mask:
+    """
+    Rows in the air, one for each: where G0 is not allowed, G1 takes the tool to its place.
+
+    They are no deeper than the tool came to the section, before the face of the part, at Z0, and their section goes on
+    to Z0 or deeper. Where the whole section lies on one side of Z0 nobody knows where the face is, and none is.
+    """
+    inside = np.flatnonzero(trace.mode.section >= 0)
+    deepest = np.full(len(trace.mode.sections), np.inf)
+    np.fmin.at(deepest, trace.mode.section[inside], trace.path.z[inside])
+    above = np.zeros(len(trace), bool)
+    section, z = trace.mode.section[inside], trace.path.z[inside]
+    above[inside] = (z > 0) & (z >= trace.path.z[trace.mode.sections.enter[section]]) & (deepest[section] <= 0)
+    return above
+
+
+def _levels(frame: Rows, level: Floats, radius: Floats, chosen: Rows) -> Iterator[Rows]:
+    """The moves of one cutter at one level in one frame, in the order in which the program comes to them."""
+    columns = np.stack([frame[chosen], level[chosen], np.nan_to_num(radius[chosen], nan=-1)])
+    _, first, number = np.unique(columns, axis=1, return_index=True, return_inverse=True)
+    place = np.argsort(np.argsort(first))[number.ravel()]
+    order = np.argsort(place, kind="stable")
+    yield from np.split(chosen[order], np.flatnonzero(np.diff(place[order])) + 1)
+
+
+def _left(path: Curves, radius: float, bar: float) -> tuple[list[Shape], Any, bool, Any]:
+    """
+    The shapes that a path makes, and an area by which depths are compared: what stands within the path; else what it
+    clears, True; None for a groove alone, whose ends are those of the ways in and out. At last what it clears.
+    """
+    from polarcheck.geometry.polygons.cleared import cleared
+    from polarcheck.geometry.shapes.grooves import GROOVE, shapes_of_cleared
+
+    area, outline, across = cleared(path, radius)
+    shapes = shapes_of_cleared(outline, across, radius, bar)
+    standing = within(area)
+    if standing.is_empty:
+        return shapes, area if across < GROOVE else None, True, area
+    return shapes, standing, False, area
+
+
+def _needs_radius(trace: Trace, row: int) -> str:
+    missing = f"the path is that of the tool, and R of {called_tool(trace.tools, row)} is not known"
+    return f"{missing}: {to_give(trace.tools, trace.machine, row, 'radius')}"

@@ -1,0 +1,1 @@
+"""Programs rewritten and compared: fixes, feeds, convert, compensate, roll, unroll, compare, certify."""

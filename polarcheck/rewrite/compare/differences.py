@@ -1,0 +1,292 @@
+"""What differs between two stretches: path, depth, feeds, and orders on the way."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from difflib import SequenceMatcher
+
+import msgspec
+import numpy as np
+
+from polarcheck.columns.trace import Trace
+from polarcheck.foundation.arrays import Floats, Rows
+from polarcheck.foundation.states import FeedMode
+from polarcheck.geometry import polar
+from polarcheck.geometry.comparison.paths import PathDeviation, path_deviation
+from polarcheck.geometry.tolerances import ZERO
+from polarcheck.rewrite.compare.report import Difference
+from polarcheck.rewrite.compare.steps import Step
+from polarcheck.rewrite.compare.stretches import Stretch, turn_of
+from polarcheck.rules.quantity import Quantity, in_row, rounded
+
+#: F that differ by no more than this share are the same: mm and inch are rounded otherwise.
+_SAME_FEED = 1e-3
+#: So many kinds of change of F, and of orders, stand in a list.
+_LISTED = 20
+#: More orders than this, behind those that are equal at both ends, are not paired.
+_PAIRED = 2000
+
+
+class Part(msgspec.Struct, frozen=True):
+    """A stretch, and the program that it is of."""
+
+    trace: Trace
+    stretch: Stretch
+
+    def line(self, row: int) -> int:
+        """The line of a row in the file."""
+        return int(self.trace.blocks.line_in_file[row])
+
+    def quantity(self, value: float, row: int) -> Quantity:
+        """A value of a row as its program would write it."""
+        return in_row(value, self.trace.lengths, row)
+
+
+def deviation_of(old: Part, new: Part, tolerance: float) -> PathDeviation | None:
+    """Return how far the paths are apart; None where neither moves. Raises TooHardError."""
+    if not len(old.stretch.path) and not len(new.stretch.path):
+        return None
+    return path_deviation(old.stretch.path, new.stretch.path, tolerance)
+
+
+def differences(old: Part, new: Part, deviation: PathDeviation | None, tolerance: float) -> Iterator[Difference]:
+    """Yield what differs between two parts whose paths are known. tolerance: of lengths [mm]."""
+    is_same_path = deviation is None or deviation.is_within
+    if deviation is not None and not is_same_path:
+        yield _of_path(old, new, deviation)
+        yield from _of_depth(old, new, tolerance)
+    if deviation is not None:
+        yield from _feeds_along(old, new, tolerance) if is_same_path else _feeds_apart(old, new)
+    yield from _orders(old, new, tolerance, is_same_path)
+
+
+# ---- path ----
+
+
+def _of_path(old: Part, new: Part, deviation: PathDeviation) -> Difference:
+    place = deviation.place
+    if place is None:
+        missing = [part for part in (old, new) if not len(part.stretch.path)]
+        name = "new" if missing[0] is new else "old"
+        moving = old if missing[0] is new else new
+        line = moving.line(int(moving.stretch.row[0]))
+        text = f"the {name} revision moves nothing here"
+        return Difference(
+            "path", text, old_line=line if moving is old else None, new_line=line if moving is new else None
+        )
+    old_row, new_row = int(old.stretch.row[place.old_move]), int(new.stretch.row[place.new_move])
+    at_old = _place(old, old_row, place.old, place.old_z)
+    at_new = _place(new, new_row, place.new, place.new_z)
+    largest = _largest(old, deviation)
+    size = f"{'' if deviation.is_exact else 'up to '}{old.quantity(largest, old_row).shown('length', 1)}"
+    if old.stretch.section < 0 and largest == 0:
+        size = "C alone"
+    units = [part.quantity(0.0, row).unit for part, row in ((old, old_row), (new, new_row))]
+    if units[0] != units[1]:
+        at_old, at_new = f"{at_old} {units[0]}", f"{at_new} {units[1]}"
+    text = f"the path differs by {size}: {at_old} | {at_new}"
+    return Difference("path", text, 0.0, rounded(largest), "mm", old.line(old_row), new.line(new_row))
+
+
+def _largest(old: Part, deviation: PathDeviation) -> float:
+    """The deviation as a length [mm]: outside of sections that of C is none."""
+    place = deviation.place
+    if old.stretch.section >= 0 or place is None:
+        return deviation.largest
+    apart = abs(place.old - place.new)
+    return apart if apart > ZERO else 0.0
+
+
+def length_of(part: Part, deviation: PathDeviation | None) -> float:
+    """Return the largest deviation of a part [mm]; 0 where nothing moves."""
+    return 0.0 if deviation is None else _largest(part, deviation)
+
+
+def _place(part: Part, row: int, point: complex, third: float) -> str:
+    """`X60 C5 Z-2` in the units of the program; outside of sections Z and X are the point, and C is the third."""
+    trace, section = part.trace, part.stretch.section
+    if section >= 0:
+        point = point / turn_of(trace, section)
+        x, across, z = point.real, point.imag, third
+        name = trace.axes.virtual_axis_of(int(trace.mode.sections.enter[section]))
+        words = f"{name}{_number(part, row, across)}"
+    else:
+        x, z = point.imag, point.real
+        words = f"C{third / part.stretch.c_scale:.3f}".rstrip("0").rstrip(".")
+    x = x / float(trace.lengths.x_factor[row])
+    depth = f" Z{_number(part, row, z)}" if part.stretch.knows_z else ""
+    return f"X{_number(part, row, x)} {words}{depth}"
+
+
+def _number(part: Part, row: int, value: float) -> str:
+    return part.quantity(value, row).shown("length").partition(" ")[0]
+
+
+def depth_of(stretch: Stretch) -> float | None:
+    """Return the least Z of the moves at feed of a section [mm]; None where it is not known."""
+    z = stretch.path.z_end[~stretch.rapid]
+    return rounded(z.min()) if len(z) and stretch.knows_z and not np.isnan(z).any() else None
+
+
+def _of_depth(old: Part, new: Part, tolerance: float) -> Iterator[Difference]:
+    before, after = depth_of(old.stretch), depth_of(new.stretch)
+    if old.stretch.section < 0 or before is None or after is None or abs(before - after) <= tolerance:
+        return
+    rows = [int(part.stretch.row[~part.stretch.rapid][0]) for part in (old, new)]
+    shown = [
+        part.quantity(z, row).shown("length") for part, row, z in zip((old, new), rows, (before, after), strict=True)
+    ]
+    yield Difference("depth", f"the depth was Z{shown[0]} and is Z{shown[1]}", before, after, "mm")
+
+
+# ---- feeds ----
+
+
+def _feeds_along(old: Part, new: Part, tolerance: float) -> Iterator[Difference]:
+    """Where F differs along one path; changes of one F into one other are one difference."""
+    ways = [_ways(part.stretch) for part in (old, new)]
+    totals = [float(way.sum()) for way in ways]
+    if min(totals) <= ZERO:
+        return
+    ends = [np.cumsum(way) / total for way, total in zip(ways, totals, strict=True)]
+    cuts = np.union1d(*ends)
+    middle, share = (cuts + np.append(0.0, cuts[:-1])) / 2, np.diff(cuts, prepend=0.0)
+    at = [np.minimum(np.searchsorted(end, middle), len(end) - 1) for end in ends]
+    differs = _feed_differs(old.stretch, at[0], new.stretch, at[1])
+    # The ends of moves that are the same up to the tolerance leave slivers between them.
+    sliver = 10 * tolerance + 2 * abs(totals[0] - totals[1])
+    groups: dict[tuple[str, str], list[tuple[int, int, float]]] = {}
+    for index in np.flatnonzero(differs & (share * totals[0] > sliver)).tolist():
+        first, second = int(at[0][index]), int(at[1][index])
+        key = _feed(old, first), _feed(new, second)
+        groups.setdefault(key, []).append((first, second, float(share[index]) * totals[0]))
+    for (before, after), places in list(groups.items())[:_LISTED]:
+        first, second, _ = places[0]
+        way = sum(length for *_, length in places)
+        row, new_row = int(old.stretch.row[first]), int(new.stretch.row[second])
+        text = f"{before} has become {after} along {old.quantity(way, row).shown('length')}"
+        yield Difference("feed", text, before, after, "", old.line(row), new.line(new_row), rounded(way))
+    if len(groups) > _LISTED:
+        yield Difference("feed", f"and {len(groups) - _LISTED} other changes of F")
+
+
+def _ways(stretch: Stretch) -> Floats:
+    path = stretch.path
+    length = polar.length(path.start, path.end, path.center, path.kind)
+    return np.asarray(np.hypot(np.nan_to_num(length), path.z_end - path.z_start))
+
+
+def _feed_differs(old: Stretch, first: Rows, new: Stretch, second: Rows) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
+    rapid = old.rapid[first], new.rapid[second]
+    feed, other = old.feed[first], new.feed[second]
+    is_known = ~np.isnan(feed), ~np.isnan(other)
+    same = (np.abs(feed - other) <= _SAME_FEED * np.abs(feed)) & (old.feed_mode[first] == new.feed_mode[second])
+    at_feed = ~rapid[0] & ~rapid[1]
+    return np.asarray((rapid[0] != rapid[1]) | (at_feed & ((is_known[0] != is_known[1]) | (is_known[0] & ~same))))
+
+
+def _feed(part: Part, move: int) -> str:
+    """`F120 mm/min`, `F0.1 mm/rev`, `rapid traverse`."""
+    stretch = part.stretch
+    if stretch.rapid[move]:
+        return "rapid traverse"
+    feed = float(stretch.feed[move])
+    if np.isnan(feed):
+        return "no F"
+    quantity = part.quantity(feed, int(stretch.row[move]))
+    shown = quantity.shown("feed")
+    if stretch.feed_mode[move] == FeedMode.PER_REVOLUTION:
+        shown = quantity.as_feed.shown("length", 2) + "/rev"
+    return f"F{shown}"
+
+
+def _feeds_apart(old: Part, new: Part) -> Iterator[Difference]:
+    """The F of two paths that are not the same: each once."""
+    feeds = [list(dict.fromkeys(_feed(part, move) for move in _changes_of_feed(part.stretch))) for part in (old, new)]
+    if sorted(feeds[0]) != sorted(feeds[1]):
+        shown = [", ".join(each[:_LISTED]) or "none" for each in feeds]
+        yield Difference("feed", f"F was {shown[0]} and is {shown[1]}", shown[0], shown[1])
+
+
+def _changes_of_feed(stretch: Stretch) -> list[int]:
+    if not len(stretch.row):
+        return []
+    feed = np.nan_to_num(stretch.feed, nan=-1)
+    changes = (np.diff(feed) != 0) | (np.diff(stretch.rapid) != 0) | (np.diff(stretch.feed_mode) != 0)
+    return [0, *(np.flatnonzero(changes) + 1).tolist()]
+
+
+# ---- orders ----
+
+
+def _orders(old: Part, new: Part, tolerance: float, is_same_path: bool) -> Iterator[Difference]:
+    before, after = list(old.stretch.steps), list(new.stretch.steps)
+    # Equal ends are cut off: what is left is short.
+    head = 0
+    while head < min(len(before), len(after)) and before[head].tokens == after[head].tokens:
+        head += 1
+    tail = 0
+    while tail < min(len(before), len(after)) - head and before[-1 - tail].tokens == after[-1 - tail].tokens:
+        tail += 1
+    pairs = [*zip(before[:head], after[:head], strict=True)]
+    if tail:
+        pairs += zip(before[-tail:], after[-tail:], strict=True)
+    left, right = before[head : len(before) - tail], after[head : len(after) - tail]
+    found: list[Difference] = []
+    if max(len(left), len(right)) > _PAIRED:
+        found.append(Difference("order", f"{len(left)} orders have become {len(right)} others"))
+    else:
+        matcher = SequenceMatcher(None, [step.tokens for step in left], [step.tokens for step in right], autojunk=False)
+        for kind, low, high, new_low, new_high in matcher.get_opcodes():
+            if kind == "equal":
+                pairs += zip(left[low:high], right[new_low:new_high], strict=True)
+            else:
+                found.append(_changed_orders(old, new, left[low:high], right[new_low:new_high]))
+    for step, other in pairs:
+        difference = _of_pair(old, step, new, other, tolerance, is_same_path)
+        if difference is not None:
+            found.append(difference)
+    found.sort(key=lambda each: each.old_line or each.new_line or 0)
+    yield from found[:_LISTED]
+    if len(found) > _LISTED:
+        yield Difference("order", f"and {len(found) - _LISTED} other orders")
+
+
+def _changed_orders(old: Part, new: Part, left: Sequence[Step], right: Sequence[Step]) -> Difference:
+    was, is_now = (", ".join(step.text for step in steps[:_LISTED]) for steps in (left, right))
+    if not right:
+        text = f"{was} is missing"
+    elif not left:
+        text = f"{is_now} is added"
+    else:
+        text = f"{was} has become {is_now}"
+    old_line = old.line(left[0].row) if left else None
+    new_line = new.line(right[0].row) if right else None
+    return Difference("order", text, was or None, is_now or None, "", old_line, new_line)
+
+
+def _of_pair(old: Part, step: Step, new: Part, other: Step, tolerance: float, is_same_path: bool) -> Difference | None:
+    """Orders of the same words: their values, and where they stand on the path."""
+    lines = old.line(step.row), new.line(other.row)
+    for value, after in zip(step.values, other.values, strict=True):
+        if abs(value - after) > tolerance or np.isnan(value) != np.isnan(after):
+            return Difference("order", f"{step.text} has become {other.text}", step.text, other.text, "", *lines)
+    if not is_same_path:
+        return None
+    here, there = _where(old, step.row), _where(new, other.row)
+    if np.abs(np.nan_to_num(np.subtract(here, there))).max() <= 2 * tolerance:
+        return None
+    places = [_place(old, step.row, complex(*here[:2]), here[2]), _place(new, other.row, complex(*there[:2]), there[2])]
+    text = f"{step.text} stands elsewhere on the path: {places[0]} | {places[1]}"
+    return Difference("place", text, places[0], places[1], "", *lines)
+
+
+def _where(part: Part, row: int) -> tuple[float, float, float]:
+    """Where the tool stands before a row, in the coordinates of the path; NaN where it is not known."""
+    path = part.trace.path
+    z = float(path.z[row - 1]) if row and not part.trace.blocks.starts[row] else np.nan
+    if part.stretch.section >= 0:
+        point = complex(path.start[row]) * turn_of(part.trace, part.stretch.section)
+        return point.real, point.imag, z
+    c = 0.0 if part.stretch.is_rewritten else float(path.c_angle_before[row]) * part.stretch.c_scale
+    return z, float(path.x_before[row]), c

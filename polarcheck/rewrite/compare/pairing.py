@@ -1,0 +1,100 @@
+"""Which polar sections of two revisions belong together: by what they do, not by their number."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from polarcheck.foundation.arrays import Floats, Rows
+from polarcheck.geometry.comparison.anchors import longest_rise
+from polarcheck.rewrite.compare.stretches import Stretch
+
+#: Sections whose sizes differ by more than this share of them are not the same one, unless nothing else is left.
+_LIKE = 0.25
+#: So many pairs of sections are looked at; beyond that they are taken by their number.
+_PAIRS = 1_000_000
+
+
+def paired(old: Sequence[Stretch], new: Sequence[Stretch]) -> tuple[Rows, Rows]:
+    """
+    Return for each old section the new one that belongs to it, -1 for none; and the old ones that are in their order.
+
+    The most alike are paired first. Those that are left over between two pairs are taken in order, if both revisions
+    have as many.
+    """
+    partner = np.full(len(old), -1)
+    if len(old) == len(new) and _alike(old, new):
+        return np.arange(len(old)), np.arange(len(old))
+    if len(old) * len(new) > _PAIRS:
+        count = min(len(old), len(new))
+        partner[:count] = np.arange(count)
+        return partner, np.arange(count)
+    if len(old) and len(new):
+        _pair_most_alike(partner, _features(old), _features(new))
+    ordered = _in_order(partner)
+    _pair_left_over(partner, ordered, len(new))
+    return partner, _in_order(partner)
+
+
+def _alike(old: Sequence[Stretch], new: Sequence[Stretch]) -> bool:
+    first, second = _features(old), _features(new)
+    return bool((_apart(first, second) <= _LIKE * _size(first)).all())
+
+
+def _features(sections: Sequence[Stretch]) -> Floats:
+    """Per section [mm]: where it begins, the box that it fills on the part, its lowest Z; for one without moves 0."""
+    rows = []
+    for section in sections:
+        is_known = section.path.is_known
+        path, rapid = section.path[is_known], section.rapid[is_known]
+        if not len(path):
+            rows.append([0.0] * 8)
+            continue
+        points = np.append(path.start[:1], path.end)
+        cuts = points if rapid.all() else points[1:][~rapid]
+        box = [cuts.real.min(), cuts.real.max(), cuts.imag.min(), cuts.imag.max()]
+        rows.append([*box, points[0].real, points[0].imag, path.z_end.min(), np.abs(np.diff(points)).sum() / 4])
+    return np.array(rows, np.float64).reshape(-1, 8)
+
+
+def _apart(first: Floats, second: Floats) -> Floats:
+    return np.asarray(np.abs(first - second).max(axis=-1))
+
+
+def _size(features: Floats) -> Floats:
+    """A length by which differences of a section are judged [mm]."""
+    return np.asarray(np.maximum(np.abs(features[..., :4]).max(axis=-1), 1.0))
+
+
+def _pair_most_alike(partner: Rows, old: Floats, new: Floats) -> None:
+    apart = _apart(old[:, None], new[None])
+    is_like = apart <= _LIKE * _size(old)[:, None]
+    first, second = np.nonzero(is_like)
+    # Equal ones in the order of the programs.
+    order = np.lexsort((np.abs(first - second), np.round(apart[first, second], 4)))
+    taken = np.zeros(len(new), bool)
+    for a, b in zip(first[order].tolist(), second[order].tolist(), strict=True):
+        if partner[a] < 0 and not taken[b]:
+            partner[a], taken[b] = b, True
+
+
+def _in_order(partner: Rows) -> Rows:
+    """The old sections with a partner that come in the same order in both revisions."""
+    own = np.flatnonzero(partner >= 0)
+    return own[longest_rise(partner[own])]
+
+
+def _pair_left_over(partner: Rows, ordered: Rows, count: int) -> None:
+    """Between two pairs, those without a partner belong together if there are as many of both."""
+    free = np.ones(count, bool)
+    free[partner[partner >= 0]] = False
+    bounds = zip(
+        (-1, *ordered.tolist()), (*ordered.tolist(), len(partner)), (-1, *partner[ordered].tolist()),
+        (*partner[ordered].tolist(), count), strict=True,
+    )  # fmt: skip
+    for low, high, new_low, new_high in list(bounds):
+        left = [index for index in range(low + 1, high) if partner[index] < 0]
+        right = [index for index in range(new_low + 1, new_high) if free[index]]
+        if len(left) == len(right):
+            partner[left] = right

@@ -1,0 +1,137 @@
+"""Contours with G41 or G42 written out as paths of the tool center, for a control without compensation in the mode."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from polarcheck.columns.path.moves import Moves
+from polarcheck.columns.path.tool_center import ToolCenter
+from polarcheck.columns.trace import Trace
+from polarcheck.foundation.arrays import Mask
+from polarcheck.geometry.cutter_compensation.compensation import Phase
+from polarcheck.geometry.tolerances import ZERO
+from polarcheck.rewrite.compensate.moves import Move, of_section
+from polarcheck.rewrite.compensate.sections import compensated_sections
+from polarcheck.rewrite.compensate.writing import Stroke, Strokes, new_blocks
+from polarcheck.rewrite.writing.blocks import NewBlock, edit_before, edits_of, with_edits
+from polarcheck.rewrite.writing.original import Original
+from polarcheck.rewrite.writing.outcome import Figure, Outcome, RefusedError, refusal_at, refused_at
+from polarcheck.rewrite.writing.reading_back import read_back_on_part, require_equal
+from polarcheck.rewrite.writing.style_of import style_of
+from polarcheck.rewrite.writing.unchanged import changed_outside, changed_words
+from polarcheck.rules.wording.phrases.offsets import called_tool, to_give
+
+#: What rounding to the least increment and chords may shift the path by, in least increments.
+_INCREMENTS = 1.5
+
+
+def centered(original: Original) -> Outcome:
+    """
+    Return the program with the path of the tool center in the place of its contours, without G41, G42 and G40.
+
+    The result is read back: its tool center runs as that of the original does.
+    Raises RefusedError where a path is not known or the control would object to it; TooHardError.
+    """
+    trace = original.trace
+    tool_center: ToolCenter = original.tables["tool_center"]
+    compensated = trace.mode.anywhere_in_section(trace.compensation.compensates)
+    sections = compensated_sections(trace)
+    _require_path(trace, tool_center, compensated)
+    style, machine = style_of(trace), original.settings.machine
+    strokes = _strokes(trace, tool_center.moves, compensated)
+    blocks = new_blocks(trace, strokes, style)
+    cutters = list(_cutters(trace, sections))
+    edits = edits_of(original, blocks, style, machine)
+    first = {
+        int(trace.run.block[trace.mode.sections.enter[section]]): f"TOOL CENTER PATH OF {tool} WITH R{radius}"
+        for section, tool, radius in cutters
+    }
+    edits += [edit_before(original, block, [NewBlock(comment=text)], style, machine) for block, text in first.items()]
+    data, origin = with_edits(original, sorted(edits))
+    step = float(np.max(trace.lengths.least_step))
+    result = read_back_on_part(original, data, original.settings, origin, _INCREMENTS * step + 1e-3)
+    require_equal(result)
+    if changed := [*changed_words(trace, result.new.trace), *changed_outside(trace, result.new.trace)]:
+        raise RefusedError(changed)
+    figures = [
+        Figure("sections written as the path of the tool center", len(sections)),
+        Figure("largest distance of the path from that of the original", result.deviation, "mm"),
+    ]
+    notes = [
+        f"{tool} with R {radius}: another R in the offset table changes nothing any more" for _, tool, radius in cutters
+    ]
+    return Outcome(data, origin, [], figures, list(dict.fromkeys(notes)))
+
+
+def _require_path(trace: Trace, tool_center: ToolCenter, compensated: Mask) -> None:
+    """Raise RefusedError where the path of the tool center is not known, or not that of the contour."""
+    moves = tool_center.moves
+    unknown = np.flatnonzero(trace.compensation.compensates & trace.path.travels & np.isnan(trace.compensation.radius))
+    if len(unknown):
+        row = int(unknown[0])
+        missing = to_give(trace.tools, trace.machine, row, "radius")
+        raise refused_at(trace, row, f"R of {called_tool(trace.tools, row)} is not known: {missing}")
+    objections = {
+        "the tool does not fit into this arc": tool_center.inside_arc_too_small,
+        "the tool center would run against the program": tool_center.interferes,
+        "the paths of the tool center do not meet at its end": tool_center.no_intersection,
+        "the control does not know the next move in time": tool_center.movement_missing,
+        "the center of the arc is its start or its end": tool_center.arc_center_on_path,
+    }
+    refusals = [
+        refusal_at(trace, row, f"{text}: there the path is wrong already")
+        for text, rows in objections.items()
+        for row in np.flatnonzero(rows & compensated)[:5].tolist()
+    ]
+    rows = moves.row[~moves.known & compensated[moves.row]]
+    text = "where this move begins is not known: write X and C before it"
+    refusals += [refusal_at(trace, row, text) for row in rows[:1].tolist()]
+    if moves.allowance.any():
+        row = int(moves.row[np.argmax(moves.allowance != 0)])
+        refusals.append(refusal_at(trace, row, "an infeed cycle makes the passes of its section"))
+    slower = moves.row[(moves.arc_share != 1) & compensated[moves.row]]
+    text = "F along this arc is that of the contour, not of the tool center: switch that off before"
+    refusals += [refusal_at(trace, row, text) for row in slower[:1].tolist()]
+    if refusals:
+        raise RefusedError(sorted(refusals, key=lambda refusal: refusal.line))
+
+
+def _strokes(trace: Trace, moves: Moves, compensated: Mask) -> Strokes:
+    """The moves of all rows whose path is another than the programmed one, and rows with codes that are left out."""
+    writes = trace.compensation.writes_side | trace.compensation.writes_cancel
+    result: dict[int, list[Stroke]] = {row: [] for row in np.flatnonzero(writes & compensated).tolist()}
+    changed = np.zeros(len(trace), bool)
+    changed[moves.row[moves.phase != Phase.CANCELLED]] = True
+    for row in np.flatnonzero(changed & compensated & trace.path.on_plane).tolist():
+        result.setdefault(row, [])
+    for section in np.unique(trace.mode.section[list(result)]).tolist():
+        new = [move for move in of_section(trace, moves, section) if move.row in result]
+        for move in _without_short(new, float(trace.lengths.least_step[new[0].row])):
+            result[move.row].append(Stroke(move.piece, z=None if move.is_level else move.ends))
+    return dict(sorted(result.items()))
+
+
+def _without_short(moves: Sequence[Move], shortest: float) -> list[Move]:
+    """Moves without the lines between two others that are shorter [mm], as at corners that are all but smooth."""
+    result: list[Move] = []
+    for move, following in zip(moves, [*moves[1:], None], strict=True):
+        piece = move.piece
+        if result and following is not None and piece.center is None and move.is_level:
+            is_between = abs(following.piece.start - piece.end) <= ZERO
+            if is_between and abs(piece.end - result[-1].piece.end) < shortest and piece.length > ZERO:
+                continue
+        result.append(move)
+    return result
+
+
+def _cutters(trace: Trace, sections: list[int]) -> Iterator[tuple[int, str, str]]:
+    """Each section with its tool, as it is called, and R in the units of the program."""
+    for section in sections:
+        rows = np.flatnonzero((trace.mode.section == section) & trace.compensation.compensates & trace.path.travels)
+        if not len(rows):
+            continue
+        row = int(rows[0])
+        radius = abs(float(trace.compensation.radius[row])) / float(trace.lengths.scale[row])
+        yield section, called_tool(trace.tools, row), f"{radius:.4f}".rstrip("0")

@@ -1,0 +1,180 @@
+"""Paths of the tool center written as contours of the part with G41 or G42."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import msgspec
+
+from polarcheck.columns.metal.bar import Bar
+from polarcheck.columns.metal.milled import Milled
+from polarcheck.columns.path.moves import Moves
+from polarcheck.columns.trace import Trace
+from polarcheck.program.machines.machine import Machine
+from polarcheck.rewrite.compensate.candidates import Candidate
+from polarcheck.rewrite.compensate.centering import centered
+from polarcheck.rewrite.compensate.contours import SIDES, contours_of
+from polarcheck.rewrite.compensate.moves import Move
+from polarcheck.rewrite.compensate.parallel import NoContourError
+from polarcheck.rewrite.compensate.pieces import Piece
+from polarcheck.rewrite.compensate.ramps import Contour, with_ramps
+from polarcheck.rewrite.compensate.same_part import CompensatedContour, Proof, require_same_part
+from polarcheck.rewrite.compensate.sections import Section, sections_of
+from polarcheck.rewrite.compensate.sides import Swept
+from polarcheck.rewrite.compensate.writing import Stroke, new_blocks
+from polarcheck.rewrite.writing.blocks import edits_of, with_edits
+from polarcheck.rewrite.writing.original import Original
+from polarcheck.rewrite.writing.outcome import Figure, Outcome, RefusedError, refused_at
+from polarcheck.rewrite.writing.style_of import style_of
+from polarcheck.rules.wording.phrases.offsets import called_tool
+
+#: A ramp at one depth in the place of a stretch that goes down by less [mm].
+_SAME_DEPTH = 0.01
+
+__all__ = ["SIDES", "Compensating", "centered", "compensated"]
+
+
+class Compensating(msgspec.Struct, frozen=True):
+    """side: one of SIDES where the program does not say on which side of its paths the part is; else empty."""
+
+    side: str = ""
+
+
+def compensated(original: Original, options: Compensating = Compensating()) -> Outcome:  # noqa: B008
+    """
+    Return the program with G41 or G42 and the contour of the part in the place of the paths of the tool center.
+
+    R of the cutter is that of its tool offset in the job. The result is read back: the part is the same.
+    Raises RefusedError where a section has no contour, the side of the part or R is not known, or the control would not
+    make the same part; TooHardError.
+    """
+    trace = original.trace
+    moves: Moves = original.tables["tool_center"].moves
+    milled: Milled = original.tables["milled"]
+    bar: Bar = original.tables["bar"]
+    sections = sections_of(trace, moves, bar.known.largest)
+    swept = Swept(trace, moves, milled.radius[moves.row])
+    chosen = contours_of(trace, sections, swept, options.side)
+    try:
+        data, origin, contours, proof = _written(original, swept, sections, chosen, by_moves=True)
+    except RefusedError as error:
+        # Where a move to a contour is no good start-up, the contour's first stretch is.
+        try:
+            data, origin, contours, proof = _written(original, swept, sections, chosen, by_moves=False)
+        except RefusedError:
+            raise error from None
+    figures = [
+        Figure("sections with G41 or G42 and the contour", len(sections)),
+        Figure("contours", len(contours)),
+        Figure("largest difference of the part", proof.part, "mm"),
+        Figure("largest distance of the tool center from its path", proof.path, "mm"),
+    ]
+    return Outcome(data, origin, [], figures, _notes(trace, contours))
+
+
+def _written(
+    original: Original,
+    swept: Swept,
+    sections: Sequence[Section],
+    chosen: Sequence[Sequence[tuple[Candidate, Contour]]],
+    by_moves: bool,
+) -> tuple[bytes, list[int], list[CompensatedContour], Proof]:
+    """The new program, read back. by_moves: moves to a contour and away from it become ramps."""
+    trace, machine = original.trace, original.settings.machine
+    contours = [ramped for pair in zip(sections, chosen, strict=True) for ramped in _ramped(trace, *pair, by_moves)]
+    style = style_of(trace)
+    blocks = new_blocks(trace, _strokes(trace, contours, machine), style)
+    data, origin = with_edits(original, edits_of(original, blocks, style, machine))
+    return data, origin, contours, require_same_part(original, swept, data, origin, contours)
+
+
+def _ramped(
+    trace: Trace, section: Section, chosen: Sequence[tuple[Candidate, Contour]], by_moves: bool
+) -> list[CompensatedContour]:
+    """The contours of a section with their ramps."""
+    result: list[CompensatedContour] = []
+    free = 0
+    for index, (candidate, contour) in enumerate(chosen):
+        following = chosen[index + 1][0].first if index + 1 < len(chosen) else candidate.high
+        low, high = max(candidate.low, free), min(candidate.high, following)
+        try:
+            ramped = with_ramps(
+                section.moves, contour, *((low, high) if by_moves else (contour.first, contour.last + 1))
+            )
+        except NoContourError as error:
+            raise refused_at(trace, section.moves[max(error.move, 0)].row, str(error)) from None
+        result.append(CompensatedContour(section, contour, ramped))
+        free = max(contour.last, ramped.leaves, *(piece.move for piece in ramped.contour)) + 1
+    return result
+
+
+# ---- to blocks ----
+
+
+def _strokes(trace: Trace, contours: Sequence[CompensatedContour], machine: Machine) -> dict[int, list[Stroke]]:
+    """The new moves of all contours, by the rows in whose place they stand."""
+    result: dict[int, list[Stroke]] = {}
+    for contour in contours:
+        moves, ramped = contour.section.moves, contour.ramped
+        key = "compensation_right" if contour.path.aside > 0 else "compensation_left"
+        on, off = machine.codes(key)[0], machine.codes("compensation_off")[0]
+        numbers = range(*_span(contour))
+        for number in numbers:
+            result[moves[number].row] = []
+        start = ramped.contour[0].start
+        if ramped.enters >= 0:
+            move = moves[ramped.enters]
+            result[move.row] = [Stroke(Piece(move.piece.start, start), (on,), _depth(move))]
+        else:
+            first = moves[ramped.contour[0].move]
+            _require_level(trace, first, ramped.contour[0])
+            result[moves[numbers[0]].row].append(Stroke(Piece(first.piece.start, start), (on,)))
+        for piece, following in zip(ramped.contour, [*ramped.contour[1:], None], strict=True):
+            move = moves[piece.move]
+            is_last = following is None or following.move != piece.move
+            result[move.row].append(Stroke(piece, z=_depth(move) if is_last else None))
+        for number in numbers:
+            if not result[moves[number].row]:
+                _require_level(trace, moves[number])
+        last = moves[numbers[-1]]
+        end = ramped.contour[-1].end
+        if ramped.leaves >= 0:
+            move = moves[ramped.leaves]
+            result[move.row] = [Stroke(Piece(end, move.piece.end), (off,), _depth(move))]
+        else:
+            result[last.row].append(Stroke(Piece(end, ramped.back), (off,)))
+    return dict(sorted(result.items()))
+
+
+def _span(contour: CompensatedContour) -> tuple[int, int]:
+    """The numbers of the moves of a contour, with the arcs that lead to it and away from it."""
+    numbers = [piece.move for piece in contour.ramped.contour]
+    return min(contour.path.first, *numbers), max(contour.path.last, *numbers) + 1
+
+
+def _depth(move: Move) -> float | None:
+    return None if move.is_level else move.ends
+
+
+def _require_level(trace: Trace, move: Move, rest: Piece | None = None) -> None:
+    """
+    Raise RefusedError for a move that is left out, or whose beginning is a ramp, and goes down.
+
+    rest: what of the contour is left beside it; it goes down by as much on a way that is shorter by all but nothing.
+    """
+    share = 1.0
+    if rest is not None and move.piece.sweep:
+        share = 1 - rest.sweep / move.piece.sweep
+    if not move.is_level and abs(move.ends - move.begins) * share > _SAME_DEPTH:
+        raise refused_at(trace, move.row, "Z moves here, where the contour has no move of its own: move Z alone")
+
+
+def _notes(trace: Trace, contours: Sequence[CompensatedContour]) -> list[str]:
+    """What to enter in the offset table, and on which side of which contours the tool is."""
+    result = []
+    for contour in contours:
+        row = contour.section.moves[contour.path.first].row
+        scale = float(trace.lengths.scale[row])
+        tool = called_tool(trace.tools, row)
+        result.append(f"{tool}: enter R {contour.section.radius / scale:.4f} in its tool offset, nose type 0 or 9")
+    return list(dict.fromkeys(result))

@@ -1,0 +1,179 @@
+"""The contours that sections of tool center paths run along, and on which side of the path each has the part."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import msgspec
+import numpy as np
+
+from polarcheck.columns.trace import Trace
+from polarcheck.geometry.tolerances import ROUNDING
+from polarcheck.rewrite.compensate.candidates import Candidate, candidates_of
+from polarcheck.rewrite.compensate.moves import Move
+from polarcheck.rewrite.compensate.parallel import NEAR
+from polarcheck.rewrite.compensate.ramps import Contour
+from polarcheck.rewrite.compensate.sections import Section
+from polarcheck.rewrite.compensate.sides import Swept, points_along
+from polarcheck.rewrite.writing.outcome import Refusal, RefusedError, refusal_at, refused_at
+
+#: On which side of all paths the cutter is, seen along them: left is G41, right is G42; or where their parts are.
+SIDES = ("left", "right", "part-inside", "part-outside")
+#: Passes round one part have sizes within this factor.
+_SAME_SIZE = 2.0
+
+#: The contours of a section, in order.
+Chosen = list[tuple[Candidate, Contour]]
+
+
+class _Path(msgspec.Struct, frozen=True):
+    """
+    A candidate and its section.
+
+    frame: of the part. center: of the ring, in that frame [mm]. size: its largest distance from there [mm].
+    """
+
+    section: Section
+    candidate: Candidate
+    frame: int
+    center: complex
+    size: float
+
+    def is_about_part_of(self, other: _Path) -> bool:
+        """Both may be passes round one part."""
+        near = abs(self.center - other.center) <= max(self.section.radius, other.section.radius)
+        sizes = self.size <= _SAME_SIZE * other.size and other.size <= _SAME_SIZE * self.size
+        return self.frame == other.frame and near and sizes
+
+
+def contours_of(trace: Trace, sections: Sequence[Section], swept: Swept, side: str) -> list[Chosen]:
+    """
+    Return the contours of each section.
+
+    side: one of SIDES where the program does not say on which side the part is; empty to see what the program says.
+    Raises RefusedError where there is none, or its side is not known.
+    """
+    paths = [list(_paths(trace, section, swept, side)) for section in sections]
+    rings = [path for own in paths for path in own if path.candidate.ring is not None]
+    known = [path for path in rings if len(path.candidate.part_sides) == 1]
+    refusals: list[Refusal] = []
+    result = []
+    for section, own in zip(sections, paths, strict=True):
+        part_sides = []
+        for path in own:
+            aside = _given(trace, path, side) if side else _aside(path, known)
+            if not aside:
+                refusals.append(_ambiguous(trace, path))
+            part_sides.append(aside)
+        result.append(_joined(trace, section.moves, [path.candidate for path in own], part_sides))
+    if refusals:
+        raise RefusedError(refusals)
+    return result
+
+
+def _paths(trace: Trace, section: Section, swept: Swept, side: str) -> Iterator[_Path]:
+    """The candidates of a section. Raises RefusedError where there is none."""
+    candidates = candidates_of(trace, section, swept, side)
+    if not candidates:
+        text = "nothing of its path is a contour: it does not close, and has no moves to it and away from it"
+        row = section.moves[0].row if section.moves else int(trace.mode.sections.enter[section.number])
+        raise refused_at(trace, row, text)
+    frame, turn = swept.frame_of(section.number)
+    for candidate in candidates:
+        pieces = [move.piece for move in section.moves[candidate.first : candidate.last + 1]]
+        points = points_along(pieces) * turn
+        center = complex(points.mean())
+        yield _Path(section, candidate, frame, center, float(np.abs(points - center).max()))
+
+
+def _joined(
+    trace: Trace, moves: Sequence[Move], candidates: Sequence[Candidate], part_sides: Sequence[float]
+) -> list[tuple[Candidate, Contour]]:
+    """The contours; turns that follow one another at several depths are one."""
+    result: list[tuple[Candidate, Contour]] = []
+    for candidate, aside in zip(candidates, part_sides, strict=True):
+        closed = candidate.ring is not None and not candidate.ring.aside and _comes_back(moves, candidate)
+        contour = Contour(candidate.first, candidate.last, aside, closed)
+        if result and _goes_on(trace, moves, result[-1][1], contour):
+            before, began = result.pop()
+            candidate = msgspec.structs.replace(candidate, first=before.first, low=before.low)
+            contour = msgspec.structs.replace(contour, first=began.first)
+        result.append((candidate, contour))
+    return result
+
+
+def _goes_on(trace: Trace, moves: Sequence[Move], before: Contour, contour: Contour) -> bool:
+    """A ring begins where the one above it has ended, with so few blocks between them that compensation stays on."""
+    last, first = moves[before.last], moves[contour.first]
+    between = range(last.row + 1, first.row)
+    stops = trace.blocks.codes(*trace.machine.m_codes.stops_reading_ahead)
+    return (
+        before.closed
+        and contour.closed
+        and before.aside == contour.aside
+        and before.last + 1 == contour.first
+        and abs(last.piece.end - first.piece.start) <= ROUNDING
+        and len(between) <= max(trace.machine.compensation.read_ahead, 3) - 2
+        and not stops[list(between)].any()
+    )
+
+
+def _comes_back(moves: Sequence[Move], candidate: Candidate) -> bool:
+    return abs(moves[candidate.last].piece.end - moves[candidate.first].piece.start) <= NEAR
+
+
+# ---- which side ----
+
+
+def _aside(path: _Path, known: Sequence[_Path]) -> float:
+    """
+    The distance of the contour to the left of a path [mm]; 0 where its side is not known.
+
+    Passes round one part have it on the same side. Where the side of a ring is ambiguous, rings round the same part
+    decide, then those of the section, then those of the program.
+    """
+    candidate, radius = path.candidate, path.section.radius
+    if candidate.ring is None:
+        sides = candidate.part_sides or candidate.fallback_sides
+        return sides[0] if len(sides) == 1 else 0.0
+    if len(candidate.part_sides) == 1:
+        return candidate.part_sides[0]
+    groups = (
+        [other for other in known if path.is_about_part_of(other)],
+        [other for other in known if other.section is path.section],
+        known,
+    )
+    for group in groups:
+        is_inside = {other.candidate.is_inside(other.candidate.part_sides[0]) for other in group}
+        if len(is_inside) == 1:
+            inner = radius if candidate.is_inside(radius) else -radius
+            return inner if is_inside.pop() else -inner
+        if is_inside:
+            return 0.0
+    return candidate.fallback_sides[0] if len(candidate.fallback_sides) == 1 and not candidate.part_sides else 0.0
+
+
+def _ambiguous(trace: Trace, path: _Path) -> Refusal:
+    candidate = path.candidate
+    options = "--side part-inside or part-outside" if candidate.ring is not None else "--side left or right"
+    why = "no side of this path is known to be the part: metal is taken away there, or arcs are smaller than R"
+    if candidate.is_single_move:
+        why = "no other move leads to this one and away from it"
+    elif candidate.part_sides:
+        why = "the part may be on both sides of this path"
+    return refusal_at(trace, path.section.moves[candidate.first].row, f"{why}: choose with {options}")
+
+
+def _given(trace: Trace, path: _Path, side: str) -> float:
+    """The distance to the left of a path [mm] by --side. Raises RefusedError where no contour is there."""
+    section, candidate = path.section, path.candidate
+    row = section.moves[candidate.first].row
+    if side in ("left", "right"):
+        aside = -section.radius if side == "left" else section.radius
+    elif candidate.ring is None:
+        raise refused_at(trace, row, f"this path does not close, so that {side} says nothing: left or right")
+    else:
+        aside = section.radius if candidate.is_inside(section.radius) == (side == "part-inside") else -section.radius
+    if aside not in candidate.part_sides:
+        raise refused_at(trace, row, "on that side of this path is no contour: its arcs are smaller than R")
+    return aside

@@ -1,0 +1,127 @@
+"""On which side of a path of the tool center the part is: by what else the cutter takes away there."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from polarcheck.columns.path.moves import Moves, z_along
+from polarcheck.columns.trace import Trace
+from polarcheck.foundation.arrays import Floats, Points, Rows
+from polarcheck.geometry.segments import Curves, segments
+from polarcheck.rewrite.compensate.pieces import Piece
+
+#: Sagitta of the chords of paths [mm], and what a cutter must cut into a wall to take it away.
+_TOLERANCE, _DEEP = 1e-3, 0.01
+#: Points that differ by less are one [mm].
+_SAME_PLACE = 1e-6
+#: Points of a contour that are looked at.
+_POINTS = 400
+
+
+class Swept:
+    """
+    What cutters clear at feed, in the frame of the part.
+
+    trace, moves: of the tool center. radius: R of each move [mm]; NaN where it is not known.
+    """
+
+    def __init__(self, trace: Trace, moves: Moves, radius: Floats) -> None:
+        known = trace.path.knows_section_entry[moves.section]
+        entry = np.where(known, moves.entry[moves.section], 0.0)
+        self.turn = np.exp(1j * np.radians(entry))
+        #: A section at whose beginning C is not known is alone in its frame.
+        self.frame = np.where(known, -1, moves.section)
+        begins, ends = z_along(trace, moves)
+        self.top = np.fmax(begins, ends)
+        usable = trace.path.cuts[moves.row] & ~np.isnan(radius) & ~np.isnan(moves.start + moves.end) & moves.is_of_tool
+        self.moves, self.radius = moves, radius
+        self.at_feed = np.flatnonzero(usable)
+        self.usable = self._deepest(self.at_feed)
+
+    def _deepest(self, usable: Rows) -> Rows:
+        """The deepest of moves along one way with one R, which clears what the others do."""
+        moves, turn = self.moves[usable], self.turn[usable]
+        points = (
+            np.concatenate([moves.start * turn, moves.end * turn, np.nan_to_num(moves.center * turn)]) / _SAME_PLACE
+        )
+        places = np.round([points.real, points.imag]).reshape(6, -1)
+        columns = [*places, self.radius[usable], self.frame[usable], moves.kind]
+        order = np.lexsort((np.nan_to_num(self.top[usable], nan=np.inf), *columns))
+        is_other = np.any([column[order][1:] != column[order][:-1] for column in columns], axis=0)
+        return np.sort(usable[order[np.append(True, is_other)]]) if len(usable) else usable
+
+    def frame_of(self, section: int) -> tuple[int, complex]:
+        """The frame of the part in a section, and the number by which its points come into it."""
+        own = int(np.argmax(self.moves.section == section))
+        return int(self.frame[own]), complex(self.turn[own])
+
+    def distance(self, points: Points, section: int, z: float) -> Floats:
+        """
+        How far points at a depth are from all paths there [mm], beyond R of their cutters; below 0 they are cleared.
+
+        points: on the plane of a section [mm]. A path clears all depths at which it runs and those above.
+        """
+        import shapely  # type: ignore[import-untyped]
+
+        from polarcheck.geometry.polygons.faces import coordinates, lines_of
+
+        frame, turn = self.frame_of(section)
+        in_reach = ~(self.top > z + _TOLERANCE) | (math.isnan(z) & (self.moves.section == section))
+        chosen = self.usable[((self.frame == frame) & in_reach)[self.usable]]
+        distance = np.full(len(points), np.inf)
+        places = shapely.points(coordinates(points * turn))
+        for size in np.unique(self.radius[chosen]).tolist():
+            with_size = chosen[self.radius[chosen] == size]
+            chords = segments(self._curves(with_size), _TOLERANCE)
+            tree = shapely.STRtree(lines_of(chords.start, chords.end))
+            (at, _), far = tree.query_nearest(places, return_distance=True, all_matches=False)
+            distance[at] = np.minimum(distance[at], far - size)
+        return distance
+
+    def farthest_from(self, other: Swept, section: int) -> tuple[float, int]:
+        """How far the tool center in a section leaves its path in another program at most [mm], and in which row."""
+        import shapely
+
+        from polarcheck.geometry.polygons.faces import coordinates, lines_of
+
+        chosen, others = (way.at_feed[way.moves.section[way.at_feed] == section] for way in (self, other))
+        own, lines = segments(self._curves(chosen), _TOLERANCE), segments(other._curves(others), _TOLERANCE)
+        tree = shapely.STRtree(lines_of(lines.start, lines.end))
+        points = shapely.points(coordinates(own.end))
+        (at, _), far = tree.query_nearest(points, return_distance=True, all_matches=False)
+        worst = int(np.argmax(far))
+        return float(far[worst]), int(self.moves.row[chosen[own.move[at[worst]]]])
+
+    def _curves(self, chosen: np.ndarray) -> Curves:
+        moves, turn = self.moves, self.turn[chosen]
+        center = np.where(np.isnan(moves.center[chosen]), np.nan, moves.center[chosen] * turn)
+        start, end = moves.start[chosen] * turn, moves.end[chosen] * turn
+        return Curves(start, end, center, moves.kind[chosen], np.zeros(len(chosen), int), chosen)
+
+
+def points_along(contour: Sequence[Piece], count: int = _POINTS) -> Points:
+    """Return points along a contour, some on each of its pieces, without its corners."""
+    whole = sum(piece.length for piece in contour) or 1.0
+    result: list[complex] = []
+    for piece in contour:
+        each = max(2, math.ceil(count * piece.length / whole))
+        result += [piece.at((number + 0.5) / each) for number in range(each)]
+    return np.array(result)
+
+
+def standing_share(swept: Swept, contour: Sequence[Piece], section: int, z: float, bar: float) -> float:
+    """
+    Return the share of a contour that lies in the bar, where nothing takes a point of it away; else 0.
+
+    bar: diameter beyond which there is no material [mm]; NaN where it is not known.
+    """
+    points = points_along(contour)
+    count = len(points)
+    if not math.isnan(bar):
+        points = points[np.abs(points) < bar / 2 - _DEEP]
+    if not len(points) or not (swept.distance(points, section, z) > -_DEEP).all():
+        return 0.0
+    return len(points) / count

@@ -1,0 +1,261 @@
+"""The blocks outside of polar sections on the other machine; words that no profile explains become decisions."""
+
+from __future__ import annotations
+
+from collections.abc import Container
+
+import msgspec
+import numpy as np
+
+from polarcheck.checking.settings import Settings
+from polarcheck.columns.filling import fill_down
+from polarcheck.foundation.arrays import Rows
+from polarcheck.foundation.states import Motion
+from polarcheck.rewrite.convert.block_texts import BlockTexts
+from polarcheck.rewrite.convert.heads import Heads, writes_numbers
+from polarcheck.rewrite.convert.statements import is_without_effect
+from polarcheck.rewrite.convert.translating import Translated, Translation
+from polarcheck.rewrite.writing.blocks import NewBlock
+from polarcheck.rewrite.writing.original import Original
+from polarcheck.rewrite.writing.outcome import Decision, Refusal, RefusedError, refused_at
+from polarcheck.rules.editing import Replace
+
+_MOTIONS = {Motion.RAPID: "rapid", Motion.LINE: "line", Motion.CW: "arc_clockwise", Motion.CCW: "arc_counterclockwise"}
+
+
+class Around(msgspec.Struct, frozen=True):
+    """
+    The blocks outside of polar sections.
+
+    blocks: index in text.blocks -> what stands in its place; a block that is not in it stays as it is.
+    before, behind: new blocks before and behind a block that stays.
+    edits: of heads and ends of programs.
+    decisions: what is to be decided.
+    decided: lines of the original that lost a word, or whose M code stands in another list there.
+    """
+
+    blocks: dict[int, list[NewBlock]]
+    before: dict[int, list[NewBlock]]
+    behind: dict[int, list[NewBlock]]
+    edits: list[Replace]
+    decisions: list[Decision]
+    decided: set[int]
+
+
+def around(original: Original, target: Settings, translation: Translation, taken: Container[int]) -> Around:
+    """
+    Return the blocks outside of polar sections as the other machine reads them.
+
+    taken: blocks that are written elsewhere. Raises RefusedError with all that cannot be written.
+    """
+    return _Writer(original, target, translation, taken).result()
+
+
+class _Writer:
+    def __init__(self, original: Original, target: Settings, translation: Translation, taken: Container[int]) -> None:
+        self.trace, self.target, self.translation = original.trace, target.machine, translation
+        self.source = self.trace.machine
+        self.texts = BlockTexts(self.trace)
+        self.blocks: dict[int, list[NewBlock]] = {}
+        self.decisions: list[Decision] = []
+        self.refusals: list[Refusal] = []
+        count = len(self.trace.text.blocks)
+        self._taken = np.fromiter((block in taken for block in range(count)), bool, count)
+        self._order, self._begins = _grouped(self.trace.run.block, count)
+        self._from_section = self._motion_from_section()
+        self._resigns = (self.source.control.line_comments, self.source.control.parentheses_are_comments) != (
+            self.target.control.line_comments,
+            self.target.control.parentheses_are_comments,
+        )
+        self._reported = False
+        self._contours: dict[tuple[float, float], tuple[int, int]] = {}
+        self._has_lost_motion = False
+        self.decided: set[int] = set()
+
+    def result(self) -> Around:
+        for block in range(len(self.trace.text.blocks)):
+            if self._taken[block]:
+                continue
+            try:
+                self._block(block)
+            except RefusedError as error:
+                self.refusals += error.refusals
+        self._decide_contours()
+        if self.refusals:
+            raise RefusedError(self.refusals)
+        heads = Heads(self.trace, self.target, self.texts)
+        decisions = sorted((*self.decisions, *heads.decisions), key=lambda decision: decision.line)
+        before, behind = heads.before(self.translation.measures), heads.behind()
+        decided = self.decided | self.translation.left_out
+        return Around(self.blocks, before, behind, heads.edits, decisions, decided)
+
+    def _rows(self, block: int) -> Rows:
+        return self._order[self._begins[block] : self._begins[block + 1]]
+
+    def _motion_from_section(self) -> np.typing.NDArray[np.bool_]:
+        """Per row: the code of the motion in force stands in a block that is written elsewhere."""
+        sets = self.trace.modal.sets("motion")
+        return fill_down(sets & self._taken[self.trace.run.block], sets | self.trace.blocks.starts, False).astype(bool)
+
+    def _decide_contours(self) -> None:
+        """Leave the contour from N of P to N of Q to be decided with its turning cycle, without which it is a cut."""
+        blocks = self.trace.blocks
+        for row in np.flatnonzero(blocks.listed("repetitive_cycle")).tolist():
+            line = int(blocks.line_in_file[row])
+            cycle = int(self.trace.run.block[row])
+            first, last = (self.texts.block_numbered(float(blocks.word(word)[row]), cycle) for word in "PQ")
+            if first is None or last is None:
+                first, last = self._contours.get((float(blocks.word("P")[row]), float(blocks.word("Q")[row])), (-1, -1))
+                if first >= 0 and line not in self.decided:
+                    # A finishing cycle along a contour that is left to be decided.
+                    content = self.texts.content(cycle)
+                    self._decide(line, f"{content}: its contour is left to be decided")
+                    self.blocks[cycle] = [NewBlock((), decision_comment(f"{content}: ITS CONTOUR"))]
+                continue
+            if line not in self.decided:
+                continue
+            self._contours[float(blocks.word("P")[row]), float(blocks.word("Q")[row])] = first, last
+            for block in range(first, last + 1):
+                content = self.texts.content(block)
+                if content and not self._taken[block] and self.texts.line(block) not in self.decided:
+                    text = f"{content}: it is the contour of the cycle in line {line}"
+                    self._decide(self.texts.line(block), text)
+                    self.blocks[block] = [NewBlock((), decision_comment(text))]
+
+    # ---- one block ----
+
+    def _block(self, block: int) -> None:
+        rows = self._rows(block)
+        if not len(rows):
+            self._without_row(block)
+            return
+        row = int(rows[0])
+        content = self.texts.content(block)
+        self._reported = False
+        if self.texts.has_program_number(block):
+            if self.translation.words_of(row):
+                raise refused_at(self.trace, row, "words stand beside O: put them into a block of their own")
+            self._program(block)
+            return
+        called = self._call(row, content)
+        result = called or self._same_each_time(rows)
+        rest = "" if called else self.texts.rest(block, row)
+        if rest and not result.whole:
+            self._rest(rest, result)
+        self._with_motion(row, result)
+        self._write(block, result)
+
+    def _program(self, block: int) -> None:
+        """A block with a program number, which stays or is written by Heads."""
+        if self._resigns and self.texts.has_comment(block) and writes_numbers(self.target):
+            self.blocks[block] = [NewBlock()]
+
+    def _same_each_time(self, rows: Rows) -> Translated:
+        """The words of a block, which are the same each time that it runs."""
+        indices = self.translation.words_of(int(rows[0]))
+        for in_steps in (False, True):
+            first = self.translation.words(int(rows[0]), indices, in_steps)
+            if all(self._is_same(first, int(row), in_steps) for row in rows[1:]):
+                return first
+        raise refused_at(self.trace, int(rows[0]), "it runs several times, and would be another block each time")
+
+    def _is_same(self, first: Translated, row: int, in_steps: bool) -> bool:
+        other = self.translation.words(row, self.translation.words_of(row), in_steps)
+        return (other.words, other.behind, other.whole) == (first.words, first.behind, first.whole)
+
+    def _call(self, row: int, content: str) -> Translated | None:
+        """A block that calls a subprogram or returns from it; None for any other."""
+        words = self.translation.calls.words_of_row(row, content)
+        return None if words is None else Translated(words=words, changed=words != content.split())
+
+    def _rest(self, rest: str, result: Translated) -> None:
+        """What of a block is no word: a statement beside words, a stray character."""
+        if self.source.macro.language == self.target.macro.language:
+            if result.changed or result.decisions:
+                result.whole = f"{rest} stands beside words that are other ones there"
+            return
+        result.whole = f"{rest} is a statement of another language"
+
+    def _with_motion(self, row: int, result: Translated) -> None:
+        """The code of the motion in force, where only a section, or a block that is to be decided, has it."""
+        trace, motion = self.trace, int(self.trace.modal.state("motion")[row])
+        if bool(trace.modal.sets("motion")[row]):
+            self._has_lost_motion = bool(result.whole)
+        if result.whole or not (self._from_section[row] or self._has_lost_motion) or motion not in _MOTIONS:
+            return
+        moves = trace.modal.uses_axes[row] and trace.blocks.has(*trace.machine.axis_words)[row]
+        if not moves or bool(trace.modal.in_cycle[row]):
+            return
+        code = self.target.codes(_MOTIONS[Motion(motion)])[0]
+        result.words.insert(len(result.behind), code)
+        result.changed, self._has_lost_motion = True, False
+
+    def _write(self, block: int, result: Translated) -> None:
+        line = self.texts.line(block)
+        if result.whole:
+            content = self.texts.content(block)
+            self._decide(line, f"{content}: {result.whole}")
+            self.blocks[block] = [NewBlock((), decision_comment(f"{content}: {result.whole}"))]
+            return
+        for text in result.decisions:
+            self._decide(line, text)
+        comment = "; ".join(result.decisions)
+        if not (result.changed or comment or (self._resigns and self.texts.has_comment(block))):
+            return
+        new = [NewBlock(tuple(result.words), decision_comment(comment) if comment else "")]
+        if result.behind and not self._says_absolute(block):
+            new.append(NewBlock(tuple(result.behind)))
+        stays = new[0].words or comment or self.texts.has_comment(block)
+        self.blocks[block] = new if stays else new[1:]
+
+    def _says_absolute(self, block: int) -> bool:
+        """The next block begins with G90 itself."""
+        following = self._rows(block + 1) if block + 1 < len(self._begins) - 1 else self._order[:0]
+        return bool(len(following) and self.trace.blocks.listed("absolute")[following[0]])
+
+    def _decide(self, line: int, text: str) -> None:
+        self.decisions.append(Decision(line, text))
+        self.decided.add(line)
+
+    # ---- blocks that are not executed ----
+
+    def _without_row(self, block: int) -> None:
+        content = self.texts.content(block)
+        line, is_never_run = self.texts.line(block), False
+        if self.texts.is_mark(block):
+            return
+        if not content:
+            if self._resigns and self.texts.has_comment(block):
+                self.blocks[block] = [NewBlock()]
+            return
+        if self.texts.is_statement(block):
+            if self.source.macro.language == self.target.macro.language:
+                return
+            if not is_without_effect(content, self.source):
+                text = f"{content} is a statement of a language that {self.target.title} does not have"
+                self.refusals.append(Refusal(line, text))
+                return
+            reason = f"a statement that {self.target.title} does not have"
+        elif self.texts.is_text(block):
+            return
+        else:
+            reason = "it is never run, so that what is in force there is not known"
+            is_never_run = True
+        if is_never_run and self._reported:
+            self.decided.add(line)
+        else:
+            self._decide(line, f"{content}: {reason}")
+        self._reported = is_never_run
+        self.blocks[block] = [NewBlock((), decision_comment(f"{content}: {reason}"))]
+
+
+def decision_comment(text: str) -> str:
+    """A comment that says what is to be decided, in characters that every control has."""
+    plain = text.upper().translate(str.maketrans("()[];%", "      "))
+    return "DECIDE: " + " ".join("".join(sign for sign in plain if " " <= sign <= "~").split())
+
+
+def _grouped(block: Rows, count: int) -> tuple[Rows, Rows]:
+    """Rows grouped by their blocks, each in order, and where each block begins."""
+    order = np.argsort(block, kind="stable")
+    return order, np.append(0, np.cumsum(np.bincount(block, minlength=count)))

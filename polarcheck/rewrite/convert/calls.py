@@ -1,0 +1,102 @@
+"""Calls of subprograms and returns from them, by the words in which the profiles write them."""
+
+from __future__ import annotations
+
+import re
+
+from polarcheck.columns.trace import Trace
+from polarcheck.program.machines.machine import Machine
+from polarcheck.rewrite.writing.outcome import refused_at
+
+_BLANKS = re.compile(r"\s+")
+#: A number of a program with repeats before its last four digits.
+_LAST_DIGITS = 10_000
+
+
+class Calls:
+    """The calls and returns of a program as those of another machine."""
+
+    def __init__(self, trace: Trace, target: Machine) -> None:
+        self.trace, self.source, self.target = trace, trace.machine, target
+        writing = self.source.writing
+        self._call = _pattern(writing.subprogram_call, writing.subprogram_repeats)
+        self._return = "".join(writing.subprogram_return.split()).upper()
+        ours, theirs = self.source.macro, target.macro
+        has_calls = bool(target.writing.subprogram_call)
+        self.is_same = (
+            has_calls
+            and ours.language == theirs.language
+            and all(
+                getattr(ours, key) == getattr(theirs, key)
+                for key in ("subprogram_calls", "program_returns", "local_calls", "sequence_word", "repeats_in_p")
+            )
+        )
+        is_number = trace.text.words.address == ord("O")
+        self._programs = {
+            int(value) % _LAST_DIGITS for value in trace.text.words.value[is_number].tolist() if value == value
+        }
+        #: Programs that are called and not in the file -> the first line with a call.
+        self.missing: dict[int, int] = {}
+        self._flow = trace.blocks.codes(*self.source.macro.flow_codes)
+
+    def is_flow(self, row: int) -> bool:
+        """A row calls a program or returns from one."""
+        return bool(self._flow[row])
+
+    def names(self, text: str) -> bool:
+        """The text of a block is a call or a return in the words of the profile, in whatever language."""
+        squeezed = _BLANKS.sub("", text).upper()
+        return bool(self._call and self._call.fullmatch(squeezed)) or (bool(self._return) and squeezed == self._return)
+
+    def words_of_row(self, row: int, text: str) -> list[str] | None:
+        """
+        Return the words of a block that calls a program or returns from one; None for any other block.
+
+        text: of the block, without N word and comments. Raises RefusedError where the other machine has no words.
+        """
+        if not self.names(text) and not self.is_flow(row):
+            return None
+        squeezed = _BLANKS.sub("", text).upper()
+        line = int(self.trace.blocks.line_in_file[row])
+        if not self.is_same and squeezed == self._return and not int(self.trace.run.depth[row]):
+            reason = f"{text}: how {self.target.title} begins the main program again is not known"
+            raise refused_at(self.trace, row, reason)
+        match = self._call.fullmatch(squeezed) if self._call else None
+        if match and int(match["number"]) % _LAST_DIGITS not in self._programs:
+            self.missing.setdefault(int(match["number"]) % _LAST_DIGITS, line)
+        words = text.split() if self.is_same else self.written(text)
+        if words is None:
+            reason = f"{text}: how {self.target.title} writes that is not known"
+            raise refused_at(self.trace, row, reason)
+        return list(words)
+
+    def written(self, text: str) -> tuple[str, ...] | None:
+        """
+        A block that calls or returns, as the other machine writes it; None where one of them has no words for it.
+
+        text: of the block, without N word and comments.
+        """
+        squeezed = _BLANKS.sub("", text).upper()
+        theirs = self.target.writing
+        if squeezed == self._return and self._return:
+            return tuple(theirs.subprogram_return.split()) if theirs.subprogram_return else None
+        match = self._call.fullmatch(squeezed) if self._call else None
+        if match is None or not theirs.subprogram_call:
+            return None
+        number, repeats = int(match["number"]), match["repeats"]
+        if self.source.macro.repeats_in_p and number >= _LAST_DIGITS and not repeats:
+            repeats, number = str(number // _LAST_DIGITS), number % _LAST_DIGITS
+        if not repeats:
+            return tuple(theirs.subprogram_call.replace("#", str(number)).split())
+        if not theirs.subprogram_repeats:
+            return None
+        call = theirs.subprogram_call.replace("#", str(number))
+        return (*call.split(), f"{theirs.subprogram_repeats}{int(repeats)}")
+
+
+def _pattern(call: str, repeats: str) -> re.Pattern[str] | None:
+    if not call:
+        return None
+    head, _, tail = ("".join(call.split())).partition("#")
+    times = f"(?:{re.escape(repeats)}(?P<repeats>\\d{{1,9}}))?" if repeats else "(?P<repeats>)"
+    return re.compile(f"{re.escape(head)}0*(?P<number>\\d{{1,9}}){re.escape(tail)}{times}")

@@ -1,0 +1,83 @@
+"""Why polar sections cannot be written for another machine."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from polarcheck.columns.trace import Trace
+from polarcheck.foundation.arrays import Mask
+from polarcheck.foundation.states import FeedMode
+from polarcheck.rewrite.writing.original import Original
+from polarcheck.rewrite.writing.outcome import Refusal, refusal_at
+
+
+def refusals(original: Original, is_same: bool) -> list[Refusal]:
+    """
+    Return the reasons, each once a section, in the order of lines.
+
+    is_same: the words of sections stay as they are, so that it does not matter what they come to.
+    """
+    trace = original.trace
+    reasons = [*_of_ends(trace)]
+    if not is_same:
+        reasons += _of_numbers(trace)
+        reasons += _of_rows(trace)
+        reasons += _of_words(trace)
+    return sorted(dict.fromkeys(reasons), key=lambda reason: reason.line)
+
+
+def _of_ends(trace: Trace) -> Iterator[Refusal]:
+    sections = trace.mode.sections
+    for number, (enter, leave) in enumerate(zip(sections.enter.tolist(), sections.leave.tolist(), strict=True)):
+        if not sections.left[number] or sections.returned[number] or leave >= len(trace):
+            yield refusal_at(trace, enter, "the polar mode is never left")
+        if ((sections.again > enter) & (sections.again < leave)).any():
+            yield refusal_at(trace, enter, "the polar mode is switched on again within")
+
+
+def _of_numbers(trace: Trace) -> Iterator[Refusal]:
+    """Numbers without a point that the control counts in increments, though they seem to be meant otherwise."""
+    words = trace.run.words
+    for index in np.flatnonzero(trace.coordinates.is_taken_as_pointed).tolist():
+        written = trace.text.source.excerpt(int(words.start[index]), int(words.end[index]))
+        text = f"{written} has no point, and the control counts it in increments: write the point, or"
+        how = "--set control.number_without_point=whole-unit where the control takes it for a whole unit"
+        yield refusal_at(trace, int(trace.run.row[index]), f"{text} {how}")
+
+
+def _of_rows(trace: Trace) -> Iterator[Refusal]:
+    path, mode = trace.path, trace.mode
+    inside = mode.in_polar
+    polar = trace.machine.polar
+    moving = path.travels & inside
+    # Where the tool stands before a line does not matter: posts of some controls position it behind the switch.
+    unknown = moving & (np.isnan(path.end) | (path.is_arc & np.isnan(path.start)))
+    off_by = np.abs(np.abs(path.start - path.center) - np.abs(path.end - path.center))
+    off_circle = path.is_arc & moving & (off_by > trace.machine.arcs.tolerance)
+    on_sub_spindle = trace.modal.on_sub_spindle & mode.enters
+    feed_mode = trace.feedrate.modal_feed_mode
+    checks: list[tuple[Mask, str]] = [
+        (on_sub_spindle, "the sub-spindle turns the plane, Z and G41 round by builder: convert its sections by hand"),
+        (inside & ~mode.is_followed, "the axes of this section are not followed"),
+        (inside & (trace.axes.linear_axis != ord("X")), "the linear axis of this section is not X"),
+        (trace.run.unknown & inside, "what this block does is not known"),
+        (trace.blocks.has(polar.infeed_word) & mode.enters, "the passes of an infeed cycle are not converted"),
+        (trace.modal.in_cycle & trace.axes.moves & inside, "a cycle in the mode is not converted"),
+        (unknown, "where the tool goes is not known"),
+        (off_circle, "this arc does not end on its circle"),
+        (path.is_arc & moving & np.isnan(path.center), "the center of this arc is not known"),
+        ((feed_mode == FeedMode.INVERSE_TIME) & moving, "inverse time in the mode is not converted"),
+    ]
+    for hits, text in checks:
+        rows = np.flatnonzero(hits)
+        numbers = mode.section[rows]
+        for row in rows[np.append(True, np.diff(numbers) != 0)[: len(rows)]].tolist():
+            yield refusal_at(trace, row, text)
+
+
+def _of_words(trace: Trace) -> Iterator[Refusal]:
+    rows = np.flatnonzero(trace.mode.whole_section >= 0)
+    if len(rows) and trace.path.frames is not None:
+        yield refusal_at(trace, int(rows[0]), "the program shifts or turns its coordinates by frames")

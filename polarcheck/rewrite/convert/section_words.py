@@ -1,0 +1,95 @@
+"""Which words of a block in the polar mode say where the tool goes, and which order something else."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from polarcheck.columns.trace import Trace
+from polarcheck.program.machines.code_lists import numbers
+from polarcheck.program.machines.codes import code_numbers
+from polarcheck.program.machines.machine import Machine
+from polarcheck.rewrite.convert.g_meanings import GMeanings
+
+#: Lists of codes that the moves say themselves.
+_OF_GEOMETRY = (
+    *("rapid", "line", "arc_clockwise", "arc_counterclockwise", "absolute", "incremental"),
+    *("plane_xy", "plane_zx", "plane_yz", "compensation_off", "compensation_left", "compensation_right"),
+)
+#: Keys of the profile by which the geometry of sections is written.
+_OF_CONTROL = (
+    *("least_increment", "least_increment_inch", "number_without_point", "motion_codes", "native_words"),
+    *("line_comments", "parentheses_are_comments", "g_code_system"),
+)
+_OF_POLAR = (
+    *("x", "virtual_axis", "virtual_axis_incremental", "virtual_axis_programming", "zero_angle", "direction_word"),
+    *("center_words", "feed_measures", "other_axes", "repeated_z", "rotary_address", "rotary_incremental"),
+)
+_OF_WRITING = ("before", "switch", "behind", "end", "behind_end", "rapid_in_mode", "arc_radius", "arc_split", "helices")
+
+
+class SectionWords:
+    """The words of polar sections."""
+
+    def __init__(self, trace: Trace, target: Machine) -> None:
+        self.trace, self.target = trace, target
+        source = trace.machine
+        self._meanings = GMeanings(source, target)
+        polar, arcs = source.polar, source.arcs
+        centers = [word for pair in polar.center_words.values() for word in pair]
+        addresses = {"X", "U", "Z", "W", "F", "I", "J", "K", arcs.radius_word, *polar.axis_addresses, *centers}
+        addresses |= {arcs.larger_arc_word[:1]} if arcs.larger_arc_word else set()
+        self._addresses = {source.address_number(address) for address in addresses if address}
+        beside = {*"PQDE", *polar.words_beside_switch, polar.direction_word}
+        self._beside_switch = {source.address_number(word) for word in beside if len(word) == 1}
+        self._virtual = set(trace.axes.virtual_words.tolist())
+        self._dwells = trace.blocks.listed("dwell")
+        self._switch_codes = {*numbers(polar.on), *numbers(polar.off), *numbers(polar.ended_by)}
+
+    @property
+    def is_same(self) -> bool:
+        """Both machines write the geometry of sections in the same words."""
+        source, target = self.trace.machine, self.target
+        groups = ((_OF_CONTROL, "control"), (_OF_POLAR, "polar"), (_OF_WRITING, "writing"))
+        same_keys = all(
+            getattr(getattr(source, table), key) == getattr(getattr(target, table), key)
+            for keys, table in groups
+            for key in keys
+        )
+        same_codes = all(source.codes(key) == target.codes(key) for key in _OF_GEOMETRY)
+        same_corner = source.compensation.corner == target.compensation.corner
+        takes_arcs = source.arcs.sweep_limit <= target.arcs.sweep_limit
+        same_units = source.control.units == target.control.units
+        return same_keys and same_codes and same_corner and takes_arcs and same_units
+
+    def is_dwell(self, row: int) -> bool:
+        """The block is a dwell, whose words count time."""
+        return bool(self._dwells[row])
+
+    def key(self, index: int) -> str:
+        """The list of codes that a word stands in; empty for a word that is no G code."""
+        words = self.trace.run.words
+        if int(words.address[index]) != ord("G"):
+            return ""
+        return self._meanings.key(int(code_numbers(words.value[index : index + 1])[0]))
+
+    def divided(self, row: int, words: Sequence[int], is_switch: bool) -> tuple[list[int], list[int]]:
+        """
+        Return the words of a row that say where the tool goes, and the others.
+
+        is_switch: the row switches the mode on or off; what stands there for the switch is of the first kind.
+        """
+        if self.is_dwell(row):
+            return [], list(words)
+        geometry = [index for index in words if self._is_geometry(index, is_switch)]
+        return geometry, [index for index in words if index not in geometry]
+
+    def _is_geometry(self, index: int, is_switch: bool) -> bool:
+        address = int(self.trace.run.words.address[index])
+        if address == ord("G"):
+            return self.key(index) in _OF_GEOMETRY or self._is_switch_code(index)
+        if is_switch and address in self._beside_switch:
+            return True
+        return address in self._addresses or index in self._virtual
+
+    def _is_switch_code(self, index: int) -> bool:
+        return int(code_numbers(self.trace.run.words.value[index : index + 1])[0]) in self._switch_codes

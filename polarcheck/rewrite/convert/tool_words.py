@@ -1,0 +1,136 @@
+"""T and D words: a tool and its offset as the other machine calls them, and the offsets of the job under new keys."""
+
+from __future__ import annotations
+
+import itertools
+
+import msgspec
+import numpy as np
+from msgspec.structs import replace
+
+from polarcheck.columns.trace import Trace
+from polarcheck.program.machines.job import Job
+from polarcheck.program.machines.machine import Machine
+from polarcheck.program.machines.offset_keys import key_of
+
+#: From here on offsets are numbered that the original has as edges of tools.
+_FIRST_FREE = 51
+
+
+class ToolCall(msgspec.Struct, frozen=True):
+    """
+    How a tool is called on the other machine.
+
+    words: that call it. decision: what is to be decided about its offset; or empty. refusal: why it cannot be called.
+    """
+
+    words: tuple[str, ...] = ()
+    decision: str = ""
+    refusal: str = ""
+
+
+class ToolWords:
+    """
+    The calls of tools of a program as those of another machine.
+
+    keys: offset of the job by the key of the other machine -> its key in the job of the program.
+    """
+
+    def __init__(self, trace: Trace, target: Machine) -> None:
+        self.trace, self.source, self.target = trace, trace.machine, target
+        self.keys: dict[str, str] = {}
+        self._edges: dict[int, list[int]] = {}
+        self._offsets: dict[tuple[int, int], int] = {}
+        ours, theirs = self.source, target
+        self._is_same = (
+            ours.offsets.called_by == theirs.offsets.called_by
+            and ours.control.offset_digits == theirs.control.offset_digits
+            and ours.control.radius_offset_digits == theirs.control.radius_offset_digits
+            and ours.has_edges == theirs.has_edges
+        )
+
+    @property
+    def is_same(self) -> bool:
+        """T and D words mean the same on both machines."""
+        return self._is_same
+
+    def call(self, row: int) -> ToolCall:
+        """The words that call in their place what a row calls."""
+        tools = self.trace.tools
+        tool = int(tools.tool[row])
+        if self.trace.run.names or not 0 <= tool <= 99:
+            return ToolCall(refusal=f"the tool {tools.tool_name(tool)} is no number that both machines can call")
+        if bool(tools.has_edges[row]):
+            offset, radius_offset = int(tools.edge[row]), int(tools.edge[row])
+        else:
+            offset, radius_offset = int(tools.tool_offset_number[row]), int(tools.offset_number[row])
+        key = tools.offset_key(int(tools.offset_number[row]))
+        if self.target.offsets.called_by == "edge":
+            return self._by_edge(row, tool, offset, radius_offset, key)
+        if bool(tools.has_edges[row]):
+            return self._of_edge(tool, offset, key)
+        return self._by_digits(tool, offset, radius_offset, key)
+
+    def _by_digits(self, tool: int, offset: int, radius_offset: int, key: str) -> ToolCall:
+        control = self.target.control
+        if offset >= 10**control.offset_digits:
+            return ToolCall(refusal=f"offset {offset} has more digits than T leaves room for")
+        written = f"T{tool:02d}{offset:0{control.offset_digits}d}"
+        if control.radius_offset_digits and radius_offset != offset:
+            written = f"T{radius_offset:0{control.radius_offset_digits}d}{written[1:]}"
+            number = radius_offset
+        else:
+            number = offset
+        is_claimed = self._claim_key(str(number), key)
+        if is_claimed and (radius_offset == offset or control.radius_offset_digits):
+            return ToolCall((written,))
+        if not is_claimed:
+            return ToolCall(refusal=f"offset {number} is to have the radius of several offsets")
+        return ToolCall((written,), f"{written}: enter the radius of offset {radius_offset} in offset {offset}")
+
+    def _by_edge(self, row: int, tool: int, offset: int, radius_offset: int, key: str) -> ToolCall:
+        changes = row == 0 or int(self.trace.tools.tool[row - 1]) != tool
+        head = (f"T{tool}",) if changes else ()
+        if not offset:
+            return ToolCall((*head, "D0"))
+        edges = self._edges.setdefault(tool, [])
+        if offset not in edges:
+            edges.append(offset)
+        edge = edges.index(offset) + 1
+        is_new = self._claim_key(key_of(str(tool), edge), key)
+        if not is_new:
+            return ToolCall(refusal=f"edge {edge} of tool {tool} is to have the radius of several offsets")
+        words = (*head, f"D{edge}")
+        if edge == 1 and offset == tool == radius_offset:
+            return ToolCall(words)
+        return ToolCall(words, f"D{edge} of tool {tool}: enter the values of offset {radius_offset}")
+
+    def _of_edge(self, tool: int, edge: int, key: str) -> ToolCall:
+        digits = self.target.control.offset_digits
+        if not edge:
+            return ToolCall((f"T{tool:02d}{0:0{digits}d}",))
+        offset = tool if edge == 1 else self._offsets.setdefault((tool, edge), self._free_offset())
+        if offset >= 10**digits:
+            return ToolCall(refusal=f"offset {offset} has more digits than T leaves room for")
+        if not self._claim_key(str(offset), key):
+            return ToolCall(refusal=f"offset {offset} is to have the values of several edges")
+        written = f"T{tool:02d}{offset:0{digits}d}"
+        if edge == 1:
+            return ToolCall((written,))
+        return ToolCall((written,), f"{written}: enter the values of edge {edge} of tool {tool} in offset {offset}")
+
+    def _free_offset(self) -> int:
+        """The next offset number that is neither a tool of the program nor taken."""
+        taken = {*self._offsets.values(), *np.unique(self.trace.tools.tool).tolist()}
+        return next(number for number in itertools.count(_FIRST_FREE) if number not in taken)
+
+    def _claim_key(self, new: str, old: str) -> bool:
+        """Take the key of an offset in; False where it stands for another one already."""
+        return not old or self.keys.setdefault(new, old) == old
+
+    def job(self, job: Job) -> Job:
+        """The job with its offsets under the keys of the other machine."""
+        if not self.keys:
+            return job
+        tools = {new: job.tools[old] for new, old in self.keys.items() if old in job.tools}
+        return replace(job, tools=tools)

@@ -1,0 +1,105 @@
+"""The lines and arcs of a stretch, and Z alone between them."""
+
+from __future__ import annotations
+
+import math
+
+import msgspec
+import numpy as np
+
+from polarcheck.foundation.arrays import Floats
+from polarcheck.foundation.errors import TooHardError
+from polarcheck.foundation.states import Motion
+from polarcheck.foundation.time_limit import keep_time
+from polarcheck.geometry.fitted_curves.curves import fitted
+from polarcheck.geometry.fitted_curves.spirals import Samples, bows, counts, sampled
+from polarcheck.geometry.tolerances import CHORDS_OF_FILE, ZERO
+from polarcheck.rewrite.roll.ways import Way, runs_of
+
+
+class Element(msgspec.Struct, frozen=True):
+    """
+    A line or an arc on the part, or Z alone.
+
+    kind: Motion; NONE for Z alone. start, end, center: in the frame of the part [mm], center NaN but for arcs.
+    z: depth at its end [mm], where Z moves; else None. first, until: its moves in the way, until excluded.
+    """
+
+    kind: int
+    start: complex
+    end: complex
+    center: complex
+    z: float | None
+    first: int
+    until: int
+
+
+class Fit(msgspec.Struct, frozen=True):
+    """
+    What a stretch becomes.
+
+    elements: in order. bow: how far a block that stands for them bows from the straight way between its ends at most
+    [mm].
+    """
+
+    elements: list[Element]
+    bow: float
+
+
+_NOWHERE = complex(math.nan, math.nan)
+
+
+def fit_of(way: Way, tolerance: float, reserve: float, noise: float) -> Fit:
+    """
+    Return the lines and arcs that pass the ends of all blocks within the tolerance [mm].
+
+    reserve: what of it is left for rounding the new words [mm]. noise: by how much the words of the blocks are rounded
+    [mm]. Raises TooHardError for a way that takes too many samples.
+    """
+    elements: list[Element] = []
+    bow = 0.0
+    for begin, end, is_on_plane in runs_of(way):
+        keep_time()
+        if not is_on_plane:
+            point = complex(way.radius[begin] * np.exp(1j * way.angle[begin]))
+            z = float(way.z[begin])
+            elements.append(Element(Motion.NONE, point, point, _NOWHERE, z, begin, end))
+            continue
+        radius, angle, z_of = (
+            np.append(before[begin], behind[begin:end])
+            for before, behind in (
+                (way.start_radius, way.radius),
+                (way.start_angle, way.angle),
+                (way.z_before, way.z),
+            )
+        )
+        if counts(radius, angle, tolerance).sum() > CHORDS_OF_FILE:
+            raise TooHardError(f"the moves of C take more than {CHORDS_OF_FILE} samples")
+        samples = sampled(radius, angle, z_of, tolerance, reserve)
+        bow = max(bow, _bow(samples, radius, angle))
+        elements += _of_run(samples, begin, tolerance - reserve, noise)
+    return Fit(elements, bow)
+
+
+def _bow(samples: Samples, radius: Floats, angle: Floats) -> float:
+    """How far blocks bow of which the contour passes the ends alone [mm]."""
+    free = np.zeros(len(radius) - 1, bool)
+    free[samples.block[samples.slack > 0]] = True
+    return float(bows(radius, angle)[free].max(initial=0.0))
+
+
+def _of_run(samples: Samples, first: int, tolerance: float, noise: float) -> list[Element]:
+    curves = fitted(samples, tolerance, noise)
+    elements = []
+    start, at = complex(samples.point[0]), 0
+    for last, end, center, kind in zip(
+        curves.last.tolist(), curves.end.tolist(), curves.center.tolist(), curves.kind.tolist(), strict=True
+    ):
+        z = samples.z[at : last + 1]
+        moves_z = bool((np.abs(z - z[0]) > ZERO).any())
+        blocks = int(samples.block[at + 1]), int(samples.block[last]) + 1
+        elements.append(
+            Element(kind, start, end, center, float(z[-1]) if moves_z else None, first + blocks[0], first + blocks[1])
+        )
+        start, at = end, last
+    return elements

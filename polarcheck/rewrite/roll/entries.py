@@ -1,0 +1,110 @@
+"""Where a section is entered: C at 0 above the part, so that its coordinates are those of the drawing."""
+
+from __future__ import annotations
+
+import msgspec
+import numpy as np
+
+from polarcheck.columns.trace import Trace
+from polarcheck.foundation.arrays import Mask, Rows, stretch
+from polarcheck.foundation.states import FeedMode, Motion
+from polarcheck.rewrite.roll.following import Following
+from polarcheck.rewrite.roll.stretches import Stretch
+from polarcheck.rewrite.roll.ways import Way
+from polarcheck.rules.editing import is_plain, words_of
+
+#: C nearer to full turns than this is at 0 [deg].
+_AT_ZERO = 1e-9
+#: Nearer to the center than this C is not turned at the X at which the tool stands [mm].
+_NEAREST = 0.5
+#: Lists of G codes that may stand between the positioning and the stretch.
+_CODES = ("rapid", "line", "feed_inverse_time", "feed_per_minute", "absolute")
+#: So far before the stretch the positioning is looked for.
+_MOST_ROWS = 30
+
+
+class Entry(msgspec.Struct, frozen=True):
+    """
+    A section that is entered above the part, with C at full turns.
+
+    behind: the row behind which the mode is switched on. first: the first of the rows of Z alone that lead down to the
+    stretch, in the mode. turns: C at the entry [deg]. c_word: the word of C of the row `behind`, which becomes that; -1
+    where C is positioned by a block of its own.
+    """
+
+    behind: int
+    first: int
+    turns: float
+    c_word: int
+
+
+def entry_of(trace: Trace, each: Stretch, way: Way, following: Following) -> Entry | None:
+    """
+    Return how a section is entered with C at 0; None where it begins there, or where that is not possible.
+
+    This is possible if the tool is positioned in rapid traverse above all that it cuts in the stretch, and only moves
+    of Z follow: there C turns at the X at which it stands.
+    """
+    path = trace.path
+    angle = float(path.c_angle_before[each.first])
+    turns = 360.0 * round(angle / 360)
+    if trace.machine.polar.plane_is_fixed or abs(angle - turns) <= _AT_ZERO:
+        return None
+    low = max(each.first - _MOST_ROWS, 0)
+    others = np.flatnonzero(~_leads_down(trace, np.arange(low, each.first)))
+    begin = low + int(others[-1]) + 1 if len(others) else low
+    highest = max(float(way.z.max()), float(way.z_before.max()))
+    moving = begin + np.flatnonzero(trace.axes.motion[begin : each.first] != Motion.NONE)
+    above = moving[path.z_before[moving] > highest]
+    if not len(above) or path.x_before[each.first] < _NEAREST:
+        return None
+    first = int(above[-1])
+    behind = first - 1
+    before = int(following.moves.searchsorted(behind, "right")) - 1
+    last = int(following.moves[before]) if before >= 0 else -1
+    is_rapid = last >= 0 and trace.axes.motion[last] == Motion.RAPID and trace.mode.whole_section[last] < 0
+    if not (is_rapid and _goes_on(trace, behind, each.first)) or following.jump_targets[behind : each.first + 1].any():
+        return None
+    return Entry(behind, first, turns, _c_word(trace, behind))
+
+
+def _goes_on(trace: Trace, behind: int, first: int) -> bool:
+    """The rows stand on lines of their own, one behind the other, in one program."""
+    own = slice(behind, first + 1)
+    block, line, depth = trace.run.block[own], trace.blocks.line_in_file[own], trace.run.depth[own]
+    return bool(np.all(np.diff(block) > 0) and line[1] > line[0] and np.all(depth == depth[0]))
+
+
+def _leads_down(trace: Trace, rows: Rows) -> Mask:
+    """Which of these rows have Z alone, or only say how what follows moves."""
+    return np.array([_is_of_z(trace, row) for row in rows.tolist()], bool)
+
+
+def _is_of_z(trace: Trace, row: int) -> bool:
+    run, machine = trace.run, trace.machine
+    low, high = stretch(run.row, row, row + 1)
+    letters = {int(letter) for letter in run.words.address[low:high]}
+    allowed = {machine.address_number(name) for name in ("N", "Z", "W", "F", "G")}
+    codes = {code for key in _CODES for code in machine.codes(key)}
+    motion = trace.axes.motion[row]
+    if not letters <= allowed or run.unknown[row] or trace.blocks.starts[row] or not is_plain(run, row):
+        return False
+    if any(f"G{run.words.value[index]:g}" not in codes for index in range(low, high) if run.words.address[index] == 71):
+        return False
+    if trace.mode.whole_section[row] >= 0 or np.isnan(trace.path.z[row]):
+        return False
+    is_per_minute = trace.feedrate.modal_feed_mode[row] == FeedMode.PER_MINUTE and trace.feedrate.written_feed[row] > 0
+    return bool(motion in (Motion.NONE, Motion.RAPID) or (motion == Motion.LINE and is_per_minute))
+
+
+def _c_word(trace: Trace, row: int) -> int:
+    """The word of C of a row where it may be another number; -1 where it may not."""
+    run, machine = trace.run, trace.machine
+    axis = machine.polar.rotary_address
+    number = machine.address_number(axis)
+    is_other = trace.modal.is_step(axis)[row] or trace.run.distance is not None
+    if is_other or len(axis) > 1 or trace.axes.motion[row] != Motion.RAPID or not is_plain(run, row):
+        return -1
+    own = [index for index in words_of(run, row) if run.words.address[index] == number]
+    letters = {chr(int(run.words.address[index])) for index in words_of(run, row)}
+    return own[0] if len(own) == 1 and letters <= {axis, "X", "Z", "N", "G"} else -1

@@ -1,0 +1,71 @@
+"""What the blocks behind a row build on, looked up for many rows."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from polarcheck.columns.path.lengths import RADIUS_FACTOR
+from polarcheck.columns.trace import Trace
+from polarcheck.foundation.arrays import Mask, Rows
+from polarcheck.foundation.states import Motion
+from polarcheck.rewrite.writing.blocks import jump_numbers
+
+
+class Following:
+    """
+    Rows of a program by what they have, in order.
+
+    moves, turns, on_plane, at_feed, arcs: rows that move; that move C; X or C; at feed; along an arc or in a cycle.
+    motion, plane, feed_mode: with a code of that group. feed: with F.
+    jump_targets: rows with an N word whose number stands in a statement, or beside P or Q: something may lead there.
+    """
+
+    def __init__(self, trace: Trace) -> None:
+        axes, modal, blocks = trace.axes, trace.modal, trace.blocks
+        rotary = trace.machine.polar.rotary_words
+        moves = axes.motion != Motion.NONE
+        arcs = (axes.motion == Motion.CW) | (axes.motion == Motion.CCW) | (axes.motion == Motion.CYCLE)
+        self._count = len(trace)
+        self._starts = np.flatnonzero(blocks.starts)
+        self.moves, self.turns, self.on_plane, self.at_feed, self.arcs = (
+            np.flatnonzero(mask)
+            for mask in (
+                moves,
+                moves & blocks.has(*rotary),
+                moves & blocks.has("X", "U", *rotary),
+                moves & (axes.motion != Motion.RAPID),
+                arcs,
+            )
+        )
+        self.motion, self.plane, self.feed_mode = (
+            np.flatnonzero(modal.sets(group)) for group in ("motion", "plane", "feed_mode")
+        )
+        self.feed = np.flatnonzero(blocks.has("F"))
+        self.jump_targets = _jump_targets(trace)
+
+    def behind(self, row: int, rows: Rows) -> int:
+        """The first of some rows behind a row, in the same program; the number of all rows where there is none."""
+        behind, end = (self._next(row, each) for each in (rows, self._starts))
+        return behind if behind < end else self._count
+
+    def _next(self, row: int, rows: Rows) -> int:
+        at = int(rows.searchsorted(row, "right"))
+        return int(rows[at]) if at < len(rows) else self._count
+
+    def takes_over(self, row: int, users: Rows, setters: Rows) -> bool:
+        """Whether a row that needs something comes before one that sets it, or sets it itself."""
+        return self.behind(row, users) < self.behind(row, setters)
+
+
+def _jump_targets(trace: Trace) -> Mask:
+    run, numbers = trace.run, jump_numbers(trace.text)
+    if not numbers:
+        return trace.blocks.nowhere
+    n_words = (run.words.address == ord("N")) & np.isin(run.words.value, list(numbers))
+    return trace.blocks.with_words(n_words)
+
+
+def x_factor(trace: Trace, row: int) -> float:
+    """Radius per X word outside of the mode."""
+    factor = float(np.broadcast_to(trace.lengths.x_factor, len(trace))[row])
+    return factor if factor > 0 else RADIUS_FACTOR[trace.machine.control.x]

@@ -1,0 +1,271 @@
+"""The new blocks that stand in the place of those of the original, put into its bytes."""
+
+from __future__ import annotations
+
+import re
+from bisect import bisect_right
+from collections.abc import Collection, Mapping, Sequence
+
+import msgspec
+import numpy as np
+
+from polarcheck.foundation.arrays import stretch
+from polarcheck.program.machines.machine import Machine
+from polarcheck.program.reading import source
+from polarcheck.program.reading.words import Text
+from polarcheck.rewrite.fixes.edits import applied, origins
+from polarcheck.rewrite.writing.original import Original
+from polarcheck.rewrite.writing.outcome import Refusal, RefusedError
+from polarcheck.rewrite.writing.style import Style
+from polarcheck.rules.editing import Replace, blocks_before, blocks_behind, content_of, line_end, line_without
+
+
+class NewBlock(msgspec.Struct, frozen=True):
+    """
+    A block of the new program.
+
+    words: as they are written, in order. comment: its text, without the signs around it.
+    """
+
+    words: tuple[str, ...] = ()
+    comment: str = ""
+
+
+#: The index of a block in text.blocks -> what stands in its place: no block takes it out with its line.
+NewBlocks = Mapping[int, Sequence[NewBlock]]
+
+_BLANK_OR_END = " \t\r\n\0\x7f"
+#: Block skip, N word and O word stay at the head of a block that is rewritten.
+_HEAD = re.compile(r"(?:[ \t]*(?:/[1-9]?|[NO:][ \t]*[0-9]+))*", re.IGNORECASE)
+_SKIP = re.compile(r"/[1-9]?")
+_NUMBER = re.compile(r"N[ \t]*([0-9]+)", re.IGNORECASE)
+_PLAIN_WORD = re.compile(r"[A-Z][-+.0-9]+", re.IGNORECASE)
+_REFERENCE = re.compile(r"[0-9]+")
+
+
+def comment_signs(machine: Machine) -> tuple[str, str]:
+    """What a comment stands between on a machine."""
+    control = machine.control
+    return ("(", ")") if control.parentheses_are_comments else (control.line_comments + " ", "")
+
+
+def comment_text(comment: str, machine: Machine) -> str:
+    """A comment with its signs; signs inside that would end it become brackets, control characters blanks."""
+    begin, end = comment_signs(machine)
+    plain = "".join(sign if sign.isprintable() else " " for sign in comment)
+    if end:
+        plain = plain.replace("(", "[").replace(")", "]")
+    return f"{begin}{plain}{end}".rstrip()
+
+
+def block_text(block: NewBlock, style: Style, machine: Machine) -> str:
+    """A block as it is written."""
+    text = last = ""
+    for word in (word.lower() for word in block.words) if style.lower_case else block.words:
+        # Only words of a letter and a number part themselves.
+        part = style.blank if _PLAIN_WORD.fullmatch(word) and _PLAIN_WORD.fullmatch(last) else " "
+        text, last = f"{text}{part}{word}" if text else word, word
+    return " ".join(part for part in (text, comment_text(block.comment, machine) if block.comment else "") if part)
+
+
+def edits_of(
+    original: Original, blocks: NewBlocks, style: Style, machine: Machine, without_skip: Collection[int] = ()
+) -> list[Replace]:
+    """
+    Return the edits that put new blocks in the place of blocks of the original.
+
+    N, O and block skip at the head of a block stay, N with its first new block, block skip with each. The others get N
+    words between those of the original where its blocks have them and there is room. Its comments stay, in the signs of
+    the machine, behind its first block. Where the machine takes `;` for a comment, blocks that it parts go to lines of
+    their own. style: of the original. machine: for which the new program is. without_skip: blocks that lose their block
+    skip.
+    """
+    text = original.trace.text
+    sequence = _Sequence(text, style)
+    return [
+        _edit(text, index, blocks[index], sequence, style, machine, index in without_skip) for index in sorted(blocks)
+    ]
+
+
+def edits_of_ranges(
+    original: Original, ranges: Mapping[tuple[int, int], Sequence[NewBlock]], style: Style, machine: Machine
+) -> list[Replace]:
+    """
+    Return the edits that put new blocks in the place of all from a first block to a last one.
+
+    N at the head of the first stays; the others get N words as in `edits_of`. Comments are those of the new blocks.
+    """
+    text = original.trace.text
+    sequence = _Sequence(text, style)
+    edits = []
+    for first, last in sorted(ranges):
+        begin, finish = content_of(text, first)[0], content_of(text, last)[1]
+        head = _HEAD.match(text.source.excerpt(begin, finish))
+        number = _NUMBER.search(head[0]) if head else None
+        written = [block_text(block, style, machine) for block in ranges[first, last]]
+        heads = [number[0] if number else "", *sequence.between(first, len(written) - 1, last)]
+        lines = [_joined(*pair, style) for pair in zip(heads, written, strict=False)]
+        edits.append((begin, finish, _parting(text, first, machine).join(lines)))
+    return edits
+
+
+def comments_of(text: Text, index: int) -> list[str]:
+    """The comments of a block without their signs."""
+    start, end = int(text.blocks.start[index]), int(text.blocks.end[index])
+    return _comments(text, index, text.source.excerpt(start, end))[0]
+
+
+def edits_of_signs(original: Original, machine: Machine) -> list[Replace]:
+    """Return the edits that part blocks by line ends where the machine takes the `;` between them for a comment."""
+    text = original.trace.text
+    if machine.control.line_comments != ";":
+        return []
+    edits, code = [], text.source.code
+    for index in np.flatnonzero(code[np.minimum(text.blocks.end, len(code) - 1)] == ord(";")).tolist():
+        end = int(text.blocks.end[index])
+        if end >= len(code) or index + 1 >= len(text.blocks):
+            continue
+        begin, finish = content_of(text, index + 1)
+        if begin < finish and text.source.line_of(begin) == text.source.line_of(end):
+            edits.append((end, begin, line_end(text.source, text.source.line_of(end))))
+    return edits
+
+
+def edit_before(original: Original, index: int, blocks: Sequence[NewBlock], style: Style, machine: Machine) -> Replace:
+    """Return the edit that puts new blocks before one that stays, on lines of their own, without N words."""
+    return blocks_before(original.trace.text, index, [block_text(block, style, machine) for block in blocks])
+
+
+def edit_behind(original: Original, index: int, blocks: Sequence[NewBlock], style: Style, machine: Machine) -> Replace:
+    """Return the edit that puts new blocks behind one that stays, on lines of their own, without N words."""
+    return blocks_behind(original.trace.text, index, [block_text(block, style, machine) for block in blocks])
+
+
+def with_edits(original: Original, edits: Sequence[Replace]) -> tuple[bytes, list[int]]:
+    """
+    Return the bytes with the edits, and for each of the new lines its line in the original (from 1).
+
+    Raises RefusedError where the encoding does not give all characters back.
+    """
+    text, encoding = original.trace.text.source, original.settings.encoding
+    data = applied(text, edits)
+    if data is None:
+        raise RefusedError([Refusal(0, "its encoding does not give all characters back as they are")])
+    return data, origins(text, source.read_source(data, original.path, encoding), edits).tolist()
+
+
+class _Sequence:
+    """N words for new blocks, between those of the original; blocks are asked for in their order."""
+
+    def __init__(self, text: Text, style: Style) -> None:
+        own = (text.words.address == ord("N")) & (text.words.value < 1e9)
+        numbers = dict(zip(text.words.block[own].tolist(), text.words.value[own].tolist(), strict=True))
+        for index in np.flatnonzero(text.blocks.is_macro).tolist():
+            statement = text.source.excerpt(int(text.blocks.start[index]), int(text.blocks.end[index]))
+            if number := _NUMBER.match(statement.lstrip(_BLANK_OR_END + "/")):
+                numbers[index] = float(number[1])
+        #: Blocks with an N word in their order, and its value.
+        self.blocks = sorted(numbers)
+        self.values = [numbers[index] for index in self.blocks]
+        #: All N words of the file: they need not ascend.
+        self.numbers = set(self.values)
+        self.is_on = style.numbered == "all"
+        self.letter = "n" if style.lower_case else "N"
+        self.step, self.digits = style.number_step, style.number_digits
+        self.references = jump_numbers(text)
+
+    def is_reference(self, number: int) -> bool:
+        """Something in the program may lead to the block with this N word."""
+        return number in self.references
+
+    def between(self, index: int, count: int, until: int | None = None) -> list[str]:
+        """
+        N words of so many new blocks behind the N word of a block, or before it; empty ones without room.
+
+        until: a later block, in the place of which and of those before it they stand, too.
+        """
+        at = bisect_right(self.blocks, index)
+        if not self.is_on or count <= 0 or not at:
+            return [""] * count
+        behind = bisect_right(self.blocks, index if until is None else until)
+        last = int(self.values[at - 1])
+        following = int(self.values[behind]) if behind < len(self.values) else last + self.step * (count + 1)
+        room = (following - last - 1) // count
+        steps = (step for step in (self.step, 10, 5, 2, 1) if step <= room)
+        step = next(
+            (step for step in steps if self.numbers.isdisjoint(last + step * n for n in range(1, count + 1))), 0
+        )
+        return [f"{self.letter}{last + step * n:0{self.digits}d}" if step else "" for n in range(1, count + 1)]
+
+
+def jump_numbers(text: Text) -> set[int]:
+    """Return the numbers that may be targets of jumps and calls: those beside P and Q, and all in statements."""
+    words, blocks = text.words, text.blocks
+    beside = np.isin(words.address, np.frombuffer(b"PQ", np.uint8)) & np.isfinite(words.value)
+    numbers = {int(value) for value in words.value[beside].tolist()}
+    for index in np.flatnonzero(blocks.is_macro).tolist():
+        statement = text.source.excerpt(int(blocks.start[index]), int(blocks.end[index]))
+        numbers.update(int(match) for match in _REFERENCE.findall(statement) if len(match) < 10)
+    return numbers
+
+
+def _edit(
+    text: Text,
+    index: int,
+    blocks: Sequence[NewBlock],
+    sequence: _Sequence,
+    style: Style,
+    machine: Machine,
+    is_without_skip: bool,
+) -> Replace:
+    start = int(text.blocks.start[index])
+    content = text.source.excerpt(start, int(text.blocks.end[index]))
+    comments, bare = _comments(text, index, content)
+    begin, finish = content_of(text, index)
+    lead = begin - start
+    head = _HEAD.match(bare, lead)
+    labels = range(*stretch(text.labels.block, index, index + 1))
+    head_end = max([head.end() if head else lead, *(int(text.labels.end[at]) - start for at in labels)])
+    kept = content[lead:head_end].strip()
+    if is_without_skip:
+        kept = _SKIP.sub("", kept).strip()
+    number = _NUMBER.search(kept)
+    written = [block_text(block, style, machine) for block in blocks]
+    remarks = "".join(f" {comment_text(comment, machine)}" for comment in comments)
+    if not written and not remarks and not (number and sequence.is_reference(int(number[1]))) and not len(labels):
+        return line_without(text.source, begin, finish)
+    skip = _SKIP.search(kept)
+    numbers = sequence.between(index, len(written) - 1)
+    heads = [kept, *(style.blank.join(part for part in (skip[0] if skip else "", n) if part) for n in numbers)]
+    lines = [_joined(head, line, style) for head, line in zip(heads, written or [""], strict=True)]
+    lines[0] = (lines[0] + remarks).strip()
+    return begin, finish, _parting(text, index, machine).join(lines)
+
+
+def _joined(head: str, line: str, style: Style) -> str:
+    return f"{head}{style.blank}{line}" if head and line else head + line
+
+
+def _comments(text: Text, index: int, content: str) -> tuple[list[str], str]:
+    """The comments in a block without their signs, and the block with blanks in their places."""
+    start = int(text.blocks.start[index])
+    comments, bare = [], content
+    for at in range(*stretch(text.comments.block, index, index + 1)):
+        first, last = int(text.comments.start[at]) - start, int(text.comments.end[at]) - start
+        comment = content[first:last]
+        is_closed = comment.startswith("(") and comment.endswith(")")
+        comments.append(comment[1:-1] if is_closed else comment[1:].strip())
+        bare = bare[:first] + " " * (last - first) + bare[last:]
+    return comments, bare
+
+
+def _parting(text: Text, index: int, machine: Machine) -> str:
+    """What stands between new blocks: a line end, after `;` where one ends the block, or `; ` within a line."""
+    code, end = text.source.code, int(text.blocks.end[index])
+    line = text.source.line_of(max(end - 1, 0))
+    has_sign = end < len(code) and int(code[end]) == ord(";")
+    if machine.control.line_comments == ";" or not has_sign:
+        return line_end(text.source, line)
+    last = int(text.source.line_starts[line]) if line < len(text.source.line_starts) else len(code)
+    alone = not text.source.excerpt(end + 1, last).strip(_BLANK_OR_END)
+    return ";" + line_end(text.source, line) if alone else "; "

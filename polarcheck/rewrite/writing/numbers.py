@@ -1,0 +1,104 @@
+"""Numbers as a program for a machine writes them: rounded to its least increment, in the style of the program."""
+
+from __future__ import annotations
+
+import math
+import re
+
+from polarcheck.foundation.states import MM_PER_INCH
+from polarcheck.program.machines.machine import Machine
+from polarcheck.rewrite.writing.outcome import Refusal, RefusedError
+from polarcheck.rewrite.writing.style import PLAIN, Style
+
+#: Digits behind the point of F, which no least increment rounds: per minute in mm, per minute in inch.
+_FEED_DECIMALS = (3, 4)
+_CODE = re.compile(r"([GM])0*+(\d*+)(\.\d++)?")
+
+
+class Numbers:
+    """
+    Writes numbers of a program.
+
+    machine: that reads them. style: how the program writes them. inch: its lengths are in inch.
+    feed_inch: so is F; as `inch` where it is None. They differ behind a code of control.units_of_lengths_alone.
+    line: of the original, from 1, that a refusal names.
+    """
+
+    def __init__(
+        self, machine: Machine, style: Style = PLAIN, inch: bool = False, feed_inch: bool | None = None
+    ) -> None:
+        self.machine, self.style, self.inch = machine, style, inch
+        self.feed_inch = inch if feed_inch is None else feed_inch
+        self.line = 0
+        control = machine.control
+        self.scale = MM_PER_INCH if inch else 1.0
+        self.least = control.least_increment_inch if inch else control.least_increment
+
+    @property
+    def step(self) -> float:
+        """The least increment of a length [mm]."""
+        return self.least * self.scale
+
+    def increments(self, length: float) -> int:
+        """The least increments of a length [mm], rounded; lengths are the same where these are."""
+        return round(length / self.step)
+
+    def length(self, length: float) -> str:
+        """A length [mm] as it is written, in mm or inch."""
+        return self.of_increments(self.increments(length))
+
+    def of_increments(self, count: int) -> str:
+        """A length of so many least increments as it is written."""
+        style = self.style
+        is_fraction = not float(count * self.least).is_integer()
+        decimals = style.fraction_decimals if is_fraction and style.decimals is None else style.decimals
+        return self._checked(_fixed(count * self.least, self.least), decimals, style.point)
+
+    def angle(self, degrees: float) -> str:
+        """An angle [deg] as it is written."""
+        least = self.machine.control.least_increment
+        return self._checked(_fixed(round(degrees / least) * least, least), self.style.decimals, self.style.point)
+
+    def rate(self, value: float) -> str:
+        """F as a number in the units of the program, be it 1/min or deg/min: four decimals at most."""
+        return self._checked(f"{value:.4f}", self.style.feed_decimals, self.style.feed_point, counts=self.feed_inch)
+
+    def feed(self, feed: float) -> str:
+        """F [mm/min] as it is written, in mm or inch per minute."""
+        value = feed / (MM_PER_INCH if self.feed_inch else 1.0)
+        text = f"{value:.{_FEED_DECIMALS[self.feed_inch]}f}"
+        if not float(text) and feed > 0:
+            text = f"{value:.9f}"
+        return self._checked(text, self.style.feed_decimals, self.style.feed_point, counts=self.feed_inch)
+
+    def code(self, code: str) -> str:
+        """A G or M code as it is written: G1 or G01."""
+        match = _CODE.fullmatch(code)
+        if match is None:
+            return code
+        letter, number, rest = match.groups("")
+        return letter + number.zfill(self.style.code_digits) + rest
+
+    def _checked(self, fixed: str, decimals: int | None, point: bool, counts: bool = True) -> str:
+        """A number in the style of the program. counts: without a point the control may count it in increments."""
+        sign, text = ("-", fixed[1:]) if fixed.startswith("-") else ("", fixed)
+        whole, _, rest = text.partition(".")
+        rest = rest.rstrip("0")
+        if decimals is not None:
+            rest = rest.ljust(decimals, "0")
+        is_zero = not int(whole) and not rest.strip("0")
+        if is_zero:
+            sign = ""
+        if len(whole + rest) > self.machine.control.digit_limit:
+            raise RefusedError([Refusal(self.line, f"{fixed} has more digits than the control takes")])
+        needs_point = counts and not is_zero and self.machine.control.number_without_point != "whole-unit"
+        if not rest:
+            return sign + whole + "." * (needs_point or (self.style.zero_point if is_zero else point))
+        if not int(whole) and not self.style.leading_zero:
+            whole = ""
+        return f"{sign}{whole}.{rest}"
+
+
+def _fixed(value: float, least: float) -> str:
+    """A multiple of the least increment in decimals, without exponent."""
+    return f"{value:.{max(0, math.ceil(-math.log10(least) - 1e-9))}f}"

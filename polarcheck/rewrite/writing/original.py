@@ -1,0 +1,47 @@
+"""The program that is rewritten."""
+
+from __future__ import annotations
+
+import msgspec
+
+from polarcheck.checking import check
+from polarcheck.checking.settings import Settings
+from polarcheck.columns.trace import Trace
+from polarcheck.rewrite.writing.outcome import Refusal, RefusedError
+from polarcheck.rules.tables import Tables
+
+
+class Original(msgspec.Struct, frozen=True):
+    """
+    The program that is rewritten.
+
+    path: as it is shown. data: its bytes. settings: its machine, job and encoding. tables: of its one run.
+    """
+
+    path: str
+    data: bytes
+    settings: Settings
+    tables: Tables
+
+    @property
+    def trace(self) -> Trace:
+        """The executed blocks."""
+        trace: Trace = self.tables["trace"]
+        return trace
+
+
+def read(path: str, data: bytes, settings: Settings) -> Original:
+    """
+    Read a program with its settings.
+
+    Raises SourceError, TooHardError; RefusedError for a file with several channels, which wait for each other, and for
+    one that runs otherwise with block skip, since one result cannot be both.
+    """
+    runs = check.read(data, settings.machine, settings.job, path, settings.encoding)
+    if len({tables["text"].source.channel for _, tables in runs}) > 1:
+        raise RefusedError([Refusal(0, "the file has several channels: divide it into one file for each")])
+    if len(runs) > 1:
+        raise RefusedError(
+            [Refusal(0, "it runs otherwise with block skip than without: choose with --block-skip on or off")]
+        )
+    return Original(path, data, settings, runs[0][1])

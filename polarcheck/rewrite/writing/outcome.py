@@ -1,0 +1,60 @@
+"""What comes of rewriting a program."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import msgspec
+
+from polarcheck.foundation.errors import Refusal as Refusal
+from polarcheck.foundation.errors import RefusedError as RefusedError
+
+if TYPE_CHECKING:
+    from polarcheck.columns.trace import Trace
+
+
+def refusal_at(trace: Trace, row: int, text: str) -> Refusal:
+    """A reason with the line of a row in the file."""
+    return Refusal(int(trace.blocks.line_in_file[row]), text)
+
+
+def refused_at(trace: Trace, row: int, text: str) -> RefusedError:
+    """The error to raise for one reason with the line of a row in the file."""
+    return RefusedError([refusal_at(trace, row, text)])
+
+
+class Decision(msgspec.Struct, frozen=True):
+    """
+    What somebody has to decide before the new program runs. A comment in it says so, too.
+
+    line: in the original, from 1; 0 for the whole program. text: what is to be decided, and what was in the original.
+    """
+
+    line: int
+    text: str
+
+
+class Figure(msgspec.Struct, frozen=True):
+    """A measured value for the report, as the largest distance of two paths. unit: mm, deg/min, empty for counts."""
+
+    name: str
+    value: float
+    unit: str = ""
+
+
+class Outcome(msgspec.Struct, frozen=True):
+    """
+    A program that was rewritten, and read back.
+
+    data: the new bytes.
+    origin: for each line of the new program its line in the original (from 1), ascending.
+    decisions: what is to be decided.
+    figures: the measured values, in order.
+    notes: lines on what was done where.
+    """
+
+    data: bytes
+    origin: list[int]
+    decisions: list[Decision]
+    figures: list[Figure]
+    notes: list[str]

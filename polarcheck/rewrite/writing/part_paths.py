@@ -1,0 +1,128 @@
+"""
+The way of the tool on the part, in the polar mode and without it.
+
+How far two of them are apart, however blocks divide them, is `geometry.comparison.paths.path_deviation(old, new, ...)`.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from polarcheck.columns.trace import Trace
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, States
+from polarcheck.foundation.errors import TooHardError
+from polarcheck.foundation.states import Motion
+from polarcheck.foundation.time_limit import keep_time
+from polarcheck.geometry.comparison.polyline import SpacePath
+from polarcheck.geometry.plane import arc_sweep
+from polarcheck.geometry.tolerances import CHORDS_OF_FILE
+from polarcheck.rewrite.compare.stretches import ANGLE, NOWHERE, Stretch, of_sections, outside
+from polarcheck.rewrite.writing.outcome import refused_at
+from polarcheck.rules.tables import Tables
+
+#: How far the chords of a move of X and C may leave its true path [mm].
+CHORD = 1e-4
+
+
+class PartPath(SpacePath, frozen=True):
+    """
+    Moves of the tool center in the frame of the part, in the order in which they are run: a SpacePath, whose point x is
+    that of C0.
+
+    row: int[n], rows of the trace. rapid: bool[n], rapid traverse. feed_mode: int16[n], FeedMode. feed: float64[n], F
+    in force [mm per min or revolution], NaN without one.
+
+    A block that moves X and C outside of the mode is several moves: chords of its true path, which is a piece of a
+    spiral, since both axes move at even speeds. A move in rapid traverse is straight: only its ends
+    count, since its axes need not arrive together.
+    """
+
+    row: Rows
+    rapid: Mask
+    feed_mode: States
+    feed: Floats
+
+
+def path_on_part(tables: Tables, first: int = 0, until: int | None = None, chord: float = CHORD) -> PartPath:
+    """
+    Return the way of the tool on the part in the rows from `first` up to, not including, `until`.
+
+    chord: how far chords may leave the true path of a move of X and C [mm].
+
+    Raises RefusedError where R or a position is not known, with the line; TooHardError for too many chords.
+    """
+    trace: Trace = tables["trace"]
+    until = len(trace) if until is None else until
+    sections = of_sections(trace, tables["tool_center"], ())
+    parts = [_in_section(section) for section in sections if section.rows[0] < until and section.rows[-1] >= first]
+    # With ANGLE as its tolerance C stays in degrees.
+    parts.append(_without_mode(outside(trace, ANGLE, (), first, until), chord))
+    moves = PartPath.concatenated(parts)
+    moves = moves[(moves.row >= first) & (moves.row < until)]
+    moves = moves[np.argsort(moves.row, kind="stable")]
+    missing = np.append(moves.row[~moves.is_known], [section.row[0] for section in sections if section.as_programmed])
+    missing = missing[(missing >= first) & (missing < until)]
+    if len(missing):
+        reasons = [section.as_programmed for section in sections if section.as_programmed]
+        raise refused_at(trace, int(missing.min()), (reasons or ["where the tool is there is not known"])[0])
+    return moves
+
+
+def _in_section(section: Stretch) -> PartPath:
+    path = section.path
+    columns = (path.start, path.end, path.center, path.kind, path.z_start, path.z_end)
+    return PartPath(*columns, section.row, section.rapid, section.feed_mode, section.feed)
+
+
+def _without_mode(stretch: Stretch, chord: float) -> PartPath:
+    """The moves outside of sections: chords between points that lie at even shares of X, Z and C, or of an arc."""
+    path = stretch.path  # Z + 1j*X, and C [deg] in the place of Z
+    turn = np.radians(path.z_end - path.z_start)
+    is_arc = ~np.isnan(path.center)
+    sweep = np.where(is_arc, arc_sweep(path.start, path.end, np.where(is_arc, path.center, 0), path.kind), 0.0)
+    count = _counts(path, turn, sweep, stretch.rapid, chord)
+    move = np.repeat(np.arange(len(path)), count)
+    step = np.arange(len(move)) - np.repeat(np.cumsum(count) - count, count)
+    start, end = (_at(path, turn, sweep, move, share) for share in (step / count[move], (step + 1) / count[move]))
+    return PartPath(
+        start=start[0],
+        end=end[0],
+        center=np.full(len(move), NOWHERE),
+        kind=np.where(stretch.rapid, Motion.RAPID, Motion.LINE).astype(np.int16)[move],
+        z_start=start[1],
+        z_end=end[1],
+        row=stretch.row[move],
+        rapid=stretch.rapid[move],
+        feed_mode=stretch.feed_mode[move],
+        feed=stretch.feed[move],
+    )
+
+
+def _counts(path: SpacePath, turn: Floats, sweep: Floats, rapid: Mask, chord: float) -> Rows:
+    """
+    Chords of each move: a curve p(u) leaves a chord of the length h of u by no more than h^2 / 8 max|p''|.
+
+    Here p = r exp(i t) with r and t linear in u, so that |p''| <= 2 |r'| |t'| + r t'^2; of an arc it is R sweep^2.
+    """
+    x_start, x_end = path.start.imag, path.end.imag
+    largest = np.maximum(np.abs(x_start), np.abs(x_end))
+    bend = 2 * np.abs(x_end - x_start) * np.abs(turn) + largest * turn**2
+    bend += np.where(sweep != 0, np.abs(path.start - np.nan_to_num(path.center)) * sweep**2, 0)
+    count = np.where(rapid, 1, np.ceil(np.sqrt(np.nan_to_num(bend) / (8 * chord))))
+    if count.sum() > CHORDS_OF_FILE:
+        raise TooHardError(f"the moves of C take more than {CHORDS_OF_FILE} chords")
+    return np.asarray(np.maximum(count, 1), np.int64)
+
+
+def _at(path: SpacePath, turn: Floats, sweep: Floats, move: Rows, share: Floats) -> tuple[Points, Floats]:
+    """Points on the part, and Z, at a share of moves."""
+    keep_time()
+    start, end = path.start[move], path.end[move]
+    place = start + (end - start) * share
+    is_arc = sweep[move] != 0
+    center = np.where(is_arc, path.center[move], 0)
+    place = np.where(is_arc, center + (start - center) * np.exp(1j * sweep[move] * share), place)
+    angle = np.radians(path.z_start[move]) + turn[move] * share
+    ends = share == 1
+    place = np.where(ends, end, place)
+    return place.imag * np.exp(1j * angle), place.real

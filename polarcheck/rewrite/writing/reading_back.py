@@ -1,0 +1,234 @@
+"""The new program read as its control would, and compared with the original before anything is written."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Collection, Iterator, Sequence
+
+import msgspec
+import numpy as np
+
+from polarcheck.checking.check import check_runs
+from polarcheck.checking.settings import Settings
+from polarcheck.foundation.finding import SEVERITIES, Finding, Severity
+from polarcheck.geometry.comparison.paths import path_deviation
+from polarcheck.rewrite.compare.comparison import Revision, compared, default_tolerance
+from polarcheck.rewrite.compare.report import Comparison, Difference, SectionPair
+from polarcheck.rewrite.writing.meanings import lost_orders, other_speeds
+from polarcheck.rewrite.writing.original import Original, read
+from polarcheck.rewrite.writing.outcome import Refusal, RefusedError
+from polarcheck.rewrite.writing.part_paths import CHORD, path_on_part
+from polarcheck.rules.rule import Rule, load_all
+
+#: Times of a section that differ by less than this share, or by less than this [s], are the same.
+_SAME_SHARE, _SAME_TIME = 2e-3, 0.02
+#: Rules about orders to spindles, the C axis and tools: what another lathe needs is to be decided.
+_OF_ORDERS = frozenset(
+    (
+        *("c-axis-clamped-in-polar", "c-axis-not-engaged", "c-axis-not-referenced", "live-tool-never-stopped"),
+        *("live-tool-stopped-in-cut", "live-tool-without-speed", "main-spindle-running-at-entry"),
+        *("no-tool-offset-at-entry", "spindle-code-in-polar"),
+    )
+)
+#: Chords of arcs and the end of the search add no more than this share to a measured distance.
+_SHARE_OF_CHORDS = 0.05
+#: Further differences than this are not listed.
+_LISTED = 20
+
+
+class ReadBack(msgspec.Struct, frozen=True):
+    """
+    What the new program does beside the original.
+
+    new: the program as it is read. differences: what differs, with lines of the original; none where it may be written.
+    deviation: the largest distance of the tool center paths [mm]. open_orders: errors about spindles, the C axis or
+    tools, which somebody has to decide. notes: what could not be compared and does not matter.
+    """
+
+    new: Original
+    differences: list[Refusal]
+    deviation: float
+    notes: list[str]
+    open_orders: list[Refusal] = []
+
+
+def read_back(
+    original: Original,
+    data: bytes,
+    settings: Settings,
+    origin: Sequence[int],
+    decided: Collection[int] = (),
+    *,
+    rapid_as_line: bool = False,
+    other_states: Collection[str] = (),
+    added_speeds: Collection[int] = (),
+) -> ReadBack:
+    """
+    Compare a program that has its polar sections on another control, or on the same one, with the original.
+
+    Compared are, up to the least increment, the path of the tool center on the part with Z, its order, F, C, the state
+    at the beginning of each section, the time of each section, the moves outside of sections, dwells, and what codes
+    mean by the lists of both profiles. A check finds no error that the original does not have.
+
+    settings: of the new program. origin: for each of its lines the line in the original, from 1.
+    decided: lines of the original that are comments in the new program, for somebody to decide. Their moves and orders
+    are not compared, but where the new program moves in their place.
+    rapid_as_line: moves in rapid traverse in sections are lines in the new program, whose F and time are its own.
+    other_states: states at the beginning of sections that are others on that machine, as `spindle`.
+    added_speeds: lines of the original in whose place the new program names a speed that was in force there.
+
+    Raises RefusedError where the new program cannot be run once, TooHardError.
+    """
+    new = read(original.path, data, settings)
+    old_side, new_side = (Revision(each.path, each.settings.name, [("", each.tables)]) for each in (original, new))
+    tolerance = default_tolerance(old_side, new_side)
+    left_out = _without_moves(new, origin, decided)
+    result = compared(old_side, new_side, tolerance, left_out, is_rewritten=True)
+    differences = [*_of_comparison(result, decided, rapid_as_line, other_states, origin)]
+    differences += [] if rapid_as_line else _times(result)
+    if original.settings.machine != settings.machine:
+        differences += lost_orders(original.trace, new.trace, decided)
+        differences += other_speeds(original.trace, new.trace, {*decided, *added_speeds}, origin)
+    errors = list(_errors(original, new, origin))
+    # The original may start a live tool by a code that its profile does not name, or leave it to the operator.
+    open_orders = [refusal for rule, refusal in errors if rule.name in _OF_ORDERS]
+    differences += [refusal for _, refusal in errors if refusal not in open_orders]
+    notes = [reason.reason for reason in result.not_compared if not reason.matters and "as programmed" in reason.reason]
+    return ReadBack(new, differences[:_LISTED], result.deviation or 0.0, notes, open_orders)
+
+
+def read_back_on_part(
+    original: Original,
+    data: bytes,
+    settings: Settings,
+    origin: Sequence[int],
+    tolerance: float,
+    chord: float = CHORD,
+    left_out: Collection[int] = (),
+    noted: Collection[str] = (),
+    finer: Sequence[float] = (),
+) -> ReadBack:
+    """
+    Compare a program whose sections have another form with the original: with the mode or without it, compensated or
+    not, divided into moves otherwise.
+
+    Compared are the way of the tool on the part in and outside of sections, with Z and its order, what codes mean, and
+    the findings of a check. F is the caller's to compare. The deviation holds that of chords in the place of the true
+    path of X and C.
+
+    settings: of the new program. origin: for each of its lines the line in the original, from 1. tolerance: how far the
+    ways may be apart [mm]. chord: how far chords may leave the true path [mm]. left_out: lines of the original that
+    position the tool otherwise in the new program; where it goes from there on is compared. noted: groups of rules
+    whose errors are notes: they judge states that the new program has from the original, in the mode alone. finer:
+    tolerances that are tried before, ascending [mm]: the deviation is measured up to the one that the ways keep.
+
+    Raises RefusedError where a position of the original is not known, or the new program cannot be run once.
+    """
+    new = read(original.path, data, settings)
+    old_path, new_path = (path_on_part(each.tables, chord=chord) for each in (original, new))
+    if left_out:
+        stands_for = np.array([0, *origin])[np.minimum(new.trace.blocks.line_in_file, len(origin))]
+        old_path = old_path[~np.isin(original.trace.blocks.line_in_file[old_path.row], list(left_out))]
+        new_path = new_path[~np.isin(stands_for[new_path.row], list(left_out))]
+    for within in (*finer, tolerance):
+        # What chords add comes on top of what is measured.
+        measured_up_to = max(within - chord, within / 2) / (1 + _SHARE_OF_CHORDS)
+        deviation = path_deviation(old_path, new_path, measured_up_to)
+        largest = deviation.largest + deviation.rounding + chord
+        if largest <= within:
+            break
+    differences = []
+    if largest > tolerance:
+        lines = [each.trace.blocks.line_in_file for each in (original, new)]
+        line = new_line = 0
+        if deviation.place is not None:
+            line = int(lines[0][old_path.row[deviation.place.old_move]])
+            new_line = int(lines[1][new_path.row[deviation.place.new_move]])
+        text = f"the tool would be {largest:.4f} mm away from its path, above {tolerance:g} mm"
+        differences.append(Refusal(line, f"{text} (line {new_line} of the result)"))
+    differences += lost_orders(original.trace, new.trace, ())
+    notes: dict[str, str] = {}
+    for rule, refusal in _errors(original, new, origin):
+        if rule.group in noted:
+            notes.setdefault(rule.name, f"line {refusal.line}: {refusal.text}")
+        else:
+            differences.append(refusal)
+    return ReadBack(new, differences[:_LISTED], largest, list(notes.values()))
+
+
+def require_equal(result: ReadBack) -> None:
+    """Raise RefusedError if the new program differs from the original."""
+    if result.differences:
+        raise RefusedError(result.differences)
+
+
+def _without_moves(new: Original, origin: Sequence[int], decided: Collection[int]) -> set[int]:
+    """The decided lines in whose place the new program does not move."""
+    trace = new.trace
+    lines = trace.blocks.line_in_file[np.flatnonzero(trace.axes.moves)].tolist()
+    moving = {origin[line - 1] for line in lines if 0 < line <= len(origin)}
+    return set(decided) - moving
+
+
+def _of_comparison(
+    result: Comparison,
+    decided: Collection[int],
+    rapid_as_line: bool,
+    other_states: Collection[str],
+    origin: Sequence[int],
+) -> Iterator[Refusal]:
+    for section in result.sections:
+        for each in section.differences:
+            is_rapid = rapid_as_line and each.what == "feed" and each.old == "rapid traverse"
+            if not is_rapid and each.what not in other_states:
+                yield _refusal(each, section)
+    for each in result.outside:
+        of_line = each.old_line or (_line(origin, each.new_line) if each.new_line else 0)
+        if each.what != "order" or of_line not in decided:
+            yield _refusal(each)
+    for reason in result.not_compared:
+        if reason.matters:
+            yield Refusal(0, f"not comparable: {reason.reason}")
+
+
+def _refusal(difference: Difference, section: SectionPair | None = None) -> Refusal:
+    line = difference.old_line or (section.old.line if section is not None and section.old is not None else 0)
+    where = f" (line {difference.new_line} of the result)" if difference.new_line else ""
+    return Refusal(line, f"{difference.text}{where}")
+
+
+def _times(result: Comparison) -> Iterator[Refusal]:
+    """Sections that would take another time: F along an arc, or beside Z, means something else."""
+    for section in result.sections:
+        if section.old is None or section.new is None:
+            continue
+        was, is_now = section.old.time, section.new.time
+        if was is not None and is_now is not None and abs(was - is_now) > max(_SAME_TIME, _SAME_SHARE * was):
+            yield Refusal(section.old.line, f"the section takes {was:.2f} s, and would take {is_now:.2f} s")
+
+
+def _errors(original: Original, new: Original, origin: Sequence[int]) -> Iterator[tuple[Rule, Refusal]]:
+    """Errors of a check that the original does not have, with their rules."""
+    rules = load_all()
+    before, after = (_errors_of(each) for each in (original, new))
+    known = Counter(finding.rule for finding in before)
+    lines = {(finding.rule, finding.line) for finding in before}
+    of_rule: dict[str, list[Finding]] = {}
+    for finding in after:
+        of_rule.setdefault(finding.rule, []).append(finding)
+    for rule, findings in of_rule.items():
+        added = [each for each in findings if (rule, _line(origin, each.line)) not in lines]
+        for finding in added[: max(len(findings) - known[rule], 0)]:
+            text = f"{finding.rule} in line {finding.line} of the result: {finding.message}"
+            yield rules[rule], Refusal(_line(origin, finding.line), text)
+
+
+def _line(origin: Sequence[int], line: int) -> int:
+    return origin[line - 1] if 0 < line <= len(origin) else 0
+
+
+def _errors_of(program: Original) -> list[Finding]:
+    settings = program.settings
+    report = check_runs([("", program.tables)], list(load_all().values()), settings.severities, settings.inline)
+    findings = [each for finding in report.findings for each in (finding, *finding.follows)]
+    return [finding for finding in findings if SEVERITIES[finding.severity] >= Severity.ERROR]

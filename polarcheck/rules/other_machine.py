@@ -1,0 +1,148 @@
+"""Whether a section that this machine reads badly is one for another: by its axis, and by X in its arcs."""
+
+from __future__ import annotations
+
+import msgspec
+import numpy as np
+
+from polarcheck.columns.modes.mode_words import ModeWords
+from polarcheck.columns.trace import Trace
+from polarcheck.foundation.arrays import Mask, cached_property
+from polarcheck.program.execution.run import straight
+from polarcheck.program.machines import profiles
+from polarcheck.program.machines.machine import Machine
+from polarcheck.program.machines.profiles import Profile
+from polarcheck.program.reading import source
+from polarcheck.program.reading.channels import channel_like
+from polarcheck.program.reading.translation import translated
+from polarcheck.program.reading.words import read_words
+from polarcheck.rules.remedies import is_chosen
+from polarcheck.rules.tables import Tables
+
+#: More titles than this in one message help nobody.
+NAMED = 3
+
+
+class Fit(msgspec.Struct, frozen=True):
+    """Machines that read a program well, and why."""
+
+    profiles: tuple[Profile, ...]
+    reasons: tuple[str, ...]
+
+    def text(self) -> str:
+        """`Haas lathe (--machine haas-lathe): Y is the second axis there`."""
+        named = [f"{profile.machine.title} (--machine {profile.name})" for profile in self.profiles[:NAMED]]
+        return f"{' or '.join(named)}: {', '.join(self.reasons)}"
+
+
+class OtherMachine:
+    """Which other machines read the program of some tables well, and why."""
+
+    def __init__(self, tables: Tables) -> None:
+        self.tables = tables
+        self.trace: Trace = tables["trace"]
+
+    @cached_property
+    def _fit(self) -> Fit | None:
+        return _find(self.tables)
+
+    @property
+    def text(self) -> str:
+        """`; it reads well on ...`: which machines, and why; empty if none does, or somebody has chosen the machine."""
+        if is_chosen(self.trace.machine, self.trace.job) or not self._fit:
+            return ""
+        return f"; it reads well on {self._fit.text()}"
+
+
+def _find(tables: Tables) -> Fit | None:
+    """
+    The machines that read the program well where this one does not.
+
+    Cheap for a program that is read well: only an axis address of other controls, or arcs that close with X read the
+    other way, make it look at other machines.
+    """
+    trace: Trace = tables["trace"]
+    if not len(trace.mode.sections) or not np.any(_names_other_axis(tables) | tables["arcs"].x_is_misread):
+        return None
+    fitting: dict[tuple[str, ...], list[Profile]] = {}
+    told = [_reads(trace.machine)]
+    for profile in profiles.built_in():
+        if _reads(profile.machine) in told:
+            continue
+        reasons = _reasons(tables, profile.machine)
+        if reasons:
+            told.append(_reads(profile.machine))
+            fitting.setdefault(reasons, []).append(profile)
+    if not fitting:
+        return None
+    reasons = max(fitting, key=len)
+    return Fit(tuple(fitting[reasons]), reasons)
+
+
+def _reads(machine: Machine) -> tuple[object, ...]:
+    """What of a machine makes it read a program otherwise than another."""
+    control, mode = machine.control, machine.polar
+    switches = {*mode.on, *mode.off, machine.arcs.radius_word}
+    native = {word: text for word, text in control.native_words.items() if text in switches}
+    return mode.on, mode.virtual_axes, mode.x, machine.arcs.radius_word, native, control.motion_codes
+
+
+def _reasons(tables: Tables, machine: Machine) -> tuple[str, ...]:
+    """Why the machine reads the program well; empty where it does not."""
+    there = _read_by(tables, machine)
+    trace: Trace = tables["trace"]
+    other: Trace = there["trace"]
+    own, mode = trace.machine.polar, machine.polar
+    if not reads_well(there):
+        return ()
+    reasons = []
+    if mode.virtual_axis not in own.virtual_axes and np.any(other.blocks.has(mode.virtual_axis) & other.mode.in_polar):
+        reasons.append(f"{mode.virtual_axis} is the second axis of the polar plane there")
+    if mode.x != own.x and np.any(tables["arcs"].x_is_misread):
+        reasons.append(f"all arcs close there, where X is a {mode.x} in the polar mode")
+    return tuple(reasons)
+
+
+def _names_other_axis(tables: Tables) -> Mask:
+    """Rows in the mode with the address of the virtual axis of other controls."""
+    trace: Trace = tables["trace"]
+    words: ModeWords = tables["mode_words"]
+    return trace.mode.in_polar & words.rows(words.of_other_axis)
+
+
+def _switch_is_not_alone(tables: Tables) -> bool:
+    """Whether a G12.1 or G13.1 shares its block with what the machine does not take there."""
+    words: ModeWords = tables["mode_words"]
+    return bool(np.any(words.in_rows(words.switches) & ~words.may_stand_beside_switch))
+
+
+def _language(machine: Machine) -> tuple[object, ...]:
+    """What of a machine makes it find other words in a text than another."""
+    return machine.control.native_words, machine.control.line_comments, machine.macro.language
+
+
+def reads_well(there: Tables) -> bool:
+    """Whether sections of a program begin and end on the machine of the tables, and nothing in them is odd there."""
+    trace: Trace = there["trace"]
+    arcs = there["arcs"]
+    if not len(trace.mode.sections) or not trace.mode.sections.left.all() or _names_other_axis(there).any():
+        return False
+    if there["words"].is_unreadable.any():
+        return False
+    if arcs.is_no_circle.any() or arcs.x_is_misread.any() or _switch_is_not_alone(there):
+        return False
+    unread = trace.run.unknown | trace.blocks.with_words(trace.blocks.words_not_followed)
+    return not np.any(unread & (trace.mode.section >= 0))  # else nobody knows how it reads there
+
+
+def _read_by(tables: Tables, machine: Machine) -> Tables:
+    """The program as another machine reads it."""
+    trace: Trace = tables["trace"]
+    ours, theirs = trace.machine.control, machine.control
+    if _language(trace.machine) == _language(machine):
+        return Tables(trace.run, machine, trace.job)
+    found = source.read_source(trace.text.source.data, trace.text.source.path)
+    found = channel_like(found, trace.text.source, ours.channel_mark, ours.line_comments)
+    found = translated(found, theirs.native_words, machine.macro.language)
+    text = read_words(found, theirs.line_comments, ours.channel_mark, ours.wait_mark, machine.macro.language)
+    return Tables(straight(text, machine.m_codes.program_end), machine, trace.job)

@@ -1,0 +1,58 @@
+"""Where a value that the machine lacks is to be given: in the file of the user's own lathe, or in a new one."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from polarcheck.columns.modes.blocks import ExecutedBlocks
+from polarcheck.columns.modes.spindles import Spindles
+from polarcheck.program.execution.run import Run
+from polarcheck.program.machines import profiles
+from polarcheck.program.machines.job import Job
+from polarcheck.program.machines.machine import Machine, OwnMachine
+
+#: M codes that are named where any of them may be the one.
+_NAMED = 3
+
+
+def place(machine: Machine, key: str) -> str:
+    """`m_codes.c_axis_on in lathe.toml`; for a machine of ours, in a file that is still to be made."""
+    file = machine.file if isinstance(machine, OwnMachine) else "a file of your own (polarcheck machines new)"
+    return f"{key} in {file}"
+
+
+def is_chosen(machine: Machine, job: Job) -> bool:
+    """Return True if somebody has chosen the machine: it is not the one that is taken where nobody does."""
+    return job.machine is not None or machine.title != profiles.load(profiles.DEFAULT).machine.title
+
+
+def enumerated(names: Sequence[str], last: str) -> str:
+    """Join names: `G1, G2 or G3`. last: the word before the last one."""
+    *others, final = names
+    return f"{', '.join(others)} {last} {final}" if others else final
+
+
+def option_or_place(machine: Machine, key: str) -> str:
+    """The same for a single number: for a machine of ours the option that gives it is shorter."""
+    return place(machine, key) if isinstance(machine, OwnMachine) else f"--set {key}=..."
+
+
+def unlisted_codes(blocks: ExecutedBlocks, run: Run, machine: Machine, spindles: Spindles, row: int) -> str:
+    """`M76 of line 3 or M70 of line 5`: the M codes above a row of its program that are in no list; empty for none."""
+    words = spindles.unlisted
+    words = words[(run.row[words] <= row) & (blocks.program[run.row[words]] == blocks.program[row])]
+    numbers = run.words.value[words]
+    first = np.sort([np.flatnonzero(numbers == number)[0] for number in dict.fromkeys(numbers.tolist())]).astype(int)
+    return " or ".join(_code_and_line(blocks, run, machine, int(words[index])) for index in first[:_NAMED])
+
+
+def _code_and_line(blocks: ExecutedBlocks, run: Run, machine: Machine, word: int) -> str:
+    """`M76 of line 3`, and `M3 P14` where the machine tells M3 by what P is."""
+    row = int(run.row[word])
+    code = f"M{run.words.value[word]:g}"
+    listed = (one.partition(" ") for one in machine.m_codes.with_words)
+    beside = sorted({other[0] for first, _, other in listed if first == code})
+    told = [f"{letter}{blocks.word(letter)[row]:g}" for letter in beside if blocks.has(letter)[row]]
+    return f"{' '.join((code, *told))} of line {int(blocks.line[row])}"

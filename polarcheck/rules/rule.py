@@ -1,0 +1,375 @@
+"""The type of a rule, its result, and how rules are loaded. Rules are not registered: each file in rules/ is one."""
+
+from __future__ import annotations
+
+import functools
+import os
+import re
+import sys
+from collections.abc import Callable, Mapping
+from importlib.util import module_from_spec, spec_from_file_location
+from pathlib import Path
+from threading import RLock
+from types import MappingProxyType, ModuleType
+from typing import TYPE_CHECKING, Any
+
+import msgspec
+
+from polarcheck.foundation.errors import RuleError, UsageError, suggestion
+from polarcheck.foundation.finding import ERROR as ERROR
+from polarcheck.foundation.finding import NOTE as NOTE
+from polarcheck.foundation.finding import WARNING as WARNING
+from polarcheck.foundation.finding import Severity as Severity
+from polarcheck.rules.causes import DOUBTFUL, RESTS_ON, UNIT, UNIT_OF, Doubt, subject_of
+from polarcheck.rules.documented import Documented
+from polarcheck.rules.tables import OF_CAUSE, OF_TEXT, SPANS
+from polarcheck.rules.tables import parameters as parameters_of
+
+if TYPE_CHECKING:
+    from polarcheck.columns.contour.contour_depths import ContourDepths as ContourDepths
+    from polarcheck.columns.contour.crossings import Crossings as Crossings
+    from polarcheck.columns.contour.mirrored import Mirrored as Mirrored
+    from polarcheck.columns.contour.misplaced_ramps import MisplacedRamps as MisplacedRamps
+    from polarcheck.columns.contour.overcuts import Overcuts as Overcuts
+    from polarcheck.columns.contour.pass_depths import PassDepths as PassDepths
+    from polarcheck.columns.contour.pass_differences import PassDifferences as PassDifferences
+    from polarcheck.columns.contour.pass_ends import PassEnds as PassEnds
+    from polarcheck.columns.contour.passes import Passes as Passes
+    from polarcheck.columns.contour.rapid_contours import RapidContours as RapidContours
+    from polarcheck.columns.contour.regularity import Regularity as Regularity
+    from polarcheck.columns.contour.same_circle import SameCircle as SameCircle
+    from polarcheck.columns.contour.senses import Senses as Senses
+    from polarcheck.columns.contour.slots import Slots as Slots
+    from polarcheck.columns.contour.tangency import Tangency as Tangency
+    from polarcheck.columns.contour.uncompensated_cuts import UncompensatedCuts as UncompensatedCuts
+    from polarcheck.columns.feed.feed_ranges import FeedRanges as FeedRanges
+    from polarcheck.columns.feed.feedrate import Feedrate as Feedrate
+    from polarcheck.columns.feed.feeds import Feeds as Feeds
+    from polarcheck.columns.metal.air_cuts import AirCuts as AirCuts
+    from polarcheck.columns.metal.bar import Bar as Bar
+    from polarcheck.columns.metal.coverage import Coverage as Coverage
+    from polarcheck.columns.metal.part_comments import PartComments as PartComments
+    from polarcheck.columns.metal.workpiece import Workpiece as Workpiece
+    from polarcheck.columns.modes.blocks import ExecutedBlocks as ExecutedBlocks
+    from polarcheck.columns.modes.entry import Entry as Entry
+    from polarcheck.columns.modes.entry_angles import EntryAngles as EntryAngles
+    from polarcheck.columns.modes.modal import ModalStates as ModalStates
+    from polarcheck.columns.modes.mode import PolarMode as PolarMode
+    from polarcheck.columns.modes.mode_words import ModeWords as ModeWords
+    from polarcheck.columns.modes.offsets import ToolOffsets as ToolOffsets
+    from polarcheck.columns.modes.other_mode import OtherMode as OtherMode
+    from polarcheck.columns.modes.procedure import Procedure as Procedure
+    from polarcheck.columns.modes.sections import Sections as Sections
+    from polarcheck.columns.modes.spindles import Spindles as Spindles
+    from polarcheck.columns.modes.switch_slips import SwitchSlips as SwitchSlips
+    from polarcheck.columns.modes.switch_words import SwitchWords as SwitchWords
+    from polarcheck.columns.modes.tools import CalledTools as CalledTools
+    from polarcheck.columns.path.arc_words import ArcWords as ArcWords
+    from polarcheck.columns.path.arcs import Arcs as Arcs
+    from polarcheck.columns.path.axes import PlaneAxes as PlaneAxes
+    from polarcheck.columns.path.center import Center as Center
+    from polarcheck.columns.path.compensation import CutterCompensation as CutterCompensation
+    from polarcheck.columns.path.coordinates import Coordinates as Coordinates
+    from polarcheck.columns.path.increments import Increments as Increments
+    from polarcheck.columns.path.infeed import Infeed as Infeed
+    from polarcheck.columns.path.lengths import Lengths as Lengths
+    from polarcheck.columns.path.path import ProgrammedPath as ProgrammedPath
+    from polarcheck.columns.path.ramps import Ramps as Ramps
+    from polarcheck.columns.path.tool_center import ToolCenter as ToolCenter
+    from polarcheck.columns.path.travel import Travel as Travel
+    from polarcheck.columns.trace import Trace as Trace
+    from polarcheck.columns.words.allow_comments import Allows as Allows
+    from polarcheck.columns.words.allow_comments import UnusedAllows as UnusedAllows
+    from polarcheck.columns.words.angles import Angles as Angles
+    from polarcheck.columns.words.dialect import Dialect as Dialect
+    from polarcheck.columns.words.macro_faults import Faults as Faults
+    from polarcheck.columns.words.stock_comments import StockComments as StockComments
+    from polarcheck.columns.words.tool_comments import ToolComments as ToolComments
+    from polarcheck.columns.words.unpointed import Unpointed as Unpointed
+    from polarcheck.columns.words.written import Written as Written
+    from polarcheck.foundation.arrays import Floats as Floats
+    from polarcheck.foundation.arrays import Mask as Mask
+    from polarcheck.foundation.arrays import States
+    from polarcheck.parts.deviations import Deviations as Deviations
+    from polarcheck.program.execution.run import Run as Run
+    from polarcheck.program.machines.job import Job as Job
+    from polarcheck.program.machines.machine import Machine as Machine
+    from polarcheck.program.reading.words import Text as Text
+    from polarcheck.program.reading.words import Words as Words
+    from polarcheck.rules.other_machine import OtherMachine as OtherMachine
+else:
+
+    def __getattr__(name: str) -> Any:
+        """Return Any for table types: rules use them in annotations only, so they are not imported at run time."""
+        if not name[:1].isupper():
+            raise AttributeError(name)
+        return Any
+
+
+FOLDER = Path(__file__).parent
+#: Suffix of the module that fixes the findings of the rule with the same name.
+REPAIR = "_repair"
+
+#: Kinds of elements that a mask can have (places.PLACES locates each).
+OVER = (
+    "rows",
+    "words",
+    "sections",
+    "comments",
+    "strays",
+    "foreign",
+    "prose",
+    "dots",
+    "outside",
+    "programs",
+    "faults",
+    "files",
+    "allows",
+)
+
+
+class Hits(msgspec.Struct, frozen=True):
+    """
+    The result of a rule that returns more than a mask.
+
+    mask: True where the rule fires; an element is what the rule is `over` (elements).
+    severity: one value, or a column (elements); None for the default severity of the rule.
+    at: the words at fault, where `at` of the rule cannot name them (executed words).
+    values: values for the message, by name: a column (elements), or one value for all.
+    follows: by span, the elements to which `follows` of the rule applies (elements); without an entry, all of them.
+    undecided: hits that may be intended: they make the file unverified, not failed (elements).
+    """
+
+    mask: Mask
+    severity: Severity | States | None = None
+    at: Mask | None = None
+    values: Mapping[str, Any] = {}
+    follows: Mapping[str, Mask] = {}
+    undecided: Mask | None = None
+
+
+def graded(
+    *,
+    error: Mask | None = None,
+    warning: Mask | None = None,
+    note: Mask | None = None,
+    at: Mask | None = None,
+    values: Mapping[str, Any] | None = None,
+    follows: Mapping[str, Mask] | None = None,
+    undecided: Mask | None = None,
+) -> Hits:
+    """Combine masks of several severities into Hits; an element in more than one mask gets the highest severity."""
+    import numpy as np
+
+    given = [(level, mask) for level, mask in ((NOTE, note), (WARNING, warning), (ERROR, error)) if mask is not None]
+    severity = np.zeros(len(given[0][1]), np.int16)
+    for level, mask in given:
+        severity[mask] = level
+    return Hits(severity > 0, severity, at, values or {}, follows or {}, undecided)
+
+
+class Rule(Documented, frozen=True):
+    """
+    One rule: its function and its attributes.
+
+    group: the folder in rules/ that the rule is in.
+    severity: the default severity.
+    message: the template of the message (rules/message.py).
+    over: the kind of element in the mask: rows, words, sections, ... (OVER).
+    at: the words at fault: their addresses, the machine's lists of their codes (rapid, line), or "on" and "off" for the
+    codes of the mode. The whole block is at fault if `at` is empty or the block has none of them.
+    needs: columns, as in `compensation.radius`. The rule is not evaluated in rows where one of them is not known.
+    where: the mask column of the rows in which `needs` is required.
+    once: the span with one finding for all its hits (SPANS): a section, a program, an F word.
+    subject: the quantity that the rule judges (causes.RESTS_ON); "" for words and states, which never become doubtful.
+    doubts: the quantities that a finding makes doubtful, each with its span. Findings that rest on them are listed
+    under this one.
+    follows: by span, the rules that report the same fault first. This finding is then listed under theirs.
+    values: the values of a finding, by the names of rules/vocabulary.py, and where each comes from, as in a message.
+    worst: the column whose highest value selects the hit to report, where one finding covers several.
+    is_advice: the rule is off unless the machine or the user names a severity for it.
+    worse: the values of the message that grow where the fault grows worse; behind a minus those of which less is worse,
+    and with a colon between them two whose distance counts (position:limit).
+    gouges: the tool cuts where it must not, so that the fault grows with the depth and F of its blocks.
+    parameters: the names of the tables that the function compares.
+    """
+
+    group: str
+    severity: Severity
+    message: str
+    over: str
+    at: tuple[str, ...]
+    needs: tuple[str, ...]
+    where: str
+    once: str
+    subject: str
+    doubts: tuple[Doubt, ...]
+    follows: Mapping[str, tuple[str, ...]]
+    values: Mapping[str, str]
+    worst: str
+    is_advice: bool
+    worse: tuple[str, ...]
+    gouges: bool
+    parameters: tuple[str, ...]
+
+    def __reduce__(self) -> tuple[Callable[[str], Rule], tuple[str]]:
+        """Pickle by name: the function cannot be pickled, since its name in the module refers to the rule."""
+        return _rule_by_name, (self.name,)
+
+    @property
+    def of_text(self) -> bool:
+        """True if the rule depends on the text only, not on how the program runs."""
+        return OF_TEXT.issuperset(self.parameters)
+
+    def level(self, severities: Mapping[str, str]) -> str:
+        """Return error, warning, note or off, by the severities that the machine and the job set per rule."""
+        return severities.get(self.name, "off" if self.is_advice else self.severity.name.lower())
+
+    def hits(self, tables: Mapping[str, Any]) -> Hits:
+        """Run the rule on these tables."""
+        result = self.function(*(tables[name] for name in self.parameters))
+        return result if isinstance(result, Hits) else Hits(result)
+
+    def causes(self, rules: Mapping[str, Rule]) -> dict[str, list[str]]:
+        """
+        Return by span the names of the rules from which findings of this rule follow, the narrowest span first.
+
+        An infeed cycle runs the whole contour of its section, so a doubt anywhere in the section counts.
+        """
+        causes = {span: [*names] for span, names in self.follows.items()}
+        rests_on = RESTS_ON.get(self.subject, ())
+        for other in rules.values():
+            for what, span in other.doubts:
+                is_peer = other.subject == self.subject and span not in OF_CAUSE
+                # The other rule follows this one, and not only one in a row above.
+                is_named = any(self.name in names for at, names in other.follows.items() if at not in OF_CAUSE)
+                if what in rests_on and not is_peer and not is_named:
+                    reach = UNIT_OF[self.subject] if span == UNIT or self.subject == "infeed" else span
+                    causes.setdefault(reach, []).append(other.name)
+        return {span: causes[span] for span in SPANS if span in causes}
+
+    @property
+    def source(self) -> str:
+        """Return the source that the documentation of the rule cites."""
+        match = re.search(r"^Source: (.*?)(?:\n\n|\Z)", self.page, re.MULTILINE | re.DOTALL)
+        return " ".join(match[1].split()) if match else ""
+
+
+def rule(
+    severity: Severity,
+    message: str,
+    *,
+    over: str = "rows",
+    at: tuple[str, ...] = (),
+    needs: tuple[str, ...] = (),
+    where: str = "mode.in_polar",
+    once: str = "",
+    subject: str | None = None,
+    doubts: tuple[Doubt, ...] = (),
+    follows: Mapping[str, tuple[str, ...]] = MappingProxyType({}),
+    values: Mapping[str, str] = MappingProxyType({}),
+    worst: str = "",
+    is_advice: bool = False,
+    worse: tuple[str, ...] = (),
+    gouges: bool = False,
+) -> Callable[[Callable[..., Any]], Rule]:
+    """Decorate a function as a rule; see Rule. Its parameters name the tables that it compares."""
+
+    def make(function: Callable[..., Any]) -> Rule:
+        group = function.__module__.split(".")[-2]
+        name = function.__name__.replace("_", "-")
+        if over not in OVER:
+            raise RuleError(f"rule {name}: over={over!r}: expected one of {', '.join(OVER)}")
+        spans = {*follows, *([once] if once else []), *(span for _, span in doubts if span != UNIT)}
+        if unknown := spans - set(SPANS):
+            raise RuleError(f"rule {name}: {unknown.pop()!r}: expected one of {', '.join(SPANS)}")
+        if unknown := {what for what, _ in doubts} - DOUBTFUL:
+            raise RuleError(f"rule {name}: {unknown.pop()!r}: expected one of {', '.join(sorted(DOUBTFUL))}")
+        if subject and subject not in RESTS_ON:
+            raise RuleError(f"rule {name}: {subject!r}: expected one of {', '.join(RESTS_ON)}")
+        parameters = parameters_of(function)
+        judged = subject_of(parameters) if subject is None else subject
+        return Rule(
+            name,
+            function,
+            group,
+            severity,
+            message,
+            over,
+            at,
+            needs,
+            where,
+            once,
+            judged,
+            doubts,
+            follows,
+            values,
+            worst,
+            is_advice,
+            worse,
+            gouges,
+            parameters,
+        )
+
+    return make
+
+
+def rule_files() -> list[str]:
+    """Return the paths of all rule files, sorted. They are strings, because sorting 135 Path objects takes 3 ms."""
+    other_files = "__init__.py", f"{REPAIR}.py"
+    return sorted(path for path in map(str, FOLDER.glob("*/*.py")) if not path.endswith(other_files))
+
+
+#: Two threads that load the rules at the same time would find modules that are not complete yet.
+_LOADING = RLock()
+
+
+@functools.cache
+def load_all() -> dict[str, Rule]:
+    """
+    Load all rules; returns them by name, in order of group and name.
+
+    Raises RuleError for a file in rules/ that defines no rule with the name of the file.
+    """
+    rules = {}
+    with _LOADING:
+        for path in rule_files():
+            group, stem = path.removesuffix(".py").split(os.sep)[-2:]  # noqa: PTH206
+            loaded = getattr(_module(f"polarcheck.rules.{group}.{stem}", path), stem, None)
+            if not isinstance(loaded, Rule):
+                raise RuleError(f"rules/{group}/{stem}.py: no rule named {stem}")
+            rules[loaded.name] = loaded
+    return rules
+
+
+def _module(name: str, path: str) -> ModuleType:
+    """Load the module in this file, without searching for it: the search takes as long as the loading."""
+    if name in sys.modules:
+        return sys.modules[name]
+    spec = spec_from_file_location(name, path)
+    if spec is None or spec.loader is None:
+        raise RuleError(f"{path}: no Python module")
+    module = sys.modules[name] = module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def _rule_by_name(name: str) -> Rule:
+    return load_all()[name]
+
+
+def find(name: str, rules: dict[str, Rule]) -> list[Rule]:
+    """
+    Return the rules of this name or group (polar, feed, ...). Case is ignored, and _ is read as -.
+
+    Raises UsageError for an unknown name; the message suggests the nearest one.
+    """
+    wanted = name.strip().lower().replace("_", "-").rstrip("/")
+    if wanted == "all":
+        return list(rules.values())
+    matches = [rule for rule in rules.values() if wanted in (rule.name, rule.group)]
+    if not matches:
+        known = [*rules, *{rule.group for rule in rules.values()}]
+        near = suggestion(wanted, known) or "; `polarcheck rules` lists them"
+        raise UsageError(f"unknown rule {name!r}{near}")
+    return matches

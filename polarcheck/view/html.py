@@ -1,0 +1,21 @@
+"""The report as a page that needs no network: findings as a table, and pictures of the polar sections."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from polarcheck.foundation.finding import Report
+    from polarcheck.reports import Background
+
+
+def html(report: Report, background: Background) -> str:
+    """Return one page for all files; it contains plotly if anything is drawn."""
+    from polarcheck.reports.pages.unread import unread
+    from polarcheck.view.library import library
+    from polarcheck.view.page import page
+    from polarcheck.view.pictured import picture
+
+    pictures = [picture(file, background) for file in report.files]
+    drawn = library() if any(picture.sections for picture in pictures) else ""
+    return page(pictures, drawn, notes=unread(report.summary))
