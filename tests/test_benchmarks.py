@@ -121,9 +121,7 @@ def test_time_of_libraries_counts_for_the_stages_that_call_them() -> None:
     """Through several functions of libraries, one that calls itself among them, in proportion to the calls."""
     package = ROOT / "polarcheck"
     modules = "columns/path/path", "columns/contour/overcuts"
-    trace, overcuts = (
-        (str(package / f"{name}.py"), 1, "column") for name in modules
-    )
+    trace, overcuts = ((str(package / f"{name}.py"), 1, "column") for name in modules)
     contour, numpy, loaded = (
         (str(package / "geometry" / "contour.py"), 1, "cuts"),
         ("numpy.py", 1, "sort"),

@@ -100,6 +100,6 @@ def test_statements_refer_to_earlier_ones_alone() -> None:
 
 
 def test_one_block_is_shown_as_it_goes_through_the_program() -> None:
-    """`python docs/one_block.py > docs/one_block.md` writes the page anew."""
-    made = runpy.run_path(str(ROOT / "docs" / "one_block.py"))["page"]()
+    """`python docs/make.py` writes the page anew."""
+    made = runpy.run_path(str(ROOT / "docs" / "generators" / "one_block.py"))["page"]()
     assert made == (ROOT / "docs" / "one_block.md").read_text("utf-8")

@@ -20,7 +20,7 @@ from polarcheck.program.machines import codes, profiles
 from polarcheck.program.machines.machine import Machine, OwnMachine, meanings
 from polarcheck.program.machines.parameters import Origin
 from polarcheck.program.machines.renamed import RENAMED
-from polarcheck.reports.pages import controls, new_machine
+from polarcheck.reports.pages import new_machine
 from polarcheck.rules.rule import load_all
 
 PACKAGE = Path(__file__).parent.parent / "polarcheck"
@@ -182,11 +182,6 @@ def test_parameters_set_what_there_is(name: str) -> None:
             changed = profiles.load(name, {"parameters": {parameter: number}})
             for key in meaning.values.get(str(setting), {meaning.key: None} if meaning.key else {}):
                 assert changed.origins[key].source.startswith(f"parameter {parameter} = ")
-
-
-def test_the_table_of_controls_is_up_to_date() -> None:
-    """`python -m polarcheck.reports.pages.controls > docs/controls.md` writes it anew."""
-    assert (PACKAGE.parent / "docs" / "controls.md").read_text("utf-8") == controls.text()
 
 
 # ---- files of the user's own ----

@@ -15,11 +15,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from polarcheck.files.batch import tasks as batch
-from polarcheck.foundation import finding as polarcheck_finding
 from polarcheck.foundation.finding import Edit, FileReport, Finding, Fix, NotEvaluated, Report
 from polarcheck.program.reading.excerpt import Excerpt, cells, excerpt, visible
 from polarcheck.reports import Background, formats, render
-from polarcheck.reports.pages import report_fields, schema
+from polarcheck.reports.pages import schema
 from polarcheck.reports.text import first_sentence
 from polarcheck.rules.rule import load_all
 
@@ -409,23 +408,6 @@ def test_json_spells_out_half_characters() -> None:
     found = json.loads(shown.encode())["files"][0]["findings"][0]
     assert found["message"] == "\\ud800"
     assert found["values"]["text"] == ["\\udcff"]
-
-
-def test_each_field_of_the_schema_is_explained_in_the_docstring_of_its_type() -> None:
-    definitions = schema.schema("report")["$defs"]
-    assert {"makes", "outline"}.isdisjoint(definitions["FileReport"]["properties"])
-    for name, definition in definitions.items():
-        about, meanings = report_fields.documented(getattr(polarcheck_finding, name))
-        assert about
-        assert definition["properties"].keys() <= meanings.keys(), name
-
-
-def test_the_page_of_the_fields_has_a_link_for_each_type() -> None:
-    page = report_fields.text()
-    headings = re.findall(r"^## (\w+)$", page, re.MULTILINE)
-    assert set(re.findall(r"\(#(\w+)\)", page)) == {name.lower() for name in headings}
-    assert "It has all fields of [Finding](#finding), and:" in page
-    assert "| `machine_file` \\* | text |" in page
 
 
 def test_json_fits_its_schema_and_the_schema_can_refuse() -> None:

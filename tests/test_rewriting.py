@@ -27,7 +27,7 @@ NEW = PROGRAM.replace("F100", "F90").replace("M88", "(DECIDE)")
 
 
 def faster(original: Original) -> Outcome:
-    """A stand-in for the functions of conversion/: F90 for F100, and M88 is somebody's decision."""
+    """A stand-in for the functions of rewrite/: F90 for F100, and M88 is somebody's decision."""
     if b"G2 " in original.data:
         raise RefusedError([Refusal(5, "an arc \x1b[31m"), Refusal(0, "the whole")] + [Refusal(6, "more")] * 20)
     data = original.data.replace(b"F100", b"F90").replace(b"M88", b"(DECIDE)")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import shlex
 import shutil
+import sys
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
@@ -15,9 +16,14 @@ from click.testing import CliRunner
 from programs import ROOT
 
 from polarcheck.commands import NAMES, main
-from polarcheck.reports.pages import site
+from polarcheck.foundation import finding
+from polarcheck.reports.pages import schema
 
 DOCS = ROOT / "docs"
+if DOCS.exists():
+    sys.path.insert(0, str(DOCS))
+    import make as site
+    from generators import controls, report_fields
 
 pytestmark = pytest.mark.skipif(not (ROOT / "docs").exists(), reason="the pages lie in a checkout")
 
@@ -42,7 +48,7 @@ def written_pages() -> list[Path]:
 
 @pytest.mark.slow
 def test_the_made_pages_are_current() -> None:
-    """`python -m polarcheck.reports.pages.site docs` makes them anew."""
+    """`python docs/make.py` makes them anew."""
     made = site.pages()
     differ = [name for name, text in made.items() if not (DOCS / name).exists() or text_of(DOCS / name) != text]
     found = {path.relative_to(DOCS).as_posix() for folder in site.FOLDERS for path in (DOCS / folder).rglob("*")}
@@ -63,6 +69,28 @@ def test_the_pages_are_written_and_those_of_what_is_gone_taken_away(
     site.write(tmp_path)
     found = {path.relative_to(tmp_path).as_posix(): path.read_text() for path in tmp_path.rglob("*.md")}
     assert found == {**made, "own.md": "before"}
+
+
+def test_the_table_of_controls_is_up_to_date() -> None:
+    """`python docs/make.py` writes it anew."""
+    assert text_of(DOCS / "controls.md") == controls.text()
+
+
+def test_each_field_of_the_schema_is_explained_in_the_docstring_of_its_type() -> None:
+    definitions = schema.schema("report")["$defs"]
+    assert {"makes", "outline"}.isdisjoint(definitions["FileReport"]["properties"])
+    for name, definition in definitions.items():
+        about, meanings = report_fields.documented(getattr(finding, name))
+        assert about
+        assert definition["properties"].keys() <= meanings.keys(), name
+
+
+def test_the_page_of_the_fields_has_a_link_for_each_type() -> None:
+    page = report_fields.text()
+    headings = re.findall(r"^## (\w+)$", page, re.MULTILINE)
+    assert set(re.findall(r"\(#(\w+)\)", page)) == {name.lower() for name in headings}
+    assert "It has all fields of [Finding](#finding), and:" in page
+    assert "| `machine_file` \\* | text |" in page
 
 
 # ---- links ----

@@ -5,9 +5,9 @@ The form of a name in braces says what it is:
 - `{feedrate.feed}`: a column of a table, at the row of the place; of `machine` and `job` the value itself;
 - `{X}`: the last word of that address in the row, as it is written;
 - any other: a value that the rule hands over (Hits.values), else a phrase, a function of that name in
-  phrases/<group of the rule>.py or phrases/common.py.
+  wording/phrases/<group of the rule>.py or wording/phrases/common.py.
 The values of the finding stand beside it: a rule names them, and where each comes from, in the same forms. What is a
-number there and no column is a measure, a function in measures/<group of the rule>.py.
+number there and no column is a measure, a function in wording/measures/<group of the rule>.py.
 A phrase or a measure takes by their names the tables that it needs, and `place`, `row`, `index` (see Place), `at`, the
 executed words at fault, or `count`, how many elements the finding stands for.
 

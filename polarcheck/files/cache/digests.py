@@ -17,8 +17,8 @@ from typing import Any
 
 import msgspec
 
-import polarcheck
 from polarcheck.checking.settings import Settings
+from polarcheck.foundation.version import __version__
 from polarcheck.rules.rule import Rule
 
 #: Bytes of a digest.
@@ -27,7 +27,7 @@ SIZE = 16
 _PLACES = ("read", "job_file", "baseline_named_by")
 #: Libraries that compute results.
 _LIBRARIES = ("numpy", "shapely", "msgspec")
-_FOLDER = Path(polarcheck.__file__).parent
+_FOLDER = Path(__file__).parents[2]
 
 
 class NoDigestError(Exception):
@@ -38,7 +38,7 @@ class NoDigestError(Exception):
 def of_code() -> bytes:
     """Return the digest of the program that judges: version, size and time of each of its files, libraries, Python."""
     known = blake2b(digest_size=SIZE // 2)
-    for part in (polarcheck.__version__, sys.version, sys.platform, *sorted(_states(str(_FOLDER)))):
+    for part in (__version__, sys.version, sys.platform, *sorted(_states(str(_FOLDER)))):
         known.update(part.encode("utf-8", "surrogatepass") + b"\0")
     for name in _LIBRARIES:
         spec = find_spec(name)

@@ -8,22 +8,8 @@ import re
 _SPECIAL = re.compile(r"[\\`*\[\]<|~]|(?<!\w)_|_(?!\w)|^[#>]")
 _CODE = re.compile(r"(`[^`\n]+`)")
 
-GENERATED = (
-    "<!-- Made by `python -m polarcheck.reports.pages.site docs`: change what it is made from, not this page. -->"
-)
-
 
 def prose(text: str) -> str:
     """Escape a paragraph; text between backticks stays code."""
     parts = _CODE.split(text)
     return "".join(part if index % 2 else _SPECIAL.sub(r"\\\g<0>", part) for index, part in enumerate(parts))
-
-
-def row(*cells: str) -> str:
-    """Return a row of a table."""
-    return f"| {' | '.join(cells)} |"
-
-
-def rule_under(*heads: str) -> list[str]:
-    """Return the first two rows of a table."""
-    return [row(*heads), row(*["---"] * len(heads))]

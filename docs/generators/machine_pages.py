@@ -8,12 +8,13 @@ from typing import Any
 
 import msgspec
 
+from generators.controls import shown
+from generators.tables import GENERATED, row, rule_under
 from polarcheck.program.machines import profiles
 from polarcheck.program.machines.machine import Machine, meanings
 from polarcheck.program.machines.parameters import Origin
 from polarcheck.program.machines.profiles import Profile
-from polarcheck.reports.pages.controls import shown
-from polarcheck.reports.pages.markdown import GENERATED, prose, row, rule_under
+from polarcheck.reports.pages.markdown import prose
 
 #: The keys that a programmer looks up first, by heading.
 _FIRST = {

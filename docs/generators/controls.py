@@ -1,7 +1,5 @@
 """
 docs/controls.md: each control and each of its properties, with its source.
-
-`python -m polarcheck.reports.pages.controls > docs/controls.md` writes it anew.
 """
 
 from __future__ import annotations
@@ -118,7 +116,3 @@ def shown(value: Any, group: str = "") -> str:
 def row(*cells: str) -> str:
     """Return a row of a Markdown table."""
     return f"| {' | '.join(cell.replace('|', '&#124;') for cell in cells)} |"
-
-
-if __name__ == "__main__":
-    print(text(), end="")

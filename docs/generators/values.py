@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from polarcheck.reports.pages.markdown import GENERATED, prose, row, rule_under
+from generators.tables import GENERATED, row, rule_under
+from polarcheck.reports.pages.markdown import prose
 from polarcheck.rules.rule import Rule
 from polarcheck.rules.vocabulary import LIMIT, VOCABULARY, Kind, kinds
 

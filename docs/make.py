@@ -1,17 +1,18 @@
 """
-The pages of docs/ that are generated from the rules and the machine files.
+Writes the pages of docs/ that are generated: from the rules, the machine files, the types of the report, and a program.
 
-`python -m polarcheck.reports.pages.site docs` writes them, and removes those of rules and machines
-that no longer exist.
+    python docs/make.py
+
+It also removes the pages of rules and machines that no longer exist.
 """
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 
+from generators import controls, machine_pages, one_block, report_fields, rule_pages, values
+
 from polarcheck.program.reading import files
-from polarcheck.reports.pages import controls, machine_pages, report_fields, rule_pages, values
 from polarcheck.rules.rule import load_all
 
 #: Folders below docs/ that hold nothing else.
@@ -23,6 +24,7 @@ def pages() -> dict[str, str]:
     rules = load_all()
     return {
         "controls.md": controls.text(),
+        "one_block.md": one_block.page(),
         "values.md": values.text(rules),
         "report_fields.md": report_fields.text(),
         **dict(rule_pages.pages(rules)),
@@ -44,4 +46,4 @@ def write(folder: Path) -> None:
 
 
 if __name__ == "__main__":
-    write(Path(sys.argv[1]))
+    write(Path(__file__).parent)

@@ -1,7 +1,5 @@
 """
-Writes docs/one_block.md: one block of a program at every stage, from its bytes to the line on the screen.
-
-    python docs/one_block.py > docs/one_block.md
+docs/one_block.md: one block of a program at every stage, from its bytes to the line on the screen.
 
 All values on the page are computed here, so a test can compare the page with what the program does today.
 """
@@ -72,7 +70,7 @@ def _beginning() -> Iterator[str]:
     yield ""
     yield from _wrapped(
         "This page follows one block from its bytes to the line on the screen, with the values at each "
-        "stage. It is made by `python docs/one_block.py > docs/one_block.md`, and a test compares it "
+        "stage. It is made by `python docs/make.py`, and a test compares it "
         "with what the program computes today."
     )
     yield ""
@@ -89,7 +87,7 @@ def _bytes_and_words() -> Iterator[str]:
     text = source_text()
     block = int(np.flatnonzero(text.blocks.line == LINE)[0])
     start, end = int(text.blocks.start[block]), int(text.blocks.end[block])
-    yield from _heading("Bytes to words", "reading/")
+    yield from _heading("Bytes to words", "program/reading/")
     yield from _wrapped(
         "`source.read_source` finds the encoding and the lines. `words.read_words` finds all words of the file "
         "at once, as a table with one element per word; nothing is raised, a word that cannot be read is "
@@ -125,7 +123,7 @@ def source_text() -> Any:
 
 
 def _row(trace: Trace, row: int) -> Iterator[str]:
-    yield from _heading("Block to row", "execution/")
+    yield from _heading("Block to row", "program/execution/")
     yield from _wrapped(
         "`runs.runs` puts the blocks into the order in which the control executes them: one row per "
         "executed block. A block in a loop has several rows, a block that is skipped none. This program "
@@ -168,7 +166,7 @@ def _moves(tables: Tables, row: int) -> Iterator[str]:
     (index,) = np.flatnonzero(moves.row == row).tolist()
     trace: Trace = tables["trace"]
     aside = moves.start[index] - trace.path.start[row]
-    yield from _heading("Row to move of the tool center", "table/, geometry/")
+    yield from _heading("Row to move of the tool center", "columns/path/, geometry/")
     yield from _wrapped(
         "Cutter compensation moves the path to the right of the programmed one, by the radius. "
         "`columns/path/tool_center.py` passes the columns of the section to `geometry/cutter_compensation/`, which "
@@ -212,7 +210,7 @@ def _report(tables: Tables, row: int) -> Iterator[str]:
     engine = Engine(tables, {}, [load_all()[RULE]])
     (finding,) = engine.findings()
     place = places.of_row(tables, row)
-    yield from _heading("Hit to finding", "checking/")
+    yield from _heading("Hit to finding", "rules/, checking/")
     yield from _wrapped(
         "`places` finds the words at fault, `message` fills the text of the rule with columns and "
         "phrases, `engine` merges what has one cause (here all blocks under one F word) and lists under "
@@ -255,7 +253,7 @@ def _where_to_look() -> Iterator[str]:
         "lists the tables."
     )
     yield from _wrapped(
-        "- A table: a class in `table/` whose arguments name the tables that it needs, and its line in "
+        "- A table: a class in `columns/` whose arguments name the tables that it needs, and its line in "
         "`rules/tables.py`."
     )
     yield from _wrapped("- A rule: one file under `rules/`, see [adding_a_rule.md](adding_a_rule.md).")
@@ -288,7 +286,3 @@ def _point(value: complex) -> str:
 
 def _value(value: object) -> str:
     return f"{value:g}" if isinstance(value, float) else str(value)
-
-
-if __name__ == "__main__":
-    print(page(), end="")

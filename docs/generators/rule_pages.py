@@ -8,13 +8,14 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
+from generators.tables import GENERATED, row, rule_under
 from polarcheck.checking import check
 from polarcheck.foundation.finding import Finding
 from polarcheck.program.machines import profiles, toml_text
 from polarcheck.program.machines.job import from_table, with_tool
 from polarcheck.program.machines.machine import Machine
 from polarcheck.program.machines.profiles import Profile
-from polarcheck.reports.pages.markdown import GENERATED, prose, row, rule_under
+from polarcheck.reports.pages.markdown import prose
 from polarcheck.rules.examples import Example, examples, options_of
 from polarcheck.rules.rule import Rule, load_all
 

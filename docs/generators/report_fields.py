@@ -10,9 +10,10 @@ from typing import Any
 
 import msgspec
 
+from generators.tables import GENERATED, row, rule_under
 from polarcheck.foundation import finding
 from polarcheck.reports.pages import schema
-from polarcheck.reports.pages.markdown import GENERATED, prose, row, rule_under
+from polarcheck.reports.pages.markdown import prose
 
 _BEGINNING = f"""# The fields of the JSON report
 
