@@ -10,9 +10,11 @@ from pathlib import Path
 from mutations import Mutation
 
 ROOT = Path(__file__).resolve().parent.parent
+#: The folders of rules; what rules are written in stands beside them.
+GROUPS = ("compensation", "feed", "macro", "metal", "motion", "polar", "setup", "silence", "text")
 #: What is looked at, by patterns of files; the first that matches counts.
 ROOMS = {
-    "rules": ("polarcheck/rules/*/*",),
+    "rules": tuple(f"polarcheck/rules/{group}/*" for group in GROUPS),
     "compensation": (
         "polarcheck/geometry/cutter_compensation/*",
         "polarcheck/columns/path/compensation.py",

@@ -6,16 +6,14 @@ polarcheck: checks NC programs that use polar coordinate interpolation, before t
     >>> trace = polarcheck.trace("O1234.NC", tools={8: 6.35})
 
 All that is public is listed in `polarcheck.__all__`; docs/api.md says what is promised. A function is imported when it
-is first used: `import polarcheck` alone loads the errors and the version.
+is first used: `import polarcheck` alone loads no other module.
 """
 
 from __future__ import annotations
 
 import sys
+from types import ModuleType
 from typing import TYPE_CHECKING, Any
-
-from polarcheck.foundation import errors as errors
-from polarcheck.foundation.version import __version__ as __version__
 
 if TYPE_CHECKING:
     from polarcheck.api.certificates import certify as certify
@@ -35,9 +33,11 @@ if TYPE_CHECKING:
     from polarcheck.api.traces import Trace as Trace
     from polarcheck.api.traces import trace as trace
     from polarcheck.api.traces import trace_text as trace_text
+    from polarcheck.foundation import errors as errors
     from polarcheck.foundation.finding import FileReport as FileReport
     from polarcheck.foundation.finding import Finding as Finding
     from polarcheck.foundation.finding import Report as Report
+    from polarcheck.foundation.version import __version__ as __version__
     from polarcheck.program.machines.job import Stock as Stock
     from polarcheck.program.machines.job import Tool as Tool
     from polarcheck.program.machines.job import WorkOffset as WorkOffset
@@ -46,7 +46,6 @@ if TYPE_CHECKING:
     from polarcheck.rewrite.certify.results import Certificate as Certificate
     from polarcheck.rewrite.compare.report import Comparison as Comparison
 
-sys.modules[errors.__name__] = errors  # `from polarcheck.errors import UsageError`: the public name of the module
 
 #: What is public, and the module of each; the imports above tell type checkers the same.
 _MODULES = {
@@ -77,8 +76,9 @@ _MODULES = {
     "Tool": "program.machines.job",
     "Trace": "api.traces",
     "WorkOffset": "program.machines.job",
+    "__version__": "foundation.version",
 }
-__all__ = [*_MODULES, "errors", "__version__"]
+__all__ = [*_MODULES, "errors"]
 
 
 if not TYPE_CHECKING:  # a name that is not public is an error for type checkers, too
@@ -87,11 +87,25 @@ if not TYPE_CHECKING:  # a name that is not public is an error for type checkers
         """Import what is public when it is first used."""
         import importlib
 
+        if name == "errors":
+            return importlib.import_module("polarcheck.foundation.errors")
         if name not in _MODULES:
             raise AttributeError(f"module 'polarcheck' has no attribute {name!r}")
         value = getattr(importlib.import_module(f"polarcheck.{_MODULES[name]}"), name)
         globals()[name] = value
         return value
+
+
+class _Errors(ModuleType):
+    """The public name of `foundation.errors`, as in `from polarcheck.errors import UsageError`; loads it when used."""
+
+    def __getattr__(self, name: str) -> Any:
+        from polarcheck.foundation import errors
+
+        return getattr(errors, name)
+
+
+sys.modules["polarcheck.errors"] = _Errors("polarcheck.errors")
 
 
 def __dir__() -> list[str]:

@@ -463,8 +463,8 @@ def test_import_loads_nothing() -> None:
 def test_type_checkers_and_python_see_the_same_names() -> None:
     tree = ast.parse(Path(polarcheck.__file__).read_text("utf-8"))
     guarded = next(node for node in tree.body if isinstance(node, ast.If))
-    imports = [node for node in (*tree.body, *guarded.body) if isinstance(node, ast.ImportFrom)]
-    seen = {alias.asname: f"{node.module}.{alias.name}" for node in imports for alias in node.names if alias.asname}
+    imports = [node for node in guarded.body if isinstance(node, ast.ImportFrom)]
+    seen = {str(alias.asname): f"{node.module}.{alias.name}" for node in imports for alias in node.names}
     assert seen.keys() == set(polarcheck.__all__)
     for name, place in seen.items():
         module, _, own = place.rpartition(".")
@@ -478,6 +478,20 @@ def test_no_module_has_the_name_of_a_function() -> None:
     modules = {path.stem for path in (ROOT / "polarcheck").iterdir()}
     assert len(functions) >= 11
     assert not functions & modules
+
+
+def test_the_errors_have_their_public_name_before_they_are_loaded() -> None:
+    code = (
+        "import sys, warnings, polarcheck\n"
+        "assert 'polarcheck.foundation' not in sys.modules\n"
+        "warnings.simplefilter('error', polarcheck.errors.PolarcheckWarning)\n"
+        "from polarcheck.errors import UsageError\n"
+        "import pickle, polarcheck.errors\n"
+        "assert polarcheck.errors.UsageError is UsageError is type(pickle.loads(pickle.dumps(UsageError('a'))))\n"
+        "print(UsageError.__module__, polarcheck.__version__)\n"
+    )
+    run = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True)
+    assert run.stdout.split() == ["polarcheck.errors", polarcheck.__version__]
 
 
 def test_what_is_not_public_is_not_there() -> None:

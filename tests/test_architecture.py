@@ -123,6 +123,12 @@ def test_every_package_has_its_floor() -> None:
     assert {name.partition(".")[0] for name in modules(PACKAGE)} - {""} == set(FLOOR)
 
 
+def test_the_editor_imports_one_wing_alone() -> None:
+    of_editor = {name: found for name, found in imports_of_package().items() if name.startswith("editor")}
+    assert of_editor
+    assert not [name for name, found in of_editor.items() if any(target.startswith("rewrite") for target in found)]
+
+
 #: The table of formats names the one that a wing makes, and loads it late.
 LATE_BY_NAME = ["reports imports view.html"]
 
@@ -260,7 +266,9 @@ def test_a_clean_check_of_a_small_program_loads_little() -> None:
     ours = {name.removeprefix("polarcheck.") for name in LATE if name.startswith("polarcheck.")}
     assert ours <= set(modules(PACKAGE))
     assert not set(LATE) & set(loaded)
-    own = [name for name in loaded if name.startswith("polarcheck.") and not name.startswith("polarcheck.rules.")]
+    rules = {*map(Path, rule_files())}
+    of_rules = {f"polarcheck.{name}" for name, path in modules(PACKAGE).items() if path in rules}
+    own = [name for name in loaded if name.startswith("polarcheck.") and name not in of_rules]
     assert len(own) <= MODULES_OF_A_SMALL_CHECK
 
 

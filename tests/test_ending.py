@@ -77,7 +77,7 @@ heeding = partial(heed, signal.SIG_DFL, signal.SIG_DFL)
     "module",
     [
         "click",
-        "polarcheck.foundation.record",
+        "polarcheck.foundation.errors",
         "polarcheck.foundation.memory",
         "polarcheck.commands.check",
         "polarcheck.files.batch",

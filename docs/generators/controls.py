@@ -38,7 +38,7 @@ def text() -> str:
     lines = [
         "# The controls",
         "",
-        "Made from the profiles under `polarcheck/machines`; `polarcheck machines NAME` shows one of them whole.",
+        "Made from the profiles under `polarcheck/program/machines`; `polarcheck machines NAME` shows one whole.",
         "What a profile does not say itself it inherits. `?` marks what is in doubt; a rule that hangs on it gives",
         "warnings or notes, no errors.",
         "",

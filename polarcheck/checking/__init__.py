@@ -1,1 +1,1 @@
-"""From the tables of a program to findings: rules found and run, messages, what was not evaluated."""
+"""From rules to findings: the engine, the verdict, what was not evaluated, suppressed findings."""

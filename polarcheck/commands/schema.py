@@ -7,8 +7,9 @@ import click
 from polarcheck.commands import options
 from polarcheck.commands.output import show
 
-_OF_WINGS = ("feeds", "comparison", "rewriting", "manifest", "certificate")
-_NAMES = ("report", "job", "machine", "feeds", "trace", *_OF_WINGS[1:])
+_NAMES = ("report", "job", "machine", "feeds", "trace", "comparison", "rewriting", "manifest", "certificate")
+#: Those of rewrite/schemas.py.
+_REWRITTEN = ("feeds", "comparison", "rewriting", "manifest", "certificate")
 
 
 @click.command(short_help="Show the JSON Schema of a report, the job, a machine, feed table, trace, ...")
@@ -21,7 +22,7 @@ def schema(name: str) -> None:
     """
     from polarcheck.reports.pages import schema as schemas
 
-    if name in _OF_WINGS:
+    if name in _REWRITTEN:
         from polarcheck.rewrite.schemas import schema as of_wing
 
         content = of_wing(name)

@@ -71,4 +71,3 @@ _MAKERS = {
     "manifest": _manifest,
     "certificate": _certificate,
 }
-NAMES = tuple(_MAKERS)

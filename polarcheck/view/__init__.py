@@ -1,1 +1,1 @@
-"""Pictures of the paths of a program: data for a page, and small views for a terminal. Nothing here prints."""
+"""Pages and drawings of programs: their data, small views for a terminal, the html report. Nothing here prints."""

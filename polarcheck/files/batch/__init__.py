@@ -1,1 +1,1 @@
-"""Many files: which, checked by this process or several workers, baselines, what a change in git concerns."""
+"""Many files: which they are, and their check by this process, by several workers, or by a cluster."""

@@ -1,1 +1,1 @@
-"""What a program makes, and whether it is the part asked for."""
+"""What a program makes, in words, and how that differs from the part that the job asks for."""
