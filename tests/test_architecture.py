@@ -206,8 +206,7 @@ def test_array_types_are_defined_once(path: Path) -> None:
         for target in (node.targets if isinstance(node, ast.Assign) else [node.target])
         if isinstance(target, ast.Name) and target.id in ARRAY_TYPES
     ]
-    stand_in = path.name == "rule.py"  # where they are spared at run time, they are Any
-    assert not assigned or path.name == "arrays.py" or stand_in
+    assert not assigned or path.name == "arrays.py"
 
 
 @pytest.mark.parametrize("path", [*map(Path, rule_files())], ids=name_of)
@@ -215,7 +214,11 @@ def test_rules_neither_loop_nor_load_numpy(path: Path) -> None:
     tree = tree_of(path.read_text("utf-8"))
     allowed = {"rules.rule", "rules.causes", "foundation.states", "geometry.tolerances"}
     name = ".".join(path.relative_to(PACKAGE).with_suffix("").parts)
-    assert imports_of_package()[name.removesuffix(".__init__")] <= allowed
+    of_types = {
+        block for block in tree.body if isinstance(block, ast.If) and ast.unparse(block.test) == "TYPE_CHECKING"
+    }
+    run = ast.Module([node for node in tree.body if node not in of_types], [])
+    assert set(_targets(run, name.rpartition(".")[0], modules(PACKAGE))) - {""} <= allowed
     assert not any(isinstance(node, ast.For | ast.While) for node in ast.walk(tree))
 
 

@@ -25,7 +25,7 @@ from polarcheck.rules import message, tables
 from polarcheck.rules.examples import Example, examples
 from polarcheck.rules.other_machine import OtherMachine
 from polarcheck.rules.rule import Hits, Rule, graded, load_all, rule, rule_files
-from polarcheck.rules.tables import MAKERS, OF_CAUSE, OF_TEXT, ONLY_WITH, PARTS, SPANS, Tables
+from polarcheck.rules.tables import ARC, COMMENT, OF_CAUSE, OF_TEXT, PART, SECTION, SPANS, TABLES, Tables
 
 RULES = load_all()
 #: Two sections, one begun by G112 and never left; a program of inch words before one in mm.
@@ -79,7 +79,7 @@ def test_each_table_is_made_once_from_those_that_it_names(made: Tables) -> None:
     assert made["sections"] is made["trace"].mode.sections
     assert made["moves"] is made["tool_center"].moves
     assert made.column("machine.arcs.tolerance") == made["machine"].arcs.tolerance
-    assert set(MAKERS) | set(PARTS) <= set(made)
+    assert set(TABLES) <= set(made)
 
 
 def test_a_table_that_nobody_makes_is_named_with_those_there_are(made: Tables) -> None:
@@ -89,7 +89,7 @@ def test_a_table_that_nobody_makes_is_named_with_those_there_are(made: Tables) -
 
 def test_tables_of_the_text_are_made_of_nothing_that_runs() -> None:
     """What OF_TEXT names must hang on text, machine and job alone, and everything that does must be in it."""
-    needed = {name: tables.parameters(tables._maker(path)) for name, path in MAKERS.items()}
+    needed = {name: tables.parameters(maker.function) for name, maker in TABLES.items()}
     of_text = {"text", "words", "machine", "job"}
     while more := {name for name, parameters in needed.items() if set(parameters) <= of_text} - of_text:
         of_text |= more
@@ -513,35 +513,40 @@ def test_findings_beyond_the_limit_are_counted() -> None:
     assert not missing.matters
 
 
-#: What takes from the text of a program all that a key of ONLY_WITH is about.
+#: What takes from the text of a program all that a table may need (Maker.only_with).
 TAKEN_AWAY = {
-    "section": (r"G0*1[23]\.1|G11[23]|G10[123]|G13[67]|TRANSMIT|TRAFOOF|G7[.]1|G268|G269", ""),
-    "arc": (r"G0*[23](?![\d.])", "G1"),
-    "comment": (r"\([^()\n]*\)|;[^\n]*", ""),
+    SECTION: (r"G0*1[23]\.1|G11[23]|G10[123]|G13[67]|TRANSMIT|TRAFOOF|G7[.]1|G268|G269", ""),
+    ARC: (r"G0*[23](?![\d.])", "G1"),
+    COMMENT: (r"\([^()\n]*\)|;[^\n]*", ""),
 }
+
+
+def needs(one: Rule, what: str) -> bool:
+    """A rule compares a table that holds nothing without a section, arc, comment or part."""
+    return any(what in TABLES[name].only_with for name in one.parameters if name in TABLES)
 
 
 def without(what: str, example: Example) -> Example:
     """An example without its sections, arcs or comments, or without the part that its job asks for."""
-    if what == "part":
+    if what == PART:
         settings = tuple(setting for setting in example.settings if not setting.startswith("job.part"))
         return msgspec.structs.replace(example, settings=settings)
     return msgspec.structs.replace(example, program=re.sub(*TAKEN_AWAY[what], example.program))
 
 
-@pytest.mark.parametrize("what", ONLY_WITH)
+@pytest.mark.parametrize("what", [SECTION, ARC, COMMENT, PART])
 def test_rules_that_are_not_run_would_find_nothing(what: str) -> None:
     """Each example of each rule that is not run without a section, arc, comment or part, with that taken away."""
     tried = set()
     for one in RULES.values():
-        if not ONLY_WITH[what].intersection(one.parameters):
+        if not needs(one, what):
             continue
         for example in examples(one.page):
             found = tables_of_example(without(what, example))
             if not found.may_hold(one.parameters):
                 assert not one.hits(found).mask.any(), (one.name, example.program)
                 tried.add(one.name)
-    names = {one.name for one in RULES.values() if ONLY_WITH[what].intersection(one.parameters)}
+    names = {one.name for one in RULES.values() if needs(one, what)}
     assert len(tried) > 0.9 * len(names), names - tried
 
 

@@ -15,80 +15,104 @@ if TYPE_CHECKING:
     from polarcheck.program.machines.job import Job
     from polarcheck.program.machines.machine import Machine
 
-#: What makes each table; the parameters name the tables that it is made from.
-MAKERS = {
-    "blocks": "polarcheck.columns.modes.blocks:ExecutedBlocks",
-    "modal": "polarcheck.columns.modes.modal:ModalStates",
-    "tools": "polarcheck.columns.modes.tools:CalledTools",
-    "coordinates": "polarcheck.columns.path.coordinates:Coordinates",
-    "axes": "polarcheck.columns.path.axes:PlaneAxes",
-    "mode": "polarcheck.columns.modes.mode:PolarMode",
-    "lengths": "polarcheck.columns.path.lengths:Lengths",
-    "path": "polarcheck.columns.path.path:ProgrammedPath",
-    "offsets": "polarcheck.columns.modes.offsets:ToolOffsets",
-    "compensation": "polarcheck.columns.path.compensation:CutterCompensation",
-    "feedrate": "polarcheck.columns.feed.feedrate:Feedrate",
-    "trace": "polarcheck.columns.trace:Trace",
-    "infeed": "polarcheck.columns.path.infeed:Infeed",
-    "tool_center": "polarcheck.columns.path.tool_center:ToolCenter",
-    "dynamics": "polarcheck.columns.feed.dynamics:Dynamics",
-    "highest_feeds": "polarcheck.columns.feed.highest_feeds:HighestFeeds",
-    "mode_words": "polarcheck.columns.modes.mode_words:ModeWords",
-    "switch_words": "polarcheck.columns.modes.switch_words:SwitchWords",
-    "other_mode": "polarcheck.columns.modes.other_mode:OtherMode",
-    "switch_slips": "polarcheck.columns.modes.switch_slips:SwitchSlips",
-    "bar": "polarcheck.columns.metal.bar:Bar",
-    "angles": "polarcheck.columns.words.angles:Angles",
-    "entry": "polarcheck.columns.modes.entry:Entry",
-    "procedure": "polarcheck.columns.modes.procedure:Procedure",
-    "since": "polarcheck.columns.modes.since:Since",
-    "spindles": "polarcheck.columns.modes.spindles:Spindles",
-    "ramps": "polarcheck.columns.path.ramps:Ramps",
-    "overcuts": "polarcheck.columns.contour.overcuts:Overcuts",
-    "fitting": "polarcheck.columns.contour.fitting:Fitting",
-    "entry_angles": "polarcheck.columns.modes.entry_angles:EntryAngles",
-    "misplaced_ramps": "polarcheck.columns.contour.misplaced_ramps:MisplacedRamps",
-    "mirrored": "polarcheck.columns.contour.mirrored:Mirrored",
-    "slots": "polarcheck.columns.contour.slots:Slots",
-    "uncompensated_cuts": "polarcheck.columns.contour.uncompensated_cuts:UncompensatedCuts",
-    "finished": "polarcheck.columns.metal.finished:Finished",
-    "milled": "polarcheck.columns.metal.milled:Milled",
-    "workpiece": "polarcheck.columns.metal.workpiece:Workpiece",
-    "air_cuts": "polarcheck.columns.metal.air_cuts:AirCuts",
-    "rapid_contours": "polarcheck.columns.contour.rapid_contours:RapidContours",
-    "pass_ends": "polarcheck.columns.contour.pass_ends:PassEnds",
-    "pass_depths": "polarcheck.columns.contour.pass_depths:PassDepths",
-    "nominal_parts": "polarcheck.parts.nominal_parts:NominalParts",
-    "contour_comparisons": "polarcheck.parts.contour_comparisons:ContourComparisons",
-    "nominal_features": "polarcheck.parts.nominal_features:NominalFeatures",
-    "area_comparisons": "polarcheck.parts.area_comparisons:AreaComparisons",
-    "deviations": "polarcheck.parts.deviations:Deviations",
-    "coverage": "polarcheck.columns.metal.coverage:Coverage",
-    "arcs": "polarcheck.columns.path.arcs:Arcs",
-    "senses": "polarcheck.columns.contour.senses:Senses",
-    "regularity": "polarcheck.columns.contour.regularity:Regularity",
-    "arc_words": "polarcheck.columns.path.arc_words:ArcWords",
-    "crossings": "polarcheck.columns.contour.crossings:Crossings",
-    "increments": "polarcheck.columns.path.increments:Increments",
-    "contour_depths": "polarcheck.columns.contour.contour_depths:ContourDepths",
-    "pass_differences": "polarcheck.columns.contour.pass_differences:PassDifferences",
-    "passes": "polarcheck.columns.contour.passes:Passes",
-    "same_circle": "polarcheck.columns.contour.same_circle:SameCircle",
-    "tangency": "polarcheck.columns.contour.tangency:Tangency",
-    "part_comments": "polarcheck.columns.metal.part_comments:PartComments",
-    "travel": "polarcheck.columns.path.travel:Travel",
-    "center": "polarcheck.columns.path.center:Center",
-    "feeds": "polarcheck.columns.feed.feeds:Feeds",
-    "feed_ranges": "polarcheck.columns.feed.feed_ranges:FeedRanges",
-    "unpointed": "polarcheck.columns.words.unpointed:Unpointed",
-    "stock_comments": "polarcheck.columns.words.stock_comments:StockComments",
-    "tool_comments": "polarcheck.columns.words.tool_comments:ToolComments",
-    "written": "polarcheck.columns.words.written:Written",
-    "dialect": "polarcheck.columns.words.dialect:Dialect",
-    "faults": "polarcheck.columns.words.macro_faults:Faults",
+#: What a program, or its job, must have for anything to be found in some tables.
+SECTION, ARC, COMMENT, PART = "section", "arc", "comment", "part"
+
+
+class Maker:
+    """
+    What makes a table.
+
+    path: module and class, or function, as in `polarcheck.columns.path.arcs:Arcs`.
+    only_with: what a program must have for anything to be found in the table. Where it has none, a rule that compares
+    it finds nothing, and is not run; tests/test_engine.py runs them nevertheless.
+    """
+
+    def __init__(self, path: str, *only_with: str) -> None:
+        self.module, _, self.name = path.partition(":")
+        self.only_with = only_with
+
+    @functools.cached_property
+    def function(self) -> Callable[..., Any]:
+        """The class or the function."""
+        maker: Callable[..., Any] = getattr(importlib.import_module(self.module), self.name)
+        return maker
+
+
+#: Each table by its name. Its parameters name the tables that it is made from.
+TABLES = {
+    "blocks": Maker("polarcheck.columns.modes.blocks:ExecutedBlocks"),
+    "modal": Maker("polarcheck.columns.modes.modal:ModalStates"),
+    "tools": Maker("polarcheck.columns.modes.tools:CalledTools"),
+    "coordinates": Maker("polarcheck.columns.path.coordinates:Coordinates"),
+    "axes": Maker("polarcheck.columns.path.axes:PlaneAxes"),
+    "mode": Maker("polarcheck.columns.modes.mode:PolarMode", SECTION),
+    "lengths": Maker("polarcheck.columns.path.lengths:Lengths"),
+    "path": Maker("polarcheck.columns.path.path:ProgrammedPath"),
+    "offsets": Maker("polarcheck.columns.modes.offsets:ToolOffsets"),
+    "compensation": Maker("polarcheck.columns.path.compensation:CutterCompensation"),
+    "feedrate": Maker("polarcheck.columns.feed.feedrate:Feedrate"),
+    "trace": Maker("polarcheck.columns.trace:Trace"),
+    "infeed": Maker("polarcheck.columns.path.infeed:Infeed", SECTION),
+    "tool_center": Maker("polarcheck.columns.path.tool_center:ToolCenter", SECTION),
+    "dynamics": Maker("polarcheck.columns.feed.dynamics:Dynamics"),
+    "highest_feeds": Maker("polarcheck.columns.feed.highest_feeds:HighestFeeds"),
+    "mode_words": Maker("polarcheck.columns.modes.mode_words:ModeWords", SECTION),
+    "switch_words": Maker("polarcheck.columns.modes.switch_words:SwitchWords", SECTION),
+    "other_mode": Maker("polarcheck.columns.modes.other_mode:OtherMode"),
+    "switch_slips": Maker("polarcheck.columns.modes.switch_slips:SwitchSlips"),
+    "bar": Maker("polarcheck.columns.metal.bar:Bar"),
+    "angles": Maker("polarcheck.columns.words.angles:Angles", SECTION),
+    "entry": Maker("polarcheck.columns.modes.entry:Entry", SECTION),
+    "procedure": Maker("polarcheck.columns.modes.procedure:Procedure"),
+    "since": Maker("polarcheck.columns.modes.since:Since"),
+    "spindles": Maker("polarcheck.columns.modes.spindles:Spindles"),
+    "ramps": Maker("polarcheck.columns.path.ramps:Ramps", SECTION),
+    "overcuts": Maker("polarcheck.columns.contour.overcuts:Overcuts", SECTION),
+    "fitting": Maker("polarcheck.columns.contour.fitting:Fitting"),
+    "entry_angles": Maker("polarcheck.columns.modes.entry_angles:EntryAngles", SECTION),
+    "misplaced_ramps": Maker("polarcheck.columns.contour.misplaced_ramps:MisplacedRamps", SECTION),
+    "mirrored": Maker("polarcheck.columns.contour.mirrored:Mirrored", SECTION),
+    "slots": Maker("polarcheck.columns.contour.slots:Slots", SECTION),
+    "uncompensated_cuts": Maker("polarcheck.columns.contour.uncompensated_cuts:UncompensatedCuts", SECTION),
+    "finished": Maker("polarcheck.columns.metal.finished:Finished"),
+    "milled": Maker("polarcheck.columns.metal.milled:Milled"),
+    "workpiece": Maker("polarcheck.columns.metal.workpiece:Workpiece", SECTION),
+    "air_cuts": Maker("polarcheck.columns.metal.air_cuts:AirCuts", SECTION),
+    "rapid_contours": Maker("polarcheck.columns.contour.rapid_contours:RapidContours", SECTION),
+    "pass_ends": Maker("polarcheck.columns.contour.pass_ends:PassEnds", SECTION),
+    "pass_depths": Maker("polarcheck.columns.contour.pass_depths:PassDepths", SECTION),
+    "nominal_parts": Maker("polarcheck.parts.nominal_parts:NominalParts"),
+    "contour_comparisons": Maker("polarcheck.parts.contour_comparisons:ContourComparisons"),
+    "nominal_features": Maker("polarcheck.parts.nominal_features:NominalFeatures"),
+    "area_comparisons": Maker("polarcheck.parts.area_comparisons:AreaComparisons"),
+    "deviations": Maker("polarcheck.parts.deviations:Deviations", PART),
+    "coverage": Maker("polarcheck.columns.metal.coverage:Coverage", SECTION),
+    "arcs": Maker("polarcheck.columns.path.arcs:Arcs"),
+    "senses": Maker("polarcheck.columns.contour.senses:Senses", ARC),
+    "regularity": Maker("polarcheck.columns.contour.regularity:Regularity", SECTION),
+    "arc_words": Maker("polarcheck.columns.path.arc_words:ArcWords"),
+    "crossings": Maker("polarcheck.columns.contour.crossings:Crossings", SECTION),
+    "increments": Maker("polarcheck.columns.path.increments:Increments", SECTION),
+    "contour_depths": Maker("polarcheck.columns.contour.contour_depths:ContourDepths", SECTION),
+    "pass_differences": Maker("polarcheck.columns.contour.pass_differences:PassDifferences", SECTION),
+    "passes": Maker("polarcheck.columns.contour.passes:Passes"),
+    "same_circle": Maker("polarcheck.columns.contour.same_circle:SameCircle", ARC),
+    "tangency": Maker("polarcheck.columns.contour.tangency:Tangency", ARC),
+    "part_comments": Maker("polarcheck.columns.metal.part_comments:PartComments", SECTION, COMMENT),
+    "travel": Maker("polarcheck.columns.path.travel:Travel"),
+    "center": Maker("polarcheck.columns.path.center:Center", SECTION),
+    "feeds": Maker("polarcheck.columns.feed.feeds:Feeds", SECTION),
+    "feed_ranges": Maker("polarcheck.columns.feed.feed_ranges:FeedRanges", SECTION),
+    "unpointed": Maker("polarcheck.columns.words.unpointed:Unpointed"),
+    "stock_comments": Maker("polarcheck.columns.words.stock_comments:StockComments"),
+    "tool_comments": Maker("polarcheck.columns.words.tool_comments:ToolComments", COMMENT),
+    "written": Maker("polarcheck.columns.words.written:Written"),
+    "dialect": Maker("polarcheck.columns.words.dialect:Dialect"),
+    "faults": Maker("polarcheck.columns.words.macro_faults:Faults"),
+    "sections": Maker("polarcheck.columns.modes.mode:sections_of", SECTION),
+    "moves": Maker("polarcheck.columns.path.tool_center:moves_of"),
 }
-#: Tables that are a column of another one.
-PARTS = {"sections": "mode.sections", "moves": "tool_center.moves"}
 #: How far a cause reaches, or what one finding stands for: the column whose value its rows have in
 #: common. The narrowest come first: the nearest cause of a finding counts.
 SPANS = {
@@ -134,22 +158,6 @@ OF_CAUSE = {"X before": "X", "C before": "C", "arc before": "row"}
 #: Tables that hang on the text and the machine alone: what is found in them is the same however the program runs.
 OF_TEXT = frozenset({"text", "words", "machine", "job", "written", "dialect"})
 
-#: What a program, or its job, must have for anything to be found in some tables. Where it has none, a rule that
-#: compares one of them finds nothing, and is not run; tests/test_engine.py runs them nevertheless.
-ONLY_WITH = {
-    "section": frozenset(
-        {
-            *("air_cuts", "angles", "center", "contour_depths", "coverage", "crossings", "entry", "entry_angles"),
-            *("feed_ranges", "feeds", "increments", "infeed", "mirrored", "misplaced_ramps", "mode", "mode_words"),
-            *("overcuts", "part_comments", "pass_depths", "pass_differences", "pass_ends", "ramps", "rapid_contours"),
-            *("regularity", "sections", "slots", "switch_words", "tool_center", "uncompensated_cuts", "workpiece"),
-        }
-    ),
-    "arc": frozenset({"same_circle", "senses", "tangency"}),
-    "comment": frozenset({"part_comments", "tool_comments"}),
-    "part": frozenset({"deviations"}),
-}
-
 
 class Tables(dict[str, Any]):
     """
@@ -162,12 +170,15 @@ class Tables(dict[str, Any]):
         super().__init__(run=run, text=run.text, words=run.text.words, machine=machine, job=job)
 
     def __missing__(self, name: str) -> Any:
-        table = self[name] = self.column(PARTS[name]) if name in PARTS else self._make(name)
+        if name not in TABLES:
+            raise RuleError(f"there is no table {name!r}; tables are {', '.join(sorted(self))}")
+        maker = TABLES[name].function
+        table = self[name] = maker(*(self[parameter] for parameter in parameters(maker)))
         return table
 
     def __iter__(self) -> Iterator[str]:
         """Iterate over the names of all tables, made or not."""
-        return iter(dict.fromkeys((*self.keys(), *MAKERS, *PARTS)))
+        return iter(dict.fromkeys((*self.keys(), *TABLES)))
 
     def __len__(self) -> int:
         return len(list(iter(self)))
@@ -178,31 +189,24 @@ class Tables(dict[str, Any]):
 
     def may_hold(self, names: Iterable[str]) -> bool:
         """Return False where one of these tables holds nothing since the program has nothing that it is about."""
-        wanted = frozenset(names)
-        return not any(wanted & of_it and not self._has[what] for what, of_it in ONLY_WITH.items())
+        return all(self._has[what] for name in names if name in TABLES for what in TABLES[name].only_with)
 
     # `cached_property` and `is_among` of arrays would load NumPy, which `explain` and `rules` do without.
     @functools.cached_property
     def _has(self) -> dict[str, bool]:
-        """For each key of ONLY_WITH: the program has it."""
+        """What a table may need (Maker.only_with), and whether the program has it."""
         trace = self["trace"]
         is_arc = (trace.axes.motion == Motion.CW) | (trace.axes.motion == Motion.CCW)
         return {
-            "section": len(trace.mode.sections) > 0,
-            "arc": bool(is_arc.any()),
-            "comment": len(trace.text.comments) > 0,
-            "part": len(trace.job.part) > 0,
+            SECTION: len(trace.mode.sections) > 0,
+            ARC: bool(is_arc.any()),
+            COMMENT: len(trace.text.comments) > 0,
+            PART: len(trace.job.part) > 0,
         }
 
     def computed(self) -> Iterator[tuple[str, Any]]:
         """The tables computed so far, by name."""
         return iter(self.items())
-
-    def _make(self, name: str) -> Any:
-        if name not in MAKERS:
-            raise RuleError(f"there is no table {name!r}; tables are {', '.join(sorted(self))}")
-        maker = _maker(MAKERS[name])
-        return maker(*(self[parameter] for parameter in parameters(maker)))
 
     def column(self, path: str) -> Any:
         """A column by its path, as in `compensation.radius` or `machine.limits.c_feed`."""
@@ -211,13 +215,6 @@ class Tables(dict[str, Any]):
         for attribute in rest.split(".") if rest else ():
             found = getattr(found, attribute)
         return found
-
-
-@functools.cache
-def _maker(path: str) -> Callable[..., Any]:
-    module, _, name = path.partition(":")
-    maker: Callable[..., Any] = getattr(importlib.import_module(module), name)
-    return maker
 
 
 def parameters(maker: Callable[..., Any]) -> tuple[str, ...]:

@@ -187,3 +187,8 @@ class PolarMode(Columns, frozen=True):
         moves = is_straight & self.modal.uses_axes & ~self.modal.in_cycle
         calls_tool = self.blocks.has("T")  # E beside it is an angle on Citizen lathes
         return np.asarray(self.blocks.with_words(e) & moves & ~self.axes.switches_on & ~calls_tool)
+
+
+def sections_of(mode: PolarMode) -> Sections:
+    """The polar sections, as a table of its own."""
+    return mode.sections

@@ -253,3 +253,8 @@ def _goes_on(path: Path) -> Mask:
     plain &= ~np.isnan(path.start + path.end) & ~path.stops_reading
     joins = plain[1:] & plain[:-1] & (path.section[1:] == path.section[:-1]) & (path.side[1:] == path.side[:-1])
     return np.append(np.zeros(min(len(plain), 1), bool), joins & (path.radius[1:] == path.radius[:-1]))
+
+
+def moves_of(tool_center: ToolCenter) -> Moves:
+    """The moves of the tool center, as a table of its own."""
+    return tool_center.moves

@@ -455,6 +455,6 @@ def by_processes(tasks: Sequence[Task], most: int, count: int) -> Generator[Outc
     """The outcomes by so many processes, in order."""
     if start_method() == "fork":
         # A module that is loaded before the fork is not loaded by each process.
-        for maker in tables.MAKERS.values():
-            importlib.import_module(maker.partition(":")[0])
+        for maker in tables.TABLES.values():
+            importlib.import_module(maker.module)
     return outcomes(tasks, Processes(tasks, min(count, len(tasks)), most), most)

@@ -1,6 +1,13 @@
 from __future__ import annotations
 
-from polarcheck.rules.rule import WARNING, Mask, SameCircle, Senses, rule
+from typing import TYPE_CHECKING
+
+from polarcheck.rules.rule import WARNING, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.contour.same_circle import SameCircle
+    from polarcheck.columns.contour.senses import Senses
+    from polarcheck.foundation.arrays import Mask
 
 
 @rule(

@@ -1,6 +1,15 @@
 from __future__ import annotations
 
-from polarcheck.rules.rule import ERROR, CalledTools, Entry, Mask, ModalStates, PolarMode, rule
+from typing import TYPE_CHECKING
+
+from polarcheck.rules.rule import ERROR, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.modes.entry import Entry
+    from polarcheck.columns.modes.modal import ModalStates
+    from polarcheck.columns.modes.mode import PolarMode
+    from polarcheck.columns.modes.tools import CalledTools
+    from polarcheck.foundation.arrays import Mask
 
 
 @rule(

@@ -1,6 +1,14 @@
 from __future__ import annotations
 
-from polarcheck.rules.rule import NOTE, CutterCompensation, Mask, PolarMode, ProgrammedPath, Sections, rule
+from typing import TYPE_CHECKING
+
+from polarcheck.rules.rule import NOTE, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.modes.mode import PolarMode
+    from polarcheck.columns.path.compensation import CutterCompensation
+    from polarcheck.columns.path.path import ProgrammedPath
+    from polarcheck.foundation.arrays import Mask
 
 
 @rule(
@@ -11,9 +19,7 @@ from polarcheck.rules.rule import NOTE, CutterCompensation, Mask, PolarMode, Pro
     is_advice=True,
     follows={"section": ("polar-switched-in-offset-mode",)},
 )
-def no_compensation_in_polar(
-    mode: PolarMode, path: ProgrammedPath, compensation: CutterCompensation, sections: Sections
-) -> Mask:
+def no_compensation_in_polar(mode: PolarMode, path: ProgrammedPath, compensation: CutterCompensation) -> Mask:
     """
     Contour cut without cutter compensation.
 
@@ -44,4 +50,4 @@ def no_compensation_in_polar(
         G13.1
     """
     without = mode.anywhere_in_section(path.cuts) & mode.nowhere_in_section(compensation.compensates)
-    return without[sections.enter]
+    return without[mode.sections.enter]

@@ -1,6 +1,13 @@
 from __future__ import annotations
 
-from polarcheck.rules.rule import ERROR, Mask, Ramps, ToolCenter, rule
+from typing import TYPE_CHECKING
+
+from polarcheck.rules.rule import ERROR, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.path.ramps import Ramps
+    from polarcheck.columns.path.tool_center import ToolCenter
+    from polarcheck.foundation.arrays import Mask
 
 
 @rule(

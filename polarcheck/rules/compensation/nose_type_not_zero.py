@@ -1,6 +1,13 @@
 from __future__ import annotations
 
-from polarcheck.rules.rule import ERROR, CutterCompensation, Mask, ToolOffsets, rule
+from typing import TYPE_CHECKING
+
+from polarcheck.rules.rule import ERROR, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.modes.offsets import ToolOffsets
+    from polarcheck.columns.path.compensation import CutterCompensation
+    from polarcheck.foundation.arrays import Mask
 
 
 @rule(

@@ -1,6 +1,16 @@
 from __future__ import annotations
 
-from polarcheck.rules.rule import ERROR, CutterCompensation, ExecutedBlocks, Machine, Mask, ModeWords, PolarMode, rule
+from typing import TYPE_CHECKING
+
+from polarcheck.rules.rule import ERROR, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.modes.blocks import ExecutedBlocks
+    from polarcheck.columns.modes.mode import PolarMode
+    from polarcheck.columns.modes.mode_words import ModeWords
+    from polarcheck.columns.path.compensation import CutterCompensation
+    from polarcheck.foundation.arrays import Mask
+    from polarcheck.program.machines.machine import Machine
 
 
 @rule(

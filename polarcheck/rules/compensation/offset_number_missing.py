@@ -1,6 +1,14 @@
 from __future__ import annotations
 
-from polarcheck.rules.rule import ERROR, CalledTools, CutterCompensation, ExecutedBlocks, Mask, rule
+from typing import TYPE_CHECKING
+
+from polarcheck.rules.rule import ERROR, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.modes.blocks import ExecutedBlocks
+    from polarcheck.columns.modes.tools import CalledTools
+    from polarcheck.columns.path.compensation import CutterCompensation
+    from polarcheck.foundation.arrays import Mask
 
 
 @rule(

@@ -1,6 +1,12 @@
 from __future__ import annotations
 
-from polarcheck.rules.rule import ERROR, Mask, Overcuts, rule
+from typing import TYPE_CHECKING
+
+from polarcheck.rules.rule import ERROR, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.contour.overcuts import Overcuts
+    from polarcheck.foundation.arrays import Mask
 
 
 @rule(

@@ -1,7 +1,13 @@
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from polarcheck.rules.causes import FAULTS_OF_CONTOUR, FAULTS_OF_METAL
-from polarcheck.rules.rule import ERROR, Deviations, Mask, rule
+from polarcheck.rules.rule import ERROR, rule
+
+if TYPE_CHECKING:
+    from polarcheck.foundation.arrays import Mask
+    from polarcheck.parts.deviations import Deviations
 
 
 @rule(

@@ -1,7 +1,14 @@
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from polarcheck.rules.causes import UNIT
-from polarcheck.rules.rule import WARNING, CutterCompensation, Mask, Ramps, rule
+from polarcheck.rules.rule import WARNING, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.path.compensation import CutterCompensation
+    from polarcheck.columns.path.ramps import Ramps
+    from polarcheck.foundation.arrays import Mask
 
 
 @rule(

@@ -1,6 +1,12 @@
 from __future__ import annotations
 
-from polarcheck.rules.rule import WARNING, Mask, Mirrored, rule
+from typing import TYPE_CHECKING
+
+from polarcheck.rules.rule import WARNING, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.contour.mirrored import Mirrored
+    from polarcheck.foundation.arrays import Mask
 
 
 @rule(

@@ -1,6 +1,14 @@
 from __future__ import annotations
 
-from polarcheck.rules.rule import ERROR, CutterCompensation, Mask, ProgrammedPath, Ramps, rule
+from typing import TYPE_CHECKING
+
+from polarcheck.rules.rule import ERROR, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.path.compensation import CutterCompensation
+    from polarcheck.columns.path.path import ProgrammedPath
+    from polarcheck.columns.path.ramps import Ramps
+    from polarcheck.foundation.arrays import Mask
 
 
 @rule(

@@ -1,6 +1,11 @@
 from __future__ import annotations
 
-from polarcheck.rules.rule import ERROR, Hits, UncompensatedCuts, graded, rule
+from typing import TYPE_CHECKING
+
+from polarcheck.rules.rule import ERROR, Hits, graded, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.contour.uncompensated_cuts import UncompensatedCuts
 
 
 @rule(

@@ -1,7 +1,13 @@
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from polarcheck.geometry.tolerances import SHARE
-from polarcheck.rules.rule import WARNING, Feeds, Mask, rule
+from polarcheck.rules.rule import WARNING, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.feed.feeds import Feeds
+    from polarcheck.foundation.arrays import Mask
 
 
 @rule(

@@ -1,6 +1,13 @@
 from __future__ import annotations
 
-from polarcheck.rules.rule import ERROR, WARNING, Center, Hits, Machine, ToolCenter, graded, rule
+from typing import TYPE_CHECKING
+
+from polarcheck.rules.rule import ERROR, WARNING, Hits, graded, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.path.center import Center
+    from polarcheck.columns.path.tool_center import ToolCenter
+    from polarcheck.program.machines.machine import Machine
 
 
 @rule(

@@ -1,6 +1,13 @@
 from __future__ import annotations
 
-from polarcheck.rules.rule import NOTE, WARNING, Feedrate, Feeds, Hits, Machine, rule
+from typing import TYPE_CHECKING
+
+from polarcheck.rules.rule import NOTE, WARNING, Hits, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.feed.feedrate import Feedrate
+    from polarcheck.columns.feed.feeds import Feeds
+    from polarcheck.program.machines.machine import Machine
 
 
 @rule(

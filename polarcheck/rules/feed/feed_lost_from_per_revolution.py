@@ -1,6 +1,14 @@
 from __future__ import annotations
 
-from polarcheck.rules.rule import ERROR, Feeds, Mask, PolarMode, ProgrammedPath, rule
+from typing import TYPE_CHECKING
+
+from polarcheck.rules.rule import ERROR, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.feed.feeds import Feeds
+    from polarcheck.columns.modes.mode import PolarMode
+    from polarcheck.columns.path.path import ProgrammedPath
+    from polarcheck.foundation.arrays import Mask
 
 
 @rule(

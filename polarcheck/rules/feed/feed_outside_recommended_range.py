@@ -1,6 +1,13 @@
 from __future__ import annotations
 
-from polarcheck.rules.rule import NOTE, FeedRanges, Feeds, Mask, rule
+from typing import TYPE_CHECKING
+
+from polarcheck.rules.rule import NOTE, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.feed.feed_ranges import FeedRanges
+    from polarcheck.columns.feed.feeds import Feeds
+    from polarcheck.foundation.arrays import Mask
 
 
 @rule(

@@ -1,7 +1,15 @@
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from polarcheck.foundation.states import FeedMode
-from polarcheck.rules.rule import NOTE, Feedrate, Feeds, Hits, PolarMode, ProgrammedPath, graded, rule
+from polarcheck.rules.rule import NOTE, Hits, graded, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.feed.feedrate import Feedrate
+    from polarcheck.columns.feed.feeds import Feeds
+    from polarcheck.columns.modes.mode import PolarMode
+    from polarcheck.columns.path.path import ProgrammedPath
 
 
 @rule(

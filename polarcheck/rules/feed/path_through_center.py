@@ -1,6 +1,14 @@
 from __future__ import annotations
 
-from polarcheck.rules.rule import ERROR, Arcs, Center, Mask, ProgrammedPath, rule
+from typing import TYPE_CHECKING
+
+from polarcheck.rules.rule import ERROR, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.path.arcs import Arcs
+    from polarcheck.columns.path.center import Center
+    from polarcheck.columns.path.path import ProgrammedPath
+    from polarcheck.foundation.arrays import Mask
 
 
 @rule(ERROR, "tool center {meeting}", at=("X", "U", "C", "H"), doubts=(("move", "X before"),), gouges=True)

@@ -1,6 +1,14 @@
 from __future__ import annotations
 
-from polarcheck.rules.rule import WARNING, Center, Feedrate, Feeds, Mask, rule
+from typing import TYPE_CHECKING
+
+from polarcheck.rules.rule import WARNING, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.feed.feedrate import Feedrate
+    from polarcheck.columns.feed.feeds import Feeds
+    from polarcheck.columns.path.center import Center
+    from polarcheck.foundation.arrays import Mask
 
 
 @rule(

@@ -1,6 +1,12 @@
 from __future__ import annotations
 
-from polarcheck.rules.rule import WARNING, Faults, Mask, rule
+from typing import TYPE_CHECKING
+
+from polarcheck.rules.rule import WARNING, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.words.macro_faults import Faults
+    from polarcheck.foundation.arrays import Mask
 
 
 @rule(

@@ -1,6 +1,13 @@
 from __future__ import annotations
 
-from polarcheck.rules.rule import WARNING, Arcs, Mask, Tangency, rule
+from typing import TYPE_CHECKING
+
+from polarcheck.rules.rule import WARNING, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.contour.tangency import Tangency
+    from polarcheck.columns.path.arcs import Arcs
+    from polarcheck.foundation.arrays import Mask
 
 
 @rule(

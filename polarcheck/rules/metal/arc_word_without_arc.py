@@ -1,6 +1,11 @@
 from __future__ import annotations
 
-from polarcheck.rules.rule import WARNING, ArcWords, Hits, rule
+from typing import TYPE_CHECKING
+
+from polarcheck.rules.rule import WARNING, Hits, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.path.arc_words import ArcWords
 
 
 @rule(

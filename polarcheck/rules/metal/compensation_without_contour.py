@@ -1,6 +1,12 @@
 from __future__ import annotations
 
-from polarcheck.rules.rule import WARNING, Mask, MisplacedRamps, rule
+from typing import TYPE_CHECKING
+
+from polarcheck.rules.rule import WARNING, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.contour.misplaced_ramps import MisplacedRamps
+    from polarcheck.foundation.arrays import Mask
 
 
 @rule(

@@ -1,7 +1,13 @@
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from polarcheck.rules.causes import OUT_OF_PLACE
-from polarcheck.rules.rule import WARNING, Crossings, Mask, rule
+from polarcheck.rules.rule import WARNING, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.contour.crossings import Crossings
+    from polarcheck.foundation.arrays import Mask
 
 
 @rule(

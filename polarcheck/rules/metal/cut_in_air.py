@@ -1,7 +1,12 @@
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from polarcheck.rules.causes import OUT_OF_PLACE
-from polarcheck.rules.rule import WARNING, AirCuts, Hits, rule
+from polarcheck.rules.rule import WARNING, Hits, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.metal.air_cuts import AirCuts
 
 
 @rule(

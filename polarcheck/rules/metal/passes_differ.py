@@ -1,7 +1,13 @@
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from polarcheck.rules.causes import FAULTS_OF_CONTOUR
-from polarcheck.rules.rule import WARNING, Mask, PassDifferences, rule
+from polarcheck.rules.rule import WARNING, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.contour.pass_differences import PassDifferences
+    from polarcheck.foundation.arrays import Mask
 
 
 @rule(

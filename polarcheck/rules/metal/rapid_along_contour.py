@@ -1,6 +1,13 @@
 from __future__ import annotations
 
-from polarcheck.rules.rule import WARNING, Hits, Machine, PolarMode, RapidContours, rule
+from typing import TYPE_CHECKING
+
+from polarcheck.rules.rule import WARNING, Hits, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.contour.rapid_contours import RapidContours
+    from polarcheck.columns.modes.mode import PolarMode
+    from polarcheck.program.machines.machine import Machine
 
 
 @rule(

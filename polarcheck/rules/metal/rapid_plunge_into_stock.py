@@ -1,6 +1,11 @@
 from __future__ import annotations
 
-from polarcheck.rules.rule import ERROR, Hits, Workpiece, graded, rule
+from typing import TYPE_CHECKING
+
+from polarcheck.rules.rule import ERROR, Hits, graded, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.metal.workpiece import Workpiece
 
 
 @rule(

@@ -1,6 +1,13 @@
 from __future__ import annotations
 
-from polarcheck.rules.rule import WARNING, Mask, MisplacedRamps, ProgrammedPath, rule
+from typing import TYPE_CHECKING
+
+from polarcheck.rules.rule import WARNING, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.contour.misplaced_ramps import MisplacedRamps
+    from polarcheck.columns.path.path import ProgrammedPath
+    from polarcheck.foundation.arrays import Mask
 
 
 @rule(

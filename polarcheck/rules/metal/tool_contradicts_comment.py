@@ -1,6 +1,11 @@
 from __future__ import annotations
 
-from polarcheck.rules.rule import WARNING, Hits, ToolComments, rule
+from typing import TYPE_CHECKING
+
+from polarcheck.rules.rule import WARNING, Hits, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.words.tool_comments import ToolComments
 
 
 @rule(

@@ -1,7 +1,13 @@
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from polarcheck.rules.causes import END_IN_DOUBT
-from polarcheck.rules.rule import ERROR, Arcs, Hits, Machine, rule
+from polarcheck.rules.rule import ERROR, Hits, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.path.arcs import Arcs
+    from polarcheck.program.machines.machine import Machine
 
 
 @rule(

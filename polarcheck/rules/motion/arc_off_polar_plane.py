@@ -1,7 +1,13 @@
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from polarcheck.rules.causes import NO_SUCH_ARC
-from polarcheck.rules.rule import ERROR, Arcs, Mask, rule
+from polarcheck.rules.rule import ERROR, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.path.arcs import Arcs
+    from polarcheck.foundation.arrays import Mask
 
 
 @rule(

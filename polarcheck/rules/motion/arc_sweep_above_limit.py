@@ -1,6 +1,12 @@
 from __future__ import annotations
 
-from polarcheck.rules.rule import WARNING, Arcs, Hits, Machine, graded, rule
+from typing import TYPE_CHECKING
+
+from polarcheck.rules.rule import WARNING, Hits, graded, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.path.arcs import Arcs
+    from polarcheck.program.machines.machine import Machine
 
 #: What the last digit of the coordinates may turn an arc by [deg].
 LAST_DIGIT = 0.1

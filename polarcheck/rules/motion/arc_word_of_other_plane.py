@@ -1,7 +1,14 @@
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from polarcheck.rules.causes import NO_SUCH_ARC
-from polarcheck.rules.rule import ERROR, Arcs, Hits, PlaneAxes, ProgrammedPath, rule
+from polarcheck.rules.rule import ERROR, Hits, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.path.arcs import Arcs
+    from polarcheck.columns.path.axes import PlaneAxes
+    from polarcheck.columns.path.path import ProgrammedPath
 
 
 @rule(

@@ -1,6 +1,13 @@
 from __future__ import annotations
 
-from polarcheck.rules.rule import WARNING, ExecutedBlocks, Mask, PolarMode, rule
+from typing import TYPE_CHECKING
+
+from polarcheck.rules.rule import WARNING, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.modes.blocks import ExecutedBlocks
+    from polarcheck.columns.modes.mode import PolarMode
+    from polarcheck.foundation.arrays import Mask
 
 
 @rule(WARNING, "chamfer, corner or angle word in the polar mode", at=(",C", ",R", ",A"))

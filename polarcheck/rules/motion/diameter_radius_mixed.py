@@ -1,7 +1,14 @@
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from polarcheck.rules.causes import SECTION_READ_OTHERWISE
-from polarcheck.rules.rule import WARNING, Arcs, Mask, Regularity, rule
+from polarcheck.rules.rule import WARNING, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.contour.regularity import Regularity
+    from polarcheck.columns.path.arcs import Arcs
+    from polarcheck.foundation.arrays import Mask
 
 
 @rule(

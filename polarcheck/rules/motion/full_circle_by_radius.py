@@ -1,6 +1,16 @@
 from __future__ import annotations
 
-from polarcheck.rules.rule import WARNING, Arcs, ExecutedBlocks, Machine, Mask, PlaneAxes, ProgrammedPath, rule
+from typing import TYPE_CHECKING
+
+from polarcheck.rules.rule import WARNING, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.modes.blocks import ExecutedBlocks
+    from polarcheck.columns.path.arcs import Arcs
+    from polarcheck.columns.path.axes import PlaneAxes
+    from polarcheck.columns.path.path import ProgrammedPath
+    from polarcheck.foundation.arrays import Mask
+    from polarcheck.program.machines.machine import Machine
 
 
 @rule(

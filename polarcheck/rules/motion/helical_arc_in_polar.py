@@ -1,6 +1,13 @@
 from __future__ import annotations
 
-from polarcheck.rules.rule import WARNING, Arcs, Mask, ProgrammedPath, rule
+from typing import TYPE_CHECKING
+
+from polarcheck.rules.rule import WARNING, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.path.arcs import Arcs
+    from polarcheck.columns.path.path import ProgrammedPath
+    from polarcheck.foundation.arrays import Mask
 
 
 @rule(WARNING, "arc that moves Z, too: only with the helical option, else an alarm", at=("Z", "W"), subject="")

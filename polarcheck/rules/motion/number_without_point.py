@@ -1,6 +1,11 @@
 from __future__ import annotations
 
-from polarcheck.rules.rule import WARNING, Hits, Unpointed, graded, rule
+from typing import TYPE_CHECKING
+
+from polarcheck.rules.rule import WARNING, Hits, graded, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.words.unpointed import Unpointed
 
 
 @rule(

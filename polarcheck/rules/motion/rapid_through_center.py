@@ -1,8 +1,18 @@
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from polarcheck.foundation.states import Motion
 from polarcheck.geometry.tolerances import ROUNDING
-from polarcheck.rules.rule import WARNING, Entry, ExecutedBlocks, Mask, PlaneAxes, PolarMode, ProgrammedPath, rule
+from polarcheck.rules.rule import WARNING, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.modes.blocks import ExecutedBlocks
+    from polarcheck.columns.modes.entry import Entry
+    from polarcheck.columns.modes.mode import PolarMode
+    from polarcheck.columns.path.axes import PlaneAxes
+    from polarcheck.columns.path.path import ProgrammedPath
+    from polarcheck.foundation.arrays import Mask
 
 
 @rule(

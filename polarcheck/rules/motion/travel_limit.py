@@ -1,7 +1,15 @@
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from polarcheck.geometry.tolerances import ROUNDING
-from polarcheck.rules.rule import ERROR, Machine, Mask, ProgrammedPath, Travel, rule
+from polarcheck.rules.rule import ERROR, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.path.path import ProgrammedPath
+    from polarcheck.columns.path.travel import Travel
+    from polarcheck.foundation.arrays import Mask
+    from polarcheck.program.machines.machine import Machine
 
 
 @rule(

@@ -1,6 +1,12 @@
 from __future__ import annotations
 
-from polarcheck.rules.rule import ERROR, Hits, Machine, ModeWords, graded, rule
+from typing import TYPE_CHECKING
+
+from polarcheck.rules.rule import ERROR, Hits, graded, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.modes.mode_words import ModeWords
+    from polarcheck.program.machines.machine import Machine
 
 
 @rule(

@@ -1,6 +1,14 @@
 from __future__ import annotations
 
-from polarcheck.rules.rule import WARNING, Angles, Entry, ExecutedBlocks, Hits, PlaneAxes, rule
+from typing import TYPE_CHECKING
+
+from polarcheck.rules.rule import WARNING, Hits, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.modes.blocks import ExecutedBlocks
+    from polarcheck.columns.modes.entry import Entry
+    from polarcheck.columns.path.axes import PlaneAxes
+    from polarcheck.columns.words.angles import Angles
 
 #: A length that many times as far out as the rest of the section is taken for an angle, and with G0 beside it.
 _FAR, _FAR_IN_RAPID = 2.0, 1.5

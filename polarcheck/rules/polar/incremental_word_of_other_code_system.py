@@ -1,6 +1,15 @@
 from __future__ import annotations
 
-from polarcheck.rules.rule import ERROR, Hits, Machine, ModalStates, ModeWords, PlaneAxes, PolarMode, rule
+from typing import TYPE_CHECKING
+
+from polarcheck.rules.rule import ERROR, Hits, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.modes.modal import ModalStates
+    from polarcheck.columns.modes.mode import PolarMode
+    from polarcheck.columns.modes.mode_words import ModeWords
+    from polarcheck.columns.path.axes import PlaneAxes
+    from polarcheck.program.machines.machine import Machine
 
 
 @rule(

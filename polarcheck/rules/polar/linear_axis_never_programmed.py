@@ -1,7 +1,16 @@
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from polarcheck.rules.causes import SECTION_READ_OTHERWISE
-from polarcheck.rules.rule import ERROR, ExecutedBlocks, Mask, ModalStates, PlaneAxes, PolarMode, Sections, rule
+from polarcheck.rules.rule import ERROR, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.modes.blocks import ExecutedBlocks
+    from polarcheck.columns.modes.modal import ModalStates
+    from polarcheck.columns.modes.mode import PolarMode
+    from polarcheck.columns.path.axes import PlaneAxes
+    from polarcheck.foundation.arrays import Mask
 
 
 @rule(
@@ -13,9 +22,7 @@ from polarcheck.rules.rule import ERROR, ExecutedBlocks, Mask, ModalStates, Plan
     at=("on",),
     doubts=SECTION_READ_OTHERWISE,
 )
-def linear_axis_never_programmed(
-    blocks: ExecutedBlocks, modal: ModalStates, axes: PlaneAxes, mode: PolarMode, sections: Sections
-) -> Mask:
+def linear_axis_never_programmed(blocks: ExecutedBlocks, modal: ModalStates, axes: PlaneAxes, mode: PolarMode) -> Mask:
     """
     Section whose linear axis is another than X, written in X.
 
@@ -46,4 +53,4 @@ def linear_axis_never_programmed(
     """
     beside = blocks.has("X", "U") & modal.uses_axes & mode.in_polar & (axes.linear_axis != ord("X"))
     is_meant = mode.anywhere_in_section(beside) & mode.anywhere_in_section(axes.programs_virtual_axis)
-    return (is_meant & mode.nowhere_in_section(axes.programs_linear_axis))[sections.enter]
+    return (is_meant & mode.nowhere_in_section(axes.programs_linear_axis))[mode.sections.enter]

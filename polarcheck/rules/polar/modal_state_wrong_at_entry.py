@@ -1,6 +1,12 @@
 from __future__ import annotations
 
-from polarcheck.rules.rule import ERROR, Hits, ModalStates, PolarMode, graded, rule
+from typing import TYPE_CHECKING
+
+from polarcheck.rules.rule import ERROR, Hits, graded, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.modes.modal import ModalStates
+    from polarcheck.columns.modes.mode import PolarMode
 
 
 @rule(

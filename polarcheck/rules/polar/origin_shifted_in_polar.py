@@ -1,6 +1,15 @@
 from __future__ import annotations
 
-from polarcheck.rules.rule import ERROR, ExecutedBlocks, Machine, Mask, ModeWords, PolarMode, rule
+from typing import TYPE_CHECKING
+
+from polarcheck.rules.rule import ERROR, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.modes.blocks import ExecutedBlocks
+    from polarcheck.columns.modes.mode import PolarMode
+    from polarcheck.columns.modes.mode_words import ModeWords
+    from polarcheck.foundation.arrays import Mask
+    from polarcheck.program.machines.machine import Machine
 
 
 @rule(

@@ -1,6 +1,13 @@
 from __future__ import annotations
 
-from polarcheck.rules.rule import ERROR, Machine, Mask, ModeWords, rule
+from typing import TYPE_CHECKING
+
+from polarcheck.rules.rule import ERROR, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.modes.mode_words import ModeWords
+    from polarcheck.foundation.arrays import Mask
+    from polarcheck.program.machines.machine import Machine
 
 
 @rule(

@@ -1,6 +1,13 @@
 from __future__ import annotations
 
-from polarcheck.rules.rule import ERROR, Entry, Mask, PolarMode, rule
+from typing import TYPE_CHECKING
+
+from polarcheck.rules.rule import ERROR, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.modes.entry import Entry
+    from polarcheck.columns.modes.mode import PolarMode
+    from polarcheck.foundation.arrays import Mask
 
 
 @rule(

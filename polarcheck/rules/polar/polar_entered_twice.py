@@ -1,6 +1,13 @@
 from __future__ import annotations
 
-from polarcheck.rules.rule import WARNING, Mask, PlaneAxes, PolarMode, rule
+from typing import TYPE_CHECKING
+
+from polarcheck.rules.rule import WARNING, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.modes.mode import PolarMode
+    from polarcheck.columns.path.axes import PlaneAxes
+    from polarcheck.foundation.arrays import Mask
 
 
 @rule(

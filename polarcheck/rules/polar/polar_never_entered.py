@@ -1,6 +1,13 @@
 from __future__ import annotations
 
-from polarcheck.rules.rule import ERROR, Hits, PlaneAxes, Procedure, SwitchSlips, rule
+from typing import TYPE_CHECKING
+
+from polarcheck.rules.rule import ERROR, Hits, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.modes.procedure import Procedure
+    from polarcheck.columns.modes.switch_slips import SwitchSlips
+    from polarcheck.columns.path.axes import PlaneAxes
 
 
 @rule(

@@ -1,6 +1,12 @@
 from __future__ import annotations
 
-from polarcheck.rules.rule import ERROR, Mask, Sections, rule
+from typing import TYPE_CHECKING
+
+from polarcheck.rules.rule import ERROR, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.modes.mode import PolarMode
+    from polarcheck.foundation.arrays import Mask
 
 
 @rule(
@@ -11,7 +17,7 @@ from polarcheck.rules.rule import ERROR, Mask, Sections, rule
     at=("on",),
     follows={"program": ("endless-loop", "nesting-too-deep"), "section": ("polar-switch-unknown",)},
 )
-def polar_never_left(sections: Sections) -> Mask:
+def polar_never_left(mode: PolarMode) -> Mask:
     """
     Polar mode still on at the tool change or the end of the program.
 
@@ -60,4 +66,4 @@ def polar_never_left(sections: Sections) -> Mask:
         G28 U0
         M30
     """
-    return ~sections.left
+    return ~mode.sections.left

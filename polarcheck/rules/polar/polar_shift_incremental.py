@@ -1,6 +1,12 @@
 from __future__ import annotations
 
-from polarcheck.rules.rule import ERROR, ExecutedBlocks, Hits, SwitchWords, rule
+from typing import TYPE_CHECKING
+
+from polarcheck.rules.rule import ERROR, Hits, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.modes.blocks import ExecutedBlocks
+    from polarcheck.columns.modes.switch_words import SwitchWords
 
 
 @rule(

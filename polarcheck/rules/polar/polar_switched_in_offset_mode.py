@@ -1,7 +1,14 @@
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from polarcheck.foundation.states import Side
-from polarcheck.rules.rule import ERROR, CutterCompensation, Mask, PolarMode, rule
+from polarcheck.rules.rule import ERROR, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.modes.mode import PolarMode
+    from polarcheck.columns.path.compensation import CutterCompensation
+    from polarcheck.foundation.arrays import Mask
 
 
 @rule(

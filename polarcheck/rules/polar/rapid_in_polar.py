@@ -1,7 +1,16 @@
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from polarcheck.foundation.states import Motion
-from polarcheck.rules.rule import ERROR, Angles, ExecutedBlocks, Hits, ModalStates, PlaneAxes, PolarMode, rule
+from polarcheck.rules.rule import ERROR, Hits, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.modes.blocks import ExecutedBlocks
+    from polarcheck.columns.modes.modal import ModalStates
+    from polarcheck.columns.modes.mode import PolarMode
+    from polarcheck.columns.path.axes import PlaneAxes
+    from polarcheck.columns.words.angles import Angles
 
 
 @rule(

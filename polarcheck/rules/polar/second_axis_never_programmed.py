@@ -1,7 +1,17 @@
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from polarcheck.rules.causes import SECTION_READ_OTHERWISE
-from polarcheck.rules.rule import ERROR, Arcs, Center, Mask, PlaneAxes, PolarMode, ProgrammedPath, Sections, rule
+from polarcheck.rules.rule import ERROR, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.modes.mode import PolarMode
+    from polarcheck.columns.path.arcs import Arcs
+    from polarcheck.columns.path.axes import PlaneAxes
+    from polarcheck.columns.path.center import Center
+    from polarcheck.columns.path.path import ProgrammedPath
+    from polarcheck.foundation.arrays import Mask
 
 #: One arc or one way across the center may be a slip of its own.
 _SEVERAL = 2
@@ -18,7 +28,7 @@ _SEVERAL = 2
     doubts=SECTION_READ_OTHERWISE,
 )
 def second_axis_never_programmed(
-    axes: PlaneAxes, mode: PolarMode, path: ProgrammedPath, sections: Sections, arcs: Arcs, center: Center
+    axes: PlaneAxes, mode: PolarMode, path: ProgrammedPath, arcs: Arcs, center: Center
 ) -> Mask:
     """
     Section without any word of the second axis.
@@ -48,7 +58,7 @@ def second_axis_never_programmed(
         G1 X50.
         G13.1
     """
-    without = mode.nowhere_in_section(axes.programs_virtual_axis)[sections.enter]
+    without = mode.nowhere_in_section(axes.programs_virtual_axis)[mode.sections.enter]
     no_circle = mode.count_in_section(arcs.is_no_circle) >= _SEVERAL
     across = mode.count_in_section(path.cuts & center.meets_center) >= _SEVERAL
     return without & (no_circle | across)

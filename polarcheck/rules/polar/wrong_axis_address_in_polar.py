@@ -1,6 +1,12 @@
 from __future__ import annotations
 
-from polarcheck.rules.rule import ERROR, Hits, ModeWords, PolarMode, rule
+from typing import TYPE_CHECKING
+
+from polarcheck.rules.rule import ERROR, Hits, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.modes.mode import PolarMode
+    from polarcheck.columns.modes.mode_words import ModeWords
 
 
 @rule(

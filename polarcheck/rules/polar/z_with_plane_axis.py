@@ -1,18 +1,16 @@
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from polarcheck.foundation.states import Motion
-from polarcheck.rules.rule import (
-    ERROR,
-    NOTE,
-    WARNING,
-    CutterCompensation,
-    Hits,
-    Machine,
-    PlaneAxes,
-    PolarMode,
-    ProgrammedPath,
-    rule,
-)
+from polarcheck.rules.rule import ERROR, NOTE, WARNING, Hits, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.modes.mode import PolarMode
+    from polarcheck.columns.path.axes import PlaneAxes
+    from polarcheck.columns.path.compensation import CutterCompensation
+    from polarcheck.columns.path.path import ProgrammedPath
+    from polarcheck.program.machines.machine import Machine
 
 
 @rule(

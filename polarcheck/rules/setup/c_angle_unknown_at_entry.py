@@ -1,6 +1,16 @@
 from __future__ import annotations
 
-from polarcheck.rules.rule import WARNING, Entry, ExecutedBlocks, Machine, Mask, PolarMode, Spindles, rule
+from typing import TYPE_CHECKING
+
+from polarcheck.rules.rule import WARNING, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.modes.blocks import ExecutedBlocks
+    from polarcheck.columns.modes.entry import Entry
+    from polarcheck.columns.modes.mode import PolarMode
+    from polarcheck.columns.modes.spindles import Spindles
+    from polarcheck.foundation.arrays import Mask
+    from polarcheck.program.machines.machine import Machine
 
 
 @rule(

@@ -1,6 +1,15 @@
 from __future__ import annotations
 
-from polarcheck.rules.rule import WARNING, Entry, Hits, Machine, PlaneAxes, PolarMode, Spindles, rule
+from typing import TYPE_CHECKING
+
+from polarcheck.rules.rule import WARNING, Hits, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.modes.entry import Entry
+    from polarcheck.columns.modes.mode import PolarMode
+    from polarcheck.columns.modes.spindles import Spindles
+    from polarcheck.columns.path.axes import PlaneAxes
+    from polarcheck.program.machines.machine import Machine
 
 
 @rule(

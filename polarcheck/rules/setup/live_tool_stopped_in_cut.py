@@ -1,6 +1,15 @@
 from __future__ import annotations
 
-from polarcheck.rules.rule import ERROR, Entry, Hits, Machine, ModalStates, PolarMode, ProgrammedPath, rule
+from typing import TYPE_CHECKING
+
+from polarcheck.rules.rule import ERROR, Hits, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.modes.entry import Entry
+    from polarcheck.columns.modes.modal import ModalStates
+    from polarcheck.columns.modes.mode import PolarMode
+    from polarcheck.columns.path.path import ProgrammedPath
+    from polarcheck.program.machines.machine import Machine
 
 
 @rule(

@@ -1,6 +1,13 @@
 from __future__ import annotations
 
-from polarcheck.rules.rule import WARNING, ExecutedBlocks, Hits, Machine, Procedure, rule
+from typing import TYPE_CHECKING
+
+from polarcheck.rules.rule import WARNING, Hits, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.modes.blocks import ExecutedBlocks
+    from polarcheck.columns.modes.procedure import Procedure
+    from polarcheck.program.machines.machine import Machine
 
 
 @rule(

@@ -1,6 +1,13 @@
 from __future__ import annotations
 
-from polarcheck.rules.rule import ERROR, Hits, Machine, PolarMode, Spindles, graded, rule
+from typing import TYPE_CHECKING
+
+from polarcheck.rules.rule import ERROR, Hits, graded, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.modes.mode import PolarMode
+    from polarcheck.columns.modes.spindles import Spindles
+    from polarcheck.program.machines.machine import Machine
 
 
 @rule(

@@ -1,7 +1,16 @@
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from polarcheck.foundation.states import Side
-from polarcheck.rules.rule import WARNING, CalledTools, CutterCompensation, Entry, Mask, PolarMode, rule
+from polarcheck.rules.rule import WARNING, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.modes.entry import Entry
+    from polarcheck.columns.modes.mode import PolarMode
+    from polarcheck.columns.modes.tools import CalledTools
+    from polarcheck.columns.path.compensation import CutterCompensation
+    from polarcheck.foundation.arrays import Mask
 
 
 @rule(

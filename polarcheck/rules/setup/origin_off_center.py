@@ -1,7 +1,13 @@
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from polarcheck.geometry.tolerances import ROUNDING
-from polarcheck.rules.rule import ERROR, Entry, Hits, PolarMode, rule
+from polarcheck.rules.rule import ERROR, Hits, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.modes.entry import Entry
+    from polarcheck.columns.modes.mode import PolarMode
 
 
 @rule(

@@ -1,6 +1,11 @@
 from __future__ import annotations
 
-from polarcheck.rules.rule import WARNING, Entry, Hits, rule
+from typing import TYPE_CHECKING
+
+from polarcheck.rules.rule import WARNING, Hits, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.modes.entry import Entry
 
 #: So far wear and a path of the tool center may take R from what a comment tells, or from 0 [mm].
 _WEAR = 0.25

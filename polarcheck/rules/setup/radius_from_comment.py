@@ -1,6 +1,13 @@
 from __future__ import annotations
 
-from polarcheck.rules.rule import NOTE, CalledTools, Mask, ToolOffsets, rule
+from typing import TYPE_CHECKING
+
+from polarcheck.rules.rule import NOTE, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.modes.offsets import ToolOffsets
+    from polarcheck.columns.modes.tools import CalledTools
+    from polarcheck.foundation.arrays import Mask
 
 
 @rule(NOTE, "R {taken:length} is taken {origin}", values={"offset": "offset", "radius": "taken"}, at=("T",))

@@ -1,6 +1,12 @@
 from __future__ import annotations
 
-from polarcheck.rules.rule import NOTE, Mask, ToolOffsets, rule
+from typing import TYPE_CHECKING
+
+from polarcheck.rules.rule import NOTE, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.modes.offsets import ToolOffsets
+    from polarcheck.foundation.arrays import Mask
 
 
 @rule(

@@ -1,6 +1,15 @@
 from __future__ import annotations
 
-from polarcheck.rules.rule import WARNING, ExecutedBlocks, Hits, Machine, PlaneAxes, PolarMode, Spindles, graded, rule
+from typing import TYPE_CHECKING
+
+from polarcheck.rules.rule import WARNING, Hits, graded, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.modes.blocks import ExecutedBlocks
+    from polarcheck.columns.modes.mode import PolarMode
+    from polarcheck.columns.modes.spindles import Spindles
+    from polarcheck.columns.path.axes import PlaneAxes
+    from polarcheck.program.machines.machine import Machine
 
 
 @rule(

@@ -1,7 +1,14 @@
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from polarcheck.geometry.tolerances import ROUNDING
-from polarcheck.rules.rule import WARNING, Mask, PolarMode, ProgrammedPath, rule
+from polarcheck.rules.rule import WARNING, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.modes.mode import PolarMode
+    from polarcheck.columns.path.path import ProgrammedPath
+    from polarcheck.foundation.arrays import Mask
 
 
 @rule(

@@ -1,6 +1,11 @@
 from __future__ import annotations
 
-from polarcheck.rules.rule import WARNING, Allows, Hits, rule
+from typing import TYPE_CHECKING
+
+from polarcheck.rules.rule import WARNING, Hits, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.words.allow_comments import Allows
 
 
 @rule(WARNING, "this allow comment is not heeded: {fault}", over="allows")

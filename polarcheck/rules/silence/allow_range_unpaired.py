@@ -1,6 +1,11 @@
 from __future__ import annotations
 
-from polarcheck.rules.rule import NOTE, Allows, Hits, rule
+from typing import TYPE_CHECKING
+
+from polarcheck.rules.rule import NOTE, Hits, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.words.allow_comments import Allows
 
 
 @rule(NOTE, "{unpaired}", over="allows")

@@ -1,6 +1,11 @@
 from __future__ import annotations
 
-from polarcheck.rules.rule import NOTE, Hits, UnusedAllows, rule
+from typing import TYPE_CHECKING
+
+from polarcheck.rules.rule import NOTE, Hits, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.words.allow_comments import UnusedAllows
 
 
 @rule(

@@ -1,6 +1,12 @@
 from __future__ import annotations
 
-from polarcheck.rules.rule import NOTE, Allows, Mask, rule
+from typing import TYPE_CHECKING
+
+from polarcheck.rules.rule import NOTE, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.words.allow_comments import Allows
+    from polarcheck.foundation.arrays import Mask
 
 
 @rule(NOTE, "say behind the names why this is right: who reads it next must decide whether it still is", over="allows")

@@ -1,6 +1,11 @@
 from __future__ import annotations
 
-from polarcheck.rules.rule import ERROR, Hits, Written, rule
+from typing import TYPE_CHECKING
+
+from polarcheck.rules.rule import ERROR, Hits, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.words.written import Written
 
 
 @rule(

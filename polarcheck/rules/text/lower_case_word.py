@@ -1,6 +1,12 @@
 from __future__ import annotations
 
-from polarcheck.rules.rule import NOTE, Mask, Written, rule
+from typing import TYPE_CHECKING
+
+from polarcheck.rules.rule import NOTE, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.words.written import Written
+    from polarcheck.foundation.arrays import Mask
 
 
 @rule(NOTE, "words in lower case from here on; older controls do not read them", over="words")

@@ -1,6 +1,12 @@
 from __future__ import annotations
 
-from polarcheck.rules.rule import NOTE, Mask, Written, rule
+from typing import TYPE_CHECKING
+
+from polarcheck.rules.rule import NOTE, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.words.written import Written
+    from polarcheck.foundation.arrays import Mask
 
 
 @rule(NOTE, "stands for blocks left out; what follows is judged as if nothing had happened there", over="dots")

@@ -1,6 +1,11 @@
 from __future__ import annotations
 
-from polarcheck.rules.rule import NOTE, Dialect, Hits, rule
+from typing import TYPE_CHECKING
+
+from polarcheck.rules.rule import NOTE, Hits, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.words.dialect import Dialect
 
 
 @rule(NOTE, "{written_for}; no rule looked at it: convert it for this lathe before it is checked", over="files")

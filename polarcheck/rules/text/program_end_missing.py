@@ -1,6 +1,12 @@
 from __future__ import annotations
 
-from polarcheck.rules.rule import WARNING, Mask, Written, rule
+from typing import TYPE_CHECKING
+
+from polarcheck.rules.rule import WARNING, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.words.written import Written
+    from polarcheck.foundation.arrays import Mask
 
 
 @rule(WARNING, "the program ends here without M30, M02 or M99", over="words")

@@ -1,6 +1,12 @@
 from __future__ import annotations
 
-from polarcheck.rules.rule import NOTE, Mask, Written, rule
+from typing import TYPE_CHECKING
+
+from polarcheck.rules.rule import NOTE, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.words.written import Written
+    from polarcheck.foundation.arrays import Mask
 
 
 @rule(NOTE, "not stored by the control: it stands outside the program", over="outside")

@@ -1,6 +1,13 @@
 from __future__ import annotations
 
-from polarcheck.rules.rule import WARNING, Hits, Machine, Words, Written, rule
+from typing import TYPE_CHECKING
+
+from polarcheck.rules.rule import WARNING, Hits, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.words.written import Written
+    from polarcheck.program.machines.machine import Machine
+    from polarcheck.program.reading.words import Words
 
 
 @rule(

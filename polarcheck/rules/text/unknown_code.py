@@ -1,6 +1,15 @@
 from __future__ import annotations
 
-from polarcheck.rules.rule import ERROR, NOTE, Hits, Machine, OtherMode, SwitchSlips, Words, Written, graded, rule
+from typing import TYPE_CHECKING
+
+from polarcheck.rules.rule import ERROR, NOTE, Hits, graded, rule
+
+if TYPE_CHECKING:
+    from polarcheck.columns.modes.other_mode import OtherMode
+    from polarcheck.columns.modes.switch_slips import SwitchSlips
+    from polarcheck.columns.words.written import Written
+    from polarcheck.program.machines.machine import Machine
+    from polarcheck.program.reading.words import Words
 
 #: From here on controls have few codes of their own, and programs call macros of the builder (parameter 6050).
 OWN_CODES_END = 100
