@@ -211,15 +211,14 @@ def test_array_types_are_defined_once(path: Path) -> None:
 
 @pytest.mark.parametrize("path", [*map(Path, rule_files())], ids=name_of)
 def test_rules_neither_loop_nor_load_numpy(path: Path) -> None:
+    """The function of the rule; its details are made for a finding, and import what they need."""
     tree = tree_of(path.read_text("utf-8"))
     allowed = {"rules.rule", "rules.causes", "foundation.states", "geometry.tolerances"}
     name = ".".join(path.relative_to(PACKAGE).with_suffix("").parts)
-    of_types = {
-        block for block in tree.body if isinstance(block, ast.If) and ast.unparse(block.test) == "TYPE_CHECKING"
-    }
-    run = ast.Module([node for node in tree.body if node not in of_types], [])
-    assert set(_targets(run, name.rpartition(".")[0], modules(PACKAGE))) - {""} <= allowed
-    assert not any(isinstance(node, ast.For | ast.While) for node in ast.walk(tree))
+    (function,) = (node for node in tree.body if isinstance(node, ast.FunctionDef) and node.name == path.stem)
+    run = [function, *(node for node in tree.body if isinstance(node, ast.Import | ast.ImportFrom))]
+    assert set(_targets(ast.Module(run, []), name.rpartition(".")[0], modules(PACKAGE))) - {""} <= allowed
+    assert not any(isinstance(node, ast.For | ast.While) for node in ast.walk(function))
 
 
 @pytest.mark.one_in(2)

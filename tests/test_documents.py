@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import runpy
 from itertools import groupby
+from operator import attrgetter
 
 import pytest
 from polarcheck.errors import RuleError
@@ -80,7 +81,7 @@ def is_there(name: str, tables: Tables) -> bool:
     if "." not in name:
         return name in load_all()
     try:
-        tables.column(name)
+        attrgetter(name)(tables)
     except (AttributeError, RuleError):
         return False
     return True

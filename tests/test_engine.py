@@ -21,8 +21,9 @@ from polarcheck.checking.engine import LISTED, Engine
 from polarcheck.columns.words.allow_comments import Allows
 from polarcheck.foundation.finding import ERROR, NOTE, WARNING, Finding
 from polarcheck.foundation.time_limit import keep_time, time_limit
-from polarcheck.rules import message, tables
+from polarcheck.rules import tables
 from polarcheck.rules.examples import Example, examples
+from polarcheck.rules.hit import Hit
 from polarcheck.rules.other_machine import OtherMachine
 from polarcheck.rules.rule import Hits, Rule, graded, load_all, rule, rule_files
 from polarcheck.rules.tables import ARC, COMMENT, OF_CAUSE, OF_TEXT, PART, SECTION, SPANS, TABLES, Tables
@@ -64,9 +65,11 @@ def made_rule(function: Any, **options: Any) -> Rule:
     return rule(options.pop("severity"), options.pop("message"), **options)(function)
 
 
-def findings(made: Tables, function: Any, *others: Rule, **options: Any) -> list[Finding]:
-    """What a rule of this function finds; others: rules that it may follow from."""
+def findings(made: Tables, function: Any, details: Any = None, *others: Rule, **options: Any) -> list[Finding]:
+    """What a rule of this function finds, with these details; others: rules that it may follow from."""
     one = made_rule(function, **options)
+    if details:
+        one = msgspec.structs.replace(one, companion={"details": details}.get)
     return [found for found in Engine(made, {}, [one, *others]).findings() if found.rule == one.name]
 
 
@@ -78,7 +81,7 @@ def test_each_table_is_made_once_from_those_that_it_names(made: Tables) -> None:
     assert made["tool_center"].trace is made["trace"]
     assert made["sections"] is made["trace"].mode.sections
     assert made["moves"] is made["tool_center"].moves
-    assert made.column("machine.arcs.tolerance") == made["machine"].arcs.tolerance
+    assert made.arcs is made["arcs"]
     assert set(TABLES) <= set(made)
 
 
@@ -98,21 +101,34 @@ def test_tables_of_the_text_are_made_of_nothing_that_runs() -> None:
 
 @pytest.mark.parametrize("one", RULES.values(), ids=list(RULES))
 def test_every_name_of_a_rule_stands_for_something(one: Rule, made: Tables) -> None:
-    for path in (*one.needs, *([one.where] if one.needs else []), *([one.worst] if one.worst else [])):
-        assert len(made.column(path)) == len(made["trace"]), path
+    needs = one.companion("needs")
+    if needs:
+        where, columns = tables.called(needs, made, {})
+        assert {len(column) for column in (where, *columns.values())} == {len(made["trace"])}
     assert {name for names in one.follows.values() for name in names} <= set(RULES)
     for span in (*one.follows, one.once or "block"):
-        assert not SPANS[span] or len(made.column(SPANS[span])) == len(made["trace"])
+        column = SPANS[span]
+        assert column is None or len(column(made)) == len(made["trace"])
     assert all(made["machine"].codes(name) for name in one.at if name.islower() and name not in ("on", "off"))
-    hits = one.hits(made)
-    for _, name, _, _ in string.Formatter().parse(one.message):
-        if not name or (len(name) == 1 and name.isupper()):
-            continue
-        if "." in name:
-            made.column(name)
-        elif name not in hits.values:
-            phrase = message.phrase(name, one.group)
-            assert set(tables.parameters(phrase)) <= {*made, "place", "row", "index", "at", "count"}, name
+    handed, given = {*one.hits(made).values, *vars(Hit), "count"}, details_of(one)
+    for function in filter(None, map(one.companion, ("details", "needs"))):
+        assert {*tables.parameters(function)} <= {*made, "hit"}
+    fields = {(name, form.partition("/")[2]) for _, name, form, _ in string.Formatter().parse(one.message) if name}
+    named = {*one.values, *(name for names in fields for name in names if name)}
+    assert given <= named, "nobody needs them"
+    assert {name for name in named - handed - given if not (len(name) == 1 and name.isupper())} == set()
+
+
+def details_of(one: Rule) -> set[str]:
+    """The names that the details of a rule have: a function returns a dict with each of them."""
+    details = one.companion("details")
+    if details is None:
+        return set()
+    (function,) = ast.parse(inspect.getsource(details)).body
+    returned = [node.value for node in ast.walk(function) if isinstance(node, ast.Return)]
+    (names,) = {tuple(ast.literal_eval(key) for key in value.keys) for value in returned if isinstance(value, ast.Dict)}
+    assert all(isinstance(value, ast.Dict) for value in returned)
+    return {*names}
 
 
 # ---- what rules return ----
@@ -143,7 +159,8 @@ def compares(function: ast.FunctionDef) -> bool:
 @pytest.mark.parametrize("path", [*map(Path, rule_files())], ids=lambda path: path.stem)
 def test_each_rule_compares_or_says_why_not(path: Path) -> None:
     text = path.read_text("utf-8")
-    (function,) = (node for node in ast.parse(text).body if isinstance(node, ast.FunctionDef))
+    functions = (node for node in ast.parse(text).body if isinstance(node, ast.FunctionDef))
+    (function,) = (node for node in functions if node.name == path.stem)
     says_why = "    # Compares nothing: " in text
     assert compares(function) != says_why
 
@@ -211,39 +228,37 @@ def test_words_at_fault_by_mask_and_by_name() -> None:
 @pytest.mark.parametrize(
     ("text", "expected", "values", "data"),
     [
-        ("F {feedrate.feed:feed}", ["F 4 inch/min", "F 100 mm/min"], {"feed": "feedrate.feed"}, [101.6, 100.0]),
-        ("{path.x:diameter}", ["1 inch", "40 mm"], {"x": "path.x"}, [12.7, 20.0]),
-        ("{X} {F}", ["X1. F4", "X40. F100"], {"word": "X"}, ["X1.", "X40."]),
-        ("{machine.title}", ["FANUC lathe control"] * 2, {"limit": "machine.macro.loop_numbers"}, [3, 3]),
-        ("{depth:length}", ["0.0394 inch", "1 mm"], {"depth": "depth"}, [1.0, 1.0]),
-        ("{since}", ["4", "12"], {"other_line": "since"}, [4, 12]),
+        ("F {feed:feed}", ["F 4 inch/min", "F 100 mm/min"], ("feed",), [101.6, 100.0]),
+        ("{x:diameter}", ["1 inch", "40 mm"], ("x",), [12.7, 20.0]),
+        ("{X} {F}", ["X1. F4", "X40. F100"], ("word",), ["X1.", "X40."]),
+        ("{title}", ["FANUC lathe control"] * 2, ("limit",), [3, 3]),
+        ("{depth:length}", ["0.0394 inch", "1 mm"], ("depth",), [1.0, 1.0]),
     ],
 )
-def test_names_in_a_message(text: str, expected: list[str], values: dict[str, str], data: list[Any]) -> None:
+def test_names_in_a_message(text: str, expected: list[str], values: tuple[str, ...], data: list[Any]) -> None:
     def first_cut(trace: Any) -> Any:
         return Hits(trace.mode.first_in_section(trace.path.cuts), values={"depth": 1.0})
 
-    found = findings(tables_of(PROGRAM), first_cut, message=text, values=values)
+    def details(hit: Hit, feedrate: Any, path: Any, machine: Any) -> dict[str, Any]:
+        limit = machine.macro.loop_numbers
+        return {"feed": feedrate.feed[hit.row], "x": path.x[hit.row], "word": hit.written("X"), "limit": limit}
+
+    found = findings(tables_of(PROGRAM), first_cut, details, message=text, values=values)
     assert [one.message for one in found] == expected
-    assert [one.values for one in found] == [{next(iter(values)): value} for value in data]
+    assert [one.values for one in found] == [{values[0]: value} for value in data]
 
 
 def test_a_name_that_stands_for_nothing_is_a_fault_of_the_rule() -> None:
     def entered(trace: Any) -> Any:
         return trace.mode.enters
 
-    with pytest.raises(RuleError, match="nowhere in a message of the group polar"):
+    with pytest.raises(RuleError, match="nowhere in a message of entered"):
         findings(tables_of(PROGRAM), entered, message="{nowhere}")
 
 
 def test_a_phrase_of_a_section_knows_its_row_and_its_index() -> None:
     """A rule over sections was handed the number of the section as a row: of a G112 it said G12.1."""
 
-    def never_left(sections: Any) -> Any:
-        return ~sections.left
-
-    (found,) = findings(tables_of(PROGRAM), never_left, message="{switch}: {missing_before}", over="sections")
-    assert found.message == "G112: G113 is missing before line 15, M30"
     (missing,) = [one for one in report_of(PROGRAM).findings if one.rule == "polar-never-left"]
     assert missing.message == "polar mode is never left: G113 is missing before line 15, M30"
 
@@ -356,9 +371,15 @@ def test_a_block_that_ran_often_is_one_finding_at_its_worst_run() -> None:
     def has_x(trace: Any) -> Any:
         return trace.blocks.has("X")
 
-    (found,) = findings(made, has_x, message="{path.x:.1f}", worst="path.x")
+    def farthest(trace: Any) -> Any:
+        return Hits(trace.blocks.has("X"), worst=trace.path.x)
+
+    def x_there(hit: Hit) -> dict[str, Any]:
+        return {"x": hit.trace.path.x[hit.row]}
+
+    (found,) = findings(made, farthest, x_there, message="{x:.1f}")
     assert (found.count, found.message) == (3, "1.0")
-    (first,) = findings(made, has_x, message="{path.x:.1f}")
+    (first,) = findings(made, has_x, x_there, message="{x:.1f}")
     assert (first.count, first.message) == (3, "0.0")
 
 
@@ -418,12 +439,12 @@ def test_a_rule_names_what_it_is_over() -> None:
         made_rule(lambda trace: trace.mode.in_polar, over="moves")
 
 
-def test_phrases_take_what_they_name_and_nothing_else() -> None:
+def test_functions_take_what_they_name_and_nothing_else() -> None:
     def phrase(trace: Any, row: int) -> str:
         return f"{trace.name} {row}"
 
     given = {"row": 3, "index": 5, "at": [], "place": None}
-    assert message.called(phrase, {"trace": SimpleNamespace(name="t")}, given) == "t 3"
+    assert tables.called(phrase, {"trace": SimpleNamespace(name="t")}, given) == "t 3"
 
 
 # ---- bounds ----
@@ -466,14 +487,16 @@ def test_what_a_message_needs_may_take_too_long_too(made: Tables) -> None:
         return trace.mode.enters
 
     told = made_rule(mode_left, follows={"block": ("mode-entered",)})
-    engine = Engine(made, {}, [made_rule(mode_entered, message="{slow.depth}"), told])
+    details = {"details": lambda hit, slow: {"depth": slow.depth}}
+    hopeless = msgspec.structs.replace(made_rule(mode_entered, message="{depth}"), companion=details.get)
+    engine = Engine(made, {}, [hopeless, told])
     assert [(found.rule, found.line) for found in engine.findings()] == [("mode-left", 4), ("mode-left", 12)]
     assert [missing.rule for missing in engine.unlisted] == ["mode-entered"]
 
 
 def test_a_cause_whose_reach_takes_too_long_explains_nothing(made: Tables, monkeypatch: pytest.MonkeyPatch) -> None:
     made.give("slow", Slow())
-    monkeypatch.setitem(SPANS, "slow", "slow.depth")
+    monkeypatch.setitem(SPANS, "slow", lambda tables: tables["slow"].depth)
 
     def mode_entered(trace: Any) -> Any:
         return trace.mode.enters

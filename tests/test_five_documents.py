@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
+from operator import attrgetter
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -1012,7 +1013,7 @@ def test_column_of_statement(value: Value) -> None:
         moves = executed.moves(tables["trace"], tables["tool_center"], "tool")
         found = next(getattr(move, field) for move in moves if move.line == line)
     else:
-        column, lines = tables.column(value.column), tables["trace"].blocks.line
+        column, lines = attrgetter(value.column)(tables), tables["trace"].blocks.line
         found = column[(lines[tables["moves"].row] if table == "moves" else lines) == line][0]
     assert found == pytest.approx(value.value, abs=0.01, nan_ok=True)
     assert f"`{value.column}`" in row_of(case.number)

@@ -16,7 +16,7 @@ from polarcheck.foundation.finding import MadeShape
 from polarcheck.reports.made_parts.part_report import made_by
 from polarcheck.rules.examples import examples
 from polarcheck.rules.rule import load_all
-from polarcheck.rules.wording.phrases.part import Sizes
+from polarcheck.rules.wording.part import Sizes
 
 pytestmark = pytest.mark.usefixtures("own_folder")
 

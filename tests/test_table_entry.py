@@ -8,7 +8,6 @@ import pytest
 from programs import report_of, tables_of, trace_of
 
 from polarcheck.columns.modes.origin import Origin
-from polarcheck.rules.wording.phrases import setup
 
 SECTION = "G12.1\nG1 X40. F200\nC10.\nX60.\nG13.1\n"
 
@@ -106,7 +105,7 @@ def test_origin(before: str, name: str) -> None:
     tables = tables_of(f"{before}\nG0 X60. C0\n{SECTION}", job=OFFSETS)
     enter = int(tables["sections"].enter[0])
     assert bool(tables["entry"].origin_shift[enter]) == bool(name)
-    assert setup.name(tables["entry"], enter) == name
+    assert " and ".join(tables["entry"].origin.causes(enter)) == name
 
 
 @pytest.mark.parametrize(("before", "expected"), [("", True), ("G54.1 P1", False), ("G55", False)])
@@ -123,7 +122,7 @@ def test_of_many_work_offsets_those_in_force_at_a_section_count(monkeypatch: pyt
     tables = tables_of(f"{many}G54.1 P7\nG0 X60. C0\n{SECTION}G54.1 P8\nG0 X60. C0\n{SECTION}G54.1 P9\n")
     enter = tables["sections"].enter
     assert tables["entry"].origin_shift[enter].tolist() == [7, 8]
-    assert setup.name(tables["entry"], int(enter[1])) == "G10 on G54.1 P8"
+    assert tables["entry"].origin.causes(int(enter[1])) == ["G10 on G54.1 P8"]
     assert asked_for == [1007, 1008]
 
 

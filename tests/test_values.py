@@ -18,11 +18,9 @@ from programs import report_of, report_of_whole_example
 
 from polarcheck.commands import main
 from polarcheck.foundation.finding import Finding
-from polarcheck.rules import message
 from polarcheck.rules.examples import examples
 from polarcheck.rules.message import as_data
 from polarcheck.rules.rule import Rule, load_all
-from polarcheck.rules.tables import TABLES
 from polarcheck.rules.vocabulary import VOCABULARY, Kind, kinds
 
 RULES = load_all()
@@ -64,34 +62,21 @@ def test_each_name_is_of_a_rule_and_its_text_is_plain() -> None:
     assert len({meaning.text for meaning in VOCABULARY.values()}) == len(VOCABULARY)
 
 
-def test_a_column_that_a_message_shows_is_a_value() -> None:
-    """Numbers of a column never stand in the message alone; only where they are words of it, as in `{X}`, they do."""
+def test_a_number_that_a_message_shows_is_a_value() -> None:
+    """What a message shows in a format never stands in it alone; texts of it do."""
     for rule in RULES.values():
-        fields = {field for _, field, _, _ in string.Formatter().parse(rule.message) if field and "." in field}
-        numbers = {field for field in fields if not field.endswith(("title", "radius_word", "direction_word"))}
-        missing = numbers - set(rule.values.values())
-        assert not missing or (missing <= _BY_MEASURE.get(rule.name, set())), (rule.name, missing)
+        shown = {name for _, name, form, _ in string.Formatter().parse(rule.message) if form}
+        assert shown - {*rule.values} == _BY_ANOTHER_VALUE.get(rule.name, set()), rule.name
 
 
-#: Columns that a measure gives without their sign, or rounded down as the message has them.
-_BY_MEASURE = {
-    "inside-arc-smaller-than-radius": {"compensation.radius"},
-    "no-offset-intersection": {"compensation.radius"},
-    "blocks-faster-than-control": {"feeds.feed_of_series"},
-    "c-acceleration-above-limit": {"feeds.allowed_by_acceleration"},
-    "x-acceleration-above-limit": {"feeds.allowed_by_x_acceleration"},
+#: Numbers that are a value without their sign, rounded down as the message has them, or by another name.
+_BY_ANOTHER_VALUE = {
+    "inside-arc-smaller-than-radius": {"signed_radius"},
+    "no-offset-intersection": {"signed_radius"},
+    "blocks-faster-than-control": {"feed_of_series"},
+    "c-acceleration-above-limit": {"allowed"},
+    "x-acceleration-above-limit": {"allowed"},
 }
-
-
-def test_no_measure_has_the_name_of_a_table_a_phrase_or_a_value_that_a_rule_hands_over() -> None:
-    for rule in RULES.values():
-        for path in rule.values.values():
-            name = path.partition(".")[0]
-            if message.measure(name, rule.group) is None:
-                continue
-            assert name not in TABLES
-            with pytest.raises(RuleError):
-                message.phrase(name, rule.group)
 
 
 def test_a_limit_has_the_kind_of_the_number_before_it() -> None:

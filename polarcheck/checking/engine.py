@@ -15,7 +15,7 @@ from polarcheck.checking.called_files import in_call
 from polarcheck.checking.suppression import allowed
 from polarcheck.columns.trace import Trace
 from polarcheck.columns.words.allow_mention import Used
-from polarcheck.foundation.arrays import Mask, Rows, cached_property, is_uniform, repeated
+from polarcheck.foundation.arrays import Floats, Mask, Rows, cached_property, is_uniform, repeated
 from polarcheck.foundation.errors import TooHardError
 from polarcheck.foundation.finding import NOTE, SEVERITIES, Finding, NotEvaluated, Severity, Silenced, Undecided
 from polarcheck.foundation.time_limit import keep_going
@@ -219,7 +219,7 @@ class Engine:
             at = np.flatnonzero((cause >= 0) == follows)
             if not len(at):
                 continue
-            chosen, group, count = self._merged(rule, index[at])
+            chosen, group, count = self._merged(rule, index[at], hits.worst)
             is_silent = self._silenced(rule, index[at[chosen]])
             silent[at] = is_silent[group]
             for quiet in (False, True) if is_silent.any() else (False,):
@@ -302,7 +302,7 @@ class Engine:
                 cause[is_caused], element[is_caused] = self._names.index(name), other_hits[at[is_caused]]
         return cause, element
 
-    def _merged(self, rule: Rule, index: Rows) -> tuple[Rows, Rows, Rows]:
+    def _merged(self, rule: Rule, index: Rows, worst: Floats | None) -> tuple[Rows, Rows, Rows]:
         """
         Group the elements: one finding is reported per group.
 
@@ -327,9 +327,8 @@ class Engine:
                 # Spans that begin in the same block are repeats of it, as in a program that is called twice.
                 group = block[first][group]
         _, first, group, count = np.unique(group, return_index=True, return_inverse=True, return_counts=True)
-        if rule.worst and len(first) < len(index):
-            value = self.tables.column(rule.worst)[index]
-            order = np.lexsort((-np.arange(len(index)), value, group))
+        if worst is not None and len(first) < len(index):
+            order = np.lexsort((-np.arange(len(index)), worst[index], group))
             first = order[np.cumsum(count) - 1]
         if rule.once:
             count = np.bincount(np.unique(np.stack((group, block)), axis=1)[0], minlength=len(first))
@@ -338,6 +337,7 @@ class Engine:
 
     def _finding(self, rule: Rule, place: Place, hits: Hits, count: int) -> Finding:
         from polarcheck.checking.fingerprints import fingerprint
+        from polarcheck.rules.hit import Hit
         from polarcheck.rules.message import fill
         from polarcheck.rules.repair import fix_of
 
@@ -350,7 +350,7 @@ class Engine:
         line, end_line = source.line_of(start), source.line_of(max(end - 1, start))
         severity = _severity(rule, hits, place).name.lower()
         is_note = trace.machine.severities.get(rule.name, severity) == NOTE.name.lower()
-        text, values = fill(rule, hits, self.tables, place, at, count)
+        text, values = fill(rule, hits, self.tables, Hit(trace, place, at, count))
         if rule.over in ("rows", "sections") and place.row >= 0 and trace.run.depth[place.row]:
             self.rows_in_calls[rule.name, line, start - int(source.line_starts[line - 1]) + 1] = place.row
             text += in_call(trace, places.rows(rule.over, self.tables)[hits.mask], place.row)

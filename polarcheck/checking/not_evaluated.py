@@ -9,7 +9,18 @@ from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
-from polarcheck.checking.not_known import OF_MOVES, cause_of, of_variables, why
+from polarcheck.checking.not_followed import (
+    axes_not_followed,
+    contours_outside,
+    extrudes,
+    names_not_followed,
+    names_not_known,
+    not_simulated,
+    not_understood,
+    on_cylinder,
+    on_sub_spindle,
+)
+from polarcheck.checking.not_known import cause_of, of_variables, why
 from polarcheck.columns.contour.skipped_loops import SkipReason
 from polarcheck.columns.filling import before
 from polarcheck.columns.trace import Trace
@@ -22,28 +33,15 @@ from polarcheck.program.execution.run import Remark
 from polarcheck.program.machines.machine import Machine, OwnMachine
 from polarcheck.rules.remedies import option_or_place, place, unlisted_codes
 from polarcheck.rules.rule import Rule
-from polarcheck.rules.tables import Tables
-from polarcheck.rules.wording.phrases.common import block_and_line
-from polarcheck.rules.wording.phrases.offsets import offset, to_give
-from polarcheck.rules.wording.phrases.polar import (
-    axes_not_followed,
-    contours_outside,
-    extrudes,
-    names_not_followed,
-    names_not_known,
-    not_simulated,
-    not_understood,
-    on_cylinder,
-    on_sub_spindle,
-)
+from polarcheck.rules.tables import Tables, called
+from polarcheck.rules.wording.offsets import offset, to_give
+from polarcheck.rules.wording.written import block_and_line
 
 #: Extra reasons that a rule could not be evaluated.
 _ExtraReasons: TypeAlias = Callable[[Tables, Rule], Iterator["Missing"]]
 #: Missing.kind of an extra reason; it sorts after the columns that the rule needs.
 SAID = 1000
 
-#: Columns that hardly ever hide a finding if unknown: offset lists give T for turning tools only.
-_WITHOUT_WEIGHT = ("offsets.nose",)
 #: Contours listed individually; the bound keeps the report of a hostile file short.
 NAMED = 20
 
@@ -53,7 +51,7 @@ class Missing(NamedTuple):
     The blocks in which a rule could not be evaluated, for one cause.
 
     rule: the name of the rule.
-    kind: the index in Rule.needs of the column that is not known, or SAID for an extra reason.
+    kind: the index in what `needs` of the rule returns of the column that is not known, or SAID for an extra reason.
     cause: identifies the cause; entries with the same kind and cause are merged.
     reason: the text of the report.
     blocks: the number of blocks.
@@ -74,7 +72,7 @@ def all_unevaluated(tables: Tables, rules: Iterable[Rule]) -> Iterator[NotEvalua
     """Report the blocks that were not executed, and the blocks that each rule could not evaluate."""
     yield from unexecuted(tables)
     for rule in rules:
-        if (rule.needs or rule.name in _EXTRA_REASONS) and tables.may_hold(rule.parameters):
+        if (rule.companion("needs") or rule.name in _EXTRA_REASONS) and tables.may_hold(rule.parameters):
             yield from told(unevaluated(tables, rule), tables["machine"])
 
 
@@ -150,17 +148,17 @@ def unexecuted(tables: Tables) -> Iterator[NotEvaluated]:
     for (reason, matters), count in remarks.items():
         yield NotEvaluated(rule="all", reason=reason, blocks=count, matters=matters)
     for reason, count in (
-        *axes_not_followed(trace.blocks, trace.axes, trace.mode, trace.run, trace.machine),
-        *names_not_known(trace.blocks, trace.run),
-        *names_not_followed(trace.blocks, trace.axes, trace.mode, trace.run),
-        *on_sub_spindle(trace.blocks, trace.axes, trace.mode, trace.compensation, trace.machine),
+        *axes_not_followed(trace),
+        *names_not_known(trace),
+        *names_not_followed(trace),
+        *on_sub_spindle(trace),
         offsets_not_known(trace),
         *frames_not_simulated(trace, tables),
         *not_simulated(tables["infeed"]),
-        not_understood(trace.blocks, tables["other_mode"]),
-        on_cylinder(trace.blocks, trace.mode),
-        contours_outside(trace.blocks, trace.mode),
-        extrudes(trace.blocks, trace.mode, trace.run),
+        not_understood(trace, tables["other_mode"]),
+        on_cylinder(trace),
+        contours_outside(trace),
+        extrudes(trace),
     ):
         if count:
             yield NotEvaluated(rule="all", reason=reason, blocks=count)
@@ -174,16 +172,16 @@ def frames_not_simulated(trace: Trace, tables: Tables) -> Iterator[tuple[str, in
         for row in np.flatnonzero(in_force & ~before(in_force, trace.blocks.starts, False))[:NAMED].tolist():
             begins = np.flatnonzero(frames.is_known[: row + 1])
             first = int(begins[-1]) + 1 if len(begins) else 0
-            frame = f"{block_and_line(trace.blocks, trace.run, first)} is not simulated"
+            frame = f"{block_and_line(trace, first)} is not simulated"
             yield f"{frame}: where the tool goes in that frame is not known", int(np.count_nonzero(in_force))
     selects = tables["mode_words"].selects_other_work_offset
     if selects.any():
-        block = block_and_line(trace.blocks, trace.run, int(np.flatnonzero(selects)[0]))
+        block = block_and_line(trace, int(np.flatnonzero(selects)[0]))
         selection = f"{block} selects another work offset in the mode"
         yield f"{selection}: it is taken to lie where the one before did", int(np.count_nonzero(selects))
     changed = np.flatnonzero(trace.compensation.changes_allowance_in_offset_mode)
     if len(changed):
-        change = f"{block_and_line(trace.blocks, trace.run, int(changed[0]))} changes what is added to R in offset mode"
+        change = f"{block_and_line(trace, int(changed[0]))} changes what is added to R in offset mode"
         yield f"{change}: the way from one to the other is not simulated; change it where G40 is in force", len(changed)
 
 
@@ -192,7 +190,7 @@ def offsets_not_known(trace: Trace) -> tuple[str, int]:
     rows = np.flatnonzero(trace.offsets.sets_unknown_offset)
     if not len(rows):
         return "", 0
-    setting = f"which offset {block_and_line(trace.blocks, trace.run, int(rows[0]))} sets is not known"
+    setting = f"which offset {block_and_line(trace, int(rows[0]))} sets is not known"
     return f"{setting}, those in force are taken as given: {of_variables(trace.machine)}", len(rows)
 
 
@@ -213,24 +211,23 @@ def unevaluated(tables: Tables, rule: Rule) -> Iterator[Missing]:
 def _unknown_columns(tables: Tables, rule: Rule) -> Iterator[Missing]:
     """Yield the rows in which a column that the rule needs is not known."""
     trace: Trace = tables["trace"]
-    for kind, name in enumerate(rule.needs):
-        where: Mask = tables.column(rule.where)
-        if not where.any():
-            continue
-        # Sections that are not followed have an entry of their own.
-        rows = np.flatnonzero(
-            np.isnan(tables.column(name)) & where & trace.mode.is_followed & ~trace.compensation.sides_are_open
-        )
-        if name in OF_MOVES:
+    needs = rule.companion("needs")
+    if needs is None:
+        return
+    where, columns = called(needs, tables, {})
+    # Sections that are not followed have an entry of their own.
+    where = where & trace.mode.is_followed & ~trace.compensation.sides_are_open
+    for kind, (need, column) in enumerate(columns.items()):
+        rows = np.flatnonzero(np.isnan(column) & where)
+        if need == "rate":
             rows = rows[~(tables["feeds"].missing | tables["feeds"].lost)[rows]]  # these have a finding already
-        cause = cause_of(trace, name, rows)
+        cause = cause_of(trace, need, rows)
         first, counts = _groups(cause)
         for row, first_cause, count in sorted(
             zip(rows[first].tolist(), cause[first].tolist(), counts.tolist(), strict=True)
         ):
-            yield Missing(
-                rule.name, kind, first_cause, why(name, tables, row), count, matters=name not in _WITHOUT_WEIGHT
-            )
+            # Offset lists give the nose type for turning tools only.
+            yield Missing(rule.name, kind, first_cause, why(need, tables, row), count, matters=need != "nose")
 
 
 def _groups(values: Rows) -> tuple[Rows, Rows]:
@@ -314,7 +311,7 @@ def _parts_not_compared(tables: Tables, rule: Rule) -> Iterator[Missing]:
     deviations = tables["deviations"]
     if not deviations.parts:
         return
-    from polarcheck.rules.wording.phrases.drawing import compared_with  # late: few programs have a part to compare
+    from polarcheck.rules.wording.drawing import compared_with  # late: few programs have a part to compare
 
     crosses = f"crosses itself or others more than {CROSSINGS} times a block: no part can be told from it"
     yield from _skipped_loops(tables, rule, deviations.where & deviations.crosses, crosses)
@@ -357,7 +354,7 @@ def _metal_not_followed(tables: Tables, rule: Rule) -> Iterator[Missing]:
     """Report ways into the bar that were not looked at, and why. They matter little: most of them are sound."""
     workpiece, trace = tables["workpiece"], tables["trace"]
     for row, count, why_not in workpiece.not_followed():
-        block = block_and_line(trace.blocks, trace.run, row)
+        block = block_and_line(trace, row)
         yield Missing(
             rule.name, SAID, why_not, f"where {block} leads is not looked at: {why_not}", count, matters=False
         )

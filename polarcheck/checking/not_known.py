@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
@@ -12,15 +12,15 @@ from polarcheck.foundation.arrays import Rows
 from polarcheck.program.machines.machine import Machine
 from polarcheck.rules.places import block_in_line
 from polarcheck.rules.tables import Tables
-from polarcheck.rules.wording.phrases.common import block_and_line, linear
-from polarcheck.rules.wording.phrases.offsets import called_tool, example, offset, to_give
+from polarcheck.rules.wording.offsets import called_tool, example, offset, to_give
+from polarcheck.rules.wording.written import block_and_line
+
+if TYPE_CHECKING:
+    from polarcheck.rules.rule import Need
 
 #: Why a column is not known in a row.
 _Reason: TypeAlias = Callable[[Tables, int], str]
 
-#: Columns that hang on the offset in force, and those that hang on the whole move.
-_OF_OFFSETS = ("compensation.radius", "offsets.cutter_diameter", "offsets.nose")
-OF_MOVES = ("tool_center.c_feed", "tool_center.c_acceleration", "tool_center.x_acceleration")
 #: What to give where a value of the program is not known.
 _OF_VARIABLES = "give its variables as [run.variables] in polarcheck.toml, or write the number"
 #: Variables of other languages have names, and no number for the job.
@@ -31,16 +31,16 @@ _DEPTH, _POSITION, _NO_FEED, _FEED_OF_SPINDLE = -4, -3, -2, -1
 _BLOCK_LENGTH = 40
 
 
-def why(name: str, tables: Tables, row: int) -> str:
-    """Why a column, as in `compensation.radius`, is not known in a row."""
-    return _REASONS.get(name, _plain(name))(tables, row)
+def why(need: Need, tables: Tables, row: int) -> str:
+    """Why what a rule needs is not known in a row."""
+    return _REASONS[need](tables, row)
 
 
-def cause_of(trace: Trace, name: str, rows: Any) -> Any:
+def cause_of(trace: Trace, need: Need, rows: Any) -> Any:
     """A number for each row, the same for the same reason."""
-    if name in _OF_OFFSETS:
+    if need in ("radius", "diameter", "nose"):
         return trace.tools.offset_number[rows]
-    if name in OF_MOVES:
+    if need == "rate":
         stands_nowhere, has_feed = (
             np.isnan(trace.path.start + trace.path.end)[rows],
             ~np.isnan(trace.feedrate.feed[rows]),
@@ -54,9 +54,9 @@ def cause_of(trace: Trace, name: str, rows: Any) -> Any:
 
 def _of_move(tables: Tables, row: int) -> str:
     """Why the tool center path or the speed along it is not known."""
-    cause = int(cause_of(tables["trace"], "tool_center.c_feed", np.array([row]))[0])
+    cause = int(cause_of(tables["trace"], "rate", np.array([row]))[0])
     if cause >= 0:
-        return _REASONS["compensation.radius"](tables, row)
+        return _REASONS["radius"](tables, row)
     if cause == _DEPTH:
         return (
             "the feed on the plane is not known: F is along the way with Z, and where Z stands before is not known; "
@@ -92,9 +92,9 @@ def _not_known_from_program(trace: Trace, row: int, setter: int, what: str, key:
     unknown = trace.offsets.row_of_unknown_setting(int(trace.tools.offset_number[row]), setter, key)
     missing = f"no {what} for offset {offset(trace.tools, row)}"
     if unknown >= 0:
-        block = block_and_line(trace.blocks, trace.run, unknown)
+        block = block_and_line(trace, unknown)
         return f"{missing}: {block} sets what is not known; {of_variables(trace.machine)}"
-    setting = block_and_line(trace.blocks, trace.run, setter)
+    setting = block_and_line(trace, setter)
     return f"{missing}: {setting} sets wear or a difference alone; {to_give(trace.tools, trace.machine, row, key)}"
 
 
@@ -109,17 +109,17 @@ def _position(tables: Tables, row: int) -> str:
     elif len(at_or_before):
         row = int(at_or_before[-1])
     if row in open_ends and not trace.run.unknown[row]:
-        block = block_and_line(trace.blocks, trace.run, row)
+        block = block_and_line(trace, row)
         return f"the position is not known: {block} leaves open where the tool goes; {of_variables(trace.machine)}"
     lost = np.flatnonzero((trace.run.unknown & (trace.blocks.program == trace.blocks.program[row]))[: row + 1])
     if not len(lost):
-        axis = linear(trace.axes, row)
+        axis = chr(trace.axes.linear_axis[row])
         loses = np.isnan(trace.path.x) & (
             ~np.isnan(trace.path.x_before) | (trace.modal.uses_axes & trace.blocks.has(axis))
         )
         loses &= (trace.blocks.program == trace.blocks.program[row]) & ~trace.mode.in_polar & ~trace.mode.enters
         if loses[: row + 1].any():
-            setting = block_and_line(trace.blocks, trace.run, int(np.flatnonzero(loses[: row + 1])[-1]))
+            setting = block_and_line(trace, int(np.flatnonzero(loses[: row + 1])[-1]))
             return f"the position is not known: {setting} leaves open where {axis} stands; write G0 {axis}... after it"
         return (
             f"the position is not known: {axis} was not programmed before the polar mode; write G0 {axis}... before it"
@@ -145,23 +145,12 @@ def _feed(tables: Tables, row: int) -> str:
     return f"the feed is not known: F is per revolution of a spindle; write feed per minute before it, {codes}"
 
 
-def _plain(name: str) -> _Reason:
-    return lambda tables, row: f"{name.rpartition('.')[2].replace('_', ' ')} is not known"
-
-
-_REASONS: dict[str, _Reason] = {
-    "compensation.radius": _no_offset("radius", "radius", lambda trace: trace.offsets.radius_set_in),
-    "offsets.cutter_diameter": _no_offset("cutter diameter", "diameter"),
-    "offsets.nose": _no_offset("nose type", "nose", lambda trace: trace.offsets.nose_set_in),
-    "path.length": _position,
-    "path.start": _position,
-    "path.end": _position,
-    "arcs.end_radius": _position,
-    "arcs.chord": _position,
-    "travel.most_x": _of_move,
-    "tool_center.c_feed": _of_move,
-    "tool_center.c_acceleration": _of_move,
-    "tool_center.x_acceleration": _of_move,
-    "feedrate.feed": _feed,
-    "entry.origin_shift": _origin,
+_REASONS: dict[Need, _Reason] = {
+    "radius": _no_offset("radius", "radius", lambda trace: trace.offsets.radius_set_in),
+    "diameter": _no_offset("cutter diameter", "diameter"),
+    "nose": _no_offset("nose type", "nose", lambda trace: trace.offsets.nose_set_in),
+    "position": _position,
+    "rate": _of_move,
+    "travel": _of_move,
+    "origin": _origin,
 }

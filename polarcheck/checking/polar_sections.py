@@ -26,7 +26,7 @@ from polarcheck.program.machines.machine import Machine
 from polarcheck.program.reading.words import Text
 from polarcheck.rules.quantity import rounded
 from polarcheck.rules.tables import Tables
-from polarcheck.rules.wording.phrases.offsets import key_of
+from polarcheck.rules.wording.offsets import key_of
 
 
 def polar_sections(tables: Tables) -> list[PolarSection]:

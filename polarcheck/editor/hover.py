@@ -24,8 +24,7 @@ from polarcheck.reports.pages import manual
 from polarcheck.rules.quantity import Quantity, in_row
 from polarcheck.rules.rule import load_all
 from polarcheck.rules.tables import Tables
-from polarcheck.rules.wording.phrases import common
-from polarcheck.rules.wording.phrases.offsets import key_of
+from polarcheck.rules.wording.offsets import key_of
 
 #: The time limit of a hover, which may need tables that no rule has used [s].
 _PATIENCE = 5.0
@@ -179,15 +178,15 @@ def _position(trace: Trace, row: int) -> Iterator[str]:
     """Yield each axis with its kind of value (diameter, length, angle), since these are often confused."""
     inside = bool(trace.mode.in_polar[row])
     is_diameter = bool(trace.lengths.x_factor[row] < 1)
-    linear = common.linear(trace.axes, row)
+    linear = chr(trace.axes.linear_axis[row])
     x = trace.path.end[row].real if inside else trace.path.x[row]
     yield f"{linear} {_shown(in_row(x, trace.lengths, row), 'diameter')}{' (diameter)' if is_diameter else ' (radius)'}"
     if inside:
         virtual = in_row(trace.path.end[row].imag, trace.lengths, row)
-        yield f"{common.virtual(trace.axes, row)} {_shown(virtual, 'length')} (length)"
+        yield f"{trace.axes.virtual_axis_of(row)} {_shown(virtual, 'length')} (length)"
     yield f"Z {_shown(in_row(trace.path.z[row], trace.lengths, row), 'length')}"
     angle = float(trace.path.c_angle[row])
-    yield f"{common.rotary(trace.machine)} axis {f'{angle:.3f} deg' if math.isfinite(angle) else _UNKNOWN}"
+    yield f"{trace.machine.polar.rotary_address} axis {f'{angle:.3f} deg' if math.isfinite(angle) else _UNKNOWN}"
 
 
 def _shown(value: Quantity, form: str) -> str:

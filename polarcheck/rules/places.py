@@ -89,10 +89,10 @@ def span_of(name: str, over: str, tables: Tables) -> Rows:
         return structure[blocks(over, tables)]
     if name == "name":
         return _names(over, tables)
-    if name == "file":
-        return np.zeros(len(rows(over, tables)), np.int64)
-    column: Rows = tables.column(SPANS[name])
-    at = rows(over, tables)
+    at, of_rows = rows(over, tables), SPANS[name]
+    if of_rows is None:  # the whole file
+        return np.zeros(len(at), np.int64)
+    column = of_rows(tables)
     return np.where(at >= 0, column[at], -1) if len(column) else np.full(len(at), -1)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,6 +13,9 @@ from polarcheck.program.execution.run import Run
 from polarcheck.program.machines import profiles
 from polarcheck.program.machines.job import Job
 from polarcheck.program.machines.machine import Machine, OwnMachine
+
+if TYPE_CHECKING:
+    from polarcheck.rules.hit import Hit
 
 #: M codes that are named where any of them may be the one.
 _NAMED = 3
@@ -56,3 +60,10 @@ def _code_and_line(blocks: ExecutedBlocks, run: Run, machine: Machine, word: int
     beside = sorted({other[0] for first, _, other in listed if first == code})
     told = [f"{letter}{blocks.word(letter)[row]:g}" for letter in beside if blocks.has(letter)[row]]
     return f"{' '.join((code, *told))} of line {int(blocks.line[row])}"
+
+
+def or_by(hit: Hit, spindles: Spindles, effect: str, key: str) -> str:
+    """Where to add an M code above a hit that may have done it; empty where the program has none that is not known."""
+    trace = hit.trace
+    codes = unlisted_codes(trace.blocks, trace.run, trace.machine, spindles, hit.row)
+    return f"; if {codes} {effect}, add that to {place(trace.machine, key)}" if codes else ""

@@ -19,10 +19,9 @@ from polarcheck.program.reading.source import Source
 from polarcheck.rules import places
 from polarcheck.rules.documented import Documented
 from polarcheck.rules.editing import Replace
-from polarcheck.rules.message import called
 from polarcheck.rules.places import PLACES, Place
 from polarcheck.rules.rule import FOLDER, REPAIR, Hits, Rule
-from polarcheck.rules.tables import Tables
+from polarcheck.rules.tables import Tables, called
 
 #: A block that runs more often is not looked at each time, and has no fix.
 _MOST_RUNS = 1000

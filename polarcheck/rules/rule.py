@@ -11,7 +11,7 @@ from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from threading import RLock
 from types import MappingProxyType, ModuleType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final, Literal
 
 import msgspec
 
@@ -26,12 +26,19 @@ from polarcheck.rules.tables import OF_CAUSE, OF_TEXT, SPANS
 from polarcheck.rules.tables import parameters as parameters_of
 
 if TYPE_CHECKING:
-    from polarcheck.foundation.arrays import Mask, States
+    from polarcheck.foundation.arrays import Floats, Mask, States
+
+    #: What a value depends on: R, cutter diameter or nose type of the offset in force, a position, the rate of a move
+    #: at its F, the travel of a move, or where X0 lies. checking/not_known.py says of each why it is not known.
+    Need = Literal["radius", "diameter", "nose", "position", "rate", "travel", "origin"]
+    Needs = tuple[Mask, dict[Need, Floats]]
 
 FOLDER = Path(__file__).parent
 #: Suffix of the module that fixes the findings of the rule with the same name.
 REPAIR = "_repair"
 
+#: The subject of a rule that is taken from the tables that it compares.
+OF_TABLES: Final = "tables"
 #: Kinds of elements that a mask can have (places.PLACES locates each).
 OVER = (
     "rows",
@@ -60,6 +67,7 @@ class Hits(msgspec.Struct, frozen=True):
     values: values for the message, by name: a column (elements), or one value for all.
     follows: by span, the elements to which `follows` of the rule applies (elements); without an entry, all of them.
     undecided: hits that may be intended: they make the file unverified, not failed (elements).
+    worst: the column whose highest value selects the hit to report, where one finding covers several (elements).
     """
 
     mask: Mask
@@ -68,6 +76,7 @@ class Hits(msgspec.Struct, frozen=True):
     values: Mapping[str, Any] = {}
     follows: Mapping[str, Mask] = {}
     undecided: Mask | None = None
+    worst: Floats | None = None
 
 
 def graded(
@@ -79,6 +88,7 @@ def graded(
     values: Mapping[str, Any] | None = None,
     follows: Mapping[str, Mask] | None = None,
     undecided: Mask | None = None,
+    worst: Floats | None = None,
 ) -> Hits:
     """Combine masks of several severities into Hits; an element in more than one mask gets the highest severity."""
     import numpy as np
@@ -87,7 +97,7 @@ def graded(
     severity = np.zeros(len(given[0][1]), np.int16)
     for level, mask in given:
         severity[mask] = level
-    return Hits(severity > 0, severity, at, values or {}, follows or {}, undecided)
+    return Hits(severity > 0, severity, at, values or {}, follows or {}, undecided, worst)
 
 
 class Rule(Documented, frozen=True):
@@ -100,39 +110,63 @@ class Rule(Documented, frozen=True):
     over: the kind of element in the mask: rows, words, sections, ... (OVER).
     at: the words at fault: their addresses, the machine's lists of their codes (rapid, line), or "on" and "off" for the
     codes of the mode. The whole block is at fault if `at` is empty or the block has none of them.
-    needs: columns, as in `compensation.radius`. The rule is not evaluated in rows where one of them is not known.
-    where: the mask column of the rows in which `needs` is required.
     once: the span with one finding for all its hits (SPANS): a section, a program, an F word.
-    subject: the quantity that the rule judges (causes.RESTS_ON); "" for words and states, which never become doubtful.
+    subject: the quantity that the rule judges (causes.RESTS_ON), by default that of its tables; "" for words and
+    states, which never become doubtful.
     doubts: the quantities that a finding makes doubtful, each with its span. Findings that rest on them are listed
     under this one.
     follows: by span, the rules that report the same fault first. This finding is then listed under theirs.
-    values: the values of a finding, by the names of rules/vocabulary.py, and where each comes from, as in a message.
-    worst: the column whose highest value selects the hit to report, where one finding covers several.
+    values: the names of the values of a finding (rules/vocabulary.py), found as those of the message are.
     is_advice: the rule is off unless the machine or the user names a severity for it.
     worse: the values of the message that grow where the fault grows worse; behind a minus those of which less is worse,
     and with a colon between them two whose distance counts (position:limit).
     gouges: the tool cuts where it must not, so that the fault grows with the depth and F of its blocks.
     parameters: the names of the tables that the function compares.
+    companion: returns a function in the file of the rule by its name, None for none. Their parameters name tables.
+    `details(hit, ...)` returns what message and values name beside Hits.values and properties of Hit (rules/hit.py).
+    `needs(...)` returns where the rule judges, and columns by what they depend on (Need): the rule is not evaluated
+    where one of them is not known.
     """
 
-    group: str
     severity: Severity
     message: str
-    over: str
-    at: tuple[str, ...]
-    needs: tuple[str, ...]
-    where: str
-    once: str
-    subject: str
-    doubts: tuple[Doubt, ...]
-    follows: Mapping[str, tuple[str, ...]]
-    values: Mapping[str, str]
-    worst: str
-    is_advice: bool
-    worse: tuple[str, ...]
-    gouges: bool
-    parameters: tuple[str, ...]
+    over: str = "rows"
+    at: tuple[str, ...] = ()
+    once: str = ""
+    subject: str = OF_TABLES
+    doubts: tuple[Doubt, ...] = ()
+    follows: Mapping[str, tuple[str, ...]] = MappingProxyType({})
+    values: tuple[str, ...] = ()
+    is_advice: bool = False
+    worse: tuple[str, ...] = ()
+    gouges: bool = False
+    group: str = ""
+    parameters: tuple[str, ...] = ()
+    companion: Callable[[str], Any] = MappingProxyType[str, Any]({}).get
+
+    def __call__(self, function: Callable[..., Any]) -> Rule:
+        """Return the rule of this function."""
+        name, group = function.__name__.replace("_", "-"), function.__module__.split(".")[-2]
+        if self.over not in OVER:
+            raise RuleError(f"rule {name}: over={self.over!r}: expected one of {', '.join(OVER)}")
+        spans = {*self.follows, *([self.once] if self.once else []), *(at for _, at in self.doubts if at != UNIT)}
+        if unknown := spans - set(SPANS):
+            raise RuleError(f"rule {name}: {unknown.pop()!r}: expected one of {', '.join(SPANS)}")
+        if unknown := {what for what, _ in self.doubts} - DOUBTFUL:
+            raise RuleError(f"rule {name}: {unknown.pop()!r}: expected one of {', '.join(sorted(DOUBTFUL))}")
+        parameters = parameters_of(function)
+        subject = subject_of(parameters) if self.subject == OF_TABLES else self.subject
+        if subject and subject not in RESTS_ON:
+            raise RuleError(f"rule {name}: {subject!r}: expected one of {', '.join(RESTS_ON)}")
+        return msgspec.structs.replace(
+            self,
+            name=name,
+            function=function,
+            group=group,
+            subject=subject,
+            parameters=parameters,
+            companion=getattr(function, "__globals__").get,  # noqa: B009 - mypy knows it of no Callable
+        )
 
     def __reduce__(self) -> tuple[Callable[[str], Rule], tuple[str]]:
         """Pickle by name: the function cannot be pickled, since its name in the module refers to the rule."""
@@ -177,69 +211,16 @@ class Rule(Documented, frozen=True):
         return " ".join(match[1].split()) if match else ""
 
 
-def rule(
-    severity: Severity,
-    message: str,
-    *,
-    over: str = "rows",
-    at: tuple[str, ...] = (),
-    needs: tuple[str, ...] = (),
-    where: str = "mode.in_polar",
-    once: str = "",
-    subject: str | None = None,
-    doubts: tuple[Doubt, ...] = (),
-    follows: Mapping[str, tuple[str, ...]] = MappingProxyType({}),
-    values: Mapping[str, str] = MappingProxyType({}),
-    worst: str = "",
-    is_advice: bool = False,
-    worse: tuple[str, ...] = (),
-    gouges: bool = False,
-) -> Callable[[Callable[..., Any]], Rule]:
-    """Decorate a function as a rule; see Rule. Its parameters name the tables that it compares."""
-
-    def make(function: Callable[..., Any]) -> Rule:
-        group = function.__module__.split(".")[-2]
-        name = function.__name__.replace("_", "-")
-        if over not in OVER:
-            raise RuleError(f"rule {name}: over={over!r}: expected one of {', '.join(OVER)}")
-        spans = {*follows, *([once] if once else []), *(span for _, span in doubts if span != UNIT)}
-        if unknown := spans - set(SPANS):
-            raise RuleError(f"rule {name}: {unknown.pop()!r}: expected one of {', '.join(SPANS)}")
-        if unknown := {what for what, _ in doubts} - DOUBTFUL:
-            raise RuleError(f"rule {name}: {unknown.pop()!r}: expected one of {', '.join(sorted(DOUBTFUL))}")
-        if subject and subject not in RESTS_ON:
-            raise RuleError(f"rule {name}: {subject!r}: expected one of {', '.join(RESTS_ON)}")
-        parameters = parameters_of(function)
-        judged = subject_of(parameters) if subject is None else subject
-        return Rule(
-            name,
-            function,
-            group,
-            severity,
-            message,
-            over,
-            at,
-            needs,
-            where,
-            once,
-            judged,
-            doubts,
-            follows,
-            values,
-            worst,
-            is_advice,
-            worse,
-            gouges,
-            parameters,
-        )
-
-    return make
+#: Decorates a function as a rule, with attributes of Rule. Its parameters name the tables that it compares.
+rule = functools.partial(Rule, "", parameters_of)
 
 
 def rule_files() -> list[str]:
     """Return the paths of all rule files, sorted. They are strings, because sorting 135 Path objects takes 3 ms."""
     other_files = "__init__.py", f"{REPAIR}.py"
-    return sorted(path for path in map(str, FOLDER.glob("*/*.py")) if not path.endswith(other_files))
+    wording = str(FOLDER / "wording")
+    paths = (path for path in map(str, FOLDER.glob("*/*.py")) if not path.startswith(wording))
+    return sorted(path for path in paths if not path.endswith(other_files))
 
 
 #: Two threads that load the rules at the same time would find modules that are not complete yet.

@@ -4,13 +4,25 @@ from __future__ import annotations
 
 import functools
 import importlib
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
 from polarcheck.foundation.errors import RuleError
 from polarcheck.foundation.states import Motion
 
 if TYPE_CHECKING:
+    from polarcheck.columns.contour.overcuts import Overcuts
+    from polarcheck.columns.contour.pass_differences import PassDifferences
+    from polarcheck.columns.contour.slots import Slots
+    from polarcheck.columns.contour.tangency import Tangency
+    from polarcheck.columns.feed.feedrate import Feedrate
+    from polarcheck.columns.modes.blocks import ExecutedBlocks
+    from polarcheck.columns.modes.modal import ModalStates
+    from polarcheck.columns.modes.mode import PolarMode
+    from polarcheck.columns.modes.since import Since
+    from polarcheck.columns.path.arcs import Arcs
+    from polarcheck.columns.path.ramps import Ramps
+    from polarcheck.foundation.arrays import Rows
     from polarcheck.program.execution.run import Run
     from polarcheck.program.machines.job import Job
     from polarcheck.program.machines.machine import Machine
@@ -113,44 +125,44 @@ TABLES = {
     "sections": Maker("polarcheck.columns.modes.mode:sections_of", SECTION),
     "moves": Maker("polarcheck.columns.path.tool_center:moves_of"),
 }
-#: How far a cause reaches, or what one finding stands for: the column whose value its rows have in
-#: common. The narrowest come first: the nearest cause of a finding counts.
-SPANS = {
-    "block": "run.block",
-    "row": "since.row",
-    "name": "",
-    "X": "since.linear_word",
-    "C": "since.virtual_word",
-    "X before": "since.linear_word_before",
-    "C before": "since.virtual_word_before",
-    "arc before": "since.arc_before",
-    "structure": "",
-    "pause": "ramps.pause",
-    "way": "ramps.way",
-    "motion": "modal.motion_word",
-    "feed": "feedrate.feed_word",
-    "wall": "overcuts.wall",
-    "slot": "slots.slot",
-    "mesh": "ramps.mesh",
-    "tight arc": "ramps.tight_arc",
-    "misfit": "tangency.size",
-    "twin": "pass_differences.twin",
-    "narrow loop": "ramps.narrow_loop",
-    "loop": "ramps.loop",
-    "compensation": "since.compensation",
-    "first start-up": "ramps.first_start_up",
-    "tool call": "since.tool_call",
-    "modal state": "since.modal_state",
-    "plane": "since.plane",
-    "feed mode": "since.feed_mode",
-    "origin": "since.origin",
-    "spindle code": "since.spindle_code",
-    "c axis code": "since.c_axis_code",
-    "live tool code": "since.live_tool_code",
-    "misfitting arcs": "arcs.misfit_section",
-    "section": "mode.whole_section",
-    "program": "blocks.program",
-    "file": "",
+#: How far a cause reaches, or what one finding stands for: the column whose value its rows have in common; None where
+#: rules/places.py finds it otherwise. The narrowest come first: the nearest cause of a finding counts.
+SPANS: dict[str, Callable[[Tables], Rows] | None] = {
+    "block": None,
+    "row": lambda tables: tables.since.row,
+    "name": None,
+    "X": lambda tables: tables.since.linear_word,
+    "C": lambda tables: tables.since.virtual_word,
+    "X before": lambda tables: tables.since.linear_word_before,
+    "C before": lambda tables: tables.since.virtual_word_before,
+    "arc before": lambda tables: tables.since.arc_before,
+    "structure": None,
+    "pause": lambda tables: tables.ramps.pause,
+    "way": lambda tables: tables.ramps.way,
+    "motion": lambda tables: tables.modal.motion_word,
+    "feed": lambda tables: tables.feedrate.feed_word,
+    "wall": lambda tables: tables.overcuts.wall,
+    "slot": lambda tables: tables.slots.slot,
+    "mesh": lambda tables: tables.ramps.mesh,
+    "tight arc": lambda tables: tables.ramps.tight_arc,
+    "misfit": lambda tables: tables.tangency.size,
+    "twin": lambda tables: tables.pass_differences.twin,
+    "narrow loop": lambda tables: tables.ramps.narrow_loop,
+    "loop": lambda tables: tables.ramps.loop,
+    "compensation": lambda tables: tables.since.compensation,
+    "first start-up": lambda tables: tables.ramps.first_start_up,
+    "tool call": lambda tables: tables.since.tool_call,
+    "modal state": lambda tables: tables.since.modal_state,
+    "plane": lambda tables: tables.since.plane,
+    "feed mode": lambda tables: tables.since.feed_mode,
+    "origin": lambda tables: tables.since.origin,
+    "spindle code": lambda tables: tables.since.spindle_code,
+    "c axis code": lambda tables: tables.since.c_axis_code,
+    "live tool code": lambda tables: tables.since.live_tool_code,
+    "misfitting arcs": lambda tables: tables.arcs.misfit_section,
+    "section": lambda tables: tables.mode.whole_section,
+    "program": lambda tables: tables.blocks.program,
+    "file": None,
 }
 #: Spans that lead from a row to one above it, and the span of the cause that counts there: the X with which a row
 #: begins is the X that is in force behind the row of the cause.
@@ -163,8 +175,22 @@ class Tables(dict[str, Any]):
     """
     The tables of one run on one machine for one job, by name; each is made when it is asked for.
 
-    run, text, words, machine and job are given; what is made outside, once others are known, is given by `give`.
+    run, text, words, machine and job are given; what is made outside, once others are known, is given by `give`. Each
+    table is an attribute, too.
     """
+
+    if TYPE_CHECKING:
+        arcs: Arcs
+        blocks: ExecutedBlocks
+        feedrate: Feedrate
+        modal: ModalStates
+        mode: PolarMode
+        overcuts: Overcuts
+        pass_differences: PassDifferences
+        ramps: Ramps
+        since: Since
+        slots: Slots
+        tangency: Tangency
 
     def __init__(self, run: Run, machine: Machine, job: Job) -> None:
         super().__init__(run=run, text=run.text, words=run.text.words, machine=machine, job=job)
@@ -173,8 +199,13 @@ class Tables(dict[str, Any]):
         if name not in TABLES:
             raise RuleError(f"there is no table {name!r}; tables are {', '.join(sorted(self))}")
         maker = TABLES[name].function
-        table = self[name] = maker(*(self[parameter] for parameter in parameters(maker)))
+        table = self[name] = called(maker, self, {})
         return table
+
+    def __getattr__(self, name: str) -> Any:
+        if name not in TABLES and name not in self:
+            raise AttributeError(name)
+        return self[name]
 
     def __iter__(self) -> Iterator[str]:
         """Iterate over the names of all tables, made or not."""
@@ -208,14 +239,6 @@ class Tables(dict[str, Any]):
         """The tables computed so far, by name."""
         return iter(self.items())
 
-    def column(self, path: str) -> Any:
-        """A column by its path, as in `compensation.radius` or `machine.limits.c_feed`."""
-        name, _, rest = path.partition(".")
-        found = self[name]
-        for attribute in rest.split(".") if rest else ():
-            found = getattr(found, attribute)
-        return found
-
 
 def parameters(maker: Callable[..., Any]) -> tuple[str, ...]:
     """The names of the parameters of a function, or of what makes an object of a class."""
@@ -227,3 +250,8 @@ def parameters(maker: Callable[..., Any]) -> tuple[str, ...]:
     code = function.__code__
     names: tuple[str, ...] = code.co_varnames[: code.co_argcount]
     return names[1:] if isinstance(maker, type) else names
+
+
+def called(function: Callable[..., Any], tables: Mapping[str, Any], given: Mapping[str, Any]) -> Any:
+    """A function with what its parameters name, given values first, then tables."""
+    return function(*(given[name] if name in given else tables[name] for name in parameters(function)))

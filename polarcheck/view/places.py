@@ -6,9 +6,9 @@ import cmath
 import contextlib
 import enum
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import msgspec
 import numpy as np
@@ -22,7 +22,8 @@ from polarcheck.foundation.states import Motion
 from polarcheck.geometry.plane import arc_sweep
 from polarcheck.geometry.tolerances import ZERO
 from polarcheck.rules import places
-from polarcheck.rules.message import called, measure
+from polarcheck.rules.hit import Hit
+from polarcheck.rules.message import details_of
 from polarcheck.rules.rule import Rule, load_all
 from polarcheck.rules.tables import Tables
 from polarcheck.view.moves import SectionMoves
@@ -140,16 +141,11 @@ class Spots:
             return []
         known = [complex(x, c)]
         if rule is not None and rule.over == "rows":
-            source = rule.values["plane_x"].removesuffix(".real")
-            function = measure(source, rule.group)
             for row in rows[1:_LOOKED_UP]:
                 with contextlib.suppress(TooHardError):
-                    found = self.tables.column(source)[row] if function is None else self._called(function, row)
-                    known.append(complex(found))
+                    details = details_of(rule, self.tables, Hit(self.trace, places.of_row(self.tables, row), []))
+                    known.append(complex(details["plane_x"], details["plane_c"]))
         return known
-
-    def _called(self, function: Callable[..., Any], row: int) -> complex:
-        return complex(called(function, self.tables, {"row": row}))
 
     def _rows(self, finding: Finding) -> tuple[list[int], list[int]]:
         """Return the rows of a finding, those of its line first, and its other lines."""

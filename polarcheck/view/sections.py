@@ -20,7 +20,7 @@ from polarcheck.foundation.finding import PolarSection
 from polarcheck.foundation.states import MM_PER_INCH
 from polarcheck.parts.as_meant import as_meant
 from polarcheck.rules.quantity import rounded
-from polarcheck.rules.wording.phrases.offsets import called_tool, to_give
+from polarcheck.rules.wording.offsets import called_tool, to_give
 from polarcheck.view import instants, paths, rates
 from polarcheck.view.extent import bar_rings, frame
 from polarcheck.view.moves import LENGTH, POSITIONING, RATE, TIME, SectionMoves, numbers_of

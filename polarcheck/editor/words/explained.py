@@ -14,7 +14,6 @@ from polarcheck.foundation.arrays import Rows
 from polarcheck.foundation.states import FeedMode, Units
 from polarcheck.program.machines.code_lists import expanded
 from polarcheck.program.machines.machine import Machine
-from polarcheck.rules.wording.phrases import common
 
 Facts = list[tuple[str, str]]
 #: The longest number that is repeated as a code [characters].
@@ -120,7 +119,7 @@ def _of_axis(letter: str, machine: Machine, trace: Trace | None, row: int | None
     """Return what an axis, an arc word, or any other address stands for."""
     polar = machine.polar
     if in_polar and trace is not None and row is not None:
-        virtual = common.virtual(trace.axes, row)
+        virtual = trace.axes.virtual_axis_of(row)
         if letter in (virtual, polar.virtual_axis_incremental):
             how = "distance" if letter == polar.virtual_axis_incremental and letter != virtual else "coordinate"
             return f"virtual axis, a length as a {polar.virtual_axis_programming} and no angle ({how})"

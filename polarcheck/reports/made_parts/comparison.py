@@ -16,7 +16,7 @@ from polarcheck.parts.comparison import Comparison
 from polarcheck.parts.deviations import Deviations
 from polarcheck.rules.quantity import rounded
 from polarcheck.rules.tables import Tables
-from polarcheck.rules.wording.phrases.drawing import told
+from polarcheck.rules.wording.drawing import told
 
 
 def compared_in(report: FileReport, runs: Sequence[tuple[str, Tables]]) -> FileReport:

@@ -10,7 +10,7 @@ import numpy as np
 
 from polarcheck.foundation.finding import MadeShape
 from polarcheck.geometry.shapes.shape import SAME
-from polarcheck.rules.wording.phrases.part import Sizes
+from polarcheck.rules.wording.part import Sizes
 
 if TYPE_CHECKING:
     from polarcheck.columns.metal.finished import Level

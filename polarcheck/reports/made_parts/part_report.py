@@ -26,9 +26,9 @@ from polarcheck.reports.made_parts.differing_depths import Area, known_of, with_
 from polarcheck.reports.made_parts.made_depths import Depth, merged, put_together
 from polarcheck.rules.quantity import rounded
 from polarcheck.rules.tables import Tables
-from polarcheck.rules.wording.phrases.common import switch
-from polarcheck.rules.wording.phrases.offsets import called_tool, to_give
-from polarcheck.rules.wording.phrases.part import Manner, Sizes, angle_in_words, shape_in_words
+from polarcheck.rules.wording.offsets import called_tool, to_give
+from polarcheck.rules.wording.part import Manner, Sizes, angle_in_words, shape_in_words
+from polarcheck.rules.wording.written import switch
 
 if TYPE_CHECKING:
     from polarcheck.columns.contour.overcuts import Overcuts

@@ -18,7 +18,7 @@ from polarcheck.geometry.tolerances import ZERO
 from polarcheck.reports.made_parts.differing_depths import within
 from polarcheck.reports.made_parts.made_depths import Depth, put_together
 from polarcheck.rules.tables import Tables
-from polarcheck.rules.wording.phrases.offsets import called_tool, to_give
+from polarcheck.rules.wording.offsets import called_tool, to_give
 
 if TYPE_CHECKING:
     from polarcheck.columns.metal.milled import Milled

@@ -16,7 +16,7 @@ from polarcheck.columns.path.tool_center import ToolCenter
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.states import FeedMode, Motion, Side
 from polarcheck.rules.quantity import rounded
-from polarcheck.rules.wording.phrases.offsets import called_tool, key_of, option
+from polarcheck.rules.wording.offsets import called_tool, key_of, option
 
 
 class Move(msgspec.Struct, frozen=True):

@@ -17,7 +17,7 @@ from polarcheck.foundation.states import FeedMode, Motion, Side
 from polarcheck.program.reading.excerpt import visible
 from polarcheck.reports.pages.aligned import Column, table
 from polarcheck.reports.pages.executed import FEED_MODES, SIDES
-from polarcheck.rules.wording.phrases.offsets import key_of
+from polarcheck.rules.wording.offsets import key_of
 
 MM, FEED, DEG, C_FEED = "mm", "mm/min", "deg", "deg/min"
 #: The decimals of rates and accelerations of axes.

@@ -12,7 +12,7 @@ from polarcheck.rewrite.compare.differences import Part
 from polarcheck.rewrite.compare.report import Difference
 from polarcheck.rewrite.compare.steps import speed_in_force
 from polarcheck.rules.quantity import rounded
-from polarcheck.rules.wording.phrases.offsets import called_tool
+from polarcheck.rules.wording.offsets import called_tool
 
 _UNITS = {"radius": "mm", "c_angle": "deg", "speed": "rev/min"}
 _NAMES = {

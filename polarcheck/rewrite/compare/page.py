@@ -20,7 +20,7 @@ from polarcheck.rewrite.compare.report import (
     SectionPair,
     Side,
 )
-from polarcheck.rules.wording.phrases.part import Sizes
+from polarcheck.rules.wording.part import Sizes
 
 #: Times and rates that differ by less than this share are shown as one.
 _SHOWN = 0.005

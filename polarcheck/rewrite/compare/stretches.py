@@ -16,7 +16,7 @@ from polarcheck.foundation.states import FeedMode, Motion
 from polarcheck.geometry import polar
 from polarcheck.geometry.comparison.polyline import SpacePath
 from polarcheck.rewrite.compare.steps import Step, special_rows
-from polarcheck.rules.wording.phrases.offsets import called_tool, to_give
+from polarcheck.rules.wording.offsets import called_tool, to_give
 
 #: Outside sections C is compared up to this angle [deg], whatever the tolerance of lengths is.
 ANGLE = 0.001

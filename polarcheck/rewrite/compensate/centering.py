@@ -21,7 +21,7 @@ from polarcheck.rewrite.writing.outcome import Figure, Outcome, RefusedError, re
 from polarcheck.rewrite.writing.reading_back import read_back_on_part, require_equal
 from polarcheck.rewrite.writing.style_of import style_of
 from polarcheck.rewrite.writing.unchanged import changed_outside, changed_words
-from polarcheck.rules.wording.phrases.offsets import called_tool, to_give
+from polarcheck.rules.wording.offsets import called_tool, to_give
 
 #: What rounding to the least increment and chords may shift the path by, in least increments.
 _INCREMENTS = 1.5

@@ -26,7 +26,7 @@ from polarcheck.rewrite.writing.blocks import edits_of, with_edits
 from polarcheck.rewrite.writing.original import Original
 from polarcheck.rewrite.writing.outcome import Figure, Outcome, RefusedError, refused_at
 from polarcheck.rewrite.writing.style_of import style_of
-from polarcheck.rules.wording.phrases.offsets import called_tool
+from polarcheck.rules.wording.offsets import called_tool
 
 #: A ramp at one depth in the place of a stretch that goes down by less [mm].
 _SAME_DEPTH = 0.01

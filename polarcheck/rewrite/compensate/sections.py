@@ -14,7 +14,7 @@ from polarcheck.geometry.tolerances import ADJUSTMENT, ROUNDING
 from polarcheck.program.machines.code_lists import expanded
 from polarcheck.rewrite.compensate.moves import Move, of_section
 from polarcheck.rewrite.writing.outcome import Refusal, RefusedError, refusal_at, refused_at
-from polarcheck.rules.wording.phrases.offsets import called_tool, example, to_give
+from polarcheck.rules.wording.offsets import called_tool, example, to_give
 
 
 class Section(msgspec.Struct, frozen=True):

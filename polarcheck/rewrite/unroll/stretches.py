@@ -14,7 +14,7 @@ from polarcheck.foundation.states import FeedMode, Motion, Side
 from polarcheck.program.execution.names import FIRST_VARIABLE
 from polarcheck.rewrite.writing.outcome import Refusal, refusal_at
 from polarcheck.rules.tables import Tables
-from polarcheck.rules.wording.phrases.offsets import called_tool, to_give
+from polarcheck.rules.wording.offsets import called_tool, to_give
 
 #: Numbers of variables that do something when they are set; names have the numbers behind them.
 _SYSTEM = range(1000, FIRST_VARIABLE)

@@ -5,16 +5,17 @@ from typing import TYPE_CHECKING
 from polarcheck.rules.rule import WARNING, rule
 
 if TYPE_CHECKING:
+    from polarcheck.columns.contour.passes import Passes
     from polarcheck.columns.contour.same_circle import SameCircle
     from polarcheck.columns.contour.senses import Senses
     from polarcheck.foundation.arrays import Mask
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     WARNING,
-    "{written_sense} turns a corner of {corner_of_sense} deg at its ends; {other_sense} {fit_of_sense}: write "
-    "{other_sense}",
-    values={"corner": "corner_at_arc", "code": "written_sense", "code_needed": "other_sense"},
+    "{code} turns a corner of {corner:.0f} deg at its ends; {code_needed} {fit}: write {code_needed}",
+    values=("corner", "code", "code_needed"),
     worse=("corner",),
     gouges=True,
     at=("arc_clockwise", "arc_counterclockwise"),
@@ -83,3 +84,20 @@ def arc_sense_reversed(senses: Senses, same_circle: SameCircle) -> Mask:
     """
     shown = (senses.tangent_in_loop > 0) & (senses.fitting_reversed_in_loop == 1)
     return (senses.fits_reversed & (shown | senses.turns_back)) | same_circle.reversed
+
+
+def details(hit: Hit, senses: Senses, passes: Passes) -> Details:
+    import numpy as np
+
+    from polarcheck.rules.wording.arcs import arc_code
+
+    corner, fits = senses.corner[hit.row], senses.fits_reversed[hit.row]
+    if np.isnan(corner):
+        at = int(np.flatnonzero(passes.row == hit.row)[0])
+        corner = np.degrees(np.nanmax(np.abs([turn[at] for turn in passes.turns])))
+    return {
+        "corner": corner,
+        "code": arc_code(hit.trace, hit.row),
+        "code_needed": arc_code(hit.trace, hit.row, reverse=True),
+        "fit": "is tangent to the blocks before and after it" if fits else "lies on one circle with the other arcs",
+    }

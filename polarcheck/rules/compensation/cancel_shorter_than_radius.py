@@ -9,17 +9,17 @@ if TYPE_CHECKING:
     from polarcheck.columns.path.path import ProgrammedPath
     from polarcheck.columns.path.ramps import Ramps
     from polarcheck.program.machines.machine import Machine
+    from polarcheck.rules.hit import Details, Hit
+    from polarcheck.rules.rule import Needs
 
 
 @rule(
     ERROR,
     "offset cancel {fault}",
-    values={"length": "ramp_length", "radius": "cutter_radius", "length_needed": "cutter_radius"},
+    values=("length", "radius", "length_needed"),
     worse=("-length", "length_needed"),
     gouges=True,
     at=("compensation_off",),
-    needs=("compensation.radius", "path.length"),
-    where="ramps.cancel_judged_by_radius",
     doubts=(("metal", "block"),),
 )
 def cancel_shorter_than_radius(
@@ -89,3 +89,14 @@ def cancel_shorter_than_radius(
     if machine.compensation.leaving_cancels:
         return graded(error=short, note=missing)
     return graded(error=short | missing)
+
+
+def details(hit: Hit) -> Details:
+    from polarcheck.rules.wording.ramps import ramp_length, short_ramp
+
+    length = ramp_length(hit)
+    return {"length": length, "length_needed": hit.radius, "fault": short_ramp(hit)}
+
+
+def needs(compensation: CutterCompensation, path: ProgrammedPath, ramps: Ramps) -> Needs:
+    return ramps.cancel_judged_by_radius, {"radius": compensation.radius, "position": path.length}

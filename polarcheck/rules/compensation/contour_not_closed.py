@@ -2,31 +2,25 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from polarcheck.rules.rule import WARNING, rule
+from polarcheck.rules.rule import WARNING, Hits, rule
 
 if TYPE_CHECKING:
     from polarcheck.columns.metal.coverage import Coverage
-    from polarcheck.foundation.arrays import Mask
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     WARNING,
-    "the contour ends at {contour_end}, {coverage.gap:length} before it is closed: write {contour_start} here, or "
-    "{contour_end} in line {line_of_start}, where it begins",
-    values={
-        "gap": "coverage.gap",
-        "plane_x": "path.end.real",
-        "plane_c": "path.end.imag",
-        "other_line": "line_of_start",
-    },
+    "the contour ends at {end}, {gap:length} before it is closed: write {start} here, or "
+    "{end} in line {other_line}, where it begins",
+    values=("gap", "plane_x", "plane_c", "other_line"),
     worse=("gap",),
     once="loop",
-    worst="coverage.gap",
     subject="compensation",
     doubts=(("metal", "loop"),),
     follows={"loop": ("number-without-point",), "section": ("polar-switch-not-alone", "contour-open-with-infeed")},
 )
-def contour_not_closed(coverage: Coverage) -> Mask:
+def contour_not_closed(coverage: Coverage) -> Hits:
     """
     Contour that comes back to its start but for a gap.
 
@@ -70,4 +64,20 @@ def contour_not_closed(coverage: Coverage) -> Mask:
         G40 X80. C10.
         G13.1
     """
-    return coverage.gap > 0
+    return Hits(coverage.gap > 0, worst=coverage.gap)
+
+
+def details(hit: Hit, coverage: Coverage) -> Details:
+    import numpy as np
+
+    path, first = hit.trace.path, int(coverage.begins_in[hit.row])
+    before = np.flatnonzero(path.travels[:first])
+    end = complex(path.end[hit.row])
+    return {
+        "gap": coverage.gap[hit.row],
+        "plane_x": end.real,
+        "plane_c": end.imag,
+        "other_line": hit.line(before[-1] if len(before) else first),
+        "end": hit.point(end),
+        "start": hit.point(complex(coverage.begins[hit.row])),
+    }

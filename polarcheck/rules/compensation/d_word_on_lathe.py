@@ -10,12 +10,14 @@ if TYPE_CHECKING:
     from polarcheck.columns.modes.mode import PolarMode
     from polarcheck.columns.modes.tools import CalledTools
     from polarcheck.foundation.arrays import Mask
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     ERROR,
-    "{D} calls no radius on a lathe: R comes with the tool offset; delete it, and call the offset with T, as in T0808",
-    values={"word": "D"},
+    "{word} calls no radius on a lathe: R comes with the tool offset; delete it, and call the offset with T, as in "
+    "T0808",
+    values=("word",),
     at=("D",),
 )
 def d_word_on_lathe(modal: ModalStates, tools: CalledTools, mode: PolarMode, entry: Entry) -> Mask:
@@ -62,3 +64,7 @@ def d_word_on_lathe(modal: ModalStates, tools: CalledTools, mode: PolarMode, ent
         G13.1
     """
     return (mode.in_polar & modal.uses_axes & tools.means_cutter_by_d) | entry.calls_d_before_mode
+
+
+def details(hit: Hit) -> Details:
+    return {"word": hit.written("D")}

@@ -6,20 +6,21 @@ from polarcheck.rules.rule import ERROR, rule
 
 if TYPE_CHECKING:
     from polarcheck.columns.path.compensation import CutterCompensation
+    from polarcheck.columns.path.ramps import Ramps
     from polarcheck.columns.path.tool_center import ToolCenter
     from polarcheck.foundation.arrays import Mask
+    from polarcheck.rules.hit import Details, Hit
+    from polarcheck.rules.rule import Needs
 
 
 @rule(
     ERROR,
-    "arc of {ramps.arc_radius:length/compensation.radius} with the tool on its inner side; "
-    "R {compensation.radius:length/ramps.arc_radius} must be smaller",
-    values={"arc_radius": "ramps.arc_radius", "radius": "cutter_radius"},
+    "arc of {arc_radius:length/signed_radius} with the tool on its inner side; "
+    "R {signed_radius:length/arc_radius} must be smaller",
+    values=("arc_radius", "radius"),
     worse=("-arc_radius", "radius"),
     gouges=True,
     at=("arc_clockwise", "arc_counterclockwise", "R", "I", "J"),
-    needs=("compensation.radius",),
-    where="ramps.compensated",
     once="tight arc",
     doubts=(("metal", "narrow loop"),),
 )
@@ -75,3 +76,11 @@ def inside_arc_smaller_than_radius(compensation: CutterCompensation, tool_center
     """
     # A start-up or an offset cancel on an arc has a rule of its own.
     return tool_center.inside_arc_too_small & ~compensation.starts_up & ~compensation.cancels
+
+
+def details(hit: Hit, ramps: Ramps) -> Details:
+    return {"arc_radius": ramps.arc_radius[hit.row]}
+
+
+def needs(compensation: CutterCompensation, ramps: Ramps) -> Needs:
+    return ramps.compensated, {"radius": compensation.radius}

@@ -5,19 +5,20 @@ from typing import TYPE_CHECKING
 from polarcheck.rules.rule import ERROR, rule
 
 if TYPE_CHECKING:
+    from polarcheck.columns.path.compensation import CutterCompensation
     from polarcheck.columns.path.ramps import Ramps
     from polarcheck.columns.path.tool_center import ToolCenter
     from polarcheck.foundation.arrays import Mask
+    from polarcheck.rules.hit import Details, Hit
+    from polarcheck.rules.rule import Needs
 
 
 @rule(
     ERROR,
     "tool center would run backwards here: {misfit}",
-    values={"radius": "cutter_radius"},
+    values=("radius",),
     worse=("radius",),
     gouges=True,
-    needs=("compensation.radius",),
-    where="ramps.compensated",
     once="mesh",
     doubts=(("metal", "narrow loop"),),
 )
@@ -67,3 +68,17 @@ def interference(tool_center: ToolCenter, ramps: Ramps) -> Mask:
         G13.1
     """
     return tool_center.interferes & ~tool_center.no_intersection & ~ramps.is_consequence
+
+
+def details(hit: Hit, tool_center: ToolCenter) -> Details:
+    radius, others = hit.length(hit.radius), f" and {hit.count - 1} more" if hit.count > 1 else ""
+    if not tool_center.interferes_by_rounding[hit.row]:
+        return {"misfit": f"the contour is too narrow or too short for R {radius}"}
+    return {
+        "misfit": f"blocks shorter than their rounding allows with R {radius}, this one{others}; "
+        "write longer blocks or arcs, as with a coarser chord tolerance of the post, or more digits"
+    }
+
+
+def needs(compensation: CutterCompensation, ramps: Ramps) -> Needs:
+    return ramps.compensated, {"radius": compensation.radius}

@@ -2,27 +2,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from polarcheck.rules.rule import WARNING, rule
+from polarcheck.rules.rule import WARNING, Hits, rule
 
 if TYPE_CHECKING:
     from polarcheck.columns.metal.coverage import Coverage
-    from polarcheck.foundation.arrays import Mask
+    from polarcheck.rules.hit import Details, Hit
 
 
-@rule(
-    WARNING,
-    "{left}",
-    values={
-        "height": "height_left",
-        "radius": "radius_of_tool",
-        "plane_x": "place_left.real",
-        "plane_c": "place_left.imag",
-    },
-    worse=("height",),
-    once="loop",
-    worst="coverage.height",
-)
-def material_left(coverage: Coverage) -> Mask:
+@rule(WARNING, "{left}", values=("height", "radius", "plane_x", "plane_c"), worse=("height",), once="loop")
+def material_left(coverage: Coverage) -> Hits:
     """
     Material that no tool takes off, though the contour asks for it.
 
@@ -69,4 +57,37 @@ def material_left(coverage: Coverage) -> Mask:
         G40 X80. C10.
         G13.1
     """
-    return coverage.height > 0
+    return Hits(coverage.height > 0, worst=coverage.height)
+
+
+def details(hit: Hit, coverage: Coverage) -> Details:
+    row, ribs, strips = hit.row, coverage.ribs, coverage.strips
+    is_strip = strips.height[row] > ribs.height[row]
+    radius, place = abs(hit.trace.compensation.radius_of_move[row]), complex((strips if is_strip else ribs).place[row])
+    return {
+        "height": max(ribs.height[row], strips.height[row]),
+        "radius": radius,
+        "plane_x": place.real,
+        "plane_c": place.imag,
+        "left": (_strip if is_strip else _rib)(hit, coverage, radius, hit.point(place)),
+    }
+
+
+def _strip(hit: Hit, coverage: Coverage, radius: float, point: str) -> str:
+    """What is left standing between passes, and what to write."""
+    thickness = coverage.strips.height[hit.row]
+    return (
+        f"a strip {hit.length(thickness)} thick stays at {point} between passes {hit.length(2 * radius + thickness)} "
+        f"apart: with R {hit.length(radius)} write passes that are {hit.length(2 * radius)} apart at most"
+    )
+
+
+def _rib(hit: Hit, coverage: Coverage, radius: float, point: str) -> str:
+    """What is left standing on the contour, and what to write."""
+    height, width = coverage.ribs.height[hit.row], coverage.ribs.width[hit.row]
+    more = "more than " if height >= 2 * radius else ""
+    return (
+        f"a rib {more}{hit.length(height)} high stays on the contour at {point}, "
+        f"where no tool touches it: let the contour go on {hit.length(width)} farther beyond its start before the tool "
+        "leaves it"
+    )

@@ -6,18 +6,20 @@ from polarcheck.rules.causes import OUT_OF_PLACE
 from polarcheck.rules.rule import WARNING, rule
 
 if TYPE_CHECKING:
+    from polarcheck.columns.path.compensation import CutterCompensation
+    from polarcheck.columns.path.ramps import Ramps
     from polarcheck.columns.path.tool_center import ToolCenter
     from polarcheck.foundation.arrays import Mask
+    from polarcheck.rules.hit import Details, Hit
+    from polarcheck.rules.rule import Needs
 
 
 @rule(
     WARNING,
     "{why}; the tool center ends perpendicular to {move_before}, not where the next one needs it",
-    values={"blocks": "idle_blocks", "limit": "idle_blocks_allowed"},
+    values=("blocks", "limit"),
     worse=("blocks",),
     gouges=True,
-    needs=("compensation.radius",),
-    where="ramps.compensated",
     doubts=(("metal", "pause"),),
     follows={"pause": (*OUT_OF_PLACE, "full-circle-by-radius"), "way": OUT_OF_PLACE},
 )
@@ -74,3 +76,36 @@ def movement_missing_in_offset_mode(tool_center: ToolCenter) -> Mask:
     """
     # Compares nothing: which moves the control knows in time, and needs to know, shows only while it compensates.
     return tool_center.waits_for_movement
+
+
+def details(hit: Hit) -> Details:
+    import numpy as np
+
+    trace, row = hit.trace, hit.row
+    move = int(np.flatnonzero(trace.path.travels[: row + 1])[-1])
+    following = move + 1
+    while following < len(trace) and trace.mode.in_polar[following] and not trace.path.length[following] > 0:
+        following += 1
+    stops = np.flatnonzero(trace.blocks.codes(*trace.machine.m_codes.stops_reading_ahead)[move:following])
+    count, least = following - move - 1, trace.machine.compensation.read_ahead - 2
+    why = _too_many(count, least)
+    if move != row:
+        rest = f", and {count} blocks behind that move make none on the plane" if count > 1 else ""
+        why = f"this block moves nowhere, its point is that of the block before{rest}: delete it or correct its words"
+    if len(stops):
+        why = f"line {hit.line(move + stops[0])} stops reading ahead"
+    return {
+        "blocks": np.nan if len(stops) else count,
+        "limit": np.nan if len(stops) else least,
+        "why": why,
+        "move_before": "this block" if move == row else f"line {hit.line(move)}",
+    }
+
+
+def needs(compensation: CutterCompensation, ramps: Ramps) -> Needs:
+    return ramps.compensated, {"radius": compensation.radius}
+
+
+def _too_many(count: int, least: int) -> str:
+    many = f"{count} blocks" if count > 1 else "a block"
+    return f"{many} without a move on the plane follow{'' if count > 1 else 's'}, this control reads past {least}"

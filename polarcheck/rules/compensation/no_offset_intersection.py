@@ -5,19 +5,19 @@ from typing import TYPE_CHECKING
 from polarcheck.rules.rule import ERROR, rule
 
 if TYPE_CHECKING:
+    from polarcheck.columns.path.compensation import CutterCompensation
     from polarcheck.columns.path.ramps import Ramps
     from polarcheck.columns.path.tool_center import ToolCenter
     from polarcheck.foundation.arrays import Mask
+    from polarcheck.rules.rule import Needs
 
 
 @rule(
     ERROR,
-    "paths of the tool center in this block and the next do not meet with R {compensation.radius:length}",
-    values={"radius": "cutter_radius"},
+    "paths of the tool center in this block and the next do not meet with R {signed_radius:length}",
+    values=("radius",),
     worse=("radius",),
     gouges=True,
-    needs=("compensation.radius",),
-    where="ramps.compensated",
     doubts=(("metal", "narrow loop"),),
 )
 def no_offset_intersection(tool_center: ToolCenter, ramps: Ramps) -> Mask:
@@ -57,3 +57,7 @@ def no_offset_intersection(tool_center: ToolCenter, ramps: Ramps) -> Mask:
         G13.1
     """
     return tool_center.no_intersection & ~ramps.is_consequence
+
+
+def needs(compensation: CutterCompensation, ramps: Ramps) -> Needs:
+    return ramps.compensated, {"radius": compensation.radius}

@@ -8,17 +8,17 @@ if TYPE_CHECKING:
     from polarcheck.columns.modes.offsets import ToolOffsets
     from polarcheck.columns.path.compensation import CutterCompensation
     from polarcheck.foundation.arrays import Mask
+    from polarcheck.rules.hit import Details, Hit
+    from polarcheck.rules.rule import Needs
 
 
 @rule(
     ERROR,
-    "offset {offset} {has_nose} nose type T{offsets.nose:.0f}; for a mill it must be {allowed}",
-    values={"offset": "offset", "nose": "offsets.nose"},
+    "offset {offset} {has} nose type T{nose:.0f}; for a mill it must be {allowed}",
+    values=("offset", "nose"),
     gouges=True,
     at=("compensation_left", "compensation_right"),
     once="tool call",
-    needs=("offsets.nose",),
-    where="compensation.starts_up",
 )
 def nose_type_not_zero(offsets: ToolOffsets, compensation: CutterCompensation) -> Mask:
     """
@@ -72,3 +72,18 @@ def nose_type_not_zero(offsets: ToolOffsets, compensation: CutterCompensation) -
     """
     known = offsets.nose >= 0
     return compensation.starts_up & known & ~offsets.nose_is_of_mill
+
+
+def details(hit: Hit, offsets: ToolOffsets) -> Details:
+    from polarcheck.rules.wording.written import block_and_line
+
+    setter = int(offsets.nose_set_in[hit.row])
+    return {
+        "nose": offsets.nose[hit.row],
+        "has": f"is set by {block_and_line(hit.trace, setter)} to" if setter >= 0 else "has",
+        "allowed": " or ".join(map(str, hit.trace.machine.compensation.nose_types)),
+    }
+
+
+def needs(offsets: ToolOffsets, compensation: CutterCompensation) -> Needs:
+    return compensation.starts_up, {"nose": offsets.nose}

@@ -8,15 +8,18 @@ if TYPE_CHECKING:
     from polarcheck.columns.modes.blocks import ExecutedBlocks
     from polarcheck.columns.modes.mode import PolarMode
     from polarcheck.columns.modes.mode_words import ModeWords
+    from polarcheck.columns.modes.tools import CalledTools
     from polarcheck.columns.path.compensation import CutterCompensation
     from polarcheck.foundation.arrays import Mask
+    from polarcheck.program.execution.run import Run
     from polarcheck.program.machines.machine import Machine
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     ERROR,
     "tool offset changed in the polar mode by {changed_by}; write it {outside}",
-    values={"changed_by": "changed_by"},
+    values=("changed_by",),
     at=("T", "D", "data_input"),
 )
 def offset_changed_in_polar(
@@ -63,3 +66,12 @@ def offset_changed_in_polar(
     writes_one = mode_words.rows(mode_words.changes_tool_offset & mode_words.not_allowed)
     assigns_one = mode.in_polar & blocks.assigns(machine.macro.tool_offset_variables)
     return calls_another | writes_one | assigns_one
+
+
+def details(hit: Hit, tools: CalledTools, run: Run, machine: Machine) -> Details:
+    from polarcheck.rules.wording.offsets import called_tool
+
+    if hit.row in run.assigned:
+        return {"changed_by": run.assigned[hit.row].name}
+    calls = tools.calls_offset[hit.row]
+    return {"changed_by": called_tool(tools, hit.row) if calls else machine.codes("data_input")[0]}

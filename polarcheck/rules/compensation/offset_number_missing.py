@@ -9,12 +9,13 @@ if TYPE_CHECKING:
     from polarcheck.columns.modes.tools import CalledTools
     from polarcheck.columns.path.compensation import CutterCompensation
     from polarcheck.foundation.arrays import Mask
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     ERROR,
-    "{side} begins and no tool offset is in force, so that R is 0",
-    values={"code": "side"},
+    "{code} begins and no tool offset is in force, so that R is 0",
+    values=("code",),
     gouges=True,
     at=("compensation_left", "compensation_right"),
     once="tool call",
@@ -54,3 +55,7 @@ def offset_number_missing(blocks: ExecutedBlocks, tools: CalledTools, compensati
     # Before an excerpt the tool may have been called.
     called_here = tools.has_called_tool | blocks.whole_program
     return compensation.starts_up & (tools.offset_number == 0) & called_here
+
+
+def details(hit: Hit) -> Details:
+    return {"code": hit.side}

@@ -1,33 +1,27 @@
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
-from polarcheck.rules.rule import ERROR, rule
+from polarcheck.rules.rule import ERROR, Hits, rule
 
 if TYPE_CHECKING:
+    from polarcheck.columns.contour.fitting import Fitting
     from polarcheck.columns.contour.overcuts import Overcuts
-    from polarcheck.foundation.arrays import Mask
+    from polarcheck.columns.path.compensation import CutterCompensation
+    from polarcheck.rules.hit import Details, Hit
+    from polarcheck.rules.rule import Needs
 
 
 @rule(
     ERROR,
-    "the cutter goes {overcuts.depth:length} deep into {place}{way_out}",
-    values={
-        "depth": "overcuts.depth",
-        "radius": "cutter_radius",
-        "highest_radius": "radius_of_room",
-        "plane_x": "place_of_overcut.real",
-        "plane_c": "place_of_overcut.imag",
-        "other_line": "line_of_overcut",
-    },
+    "the cutter goes {depth:length} deep into {place}{way_out}",
+    values=("depth", "radius", "highest_radius", "plane_x", "plane_c", "other_line"),
     worse=("depth",),
     gouges=True,
-    needs=("compensation.radius",),
-    where="compensation.offset_mode",
-    worst="overcuts.depth",
     once="wall",
 )
-def overcut(overcuts: Overcuts) -> Mask:
+def overcut(overcuts: Overcuts) -> Hits:
     """
     Tool cuts into the contour.
 
@@ -73,4 +67,38 @@ def overcut(overcuts: Overcuts) -> Mask:
         G40 X100.
         G13.1
     """
-    return overcuts.depth > 0
+    return Hits(overcuts.depth > 0, worst=overcuts.depth)
+
+
+def details(hit: Hit, overcuts: Overcuts, fitting: Fitting) -> Details:
+    into, place = overcuts.cuts.deepest(hit.row)
+    highest, way_out = _room(hit, fitting)
+    return {
+        "depth": overcuts.depth[hit.row],
+        "highest_radius": highest,
+        "plane_x": place.real,
+        "plane_c": place.imag,
+        "other_line": hit.line(into),
+        "place": f"the contour of line {hit.line(into)} at {hit.point(place)}",
+        "way_out": way_out,
+    }
+
+
+def needs(compensation: CutterCompensation) -> Needs:
+    return compensation.offset_mode, {"radius": compensation.radius}
+
+
+def _room(hit: Hit, fitting: Fitting) -> tuple[float, str]:
+    """The largest R for which the contour has room, and what to write; NaN where that would take too long to find."""
+    from polarcheck.foundation.errors import TooHardError
+
+    try:
+        never, largest = bool(fitting.never[hit.row]), float(fitting.radius[hit.row])
+    except TooHardError:
+        return math.nan, ""
+    if never:
+        return largest, "; a smaller one does, too: look for a wrong point of the contour"
+    if math.isnan(largest):
+        return largest, ""
+    largest = math.floor(largest * 1000) / 1000
+    return largest, f"; the contour has room for R {hit.length(largest)} at most"

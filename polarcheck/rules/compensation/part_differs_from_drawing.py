@@ -6,25 +6,19 @@ from polarcheck.rules.causes import FAULTS_OF_CONTOUR, FAULTS_OF_METAL
 from polarcheck.rules.rule import ERROR, rule
 
 if TYPE_CHECKING:
+    from polarcheck.columns.path.compensation import CutterCompensation
     from polarcheck.foundation.arrays import Mask
     from polarcheck.parts.deviations import Deviations
+    from polarcheck.rules.hit import Details, Hit
+    from polarcheck.rules.rule import Needs
 
 
 @rule(
     ERROR,
-    "the part differs from {drawing} by {deviations.largest:length/deviations.tolerance}, "
-    "{deviations.tolerance:length} is allowed: {deviation}",
-    values={
-        "drawing": "drawing",
-        "largest": "deviations.largest",
-        "tolerance": "deviations.tolerance",
-        "too_much": "too_much",
-        "cut_away": "cut_away",
-    },
+    "the part differs from {drawing} by {largest:length/tolerance}, {tolerance:length} is allowed: {deviation}",
+    values=("drawing", "largest", "tolerance", "too_much", "cut_away"),
     worse=("largest", "too_much", "cut_away"),
     gouges=True,
-    needs=("compensation.radius",),
-    where="deviations.where",
     follows={"file": (*FAULTS_OF_CONTOUR, *FAULTS_OF_METAL)},
 )
 def part_differs_from_drawing(deviations: Deviations) -> Mask:
@@ -92,3 +86,23 @@ def part_differs_from_drawing(deviations: Deviations) -> Mask:
     """
     # Compares nothing: each part has a tolerance of its own, and a pocket in the place of a boss differs by no length.
     return deviations.differs
+
+
+def details(hit: Hit, deviations: Deviations) -> Details:
+    from polarcheck.rules.wording.drawing import deviation
+    from polarcheck.rules.wording.written import short
+
+    one = deviations.of_row(hit.row)
+    is_compared = one.is_made and not one.is_other_way_round
+    return {
+        "drawing": short(one.title),
+        "largest": deviations.largest[hit.row],
+        "tolerance": deviations.tolerance[hit.row],
+        "too_much": one.difference.proud if is_compared else None,
+        "cut_away": one.difference.deep if is_compared else None,
+        "deviation": deviation(deviations.trace, one),
+    }
+
+
+def needs(compensation: CutterCompensation, deviations: Deviations) -> Needs:
+    return deviations.where, {"radius": compensation.radius}

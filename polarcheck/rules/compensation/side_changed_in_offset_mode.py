@@ -9,12 +9,13 @@ if TYPE_CHECKING:
     from polarcheck.columns.path.compensation import CutterCompensation
     from polarcheck.columns.path.ramps import Ramps
     from polarcheck.foundation.arrays import Mask
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     WARNING,
-    "{side} while {before} is in force; write G40 with a move between them",
-    values={"code": "side", "other_code": "before"},
+    "{code} while {other_code} is in force; write G40 with a move between them",
+    values=("code", "other_code"),
     gouges=True,
     at=("compensation_left", "compensation_right"),
     subject="",
@@ -56,3 +57,7 @@ def side_changed_in_offset_mode(compensation: CutterCompensation, ramps: Ramps) 
         G13.1
     """
     return ramps.writes_side_again & (compensation.side != compensation.side_before)
+
+
+def details(hit: Hit, compensation: CutterCompensation) -> Details:
+    return {"code": hit.side, "other_code": f"G{compensation.side_before[hit.row]}"}

@@ -2,18 +2,21 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from polarcheck.foundation.states import Motion, Side
 from polarcheck.rules.rule import WARNING, rule
 
 if TYPE_CHECKING:
     from polarcheck.columns.contour.mirrored import Mirrored
+    from polarcheck.columns.path.compensation import CutterCompensation
     from polarcheck.foundation.arrays import Mask
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     WARNING,
     "{side_in_force} has the cutter on the wrong side: both ramps come through the part, on the other side the whole "
     "contour is free; {remedy}{or_other_sense}",
-    values={"code": "side", "radius": "cutter_radius"},
+    values=("code", "radius"),
     worse=("radius",),
     gouges=True,
     at=("compensation_left", "compensation_right"),
@@ -76,3 +79,35 @@ def side_of_compensation_mirrored(mirrored: Mirrored) -> Mask:
     """
     # Compares nothing: the loop has to be run on its other side.
     return mirrored.is_mirrored
+
+
+def details(hit: Hit, compensation: CutterCompensation) -> Details:
+    from polarcheck.rules.wording.written import code_of
+
+    code = "compensation_left" if compensation.side[hit.row] == Side.RIGHT else "compensation_right"
+    radius = hit.signed_radius
+    return {
+        "code": hit.side,
+        "side_in_force": f"{hit.side} with the negative R {hit.length(radius)}" if radius < 0 else hit.side,
+        "remedy": f"write {code_of(hit.trace.machine, code)}"
+        + (f", or R {hit.length(-radius)} in the tool offset" if radius < 0 else ""),
+        "or_other_sense": _or_other_sense(hit),
+    }
+
+
+def _or_other_sense(hit: Hit) -> str:
+    """`, or G2 for G3 of line 18`, where one code of arcs is in force in all blocks of the contour."""
+    import numpy as np
+
+    from polarcheck.rules.wording.arcs import arc_code
+
+    trace = hit.trace
+    moves = np.flatnonzero(trace.path.travels)
+    moves = moves[moves > hit.row]
+    leave = np.flatnonzero(~trace.compensation.compensates[moves])
+    moves = moves[: leave[0]] if len(leave) else moves
+    codes = trace.modal.motion_word[moves]
+    if not len(moves) or trace.axes.motion[moves[0]] not in (Motion.CW, Motion.CCW) or np.any(codes != codes[0]):
+        return ""
+    first = int(moves[0])
+    return f", or {arc_code(trace, first, reverse=True)} for {arc_code(trace, first)} of line {hit.line(first)}"

@@ -9,13 +9,14 @@ if TYPE_CHECKING:
     from polarcheck.columns.path.compensation import CutterCompensation
     from polarcheck.columns.path.ramps import Ramps
     from polarcheck.foundation.arrays import Mask
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     WARNING,
-    "{side} again: it is in force already, and the tool center does not turn into the corner before "
+    "{code} again: it is in force already, and the tool center does not turn into the corner before "
     "it; delete it, or write {cancel} into the block that leaves the contour before it",
-    values={"code": "side"},
+    values=("code",),
     gouges=True,
     at=("compensation_left", "compensation_right"),
     once="section",
@@ -60,3 +61,7 @@ def side_repeated_in_offset_mode(compensation: CutterCompensation, ramps: Ramps)
         G13.1
     """
     return ramps.writes_side_again & (compensation.side == compensation.side_before)
+
+
+def details(hit: Hit) -> Details:
+    return {"code": hit.side}

@@ -2,34 +2,26 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from polarcheck.rules.rule import ERROR, rule
+from polarcheck.rules.rule import ERROR, Hits, rule
 
 if TYPE_CHECKING:
     from polarcheck.columns.contour.slots import Slots
-    from polarcheck.foundation.arrays import Mask
+    from polarcheck.columns.path.compensation import CutterCompensation
+    from polarcheck.rules.hit import Details, Hit
+    from polarcheck.rules.rule import Needs
 
 
 @rule(
     ERROR,
-    "{room} for a cutter of {slots.diameter:length}: it goes {slots.depth:length} deep into {opposite}; "
+    "{room} for a cutter of {diameter:length}: it goes {depth:length} deep into {opposite}; "
     "take {smaller}, or write the walls farther apart",
-    values={
-        "diameter": "slots.diameter",
-        "depth": "slots.depth",
-        "width": "width_of_slot",
-        "plane_x": "place_of_slot.real",
-        "plane_c": "place_of_slot.imag",
-        "other_line": "line_of_slot",
-    },
+    values=("diameter", "depth", "width", "plane_x", "plane_c", "other_line"),
     worse=("depth", "-width"),
     gouges=True,
-    needs=("compensation.radius",),
-    where="slots.compared",
-    worst="slots.depth",
     once="slot",
     follows={"loop": ("overcut",)},
 )
-def slot_narrower_than_cutter(slots: Slots) -> Mask:
+def slot_narrower_than_cutter(slots: Slots) -> Hits:
     """
     Two walls nearer to each other than the diameter of the cutter.
 
@@ -70,4 +62,29 @@ def slot_narrower_than_cutter(slots: Slots) -> Mask:
         G40 X70. C0.
         G13.1
     """
-    return slots.depth > 0
+    return Hits(slots.depth > 0, worst=slots.depth)
+
+
+def details(hit: Hit, slots: Slots) -> Details:
+    into, place = slots.cuts.deepest(hit.row)
+    width, across = slots.width(hit.row), float(slots.diameter[hit.row])
+    line, other_line = hit.line(hit.row), hit.line(into)
+    is_closed = width >= across
+    between = hit.quantity(width).beside(hit.quantity(across), "length")
+    return {
+        "diameter": across,
+        "depth": slots.depth[hit.row],
+        "width": None if is_closed else width,
+        "plane_x": place.real,
+        "plane_c": place.imag,
+        "other_line": other_line,
+        "room": f"line {other_line} leaves no room to go round the corner of line {line}"
+        if is_closed
+        else f"lines {line} and {other_line} leave {between}",
+        "opposite": f"the contour of line {other_line} at {hit.point(place)}",
+        "smaller": "a smaller cutter" if is_closed else f"a cutter of {between} at most",
+    }
+
+
+def needs(compensation: CutterCompensation, slots: Slots) -> Needs:
+    return slots.compared, {"radius": compensation.radius}

@@ -8,12 +8,13 @@ if TYPE_CHECKING:
     from polarcheck.columns.path.compensation import CutterCompensation
     from polarcheck.columns.path.path import ProgrammedPath
     from polarcheck.foundation.arrays import Mask
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     ERROR,
-    "{side} begins on an arc; begin it in a G1 block before the arc",
-    values={"code": "side"},
+    "{code} begins on an arc; begin it in a G1 block before the arc",
+    values=("code",),
     at=("compensation_left", "compensation_right", "arc_clockwise", "arc_counterclockwise"),
     subject="move",
     doubts=(("metal", "block"),),
@@ -50,3 +51,7 @@ def start_up_on_arc(path: ProgrammedPath, compensation: CutterCompensation) -> M
         G13.1
     """
     return compensation.starts_up & path.is_arc
+
+
+def details(hit: Hit) -> Details:
+    return {"code": hit.side}

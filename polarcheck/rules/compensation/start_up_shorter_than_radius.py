@@ -9,17 +9,17 @@ if TYPE_CHECKING:
     from polarcheck.columns.path.path import ProgrammedPath
     from polarcheck.columns.path.ramps import Ramps
     from polarcheck.foundation.arrays import Mask
+    from polarcheck.rules.hit import Details, Hit
+    from polarcheck.rules.rule import Needs
 
 
 @rule(
     ERROR,
     "start-up {fault}{ramp_at_rest}",
-    values={"code": "side", "length": "ramp_length", "radius": "cutter_radius", "length_needed": "cutter_radius"},
+    values=("code", "length", "radius", "length_needed"),
     worse=("-length", "length_needed"),
     gouges=True,
     at=("compensation_left", "compensation_right"),
-    needs=("compensation.radius", "path.length"),
-    where="ramps.start_up_judged_by_radius",
     doubts=(("metal", "loop"),),
 )
 def start_up_shorter_than_radius(path: ProgrammedPath, compensation: CutterCompensation, ramps: Ramps) -> Mask:
@@ -80,3 +80,20 @@ def start_up_shorter_than_radius(path: ProgrammedPath, compensation: CutterCompe
     short = compensation.starts_up & ~path.is_arc & ramps.shorter_than_radius
     # With R 0 a start-up needs no length; an R that is not known is not 0.
     return short | (ramps.start_up_missing & (compensation.radius != 0))
+
+
+def details(hit: Hit) -> Details:
+    from polarcheck.rules.wording.ramps import ramp_at_rest, ramp_length, short_ramp
+
+    length = ramp_length(hit)
+    return {
+        "code": hit.side,
+        "length": length,
+        "length_needed": hit.radius,
+        "fault": short_ramp(hit),
+        "ramp_at_rest": ramp_at_rest(hit),
+    }
+
+
+def needs(compensation: CutterCompensation, path: ProgrammedPath, ramps: Ramps) -> Needs:
+    return ramps.start_up_judged_by_radius, {"radius": compensation.radius, "position": path.length}

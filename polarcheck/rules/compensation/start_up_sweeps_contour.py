@@ -5,24 +5,19 @@ from typing import TYPE_CHECKING
 from polarcheck.rules.rule import ERROR, Hits, rule
 
 if TYPE_CHECKING:
+    from polarcheck.columns.contour.overcuts import Overcuts
     from polarcheck.columns.contour.slots import Slots
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     ERROR,
     "the ramp goes {depth:length} deep into {swept}{ramp_at_rest}",
-    values={
-        "depth": "depth",
-        "radius": "cutter_radius",
-        "plane_x": "place_swept.real",
-        "plane_c": "place_swept.imag",
-        "other_line": "line_swept",
-    },
+    values=("depth", "radius", "plane_x", "plane_c", "other_line"),
     worse=("depth",),
     gouges=True,
     at=("compensation_off", "compensation_left", "compensation_right"),
     once="loop",
-    worst="slots.ramp_depth",
     doubts=(("metal", "X before"),),
     follows={
         "block": ("path-through-center",),
@@ -62,4 +57,18 @@ def start_up_sweeps_contour(slots: Slots) -> Hits:
         G40 C-50.
         G13.1
     """
-    return Hits(slots.ramp_depth > 0, values={"depth": slots.ramp_depth})
+    return Hits(slots.ramp_depth > 0, values={"depth": slots.ramp_depth}, worst=slots.ramp_depth)
+
+
+def details(hit: Hit, overcuts: Overcuts, slots: Slots) -> Details:
+    from polarcheck.rules.wording.ramps import ramp_at_rest
+
+    own = overcuts.sweep_depth[hit.row] >= slots.sweep_depth[hit.row]
+    into, place = (overcuts if own else slots).sweeps.deepest(hit.row)
+    return {
+        "plane_x": place.real,
+        "plane_c": place.imag,
+        "other_line": hit.line(into),
+        "swept": f"the contour of line {hit.line(into)} at {hit.point(place)}",
+        "ramp_at_rest": ramp_at_rest(hit),
+    }

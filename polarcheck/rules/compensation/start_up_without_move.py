@@ -5,14 +5,16 @@ from typing import TYPE_CHECKING
 from polarcheck.rules.rule import NOTE, rule
 
 if TYPE_CHECKING:
+    from polarcheck.columns.path.path import ProgrammedPath
     from polarcheck.columns.path.ramps import Ramps
     from polarcheck.foundation.arrays import Mask
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     NOTE,
-    "{side} without a move on the plane: the offset begins with that of line {start_up}; write {side} there",
-    values={"code": "side", "other_line": "start_up"},
+    "{code} without a move on the plane: the offset begins with that of line {other_line}; write {code} there",
+    values=("code", "other_line"),
     at=("compensation_left", "compensation_right"),
     is_advice=True,
     subject="",
@@ -73,3 +75,9 @@ def start_up_without_move(ramps: Ramps) -> Mask:
     """
     # Compares nothing: which move comes next hangs on the rows below.
     return ramps.start_up_later
+
+
+def details(hit: Hit, path: ProgrammedPath) -> Details:
+    import numpy as np
+
+    return {"code": hit.side, "other_line": hit.line(hit.row + int(np.argmax(path.travels[hit.row :])))}

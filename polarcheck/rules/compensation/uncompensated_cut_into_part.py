@@ -2,25 +2,20 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from polarcheck.foundation.states import Motion
 from polarcheck.rules.rule import ERROR, Hits, graded, rule
 
 if TYPE_CHECKING:
     from polarcheck.columns.contour.uncompensated_cuts import UncompensatedCuts
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     ERROR,
-    "{bare}{from_point} {goes} {cut_part}; {way_round}",
-    values={
-        "depth": "uncompensated_cuts.depth",
-        "plane_x": "place_of_cut.real",
-        "plane_c": "place_of_cut.imag",
-        "z": "path.z",
-        "other_line": "line_of_cut",
-    },
+    "{bare}{from_point} {goes} {part}; {way_round}",
+    values=("depth", "plane_x", "plane_c", "z", "other_line"),
     worse=("depth",),
     gouges=True,
-    worst="uncompensated_cuts.graveness",
     once="loop",
     follows={
         "motion": ("rapid-in-polar",),
@@ -97,4 +92,46 @@ def uncompensated_cut_into_part(uncompensated_cuts: UncompensatedCuts) -> Hits:
         G13.1
     """
     cuts = uncompensated_cuts.depth > 0
-    return graded(error=uncompensated_cuts.is_rapid, warning=cuts)
+    return graded(error=uncompensated_cuts.is_rapid, warning=cuts, worst=uncompensated_cuts.graveness)
+
+
+def details(hit: Hit, uncompensated_cuts: UncompensatedCuts) -> Details:
+    trace, row = hit.trace, hit.row
+    into, place = uncompensated_cuts.cuts.deepest(row)
+    depth, z = uncompensated_cuts.depth[row], trace.path.z[row]
+    key = {Motion.RAPID: "rapid", Motion.LINE: "line", Motion.CW: "arc_clockwise", Motion.CCW: "arc_counterclockwise"}
+    goes = f"goes {hit.length(depth)} deep into"
+    if depth >= hit.radius:
+        goes = "leads through" if trace.path.travels[row] or not trace.mode.in_polar[row] else "goes down into"
+    return {
+        "depth": depth,
+        "plane_x": place.real,
+        "plane_c": place.imag,
+        "z": z,
+        "other_line": hit.line(into),
+        "bare": f"{trace.machine.codes(key[Motion(int(trace.axes.motion[row]))])[0]} without compensation",
+        "from_point": _from_point(hit),
+        "goes": goes,
+        "part": f"the part that the contour of line {hit.line(into)} leaves, at {hit.point(place)} Z{hit.number(z)}",
+        "way_round": _way_round(hit),
+    }
+
+
+def _from_point(hit: Hit) -> str:
+    """` from X32. C0 of line 7`, where a move begins whose start is not that of a cut in the mode."""
+    from polarcheck.columns.filling import last_row
+
+    blocks, path, mode, row = hit.trace.blocks, hit.trace.path, hit.trace.mode, hit.row
+    at = int(last_row(blocks.has("X", "U"), blocks.starts)[row - 1]) if row else -1
+    if at < 0 or mode.in_polar[at] or not mode.in_polar[row] or not path.travels[row]:
+        return ""
+    return f" from {hit.point(complex(path.start[row]))} (line {hit.line(at)})"
+
+
+def _way_round(hit: Hit) -> str:
+    """What to write where a move without compensation leads through the part."""
+    blocks, machine, row = hit.trace.blocks, hit.trace.machine, hit.row
+    if hit.trace.axes.motion[row] == Motion.RAPID and not blocks.listed("rapid")[row] and blocks.has("F")[row]:
+        rapid, line = machine.codes("rapid")[0], machine.codes("line")[0]
+        return f"{rapid} is still in force: write {line} here, or retract Z first"
+    return "retract Z above the part first, or go round it"

@@ -3,25 +3,25 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from polarcheck.geometry.tolerances import SHARE
-from polarcheck.rules.rule import WARNING, rule
+from polarcheck.rules.rule import WARNING, Hits, rule
 
 if TYPE_CHECKING:
     from polarcheck.columns.feed.feeds import Feeds
-    from polarcheck.foundation.arrays import Mask
+    from polarcheck.program.machines.machine import Machine
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     WARNING,
-    "a block takes {feeds.time_of_series:.3g} s here, ten in a row, and {machine.title} needs "
-    "{machine.limits.block_time:g} s for one: F falls to {feeds.feed_of_series:highest}, and the tool may halt between "
+    "a block takes {time:.3g} s here, ten in a row, and {title} needs "
+    "{limit:g} s for one: F falls to {feed_of_series:highest}, and the tool may halt between "
     "blocks",
-    values={"time": "feeds.time_of_series", "limit": "machine.limits.block_time", "highest_feed": "feed_of_series"},
+    values=("time", "limit", "highest_feed"),
     worse=("-time",),
     once="section",
-    worst="feeds.blocks_too_fast",
     follows={"section": ("feed-implausible",)},
 )
-def blocks_faster_than_control(feeds: Feeds) -> Mask:
+def blocks_faster_than_control(feeds: Feeds) -> Hits:
     """
     Blocks shorter than the control can read at this feed.
 
@@ -68,4 +68,14 @@ def blocks_faster_than_control(feeds: Feeds) -> Mask:
         X60.
         G13.1
     """
-    return feeds.blocks_too_fast > 1 + SHARE
+    return Hits(feeds.blocks_too_fast > 1 + SHARE, worst=feeds.blocks_too_fast)
+
+
+def details(hit: Hit, feeds: Feeds, machine: Machine) -> Details:
+    feed = hit.quantity(feeds.feed_of_series[hit.row])
+    return {
+        "time": feeds.time_of_series[hit.row],
+        "limit": machine.limits.block_time,
+        "highest_feed": feed.highest_feed("highest"),
+        "feed_of_series": feed,
+    }

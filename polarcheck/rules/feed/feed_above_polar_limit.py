@@ -8,12 +8,13 @@ if TYPE_CHECKING:
     from polarcheck.columns.feed.feedrate import Feedrate
     from polarcheck.columns.feed.feeds import Feeds
     from polarcheck.program.machines.machine import Machine
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     WARNING,
-    "F is {feed:feed/limit}, {machine.title} {clamps} {limit:feed/feed} in the polar mode",
-    values={"feed": "feed", "limit": "limit"},
+    "F is {feed:feed/limit}, {title} {clamps} {limit:feed/feed} in the polar mode",
+    values=("feed", "limit"),
     worse=("feed",),
     at=("F",),
 )
@@ -56,3 +57,9 @@ def feed_above_polar_limit(feedrate: Feedrate, feeds: Feeds, machine: Machine) -
     limit, feed = machine.limits.polar_feed, feedrate.programmed_feed
     severity = WARNING if machine.limits.polar_feed_clamps else NOTE
     return Hits(feeds.begins & (feed > limit), severity, values={"limit": limit, "feed": feed})
+
+
+def details(hit: Hit, machine: Machine) -> Details:
+    if machine.limits.polar_feed_clamps:
+        return {"clamps": "clamps it at"}
+    return {"clamps": "runs it as programmed, since limits.polar_feed_clamps is off: no clamp at"}

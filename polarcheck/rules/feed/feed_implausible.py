@@ -2,27 +2,26 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from polarcheck.rules.rule import WARNING, rule
+from polarcheck.rules.rule import WARNING, Hits, rule
 
 if TYPE_CHECKING:
     from polarcheck.columns.feed.feeds import Feeds
-    from polarcheck.foundation.arrays import Mask
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     WARNING,
-    "{slow_feed} here{of_f_word}: this block alone takes {long_time}; {instead}",
-    values={"feed": "feedrate.feed_number", "time": "feeds.block_time"},
+    "{feed:feed} here{of_f_word}: this block alone takes {long_time}; {instead}",
+    values=("feed", "time"),
     worse=("time",),
     at=("F", "feed_per_minute", "line", "arc_clockwise", "arc_counterclockwise"),
     once="program",
-    worst="feeds.block_time",
     follows={
         "block": ("feed-missing-in-polar", "feed-lost-from-per-revolution"),
         "section": ("code-not-allowed-in-polar",),
     },
 )
-def feed_implausible(feeds: Feeds) -> Mask:
+def feed_implausible(feeds: Feeds) -> Hits:
     """
     F with which a block takes hours.
 
@@ -64,4 +63,22 @@ def feed_implausible(feeds: Feeds) -> Mask:
         G13.1
     """
     # Compares nothing: how long a block takes is a formula.
-    return feeds.takes_too_long
+    return Hits(feeds.takes_too_long, worst=feeds.block_time)
+
+
+def details(hit: Hit, feeds: Feeds) -> Details:
+    from polarcheck.rules.wording.feeds import f_word
+    from polarcheck.rules.wording.written import code_of
+
+    word, minutes = f_word(hit), feeds.block_time[hit.row] / 60
+    is_above = " of line " in word
+    code = code_of(hit.trace.machine, "feed_per_minute")
+    return {
+        "feed": hit.trace.feedrate.feed_number[hit.row],
+        "time": feeds.block_time[hit.row],
+        "of_f_word": f", by {word}" if is_above else "",
+        "long_time": f"{minutes:.0f} minutes" if minutes < 120 else f"{minutes / 60:.0f} hours",
+        "instead": f"no code has said what F is: write {code} and an F per minute"
+        if feeds.mode_is_unknown[hit.row]
+        else f"write an F per minute{' there' if is_above else ''}",
+    }

@@ -5,16 +5,19 @@ from typing import TYPE_CHECKING
 from polarcheck.rules.rule import WARNING, rule
 
 if TYPE_CHECKING:
+    from polarcheck.columns.feed.feedrate import Feedrate
     from polarcheck.columns.feed.feeds import Feeds
     from polarcheck.columns.path.path import ProgrammedPath
     from polarcheck.foundation.arrays import Mask
+    from polarcheck.program.machines.machine import Machine
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     WARNING,
     "no code of feed per minute or per revolution stands before this F: where the lathe powers on with feed per "
-    "revolution it is {feedrate.feed_number:length} for each turn; write {per_minute} at the head of the program",
-    values={"feed_per_revolution": "feedrate.feed_number"},
+    "revolution it is {feed_per_revolution:length} for each turn; write {per_minute} at the head of the program",
+    values=("feed_per_revolution",),
     worse=("feed_per_revolution",),
     at=("F",),
     once="program",
@@ -82,3 +85,9 @@ def feed_mode_unknown(path: ProgrammedPath, feeds: Feeds) -> Mask:
         M30
     """
     return path.moves_at_feed & feeds.mode_is_unknown & feeds.is_too_high_per_revolution
+
+
+def details(hit: Hit, feedrate: Feedrate, machine: Machine) -> Details:
+    from polarcheck.rules.wording.written import code_of
+
+    return {"feed_per_revolution": feedrate.feed_number[hit.row], "per_minute": code_of(machine, "feed_per_minute")}

@@ -2,18 +2,21 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from polarcheck.foundation.states import FeedMode
 from polarcheck.rules.rule import WARNING, rule
 
 if TYPE_CHECKING:
+    from polarcheck.columns.feed.feedrate import Feedrate
     from polarcheck.columns.feed.feeds import Feeds
     from polarcheck.columns.path.path import ProgrammedPath
     from polarcheck.foundation.arrays import Mask
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     WARNING,
-    "{feedrate.feed:feed} here: {left_over}; write an F per minute",
-    values={"feed": "feedrate.feed"},
+    "{feed:feed} here: {left_over}; write an F per minute",
+    values=("feed",),
     worse=("-feed",),
     at=("F", "feed_per_minute", "line", "arc_clockwise", "arc_counterclockwise"),
     once="feed",
@@ -68,3 +71,16 @@ def feed_of_revolution_per_minute(path: ProgrammedPath, feeds: Feeds) -> Mask:
         G13.1
     """
     return path.moves_at_feed & (feeds.is_left_per_revolution | feeds.looks_per_revolution)
+
+
+def details(hit: Hit, feedrate: Feedrate, feeds: Feeds) -> Details:
+    from polarcheck.rules.wording.feeds import feed_word
+
+    row, written = hit.row, feed_word(hit)
+    is_asked = feedrate.entered_per_revolution[row] or feedrate.modal_feed_mode[row] == FeedMode.PER_REVOLUTION
+    left_over = f"{written} is per minute now, and as small as one per revolution"
+    if feeds.is_left_per_revolution[row]:
+        left_over = f"{written} was written for feed per revolution and is still in force"
+    elif is_asked and feedrate.takes_over_per_minute_only:
+        left_over = f"{written} is per minute, as every F of the mode on this control, whatever code is in force"
+    return {"feed": feedrate.feed[row], "left_over": left_over}

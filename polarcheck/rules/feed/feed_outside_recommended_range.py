@@ -2,19 +2,20 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from polarcheck.geometry.tolerances import SHARE
 from polarcheck.rules.rule import NOTE, rule
 
 if TYPE_CHECKING:
     from polarcheck.columns.feed.feed_ranges import FeedRanges
     from polarcheck.columns.feed.feeds import Feeds
     from polarcheck.foundation.arrays import Mask
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     NOTE,
-    "{feed_word} is {feedrate.programmed_feed:feed/feed_ranges.nearest_limit}, {against_ranges}; recommended in the "
-    "polar mode: {recommended}",
-    values={"feed": "feedrate.programmed_feed", "limit": "feed_ranges.nearest_limit"},
+    "{feed_word} is {feed:feed/limit}, {against_ranges}; recommended in the polar mode: {recommended}",
+    values=("feed", "limit"),
     worse=("feed:limit",),
     at=("F",),
     follows={"feed": ("c-feed-above-limit", "feed-of-revolution-per-minute")},
@@ -85,3 +86,57 @@ def feed_outside_recommended_range(feed_ranges: FeedRanges, feeds: Feeds) -> Mas
     between = feed_ranges.between & feed_ranges.without_contour
     outside = feed_ranges.too_low | feed_ranges.too_high | between | feed_ranges.too_high_for_cut
     return feeds.first_at_each(outside)
+
+
+def details(hit: Hit, feed_ranges: FeedRanges) -> Details:
+    from polarcheck.rules.wording.feeds import feed_word
+
+    return {
+        "feed": hit.trace.feedrate.programmed_feed[hit.row],
+        "limit": feed_ranges.nearest_limit[hit.row],
+        "feed_word": feed_word(hit),
+        "against_ranges": _against_ranges(hit, feed_ranges),
+        "recommended": _recommended(hit),
+    }
+
+
+def _against_ranges(hit: Hit, feed_ranges: FeedRanges) -> str:
+    """Which of the ranges F is outside of, and why the move is taken to cut."""
+    row, has_both = hit.row, len(feed_ranges.known_limits) > 2
+    if feed_ranges.too_low[row] or feed_ranges.too_high[row]:
+        side = "below" if feed_ranges.too_low[row] else "above"
+        return f"{side} {'both ranges' if has_both else 'the range'}"
+    if not feed_ranges.too_high_for_cut[row]:
+        return "between the two ranges"
+    fast = "a feed for positioning" if has_both else "above the range"
+    where = "between the two ranges" if feed_ranges.between[row] else fast
+    return f"{where}, and this move cuts: {_why_it_cuts(hit, feed_ranges)}"
+
+
+def _why_it_cuts(hit: Hit, feed_ranges: FeedRanges) -> str:
+    if feed_ranges.knows_stock[hit.row]:
+        return f"it leads into the stock of {hit.length(hit.trace.lengths.stock_diameter[hit.row])}"
+    if feed_ranges.is_of_fast_loop[hit.row]:
+        return "no move along this contour is slower"
+    return f"it is as near to the center as that of line {hit.line(feed_ranges.slow_row(hit.row))}"
+
+
+def _recommended(hit: Hit) -> str:
+    """The ranges of F that the builder recommends."""
+    feeds = hit.trace.machine.feed
+    ranges = (
+        (feeds.cutting_minimum, feeds.cutting_maximum, "cutting"),
+        (feeds.positioning_minimum, feeds.positioning_maximum, "positioning"),
+    )
+    return ", ".join(f"{_range(hit, least, most)} for {what}" for least, most, what in ranges if least == least)
+
+
+def _range(hit: Hit, least: float, most: float) -> str:
+    """Rounded to what lies within."""
+    import numpy as np
+
+    shown = hit.quantity(least).as_feed
+    places = 10.0 ** (4 if shown.inch else 3)
+    low = np.ceil(shown.length(least) * places * (1 - SHARE)) / places
+    high = np.floor(shown.length(most) * places * (1 + SHARE)) / places
+    return f"{low:.10g} to {high:.10g} {shown.unit}/min"

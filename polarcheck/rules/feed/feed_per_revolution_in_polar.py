@@ -10,12 +10,13 @@ if TYPE_CHECKING:
     from polarcheck.columns.feed.feeds import Feeds
     from polarcheck.columns.modes.mode import PolarMode
     from polarcheck.columns.path.path import ProgrammedPath
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     NOTE,
     "{of_turns} of a spindle that turns as the {rotary} axis now; {to_per_minute}",
-    values={"feed_per_revolution": "feedrate.feed_number"},
+    values=("feed_per_revolution",),
     at=("feed_per_revolution", "line", "arc_clockwise", "arc_counterclockwise"),
     follows={"block": ("feed-missing-in-polar",)},
 )
@@ -68,3 +69,34 @@ def feed_per_revolution_in_polar(mode: PolarMode, path: ProgrammedPath, feedrate
     high = mode.first_in_section(per_revolution & feeds.is_too_high_per_revolution)
     first = mode.first_in_section(per_revolution) & ~mode.anywhere_in_section(high)
     return graded(warning=high, note=first)
+
+
+def details(hit: Hit, feeds: Feeds) -> Details:
+    feed = hit.trace.feedrate.feed_number[hit.row]
+    is_too_high = feeds.is_too_high_per_revolution[hit.row]
+    return {
+        "feed_per_revolution": feed,
+        "of_turns": f"{hit.quantity(feed).as_feed:length} for each turn" if is_too_high else "feed per revolution",
+        "to_per_minute": _to_per_minute(hit),
+    }
+
+
+def _to_per_minute(hit: Hit) -> str:
+    """What has put feed per revolution in force, and what to write for feed per minute."""
+    from polarcheck.columns.filling import last_row
+    from polarcheck.rules.wording.written import code_of, executed_word
+
+    trace = hit.trace
+    if not trace.machine.codes("feed_per_minute"):
+        return "write feed per minute"
+    per_minute = code_of(trace.machine, "feed_per_minute")
+    since = int(last_row(trace.modal.sets("feed_mode"), trace.blocks.starts)[hit.row])
+    words = trace.blocks.code_indices(*trace.machine.codes("feed_per_revolution"))
+    words = words[trace.run.row[words] == since]
+    if since < 0 or not len(words):
+        return f"no code of feed per minute stands before it: write {per_minute}"
+    code = executed_word(trace.run, int(words[0]))
+    if since == hit.row:
+        return f"write {per_minute} for {code}"
+    in_force = f"{code} of line {hit.line(since)} is in force"
+    return f"{in_force}: write {per_minute} in its place, or behind it before the polar mode"

@@ -8,17 +8,17 @@ if TYPE_CHECKING:
     from polarcheck.columns.path.center import Center
     from polarcheck.columns.path.tool_center import ToolCenter
     from polarcheck.program.machines.machine import Machine
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     WARNING,
-    "tool center comes within {tool_center.nearest:length/keep_out} of the center of the {rotary} axis; "
-    "keep {keep_out:length/tool_center.nearest} away",
-    values={"nearest": "tool_center.nearest", "limit": "keep_out"},
+    "tool center comes within {nearest:length/limit} of the center of the {rotary} axis; "
+    "keep {limit:length/nearest} away",
+    values=("nearest", "limit"),
     worse=("-nearest",),
     gouges=True,
     at=("X", "U", "C", "H"),
-    worst="tool_center.c_feed",
     follows={"block": ("c-feed-above-limit", "start-up-sweeps-contour")},
 )
 def path_near_center(center: Center, tool_center: ToolCenter, machine: Machine) -> Hits:
@@ -67,4 +67,10 @@ def path_near_center(center: Center, tool_center: ToolCenter, machine: Machine) 
         G13.1
     """
     keep_out = max(abs(machine.polar.center_error), machine.limits.keep_out)
-    return Hits(center.cuts_off_center & (tool_center.nearest < keep_out), values={"keep_out": keep_out})
+    return Hits(
+        center.cuts_off_center & (tool_center.nearest < keep_out), values={"limit": keep_out}, worst=tool_center.c_feed
+    )
+
+
+def details(hit: Hit, tool_center: ToolCenter) -> Details:
+    return {"nearest": tool_center.nearest[hit.row]}

@@ -8,7 +8,9 @@ if TYPE_CHECKING:
     from polarcheck.columns.path.arcs import Arcs
     from polarcheck.columns.path.center import Center
     from polarcheck.columns.path.path import ProgrammedPath
+    from polarcheck.columns.path.tool_center import ToolCenter
     from polarcheck.foundation.arrays import Mask
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(ERROR, "tool center {meeting}", at=("X", "U", "C", "H"), doubts=(("move", "X before"),), gouges=True)
@@ -62,3 +64,16 @@ def path_through_center(path: ProgrammedPath, center: Center, arcs: Arcs) -> Mas
         G13.1
     """
     return path.cuts & center.meets_center & ~arcs.is_no_circle
+
+
+def details(hit: Hit, tool_center: ToolCenter, center: Center) -> Details:
+    import numpy as np
+
+    moves, stops, least = tool_center.moves, center.stops_at_center, hit.trace.lengths.least_step[hit.row]
+    at = np.flatnonzero((moves.row == hit.row) & (stops | (moves.nearest < least)))[-1]
+    axis = hit.rotary
+    if stops[at] or abs(moves.start[at]) < least:
+        verb = "stops" if stops[at] else "starts"
+        return {"meeting": f"{verb} at the center of the {axis} axis, where {axis} has no angle"}
+    through = f"passes through the center of the {axis} axis"
+    return {"meeting": f"{through}, where {axis} would have to turn by 180 deg at once"}

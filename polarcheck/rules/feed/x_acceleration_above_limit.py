@@ -2,36 +2,29 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from polarcheck.rules.rule import WARNING, rule
+from polarcheck.rules.rule import WARNING, Hits, rule
 
 if TYPE_CHECKING:
     from polarcheck.columns.feed.feedrate import Feedrate
     from polarcheck.columns.feed.feeds import Feeds
     from polarcheck.columns.path.center import Center
-    from polarcheck.foundation.arrays import Mask
+    from polarcheck.columns.path.tool_center import ToolCenter
+    from polarcheck.rules.hit import Details, Hit
+    from polarcheck.rules.rule import Needs
 
 
 @rule(
     WARNING,
-    "{linear} axis would need {tool_center.x_acceleration:whole/machine.limits.x_acceleration} mm/s2, {machine.title} "
-    "has {machine.limits.x_acceleration:whole/tool_center.x_acceleration}; "
-    "nearest distance {tool_center.nearest:length}, highest F here: {feeds.allowed_by_x_acceleration:highest}",
-    values={
-        "x_acceleration": "tool_center.x_acceleration",
-        "limit": "machine.limits.x_acceleration",
-        "feed": "feedrate.feed",
-        "nearest": "tool_center.nearest",
-        "highest_feed": "feed_by_x_acceleration",
-    },
+    "{linear} axis would need {x_acceleration:whole/limit} mm/s2, {title} "
+    "has {limit:whole/x_acceleration}; "
+    "nearest distance {nearest:length}, highest F here: {allowed:highest}",
+    values=("x_acceleration", "limit", "feed", "nearest", "highest_feed"),
     worse=("x_acceleration",),
     at=("F",),
-    needs=("tool_center.x_acceleration",),
-    where="feeds.is_limited_in_x_acceleration",
     once="feed",
-    worst="tool_center.x_acceleration",
     follows={"feed": ("c-feed-above-limit", "c-acceleration-above-limit"), "block": ("start-up-sweeps-contour",)},
 )
-def x_acceleration_above_limit(feedrate: Feedrate, center: Center, feeds: Feeds) -> Mask:
+def x_acceleration_above_limit(feedrate: Feedrate, center: Center, feeds: Feeds) -> Hits:
     """
     Feed too high for the acceleration of X.
 
@@ -61,4 +54,23 @@ def x_acceleration_above_limit(feedrate: Feedrate, center: Center, feeds: Feeds)
         X60.
         G13.1
     """
-    return center.cuts_off_center & (feedrate.feed > feeds.allowed_by_x_acceleration)
+    return Hits(
+        center.cuts_off_center & (feedrate.feed > feeds.allowed_by_x_acceleration),
+        worst=feeds.tool_center.x_acceleration,
+    )
+
+
+def details(hit: Hit, tool_center: ToolCenter, feeds: Feeds) -> Details:
+    allowed = hit.quantity(feeds.allowed_by_x_acceleration[hit.row])
+    return {
+        "x_acceleration": tool_center.x_acceleration[hit.row],
+        "limit": hit.trace.machine.limits.x_acceleration,
+        "feed": hit.trace.feedrate.feed[hit.row],
+        "nearest": tool_center.nearest[hit.row],
+        "highest_feed": allowed.highest_feed("highest"),
+        "allowed": allowed,
+    }
+
+
+def needs(tool_center: ToolCenter, feeds: Feeds) -> Needs:
+    return feeds.is_limited_in_x_acceleration, {"rate": tool_center.x_acceleration}

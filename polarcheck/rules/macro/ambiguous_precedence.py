@@ -7,13 +7,14 @@ from polarcheck.rules.rule import NOTE, rule
 if TYPE_CHECKING:
     from polarcheck.columns.words.macro_faults import Faults
     from polarcheck.foundation.arrays import Mask
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     NOTE,
-    "{expression} mixes {shown} with other operators: this control takes AND with * and /, OR and XOR with +"
+    "{expression} mixes {text} with other operators: this control takes AND with * and /, OR and XOR with +"
     " and -, others take them last; write the brackets",
-    values={"expression": "expression"},
+    values=("expression",),
     over="faults",
 )
 def ambiguous_precedence(faults: Faults) -> Mask:
@@ -42,3 +43,9 @@ def ambiguous_precedence(faults: Faults) -> Mask:
         M30
     """
     return faults.rule == "ambiguous-precedence"
+
+
+def details(hit: Hit, faults: Faults) -> Details:
+    from polarcheck.rules.wording.written import short
+
+    return {"expression": short(str(faults.values(hit.index)["expression"]))}

@@ -7,6 +7,8 @@ from polarcheck.rules.rule import ERROR, rule
 if TYPE_CHECKING:
     from polarcheck.columns.words.macro_faults import Faults
     from polarcheck.foundation.arrays import Mask
+    from polarcheck.program.reading.words import Text
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(ERROR, "{block} {reason}: the control stops here, and the result is not known", over="faults")
@@ -41,3 +43,10 @@ def arithmetic_error(faults: Faults) -> Mask:
         M30
     """
     return faults.rule == "arithmetic-error"
+
+
+def details(hit: Hit, faults: Faults, text: Text) -> Details:
+    from polarcheck.program.execution.programs import block_text
+    from polarcheck.rules.wording.written import short
+
+    return {"block": short(block_text(text, hit.place.block)), "reason": faults.reason(hit.index)}

@@ -7,13 +7,14 @@ from polarcheck.rules.rule import WARNING, rule
 if TYPE_CHECKING:
     from polarcheck.columns.words.macro_faults import Faults
     from polarcheck.foundation.arrays import Mask
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     WARNING,
     "N{number} stands {count} times in this program: the control takes the next one behind the jump, else the"
     " first; number the target of a jump once",
-    values={"number": "number", "count": "count"},
+    values=("number", "count"),
     worse=("count",),
     over="faults",
 )
@@ -48,3 +49,8 @@ def duplicate_sequence_number(faults: Faults) -> Mask:
         M30
     """
     return faults.rule == "duplicate-sequence-number"
+
+
+def details(hit: Hit, faults: Faults) -> Details:
+    values = faults.values(hit.index)
+    return {"number": round(float(values["number"])), "count": int(values["count"])}

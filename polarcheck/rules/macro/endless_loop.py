@@ -6,9 +6,10 @@ from polarcheck.rules.rule import ERROR, Hits, graded, rule
 
 if TYPE_CHECKING:
     from polarcheck.columns.words.macro_faults import Faults
+    from polarcheck.rules.hit import Details, Hit
 
 
-@rule(ERROR, "{shown} {reason}", over="faults")
+@rule(ERROR, "{text} {reason}", over="faults")
 def endless_loop(faults: Faults) -> Hits:
     """
     Program that never ends.
@@ -62,3 +63,7 @@ def endless_loop(faults: Faults) -> Hits:
     found = faults.rule == "endless-loop"
     bounded = found & faults.is_bound
     return graded(error=found & ~bounded, warning=bounded, undecided=bounded)
+
+
+def details(hit: Hit, faults: Faults) -> Details:
+    return {"reason": faults.reason(hit.index)}

@@ -7,6 +7,8 @@ from polarcheck.rules.rule import ERROR, rule
 if TYPE_CHECKING:
     from polarcheck.columns.words.macro_faults import Faults
     from polarcheck.foundation.arrays import Mask
+    from polarcheck.program.reading.words import Text
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(ERROR, "{block} finds no block: {reason}; the control stops here", over="faults")
@@ -46,3 +48,10 @@ def jump_target_missing(faults: Faults) -> Mask:
         M99 P30
     """
     return faults.rule == "jump-target-missing"
+
+
+def details(hit: Hit, faults: Faults, text: Text) -> Details:
+    from polarcheck.program.execution.programs import block_text
+    from polarcheck.rules.wording.written import short
+
+    return {"block": short(block_text(text, hit.place.block)), "reason": faults.reason(hit.index)}

@@ -7,12 +7,14 @@ from polarcheck.rules.rule import ERROR, rule
 if TYPE_CHECKING:
     from polarcheck.columns.words.macro_faults import Faults
     from polarcheck.foundation.arrays import Mask
+    from polarcheck.program.machines.machine import Machine
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     ERROR,
-    "{shown}: DO and END take the numbers 1 to {machine.macro.loop_numbers}; the control stops here",
-    values={"limit": "machine.macro.loop_numbers"},
+    "{text}: DO and END take the numbers 1 to {limit}; the control stops here",
+    values=("limit",),
     over="faults",
 )
 def loop_number_out_of_range(faults: Faults) -> Mask:
@@ -47,3 +49,7 @@ def loop_number_out_of_range(faults: Faults) -> Mask:
         M30
     """
     return faults.rule == "loop-number-out-of-range"
+
+
+def details(hit: Hit, machine: Machine) -> Details:
+    return {"limit": machine.macro.loop_numbers}

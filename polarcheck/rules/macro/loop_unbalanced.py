@@ -7,6 +7,8 @@ from polarcheck.rules.rule import ERROR, rule
 if TYPE_CHECKING:
     from polarcheck.columns.words.macro_faults import Faults
     from polarcheck.foundation.arrays import Mask
+    from polarcheck.program.machines.machine import Machine
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
@@ -61,3 +63,10 @@ def loop_unbalanced(faults: Faults) -> Mask:
         M30
     """
     return faults.rule == "loop-unbalanced"
+
+
+def details(hit: Hit, faults: Faults, machine: Machine) -> Details:
+    close = "close each IF, WHILE, FOR and LOOP with its own word, the inner one first"
+    if machine.macro.language == "custom-macro":
+        close = "close each loop with an END of its own number, the inner loop first"
+    return {"reason": faults.reason(hit.index), "closing_loops": close}

@@ -7,9 +7,10 @@ from polarcheck.rules.rule import ERROR, rule
 if TYPE_CHECKING:
     from polarcheck.columns.words.macro_faults import Faults
     from polarcheck.foundation.arrays import Mask
+    from polarcheck.rules.hit import Details, Hit
 
 
-@rule(ERROR, "{shown} {reason}; the control stops here", over="faults")
+@rule(ERROR, "{text} {reason}; the control stops here", over="faults")
 def macro_argument(faults: Faults) -> Mask:
     """
     Address that cannot hand over an argument.
@@ -38,3 +39,7 @@ def macro_argument(faults: Faults) -> Mask:
         M99
     """
     return faults.rule == "macro-argument"
+
+
+def details(hit: Hit, faults: Faults) -> Details:
+    return {"reason": faults.reason(hit.index)}

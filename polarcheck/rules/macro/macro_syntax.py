@@ -7,9 +7,10 @@ from polarcheck.rules.rule import ERROR, rule
 if TYPE_CHECKING:
     from polarcheck.columns.words.macro_faults import Faults
     from polarcheck.foundation.arrays import Mask
+    from polarcheck.rules.hit import Details, Hit
 
 
-@rule(ERROR, "{shown} {reason}; the control stops here", over="faults", once="name")
+@rule(ERROR, "{text} {reason}; the control stops here", over="faults", once="name")
 def macro_syntax(faults: Faults) -> Mask:
     """
     Macro statement that cannot be read.
@@ -43,3 +44,7 @@ def macro_syntax(faults: Faults) -> Mask:
         N10 M30
     """
     return faults.rule == "macro-syntax"
+
+
+def details(hit: Hit, faults: Faults) -> Details:
+    return {"reason": faults.reason(hit.index)}

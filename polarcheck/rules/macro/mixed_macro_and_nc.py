@@ -11,8 +11,7 @@ if TYPE_CHECKING:
 
 @rule(
     ERROR,
-    "{shown} needs a block of its own: NC words and a macro statement do not stand in one block; the control"
-    " stops here",
+    "{text} needs a block of its own: NC words and a macro statement do not stand in one block; the control stops here",
     over="faults",
 )
 def mixed_macro_and_nc(faults: Faults) -> Mask:

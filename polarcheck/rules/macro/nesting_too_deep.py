@@ -7,9 +7,10 @@ from polarcheck.rules.rule import ERROR, rule
 if TYPE_CHECKING:
     from polarcheck.columns.words.macro_faults import Faults
     from polarcheck.foundation.arrays import Mask
+    from polarcheck.rules.hit import Details, Hit
 
 
-@rule(ERROR, "{shown} {reason}; the control stops here", over="faults")
+@rule(ERROR, "{text} {reason}; the control stops here", over="faults")
 def nesting_too_deep(faults: Faults) -> Mask:
     """
     Calls, loops or brackets nested too deep.
@@ -45,3 +46,7 @@ def nesting_too_deep(faults: Faults) -> Mask:
         M99
     """
     return faults.rule == "nesting-too-deep"
+
+
+def details(hit: Hit, faults: Faults) -> Details:
+    return {"reason": faults.reason(hit.index)}

@@ -7,14 +7,10 @@ from polarcheck.rules.rule import ERROR, rule
 if TYPE_CHECKING:
     from polarcheck.columns.words.macro_faults import Faults
     from polarcheck.foundation.arrays import Mask
+    from polarcheck.rules.hit import Details, Hit
 
 
-@rule(
-    ERROR,
-    "{variable} cannot be assigned: {who_writes}; the control stops here",
-    values={"variable": "variable"},
-    over="faults",
-)
+@rule(ERROR, "{variable} cannot be assigned: {who_writes}; the control stops here", values=("variable",), over="faults")
 def read_only_variable(faults: Faults) -> Mask:
     """
     Assignment to a variable that only the control writes.
@@ -46,3 +42,13 @@ def read_only_variable(faults: Faults) -> Mask:
         M30
     """
     return faults.rule == "read-only-variable"
+
+
+def details(hit: Hit, faults: Faults) -> Details:
+    from polarcheck.rules.wording.macro import variable
+
+    is_vacant = not round(float(faults.values(hit.index)["number"]))
+    return {
+        "variable": variable(hit, faults),
+        "who_writes": "it is always vacant" if is_vacant else "only the control writes it, a program can read it",
+    }

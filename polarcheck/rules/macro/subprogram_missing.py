@@ -7,15 +7,10 @@ from polarcheck.rules.rule import WARNING, rule
 if TYPE_CHECKING:
     from polarcheck.columns.words.macro_faults import Faults
     from polarcheck.foundation.arrays import Mask
+    from polarcheck.rules.hit import Details, Hit
 
 
-@rule(
-    WARNING,
-    "{shown} {reason}",
-    values={"program": "missing_program"},
-    over="faults",
-    follows={"block": ("too-many-digits",)},
-)
+@rule(WARNING, "{text} {reason}", values=("program",), over="faults", follows={"block": ("too-many-digits",)})
 def subprogram_missing(faults: Faults) -> Mask:
     """
     Called program that is not found.
@@ -55,3 +50,7 @@ def subprogram_missing(faults: Faults) -> Mask:
         M99
     """
     return faults.rule == "subprogram-missing"
+
+
+def details(hit: Hit, faults: Faults) -> Details:
+    return {"program": str(faults.values(hit.index).get("program", "")), "reason": faults.reason(hit.index)}

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 @rule(
     NOTE,
-    "no run of the program comes to {shown}: the block before it goes elsewhere, and no jump leads here",
+    "no run of the program comes to {text}: the block before it goes elsewhere, and no jump leads here",
     over="faults",
 )
 def unreachable_block(faults: Faults) -> Mask:

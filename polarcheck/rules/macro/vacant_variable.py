@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 @rule(
     WARNING,
-    "{shown} has a vacant variable: the control drops this address; assign the variable before, or hand it"
+    "{text} has a vacant variable: the control drops this address; assign the variable before, or hand it"
     " over as an argument",
     over="faults",
     once="name",

@@ -2,24 +2,20 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from polarcheck.foundation.states import Units
 from polarcheck.rules.rule import WARNING, rule
 
 if TYPE_CHECKING:
     from polarcheck.columns.contour.tangency import Tangency
     from polarcheck.columns.path.arcs import Arcs
     from polarcheck.foundation.arrays import Mask
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     WARNING,
-    "{written_arc} turns a corner of {tangency.corner:whole} deg at an end of the arc; {needed_arc} would {fit_of_arc}",
-    values={
-        "corner": "tangency.corner",
-        "arc_radius": "radius_of_arc",
-        "arc_radius_needed": "radius_needed",
-        "word": "written_arc",
-        "word_needed": "needed_arc",
-    },
+    "{word} turns a corner of {corner:whole} deg at an end of the arc; {word_needed} would {fit}",
+    values=("corner", "arc_radius", "arc_radius_needed", "word", "word_needed"),
     worse=("corner",),
     at=("R", "I", "J"),
     once="misfit",
@@ -98,3 +94,41 @@ def arc_not_tangent(tangency: Tangency, arcs: Arcs) -> Mask:
         G13.1
     """
     return tangency.misfits & ~arcs.negative_stops
+
+
+def details(hit: Hit, arcs: Arcs, tangency: Tangency) -> Details:
+    from polarcheck.rules.wording.arcs import written_arc
+
+    by_radius, on_circle = arcs.by_radius[hit.row], tangency.on_circle[hit.row]
+    return {
+        "corner": tangency.corner[hit.row],
+        "arc_radius": arcs.radius[hit.row] if by_radius else None,
+        "arc_radius_needed": abs(tangency.radius_needed[hit.row]) if by_radius else None,
+        "word": written_arc(hit.trace, arcs, hit.row),
+        "word_needed": _needed(hit, by_radius, tangency),
+        "fit": "lie on one circle with the other arcs" if on_circle else "be tangent to the blocks before and after it",
+    }
+
+
+def _needed(hit: Hit, by_radius: bool, tangency: Tangency) -> str:
+    """The words with which the arc would be tangent to the blocks before and after it."""
+    from polarcheck.rules.wording.arcs import radius_word
+
+    trace, row = hit.trace, hit.row
+    inch = bool(trace.lengths.units[row] == Units.INCH)
+    scale, near = float(trace.lengths.scale[row]), float(tangency.radius_tolerance[row])
+    if by_radius:
+        return radius_word(trace.machine) + _plain(float(tangency.radius_needed[row]) / scale, near / scale, inch)
+    to_center = complex(tangency.center_needed[row] - trace.path.start[row])
+    if trace.path.frames is not None:
+        to_center /= complex(trace.path.frames.turn[row])
+    values = (_plain(value / scale, near / scale, inch) for value in (to_center.real, to_center.imag))
+    return " ".join(word + value for word, value in zip(trace.axes.center_words(row), values, strict=True))
+
+
+def _plain(value: float, near: float, inch: bool) -> str:
+    """A number as a program writes it, with as few digits as it has within a tolerance, and a point."""
+    most = 4 if inch else 3
+    digits = next((count for count in range(most) if abs(round(value, count) - value) <= near), most)
+    text = f"{value:.{digits}f}" + "." * (digits == 0)
+    return "0." if text.strip("-0.") == "" else text

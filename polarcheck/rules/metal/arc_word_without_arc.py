@@ -2,16 +2,19 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from polarcheck.foundation.states import Motion
 from polarcheck.rules.rule import WARNING, Hits, rule
 
 if TYPE_CHECKING:
     from polarcheck.columns.path.arc_words import ArcWords
+    from polarcheck.program.machines.machine import Machine
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     WARNING,
-    "{words_of_arc} in a straight move does nothing: {forgotten_arc}",
-    values={"word": "words_of_arc"},
+    "{word} in a straight move does nothing: {forgotten_arc}",
+    values=("word",),
     gouges=True,
     once="motion",
     subject="",
@@ -61,3 +64,15 @@ def arc_word_without_arc(arc_words: ArcWords) -> Hits:
     """
     # Compares nothing: the table looks for words that neither an arc nor a corner uses.
     return Hits(arc_words.rows, at=arc_words.at)
+
+
+def details(hit: Hit, arc_words: ArcWords, machine: Machine) -> Details:
+    from polarcheck.rules.wording.written import executed_word, move_code
+
+    codes = {Motion.CW: move_code(machine, "arc_clockwise"), Motion.CCW: move_code(machine, "arc_counterclockwise")}
+    sense = arc_words.sense(hit.row)
+    missing = f"{' or '.join(codes.values()) if sense is None else codes[sense]} is missing"
+    return {
+        "word": " ".join(executed_word(hit.trace.run, index) for index in hit.words),
+        "forgotten_arc": missing + (f", here and in {hit.count - 1} more blocks" if hit.count > 1 else ""),
+    }

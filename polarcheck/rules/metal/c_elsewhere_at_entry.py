@@ -7,13 +7,14 @@ from polarcheck.rules.rule import WARNING, rule
 if TYPE_CHECKING:
     from polarcheck.columns.modes.entry_angles import EntryAngles
     from polarcheck.foundation.arrays import Mask
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     WARNING,
-    "{rotary} stands where the section before has left it, {turned} from its {switch}: nobody has positioned it, and "
+    "{rotary} stands where the section before has left it, {turns} from its {switch}: nobody has positioned it, and "
     "this section comes out turned by as much; {to_position}",
-    values={"turned": "turned_by", "c_angle": "angle_at_entry"},
+    values=("turned", "c_angle"),
     worse=("turned",),
     over="sections",
     at=("on",),
@@ -74,3 +75,30 @@ def c_elsewhere_at_entry(entry_angles: EntryAngles) -> Mask:
     """
     # NaN where C stands as at the section before.
     return entry_angles.turned_by == entry_angles.turned_by
+
+
+def details(hit: Hit, entry_angles: EntryAngles) -> Details:
+    import numpy as np
+
+    enter, by = hit.trace.mode.sections.enter, abs(float(entry_angles.turned_by[hit.index]))
+    here, before = (float(hit.trace.path.c_angle[enter[at]]) for at in (hit.index, hit.index - 1))
+    return {
+        "turned": by,
+        "c_angle": here % 360,
+        "turns": f"{by:.4g} deg" if np.isnan(here - before) else f"at {here % 360:.4g} deg, {by:.4g} deg",
+        "to_position": _to_position(hit),
+    }
+
+
+def _to_position(hit: Hit) -> str:
+    """What to write where nobody has positioned C; of a mode that is left and entered again at once, what to delete."""
+    from polarcheck.rules.wording.written import switch
+
+    trace, sections = hit.trace, hit.trace.mode.sections
+    enter, last = int(sections.enter[hit.index]), int(sections.last[hit.index - 1])
+    begins = switch(trace.blocks, trace.machine, enter)
+    approach = f"write {hit.rotary} with the approach before {begins}"
+    if last >= len(trace) or trace.axes.moves[last:enter].any():
+        return approach
+    ends = f"{switch(trace.blocks, trace.machine, last)} of line {hit.line(last)}"
+    return f"nothing moves between {ends} and {begins}: delete both, or {approach}"

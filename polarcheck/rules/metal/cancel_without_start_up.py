@@ -6,14 +6,17 @@ from polarcheck.rules.rule import WARNING, rule
 
 if TYPE_CHECKING:
     from polarcheck.columns.contour.misplaced_ramps import MisplacedRamps
+    from polarcheck.columns.modes.offsets import ToolOffsets
     from polarcheck.foundation.arrays import Mask
+    from polarcheck.program.machines.machine import Machine
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     WARNING,
-    "{cancel} takes back a compensation that nothing has begun: the contour before it is cut with the cutter center on "
+    "{code} takes back a compensation that nothing has begun: the contour before it is cut with the cutter center on "
     "the programmed path, {wrong_by}; write {left_or_right} into the block that leads to the contour",
-    values={"code": "cancel", "radius": "radius_of_offset"},
+    values=("code", "radius"),
     worse=("radius",),
     gouges=True,
     at=("compensation_off",),
@@ -89,3 +92,15 @@ def cancel_without_start_up(misplaced_ramps: MisplacedRamps) -> Mask:
     """
     # Compares nothing: what stands beside a G40 as a second witness is looked for along the contour.
     return misplaced_ramps.cancel_alone
+
+
+def details(hit: Hit, offsets: ToolOffsets, machine: Machine) -> Details:
+    from polarcheck.rules.wording.ramps import wrong_by
+    from polarcheck.rules.wording.written import code_of
+
+    return {
+        "code": hit.cancel,
+        "radius": abs(offsets.radius_of_offset[hit.row]),
+        "wrong_by": wrong_by(hit),
+        "left_or_right": f"{code_of(machine, 'compensation_left')} or {code_of(machine, 'compensation_right')}",
+    }

@@ -6,12 +6,13 @@ from polarcheck.rules.rule import WARNING, Hits, rule
 
 if TYPE_CHECKING:
     from polarcheck.columns.metal.part_comments import PartComments
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     WARNING,
     "{comment_on_part} states {stated:length}; {what_is_made}",
-    values={"stated": "stated", "made": "size_made"},
+    values=("stated", "made"),
     worse=("stated:made",),
     subject="metal",
 )
@@ -197,3 +198,23 @@ def comment_contradicts_part(part_comments: PartComments) -> Hits:
     """
     # Compares nothing: the table looks for the sections that each comment speaks of, and measures what they make.
     return Hits(part_comments.contradicts, values={"stated": part_comments.stated})
+
+
+def details(hit: Hit, part_comments: PartComments) -> Details:
+    from polarcheck.columns.metal.part_comments import BEYOND, DEPTH, TURNED
+    from polarcheck.rules.wording.written import comment_in_words
+
+    contradiction, text = part_comments.contradictions[hit.row], hit.trace.text
+    line = int(text.blocks.line[text.comments.block[contradiction.comment]])
+    made = hit.length(contradiction.made)
+    whole = {
+        DEPTH: f"the cut is {made} deep",
+        TURNED: f"the program turns to {made} here",
+        BEYOND: f"the contour reaches beyond it, to {made}",
+    }
+    across = {"flats": "apart", "circle": "in diameter"}.get(contradiction.shape, "across flats")
+    return {
+        "made": contradiction.made,
+        "comment_on_part": f"{comment_in_words(text, contradiction.comment)} in line {line}",
+        "what_is_made": whole.get(contradiction.shape, f"the part here: {contradiction.shape} {made} {across}"),
+    }

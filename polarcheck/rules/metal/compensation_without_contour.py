@@ -7,13 +7,17 @@ from polarcheck.rules.rule import WARNING, rule
 if TYPE_CHECKING:
     from polarcheck.columns.contour.misplaced_ramps import MisplacedRamps
     from polarcheck.foundation.arrays import Mask
+    from polarcheck.rules.hit import Details, Hit
+
+#: Least number of blocks that cut between two offset cancels, for the first to be the one too many.
+_LEAST_BLOCKS = 2
 
 
 @rule(
     WARNING,
-    "{side} of this block is taken back by {early_cancel}: no block of a contour is cut with compensation; "
+    "{code} of this block is taken back by {early_cancel}: no block of a contour is cut with compensation; "
     "{where_ramps_belong}",
-    values={"code": "side", "other_line": "line_of_cancel"},
+    values=("code", "other_line"),
     gouges=True,
     at=("compensation_left", "compensation_right"),
     once="section",
@@ -77,3 +81,34 @@ def compensation_without_contour(misplaced_ramps: MisplacedRamps) -> Mask:
     """
     # Compares nothing: which moves follow each other is a column.
     return misplaced_ramps.cancelled_at_once
+
+
+def details(hit: Hit) -> Details:
+    from polarcheck.rules.wording.ramps import next_row
+
+    cancel = next_row(hit.trace.compensation.cancels, hit.row)
+    return {
+        "code": hit.side,
+        "other_line": hit.line(cancel),
+        "early_cancel": f"{hit.cancel} of line {hit.line(cancel)}",
+        "where_ramps_belong": _where_ramps_belong(hit, cancel),
+    }
+
+
+def _where_ramps_belong(hit: Hit, first: int) -> str:
+    """
+    What to write where an offset cancel follows a start-up at once.
+
+    A second G40 behind blocks that cut shows that the first stands there by mistake.
+    """
+    import numpy as np
+
+    from polarcheck.rules.wording.ramps import next_row
+
+    trace = hit.trace
+    of_section = trace.mode.section == trace.mode.section[hit.row]
+    again = next_row((trace.compensation.writes_cancel & of_section) | trace.compensation.starts_up, first)
+    is_second = again > first and not trace.compensation.starts_up[again]
+    if is_second and np.count_nonzero(trace.path.cuts[first:again]) >= _LEAST_BLOCKS:
+        return f"the contour behind it is left by {hit.cancel} of line {hit.line(again)}, so delete the earlier one"
+    return f"write {hit.side} into the block that leads to the contour, and {hit.cancel} into the one that leaves it"

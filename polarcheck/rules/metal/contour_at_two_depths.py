@@ -7,14 +7,16 @@ from polarcheck.rules.rule import WARNING, rule
 
 if TYPE_CHECKING:
     from polarcheck.columns.contour.contour_depths import ContourDepths
+    from polarcheck.columns.path.path import ProgrammedPath
     from polarcheck.foundation.arrays import Mask
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     WARNING,
-    "Z goes from {path.z_before:length} to {path.z:length} in the middle of the contour, which is closed only with "
+    "Z goes from {z_before:length} to {z:length} in the middle of the contour, which is closed only with "
     "both of its parts",
-    values={"z": "path.z", "z_before": "path.z_before"},
+    values=("z", "z_before"),
     worse=("z:z_before",),
     at=("Z", "W"),
     once="compensation",
@@ -70,3 +72,7 @@ def contour_at_two_depths(contour_depths: ContourDepths) -> Mask:
     """
     # Compares nothing: the table compares Z along each contour, where it closes only with all of its passes.
     return contour_depths.changes
+
+
+def details(hit: Hit, path: ProgrammedPath) -> Details:
+    return {"z": path.z[hit.row], "z_before": path.z_before[hit.row]}

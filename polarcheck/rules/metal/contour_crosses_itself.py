@@ -8,12 +8,13 @@ from polarcheck.rules.rule import WARNING, rule
 if TYPE_CHECKING:
     from polarcheck.columns.contour.crossings import Crossings
     from polarcheck.foundation.arrays import Mask
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     WARNING,
     "the contour {crosses_line}: look for a wrong point or sign, a wrong arc, or a block that stands twice",
-    values={"plane_x": "crossing.real", "plane_c": "crossing.imag", "other_line": "line_crossed"},
+    values=("plane_x", "plane_c", "other_line"),
     gouges=True,
     once="loop",
     subject="side",
@@ -98,3 +99,14 @@ def contour_crosses_itself(crossings: Crossings) -> Mask:
     """
     # Compares nothing: the table searches the moves of each pass for crossings.
     return crossings.crosses
+
+
+def details(hit: Hit, crossings: Crossings) -> Details:
+    into, place, back = crossings.of_row(hit.row)
+    crosses = "turns back along" if back else "crosses"
+    return {
+        "plane_x": place.real,
+        "plane_c": place.imag,
+        "other_line": hit.line(into),
+        "crosses_line": f"{crosses} line {hit.line(into)} at {hit.point_off_center(place)}",
+    }

@@ -7,12 +7,14 @@ from polarcheck.rules.rule import WARNING, Hits, rule
 
 if TYPE_CHECKING:
     from polarcheck.columns.metal.air_cuts import AirCuts
+    from polarcheck.columns.metal.bar import Bar
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     WARNING,
     "{in_air}",
-    values={"z": "path.z"},
+    values=("z",),
     once="section",
     subject="",
     follows={
@@ -103,3 +105,40 @@ def cut_in_air(air_cuts: AirCuts) -> Hits:
         G0 X100. Z50.
     """
     return Hits(air_cuts.reason > 0, follows={"program": air_cuts.is_outside_bar})
+
+
+def details(hit: Hit, air_cuts: AirCuts, bar: Bar) -> Details:
+    return {"z": hit.trace.path.z[hit.row], "in_air": _in_air(hit, air_cuts, bar)}
+
+
+def _in_air(hit: Hit, air_cuts: AirCuts, bar: Bar) -> str:
+    """What is cut in air, and the witness."""
+    from polarcheck.columns.metal.air_cuts import Reason
+    from polarcheck.rules.wording.metal import of_line
+
+    trace, row = hit.trace, hit.row
+    z, enter = f"Z{hit.number(trace.path.z[row])}", int(trace.mode.sections.enter[trace.mode.section[row]])
+    match air_cuts.reason[row]:
+        case Reason.DEPTH_MISSING:
+            why = "and the retract moves nowhere: a Z word for the depth is missing"
+            return f"cuts at {z}, where the section begins, {why}"
+        case Reason.SIGN_WRONG:
+            above = f"above Z{hit.number(trace.path.z[enter])} of the approach"
+            return f"cuts at {z}, {above}, and retracts towards the part: check the sign of Z"
+        case Reason.ABOVE_FACE:
+            first, last = bar.known.face_lines
+            lines = f"line {first}" if first == last else f"lines {first} to {last}"
+            source = f"turned in {lines}" if first else "[stock]"
+            face = hit.number(bar.known.face)
+            return f"cuts at {z}, above the face at Z{face} ({source}): the section takes nothing off"
+        case Reason.OTHERS_BELOW:
+            where = of_line(trace, trace.axes.commands_z, row)
+            if air_cuts.is_cut_below[row]:
+                return f"cuts at {z}{where}, and other cuts are at Z-{z[1:]}: the sign of Z is missing"
+            why = "and the program cuts below Z0 elsewhere: a Z word for the depth is missing"
+            return f"cuts at {z}{where}, where the section begins, {why}"
+        case Reason.OUTSIDE_BAR:
+            return f"runs outside the bar of {hit.length(bar.known.largest)} all the way: check the units and X"
+        case _:
+            angle = float(trace.path.c_angle[enter])
+            return f"this section was cut before at the same angle of C ({angle:g} deg): it takes nothing off; index C"

@@ -3,20 +3,19 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from polarcheck.rules.causes import OUT_OF_PLACE
-from polarcheck.rules.rule import WARNING, rule
+from polarcheck.rules.rule import WARNING, Hits, rule
 
 if TYPE_CHECKING:
     from polarcheck.columns.path.increments import Increments
-    from polarcheck.foundation.arrays import Mask
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     WARNING,
-    "the increments of this contour do not add up: it ends {increments.gap:length} beside its start, {drift}",
-    values={"gap": "increments.gap", "plane_x": "increments.begins.real", "plane_c": "increments.begins.imag"},
+    "the increments of this contour do not add up: it ends {gap:length} beside its start, {drift}",
+    values=("gap", "plane_x", "plane_c"),
     worse=("gap",),
     once="loop",
-    worst="increments.gap",
     subject="side",
     doubts=(("compensation", "loop"),),
     follows={
@@ -30,7 +29,7 @@ if TYPE_CHECKING:
         )
     },
 )
-def incremental_contour_not_closed(increments: Increments) -> Mask:
+def incremental_contour_not_closed(increments: Increments) -> Hits:
     """
     Contour in increments that ends beside its start.
 
@@ -68,4 +67,14 @@ def incremental_contour_not_closed(increments: Increments) -> Mask:
         G40 X100. H2.
         G13.1
     """
-    return increments.gap > 0
+    return Hits(increments.gap > 0, worst=increments.gap)
+
+
+def details(hit: Hit, increments: Increments) -> Details:
+    begins = complex(increments.begins[hit.row])
+    return {
+        "gap": increments.gap[hit.row],
+        "plane_x": begins.real,
+        "plane_c": begins.imag,
+        "drift": f"which is {hit.point_off_center(begins)}",
+    }

@@ -6,12 +6,13 @@ from polarcheck.rules.rule import WARNING, Hits, rule
 
 if TYPE_CHECKING:
     from polarcheck.columns.contour.regularity import Regularity
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     WARNING,
     "{misfit}: {remedy} it would be {as_meant}",
-    values={"word": "word_of_correction", "word_needed": "corrected_words"},
+    values=("word", "word_needed"),
     subject="",
     doubts=(("position", "loop"),),
     follows={
@@ -101,3 +102,24 @@ def nearly_regular_contour(regularity: Regularity) -> Hits:
     """
     # Compares nothing: the table searches the word or block with which a contour would be regular.
     return Hits(regularity.is_wrong, at=regularity.wrong_words)
+
+
+def details(hit: Hit, regularity: Regularity) -> Details:
+    from polarcheck.geometry.shapes.shape import polygon_name
+    from polarcheck.rules.wording.written import executed_word
+
+    correction = regularity.corrections[hit.row]
+    shape, why = correction.becomes, correction.why
+    word = executed_word(hit.trace.run, correction.word) if correction.word >= 0 else ""
+    remedy = f"with {correction.text}" if correction.text else "without it"
+    if shape.is_regular:
+        as_meant = f"a regular {polygon_name(shape.corners)}"
+    else:
+        as_meant = f"the same after each {360 / shape.order:g} deg" if shape.is_turned else "its own mirror image"
+    return {
+        "word": word,
+        "word_needed": correction.text,
+        "misfit": f"{word or 'this block'} does not fit the rest of the contour, {why}",
+        "remedy": f"{remedy} in a block before it" if correction.text and "a block" in why else remedy,
+        "as_meant": as_meant,
+    }

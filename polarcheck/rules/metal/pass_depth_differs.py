@@ -7,12 +7,13 @@ from polarcheck.rules.rule import WARNING, rule
 if TYPE_CHECKING:
     from polarcheck.columns.contour.pass_depths import PassDepths
     from polarcheck.foundation.arrays import Mask
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     WARNING,
     "this pass is cut at Z{depth}, out of step with the others of its contour: Z{in_step} would fit",
-    values={"z": "path.z", "z_needed": "pass_depths.expected"},
+    values=("z", "z_needed"),
     worse=("z:z_needed",),
     follows={"section": ("cut-in-air",)},
 )
@@ -74,3 +75,8 @@ def pass_depth_differs(pass_depths: PassDepths) -> Mask:
     """
     # Compares nothing: the passes of a contour have to be read together.
     return pass_depths.is_off
+
+
+def details(hit: Hit, pass_depths: PassDepths) -> Details:
+    z, needed = hit.trace.path.z[hit.row], pass_depths.expected[hit.row]
+    return {"z": z, "z_needed": needed, "depth": hit.number(z), "in_step": hit.number(needed)}

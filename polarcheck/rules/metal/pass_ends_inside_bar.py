@@ -6,13 +6,15 @@ from polarcheck.rules.rule import WARNING, rule
 
 if TYPE_CHECKING:
     from polarcheck.columns.contour.pass_ends import PassEnds
+    from polarcheck.columns.metal.bar import Bar
     from polarcheck.foundation.arrays import Mask
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     WARNING,
     "the pass begins outside the bar ({bar}) and ends inside it, at {end_of_pass}: metal stays beyond its end",
-    values={"stock": "bar.known.smallest", "plane_x": "path.end.real", "plane_c": "path.end.imag"},
+    values=("stock", "plane_x", "plane_c"),
     subject="metal",
     once="section",
     follows={"compensation": ("start-up-sweeps-contour", "nearly-regular-contour", "passes-differ")},
@@ -55,3 +57,16 @@ def pass_ends_inside_bar(pass_ends: PassEnds) -> Mask:
     """
     # Compares nothing: begin and end of a pass have to be read together.
     return pass_ends.leaves_metal
+
+
+def details(hit: Hit, bar: Bar) -> Details:
+    from polarcheck.rules.wording.metal import bar_in_words
+
+    end = complex(hit.trace.path.end[hit.row])
+    return {
+        "stock": bar.known.smallest,
+        "plane_x": end.real,
+        "plane_c": end.imag,
+        "bar": bar_in_words(hit, bar),
+        "end_of_pass": hit.point_off_center(end),
+    }

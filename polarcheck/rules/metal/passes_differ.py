@@ -2,18 +2,24 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from polarcheck.foundation.states import Motion
 from polarcheck.rules.causes import FAULTS_OF_CONTOUR
 from polarcheck.rules.rule import WARNING, rule
 
 if TYPE_CHECKING:
     from polarcheck.columns.contour.pass_differences import PassDifferences
+    from polarcheck.columns.path.arcs import Arcs
     from polarcheck.foundation.arrays import Mask
+    from polarcheck.rules.hit import Details, Hit
+
+#: Points farther from each other than this are two [mm].
+_APART = 1e-3
 
 
 @rule(
     WARNING,
     "{pass_difference}; all else in this pass is as in {other_pass}",
-    values={"difference": "distance_of_passes", "other_line": "line_of_other_pass"},
+    values=("difference", "other_line"),
     worse=("difference",),
     subject="side",
     follows={"twin": FAULTS_OF_CONTOUR},
@@ -81,3 +87,33 @@ def passes_differ(pass_differences: PassDifferences) -> Mask:
     """
     # Compares nothing: the table compares the moves of passes that begin and end at the same points.
     return pass_differences.differs
+
+
+def details(hit: Hit, arcs: Arcs, pass_differences: PassDifferences) -> Details:
+    path, difference = hit.trace.path, pass_differences.found[hit.row]
+    other = difference.other
+    return {
+        "difference": None if difference.is_missing else abs(path.end[hit.row] - path.end[other]),
+        "other_line": hit.line(other),
+        "pass_difference": f"a block as in line {hit.line(other)} is missing before this one"
+        if difference.is_missing
+        else _difference(hit, arcs, other),
+        "other_pass": f"lines {hit.line(difference.first)} to {hit.line(difference.last)}",
+    }
+
+
+def _difference(hit: Hit, arcs: Arcs, other: int) -> str:
+    """What is other in a row than in that of another pass."""
+    from polarcheck.rules.wording.arcs import written_arc
+
+    trace, row, line = hit.trace, hit.row, hit.line(other)
+    here, there = (complex(trace.path.end[at]) for at in (row, other))
+    if abs(here - there) > _APART:
+        ends = hit.point_off_center(here), hit.point_off_center(there)
+        return f"this block ends at {ends[0]}, line {line} at {ends[1]}"
+    if trace.path.is_arc[row] and trace.path.is_arc[other]:
+        lists = {int(Motion.CW): "arc_clockwise", int(Motion.CCW): "arc_counterclockwise"}
+        codes = [trace.machine.codes(lists[int(trace.axes.motion[at])])[0] for at in (row, other)]
+        arc, its = (f"{code} {written_arc(trace, arcs, at)}" for code, at in zip(codes, (row, other), strict=True))
+        return f"this block is {arc}, line {line} {its}"
+    return f"this block is another move than line {line}"

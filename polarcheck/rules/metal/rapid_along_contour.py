@@ -8,13 +8,14 @@ if TYPE_CHECKING:
     from polarcheck.columns.contour.rapid_contours import RapidContours
     from polarcheck.columns.modes.mode import PolarMode
     from polarcheck.program.machines.machine import Machine
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     WARNING,
     "rapid traverse along the contour at Z{tip}{more}: the cutter goes through what it should mill; write {line_code} "
     "with an F",
-    values={"z": "path.z"},
+    values=("z",),
     gouges=True,
     once="section",
     subject="",
@@ -88,3 +89,15 @@ def rapid_along_contour(rapid_contours: RapidContours, mode: PolarMode, machine:
     # Where G0 is no fault of its own it is the cause of nothing.
     forbidden = mode.in_polar & ("G0" not in machine.polar.allowed_codes)
     return Hits(rapid_contours.along_contour, follows={"section": forbidden})
+
+
+def details(hit: Hit) -> Details:
+    from polarcheck.rules.wording.written import move_code
+
+    z = hit.trace.path.z[hit.row]
+    return {
+        "z": z,
+        "tip": hit.number(z),
+        "more": f", and in {hit.count - 1} more moves" if hit.count > 1 else "",
+        "line_code": move_code(hit.trace.machine, "line"),
+    }

@@ -5,16 +5,17 @@ from typing import TYPE_CHECKING
 from polarcheck.rules.rule import ERROR, Hits, graded, rule
 
 if TYPE_CHECKING:
+    from polarcheck.columns.metal.bar import Bar
     from polarcheck.columns.metal.workpiece import Workpiece
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     ERROR,
-    "{way} takes the cutter, R {cutter}, in rapid traverse into {bar_there} down to Z{depth}; {way_down}",
-    values={"radius": "workpiece.radius", "z": "path.z", "stock": "bar_in_the_way"},
+    "{block} takes the cutter, R {cutter}, in rapid traverse into {bar_there} down to Z{depth}; {way_down}",
+    values=("radius", "z", "stock"),
     worse=("-z",),
     gouges=True,
-    where="workpiece.is_mill",
     once="tool call",
     follows={
         "motion": ("rapid-in-polar", "rapid-along-contour"),
@@ -90,3 +91,36 @@ def rapid_plunge_into_stock(workpiece: Workpiece) -> Hits:
         warning=hits | workpiece.precedes_idle_plunge,
         undecided=may_miss,
     )
+
+
+def details(hit: Hit, workpiece: Workpiece, bar: Bar) -> Details:
+    from polarcheck.rules.wording.metal import bar_in_words
+
+    z, radius = hit.trace.path.z[hit.row], workpiece.radius[hit.row]
+    in_bar = workpiece.hits_bar[hit.row]
+    return {
+        "radius": radius,
+        "z": z,
+        "stock": bar.known.smallest if in_bar else None,
+        "cutter": hit.length(radius),
+        "bar_there": f"the bar ({bar_in_words(hit, bar)})" if in_bar else "what the pocket still has to take off",
+        "depth": hit.number(z),
+        "way_down": _way_down(hit, bar, radius, in_bar),
+    }
+
+
+def _way_down(hit: Hit, bar: Bar, radius: float, in_bar: bool) -> str:
+    """What to write where rapid traverse leads down into the bar."""
+    import numpy as np
+
+    from polarcheck.rules.wording.metal import of_line
+    from polarcheck.rules.wording.written import code_of
+
+    trace, row = hit.trace, hit.row
+    path, line = trace.path, code_of(trace.machine, "line")
+    if trace.axes.moves_plane[row] or path.x[row] != path.x_before[row]:
+        return f"write a Z above the metal here, and go down to Z{hit.number(path.z[row])} with {line} and a feed"
+    if not in_bar or np.isnan(radius):
+        return f"write {line} with a feed"
+    clear, where = hit.quantity(bar.known.largest / 2 + radius), of_line(trace, trace.blocks.has("X", "U"), row, row)
+    return f"write {line} with a feed, or stand outside the bar: {clear:diameter} or more in X{where}"

@@ -6,15 +6,15 @@ from polarcheck.rules.rule import ERROR, Hits, graded, rule
 
 if TYPE_CHECKING:
     from polarcheck.columns.metal.workpiece import Workpiece
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     ERROR,
-    "{way} takes the cutter, R {cutter}, {height} {through} the finished part; retract Z above the part first",
-    values={"radius": "workpiece.radius", "z": "height_of_move"},
+    "{block} takes the cutter, R {cutter}, {height} {through} the finished part; retract Z above the part first",
+    values=("radius", "z"),
     worse=("-z",),
     gouges=True,
-    where="workpiece.is_mill",
     once="tool call",
     follows={
         "block": ("uncompensated-cut-into-part", "rapid-plunge-into-stock"),
@@ -75,3 +75,15 @@ def rapid_through_part(workpiece: Workpiece) -> Hits:
     """
     error = workpiece.hits_part & workpiece.is_rapid & ~workpiece.may_miss_part
     return graded(error=error, warning=workpiece.hits_part, undecided=workpiece.may_miss_part)
+
+
+def details(hit: Hit, workpiece: Workpiece) -> Details:
+    from polarcheck.rules.wording.metal import height, through, z_of_move
+
+    return {
+        "radius": workpiece.radius[hit.row],
+        "z": z_of_move(hit),
+        "cutter": hit.length(workpiece.radius[hit.row]),
+        "height": height(hit),
+        "through": through(hit, workpiece),
+    }

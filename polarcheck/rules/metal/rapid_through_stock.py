@@ -2,19 +2,21 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from polarcheck.foundation.states import Motion
 from polarcheck.rules.rule import ERROR, Hits, graded, rule
 
 if TYPE_CHECKING:
+    from polarcheck.columns.metal.bar import Bar
     from polarcheck.columns.metal.workpiece import Workpiece
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     ERROR,
-    "{way} takes the cutter, R {cutter}, {height} {through} what stands of the bar ({bar}); {at_depth}",
-    values={"radius": "workpiece.radius", "z": "height_of_move", "stock": "bar.known.smallest"},
+    "{block} takes the cutter, R {cutter}, {height} {through} what stands of the bar ({bar}); {at_depth}",
+    values=("radius", "z", "stock"),
     worse=("-z",),
     gouges=True,
-    where="workpiece.is_mill",
     once="tool call",
     follows={
         "block": ("uncompensated-cut-into-part", "rapid-through-part"),
@@ -75,3 +77,31 @@ def rapid_through_stock(workpiece: Workpiece) -> Hits:
     hits = workpiece.hits_bar & ~workpiece.plunges
     may_miss = workpiece.may_miss_bar
     return graded(error=hits & workpiece.bar_is_certain & ~may_miss, warning=hits, undecided=may_miss)
+
+
+def details(hit: Hit, workpiece: Workpiece, bar: Bar) -> Details:
+    from polarcheck.rules.wording.metal import bar_in_words, height, through, z_of_move
+
+    return {
+        "radius": workpiece.radius[hit.row],
+        "z": z_of_move(hit),
+        "stock": bar.known.smallest,
+        "cutter": hit.length(workpiece.radius[hit.row]),
+        "height": height(hit),
+        "through": through(hit, workpiece),
+        "bar": bar_in_words(hit, bar),
+        "at_depth": _at_depth(hit),
+    }
+
+
+def _at_depth(hit: Hit) -> str:
+    """What to write where rapid traverse leads through metal: a feed where G0 is still in force, or a retract."""
+    from polarcheck.rules.wording.metal import of_line
+    from polarcheck.rules.wording.written import code_of
+
+    trace, row = hit.trace, hit.row
+    rapid = trace.blocks.listed("rapid")
+    if not trace.mode.in_polar[row] or trace.axes.motion[row] != Motion.RAPID or rapid[row]:
+        return "retract Z first"
+    where, line = of_line(trace, rapid, row, row), code_of(trace.machine, "line")
+    return f"{code_of(trace.machine, 'rapid')}{where} is still in force: write {line} here, or retract Z first"

@@ -6,15 +6,17 @@ from polarcheck.rules.rule import WARNING, rule
 
 if TYPE_CHECKING:
     from polarcheck.columns.contour.misplaced_ramps import MisplacedRamps
+    from polarcheck.columns.modes.offsets import ToolOffsets
     from polarcheck.columns.path.path import ProgrammedPath
     from polarcheck.foundation.arrays import Mask
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     WARNING,
-    "{side} begins late: {block_before} cuts the contour without compensation, with the cutter center on the "
+    "{code} begins late: {block_before} cuts the contour without compensation, with the cutter center on the "
     "programmed path, {wrong_by}; {where_to_begin}",
-    values={"code": "side", "radius": "radius_of_offset", "other_line": "line_before"},
+    values=("code", "radius", "other_line"),
     worse=("radius",),
     gouges=True,
     at=("compensation_left", "compensation_right"),
@@ -69,3 +71,21 @@ def start_up_after_contour(path: ProgrammedPath, misplaced_ramps: MisplacedRamps
     """
     # A start-up on an arc has a rule of its own.
     return (misplaced_ramps.begun_without >= 0) & ~path.is_arc
+
+
+def details(hit: Hit, offsets: ToolOffsets, misplaced_ramps: MisplacedRamps) -> Details:
+    from polarcheck.rules.wording.ramps import ramp_at_rest, wrong_by
+    from polarcheck.rules.wording.written import block_and_line
+
+    begun = int(misplaced_ramps.begun_without[hit.row])
+    at_rest = ramp_at_rest(hit).removeprefix("; ")
+    return {
+        "code": hit.side,
+        "radius": abs(offsets.radius_of_offset[hit.row]),
+        "other_line": hit.line(begun),
+        "block_before": block_and_line(hit.trace, begun),
+        "wrong_by": wrong_by(hit),
+        "where_to_begin": f"{at_rest}: begin outside the contour"
+        if at_rest
+        else f"write {hit.side} into the block that leads to the contour",
+    }

@@ -6,19 +6,16 @@ from polarcheck.rules.rule import WARNING, rule
 
 if TYPE_CHECKING:
     from polarcheck.columns.contour.misplaced_ramps import MisplacedRamps
+    from polarcheck.columns.path.path import ProgrammedPath
     from polarcheck.foundation.arrays import Mask
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     WARNING,
-    "the start-up ends at {ramp_end}, and the contour at {contour_end_there}: with {x_meant} here, or {x_of_ramp} in "
-    "line {line_of_end}, the contour would be closed; as it stands the ramp {leads_where}",
-    values={
-        "plane_x": "path.end.real",
-        "plane_c": "path.end.imag",
-        "x_needed": "x_of_contour",
-        "other_line": "line_of_end",
-    },
+    "the start-up ends at {ramp_end}, and the contour at {contour_end}: with {x_meant} here, or {x_of_ramp} in "
+    "line {other_line}, the contour would be closed; as it stands the ramp {leads_where}",
+    values=("plane_x", "plane_c", "x_needed", "other_line"),
     gouges=True,
     at=("X", "U"),
     once="loop",
@@ -71,3 +68,26 @@ def start_up_off_contour(misplaced_ramps: MisplacedRamps) -> Mask:
     """
     # NaN where a start-up ends on its contour.
     return misplaced_ramps.x_of_contour == misplaced_ramps.x_of_contour
+
+
+def details(hit: Hit, path: ProgrammedPath, misplaced_ramps: MisplacedRamps) -> Details:
+    import numpy as np
+
+    from polarcheck.rules.wording.ramps import next_row
+
+    end, x = complex(path.end[hit.row]), float(misplaced_ramps.x_of_contour[hit.row])
+    cancel = next_row(hit.trace.compensation.cancels, hit.row)
+    writes = np.flatnonzero(hit.trace.blocks.has("X", "U")[:cancel])
+    begins, ends, meant = abs(path.start[hit.row].real), abs(end.real), abs(x)
+    goes_past = (ends - meant) * (meant - begins) > 0
+    return {
+        "plane_x": end.real,
+        "plane_c": end.imag,
+        "x_needed": x,
+        "other_line": hit.line(int(writes[-1]) if len(writes) else hit.row),
+        "ramp_end": hit.point(end),
+        "contour_end": hit.point(complex(x, end.imag)),
+        "x_meant": hit.point(complex(x, 0.0)).split()[0],
+        "x_of_ramp": hit.point(complex(end.real, 0.0)).split()[0],
+        "leads_where": "leads through what the contour keeps" if goes_past else "ends before the contour",
+    }

@@ -5,13 +5,15 @@ from typing import TYPE_CHECKING
 from polarcheck.rules.rule import WARNING, Hits, rule
 
 if TYPE_CHECKING:
+    from polarcheck.columns.modes.tools import CalledTools
     from polarcheck.columns.words.tool_comments import ToolComments
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     WARNING,
-    "{T} calls tool {tools.tool:whole}, the comment beside it names T{named}: {quoted}",
-    values={"tool": "tools.tool", "tool_named": "named", "comment": "quoted"},
+    "{T} calls tool {tool:whole}, the comment beside it names T{tool_named}: {comment}",
+    values=("tool", "tool_named", "comment"),
     at=("T",),
 )
 def tool_contradicts_comment(tool_comments: ToolComments) -> Hits:
@@ -71,4 +73,11 @@ def tool_contradicts_comment(tool_comments: ToolComments) -> Hits:
         T0709 (T9 END MILL D12)
         M30
     """
-    return Hits(tool_comments.comment >= 0, values={"named": tool_comments.named_tool})
+    return Hits(tool_comments.comment >= 0, values={"tool_named": tool_comments.named_tool})
+
+
+def details(hit: Hit, tools: CalledTools, tool_comments: ToolComments) -> Details:
+    from polarcheck.rules.wording.written import comment_in_words
+
+    comment = comment_in_words(hit.trace.text, int(tool_comments.comment[hit.row]))
+    return {"tool": tools.tool[hit.row], "comment": comment}

@@ -8,23 +8,18 @@ from polarcheck.rules.rule import ERROR, Hits, rule
 if TYPE_CHECKING:
     from polarcheck.columns.path.arcs import Arcs
     from polarcheck.program.machines.machine import Machine
+    from polarcheck.rules.hit import Details, Hit
+    from polarcheck.rules.rule import Needs
 
 
 @rule(
     ERROR,
-    "the arc starts {arcs.start_radius:length/arcs.end_radius} from its center and "
-    "ends {arcs.end_radius:length/arcs.start_radius} from it; "
+    "the arc starts {start_radius:length/end_radius} from its center and "
+    "ends {end_radius:length/start_radius} from it; "
     "{tolerance:length} of difference is allowed",
-    values={
-        "difference": "difference_of_radii",
-        "start_radius": "arcs.start_radius",
-        "end_radius": "arcs.end_radius",
-        "tolerance": "tolerance",
-    },
+    values=("difference", "start_radius", "end_radius", "tolerance"),
     worse=("difference",),
     at=("X", "U", "C", "H", "I", "J"),
-    needs=("arcs.end_radius",),
-    where="arcs.by_center",
     doubts=END_IN_DOUBT,
     follows={
         "block": ("arc-center-on-path",),
@@ -72,3 +67,12 @@ def arc_end_off_circle(arcs: Arcs, machine: Machine) -> Hits:
     """
     tolerance = machine.arcs.tolerance
     return Hits(abs(arcs.start_radius - arcs.end_radius) > tolerance, values={"tolerance": tolerance})
+
+
+def details(hit: Hit, arcs: Arcs) -> Details:
+    start, end = arcs.start_radius[hit.row], arcs.end_radius[hit.row]
+    return {"difference": abs(start - end), "start_radius": start, "end_radius": end}
+
+
+def needs(arcs: Arcs) -> Needs:
+    return arcs.by_center, {"position": arcs.end_radius}

@@ -2,24 +2,26 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from polarcheck.foundation.states import MM_PER_INCH, Units
 from polarcheck.rules.causes import END_IN_DOUBT
 from polarcheck.rules.rule import ERROR, rule
 
 if TYPE_CHECKING:
     from polarcheck.columns.path.arcs import Arcs
+    from polarcheck.columns.path.lengths import Lengths
     from polarcheck.foundation.arrays import Mask
     from polarcheck.program.machines.machine import Machine
+    from polarcheck.rules.hit import Details, Hit
+    from polarcheck.rules.rule import Needs
 
 
 @rule(
     ERROR,
-    "a radius of {arcs.radius:length} does not reach: start and end are {arcs.chord:length} apart, "
+    "a radius of {arc_radius:length} does not reach: start and end are {chord:length} apart, "
     "least radius {least_radius}",
-    values={"arc_radius": "arcs.radius", "arc_radius_needed": "half_chord", "chord": "arcs.chord"},
+    values=("arc_radius", "arc_radius_needed", "chord"),
     worse=("arc_radius:arc_radius_needed",),
     at=("X", "U", "C", "H", "R"),
-    needs=("arcs.chord",),
-    where="arcs.by_radius",
     once="misfitting arcs",
     doubts=END_IN_DOUBT,
     follows={"loop": ("number-without-point",)},
@@ -62,3 +64,22 @@ def arc_radius_too_small(arcs: Arcs, machine: Machine) -> Mask:
         G13.1
     """
     return arcs.chord > 2 * abs(arcs.radius) + machine.arcs.tolerance
+
+
+def details(hit: Hit, arcs: Arcs, lengths: Lengths) -> Details:
+    import numpy as np
+
+    chord, inch = float(arcs.chord[hit.row]), lengths.units[hit.row] == Units.INCH
+    # Rounded up to what the program can write.
+    least, places = chord / (2 * MM_PER_INCH if inch else 2), 4 if inch else 3
+    text = f"{np.ceil(least * 10**places - 1e-6) / 10**places:.{places}f}".rstrip("0").rstrip(".")
+    return {
+        "arc_radius": arcs.radius[hit.row],
+        "arc_radius_needed": chord / 2,
+        "chord": chord,
+        "least_radius": f"{text} {'inch' if inch else 'mm'}",
+    }
+
+
+def needs(arcs: Arcs) -> Needs:
+    return arcs.by_radius, {"position": arcs.chord}

@@ -7,6 +7,7 @@ from polarcheck.rules.rule import WARNING, Hits, graded, rule
 if TYPE_CHECKING:
     from polarcheck.columns.path.arcs import Arcs
     from polarcheck.program.machines.machine import Machine
+    from polarcheck.rules.hit import Details, Hit
 
 #: What the last digit of the coordinates may turn an arc by [deg].
 LAST_DIGIT = 0.1
@@ -14,9 +15,9 @@ LAST_DIGIT = 0.1
 
 @rule(
     WARNING,
-    "arc of {arcs.sweep:whole/machine.arcs.sweep_limit} deg; {machine.title} takes "
-    "{fewer}{machine.arcs.sweep_limit:whole/arcs.sweep} deg in one block; write it as several arcs{or_short_arc}",
-    values={"sweep": "arcs.sweep", "limit": "machine.arcs.sweep_limit"},
+    "arc of {sweep:whole/limit} deg; {title} takes "
+    "{fewer}{limit:whole/sweep} deg in one block; write it as several arcs{or_short_arc}",
+    values=("sweep", "limit"),
     worse=("sweep",),
     gouges=True,
     at=("X", "U", "C", "H", "I", "J", "R"),
@@ -83,3 +84,15 @@ def arc_sweep_above_limit(arcs: Arcs, machine: Machine) -> Hits:
     above = (arcs.sweep > limit + LAST_DIGIT) & ~arcs.is_larger_by_word
     exactly = arcs.by_radius & (arcs.sweep > limit - LAST_DIGIT) & ~arcs.is_larger_by_word
     return graded(error=above & (not is_taken), warning=above | (exactly & (not is_taken)))
+
+
+def details(hit: Hit, arcs: Arcs, machine: Machine) -> Details:
+    word, sweep = machine.arcs.radius_word, arcs.sweep[hit.row]
+    or_short_arc = f", or without the sign of {word}, which makes it one of {360 - sweep:.0f} deg"
+    is_negative = arcs.by_radius[hit.row] and hit.trace.blocks.word(word)[hit.row] < 0
+    return {
+        "sweep": sweep,
+        "limit": machine.arcs.sweep_limit,
+        "fewer": "" if machine.arcs.takes_sweep_limit else "less than ",
+        "or_short_arc": or_short_arc if is_negative else "",
+    }

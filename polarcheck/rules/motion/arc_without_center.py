@@ -9,11 +9,13 @@ if TYPE_CHECKING:
     from polarcheck.columns.path.arcs import Arcs
     from polarcheck.columns.path.path import ProgrammedPath
     from polarcheck.foundation.arrays import Mask
+    from polarcheck.program.machines.machine import Machine
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     ERROR,
-    "arc without {machine.arcs.radius_word}, {centers}{more_arcs}",
+    "arc without {radius_word}, {centers}{more_arcs}",
     at=("arc_clockwise", "arc_counterclockwise", "X", "U", "C", "H"),
     once="motion",
     subject="",
@@ -58,3 +60,8 @@ def arc_without_center(path: ProgrammedPath, arcs: Arcs) -> Mask:
     """
     has_center = arcs.by_radius | arcs.by_center | arcs.has_word_of_other_plane
     return path.is_arc & ~has_center & ~arcs.ends_at_start
+
+
+def details(hit: Hit, machine: Machine) -> Details:
+    more = f"; so {'is' if hit.count == 2 else 'are'} {hit.count - 1} more up to the next code of motion"
+    return {"radius_word": machine.arcs.radius_word, "more_arcs": more if hit.count > 1 else ""}

@@ -9,12 +9,13 @@ if TYPE_CHECKING:
     from polarcheck.columns.path.arcs import Arcs
     from polarcheck.columns.path.axes import PlaneAxes
     from polarcheck.columns.path.path import ProgrammedPath
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     ERROR,
     "{word} is not of the polar plane; the center is {center}",
-    values={"word": "word"},
+    values=("word",),
     subject="",
     doubts=NO_SUCH_ARC,
     follows={"block": ("arc-off-polar-plane",), "section": ("linear-axis-never-programmed",)},
@@ -56,3 +57,8 @@ def arc_word_of_other_plane(axes: PlaneAxes, path: ProgrammedPath, arcs: Arcs) -
         G13.1
     """
     return Hits(path.is_arc & arcs.has_word_of_other_plane, at=axes.other_center_words)
+
+
+def details(hit: Hit, axes: PlaneAxes) -> Details:
+    along, across = axes.center_words(hit.row)
+    return {"center": f"{along} along {hit.linear} and {across} along {hit.virtual}"}

@@ -6,9 +6,12 @@ from polarcheck.rules.causes import SECTION_READ_OTHERWISE
 from polarcheck.rules.rule import WARNING, rule
 
 if TYPE_CHECKING:
-    from polarcheck.columns.contour.regularity import Regularity
+    from polarcheck.columns.contour.regularity import Regularity, XReading
+    from polarcheck.columns.modes.mode import PolarMode
     from polarcheck.columns.path.arcs import Arcs
     from polarcheck.foundation.arrays import Mask
+    from polarcheck.rules.hit import Details, Hit
+    from polarcheck.rules.other_machine import OtherMachine
 
 
 @rule(
@@ -92,3 +95,31 @@ def diameter_radius_mixed(arcs: Arcs, regularity: Regularity) -> Mask:
         G13.1
     """
     return arcs.x_is_misread | regularity.x_is_misread
+
+
+def details(hit: Hit, arcs: Arcs, regularity: Regularity, mode: PolarMode, other_machine: OtherMachine) -> Details:
+    is_diameter = bool(hit.trace.lengths.x_factor[hit.row] < 1)
+    read, meant = ("diameter", "radius") if is_diameter else ("radius", "diameter")
+    reading = None if arcs.x_is_misread[hit.row] else regularity.x_readings.get(int(mode.section[hit.row]))
+    written_for = other_machine.text or f"; write X as a {read}"
+    if reading is None:
+        text = f"no arc of this section fits with X read as a {read}, all fit with X as a {meant}"
+        return {"misfit_of_x": f"{text}{written_for}"}
+    x, c = ("twice", "half") if reading.factor > 1 else ("half", "twice")
+    if (reading.factor > 1) == is_diameter:
+        return {"misfit_of_x": f"{_misfit(reading, x)}{written_for}, or {hit.virtual} {c} as large"}
+    return {"misfit_of_x": f"{_misfit(reading, x)}; write X {x} or {hit.virtual} {c} as large"}
+
+
+def _misfit(reading: XReading, large: str) -> str:
+    """How the section does not fit as X is read, and how it would."""
+    from polarcheck.geometry.shapes.shape import polygon_name
+
+    becomes = reading.becomes
+    if becomes is None:
+        return f"no arc of this section is tangent as it is written, all are with X {large} as large"
+    if becomes.is_regular:
+        polygon = polygon_name(becomes.corners)
+        return f"with all X {large} as large the contour would be a regular {polygon}, as it is written it is not"
+    turn = f"{360 / becomes.order:g} deg"
+    return f"with all X {large} as large the contour would be the same after each {turn}, now it is not"

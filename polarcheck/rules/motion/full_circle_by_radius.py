@@ -10,7 +10,9 @@ if TYPE_CHECKING:
     from polarcheck.columns.path.axes import PlaneAxes
     from polarcheck.columns.path.path import ProgrammedPath
     from polarcheck.foundation.arrays import Mask
+    from polarcheck.program.execution.run import Run
     from polarcheck.program.machines.machine import Machine
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
@@ -59,3 +61,22 @@ def full_circle_by_radius(
     """
     has_radius = arcs.in_force & blocks.has(machine.arcs.radius_word)
     return has_radius & ~path.moves_z & (~axes.moves_plane | arcs.ends_at_start)
+
+
+def details(hit: Hit, path: ProgrammedPath, run: Run) -> Details:
+    import numpy as np
+
+    before = np.flatnonzero(path.travels[: hit.row])
+    is_twice = len(before) > 0 and _words(run, int(before[-1])) == _words(run, hit.row)
+    full_circle = f"a full circle needs {hit.centers}, another arc another end"
+    return {"of_full_circle": "the block stands twice, delete one" if is_twice else full_circle}
+
+
+def _words(run: Run, row: int) -> list[str]:
+    """The words of a row as they are written, without its N word."""
+    import numpy as np
+
+    from polarcheck.rules.wording.written import executed_word
+
+    at = range(*np.searchsorted(run.row, (row, row + 1)).tolist())
+    return [executed_word(run, index) for index in at if chr(int(run.words.address[index])) != "N"]

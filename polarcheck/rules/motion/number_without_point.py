@@ -2,16 +2,21 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from polarcheck.foundation.states import Units
 from polarcheck.rules.rule import WARNING, Hits, graded, rule
 
 if TYPE_CHECKING:
     from polarcheck.columns.words.unpointed import Unpointed
+    from polarcheck.rules.hit import Details, Hit
+
+#: F without a point in an inch program [inch/min], parameter 1403#0 MIF = 0; in mm it is whole mm/min.
+_FEED_INCREMENT_INCH = 0.01
 
 
 @rule(
     WARNING,
-    "{text} has no decimal point: the control takes it as {taken_as}",
-    values={"word": "text", "count": "unpointed_count"},
+    "{word} has no decimal point: the control takes it as {taken_as}",
+    values=("word", "count"),
     worse=("count",),
     over="words",
     doubts=(("metal", "loop"),),
@@ -109,3 +114,29 @@ def number_without_point(unpointed: Unpointed) -> Hits:
         G13.1
     """
     return graded(warning=unpointed.slips > 0, note=unpointed.in_increments > 0)
+
+
+def details(hit: Hit, unpointed: Unpointed) -> Details:
+    count = int(unpointed.in_increments[hit.index])
+    more = int(unpointed.slips[hit.index]) - 1
+    others = f"; {more} more coordinates of this section have none" if more > 0 else ""
+    if count:
+        others = f"; the whole program is read in least increments, {count} of its coordinates have no point"
+    return {"count": count or more + 1, "taken_as": _taken_as(hit, others)}
+
+
+def _taken_as(hit: Hit, others: str) -> str:
+    """What the control takes a word of the file as, and how many more there are."""
+    import numpy as np
+
+    trace, table, control = hit.trace, hit.trace.text.words, hit.trace.machine.control
+    row = int(np.flatnonzero(trace.run.block == table.block[hit.index])[0])
+    address, value = chr(int(table.address[hit.index])), float(table.value[hit.index])
+    inch = bool(trace.lengths.units[row] == Units.INCH)
+    if address == "F":
+        return f"{value * _FEED_INCREMENT_INCH:g} inch/min"
+    is_angle = address in "CH" and not trace.mode.in_polar[row]
+    least = control.least_increment_inch if inch and not is_angle else control.least_increment
+    unit = "deg" if is_angle else "inch" if inch else "mm"
+    shown = f"{value * least:.4f}".rstrip("0").rstrip(".")
+    return f"{shown} {unit}{others}"

@@ -13,13 +13,14 @@ if TYPE_CHECKING:
     from polarcheck.columns.path.axes import PlaneAxes
     from polarcheck.columns.path.path import ProgrammedPath
     from polarcheck.foundation.arrays import Mask
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     WARNING,
-    "{word} in rapid traverse outside the polar mode goes across the center, to {path.x:diameter} in X, the other "
+    "{word} in rapid traverse outside the polar mode goes across the center, to {x:diameter} in X, the other "
     "side of the spindle; write an X above 0",
-    values={"word": "word", "x": "path.x"},
+    values=("word", "x"),
     gouges=True,
     at=("X", "U"),
     follows={"block": ("travel-limit",)},
@@ -73,3 +74,7 @@ def rapid_through_center(
     """
     is_rapid = (axes.motion == Motion.RAPID) & blocks.has("X", "U") & ~mode.in_polar
     return entry.after_section & is_rapid & (path.x < -ROUNDING) & ~(path.x_before < -ROUNDING)
+
+
+def details(hit: Hit, path: ProgrammedPath) -> Details:
+    return {"x": path.x[hit.row]}

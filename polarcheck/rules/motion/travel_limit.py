@@ -10,16 +10,16 @@ if TYPE_CHECKING:
     from polarcheck.columns.path.travel import Travel
     from polarcheck.foundation.arrays import Mask
     from polarcheck.program.machines.machine import Machine
+    from polarcheck.rules.hit import Details, Hit
+    from polarcheck.rules.rule import Needs
 
 
 @rule(
     ERROR,
     "{travel}",
-    values={"axis": "axis_of_travel", "position": "position", "limit": "end_of_travel"},
+    values=("axis", "position", "limit"),
     worse=("position:limit",),
     at=("X", "U", "C", "H", "Z", "W"),
-    needs=("travel.most_x",),
-    where="travel.is_limited_in_x",
 )
 def travel_limit(path: ProgrammedPath, travel: Travel, machine: Machine) -> Mask:
     """
@@ -65,3 +65,28 @@ def travel_limit(path: ProgrammedPath, travel: Travel, machine: Machine) -> Mask
     x_beyond = (travel.most_x > limits.x_maximum + ROUNDING) | (travel.least_x < limits.x_minimum - ROUNDING)
     z_beyond = (travel.z > limits.z_maximum + ROUNDING) | (travel.z < limits.z_minimum - ROUNDING)
     return travel.first_beyond(x_beyond, travel.moves_x) | travel.first_beyond(z_beyond, path.moves_z)
+
+
+def details(hit: Hit, travel: Travel, machine: Machine) -> Details:
+    import numpy as np
+
+    limits, row = machine.limits, hit.row
+    ends = (
+        ("X", "diameter", travel.most_x[row], limits.x_maximum, 1),
+        ("X", "diameter", travel.least_x[row], limits.x_minimum, -1),
+        ("Z", "length", travel.z[row], limits.z_maximum, 1),
+        ("Z", "length", travel.z[row], limits.z_minimum, -1),
+    )
+    beyond = [end for end in ends if np.isfinite(end[2]) and end[4] * end[2] > end[4] * end[3] + ROUNDING]
+    axis, form, value, limit, _ = beyond[0]
+    goes, stops = hit.quantity(value), hit.quantity(limit)
+    return {
+        "axis": axis,
+        "position": value,
+        "limit": limit,
+        "travel": f"{axis} would go to {goes.beside(stops, form)}, its travel ends at {stops.beside(goes, form)}",
+    }
+
+
+def needs(travel: Travel) -> Needs:
+    return travel.is_limited_in_x, {"travel": travel.most_x}

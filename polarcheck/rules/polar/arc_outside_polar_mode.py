@@ -7,13 +7,14 @@ from polarcheck.rules.rule import WARNING, rule
 if TYPE_CHECKING:
     from polarcheck.columns.modes.procedure import Procedure
     from polarcheck.foundation.arrays import Mask
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     WARNING,
     "arc with X and {rotary} outside the polar mode: {rotary} is an angle here, and no plane has both axes; write "
-    "{switch_on} before the contour",
-    values={"code_needed": "switch_on"},
+    "{code_needed} before the contour",
+    values=("code_needed",),
     gouges=True,
     at=("arc_clockwise", "arc_counterclockwise"),
     once="tool call",
@@ -68,3 +69,7 @@ def arc_outside_polar_mode(procedure: Procedure) -> Mask:
     """
     # Compares nothing: what may have begun a mode before the arc is a column.
     return procedure.arc_without_mode
+
+
+def details(hit: Hit) -> Details:
+    return {"code_needed": hit.switch_on}

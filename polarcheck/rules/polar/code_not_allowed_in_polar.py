@@ -7,12 +7,13 @@ from polarcheck.rules.rule import ERROR, Hits, graded, rule
 if TYPE_CHECKING:
     from polarcheck.columns.modes.mode_words import ModeWords
     from polarcheck.program.machines.machine import Machine
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     ERROR,
-    "{codes} cannot be used in the polar mode; write it {where}",
-    values={"code": "codes"},
+    "{code} cannot be used in the polar mode; write it {where}",
+    values=("code",),
     follows={"block": ("incremental-word-of-other-code-system", "polar-switch-unknown")},
 )
 def code_not_allowed_in_polar(mode_words: ModeWords, machine: Machine) -> Hits:
@@ -84,3 +85,8 @@ def code_not_allowed_in_polar(mode_words: ModeWords, machine: Machine) -> Hits:
     other = mode_words.not_allowed & ~has_its_own_rule
     limits_speed = other & mode_words.sets_coordinates
     return graded(error=mode_words.rows(other & ~limits_speed), warning=mode_words.rows(limits_speed), at=other)
+
+
+def details(hit: Hit) -> Details:
+    is_cycle = hit.trace.blocks.listed("drilling_cycle")[hit.row]
+    return {"where": hit.outside + (f", where its {hit.rotary} axis is an angle again" if is_cycle else "")}

@@ -7,12 +7,13 @@ from polarcheck.rules.rule import ERROR, rule
 if TYPE_CHECKING:
     from polarcheck.columns.path.infeed import Infeed
     from polarcheck.foundation.arrays import Mask
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     ERROR,
-    "{E} asks for passes around the contour, which ends {infeed.gap:length} from where it begins: it must be closed",
-    values={"gap": "infeed.gap", "word": "E"},
+    "{word} asks for passes around the contour, which ends {gap:length} from where it begins: it must be closed",
+    values=("gap", "word"),
     worse=("gap",),
     at=("E",),
     subject="side",
@@ -66,3 +67,7 @@ def contour_open_with_infeed(infeed: Infeed) -> Mask:
         G13.1
     """
     return infeed.gap > 0
+
+
+def details(hit: Hit, infeed: Infeed) -> Details:
+    return {"gap": infeed.gap[hit.row], "word": hit.written("E")}

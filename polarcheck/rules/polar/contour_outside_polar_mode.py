@@ -7,13 +7,14 @@ from polarcheck.rules.rule import WARNING, rule
 if TYPE_CHECKING:
     from polarcheck.columns.modes.procedure import Procedure
     from polarcheck.foundation.arrays import Mask
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     WARNING,
     "contour with X and {rotary} outside the polar mode: {rotary} is an angle here, and X a place of the machine "
-    "axis; write {switch_on} before it",
-    values={"code_needed": "switch_on"},
+    "axis; write {code_needed} before it",
+    values=("code_needed",),
     gouges=True,
     once="tool call",
     follows={
@@ -105,3 +106,7 @@ def contour_outside_polar_mode(procedure: Procedure) -> Mask:
     """
     # Compares nothing: what makes a contour of moves needs their runs, which the table counts.
     return procedure.contour_outside
+
+
+def details(hit: Hit) -> Details:
+    return {"code_needed": hit.switch_on}

@@ -9,6 +9,7 @@ if TYPE_CHECKING:
     from polarcheck.columns.modes.entry import Entry
     from polarcheck.columns.path.axes import PlaneAxes
     from polarcheck.columns.words.angles import Angles
+    from polarcheck.rules.hit import Details, Hit
 
 #: A length that many times as far out as the rest of the section is taken for an angle, and with G0 beside it.
 _FAR, _FAR_IN_RAPID = 2.0, 1.5
@@ -16,9 +17,9 @@ _FAR, _FAR_IN_RAPID = 2.0, 1.5
 
 @rule(
     WARNING,
-    "{word} {begins} a length of {angles.farthest:length} in the polar mode and looks like an angle: the rest of the "
-    "section lies within {angles.reach:length} of the center; write the point of the contour",
-    values={"word": "word", "farthest": "angles.farthest", "reach": "angles.reach"},
+    "{word} {begins} a length of {farthest:length} in the polar mode and looks like an angle: the rest of the "
+    "section lies within {reach:length} of the center; write the point of the contour",
+    values=("word", "farthest", "reach"),
     worse=("farthest",),
     once="section",
     doubts=(("position", "block"), ("position", "C before"), ("metal", "section")),
@@ -118,3 +119,11 @@ def degrees_in_polar(blocks: ExecutedBlocks, axes: PlaneAxes, angles: Angles, en
     in_stock = angles.farthest <= entry.stock_diameter / 2
     words = blocks.words_at(axes.followed_virtual_words)
     return Hits(is_angle & far_out & ~in_stock & ~angles.in_misplaced_cycle, at=words)
+
+
+def details(hit: Hit, angles: Angles) -> Details:
+    begins, series = "is", angles.series
+    if angles.in_series[hit.row]:
+        count = int(series.in_rows(series.count.astype(float), len(angles.trace))[hit.row])
+        begins = f"is one of {count} steps at nearly the same X to"
+    return {"farthest": angles.farthest[hit.row], "reach": angles.reach[hit.row], "begins": begins}

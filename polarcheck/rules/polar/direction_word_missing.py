@@ -9,12 +9,13 @@ if TYPE_CHECKING:
     from polarcheck.columns.modes.mode import PolarMode
     from polarcheck.foundation.arrays import Mask
     from polarcheck.program.machines.machine import Machine
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     WARNING,
-    "{switch} has no {machine.polar.direction_word}: in which direction of C the new axis points is not told; write "
-    "{machine.polar.direction_word}0 beside it",
+    "{switch} has no {direction_word}: in which direction of C the new axis points is not told; write "
+    "{direction_word}0 beside it",
     at=("on",),
 )
 def direction_word_missing(blocks: ExecutedBlocks, mode: PolarMode, machine: Machine) -> Mask:
@@ -46,3 +47,7 @@ def direction_word_missing(blocks: ExecutedBlocks, mode: PolarMode, machine: Mac
         G136
     """
     return mode.enters & (machine.polar.direction_word != "") & ~blocks.has(machine.polar.direction_word)
+
+
+def details(hit: Hit, machine: Machine) -> Details:
+    return {"direction_word": machine.polar.direction_word}

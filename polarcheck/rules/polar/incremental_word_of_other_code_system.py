@@ -9,15 +9,20 @@ if TYPE_CHECKING:
     from polarcheck.columns.modes.mode import PolarMode
     from polarcheck.columns.modes.mode_words import ModeWords
     from polarcheck.columns.path.axes import PlaneAxes
+    from polarcheck.program.execution.run import Run
     from polarcheck.program.machines.machine import Machine
+    from polarcheck.rules.hit import Details, Hit
+
+#: What the codes of a list of G-code system B are in system A, and what stands for them there.
+_IN_SYSTEM_A = {
+    "absolute": "a turning cycle in G-code system A, where {axes} are absolute and {increments} incremental",
+    "incremental": "no code of G-code system A, where {increments} incremental",
+    "feed_per_minute": "a facing cycle in G-code system A, where {codes} is feed per minute",
+    "feed_per_revolution": "no code of G-code system A, where {codes} is feed per revolution",
+}
 
 
-@rule(
-    ERROR,
-    "{meaning}; if the lathe runs another system, set control.g_code_system",
-    values={"word": "word"},
-    once="program",
-)
+@rule(ERROR, "{meaning}; if the lathe runs another system, set control.g_code_system", values=("word",), once="program")
 def incremental_word_of_other_code_system(
     modal: ModalStates, axes: PlaneAxes, mode: PolarMode, mode_words: ModeWords, machine: Machine
 ) -> Hits:
@@ -81,3 +86,19 @@ def incremental_word_of_other_code_system(
     # U is no increment beside a code that takes it for something else, such as G4, nor where it is an axis.
     is_meant = (in_system_a | modal.uses_axes) & axes.linear_is_known
     return Hits(mode.in_polar & mode_words.rows(wrong) & is_meant, at=wrong)
+
+
+def details(hit: Hit, run: Run, machine: Machine) -> Details:
+    from polarcheck.program.machines.codes import spelled
+
+    word, first = run.words, hit.words[0]
+    address = chr(int(word.address[first]))
+    name = spelled("G", round(float(word.value[first]) * 10)) if address == "G" else address
+    axis, increment = machine.polar.rotary_words
+    axes, increments = f"X and {axis}", f"U and {increment} are" if increment else "U is"
+    for key, text in _IN_SYSTEM_A.items():
+        if name in getattr(machine.g_code_system_b, key):
+            code = next(iter(machine.codes(key)), "")
+            return {"meaning": f"{name} is {text.format(axes=axes, increments=increments, codes=code)}"}
+    system = machine.control.g_code_system
+    return {"meaning": f"{name} is no incremental word of G-code system {system}, where G91 makes {axes} incremental"}

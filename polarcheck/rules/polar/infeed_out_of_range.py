@@ -6,12 +6,14 @@ from polarcheck.rules.rule import ERROR, Hits, graded, rule
 
 if TYPE_CHECKING:
     from polarcheck.columns.modes.switch_words import SwitchWords
+    from polarcheck.columns.path.infeed import Infeed
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     ERROR,
-    "{E} beside {switch} {infeed_fault}",
-    values={"word": "E", "infeed": "infeed_taken"},
+    "{word} beside {switch} {infeed_fault}",
+    values=("word", "infeed"),
     at=("E",),
     follows={"block": ("too-many-digits",)},
 )
@@ -70,3 +72,26 @@ def infeed_out_of_range(switch_words: SwitchWords) -> Hits:
     """
     # Compares nothing: the message tells what the word can hold, from the same columns.
     return graded(error=switch_words.infeed_too_large, warning=switch_words.infeed_too_fine)
+
+
+def details(hit: Hit, switch_words: SwitchWords, infeed: Infeed) -> Details:
+    row, taken = hit.row, infeed.depth[hit.row]
+    is_too_large = switch_words.infeed_too_large[row]
+    limit, least, depth = (
+        _every_digit(hit, column[row])
+        for column in (switch_words.infeed_limit, hit.trace.lengths.least_step, infeed.depth)
+    )
+    once = "" if taken > 0 else ", which is a single pass"
+    return {
+        "word": hit.written("E"),
+        "infeed": None if is_too_large else taken,
+        "infeed_fault": f"is too large: {limit} is the most"
+        if is_too_large
+        else f"is finer than the least increment, {least}: {depth} is taken{once}",
+    }
+
+
+def _every_digit(hit: Hit, length: float) -> str:
+    """A length with all the digits that a control can hold."""
+    shown = hit.quantity(float(length))
+    return f"{shown.length(shown.value):.10g} {shown.unit}"

@@ -5,24 +5,22 @@ from typing import TYPE_CHECKING
 from polarcheck.rules.rule import WARNING, rule
 
 if TYPE_CHECKING:
+    from polarcheck.columns.path.compensation import CutterCompensation
     from polarcheck.columns.path.infeed import Infeed
     from polarcheck.foundation.arrays import Mask
+    from polarcheck.rules.hit import Details, Hit
+    from polarcheck.rules.rule import Needs
+
+#: Of a block that is named; more is cut off [characters].
+_BLOCK_LENGTH = 60
 
 
 @rule(
     WARNING,
-    "{infeed.unfit} of {infeed.passes} passes do not fit into the contour: {misfit_of_pass}",
-    values={
-        "unfit": "infeed.unfit",
-        "passes": "infeed.passes",
-        "allowance": "allowance_of_pass",
-        "radius": "radius_on_pass",
-        "other_line": "line_of_misfit",
-    },
+    "{unfit} of {passes} passes do not fit into the contour: {misfit_of_pass}",
+    values=("unfit", "passes", "allowance", "radius", "other_line"),
     worse=("unfit",),
     at=("E",),
-    needs=("compensation.radius",),
-    where="infeed.judged_by_radius",
 )
 def infeed_pass_does_not_fit(infeed: Infeed) -> Mask:
     """
@@ -72,3 +70,25 @@ def infeed_pass_does_not_fit(infeed: Infeed) -> Mask:
         G13.1
     """
     return infeed.unfit > 0
+
+
+def details(hit: Hit, infeed: Infeed, compensation: CutterCompensation) -> Details:
+    from polarcheck.rules.places import block_in_line
+
+    allowance, at = infeed.least_unfit[hit.row]
+    radius = abs(float(compensation.radius[at]))
+    has_radius = radius > 0 and bool(compensation.compensates[at])
+    tool = f" with R {hit.length(radius)}" if has_radius else ""
+    where = f"line {hit.line(at)}, {block_in_line(hit.trace.run, at, _BLOCK_LENGTH)}"
+    return {
+        "unfit": infeed.unfit[hit.row],
+        "passes": infeed.passes[hit.row],
+        "allowance": allowance,
+        "radius": radius if has_radius else None,
+        "other_line": hit.line(at),
+        "misfit_of_pass": f"already {hit.length(allowance)} off it{tool} there is no way along {where}",
+    }
+
+
+def needs(compensation: CutterCompensation, infeed: Infeed) -> Needs:
+    return infeed.judged_by_radius, {"radius": compensation.radius}

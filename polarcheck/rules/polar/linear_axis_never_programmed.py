@@ -11,13 +11,14 @@ if TYPE_CHECKING:
     from polarcheck.columns.modes.mode import PolarMode
     from polarcheck.columns.path.axes import PlaneAxes
     from polarcheck.foundation.arrays import Mask
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     ERROR,
-    "no {first_axis} word in this section, whose linear axis is {first_axis}: X moves beside the polar plane, not on "
-    "it; write {first_axis}, or make X the linear axis",
-    values={"axis": "first_axis"},
+    "no {axis} word in this section, whose linear axis is {axis}: X moves beside the polar plane, not on "
+    "it; write {axis}, or make X the linear axis",
+    values=("axis",),
     over="sections",
     at=("on",),
     doubts=SECTION_READ_OTHERWISE,
@@ -54,3 +55,7 @@ def linear_axis_never_programmed(blocks: ExecutedBlocks, modal: ModalStates, axe
     beside = blocks.has("X", "U") & modal.uses_axes & mode.in_polar & (axes.linear_axis != ord("X"))
     is_meant = mode.anywhere_in_section(beside) & mode.anywhere_in_section(axes.programs_virtual_axis)
     return (is_meant & mode.nowhere_in_section(axes.programs_linear_axis))[mode.sections.enter]
+
+
+def details(hit: Hit) -> Details:
+    return {"axis": hit.linear}

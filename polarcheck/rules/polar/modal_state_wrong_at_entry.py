@@ -7,12 +7,17 @@ from polarcheck.rules.rule import ERROR, Hits, graded, rule
 if TYPE_CHECKING:
     from polarcheck.columns.modes.modal import ModalStates
     from polarcheck.columns.modes.mode import PolarMode
+    from polarcheck.program.machines.machine import Machine
+    from polarcheck.rules.hit import Details, Hit
+
+#: Modal groups that must have ended at G12.1, by the list of the codes that begin them.
+_ENDED = {"scaling": "scaling", "rotation": "rotation", "mirror_image": "mirror", "constant_surface_speed": "speed"}
 
 
 @rule(
     ERROR,
-    "{in_force} still in force at {switch}; write {ends} before it",
-    values={"code": "in_force", "code_needed": "ends"},
+    "{code} still in force at {switch}; write {code_needed} before it",
+    values=("code", "code_needed"),
     at=("on",),
     once="modal state",
     follows={"modal state": ("code-not-allowed-in-polar",)},
@@ -66,3 +71,14 @@ def modal_state_wrong_at_entry(modal: ModalStates, mode: PolarMode) -> Hits:
         error=mode.enters & (transformed | (modal.drilling != 0)),
         warning=mode.enters & (modal.state("speed") != 0),
     )
+
+
+def details(hit: Hit, modal: ModalStates, machine: Machine) -> Details:
+    from polarcheck.program.machines.codes import spelled
+
+    cycle = int(modal.drilling[hit.row])
+    states = [(spelled("G", cycle * 10), " or ".join(machine.codes("drilling_cycle_off")))] if cycle else []
+    for key, group in _ENDED.items():
+        pairs = zip(machine.codes(key), machine.codes(f"{key}_off"), strict=False)
+        states += [(on, off) for on, off in pairs if modal.has_state(group, [on])[hit.row]]
+    return {"code": ", ".join(on for on, _ in states), "code_needed": ", ".join(off for _, off in states)}

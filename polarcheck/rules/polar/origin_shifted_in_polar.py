@@ -9,14 +9,16 @@ if TYPE_CHECKING:
     from polarcheck.columns.modes.mode import PolarMode
     from polarcheck.columns.modes.mode_words import ModeWords
     from polarcheck.foundation.arrays import Mask
+    from polarcheck.program.execution.run import Run
     from polarcheck.program.machines.machine import Machine
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     ERROR,
-    "{shifted_by} changes the coordinate system in the polar mode; its origin must stay the center of the spindle, "
-    "so write {shifted_by} {outside}",
-    values={"code": "shifted_by"},
+    "{code} changes the coordinate system in the polar mode; its origin must stay the center of the spindle, "
+    "so write {code} {outside}",
+    values=("code",),
     at=(
         "data_input",
         "coordinate_setting",
@@ -76,3 +78,7 @@ def origin_shifted_in_polar(mode_words: ModeWords, blocks: ExecutedBlocks, mode:
     """
     assigns_one = mode.in_polar & blocks.assigns(machine.macro.work_offset_variables)
     return mode_words.rows(mode_words.not_allowed & mode_words.shifts_origin) | assigns_one
+
+
+def details(hit: Hit, run: Run) -> Details:
+    return {"code": hit.code if hit.words else run.assigned[hit.row].name}

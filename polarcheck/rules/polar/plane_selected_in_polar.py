@@ -5,15 +5,17 @@ from typing import TYPE_CHECKING
 from polarcheck.rules.rule import ERROR, rule
 
 if TYPE_CHECKING:
+    from polarcheck.columns.modes.modal import ModalStates
     from polarcheck.columns.modes.mode_words import ModeWords
     from polarcheck.foundation.arrays import Mask
     from polarcheck.program.machines.machine import Machine
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     ERROR,
-    "{plane} in the polar mode: its plane is always that of {linear} and {virtual}; delete it or write it {outside}",
-    values={"code": "plane"},
+    "{code} in the polar mode: its plane is always that of {linear} and {virtual}; delete it or write it {outside}",
+    values=("code",),
     at=("plane_xy", "plane_zx", "plane_yz"),
 )
 def plane_selected_in_polar(mode_words: ModeWords, machine: Machine) -> Mask:
@@ -69,3 +71,7 @@ def plane_selected_in_polar(mode_words: ModeWords, machine: Machine) -> Mask:
     """
     is_wanted = mode_words.codes(*machine.polar.plane_before)
     return mode_words.rows(mode_words.not_allowed & mode_words.selects_plane & ~is_wanted)
+
+
+def details(hit: Hit, modal: ModalStates) -> Details:
+    return {"code": f"G{modal.state('plane')[hit.row]}"}

@@ -6,14 +6,17 @@ from polarcheck.rules.rule import ERROR, rule
 
 if TYPE_CHECKING:
     from polarcheck.columns.modes.entry import Entry
+    from polarcheck.columns.modes.modal import ModalStates
     from polarcheck.columns.modes.mode import PolarMode
     from polarcheck.foundation.arrays import Mask
+    from polarcheck.program.machines.machine import Machine
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     ERROR,
-    "{plane} is in force at {switch}; {wanted} must be, write it before or right behind",
-    values={"code": "plane", "code_needed": "wanted"},
+    "{code} is in force at {switch}; {code_needed} must be, write it before or right behind",
+    values=("code", "code_needed"),
     at=("on",),
     once="plane",
 )
@@ -70,3 +73,7 @@ def plane_wrong_at_entry(mode: PolarMode, entry: Entry) -> Mask:
         G13.1
     """
     return mode.enters & ~entry.plane_is_right
+
+
+def details(hit: Hit, modal: ModalStates, machine: Machine) -> Details:
+    return {"code": f"G{modal.state('plane')[hit.row]}", "code_needed": " or ".join(machine.polar.plane_before)}

@@ -7,9 +7,11 @@ from polarcheck.rules.rule import ERROR, Hits, rule
 if TYPE_CHECKING:
     from polarcheck.columns.modes.blocks import ExecutedBlocks
     from polarcheck.columns.modes.switch_words import SwitchWords
+    from polarcheck.columns.path.axes import PlaneAxes
+    from polarcheck.rules.hit import Details, Hit
 
 
-@rule(ERROR, "{others} beside {switch}: {axis_fault}", values={"word": "others"})
+@rule(ERROR, "{word} beside {switch}: {axis_fault}", values=("word",))
 def polar_axis_number_wrong(blocks: ExecutedBlocks, switch_words: SwitchWords) -> Hits:
     """
     P or Q of G12.1 that gives no pair of axes.
@@ -50,3 +52,20 @@ def polar_axis_number_wrong(blocks: ExecutedBlocks, switch_words: SwitchWords) -
     """
     found = switch_words.names_no_axis | switch_words.names_axis_of_other_kind | switch_words.names_axis_twice
     return Hits(blocks.with_words(found), at=found)
+
+
+def details(hit: Hit, switch_words: SwitchWords, axes: PlaneAxes) -> Details:
+    return {"word": hit.word_list, "axis_fault": _axis_fault(hit, switch_words, axes)}
+
+
+def _axis_fault(hit: Hit, switch_words: SwitchWords, axes: PlaneAxes) -> str:
+    """Why P or Q of a G12.1 are no pair of axes."""
+    from polarcheck.program.machines.axes import listed
+
+    blocks, machine = hit.trace.blocks, hit.trace.machine
+    if blocks.with_words(switch_words.names_axis_of_other_kind)[hit.row]:
+        return f"P is the number of a linear axis and Q that of a rotary one, of {listed(machine.control.axes)}"
+    if not blocks.with_words(switch_words.names_no_axis)[hit.row]:
+        both = f"would be both the linear and the rotary axis; without P it is {machine.polar.linear_axis}"
+        return f"axis {axes.axes_written[0][hit.row]:.0f} {both}, without Q {machine.polar.rotary_axis}"
+    return f"no such axis; P and Q take whole numbers from 1 to {switch_words.trace.axes.most_axes}"

@@ -6,12 +6,15 @@ from polarcheck.rules.rule import ERROR, Hits, graded, rule
 
 if TYPE_CHECKING:
     from polarcheck.columns.modes.other_mode import OtherMode
+    from polarcheck.program.machines.job import Job
+    from polarcheck.program.machines.machine import Machine
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     ERROR,
-    "{begun_by} begins no polar mode on {machine.title}, where {on_of_this} does; {instead}{else_a_macro}",
-    values={"code": "begun_by"},
+    "{code} begins no polar mode on {title}, where {on_of_this} does; {instead}{else_a_macro}",
+    values=("code",),
     once="program",
 )
 def polar_code_of_another_control(other_mode: OtherMode) -> Hits:
@@ -113,3 +116,38 @@ def polar_code_of_another_control(other_mode: OtherMode) -> Hits:
     # Compares nothing: what the code is for shows in the blocks behind it, which the table looks at.
     may_be_macro = other_mode.may_be_macro
     return graded(error=other_mode.is_meant, warning=may_be_macro, at=other_mode.words, undecided=may_be_macro)
+
+
+def details(hit: Hit, other_mode: OtherMode, machine: Machine, job: Job) -> Details:
+    from polarcheck.program.machines.own_language import shown
+
+    return {
+        "code": other_mode.switch(hit.row).name,
+        "on_of_this": " or ".join(shown(machine.control.native_words, code) for code in machine.polar.on),
+        "instead": _instead(hit, other_mode, machine, job),
+        "else_a_macro": "" if other_mode.is_meant[hit.row] else ", unless it is a macro of the builder",
+    }
+
+
+def _instead(hit: Hit, other_mode: OtherMode, machine: Machine, job: Job) -> str:
+    """
+    What is to be written for the code of another control: `write G112 for G12.1, G113 for G13.1 and Y for C`.
+
+    Where nobody has chosen the machine, the machines that know the code: `check it with --machine fanuc or gsk-988`.
+    """
+    from polarcheck.program.machines.own_language import shown
+    from polarcheck.rules.other_machine import NAMED
+    from polarcheck.rules.remedies import enumerated, is_chosen
+
+    machines = other_mode.machines(hit.row)
+    if not is_chosen(machine, job):
+        return f"check it with --machine {enumerated([profile.name for profile in machines[:NAMED]], 'or')}"
+    polar, native = machine.polar, machine.control.native_words
+    angle = f" {polar.direction_word}0" if polar.direction_word else ""
+    words = [f"{shown(native, polar.on[0])}{angle} for {other_mode.switch(hit.row).name}"]
+    words += [f"{shown(native, polar.off[0])} for {name}" for name in other_mode.ends_written(hit.row)]
+    axes = other_mode.other_axes_written(hit.row)
+    words += [f"{polar.virtual_axis} for {axis}" for axis in axes]
+    if axes and all(profile.machine.polar.x != polar.x for profile in machines):
+        words.append(f"X as a {polar.x}")
+    return f"write {enumerated(words, 'and')}"

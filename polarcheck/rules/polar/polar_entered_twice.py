@@ -8,12 +8,13 @@ if TYPE_CHECKING:
     from polarcheck.columns.modes.mode import PolarMode
     from polarcheck.columns.path.axes import PlaneAxes
     from polarcheck.foundation.arrays import Mask
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     WARNING,
-    "{switch} again: the polar mode is on since line {since}",
-    values={"code": "switch", "other_line": "since"},
+    "{code} again: the polar mode is on since line {other_line}",
+    values=("code", "other_line"),
     at=("on",),
     follows={"block": ("polar-switched-in-offset-mode",), "section": ("polar-never-left",)},
 )
@@ -53,3 +54,7 @@ def polar_entered_twice(axes: PlaneAxes, mode: PolarMode) -> Mask:
         G13.1
     """
     return mode.in_polar & axes.switches_on
+
+
+def details(hit: Hit, mode: PolarMode) -> Details:
+    return {"code": hit.switch, "other_line": hit.line(mode.sections.enter[mode.section[hit.row]])}

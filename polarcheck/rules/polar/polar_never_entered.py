@@ -2,19 +2,23 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from polarcheck.foundation.states import Motion, Side
 from polarcheck.rules.rule import ERROR, Hits, rule
 
 if TYPE_CHECKING:
     from polarcheck.columns.modes.procedure import Procedure
     from polarcheck.columns.modes.switch_slips import SwitchSlips
     from polarcheck.columns.path.axes import PlaneAxes
+    from polarcheck.columns.path.compensation import CutterCompensation
+    from polarcheck.program.machines.machine import Machine
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     ERROR,
-    "{switch} ends a polar mode that was never entered: {turned} as outside the mode, not on the contour; "
+    "{code} ends a polar mode that was never entered: {turned} as outside the mode, not on the contour; "
     "write {switch_on} before it",
-    values={"code": "switch", "other_line": "first_line_of_contour"},
+    values=("code", "other_line"),
     at=("off",),
     follows={"program": ("polar-switch-unknown",)},
 )
@@ -140,3 +144,16 @@ def polar_never_entered(axes: PlaneAxes, procedure: Procedure, switch_slips: Swi
     """
     never_entered = axes.switches_off & (procedure.contour_without_mode >= 0)
     return Hits(never_entered, follows={"program": switch_slips.within})
+
+
+def details(
+    hit: Hit, procedure: Procedure, compensation: CutterCompensation, axes: PlaneAxes, machine: Machine
+) -> Details:
+    first = int(procedure.contour_without_mode[hit.row])
+    axis, from_line = machine.polar.virtual_axis, f"from line {hit.line(first)} on"
+    turned = f"{from_line} X and {axis} move at feed right up to it"
+    if compensation.side[first] != Side.OFF:
+        turned = f"{from_line} {axis} moves at feed with G41 or G42"
+    elif axes.motion[first] != Motion.LINE:
+        turned = f"{from_line} {axis} moves on an arc"
+    return {"code": hit.switch, "other_line": hit.line(first), "turned": turned}

@@ -5,14 +5,19 @@ from typing import TYPE_CHECKING
 from polarcheck.rules.rule import ERROR, rule
 
 if TYPE_CHECKING:
+    from polarcheck.columns.modes.blocks import ExecutedBlocks
     from polarcheck.columns.modes.mode import PolarMode
     from polarcheck.foundation.arrays import Mask
+    from polarcheck.rules.hit import Details, Hit
+
+#: Of a block that is named; more is cut off [characters].
+_BLOCK_LENGTH = 60
 
 
 @rule(
     ERROR,
     "polar mode is never left: {missing_before}",
-    values={"other_line": "line_of_missing_end"},
+    values=("other_line",),
     over="sections",
     at=("on",),
     follows={"program": ("endless-loop", "nesting-too-deep"), "section": ("polar-switch-unknown",)},
@@ -67,3 +72,15 @@ def polar_never_left(mode: PolarMode) -> Mask:
         M30
     """
     return ~mode.sections.left
+
+
+def details(hit: Hit, blocks: ExecutedBlocks, mode: PolarMode) -> Details:
+    from polarcheck.rules.places import block_in_line
+    from polarcheck.rules.wording.written import switch_off
+
+    leave = int(mode.sections.leave[hit.index])
+    off = switch_off(blocks, hit.trace.machine, int(mode.sections.enter[hit.index]))
+    if leave >= len(blocks) or blocks.starts[leave]:
+        return {"other_line": None, "missing_before": f"{off} is missing at the end of the program"}
+    line, block = hit.line(leave), block_in_line(hit.trace.run, leave, _BLOCK_LENGTH)
+    return {"other_line": line, "missing_before": f"{off} is missing before line {line}, {block}"}

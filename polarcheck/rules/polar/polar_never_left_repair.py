@@ -6,7 +6,7 @@ from polarcheck.program.execution.run import Run
 from polarcheck.program.machines.machine import Machine
 from polarcheck.rules.editing import begins_program, blocks_before, blocks_behind, skip_sign
 from polarcheck.rules.repair import Mended, repair
-from polarcheck.rules.wording.phrases.common import switch_off
+from polarcheck.rules.wording.written import switch_off
 
 
 @repair()

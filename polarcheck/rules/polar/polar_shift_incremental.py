@@ -7,12 +7,13 @@ from polarcheck.rules.rule import ERROR, Hits, rule
 if TYPE_CHECKING:
     from polarcheck.columns.modes.blocks import ExecutedBlocks
     from polarcheck.columns.modes.switch_words import SwitchWords
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     ERROR,
-    "{others} beside {switch} is incremental: the shift of the center is taken in absolute words only, {absolute}",
-    values={"word": "others"},
+    "{word} beside {switch} is incremental: the shift of the center is taken in absolute words only, {absolute}",
+    values=("word",),
 )
 def polar_shift_incremental(blocks: ExecutedBlocks, switch_words: SwitchWords) -> Hits:
     """
@@ -55,3 +56,7 @@ def polar_shift_incremental(blocks: ExecutedBlocks, switch_words: SwitchWords) -
     # Compares nothing: polar-switch-not-alone leaves these words to this rule.
     found = switch_words.shifts_incrementally
     return Hits(blocks.with_words(found), at=found)
+
+
+def details(hit: Hit, switch_words: SwitchWords) -> Details:
+    return {"word": hit.word_list, "absolute": " and ".join(switch_words.shifts)}

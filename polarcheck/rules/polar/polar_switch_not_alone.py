@@ -7,12 +7,13 @@ from polarcheck.rules.rule import ERROR, Hits, rule
 if TYPE_CHECKING:
     from polarcheck.columns.modes.mode_words import ModeWords
     from polarcheck.columns.modes.switch_words import SwitchWords
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     ERROR,
-    "{switch} shares its block with {others}; it must stand in a block of its own",
-    values={"code": "switch", "word": "others"},
+    "{code} shares its block with {word}; it must stand in a block of its own",
+    values=("code", "word"),
     doubts=(("metal", "section"),),
 )
 def polar_switch_not_alone(mode_words: ModeWords, switch_words: SwitchWords) -> Hits:
@@ -59,3 +60,7 @@ def polar_switch_not_alone(mode_words: ModeWords, switch_words: SwitchWords) -> 
     beside = mode_words.in_rows(mode_words.switches) & ~mode_words.may_stand_beside_switch
     beside &= ~switch_words.shifts_incrementally
     return Hits(mode_words.rows(beside), at=beside)
+
+
+def details(hit: Hit) -> Details:
+    return {"code": hit.switch, "word": hit.word_list}

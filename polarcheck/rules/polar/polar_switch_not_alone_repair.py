@@ -18,7 +18,7 @@ from polarcheck.rules.editing import (
     written_word,
 )
 from polarcheck.rules.repair import Mended, repair
-from polarcheck.rules.wording.phrases.common import switch
+from polarcheck.rules.wording.written import switch
 
 
 @repair()

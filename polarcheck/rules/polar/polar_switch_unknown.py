@@ -5,10 +5,11 @@ from typing import TYPE_CHECKING
 from polarcheck.rules.rule import WARNING, Hits, graded, rule
 
 if TYPE_CHECKING:
-    from polarcheck.columns.modes.switch_slips import SwitchSlips
+    from polarcheck.columns.modes.switch_slips import Slip, SwitchSlips
+    from polarcheck.rules.hit import Details, Hit
 
 
-@rule(WARNING, "{slip}", values={"code_needed": "switch_meant"})
+@rule(WARNING, "{slip}", values=("code_needed",))
 def polar_switch_unknown(switch_slips: SwitchSlips) -> Hits:
     """
     Code that is meant to switch the polar mode and does not.
@@ -64,3 +65,32 @@ def polar_switch_unknown(switch_slips: SwitchSlips) -> Hits:
     """
     certain, begins = switch_slips.is_certain, switch_slips.begins
     return graded(error=certain, warning=begins & ~certain, at=switch_slips.words)
+
+
+def details(hit: Hit, switch_slips: SwitchSlips) -> Details:
+    slip = switch_slips.slips[hit.row]
+    return {"code_needed": "" if slip.is_of_builder else slip.meant, "slip": _effect(hit, switch_slips, slip)}
+
+
+def _effect(hit: Hit, switch_slips: SwitchSlips, slip: Slip) -> str:
+    """What a misspelled switch of the mode does, and what to write; or where the codes of the builder belong."""
+    from polarcheck.rules.remedies import place
+    from polarcheck.rules.wording.written import executed_word
+
+    run, machine, mode = hit.trace.run, hit.trace.machine, hit.trace.machine.polar
+    words = [index for index in switch_slips.words.nonzero()[0].tolist() if run.row[index] in (hit.row, slip.answer)]
+    names = [executed_word(run, index) for index in words]
+    if slip.is_of_builder:
+        on, off = (
+            ", ".join(f'"{one}"' for one in (*codes, code))
+            for codes, code in ((mode.on[:1], names[0]), (mode.off[:1], names[-1]))
+        )
+        keys = place(machine, f"polar.on = [{on}] and polar.off = [{off}]")
+        effect = f"begins and {names[-1]} ends no polar mode that {machine.title} has"
+        return f"{names[0]} {effect}: if they do on this lathe, write {keys}; the contour is not looked at till then"
+    if slip.meant in mode.off:
+        return f"{names[0]} does not end the polar mode; write {slip.meant}"
+    answer = ""
+    if slip.answer >= 0:
+        answer = f", and {switch_slips.meant_in(slip.answer)} for {names[-1]} in line {hit.line(slip.answer)}"
+    return f"{names[0]} begins no polar mode, and the contour behind it is not looked at; write {slip.meant}{answer}"

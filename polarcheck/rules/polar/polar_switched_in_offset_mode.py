@@ -9,12 +9,13 @@ if TYPE_CHECKING:
     from polarcheck.columns.modes.mode import PolarMode
     from polarcheck.columns.path.compensation import CutterCompensation
     from polarcheck.foundation.arrays import Mask
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     ERROR,
-    "{switch} while {side} is in force; G40 must be in force here",
-    values={"code": "side"},
+    "{switch} while {code} is in force; G40 must be in force here",
+    values=("code",),
     at=("on", "off"),
     once="section",
     doubts=(("compensation", "section"),),
@@ -85,3 +86,7 @@ def polar_switched_in_offset_mode(mode: PolarMode, compensation: CutterCompensat
     in_offset_mode = (mode.leaves | mode.enters_again) & (compensation.side_of_move_before != Side.OFF)
     side_in_force = (compensation.side_before != Side.OFF) & ~compensation.writes_cancel
     return (mode.enters | in_offset_mode) & side_in_force
+
+
+def details(hit: Hit, compensation: CutterCompensation) -> Details:
+    return {"code": f"G{compensation.side_before[hit.row]}"}

@@ -7,7 +7,7 @@ from polarcheck.foundation.states import Motion
 from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.rules.editing import begins_program, blocks_before, is_head, is_plain, separator, skip_sign, words_of
 from polarcheck.rules.repair import WAY, Mended, repair
-from polarcheck.rules.wording.phrases.common import code_of
+from polarcheck.rules.wording.written import code_of
 
 #: A move goes outward where so much of its length adds to the distance from the center: within 45 deg.
 OUTWARD = 0.7

@@ -10,7 +10,9 @@ if TYPE_CHECKING:
     from polarcheck.columns.modes.modal import ModalStates
     from polarcheck.columns.modes.mode import PolarMode
     from polarcheck.columns.path.axes import PlaneAxes
+    from polarcheck.columns.path.compensation import CutterCompensation
     from polarcheck.columns.words.angles import Angles
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
@@ -64,3 +66,12 @@ def rapid_in_polar(
     first_move = mode.first_in_section(in_rapid & (axes.motion == Motion.RAPID)) & ~mode.given_in_section(written)
     # G0 with an angle of C is the positioning of an approach that stands behind G12.1 in place of before it.
     return Hits(in_rapid & (written | first_move), follows={"section": angles.is_positioning})
+
+
+def details(hit: Hit, compensation: CutterCompensation) -> Details:
+    from polarcheck.rules.wording.written import move_code
+
+    line = move_code(hit.trace.machine, "line")
+    if not compensation.compensates[hit.row] or compensation.starts_up[hit.row]:
+        return {"instead_of_rapid": f"write {line} with a high F"}
+    return {"instead_of_rapid": f"this block lies in a contour with {hit.side}: write {line} and leave F as it is"}

@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from polarcheck.columns.path.center import Center
     from polarcheck.columns.path.path import ProgrammedPath
     from polarcheck.foundation.arrays import Mask
+    from polarcheck.rules.hit import Details, Hit
 
 #: One arc or one way across the center may be a slip of its own.
 _SEVERAL = 2
@@ -19,9 +20,8 @@ _SEVERAL = 2
 
 @rule(
     ERROR,
-    "no {virtual} word in this section: the tool moves along X alone, {what}; "
-    "write {virtual} in every block that moves it",
-    values={"axis": "virtual"},
+    "no {axis} word in this section: the tool moves along X alone, {what}; write {axis} in every block that moves it",
+    values=("axis",),
     over="sections",
     at=("on",),
     subject="",
@@ -62,3 +62,9 @@ def second_axis_never_programmed(
     no_circle = mode.count_in_section(arcs.is_no_circle) >= _SEVERAL
     across = mode.count_in_section(path.cuts & center.meets_center) >= _SEVERAL
     return without & (no_circle | across)
+
+
+def details(hit: Hit, mode: PolarMode, arcs: Arcs) -> Details:
+    off = int(mode.count_in_section(arcs.is_no_circle)[hit.index])
+    through = f"through the center of the {hit.rotary} axis"
+    return {"axis": hit.virtual, "what": f"and {off} arcs are no circles" if off > 1 else through}

@@ -11,12 +11,20 @@ if TYPE_CHECKING:
     from polarcheck.columns.path.compensation import CutterCompensation
     from polarcheck.columns.path.path import ProgrammedPath
     from polarcheck.program.machines.machine import Machine
+    from polarcheck.rules.hit import Details, Hit
+
+#: What Z does in one block with axes of the plane, by polar.other_axes.
+_OF_Z = {
+    "independent": "Z moves on its own there, not on the line in space",
+    "together": "compensation may take it for one more corner",
+    "forbidden": "this lathe cannot move Z together with the plane",
+}
 
 
 @rule(
     WARNING,
-    "{others} in one block in the polar mode: {what_z_does}; write Z in a block of its own",
-    values={"word": "others"},
+    "{word} in one block in the polar mode: {what_z_does}; write Z in a block of its own",
+    values=("word",),
     gouges=True,
     at=("X", "U", "C", "H", "Y", "V", "Z", "W"),
 )
@@ -125,3 +133,7 @@ def z_with_plane_axis(
         moves_both &= compensation.compensates
     severity = {"forbidden": ERROR, "independent": WARNING, "together": NOTE}[machine.polar.other_axes]
     return Hits(moves_both & (axes.motion == Motion.LINE) & (path.length > 0), severity)
+
+
+def details(hit: Hit, machine: Machine) -> Details:
+    return {"word": hit.word_list, "what_z_does": _OF_Z[machine.polar.other_axes]}

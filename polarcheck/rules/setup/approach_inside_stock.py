@@ -7,23 +7,18 @@ from polarcheck.rules.rule import ERROR, Hits, graded, rule
 
 if TYPE_CHECKING:
     from polarcheck.columns.modes.entry import Entry
+    from polarcheck.columns.modes.offsets import ToolOffsets
     from polarcheck.columns.path.path import ProgrammedPath
+    from polarcheck.rules.hit import Details, Hit
+    from polarcheck.rules.rule import Needs
 
 
 @rule(
     ERROR,
-    "X stands at {path.x:diameter/needed} at {switch}{since_x}; {to_clear} {needed:diameter/path.x} or more",
-    values={
-        "x": "path.x",
-        "x_needed": "needed",
-        "stock": "entry.stock_diameter",
-        "diameter": "offsets.cutter_diameter",
-        "clearance": "entry.clearance",
-    },
+    "X stands at {x:diameter/x_needed} at {switch}{since_x}; {to_clear} {x_needed:diameter/x} or more",
+    values=("x", "x_needed", "stock", "diameter", "clearance"),
     worse=("x:x_needed",),
     at=("on",),
-    needs=("offsets.cutter_diameter",),
-    where="entry.approaches_stock",
     doubts=(("compensation", "first start-up"),),
     follows={
         "section": (
@@ -90,4 +85,26 @@ def approach_inside_stock(path: ProgrammedPath, entry: Entry) -> Hits:
     """
     inside = entry.approaches_stock & (path.x < entry.x_needed - entry.clearance / 2 - ROUNDING)
     near = entry.approaches_stock & (path.x < entry.x_needed - ROUNDING)
-    return graded(error=inside, warning=near, values={"stock": entry.stock_diameter, "needed": entry.x_needed})
+    return graded(error=inside, warning=near, values={"stock": entry.stock_diameter, "x_needed": entry.x_needed})
+
+
+def details(hit: Hit, path: ProgrammedPath, offsets: ToolOffsets, entry: Entry) -> Details:
+    from polarcheck.columns.filling import last_row
+
+    x, since = path.x[hit.row], int(last_row(hit.trace.blocks.has("X", "U"), hit.trace.blocks.starts)[hit.row])
+    diameter, clearance = offsets.cutter_diameter[hit.row], entry.clearance[hit.row]
+    stock, cutter = hit.length(entry.stock_diameter[hit.row]), hit.length(diameter)
+    to_clear = f"stock {stock} and cutter {cutter} need"
+    if clearance > 0:
+        to_clear = f"stock {stock}, cutter {cutter} and clearance {hit.length(clearance)} need"
+    return {
+        "x": x,
+        "diameter": diameter,
+        "clearance": clearance,
+        "since_x": f", since line {hit.line(since)}" if since >= 0 else "",
+        "to_clear": to_clear,
+    }
+
+
+def needs(offsets: ToolOffsets, entry: Entry) -> Needs:
+    return entry.approaches_stock, {"diameter": offsets.cutter_diameter}

@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from polarcheck.columns.modes.spindles import Spindles
     from polarcheck.foundation.arrays import Mask
     from polarcheck.program.machines.machine import Machine
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
@@ -93,3 +94,10 @@ def c_angle_unknown_at_entry(
         & ~entry.happened(positioned, since=spindles.engages_c_axis)
         & ~entry.positions_in_mode
     )
+
+
+def details(hit: Hit, machine: Machine) -> Details:
+    if not machine.polar.plane_is_fixed:
+        return {"of_unknown_angle": "the shape stands wherever the spindle stopped"}
+    where = f"where the first move begins is not known: begin with G0 that writes X and {machine.polar.virtual_axis}"
+    return {"of_unknown_angle": where}

@@ -7,12 +7,14 @@ from polarcheck.rules.rule import WARNING, rule
 if TYPE_CHECKING:
     from polarcheck.columns.modes.spindles import Spindles
     from polarcheck.foundation.arrays import Mask
+    from polarcheck.program.machines.machine import Machine
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     WARNING,
-    "the C axis is clamped here; write {release} before {switch}",
-    values={"code_needed": "release"},
+    "the C axis is clamped here; write {code_needed} before {switch}",
+    values=("code_needed",),
     once="section",
 )
 def c_axis_clamped_in_polar(spindles: Spindles) -> Mask:
@@ -63,3 +65,9 @@ def c_axis_clamped_in_polar(spindles: Spindles) -> Mask:
     """
     # A slot along X alone is cut with the clamp on.
     return spindles.turns & spindles.clamped
+
+
+def details(hit: Hit, spindles: Spindles, machine: Machine) -> Details:
+    codes = machine.m_codes
+    off = codes.sub_c_axis_unclamp if spindles.on_sub_spindle[hit.row] else codes.c_axis_unclamp
+    return {"code_needed": next(iter(off), "the code that releases it")}

@@ -10,12 +10,13 @@ if TYPE_CHECKING:
     from polarcheck.columns.modes.spindles import Spindles
     from polarcheck.columns.path.axes import PlaneAxes
     from polarcheck.program.machines.machine import Machine
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     WARNING,
-    "the {rotary} axis is not engaged; {codes} is missing before {switch}{or_engaged_by}",
-    values={"code_needed": "codes"},
+    "the {rotary} axis is not engaged; {code_needed} is missing before {switch}{or_engaged_by}",
+    values=("code_needed",),
     at=("on",),
     once="c axis code",
 )
@@ -114,4 +115,10 @@ def c_axis_not_engaged(mode: PolarMode, axes: PlaneAxes, entry: Entry, spindles:
     if machine.polar.engaged_behind:
         engaged = engaged | mode.anywhere_in_section(mode.first_in_section(mode.in_polar & axes.moves_plane) & engaged)
     missing = mode.enters & mode.rotary_is_followed & ~engaged & expected
-    return Hits(missing, values={"codes": " or ".join(engaging)})
+    return Hits(missing, values={"code_needed": " or ".join(engaging)})
+
+
+def details(hit: Hit, spindles: Spindles) -> Details:
+    from polarcheck.rules.remedies import or_by
+
+    return {"or_engaged_by": or_by(hit, spindles, "engages it", "m_codes.c_axis_on")}

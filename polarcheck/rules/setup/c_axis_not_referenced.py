@@ -11,12 +11,13 @@ if TYPE_CHECKING:
     from polarcheck.columns.modes.spindles import Spindles
     from polarcheck.foundation.arrays import Mask
     from polarcheck.program.machines.machine import Machine
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     WARNING,
-    "{rotary} has not gone to its reference point since it was engaged; write {to_reference} before {switch}",
-    values={"code_needed": "to_reference"},
+    "{rotary} has not gone to its reference point since it was engaged; write {code_needed} before {switch}",
+    values=("code_needed",),
     at=("on",),
     once="c axis code",
 )
@@ -70,3 +71,11 @@ def c_axis_not_referenced(
     referenced = blocks.listed("c_axis_reference") & named
     entered = mode.enters & mode.rotary_is_followed & spindles.c_axis
     return entered & ~entry.happened(referenced, since=spindles.engages_c_axis)
+
+
+def details(hit: Hit, machine: Machine) -> Details:
+    from polarcheck.rules.wording.written import code_of
+
+    polar = machine.polar
+    address = polar.rotary_incremental or f"{polar.rotary_address}{'=' * (len(polar.rotary_address) > 1)}"
+    return {"code_needed": f"{code_of(machine, 'c_axis_reference')} {address}0"}

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 @rule(
     ERROR,
     "offset {offset} is a flat end mill that points at the outer diameter",
-    values={"offset": "offset"},
+    values=("offset",),
     at=("on",),
     once="tool call",
 )

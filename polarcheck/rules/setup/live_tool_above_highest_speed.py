@@ -5,15 +5,17 @@ from typing import TYPE_CHECKING
 from polarcheck.rules.rule import WARNING, Hits, rule
 
 if TYPE_CHECKING:
+    from polarcheck.columns.modes.blocks import ExecutedBlocks
     from polarcheck.columns.modes.procedure import Procedure
     from polarcheck.program.machines.machine import Machine
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     WARNING,
     "{S} is above the highest speed of the live tool, {limit:whole}: the control holds it there or stops, and each "
     "tooth takes more of F than meant; write S{limit:whole}, and lower F with it",
-    values={"speed": "speed_written", "limit": "limit"},
+    values=("speed", "limit"),
     worse=("speed",),
     at=("S",),
 )
@@ -57,3 +59,7 @@ def live_tool_above_highest_speed(procedure: Procedure, machine: Machine) -> Hit
     """
     # Compares nothing: for which of two spindles an S is hangs on codes before and behind it.
     return Hits(procedure.live_tool_above_highest_speed, values={"limit": machine.limits.live_tool_speed})
+
+
+def details(hit: Hit, blocks: ExecutedBlocks) -> Details:
+    return {"speed": blocks.word("S")[hit.row]}

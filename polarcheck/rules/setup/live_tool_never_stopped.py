@@ -7,13 +7,15 @@ from polarcheck.rules.rule import WARNING, Hits, graded, rule
 if TYPE_CHECKING:
     from polarcheck.columns.modes.blocks import ExecutedBlocks
     from polarcheck.columns.modes.procedure import Procedure
+    from polarcheck.columns.modes.spindles import Spindles
     from polarcheck.program.machines.machine import Machine
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     WARNING,
     "the live tool still runs at {word}: {started} was not stopped after the polar mode; {to_stop}",
-    values={"word": "word", "other_line": "line_of_start"},
+    values=("word", "other_line"),
 )
 def live_tool_never_stopped(blocks: ExecutedBlocks, procedure: Procedure, machine: Machine) -> Hits:
     """
@@ -86,3 +88,45 @@ def live_tool_never_stopped(blocks: ExecutedBlocks, procedure: Procedure, machin
     ending = blocks.words_at(blocks.code_indices(*machine.m_codes.program_end))
     at = ending | blocks.words_at(blocks.word_indices("T"))
     return graded(warning=still & ~ends, note=still & ends, at=at)
+
+
+def details(hit: Hit, procedure: Procedure, spindles: Spindles) -> Details:
+    from polarcheck.rules.wording.written import executed_word
+
+    start = int(procedure.live_tool_runs_on[hit.row])
+    run, codes = hit.trace.run, hit.trace.machine.m_codes
+    words = hit.trace.blocks.code_indices(*codes.live_tool_on)
+    code = executed_word(run, int(words[run.row[words] == start][0]))
+    return {
+        "other_line": hit.line(start),
+        "started": f"{code} of line {hit.line(start)}",
+        "to_stop": _to_stop(hit, procedure, spindles),
+    }
+
+
+def _to_stop(hit: Hit, procedure: Procedure, spindles: Spindles) -> str:
+    """
+    Where to write the code that stops the live tool.
+
+    It may stand there already, but behind the tool change; or an M code that is in no list stands in its place.
+    """
+    import numpy as np
+
+    from polarcheck.rules.wording.written import executed_word
+
+    blocks, run, codes, row = hit.trace.blocks, hit.trace.run, hit.trace.machine.m_codes, hit.row
+    stop = " or ".join(codes.live_tool_off) or "the code that stops it"
+    stops = np.flatnonzero(blocks.codes(*codes.live_tool_off))
+    late = stops[stops >= row]
+    starts = np.flatnonzero(blocks.codes(*codes.live_tool_on) & (np.arange(len(blocks)) > row))
+    if len(late) and blocks.program[late[0]] == blocks.program[row] and not np.any(starts < late[0]):
+        words = blocks.code_indices(*codes.live_tool_off)
+        written = executed_word(run, int(words[run.row[words] == late[0]][0]))
+        where = "stands beside it" if late[0] == row else f"of line {hit.line(late[0])} comes behind it"
+        return f"{written} {where}: write it before the tool change"
+    since = max(int(procedure.section_before[row]), int(procedure.live_tool_runs_on[row]))
+    others = spindles.unlisted[(run.row[spindles.unlisted] > since) & (run.row[spindles.unlisted] <= row)]
+    if not len(others):
+        return f"write {stop} on the retract"
+    code = f"{executed_word(run, int(others[0]))} of line {hit.line(run.row[others[0]])}"
+    return f"write {stop} on the retract, in place of {code} if that is meant for it"

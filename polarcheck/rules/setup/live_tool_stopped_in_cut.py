@@ -8,14 +8,16 @@ if TYPE_CHECKING:
     from polarcheck.columns.modes.entry import Entry
     from polarcheck.columns.modes.modal import ModalStates
     from polarcheck.columns.modes.mode import PolarMode
+    from polarcheck.columns.modes.spindles import Spindles
     from polarcheck.columns.path.path import ProgrammedPath
     from polarcheck.program.machines.machine import Machine
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     ERROR,
-    "the live tool is not running in this cutting move; {codes} is missing{or_started_by}",
-    values={"code_needed": "codes"},
+    "the live tool is not running in this cutting move; {code_needed} is missing{or_started_by}",
+    values=("code_needed",),
     gouges=True,
     at=("line", "arc_clockwise", "arc_counterclockwise"),
     once="live tool code",
@@ -75,4 +77,10 @@ def live_tool_stopped_in_cut(
     stopped = mode.first_in_section(path.cuts & ~modal.live_tool & expected)
     # Where the main spindle was started in its place, that is the fault; a tool that ran before is another.
     ran = mode.anywhere_in_section(modal.live_tool & mode.in_polar)
-    return Hits(stopped, values={"codes": " or ".join(codes.live_tool_on)}, follows={"section": ~ran})
+    return Hits(stopped, values={"code_needed": " or ".join(codes.live_tool_on)}, follows={"section": ~ran})
+
+
+def details(hit: Hit, spindles: Spindles) -> Details:
+    from polarcheck.rules.remedies import or_by
+
+    return {"or_started_by": or_by(hit, spindles, "starts it", "m_codes.live_tool_on")}

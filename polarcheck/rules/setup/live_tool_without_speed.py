@@ -8,13 +8,14 @@ if TYPE_CHECKING:
     from polarcheck.columns.modes.blocks import ExecutedBlocks
     from polarcheck.columns.modes.procedure import Procedure
     from polarcheck.program.machines.machine import Machine
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     WARNING,
-    "{word} starts the live tool, and no S above 0 that was given for it is in force: it turns at another speed, or "
+    "{code} starts the live tool, and no S above 0 that was given for it is in force: it turns at another speed, or "
     "not at all; write S before it",
-    values={"code": "word"},
+    values=("code",),
     once="program",
     is_advice=True,
     follows={"block": ("vacant-variable",)},
@@ -69,3 +70,7 @@ def live_tool_without_speed(blocks: ExecutedBlocks, procedure: Procedure, machin
     # Compares nothing: for which of two spindles an S is hangs on what starts after it.
     started = blocks.words_at(blocks.code_indices(*machine.m_codes.live_tool_on))
     return Hits(procedure.live_tool_without_speed, at=started)
+
+
+def details(hit: Hit) -> Details:
+    return {"code": hit.word}

@@ -8,15 +8,10 @@ if TYPE_CHECKING:
     from polarcheck.columns.modes.mode import PolarMode
     from polarcheck.columns.modes.spindles import Spindles
     from polarcheck.program.machines.machine import Machine
+    from polarcheck.rules.hit import Details, Hit
 
 
-@rule(
-    ERROR,
-    "{spindle_codes} is in force at {switch}{spindle_remedy}",
-    values={"code": "spindle_codes"},
-    at=("on",),
-    once="spindle code",
-)
+@rule(ERROR, "{code} is in force at {switch}{spindle_remedy}", values=("code",), at=("on",), once="spindle code")
 def main_spindle_running_at_entry(mode: PolarMode, spindles: Spindles, machine: Machine) -> Hits:
     """
     Main spindle not stopped before the polar mode.
@@ -61,3 +56,28 @@ def main_spindle_running_at_entry(mode: PolarMode, spindles: Spindles, machine: 
     running = mode.enters & spindles.runs
     must_stop = spindles.are_no_live_tool | machine.polar.main_spindle_must_stop
     return graded(error=running & must_stop, note=running & ~must_stop)
+
+
+def details(hit: Hit, spindles: Spindles, machine: Machine) -> Details:
+    codes = machine.m_codes
+    return {
+        "code": " or ".join(codes.sub_spindle_on if spindles.on_sub_spindle[hit.row] else codes.spindle_on),
+        "spindle_remedy": _remedy(hit, spindles),
+    }
+
+
+def _remedy(hit: Hit, spindles: Spindles) -> str:
+    """
+    How that is stopped before a section; where it may be the live tool, that it is asked about. Where that does
+    not run in the section, the code of the main spindle may stand in the place of that of the live tool.
+    """
+    import numpy as np
+
+    trace, row, codes = hit.trace, hit.row, hit.trace.machine.m_codes
+    if not spindles.are_no_live_tool[row] and not trace.machine.polar.main_spindle_must_stop:
+        return ": if that is the main spindle, stop it"
+    off = codes.sub_spindle_off if spindles.on_sub_spindle[row] else codes.spindle_off
+    stop = f"; write {next(iter(off), 'the code that stops it')} before the {hit.rotary} axis is engaged"
+    cuts = trace.path.cuts & (trace.mode.section == trace.mode.section[row])
+    is_live_tool = bool(codes.live_tool_on) and cuts.any() and not np.any(cuts & trace.modal.live_tool)
+    return f"{stop}, and {' or '.join(codes.live_tool_on)} for the live tool" if is_live_tool else stop

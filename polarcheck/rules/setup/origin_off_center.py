@@ -8,17 +8,17 @@ from polarcheck.rules.rule import ERROR, Hits, rule
 if TYPE_CHECKING:
     from polarcheck.columns.modes.entry import Entry
     from polarcheck.columns.modes.mode import PolarMode
+    from polarcheck.rules.hit import Details, Hit
+    from polarcheck.rules.rule import Needs
 
 
 @rule(
     ERROR,
     "{name} puts X0 {shift:length} off the spindle axis{as_diameter} at {switch}",
-    values={"shift": "shift"},
+    values=("shift",),
     worse=("shift",),
     at=("on",),
     once="origin",
-    needs=("entry.origin_shift",),
-    where="mode.enters",
     follows={"origin": ("origin-shifted-in-polar",)},
 )
 def origin_off_center(mode: PolarMode, entry: Entry) -> Hits:
@@ -118,3 +118,15 @@ def origin_off_center(mode: PolarMode, entry: Entry) -> Hits:
         G13.1
     """
     return Hits(mode.enters & (abs(entry.origin_shift) > ROUNDING), values={"shift": entry.origin_distance})
+
+
+def details(hit: Hit, entry: Entry) -> Details:
+    written, distance = entry.origin_shift[hit.row], entry.origin_distance[hit.row]
+    return {
+        "name": " and ".join(entry.origin.causes(hit.row)),
+        "as_diameter": "" if written == distance else f", X {hit.length(written)} as a diameter,",
+    }
+
+
+def needs(entry: Entry, mode: PolarMode) -> Needs:
+    return mode.enters, {"origin": entry.origin_shift}

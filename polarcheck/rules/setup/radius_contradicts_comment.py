@@ -2,19 +2,25 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from polarcheck.foundation.states import MM_PER_INCH
 from polarcheck.rules.rule import WARNING, Hits, rule
 
 if TYPE_CHECKING:
     from polarcheck.columns.modes.entry import Entry
+    from polarcheck.columns.modes.offsets import ToolOffsets
+    from polarcheck.rules.hit import Details, Hit
 
 #: So far wear and a path of the tool center may take R from what a comment tells, or from 0 [mm].
 _WEAR = 0.25
 
+#: Radii that differ by less than this share are one.
+_SAME_SHARE = 0.02
+
 
 @rule(
     WARNING,
-    "R {given:length} {is_given}, the comment tells {told:length}: {comment}; {which_radius}",
-    values={"offset": "offset", "radius": "given", "radius_stated": "told", "comment": "comment"},
+    "R {radius:length} {is_given}, the comment tells {radius_stated:length}: {comment}; {which_radius}",
+    values=("offset", "radius", "radius_stated", "comment"),
     worse=("radius:radius_stated",),
     at=("T",),
     doubts=(("compensation", "tool call"),),
@@ -130,4 +136,36 @@ def radius_contradicts_comment(entry: Entry) -> Hits:
         M30
     """
     contradicts = (entry.radius_off_comment > _WEAR) & (abs(entry.radius_in_mode) > _WEAR)
-    return Hits(contradicts, values={"given": entry.radius_in_mode, "told": entry.radius_told})
+    return Hits(contradicts, values={"radius": entry.radius_in_mode, "radius_stated": entry.radius_told})
+
+
+def details(hit: Hit, offsets: ToolOffsets, entry: Entry) -> Details:
+    from polarcheck.rules.wording.written import block_and_line, short
+
+    number = int(hit.trace.tools.offset_number[hit.row])
+    setter = int(offsets.radius_set_in[entry.first_in_mode[number]])
+    by_block = f" by {block_and_line(hit.trace, setter)}" if setter >= 0 else ""
+    return {
+        "comment": short(offsets.radii_in_comments[number].comment),
+        "is_given": f"is {'set' if by_block else 'given'} for offset {hit.offset}{by_block}",
+        "which_radius": _which_radius(hit, entry),
+    }
+
+
+def _which_radius(hit: Hit, entry: Entry) -> str:
+    """What may be wrong where R and the comment of an offset differ: the unit, the offset number, or one of both."""
+    from polarcheck.rules.wording.offsets import job_scale, shown_offset
+    from polarcheck.rules.wording.written import code_of
+
+    tools, row = hit.trace.tools, hit.row
+    given, stated = entry.radius_in_mode[row], entry.radius_told[row]
+    if abs(given / stated - MM_PER_INCH) < _SAME_SHARE * MM_PER_INCH and hit.trace.lengths.scale[row] == 1.0:
+        return f"in inch the comment fits: {code_of(hit.trace.machine, 'inch')} is missing"
+    other = int(tools.tool[row])
+    radius = tools.of_job[other].radius if other in tools.of_job else None
+    is_same = radius and abs(radius * job_scale(hit.trace, hit.row) - stated) < _SAME_SHARE * stated
+    if other != tools.offset_number[row] and is_same:
+        return f"offset {shown_offset(tools, other)} has the R of the comment"
+    if abs(given / stated - 2) < _SAME_SHARE:
+        return "R may be given as the diameter: measure the cutter"
+    return "measure the cutter, and correct the one that is wrong"

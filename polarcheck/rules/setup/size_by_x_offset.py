@@ -5,14 +5,18 @@ from typing import TYPE_CHECKING
 from polarcheck.rules.rule import NOTE, rule
 
 if TYPE_CHECKING:
+    from polarcheck.columns.modes.blocks import ExecutedBlocks
     from polarcheck.columns.modes.offsets import ToolOffsets
+    from polarcheck.columns.modes.tools import CalledTools
     from polarcheck.foundation.arrays import Mask
+    from polarcheck.program.execution.run import Run
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     NOTE,
-    "{x_changed_by} changes X of offset {offset_of_block}, which shifts the shape and leaves its size: change R",
-    values={"changed_by": "word_of_change", "x_wear": "wear_in_x", "offset": "offset_of_block"},
+    "{x_changed_by} changes X of offset {offset}, which shifts the shape and leaves its size: change R",
+    values=("changed_by", "x_wear", "offset"),
     at=("X", "U", "T"),
     is_advice=True,
 )
@@ -67,3 +71,25 @@ def size_by_x_offset(offsets: ToolOffsets) -> Mask:
     """
     # Compares nothing: what is set of which offset is a list of settings, and no column.
     return offsets.sizes_by_x
+
+
+def details(hit: Hit, blocks: ExecutedBlocks, tools: CalledTools, offsets: ToolOffsets, run: Run) -> Details:
+    from polarcheck.rules.wording.offsets import job_scale, shown_offset
+
+    numbers = offsets.offset_settings.number[offsets.offset_settings.row == hit.row]
+    word = _x_word(hit, blocks, run)
+    wear = None if word else tools.of_job[int(tools.offset_number[hit.row])].x_wear * job_scale(hit.trace, hit.row)
+    return {
+        "changed_by": word,
+        "x_wear": wear,
+        "offset": shown_offset(tools, int(numbers[0] if len(numbers) else tools.offset_number[hit.row])),
+        "x_changed_by": word or f"the wear in X of the offset table, {hit.length(wear)},",
+    }
+
+
+def _x_word(hit: Hit, blocks: ExecutedBlocks, run: Run) -> str:
+    """The word or the variable that sets X of a tool offset; empty for the wear of the job's table."""
+    if hit.row in run.assigned:
+        return run.assigned[hit.row].name
+    address = next((address for address in "XU" if blocks.has(address)[hit.row]), "")
+    return hit.written(address) if blocks.listed("data_input")[hit.row] and address else ""

@@ -14,8 +14,8 @@ if TYPE_CHECKING:
 
 @rule(
     WARNING,
-    "{codes} in the polar mode; the spindle is the {rotary} axis here",
-    values={"code": "codes"},
+    "{code} in the polar mode; the spindle is the {rotary} axis here",
+    values=("code",),
     follows={"section": ("polar-never-left",)},
 )
 def spindle_code_in_polar(

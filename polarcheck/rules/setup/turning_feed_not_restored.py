@@ -5,15 +5,18 @@ from typing import TYPE_CHECKING
 from polarcheck.rules.rule import WARNING, rule
 
 if TYPE_CHECKING:
+    from polarcheck.columns.modes.modal import ModalStates
     from polarcheck.columns.modes.procedure import Procedure
     from polarcheck.foundation.arrays import Mask
+    from polarcheck.program.machines.machine import Machine
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     WARNING,
-    "{feed_word} is {feedrate.feed_number:length} a minute in this move: {carried_mode} is still in force from "
+    "{feed_word} is {feed:length} a minute in this move: {carried_mode} is still in force from "
     "the polar mode; write {per_revolution} after it",
-    values={"feed": "feedrate.feed_number"},
+    values=("feed",),
     at=("F",),
     once="feed mode",
     is_advice=True,
@@ -79,3 +82,18 @@ def turning_feed_not_restored(procedure: Procedure) -> Mask:
     """
     # Compares nothing: which moves turn, and whose F is in force, hangs on the rows above.
     return procedure.turns_at_feed_of_mill
+
+
+def details(hit: Hit, modal: ModalStates, machine: Machine) -> Details:
+    import numpy as np
+
+    from polarcheck.rules.wording.feeds import feed_word
+    from polarcheck.rules.wording.written import code_of
+
+    since = int(np.flatnonzero(modal.sets("feed_mode")[: hit.row + 1])[-1])
+    return {
+        "feed": hit.trace.feedrate.feed_number[hit.row],
+        "feed_word": feed_word(hit),
+        "carried_mode": f"{code_of(machine, 'feed_per_minute')} of line {hit.line(since)}",
+        "per_revolution": code_of(machine, "feed_per_revolution"),
+    }

@@ -9,12 +9,13 @@ if TYPE_CHECKING:
     from polarcheck.columns.modes.mode import PolarMode
     from polarcheck.columns.path.path import ProgrammedPath
     from polarcheck.foundation.arrays import Mask
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     WARNING,
-    "{linear} stands at {path.x:diameter} at {switch}; enter the polar mode above 0",
-    values={"x": "path.x"},
+    "{linear} stands at {x:diameter} at {switch}; enter the polar mode above 0",
+    values=("x",),
     worse=("-x",),
     at=("on",),
     doubts=(("position", "way"),),
@@ -47,3 +48,7 @@ def x_not_positive_at_entry(mode: PolarMode, path: ProgrammedPath) -> Mask:
         G13.1
     """
     return mode.enters & (path.x < ROUNDING)
+
+
+def details(hit: Hit, path: ProgrammedPath) -> Details:
+    return {"x": path.x[hit.row]}

@@ -10,7 +10,9 @@ if TYPE_CHECKING:
     from polarcheck.columns.modes.modal import ModalStates
     from polarcheck.columns.modes.mode import PolarMode
     from polarcheck.columns.path.axes import PlaneAxes
+    from polarcheck.columns.path.path import ProgrammedPath
     from polarcheck.foundation.arrays import Mask
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
@@ -97,3 +99,30 @@ def x_unknown_at_entry(
     by_x = mode.is_followed & (axes.linear_axis == ord("X"))
     unknown = blocks.whole_program & ~entry.happened(positioned, since=entry.loses_x)
     return mode.enters & by_x & unknown & ~entry.positions_in_mode
+
+
+def details(hit: Hit, path: ProgrammedPath, entry: Entry) -> Details:
+    import numpy as np
+
+    axes = f"X and {hit.rotary}" if np.isnan(path.c_angle[hit.row]) else "it"
+    return {"axes": axes, "unknown_since": _unknown_since(hit, entry)}
+
+
+def _unknown_since(hit: Hit, entry: Entry) -> str:
+    """`is not known since T0404 in line 7`, or that X was never positioned."""
+    import numpy as np
+
+    from polarcheck.rules.wording.written import executed_word
+
+    blocks, run, row = hit.trace.blocks, hit.trace.run, hit.row
+    starts = np.flatnonzero(blocks.starts[: row + 1])
+    first = int(starts[-1]) if len(starts) else 0
+    lost = first + np.flatnonzero(entry.loses_x[first : row + 1])
+    if not len(lost):
+        return "has not been positioned in this program"
+    at = int(lost[-1])
+    named = "T" if blocks.has("T")[at] else "GXU"
+    low, high = np.searchsorted(run.row, (at, at + 1))
+    words = [index for index in range(low, high) if chr(int(run.words.address[index])) in named]
+    written = " ".join(executed_word(run, word) for word in words)
+    return f"is not known since {written} in line {hit.line(at)}"

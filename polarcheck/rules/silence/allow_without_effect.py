@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 @rule(
     NOTE,
     "{names}: there is nothing to silence here; take it out of the allow comment",
-    values={"names": "names"},
+    values=("names",),
     over="allows",
 )
 def allow_without_effect(unused_allows: UnusedAllows) -> Hits:

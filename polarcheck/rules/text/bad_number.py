@@ -7,12 +7,23 @@ from polarcheck.rules.rule import ERROR, Hits, rule
 if TYPE_CHECKING:
     from polarcheck.columns.modes.other_mode import OtherMode
     from polarcheck.columns.words.written import Written
+    from polarcheck.program.reading.words import Words
+    from polarcheck.rules.hit import Details, Hit
+
+_FAULTS = {
+    "NO_DIGITS": "no digits after the address",
+    "TWO_POINTS": "two decimal points",
+    "TWO_SIGNS": "two signs",
+    "SIGN_AFTER_DIGITS": "a sign behind the digits",
+    "NO_ADDRESS": "a number without an address",
+    "WRONG_DASH": "a dash that is not a minus sign",
+}
 
 
 @rule(
     ERROR,
-    "{text}: {number_fault}{count:blocks}",
-    values={"word": "text", "count": "count"},
+    "{word}: {number_fault}{count:blocks}",
+    values=("word", "count"),
     worse=("count",),
     over="words",
     once="name",
@@ -51,3 +62,9 @@ def bad_number(written: Written, other_mode: OtherMode) -> Hits:
     """
     count = written.unreadable_count
     return Hits(count > 0, values={"count": count}, follows={"file": other_mode.explained})
+
+
+def details(hit: Hit, words: Words) -> Details:
+    from polarcheck.program.reading.numbers import NumberFault
+
+    return {"number_fault": _FAULTS[NumberFault(int(words.fault[hit.index])).name]}

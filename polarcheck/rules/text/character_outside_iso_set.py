@@ -6,12 +6,13 @@ from polarcheck.rules.rule import NOTE, Hits, rule
 
 if TYPE_CHECKING:
     from polarcheck.columns.words.written import Written
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     NOTE,
-    "{characters} not in the ISO set of controls{count:blocks}",
-    values={"characters": "characters_counted", "count": "count"},
+    "{are} not in the ISO set of controls{count:blocks}",
+    values=("characters", "count"),
     worse=("characters", "count"),
     over="foreign",
 )
@@ -47,3 +48,8 @@ def character_outside_iso_set(written: Written) -> Hits:
         G13.1
     """
     return Hits(written.foreign_line_count > 0, values={"count": written.foreign_line_count})
+
+
+def details(hit: Hit, written: Written) -> Details:
+    count = int(written.foreign_count[hit.index])
+    return {"characters": count, "are": "1 character that is" if count == 1 else f"{count} characters that are"}

@@ -6,12 +6,13 @@ from polarcheck.rules.rule import WARNING, Hits, rule
 
 if TYPE_CHECKING:
     from polarcheck.columns.words.written import Written
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     WARNING,
-    "{code} and {other} of one modal group in a block; the control takes the last, {code}{count:blocks}",
-    values={"code": "code", "other_code": "other", "count": "count"},
+    "{code} and {other_code} of one modal group in a block; the control takes the last, {code}{count:blocks}",
+    values=("code", "other_code", "count"),
     worse=("count",),
     over="words",
 )
@@ -51,3 +52,12 @@ def codes_of_one_group(written: Written) -> Hits:
         G13.1
     """
     return Hits(written.overruled_count > 0, values={"count": written.overruled_count})
+
+
+def details(hit: Hit, written: Written) -> Details:
+    from polarcheck.rules.wording.written import g_code
+
+    return {
+        "code": g_code(hit.trace.text, hit.index),
+        "other_code": g_code(hit.trace.text, int(written.overruled[hit.index])),
+    }

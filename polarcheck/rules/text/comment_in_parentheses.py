@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 @rule(
     WARNING,
     "text in parentheses is no comment in this language{count:blocks}: the control stops here; write ; before it",
-    values={"count": "count"},
+    values=("count",),
     worse=("count",),
     over="comments",
 )

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 @rule(
     WARNING,
     "a parenthesis opens inside this comment; the control closes the comment at the first ){count:blocks}",
-    values={"count": "count"},
+    values=("count",),
     worse=("count",),
     over="comments",
 )

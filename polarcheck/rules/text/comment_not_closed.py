@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 @rule(
     ERROR,
     "this comment is not closed on its line{count:blocks}",
-    values={"count": "count"},
+    values=("count",),
     worse=("count",),
     over="comments",
 )

@@ -11,8 +11,8 @@ if TYPE_CHECKING:
 
 @rule(
     ERROR,
-    "{text} lacks its =: R is an arithmetic parameter here (R1=5), and the radius of an arc CR=; the control stops",
-    values={"word": "text"},
+    "{word} lacks its =: R is an arithmetic parameter here (R1=5), and the radius of an arc CR=; the control stops",
+    values=("word",),
     over="words",
 )
 def equal_sign_missing(written: Written) -> Mask:

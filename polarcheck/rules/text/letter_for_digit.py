@@ -6,12 +6,14 @@ from polarcheck.rules.rule import ERROR, Hits, rule
 
 if TYPE_CHECKING:
     from polarcheck.columns.words.written import Written
+    from polarcheck.program.reading.words import Text
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     ERROR,
-    "{text}: letter {letter}; write {meant}{count:blocks}",
-    values={"word": "text", "word_needed": "meant", "count": "count"},
+    "{word}: letter {letter}; write {word_needed}{count:blocks}",
+    values=("word", "word_needed", "count"),
     worse=("count",),
     over="words",
 )
@@ -56,3 +58,15 @@ def letter_for_digit(written: Written) -> Hits:
         %
     """
     return Hits(written.letter_count > 0, values={"count": written.letter_count})
+
+
+def details(hit: Hit, text: Text) -> Details:
+    import numpy as np
+
+    from polarcheck.rules.wording.written import with_digits
+
+    at = int(text.letters[np.searchsorted(text.letters, hit.place.start)])
+    return {
+        "word_needed": with_digits(text, hit.place),
+        "letter": "O for the digit 0" if text.source.excerpt(at, at + 1) in "oO" else "I for the digit 1",
+    }

@@ -7,7 +7,7 @@ from polarcheck.foundation.arrays import stretch
 from polarcheck.program.reading.words import Text
 from polarcheck.rules.places import Place
 from polarcheck.rules.repair import Mended, repair
-from polarcheck.rules.wording.phrases.text import meant
+from polarcheck.rules.wording.written import with_digits
 
 
 @repair()
@@ -57,4 +57,4 @@ def letter_for_digit(text: Text, written: Written, place: Place, index: int) -> 
             at for found in of_others if found and text.source.excerpt(found[0], found[0] + 1) == kind for at in found
         ]
     edits = tuple((at, at + 1, digit(at)) for at in places)
-    return Mended(f"Write {meant(text, place)}", False, edits)
+    return Mended(f"Write {with_digits(text, place)}", False, edits)

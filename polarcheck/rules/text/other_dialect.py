@@ -6,6 +6,10 @@ from polarcheck.rules.rule import NOTE, Hits, rule
 
 if TYPE_CHECKING:
     from polarcheck.columns.words.dialect import Dialect
+    from polarcheck.rules.hit import Details, Hit
+
+#: More of a line is not needed to find it.
+_SIGN_LENGTH = 40
 
 
 @rule(NOTE, "{written_for}; no rule looked at it: convert it for this lathe before it is checked", over="files")
@@ -55,3 +59,11 @@ def other_dialect(dialect: Dialect) -> Hits:
     """
     # Compares nothing: the table looks for the signs of other languages.
     return Hits(dialect.is_other)
+
+
+def details(hit: Hit, dialect: Dialect) -> Details:
+    found = dialect.recognised
+    if found is None:
+        return {"written_for": "this file is a program in ISO code"}
+    sign = found.sign[:_SIGN_LENGTH]
+    return {"written_for": f"this file is written for {found.title}, as `{sign}` in line {found.line} shows"}

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 from polarcheck.rules.rule import ERROR, Hits, rule
@@ -7,12 +8,17 @@ from polarcheck.rules.rule import ERROR, Hits, rule
 if TYPE_CHECKING:
     from polarcheck.columns.modes.other_mode import OtherMode
     from polarcheck.columns.words.written import Written
+    from polarcheck.program.reading.words import Text
+    from polarcheck.rules.hit import Details, Hit
+
+#: Most digits on either side of a decimal comma that are named.
+_DIGITS = 12
 
 
 @rule(
     ERROR,
     "{stray}{count:blocks}",
-    values={"count": "count"},
+    values=("count",),
     worse=("count",),
     over="strays",
     follows={
@@ -65,3 +71,15 @@ def stray_character(written: Written, other_mode: OtherMode) -> Hits:
         values={"count": count},
         follows={"file": other_mode.explained_strays},
     )
+
+
+def details(hit: Hit, text: Text) -> Details:
+    at = int(text.strays.start[hit.index])
+    character = text.source.excerpt(at, at + 1)
+    if character == "%":
+        return {"stray": "% inside a block: for the control the program ends here"}
+    whole = re.search(r"(?<![0-9])[0-9]++\Z", text.source.excerpt(max(at - _DIGITS, 0), at))
+    decimals = re.match(r"[0-9]++", text.source.excerpt(at + 1, at + 1 + _DIGITS))
+    if character == "," and whole and decimals:
+        return {"stray": f", is no decimal point: write {whole[0]}.{decimals[0]}"}
+    return {"stray": f"{character} is no character of a word"}

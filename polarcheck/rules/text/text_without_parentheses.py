@@ -1,17 +1,27 @@
 from __future__ import annotations
 
+import itertools
+import re
 from typing import TYPE_CHECKING
 
 from polarcheck.rules.rule import ERROR, Hits, rule
 
 if TYPE_CHECKING:
     from polarcheck.columns.words.written import Written
+    from polarcheck.program.reading.words import Text
+    from polarcheck.rules.hit import Details, Hit
+
+#: Of a text so much is looked at for its first words [characters].
+_LOOKED_AT = 200
+_LINES = " \t-|=:*#"
+#: Beside so many blocks, text is no remark but a column.
+_DESCRIPTION = 5
 
 
 @rule(
     ERROR,
     "{prose}",
-    values={"count": "count"},
+    values=("count",),
     worse=("count",),
     over="prose",
     follows={"block": ("comment-nested", "comment-not-closed")},
@@ -63,3 +73,21 @@ def text_without_parentheses(written: Written) -> Hits:
     """
     count = written.prose_count
     return Hits(count > 0, values={"count": count})
+
+
+def details(hit: Hit, text: Text, written: Written) -> Details:
+    from polarcheck.rules.wording.written import short
+
+    places = zip(text.prose.start[hit.index :].tolist(), text.prose.end[hit.index :].tolist(), strict=True)
+    texts = (
+        re.sub(r"</?\w[^<>\n]*+>", " ", text.source.excerpt(start, min(end, start + _LOOKED_AT))).strip(_LINES)
+        for start, end in itertools.islice(places, _LOOKED_AT)
+    )
+    first = short(next((one for one in texts if re.search(r"[^\W\d_]{2}", one)), ""))
+    count = int(written.prose_count[hit.index])
+    where = f" in {count} blocks, first" if count > 1 else ":"
+    what = "a description copied with the program: " if count >= _DESCRIPTION else ""
+    return {
+        "prose": f"text that stands in no parentheses{where} `{first}`; {what}the control reads each letter as an "
+        "address and stops; put it in parentheses or delete it"
+    }

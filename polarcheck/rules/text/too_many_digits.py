@@ -7,14 +7,10 @@ from polarcheck.rules.rule import ERROR, Hits, rule
 if TYPE_CHECKING:
     from polarcheck.columns.words.written import Written
     from polarcheck.program.machines.machine import Machine
+    from polarcheck.rules.hit import Details, Hit
 
 
-@rule(
-    ERROR,
-    "{text} has more than {limit} digits",
-    values={"word": "text", "digits": "digits_written", "limit": "limit"},
-    over="words",
-)
+@rule(ERROR, "{word} has more than {limit} digits", values=("word", "digits", "limit"), over="words")
 def too_many_digits(written: Written, machine: Machine) -> Hits:
     """
     Number with too many digits.
@@ -45,3 +41,7 @@ def too_many_digits(written: Written, machine: Machine) -> Hits:
     """
     limit = machine.control.digit_limit
     return Hits(written.long_number_digits > limit, values={"limit": limit})
+
+
+def details(hit: Hit, written: Written) -> Details:
+    return {"digits": written.long_number_digits[hit.index]}

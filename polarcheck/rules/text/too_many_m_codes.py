@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 @rule(
     WARNING,
     "{count} M codes in a block; this control takes {limit}",
-    values={"count": "count", "limit": "limit"},
+    values=("count", "limit"),
     worse=("count",),
     over="words",
 )

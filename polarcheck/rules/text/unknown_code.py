@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from polarcheck.columns.words.written import Written
     from polarcheck.program.machines.machine import Machine
     from polarcheck.program.reading.words import Words
+    from polarcheck.rules.hit import Details, Hit
 
 #: From here on controls have few codes of their own, and programs call macros of the builder (parameter 6050).
 OWN_CODES_END = 100
@@ -18,7 +19,7 @@ OWN_CODES_END = 100
 @rule(
     ERROR,
     "{code} is no code of this control{times}{or_known}",
-    values={"code": "code", "count": "code_count"},
+    values=("code", "count"),
     worse=("count",),
     over="words",
     follows={"file": ("polar-code-of-another-control", "polar-switch-unknown")},
@@ -70,3 +71,27 @@ def unknown_code(
         return Hits(unknown, NOTE, follows=follows)
     may_call_macro = (words.value >= OWN_CODES_END) & (words.decimals == 0)
     return graded(error=unknown & ~may_call_macro, warning=unknown & may_call_macro, follows=follows)
+
+
+def details(hit: Hit, written: Written) -> Details:
+    from polarcheck.rules.wording.written import g_code
+
+    count = int(written.unknown_code_count[hit.index])
+    return {
+        "code": g_code(hit.trace.text, hit.index),
+        "count": count,
+        "times": f" ({count} times in this file)" if count > 1 else "",
+        "or_known": _or_known(hit),
+    }
+
+
+def _or_known(hit: Hit) -> str:
+    """Where to add a code that the lathe has, be it a macro of its builder; nothing for what can only be a slip."""
+    from polarcheck.program.machines.machine import OwnMachine
+    from polarcheck.rules.remedies import place
+
+    value, machine = hit.trace.text.words.value[hit.index], hit.trace.machine
+    is_own = isinstance(machine, OwnMachine) and float(value * 10).is_integer() and value >= 0
+    if not is_own and value < OWN_CODES_END:
+        return ""
+    return f"; if the lathe has it, add it to {place(machine, 'control.known_codes')}"

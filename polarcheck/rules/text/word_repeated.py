@@ -6,12 +6,17 @@ from polarcheck.rules.rule import WARNING, Hits, rule
 
 if TYPE_CHECKING:
     from polarcheck.columns.words.written import Written
+    from polarcheck.program.reading.words import Words
+    from polarcheck.rules.hit import Details, Hit
+
+#: Of many words of one address so many are listed, and the last.
+_LISTED = 3
 
 
 @rule(
     WARNING,
     "{repeated}; the control takes the last: write one of them, or a block for each{count:blocks}",
-    values={"count": "count"},
+    values=("count",),
     worse=("count",),
     over="words",
 )
@@ -45,3 +50,23 @@ def word_repeated(written: Written) -> Hits:
         M99
     """
     return Hits(written.repeat_count > 0, values={"count": written.repeat_count})
+
+
+def details(hit: Hit, words: Words) -> Details:
+    import numpy as np
+
+    from polarcheck.foundation.arrays import stretch
+    from polarcheck.rules.places import squeezed
+    from polarcheck.rules.wording.written import short
+
+    low, high = stretch(words.block, int(words.block[hit.index]), int(words.block[hit.index]) + 1)
+    same = low + np.flatnonzero(words.address[low:high] == words.address[hit.index])
+    # A line of 50 MB may be one block: only what is listed is taken out of it.
+    listed = same if len(same) <= _LISTED + 1 else np.append(same[:_LISTED], same[-1])
+    spans = zip(words.start[listed].tolist(), words.end[listed].tolist(), strict=True)
+    *others, last = (short(squeezed(hit.trace.text.source.excerpt(start, end))) for start, end in spans)
+    others = others if len(listed) == len(same) else [*others, "..."]
+    letter = chr(int(words.address[hit.index]))
+    address = f",{letter.upper()}" if letter.islower() else letter
+    often = "twice" if len(same) == 2 else f"{len(same)} times"
+    return {"repeated": f"{address} is written {often} in this block: {', '.join(others)} and {last}"}

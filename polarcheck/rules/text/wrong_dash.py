@@ -10,8 +10,8 @@ if TYPE_CHECKING:
 
 @rule(
     ERROR,
-    "{text} is written with a dash of print; write a minus sign{count:blocks}",
-    values={"word": "text", "count": "count"},
+    "{word} is written with a dash of print; write a minus sign{count:blocks}",
+    values=("word", "count"),
     worse=("count",),
     over="words",
 )

@@ -1,1 +1,1 @@
-"""The words and numbers of findings about one place, which the templates of messages name."""
+"""Words that messages of several rules and pages have in common: what is written, offsets, ramps, feeds, the part."""

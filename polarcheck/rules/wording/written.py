@@ -1,13 +1,12 @@
-"""Phrases that rules of several groups use."""
+"""Words, blocks, codes and points as the program writes them."""
 
 from __future__ import annotations
 
 import re
 
 from polarcheck.columns.modes.blocks import ExecutedBlocks
-from polarcheck.columns.modes.mode import PolarMode
-from polarcheck.columns.path.axes import PlaneAxes
-from polarcheck.columns.path.lengths import Lengths
+from polarcheck.columns.trace import Trace
+from polarcheck.foundation.arrays import stretch
 from polarcheck.program.execution.run import Run
 from polarcheck.program.machines.codes import code_numbers, spelled
 from polarcheck.program.machines.machine import Machine
@@ -28,9 +27,10 @@ def short(written: str) -> str:
     return shortened(" ".join(written.split()), _LONGEST)
 
 
-def text(text: Text, place: Place) -> str:
-    """What stands at the place."""
-    return short(text.source.excerpt(place.start, place.end))
+def comment_in_words(text: Text, number: int) -> str:
+    """A comment by its number, as it is written."""
+    comments = text.comments
+    return short(text.source.excerpt(int(comments.start[number]), int(comments.end[number])))
 
 
 def written(blocks: ExecutedBlocks, run: Run, row: int, address: str) -> str:
@@ -40,14 +40,14 @@ def written(blocks: ExecutedBlocks, run: Run, row: int, address: str) -> str:
     return executed_word(run, int(at[-1])) if len(at) else address
 
 
-def block_and_line(blocks: ExecutedBlocks, run: Run, row: int) -> str:
+def block_in_short(run: Run, row: int) -> str:
+    """The block of a row as it is written: `G0 C120.`"""
+    return block_in_line(run, row, _LONGEST)
+
+
+def block_and_line(trace: Trace, row: int) -> str:
     """A block with its line, as in `G10 P8 R4. in line 3`."""
-    return f"{block_in_line(run, row, _LONGEST)} in line {int(blocks.line[row])}"
-
-
-def word(run: Run, at: list[int]) -> str:
-    """The first word at fault as it is written, without blanks."""
-    return executed_word(run, at[0])
+    return f"{block_in_short(trace.run, row)} in line {int(trace.blocks.line[row])}"
 
 
 def executed_word(run: Run, index: int) -> str:
@@ -58,14 +58,6 @@ def executed_word(run: Run, index: int) -> str:
     if found.startswith("=") and (name := _NAME.search(source.excerpt(max(start - _LONGEST, 0), start))):
         found = name[0] + found
     return short(squeezed(found))
-
-
-def codes(run: Run, at: list[int]) -> str:
-    """The codes at fault, each once, as in `G17, M5`."""
-    table = run.words
-    numbers = code_numbers(table.value[at])
-    named = [spelled(chr(int(table.address[index])), int(number)) for index, number in zip(at, numbers, strict=True)]
-    return ", ".join(dict.fromkeys(named))
 
 
 def code_of(machine: Machine, key: str) -> str:
@@ -79,35 +71,10 @@ def move_code(machine: Machine, key: str) -> str:
     return next((name for name, meant in machine.control.motion_codes.items() if meant == code), code)
 
 
-def line_code(machine: Machine) -> str:
-    """The code of a straight move at feed in the mode."""
-    return move_code(machine, "line")
-
-
-def centers(axes: PlaneAxes, row: int) -> str:
-    """The addresses of arc centers: I or J."""
-    return " or ".join(axes.center_words(row))
-
-
-def linear(axes: PlaneAxes, row: int) -> str:
-    """The address of the linear axis: X."""
-    return chr(axes.linear_axis[row])
-
-
-def virtual(axes: PlaneAxes, row: int) -> str:
-    """The address of the virtual axis: C."""
-    return axes.virtual_axis_of(row)
-
-
-def point(axes: PlaneAxes, lengths: Lengths, place: complex, row: int) -> str:
+def point(trace: Trace, place: complex, row: int) -> str:
     """A plane point as words of a row: X30 C15, or X30 Y15."""
-    axis = axes.virtual_axis_of(row)
-    return f"{in_row(place, lengths, row):point}".replace("C", f"{axis}=" if len(axis) > 1 else axis)
-
-
-def rotary(machine: Machine) -> str:
-    """The address of the rotary axis: C."""
-    return machine.polar.rotary_address
+    axis = trace.axes.virtual_axis_of(row)
+    return f"{in_row(place, trace.lengths, row):point}".replace("C", f"{axis}=" if len(axis) > 1 else axis)
 
 
 def switch(blocks: ExecutedBlocks, machine: Machine, row: int) -> str:
@@ -134,7 +101,18 @@ def _switch(blocks: ExecutedBlocks, machine: Machine, row: int) -> str:
     return next((name for name in (*polar.on, *polar.off) if blocks.codes(name)[row]), polar.on[0])
 
 
-def outside(blocks: ExecutedBlocks, mode: PolarMode, machine: Machine, row: int) -> str:
-    """Where it belongs, with the codes of this section: before G112 or after G113."""
-    enter = int(mode.sections.enter[mode.section[row]])
-    return f"before {switch(blocks, machine, enter)} or after {switch_off(blocks, machine, enter)}"
+def g_code(text: Text, index: int) -> str:
+    """A G code of the file, as in G0; as it is written where it is none that a control could know."""
+    words = text.words
+    number = int(code_numbers(words.value[index : index + 1])[0])
+    start, end = int(words.start[index]), int(words.end[index])
+    return spelled("G", number) if number >= 0 else short(text.source.excerpt(start, end))
+
+
+def with_digits(text: Text, place: Place) -> str:
+    """A word with its digits in the place of letters."""
+    first, end = stretch(text.letters, place.start, place.end)
+    characters = list(text.source.excerpt(place.start, place.end))
+    for at in (text.letters[first:end] - place.start).tolist():
+        characters[at] = "0" if characters[at] in "oO" else "1"
+    return short("".join(characters).upper())

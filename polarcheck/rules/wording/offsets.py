@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import re
 
+import numpy as np
+
 from polarcheck.columns.modes.tools import CalledTools
+from polarcheck.columns.trace import Trace
 from polarcheck.program.machines.machine import Machine
-from polarcheck.rules.wording.phrases.common import short
+from polarcheck.rules.wording.written import short
 
 _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
 _BARE_ARGUMENT = re.compile(r"[A-Za-z0-9_./+-]+")
@@ -66,3 +69,8 @@ def to_give(tools: CalledTools, machine: Machine, row: int, key: str) -> str:
 def example(machine: Machine) -> str:
     """How an offset is called, for a message: `T0808`, `T8 D1`, or `T08 M6`."""
     return {"edge": "T8 D1", "tool-change": "T08 M6"}.get(machine.offsets.called_by, "T0808")
+
+
+def job_scale(trace: Trace, row: int) -> float:
+    """What lengths of the job count in a row [mm]."""
+    return float(np.broadcast_to(trace.lengths.job_scale, len(trace))[row])

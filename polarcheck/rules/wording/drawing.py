@@ -11,23 +11,13 @@ from polarcheck.foundation.states import MM_PER_INCH, Units
 from polarcheck.parts.comparison import Comparison, Fit, title_of
 from polarcheck.parts.deviations import Deviations
 from polarcheck.rules.quantity import Quantity, in_row
-from polarcheck.rules.wording.phrases.common import point, short
-from polarcheck.rules.wording.phrases.part import Sizes, shape_in_words
+from polarcheck.rules.wording.part import Sizes, shape_in_words
+from polarcheck.rules.wording.written import point, short
 
 #: A turn below this is none [rad].
 _NO_TURN = 1e-5
 #: A smaller difference is none that anybody measures: the last digit of a size in mm, and in inch [mm].
 _LEAST = 1e-3, 1e-4 * MM_PER_INCH
-
-
-def drawing(deviations: Deviations, row: int) -> str:
-    """What the part of a row should be: the name of the drawing, or the shape."""
-    return short(deviations.of_row(row).title)
-
-
-def deviation(deviations: Deviations, row: int) -> str:
-    """How the part of a row differs from what it should be, where, and how it would fit."""
-    return _deviation(deviations.trace, deviations.of_row(row))
 
 
 def told(trace: Trace, one: Comparison) -> str:
@@ -36,7 +26,7 @@ def told(trace: Trace, one: Comparison) -> str:
     largest, tolerance = in_row(found.largest, trace.lengths, one.row), in_row(one.tolerance, trace.lengths, one.row)
     if not one.agrees:
         by = f"by {largest.beside(tolerance, 'length')}, {tolerance:length} is allowed"
-        return f"differs from {title} {by}: {_deviation(trace, one)}"
+        return f"differs from {title} {by}: {deviation(trace, one)}"
     least, shown = _LEAST[largest.inch], _least(trace.lengths, one, found.largest)
     where = ""
     if found.largest > least and not cmath.isnan(found.at):
@@ -45,7 +35,8 @@ def told(trace: Trace, one: Comparison) -> str:
     return f"agrees with {title} within {shown:length} (tolerance {tolerance:length}){where}{angle}"
 
 
-def _deviation(trace: Trace, one: Comparison) -> str:
+def deviation(trace: Trace, one: Comparison) -> str:
+    """How a part differs from what it should be, where, and how it would fit."""
     found = one.difference
     if one.is_other_way_round:
         does, should = ("a boss", "a pocket") if one.part.is_pocket else ("a pocket", "a boss")
@@ -73,7 +64,7 @@ def _least(lengths: Lengths, one: Comparison, size: float) -> Quantity:
 
 
 def _where(trace: Trace, one: Comparison, place: complex) -> str:
-    return point(trace.axes, trace.lengths, one.written(place), one.row)
+    return point(trace, one.written(place), one.row)
 
 
 def _fit(lengths: Lengths, one: Comparison, fit: Fit | None) -> str:

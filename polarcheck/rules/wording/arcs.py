@@ -1,0 +1,33 @@
+"""Words of arcs: G2 and G3, R, and I and J."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from polarcheck.columns.path.arcs import Arcs
+from polarcheck.columns.trace import Trace
+from polarcheck.foundation.states import Motion
+from polarcheck.program.machines.machine import Machine
+from polarcheck.program.machines.own_language import shown
+from polarcheck.rules.wording.written import move_code, written
+
+
+def arc_code(trace: Trace, row: int, reverse: bool = False) -> str:
+    """G2 or G3, whichever is in force; reverse: the other one."""
+    is_clockwise = bool(trace.axes.motion[row] == Motion.CW) != reverse
+    return move_code(trace.machine, "arc_clockwise" if is_clockwise else "arc_counterclockwise")
+
+
+def written_arc(trace: Trace, arcs: Arcs, row: int) -> str:
+    """The words of an arc that say where its center is: `R8.`, or `I-4. J0`."""
+    blocks, run = trace.blocks, trace.run
+    if arcs.by_radius[row]:
+        word = written(blocks, run, row, trace.machine.arcs.radius_word)
+        return f"{radius_word(trace.machine)}{word[1:]}" if word.startswith("=") else word
+    words = (word for word in trace.axes.center_words(row) if not np.isnan(blocks.word(word)[row]))
+    return " ".join(written(blocks, run, row, word) for word in words)
+
+
+def radius_word(machine: Machine) -> str:
+    """The address of R as the control's own language has it: R, or CR=."""
+    return shown(machine.control.native_words, machine.arcs.radius_word)

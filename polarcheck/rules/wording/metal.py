@@ -1,0 +1,48 @@
+"""The bar, and where a tool goes into metal."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from polarcheck.columns.filling import last_row
+from polarcheck.columns.metal.bar import Bar
+from polarcheck.columns.metal.workpiece import Workpiece
+from polarcheck.columns.trace import Trace
+from polarcheck.foundation.arrays import Mask
+from polarcheck.rules.hit import Hit
+
+
+def bar_in_words(hit: Hit, bar: Bar) -> str:
+    """The bar and where it is known from: `40 mm, [stock]`, `27.7 mm turned in lines 8 to 11`."""
+    known, size = bar.known, hit.length(bar.known.smallest)
+    if known.source == "turning":
+        first, last = known.lines
+        return f"{size} turned in {f'line {first}' if first == last else f'lines {first} to {last}'}"
+    return f"{size}, [stock]" if known.source == "job" else f"{size}, comment in line {known.lines[0]}"
+
+
+def of_line(trace: Trace, writes: Mask, until: int, row: int = -1) -> str:
+    """` of line 7`: the last row up to `until` that writes something, where that is not `row` itself."""
+    at = int(last_row(writes, trace.blocks.starts)[until]) if until >= 0 else -1
+    return f" of line {int(trace.blocks.line[at])}" if 0 <= at != row else ""
+
+
+def z_of_move(hit: Hit) -> float:
+    """Z at which the tool is in the way: before the block where it rises, or where Z behind it is not known."""
+    before, after = float(hit.trace.path.z_before[hit.row]), float(hit.trace.path.z[hit.row])
+    return before if after > before or np.isnan(after) else after
+
+
+def height(hit: Hit) -> str:
+    """Z at which the cutter is in the way, and the line that says so: `at Z-4 of line 7`, on a way up `up from Z-4`."""
+    path, row = hit.trace.path, hit.row
+    rises = path.z[row] > path.z_before[row]
+    is_before = bool(rises or np.isnan(path.z[row]))
+    where = of_line(hit.trace, hit.trace.axes.commands_z, row - is_before, row)
+    return f"{'up from' if rises else 'at'} Z{hit.number(z_of_move(hit))}{where}"
+
+
+def through(hit: Hit, workpiece: Workpiece) -> str:
+    """`through`, or `if X moves first, through`, of a move of several axes at once."""
+    may_miss = workpiece.may_miss_part if workpiece.hits_part[hit.row] else workpiece.may_miss_bar
+    return "(if X is faster than Z or C) through" if may_miss[hit.row] else "through"
