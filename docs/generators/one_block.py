@@ -212,8 +212,8 @@ def _report(tables: Tables, row: int) -> Iterator[str]:
     place = places.of_row(tables, row)
     yield from _heading("Hit to finding", "rules/, checking/")
     yield from _wrapped(
-        "`places` finds the words at fault, `message` fills the text of the rule with columns and "
-        "phrases, `engine` merges what has one cause (here all blocks under one F word) and lists under "
+        "`places` finds the words at fault, `message` fills the text of the rule with its "
+        "details, `engine` merges what has one cause (here all blocks under one F word) and lists under "
         "it what follows from it."
     )
     yield ""

@@ -89,4 +89,4 @@ def code_not_allowed_in_polar(mode_words: ModeWords, machine: Machine) -> Hits:
 
 def details(hit: Hit) -> Details:
     is_cycle = hit.trace.blocks.listed("drilling_cycle")[hit.row]
-    return {"where": hit.outside + (f", where its {hit.rotary} axis is an angle again" if is_cycle else "")}
+    return {"where": hit.outside + (f", where its {hit.rotary} is an angle again" if is_cycle else "")}
