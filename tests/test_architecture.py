@@ -240,7 +240,8 @@ LATE = (
     *("shapely", "numpy.ma", "rich", "plotly", "ezdxf", "multiprocessing"),
     *("polarcheck.geometry.polygons", "polarcheck.geometry.material_left", "polarcheck.geometry.comparison"),
     *("polarcheck.geometry.overcuts.cuts", "polarcheck.geometry.overcuts.own_loop"),
-    *("polarcheck.rules.message", "polarcheck.rules.repair", "polarcheck.columns.words.allow_comments"),
+    *("polarcheck.rules.message", "polarcheck.rules.hit", "polarcheck.rules.repair"),
+    "polarcheck.columns.words.allow_comments",
     *(
         "polarcheck.files.baselines.baseline",
         "polarcheck.reports.made_parts.part_report",

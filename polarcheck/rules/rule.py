@@ -158,14 +158,9 @@ class Rule(Documented, frozen=True):
         subject = subject_of(parameters) if self.subject == OF_TABLES else self.subject
         if subject and subject not in RESTS_ON:
             raise RuleError(f"rule {name}: {subject!r}: expected one of {', '.join(RESTS_ON)}")
+        companion = getattr(function, "__globals__").get  # noqa: B009 - mypy knows it of no Callable
         return msgspec.structs.replace(
-            self,
-            name=name,
-            function=function,
-            group=group,
-            subject=subject,
-            parameters=parameters,
-            companion=getattr(function, "__globals__").get,  # noqa: B009 - mypy knows it of no Callable
+            self, name=name, function=function, group=group, subject=subject, parameters=parameters, companion=companion
         )
 
     def __reduce__(self) -> tuple[Callable[[str], Rule], tuple[str]]:
