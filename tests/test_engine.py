@@ -113,7 +113,9 @@ def test_every_name_of_a_rule_stands_for_something(one: Rule, made: Tables) -> N
     handed, given = {*one.hits(made).values, *vars(Hit), "count"}, details_of(one)
     for function in filter(None, map(one.companion, ("details", "needs"))):
         assert {*tables.parameters(function)} <= {*made, "hit"}
-    fields = {(name, form.partition("/")[2]) for _, name, form, _ in string.Formatter().parse(one.message) if name}
+    fields = {
+        (name, (form or "").partition("/")[2]) for _, name, form, _ in string.Formatter().parse(one.message) if name
+    }
     named = {*one.values, *(name for names in fields for name in names if name)}
     assert given <= named, "nobody needs them"
     assert {name for name in named - handed - given if not (len(name) == 1 and name.isupper())} == set()
@@ -126,7 +128,9 @@ def details_of(one: Rule) -> set[str]:
         return set()
     (function,) = ast.parse(inspect.getsource(details)).body
     returned = [node.value for node in ast.walk(function) if isinstance(node, ast.Return)]
-    (names,) = {tuple(ast.literal_eval(key) for key in value.keys) for value in returned if isinstance(value, ast.Dict)}
+    (names,) = {
+        tuple(ast.literal_eval(key) for key in value.keys if key) for value in returned if isinstance(value, ast.Dict)
+    }
     assert all(isinstance(value, ast.Dict) for value in returned)
     return {*names}
 

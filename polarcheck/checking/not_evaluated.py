@@ -269,7 +269,7 @@ def _codes_not_named(key: str, what: str) -> _ExtraReasons:
         if not isinstance(trace.machine, OwnMachine) or getattr(trace.machine.m_codes, key):
             return
         rows = np.flatnonzero(trace.mode.enters)
-        codes = [unlisted_codes(trace.blocks, trace.run, trace.machine, tables["spindles"], int(row)) for row in rows]
+        codes = [unlisted_codes(trace, tables["spindles"], int(row)) for row in rows]
         if any(codes):
             file, first = trace.machine.file, next(filter(None, codes))
             remedy = f"if {first} does, add it to {place(trace.machine, f'm_codes.{key}')}"

@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from polarcheck.columns.modes.blocks import ExecutedBlocks
 from polarcheck.columns.modes.spindles import Spindles
-from polarcheck.program.execution.run import Run
+from polarcheck.columns.trace import Trace
 from polarcheck.program.machines import profiles
 from polarcheck.program.machines.job import Job
 from polarcheck.program.machines.machine import Machine, OwnMachine
@@ -43,20 +42,21 @@ def option_or_place(machine: Machine, key: str) -> str:
     return place(machine, key) if isinstance(machine, OwnMachine) else f"--set {key}=..."
 
 
-def unlisted_codes(blocks: ExecutedBlocks, run: Run, machine: Machine, spindles: Spindles, row: int) -> str:
+def unlisted_codes(trace: Trace, spindles: Spindles, row: int) -> str:
     """`M76 of line 3 or M70 of line 5`: the M codes above a row of its program that are in no list; empty for none."""
-    words = spindles.unlisted
+    run, blocks, words = trace.run, trace.blocks, spindles.unlisted
     words = words[(run.row[words] <= row) & (blocks.program[run.row[words]] == blocks.program[row])]
     numbers = run.words.value[words]
     first = np.sort([np.flatnonzero(numbers == number)[0] for number in dict.fromkeys(numbers.tolist())]).astype(int)
-    return " or ".join(_code_and_line(blocks, run, machine, int(words[index])) for index in first[:_NAMED])
+    return " or ".join(_code_and_line(trace, int(words[index])) for index in first[:_NAMED])
 
 
-def _code_and_line(blocks: ExecutedBlocks, run: Run, machine: Machine, word: int) -> str:
+def _code_and_line(trace: Trace, word: int) -> str:
     """`M76 of line 3`, and `M3 P14` where the machine tells M3 by what P is."""
+    run, blocks = trace.run, trace.blocks
     row = int(run.row[word])
     code = f"M{run.words.value[word]:g}"
-    listed = (one.partition(" ") for one in machine.m_codes.with_words)
+    listed = (one.partition(" ") for one in trace.machine.m_codes.with_words)
     beside = sorted({other[0] for first, _, other in listed if first == code})
     told = [f"{letter}{blocks.word(letter)[row]:g}" for letter in beside if blocks.has(letter)[row]]
     return f"{' '.join((code, *told))} of line {int(blocks.line[row])}"
@@ -64,6 +64,5 @@ def _code_and_line(blocks: ExecutedBlocks, run: Run, machine: Machine, word: int
 
 def or_by(hit: Hit, spindles: Spindles, effect: str, key: str) -> str:
     """Where to add an M code above a hit that may have done it; empty where the program has none that is not known."""
-    trace = hit.trace
-    codes = unlisted_codes(trace.blocks, trace.run, trace.machine, spindles, hit.row)
-    return f"; if {codes} {effect}, add that to {place(trace.machine, key)}" if codes else ""
+    codes = unlisted_codes(hit.trace, spindles, hit.row)
+    return f"; if {codes} {effect}, add that to {place(hit.trace.machine, key)}" if codes else ""
