@@ -98,7 +98,7 @@ class Pieces(msgspec.Struct, frozen=True):
 
 class Spokes(Table, frozen=True):
     """
-    Moves by their way: where they begin, whereto, and how they bend [1/mm], to the left above 0.
+    Moves by their start, direction and curvature [1/mm], above 0 to the left.
 
     toward: the direction of a line; of an arc that from its center to its start.
     """
@@ -123,7 +123,7 @@ class Spokes(Table, frozen=True):
 
     @quiet
     def at(self, way: Floats) -> tuple[Points, Points]:
-        """Points and directions at these ways from the start [mm]."""
+        """Points and directions at these distances from the start [mm]."""
         turned = self.toward * np.exp(1j * way * self.bend)
         on_arc = self.center + np.where(self.is_arc, self.radius, 0.0) * turned
         point = np.where(self.is_arc, on_arc, self.start + way * self.toward)
@@ -131,7 +131,7 @@ class Spokes(Table, frozen=True):
 
 
 def c_per_way(point: Points, direction: Points) -> Floats:
-    """Turn of C per way, signed [rad/mm]."""
+    """Turn of C per length of path, signed [rad/mm]."""
     return np.asarray(cross(point, direction) / np.abs(point) ** 2)
 
 

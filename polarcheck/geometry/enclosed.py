@@ -1,5 +1,5 @@
 """
-Whether closed ways go round the center of C, and on which side of them it lies.
+Closed paths: do they go round the center of C, and on which side of them does it lie?
 
 Moves come as in `polar`. A way whose end is not its start is closed by a straight line.
 """
@@ -15,24 +15,24 @@ from polarcheck.geometry.polar import c_sweep
 
 @quiet
 def go_round(start: Points, end: Points, center: Points, kind: States, way: Rows, count: int) -> Mask:
-    """Whether each of `count` ways goes round the center; way: the number of that of each move, in ascending order."""
+    """A boolean for each of `count` paths: it goes round the center. way: the path of each move, ascending."""
     first = np.flatnonzero(np.diff(way, prepend=-1))
     last = np.append(first[1:], len(way)) - 1
     turns = np.radians(c_sweep(start, end, center, kind))
     turns[last] += angle_between(end[last], start[first])
     turn = np.bincount(way, weights=turns, minlength=count)
-    # Of a way round the center it is a whole number of turns, of any other none.
+    # A path round the center makes whole turns, any other path makes none.
     return np.asarray(np.abs(turn) > np.pi)
 
 
 def goes_round(start: Points, end: Points, center: Points, kind: States) -> bool:
-    """Whether one way goes round the center."""
+    """True if one path goes round the center."""
     return bool(go_round(start, end, center, kind, np.zeros(len(start), np.int64), 1)[0])
 
 
 @quiet
 def signed_area(start: Points, end: Points, center: Points, kind: States) -> float:
-    """What one way encloses [mm2], above 0 where it is to the left."""
+    """The area that one path encloses [mm2], above 0 where it lies on its left."""
     chords = (start.conjugate() * end).imag
     sweep = arc_sweep(start, end, center, kind)
     is_arc = sweep != 0
@@ -42,5 +42,5 @@ def signed_area(start: Points, end: Points, center: Points, kind: States) -> flo
 
 
 def is_on_left(start: Points, end: Points, center: Points, kind: States) -> bool:
-    """Whether the center lies on the left of one way: inside a way that encloses its left, outside any other."""
+    """True if the center lies on the left of one path: inside a path that encloses its left, outside any other."""
     return goes_round(start, end, center, kind) == (signed_area(start, end, center, kind) > 0)

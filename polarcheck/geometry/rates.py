@@ -75,7 +75,7 @@ def c_acceleration(start: Points, end: Points, center: Points, kind: States, fee
     """
     Largest |C acceleration| within each move at the feed F [deg/s^2], not at its ends; inf through the center.
 
-    On a line 2 F^2 d s / r^4 with s the way from the foot, largest at s = d / sqrt(3): 0.6495 F^2 / d^2. On an arc
+    On a line 2 F^2 d s / r^4 with s the distance from the foot, largest at s = d / sqrt(3): 0.6495 F^2 / d^2. On an arc
     F^2 (R^2 - e^2) e sin(psi) / (R r^4) with psi the angle from the center's own direction.
     """
     lines = lines_from_center(start, end)

@@ -174,7 +174,7 @@ def reach_from_start(curves: Curves) -> Floats:
 
 
 def members(loop: Rows, wanted: Rows) -> tuple[Rows, Rows]:
-    """The rows of each wanted loop, loop after loop, and the number of the wanted loop of each row."""
+    """The rows of each requested loop, loop after loop, and the index of the requested loop of each row."""
     low, high = np.searchsorted(loop, wanted), np.searchsorted(loop, wanted, side="right")
     group = np.repeat(np.arange(len(wanted)), high - low)
     before = np.cumsum(high - low) - (high - low)

@@ -11,7 +11,7 @@ from polarcheck.geometry.plane import cross
 
 #: How far before and behind a crossing the path is looked at [mm].
 _ASIDE = 0.1
-#: Least angle between the two ways of the path there [rad]; below it one runs along the other.
+#: Least angle between the two strands of the path there [rad]; below it one runs along the other.
 _ANGLE = np.radians(5)
 #: Lines that end so near to each other meet [mm].
 _MEETS = 0.003
@@ -55,7 +55,7 @@ def self_crossings(start: Points, end: Points) -> Crossing:
     inside = (first > _ASIDE) & (second - first > 4 * _ASIDE) & (second < ends[-1] - _ASIDE)
     earlier, later, place, first, second = earlier[inside], later[inside], place[inside], first[inside], second[inside]
     crosses = _alternate(
-        *(_at(start, end, ends, way + aside) - place for way in (first, second) for aside in (-_ASIDE, _ASIDE))
+        *(_at(start, end, ends, middle + aside) - place for middle in (first, second) for aside in (-_ASIDE, _ASIDE))
     )
     return Crossing(earlier[crosses], later[crosses], place[crosses])
 
@@ -89,7 +89,7 @@ def _pairs(start: Points, end: Points) -> tuple[Rows, Rows]:
 
 
 def _at(start: Points, end: Points, ends: Floats, way: Floats) -> Points:
-    """The points of the path after these lengths of way."""
+    """The points of the path at these distances along it."""
     known, points = np.append(0.0, ends), np.append(start[:1], end)
     return np.interp(way, known, points.real) + 1j * np.interp(way, known, points.imag)
 
@@ -97,7 +97,7 @@ def _at(start: Points, end: Points, ends: Floats, way: Floats) -> Points:
 def _alternate(
     before: Points, after: Points, before_other: Points, after_other: Points
 ) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
-    """The two ways, seen from where they meet, lie on both sides of each other, by more than the least angle."""
+    """True where two strands cross: the ends of one lie on both sides of the other, by more than the least angle."""
     from_before = [np.angle(point * before.conj()) % (2 * np.pi) for point in (after, before_other, after_other)]
     limit, *others = from_before
     inside = [(angle > _ANGLE) & (angle < limit - _ANGLE) for angle in others]

@@ -7,7 +7,7 @@ import numpy as np
 from polarcheck.foundation.arrays import Floats, Mask, Points
 from polarcheck.geometry.comparison.measured_path import Way
 
-#: Directions from the center in which distances are compared; points sampled along a way.
+#: Directions from the center in which distances are compared; points sampled along a path.
 _DIRECTIONS, _POINTS = 3600, 20_000
 #: Candidate angles that are refined, points compared for each, and steps of the refinement.
 _TURNS, _FEW, _STEPS = 12, 400, 22
@@ -20,10 +20,10 @@ _GOLDEN = (5**0.5 - 1) / 2
 
 def best_turn(way: Way, drawn: Way, center: complex) -> float:
     """
-    The angle [rad] by which the drawing is to be turned about the center to fit the way, from -pi to pi.
+    The angle [rad] by which the drawing is to be turned about the center to fit the path, from -pi to pi.
 
     Both are described by their distances from the center in each direction. The correlation of these distances yields a
-    few candidate angles; the least mean distance along the way decides between them.
+    few candidate angles; the least mean distance along the path decides between them.
     """
     measured, seen = _distances(way, center, np.inf)
     other, _ = _distances(drawn, center, _FARTHEST * float(measured[seen].max(initial=0)))
@@ -51,7 +51,7 @@ def _mean(points: Points, drawn: Way, center: complex, angle: float) -> float:
 
 
 def _distances(way: Way, center: complex, farthest: float) -> tuple[Floats, Mask]:
-    """The distance of the nearest point of a way in each direction from the center; a mask of measured directions."""
+    """The least distance of a path from the center in each direction; a mask of the measured directions."""
     points, _ = way.at(np.linspace(0, way.length, _POINTS))
     if np.isfinite(farthest):
         points = np.concatenate([points, _near(way, center, farthest)])
@@ -66,7 +66,7 @@ def _distances(way: Way, center: complex, farthest: float) -> tuple[Floats, Mask
 
 
 def _near(way: Way, center: complex, farthest: float) -> Points:
-    """Points on the long segments of a way, dense enough near the center for every direction."""
+    """Points on the long segments of a path, dense enough near the center for every direction."""
     long = np.abs(way.end - way.start) > farthest / 10
     start, along = way.start[long], (way.end - way.start)[long]
     foot = np.clip(((center - start) * along.conj()).real / np.abs(along) ** 2, 0, 1)

@@ -24,7 +24,7 @@ _ON_CIRCLE = 2e-3
 _CHORDS = 0.01
 #: An arc whose center is so near to the axis [mm] is meant to be about it.
 _ABOUT_AXIS = 0.1
-#: What reaches farther beyond the round of the drawing than this [mm] is the way of the tool in the air.
+#: Points farther than this [mm] beyond the round of the drawing are the path of the tool in the air.
 _IN_AIR = 0.1
 #: Sine of the angle between lines that are parallel, at most.
 _PARALLEL = 0.05
@@ -77,7 +77,7 @@ class Made(NamedTuple):
     The outline of a part, ready to be compared.
 
     outline: its chains of lines and arcs.
-    way: the same as chords.
+    way: the outline as chords.
     about_axis: bool[elements], arcs about the axis.
     polygon: the part, prepared by shapely.
     bar: radius of the stock [mm], inf if unknown.
@@ -228,7 +228,7 @@ class _Extremes(NamedTuple):
 
 
 def _extremes(way: Way, measured: Callable[[Points], Floats], places: tuple[Floats, Mask]) -> _Extremes:
-    """The greatest deviations along a way, refined near them. places: distances along the way [mm], mask to compare."""
+    """The greatest deviations along a path, refined. places: distances along the path [mm], mask to compare."""
     along, compared = places
     if not compared.any():
         return _Extremes((0.0, complex(np.nan)), (0.0, complex(np.nan)), np.inf, 0.0)

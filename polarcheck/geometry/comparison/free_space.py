@@ -105,7 +105,7 @@ def frechet(
 
 
 def _narrowest(old: Sequence[Corner], new: Sequence[Corner], reached: Reached) -> Sequence[Meeting]:
-    """On a way of two points to the ends of their lines the least distance at each edge that they cross."""
+    """The least distance of the two points at each edge that they cross on their run to the ends of the lines."""
     meetings = []
     last = Edge(True, len(old) - 1, len(new) - 2), Edge(False, len(new) - 1, len(old) - 2)
     edge: Edge | None = next((edge for edge in last if edge in reached), None)

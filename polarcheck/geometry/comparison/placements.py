@@ -60,7 +60,7 @@ class Placement(NamedTuple):
     shift: complex = 0j
 
     def of(self, way: Way, center: complex) -> Way:
-        """A way that is placed so."""
+        """The path after this change."""
         return way_of(self.points(way.start, center), self.points(way.end, center), way.of)
 
     def points(self, points: Points, center: complex) -> Points:
@@ -227,7 +227,7 @@ def _refined(made: Made, way: Way, center: complex, placement: Placement) -> Pla
 
 
 def _mean(one: Way, other: Way) -> float:
-    """The mean distance from points of a way to another one [mm]."""
+    """The mean distance from points of one path to another path [mm]."""
     points, _ = one.at(np.linspace(0, one.length, _FEW))
     return float(other.nearest(points)[0].mean())
 

@@ -284,7 +284,7 @@ def _trails(programmed: Programmed, blocks: _Blocks) -> _Ways:
 
 
 def _across_corners(programmed: Programmed, vectors: Vectors) -> _Ways:
-    """The ways between the vectors of one corner; they belong to the latter block (M700V p. 193)."""
+    """The moves between the vectors of one corner; they belong to the latter block (M700V p. 193)."""
     several = np.flatnonzero((vectors.used.sum(axis=0) > 1) & vectors.known)
     corner, place = np.nonzero(vectors.used.T[several])
     vector = vectors.point[place, several[corner]]

@@ -186,7 +186,7 @@ def _directions_given(vector: Points) -> Points:
 
 
 def _ways(path: Path, row: Rows, on: Mask, method: Method) -> dict[str, Any]:
-    """The columns of Programmed that speak of the way from one moving row to the next."""
+    """The columns of Programmed for the step from one moving row to the next."""
     off = path.side == Side.OFF
     writes_side = path.side_written & ~off
     between, gap = _between(row, len(off))

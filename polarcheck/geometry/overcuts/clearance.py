@@ -15,7 +15,7 @@ from polarcheck.geometry.plane import cross, dot
 from polarcheck.geometry.segments import Curves, segments
 from polarcheck.geometry.tolerances import ROUNDING, ZERO
 
-#: Up to this number of pairs of a wall and a way, all are compared; for more, a tree is faster.
+#: Up to this number of pairs of a wall and a chord of the path, all are compared; for more, a tree is faster.
 _PAIRS = 20_000
 
 

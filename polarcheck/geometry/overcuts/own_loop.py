@@ -148,10 +148,10 @@ def _once(curves: Curves, tolerance: float) -> Segments:
 
 def _comes_close(walls: Segments, ways: Segments, repeated: Mask, is_ramp: Mask, limit: Floats) -> Mask:
     """
-    Ramps that come nearer than the limit to a wall of their loop, and all chords of paths that do; bool[ways].
+    Ramps that come nearer than the limit to a wall of their loop, and all chords of paths that do; bool[chords].
 
-    repeated: bool[ways], chords of repeated moves; they are not compared a second time.
-    is_ramp: bool[ways]. limit: float64[ways] [mm].
+    repeated: bool[chords], chords of repeated moves; they are not compared a second time.
+    is_ramp: bool[chords]. limit: float64[chords] [mm].
     """
     contours = polylines(walls.start, walls.end, walls.loop)
     shapely.prepare(contours)
@@ -245,7 +245,7 @@ def _cuts_in_the_open(part: FinishedParts, ramps: _Ramps, radius: Floats, tolera
 
 
 def _within_reach(part: FinishedParts, wall: Rows, ways: Segments, way: Rows, reach: Floats) -> Mask:
-    """Pairs of a wall and a way whose boxes come within reach [mm] of each other; bool[pairs]."""
+    """Pairs of a wall and a chord whose boxes come within reach [mm] of each other; bool[pairs]."""
     result = np.ones(len(wall), bool)
     for a, b, c, d in (
         (part.start.real, part.end.real, ways.start.real, ways.end.real),

@@ -23,7 +23,7 @@ from polarcheck.geometry.tolerances import ROUNDING, ZERO
 
 #: Sums over a loop are equal if they differ by less [mm]: their rounding grows with the square of its blocks.
 _SAME_SUM = 1e-3
-#: Up to this number of pairs of a wall and a way, all pairs are compared, without a tree.
+#: Up to this number of pairs of a wall and a chord, all pairs are compared, without a tree.
 _PAIRS = 4_000_000
 #: Ways between two checks of the time limit.
 _BATCH = 1024
@@ -70,7 +70,7 @@ def cuts_into_part(contour: Contours, loops: FlatLoops, bare: Bare) -> tuple[Cut
 
 
 def _begins_in(part: FinishedParts, cuts: Cuts, ways: Segments) -> Mask:
-    """True where the way of a cut begins in the part. The surroundings far from a pocket may be air."""
+    """True where the chord of a cut begins in the part. The surroundings far from a pocket may be air."""
     begin = ways.start[cuts.piece]
     beyond = np.maximum(np.abs(begin.real), np.abs(begin.imag)) >= part.pitch / 3
     points = shapely.points(coordinates(begin + part.pitch * cuts.group))
@@ -155,7 +155,7 @@ def _ways(bare: Bare, move: Rows, group: Rows, tolerance: float) -> tuple[Segmen
 
 def _comes_near(contour: Contours, groups: _Groups, ways: Segments, group: Rows, radius: Floats) -> Mask:
     """
-    True for ways that come within R of a wall, or that begin behind their nearest wall.
+    True for chords that come within R of a wall, or that begin behind their nearest wall.
 
     No other wall lies between a point and its nearest wall. If that wall turns its tool side to the point, the point is
     outside the part. Outside the box round all walls and outside the bar no part is known.
@@ -194,7 +194,7 @@ def _comes_near(contour: Contours, groups: _Groups, ways: Segments, group: Rows,
 
 
 def _nearby(curves: Curves, ways: Segments, group: Rows, radius: Floats) -> Rows:
-    """Curves that may be within R of a way of their group or nearest to its start; all if there are too many pairs."""
+    """Curves that may be within R of a chord of their group or nearest to its start; all if pairs are too many."""
     _, first = np.unique(np.stack([group, ways.start, ways.end], axis=1), axis=0, return_index=True)
     start, end, group = ways.start[first], ways.end[first], group[first]
     count = np.bincount(curves.loop, minlength=len(radius))[group]

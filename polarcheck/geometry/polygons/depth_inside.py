@@ -1,4 +1,4 @@
-"""The depth of straight ways in the finished part."""
+"""The depth of straight lines in the finished part."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _SLIVER = 0.1
 _LEAST = 0.4
 #: How much of the length of an outline a contour may run back over itself [share].
 _RETRACED = 0.15
-#: Points per way at which the depth is measured.
+#: Points per line at which the depth is measured.
 _POINTS = 17
 
 
@@ -28,11 +28,11 @@ def depth_inside(
     contour: Curves, left: Mask, ways: tuple[Points, Points], loop: Rows, tolerance: float, gap: float
 ) -> Floats:
     """
-    The greatest depth [mm] of each way in the finished part of its loop; 0 where the part is unknown.
+    The greatest depth [mm] of each line in the finished part of its loop; 0 where the part is unknown.
 
     contour, left: as for overcuts.own_loop.overcuts.
     ways: complex128[n] each [mm], start and end.
-    loop: int[n], the loop of each way.
+    loop: int[n], the loop of each line.
     tolerance: of the chords of arcs [mm].
     gap: the largest gap that is closed [mm].
 

@@ -130,7 +130,7 @@ class Removed:
 
 def hits_on_bar(ways: Sweeps, bar: Any, cleared: Sweeps, drilled: Rows, holes: Points) -> tuple[Mask, Points]:
     """
-    Which of these ways lead through what stands of a bar, and where; a way clears what it runs through.
+    A mask of the sweeps that lead through what stands of a bar, and where; each clears what it runs through.
 
     ways: rising in rows, moves of one row side by side. cleared: all moves that cut, rising in rows.
     drilled, holes: rows that drill, rising, and where, of any size.
@@ -159,7 +159,7 @@ def hits_on_part(
     ways: Sweeps, part: Any, walls: Any, cutter: float, top: float, level: float, cleared: Sweeps
 ) -> tuple[Mask, Points]:
     """
-    Which of these ways lead through a part that must stand, within 2 R of its walls, and where.
+    A mask of the sweeps that lead through a part that must stand, within 2 R of its walls, and where.
 
     part: the area that stands; walls: its programmed walls, as lines. cutter: R of the cutter that mills them [mm].
     top, level: the heights between which it stands for certain [mm]. cleared: all moves of the program that cut: what

@@ -90,7 +90,7 @@ class Ring:
         return replace(self, closed=self.closed if closed is None else closed, **columns)
 
     def turned_round(self) -> Self:
-        """The same run the other way."""
+        """The ring in the opposite direction."""
         back = np.arange(len(self))[::-1]
         own = self.some(back)
         return replace(own, start=self.end[back], end=self.start[back], sweep=-self.sweep[back])

@@ -88,7 +88,7 @@ def _divided(spans: Spans, chord_error: Floats, largest_turn: float, most: int) 
 
 
 def _needed(spans: Spans, at: Floats, chord_error: Floats, largest_turn: float) -> Floats:
-    """How many pieces the way up to each place asks for, float64[spans, places], rising."""
+    """The number of pieces needed from the start of a span up to each share, float64[spans, shares], rising."""
     point, direction = spans.points(at), spans.directions(at)
     r = np.abs(point)
     sine = cross(point, direction) / np.maximum(r, 1e-12) ** 2 * r
@@ -107,7 +107,7 @@ def _needed(spans: Spans, at: Floats, chord_error: Floats, largest_turn: float) 
 def _placed(spans: Spans, at: Floats, need: Floats, count: Rows) -> Pieces:
     """Pieces of equal need, so many of each span."""
     number = np.arange(len(spans), dtype=np.float64)
-    # What asks for nothing is divided by its way; a little of the way makes the need rise everywhere.
+    # A span without need is divided by length; a little of its length makes the need rise everywhere.
     total = need[:, -1:]
     share = np.where(total > 0, need / np.where(total > 0, total, 1.0), at) * (1 - 1e-6) + at * 1e-6
     span = np.repeat(np.arange(len(spans)), count)

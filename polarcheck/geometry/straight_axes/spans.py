@@ -44,12 +44,12 @@ class Spans(Table, frozen=True, dict=True):
         )
 
     def share(self, span: Rows, at: Floats) -> Floats:
-        """Shares of the way of the move; at: of the way of these spans."""
+        """Shares of the length of the move, from shares of the length of these spans."""
         return np.asarray(self.first[span] + (self.last - self.first)[span] * at)
 
     def points(self, at: Floats) -> Points:
         """
-        Plane points; at: shares of the way, float64[spans, n].
+        Plane points at these shares of the length of each span, float64[spans, n].
 
         The ends are `start` and `end` exactly.
         """
@@ -88,7 +88,7 @@ class Spans(Table, frozen=True, dict=True):
 @quiet
 def spans_of(start: Points, end: Points, center: Points, kind: States, at_center: float, level: float = 0.0) -> Spans:
     """
-    Divide moves where they are nearest to the center of C and farthest from it. Moves without a way have no span.
+    Divide moves where they are nearest to the center of C and farthest from it. Moves without a length have no span.
 
     at_center: a path that comes nearer to the center than that goes through it [mm]. level: a move is not divided where
     it is nearer than both of its ends, or farther, by no more than that [mm]: the distance hardly changes there.
