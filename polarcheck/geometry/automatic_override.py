@@ -24,12 +24,12 @@ from polarcheck.geometry.tolerances import ZERO
 #: Pieces shorter than this are left out [mm]: an arc shorter than ZERO would be a full circle, and rounding shifts the
 #: ends of pieces.
 _SHORTEST = 100 * ZERO
-#: In so many points of a piece the axes are looked at, closer to its ends, where most extremes are.
+#: Points of a piece at which the axes are evaluated; denser near its ends, where most extremes are.
 _POINTS = 257
-#: So many pieces are looked at in one go.
+#: Pieces that are evaluated at once.
 _AT_ONCE = 1024
 
-#: Of points, directions and curvature [mm, 1/mm] something of the axes.
+#: From points [mm], directions and curvature [1/mm] to a value of the axes.
 _OfPoint = Callable[[Points, Points, Floats], Floats]
 
 
@@ -54,7 +54,7 @@ class Pieces(msgspec.Struct, frozen=True):
         return self.start, self.end, self.center, self.kind
 
     def time(self) -> Floats:
-        """How long each piece takes [s]; at the center itself the tool waits until C has made its half turn."""
+        """The time of each piece [s]; at the center itself the tool waits until C has made its half turn."""
         turning = np.abs(polar.c_sweep(*self.shape)) / self.allowed
         waiting = np.where(np.isinf(rates.c_feed(*self.shape, self.feed)), 180 / self.allowed, 0.0)
         moving = polar.time(polar.length(*self.shape), self.feed) / 60
@@ -164,7 +164,7 @@ def pieces(start: Points, end: Points, center: Points, kind: States, feed: Float
     is_piece[:, 0] |= ~is_piece.any(axis=1)
     move, at = np.nonzero(is_piece)
     last = np.append(move[1:] != move[:-1], True)[: len(move)]
-    # What is too short to be a piece belongs to the one before it.
+    # A part that is too short for a piece of its own joins the piece before it.
     finish = np.where(last, spokes.length[move], np.append(way[move[1:], at[1:]], 0.0))
     own = spokes[move]
     begin = np.where(np.append(True, move[1:] != move[:-1])[: len(move)], 0.0, way[move, at])

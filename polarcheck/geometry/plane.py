@@ -131,7 +131,7 @@ def arcs_from_center(start: Points, end: Points, center: Points, kind: States, r
 
 
 def passes_toward(spoke: Points, sweep: Floats, direction: Points) -> Mask:
-    """Which arcs, begun at this spoke of their circle, pass the point in the direction."""
+    """A boolean per arc: begun at this spoke of its circle, it passes the point in the direction."""
     turn = np.copysign(1.0, sweep) * angle_between(spoke, direction)
     return np.asarray(turn + 2 * np.pi * (turn < 0) <= np.abs(sweep))
 

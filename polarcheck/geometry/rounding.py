@@ -1,4 +1,4 @@
-"""Which end points of a contour say no more than the last digit that is written."""
+"""End points of a contour that only show the rounding of the last written digit."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def may_turn_back(start: Points, end: Points, half: Points, radius: Floats) -> M
 
 
 def _halved(start: Points, end: Points, half: Points, kept: Mask, rows: Rows) -> Rows:
-    """Halve the stretches of these rows that do not lie in their strip; what is left of them."""
+    """Halve the stretches of these rows that do not lie in their strip; return the rows that remain to be halved."""
     last = np.flatnonzero(kept[rows])
     first = np.append(0, last[:-1] + 1)
     count = np.diff(np.append(first, len(rows)))

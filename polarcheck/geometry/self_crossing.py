@@ -9,11 +9,11 @@ import numpy as np
 from polarcheck.foundation.arrays import Floats, Points, Rows
 from polarcheck.geometry.plane import cross
 
-#: How far before and behind a crossing the path is looked at [mm].
+#: Length of the path before and after a crossing that is compared [mm].
 _ASIDE = 0.1
 #: Least angle between the two strands of the path there [rad]; below it one runs along the other.
 _ANGLE = np.radians(5)
-#: Lines that end so near to each other meet [mm].
+#: Lines whose ends are nearer than this meet [mm].
 _MEETS = 0.003
 #: Segments of a path, and pairs of them, that are compared.
 SEGMENTS, _PAIRS = 3000, 400_000

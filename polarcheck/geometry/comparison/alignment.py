@@ -76,7 +76,7 @@ def _near(way: Way, center: complex, farthest: float) -> Points:
 
 
 def _correlated(one: Floats, other: Floats) -> Floats:
-    """For each turn k the sum of one[i] * other[i - k]."""
+    """For each turn k the sum of first[i] * second[i - k]."""
     return np.fft.irfft(np.fft.rfft(one) * np.conj(np.fft.rfft(other)), _DIRECTIONS)
 
 

@@ -46,7 +46,7 @@ def _cells(point: Points, z: Floats, cell: float, shift: float) -> np.ndarray[tu
 
 
 def _visit(group: Rows) -> Rows:
-    """How often each group has come before."""
+    """The number of earlier values in the same group, for each value."""
     order = np.argsort(group, kind="stable")
     begins = np.append(True, np.diff(group[order]) != 0)[: len(group)]
     first = np.maximum.accumulate(np.where(begins, np.arange(len(group)), 0))
@@ -56,7 +56,7 @@ def _visit(group: Rows) -> Rows:
 
 
 def longest_rise(values: Rows) -> Rows:
-    """Return the places of a longest strictly rising selection of values."""
+    """Return the indices of a longest strictly rising subsequence."""
     if not len(values) or (np.diff(values) > 0).all():
         return np.arange(len(values))
     keep_time()

@@ -18,19 +18,19 @@ from polarcheck.geometry import polar
 from polarcheck.geometry.comparison.measured_path import Way, way_of_outline
 from polarcheck.geometry.outline import Outline
 
-#: Points that lie so far [mm] from a circle about the axis are on it.
+#: Points up to this distance [mm] from a circle about the axis are on it.
 _ON_CIRCLE = 2e-3
-#: By so much [mm] the chords of the bar leave it, at most.
+#: Greatest distance of the chords of the bar from its circle [mm].
 _CHORDS = 0.01
-#: An arc whose center is so near to the axis [mm] is meant to be about it.
+#: An arc whose center is nearer to the axis than this [mm] is an arc about the axis.
 _ABOUT_AXIS = 0.1
 #: Points farther than this [mm] beyond the round of the drawing are the path of the tool in the air.
 _IN_AIR = 0.1
 #: Sine of the angle between lines that are parallel, at most.
 _PARALLEL = 0.05
-#: Of each side the places that are looked at more closely, how often, and into how many parts each time.
+#: The search for an extreme of each side: candidates, rounds of refinement, and parts per round.
 _PLACES, _TURNS, _PARTS = 8, 6, 8
-#: Places that are off by so little less than the largest [mm] are as far off.
+#: Deviations that are smaller than the largest by less than this [mm] count as equal to it.
 _AS_LARGE = 5e-4
 
 
@@ -149,7 +149,7 @@ def turned_radius(drawn: Way) -> float:
     on = (np.abs(drawn.start) > reach - _ON_CIRCLE) & (np.abs(drawn.end) > reach - _ON_CIRCLE)
     # A chord that is seen under a large angle is no part of an arc.
     on &= np.abs(drawn.start + drawn.end) / 2 > reach - _ON_CIRCLE
-    # Of a whole circle nothing says whether it is turned or milled; a part that is compared with it is.
+    # A whole circle may be turned or milled: it counts as milled.
     is_turned = not on.all() and np.abs(drawn.end - drawn.start)[on].sum() > reach * _LEAST_ARC
     return reach if is_turned else np.inf
 
@@ -237,7 +237,7 @@ def _extremes(way: Way, measured: Callable[[Points], Floats], places: tuple[Floa
     share = np.gradient(along) if len(along) > 1 else np.ones(1)
     length = float(share[compared].sum())
     mean = float((np.abs(value[compared]) * share[compared]).sum() / length) if length else np.inf
-    # Nothing is looked for beyond a neighbour that is not compared.
+    # The search ends at a neighbour that is not compared.
     low = np.where(np.append(False, compared[:-1]), np.append(along[0], along[:-1]), along)
     high = np.where(np.append(compared[1:], False), np.append(along[1:], along[-1]), along)
     extremes: list[tuple[float, complex]] = []

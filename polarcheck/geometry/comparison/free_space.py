@@ -19,7 +19,7 @@ Corner = tuple[float, float, float]
 Interval = tuple[float, float]
 #: Rounding of the arithmetic [mm].
 _NOISE = 1e-9
-#: The time is looked at once for so many cells.
+#: Cells between two checks of the time.
 _TURN = 1000
 
 
@@ -60,7 +60,7 @@ class Meeting(NamedTuple):
 
     @property
     def distance(self) -> float:
-        """How far apart the points are [mm]."""
+        """The distance of the two points [mm]."""
         return math.dist(self.old, self.new)
 
 

@@ -1,4 +1,4 @@
-"""Ways of straight segments: points along them, and distances to them; lengths in mm."""
+"""Paths of straight segments: points along them, and distances to them; lengths in mm."""
 
 from __future__ import annotations
 

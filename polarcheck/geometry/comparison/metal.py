@@ -25,7 +25,7 @@ from polarcheck.geometry.tolerances import ZERO
 _CHORDS = 0.008
 #: Corners of a quarter of a circle round a corner.
 _CORNERS = 64
-#: What is thinner than this is rounding [mm].
+#: Slivers thinner than this are rounding [mm].
 _SLIVER = 0.004
 #: More chords than these are not compared.
 _MOST_CHORDS = 60_000
@@ -85,7 +85,7 @@ def polygons_of(area: Any) -> Any:
 
 
 def within_lines(area: Any, lines: Sequence[Points]) -> Any:
-    """What of an area lies on the left of each of these lines, which reach beyond it."""
+    """The part of an area on the left of each of these lines, which reach beyond it."""
     for start, end in lines:
         out = -1j * (end - start)
         area = areas.difference(area, polygon_of(np.array([start, start + out, end + out, end, start])))
@@ -112,7 +112,7 @@ def sides_of(curves: Sequence[Points], far: float) -> Any:
 
 
 def is_inside(one: Any, other: Any, by: float = 0.0) -> bool:
-    """All but a small share of one area lies within another one, which may be larger by so much."""
+    """True if one area lies within another, enlarged by `by` [mm], except for a small share."""
     return bool(shapely.area(areas.difference(one, grown(other, by))) <= _OUTSIDE * shapely.area(one))
 
 
@@ -127,18 +127,18 @@ def disc(radius: float) -> Any:
 
 
 def grown(area: Any, by: float) -> Any:
-    """An area that is larger by so much all round, or smaller."""
+    """The area offset outward by this distance [mm], or inward if it is negative."""
     return areas.buffer(area, by, quad_segs=_CORNERS) if by else area
 
 
 def reachable(area: Any, radius: float, is_pocket: bool) -> Any:
-    """What a cutter can leave of a part, or clear of a pocket: its inside corners are round."""
+    """The area that a cutter can leave of a part, or clear of a pocket: its inside corners are round."""
     size = max(radius - _SPARE, _SPARE)
     return grown(grown(area, -size), size) if is_pocket else grown(grown(area, size), -size)
 
 
 def beside(area: Any, radius: float, tolerance: float, is_pocket: bool) -> Any:
-    """What a cutter must have cleared beside the walls of a part, or within those of a pocket, as far as R reaches."""
+    """The area that a cutter must clear: outside the walls of a part or inside those of a pocket, R wide."""
     limit = reachable(area, radius, is_pocket)
     if is_pocket:
         return areas.difference(grown(limit, -tolerance), grown(limit, -radius))
@@ -146,7 +146,7 @@ def beside(area: Any, radius: float, tolerance: float, is_pocket: bool) -> Any:
 
 
 def within(area: Any, radius: float, tolerance: float, is_pocket: bool) -> Any:
-    """What must stand: the part, or the surroundings of a pocket as far as a cutter on its wrong side clears."""
+    """The area to keep: the part, or the surroundings of a pocket as far as a cutter on its wrong side clears."""
     if is_pocket:
         return areas.difference(grown(area, 2 * radius), grown(area, tolerance))
     return grown(area, -tolerance)
@@ -159,9 +159,9 @@ def joined(several: Sequence[Any]) -> Any:
 
 def farthest(found: Any, whole: Any, area: Any) -> Extreme:
     """
-    How far a difference reaches from the wall.
+    The greatest distance of a difference from the wall.
 
-    found: the difference where it was looked for. whole: all of it. area: of the part or pocket.
+    found: the difference within the area of the search. whole: all of it. area: of the part or pocket.
     """
     keep_time()
     found = grown(grown(found, -_SLIVER), _SLIVER)

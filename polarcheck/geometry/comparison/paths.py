@@ -165,7 +165,7 @@ def _along(line: Polyline, at: Rows) -> Floats:
 
 
 def _distance(old: Polyline, old_along: Floats, new: Polyline, new_along: Floats, moment: Floats) -> Floats:
-    """How far apart two points are at moments [mm]."""
+    """The distance of the two points at these moments [mm]."""
     (a, a_z), (b, b_z) = (_at(line, along, moment) for line, along in ((old, old_along), (new, new_along)))
     return np.hypot(np.abs(a - b), a_z - b_z)
 
@@ -227,7 +227,7 @@ def _place_of_bound(pieces: _Pieces, piece: int) -> Place:
 
 
 def _proven(pieces: _Pieces, largest: float, place: Place, tolerance: float) -> tuple[float, Place, bool]:
-    """The deviation however corners are paired, its place, and whether it is known: long paths take too many cells."""
+    """The deviation for any pairing of corners, its place, and whether it is exact: long paths take too many cells."""
     ends = [np.array([0, len(line) - 1]) for line in (pieces.old, pieces.new)]
     corners = [_corners(line, at, 0) for line, at in zip((pieces.old, pieces.new), ends, strict=True)]
     whole = msgspec.structs.replace(pieces, old_at=ends[0], new_at=ends[1])

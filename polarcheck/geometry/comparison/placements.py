@@ -30,13 +30,13 @@ _NO_SHIFT, _NO_TURN = 1e-3, 1e-5
 _FEW, _STEPS = 400, 12
 #: Differences below this count alike in the refinement [mm].
 _LEAST = 1e-3
-#: Of each change so many curves of the drawing are tried.
+#: Curves of the drawing that are tried for each change.
 _MOST_CURVES = 4
 #: Centers of arcs that may be meant for the axis.
 _CENTERS = 2
 #: From one chord of an arc to the next the direction changes by less than this [rad].
 _LARGEST_TURN = 0.5
-#: Chords that are looked at to find the centers of arcs; of more only each second, third, ... one.
+#: Most chords from which the centers of arcs are found; beyond it only every second, third, ... chord counts.
 _MOST_ARCS = 1000
 #: Arcs whose centers are nearer to each other than this share of their radius have the same center.
 _SAME_CENTER = 0.01
@@ -64,7 +64,7 @@ class Placement(NamedTuple):
         return way_of(self.points(way.start, center), self.points(way.end, center), way.of)
 
     def points(self, points: Points, center: complex) -> Points:
-        """Points that are placed so."""
+        """The points after this change."""
         points = self.scale * (points.conj() if self.mirrored else points)
         points = self.x_factor * points.real + 1j * points.imag
         center *= self.scale
@@ -146,7 +146,7 @@ def _candidates(
 
 
 def _plain(freedom: Freedom) -> Iterator[Placement]:
-    """The changes that keep their place, the simplest first."""
+    """The changes that neither turn nor shift, the simplest first."""
     scales = (1.0, MM_PER_INCH, 1 / MM_PER_INCH)
     yield from map(Placement, scales)
     if freedom.stretches:

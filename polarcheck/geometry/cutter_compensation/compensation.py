@@ -67,7 +67,7 @@ class ToolPath(Table, frozen=True):
     arc_center_on_path: Mask
 
 
-#: So many rows at least are followed at once.
+#: Least number of rows that are followed at once.
 _PART = 16_384
 #: What belongs to one block, in the order in which it is run.
 _LEAD, _CORNER, _BLOCK, _TRAIL = range(4)

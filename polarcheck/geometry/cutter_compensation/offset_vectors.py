@@ -80,7 +80,7 @@ def end_vectors(programmed: Programmed, method: Method) -> Vectors:
 
 
 def _known(programmed: Programmed) -> Mask:
-    """Where the vectors do not hang on anything unknown."""
+    """A boolean per move: its vectors depend on nothing unknown."""
     alone = ~programmed.has_next | programmed.cancelled | ~programmed.read
     next_known = np.append(programmed.known[1:], False)
     return np.asarray(programmed.known & (alone | next_known))
@@ -160,7 +160,7 @@ def _other_corners(programmed: Programmed, turned: Points, joints: _Joints, meth
 
 
 def _leads_on(corners: Corners, point: Points) -> Mask:
-    """Which meeting points lie ahead of the end of the move before and behind the start of the one after."""
+    """A mask of the meeting points that lie ahead of the end of the move before, and before the start of the next."""
     ahead = (point - corners.point - corners.vector_before) * corners.arriving.conj()
     behind = (corners.point + corners.vector_after - point) * corners.leaving.conj()
     return np.asarray(np.isfinite(point) & (ahead.real >= -ROUNDING) & (behind.real >= -ROUNDING))

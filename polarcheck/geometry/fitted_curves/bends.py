@@ -44,7 +44,7 @@ def error(samples: Samples, first: int, last: int, tolerance: float, *, straight
 
 @quiet
 def _fit(samples: Samples, first: int, last: int, tolerance: float, straight: bool) -> tuple[float, Floats] | None:
-    """Return u and the distances of the places between."""
+    """Return u and the distances of the samples between."""
     start = samples.point[first]
     chord = samples.point[last] - start
     long = abs(chord)

@@ -14,7 +14,7 @@ from polarcheck.geometry.fitted_curves.spirals import Samples
 
 #: A line is taken where an arc would reach no farther than this many times as far.
 _ARC_GAIN = 1.25
-#: A joint is looked for up to so many places away from where the longest element ends.
+#: Greatest distance, in joints, of a better joint from where the longest element ends.
 _FARTHEST_JOINT = 64
 
 #: First and last place, and u as in bends.py.
@@ -108,7 +108,7 @@ def _joined_best(samples: Samples, tolerance: float, elements: list[Element], jo
 
 
 def _steps(at: int, first: int, last: int, ordinal: Rows) -> Iterator[int]:
-    """Yield how far to look for a better joint: halves, then one place several times."""
+    """Yield the steps in which to search for a better joint: halves, then single joints several times."""
     widest = int(min(ordinal[last] - ordinal[at], ordinal[at] - ordinal[first], _FARTHEST_JOINT))
     step = widest // 2
     while step > 1:

@@ -83,7 +83,7 @@ def union_all(areas: Any, grid_size: float | None = None) -> Any:
 
 
 def dwithin(one: Any, other: Any, distance: Any) -> Any:
-    """Whether each of one lies within the distance of the same of the other [mm]; bool[n]."""
+    """A boolean per pair: the first geometry lies within the distance of the second [mm]."""
     share = np.cumsum(shapely.get_num_coordinates(other)) // _PIECES_AT_A_TIME
     result = np.zeros(len(other), bool)
     for part in np.split(np.arange(len(other)), np.flatnonzero(np.diff(share)) + 1):

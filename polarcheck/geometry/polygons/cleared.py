@@ -28,13 +28,13 @@ from polarcheck.geometry.tolerances import ROUNDING, TOUCH
 
 #: Arcs of the path have chords with a quarter of this as sagitta at most, and round corners too [mm].
 _TOLERANCE = 0.004
-#: Chords of a path at one Z, and points whose nearest chord is looked for at a time.
+#: Chords of a path at one Z, and points whose nearest chord is searched at a time.
 _MOST_CHORDS, _POINTS = 1_000_000, 1000
-#: What is narrower than this is no part but rounding, where passes lie side by side [mm].
+#: Gaps between passes that are narrower than this are rounding and no part [mm].
 _SLIT = 0.008
-#: Places of one chord beside which material is looked for, at most; R apart.
+#: Most samples of one chord, R apart, beside which material is searched.
 _SAMPLES = 50
-#: How often an end of two curves is put on one and on the other by turns.
+#: Rounds in which the common end of two curves is moved to either curve by turns.
 _TURNS = 30
 
 

@@ -246,7 +246,7 @@ def _rings(lines: _Lines, inside: Mask) -> tuple[Rows, Rows, Mask]:
 
 
 def _along(lines: _Lines, line: Rows, forward: Mask) -> tuple[Rows, Mask, Rows]:
-    """The edges of these lines in order, whether each runs as it does itself, and which of the lines it is of."""
+    """The edges of these lines in order, a mask of those that keep their direction, and the line of each by index."""
     count = lines.count[line]
     of = np.repeat(np.arange(len(line)), count)
     place = np.arange(len(of)) - np.repeat(np.cumsum(count) - count, count)

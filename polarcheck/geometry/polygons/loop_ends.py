@@ -19,7 +19,7 @@ _PAIRS = 1_000_000
 #: A contour ends beside its start where that is nearer than this share of its length, and runs on in the direction of
 #: its start where it turns by no more than this [rad].
 _BESIDE, _STRAIGHT = 0.025, 0.35
-#: The extended walls of a corner meet nearer to its ends than so many times the distance of these.
+#: The extended walls of a corner meet nearer to its ends than this multiple of their distance.
 _MEETING = 3
 
 
@@ -43,7 +43,7 @@ class LoopEnds(Table, frozen=True):
 
     @property
     def limit(self) -> Floats:
-        """How far beside its start a contour may end and still be closed [mm]."""
+        """Greatest distance beside its start at which a contour ends and is still closed [mm]."""
         return np.minimum(_BESIDE * self.total, np.where(self.radius > 0, self.radius, np.inf))
 
 

@@ -125,7 +125,7 @@ def _runs(walls: _Walls) -> _Runs:
 
 
 def _apart(runs: _Runs, one: Rows, other: Rows) -> Mask:
-    """Whether the other run lies wholly to one side of the strip along the line of the one."""
+    """A boolean per pair: the second run lies wholly to one side of the strip along the line of the first."""
     begin, across = runs.begin[one], runs.along[one].conj()
     first, last = (((point[other] - begin) * across).imag for point in (runs.begin, runs.end))
     wide = np.maximum(runs.high, -runs.low)[other] + TOUCH
@@ -189,7 +189,7 @@ def _shares(count: Rows) -> list[Rows]:
 
 
 def _each_wall(walls: _Walls, boxes: _Boxes, runs: _Runs, one: Rows, other: Rows) -> tuple[Rows, Rows]:
-    """Every wall of one run with every wall of the other that it may meet."""
+    """Pairs of a wall of one run and a wall of the other that may meet."""
     first, size = runs.first, runs.size
     count = size[one] * size[other]
     pair = np.repeat(np.arange(len(one)), count)

@@ -21,7 +21,7 @@ from polarcheck.geometry.polygons.widened import widened
 from polarcheck.geometry.segments import Curves, segments
 from polarcheck.geometry.tolerances import ROUNDING, ZERO
 
-#: What the rounding of the words and of chords may leave between two passes [mm].
+#: Greatest gap that rounding of words and chords may leave between two passes [mm].
 _TOLERANCE = 0.05
 #: A cutter that overlaps less than this is taken as beside the metal [mm2].
 _LEAST_AREA = 0.05
@@ -90,7 +90,7 @@ def turned(area: Any, angle: float) -> Any:
 
 
 def touched(way: Sweeps, standing: Any) -> Any:
-    """What of the standing area a cutter overlaps; None where it is too little to count."""
+    """The part of the standing area that a cutter overlaps; None where it is too small to count."""
     hit = areas.intersection(area_of(way, _TOLERANCE), standing)
     return hit if shapely.area(hit) > _LEAST_AREA else None
 
@@ -150,7 +150,7 @@ def hits_on_bar(ways: Sweeps, bar: Any, cleared: Sweeps, drilled: Rows, holes: P
 
 
 def _is_at_hole(way: Sweeps, holes: Points) -> bool:
-    """A place that lies where something was drilled."""
+    """True for a sweep that ends where something was drilled."""
     near = np.abs(holes - way.curves.end[0]) <= way.radius[0]
     return bool(near.any())
 

@@ -88,7 +88,7 @@ def _halves_of_arcs(path: Curves, chords: Segments) -> Rows:
 
 
 def _shapes(path: Curves, chords: Segments, part: Rows, radius: float, tolerance: float) -> tuple[Mask, Mask]:
-    """What is within R of each half of an arc: is it a part of a ring, is it a part of a disc; a boolean per chord."""
+    """The shape within R of each half of an arc, as two masks of chords: part of a ring, part of a disc."""
     _, number, count = np.unique(part, return_inverse=True, return_counts=True)
     own = np.abs(chords.start - path.center[chords.move])
     with np.errstate(invalid="ignore", divide="ignore"):  # lines have no center

@@ -12,9 +12,9 @@ from polarcheck.foundation.arrays import Mask, Points
 _PARTS = (2, 3, 5, 7, 11, 13)
 #: Mirror images along the axes and across; by what the conjugate is turned.
 _MIRRORS = (1 + 0j, -1 + 0j, 1j, -1j)
-#: So many of the points, and this share of them, have an image among them where the symmetry is meant.
+#: Least number, and least share, of points with an image among them for a symmetry to be intended.
 _LEAST, _SHARE = 3, 0.45
-#: How near to each other two guesses are that say the same [mm].
+#: Guesses nearer to each other than this agree [mm].
 _NEAR = 0.05
 
 
@@ -70,7 +70,7 @@ def _fits(image: Points, point: Points, tolerance: float) -> bool:
 
 
 def _common(guess: Points, count: int) -> Points:
-    """What most guesses say, if that is more than chance; nothing else."""
+    """The guess that most agree on, if they are more than chance; else none."""
     cell = np.round(guess / _NEAR)
     order = np.lexsort((cell.imag, cell.real))
     begins = np.append(True, np.diff(cell[order]) != 0)

@@ -37,7 +37,7 @@ class Symmetry(NamedTuple):
 
     @property
     def fixed(self) -> int:
-        """How many numbers of the corners follow from the others."""
+        """The number of coordinates of the corners that follow from the others."""
         return 2 * self.corners - self.freedom
 
     @property

@@ -10,7 +10,7 @@ from polarcheck.foundation.arrays import Floats, Mask, Points, Rows
 from polarcheck.geometry.shapes.rings import Ring
 from polarcheck.geometry.shapes.shape import SAME
 
-#: How far the circle of a round corner may be from the lines beside it [mm].
+#: Greatest distance of the circle of a round corner from the adjacent lines [mm].
 _TANGENT = 3 * SAME
 #: A chamfer is shorter than this share of either side beside it, and turns as much at both of its ends [rad].
 _CHAMFER, _EVEN = 0.6, 0.02
@@ -95,7 +95,7 @@ def sides_of(ring: Ring) -> Sides | None:
 
 
 def _distance(ring: Ring, side: int, point: complex) -> float:
-    """How far a point lies within the line of a side."""
+    """The distance of a point from the line of a side, above 0 inside."""
     return float(((ring.start[side] - point) * ring.normal[side].conjugate()).real)
 
 

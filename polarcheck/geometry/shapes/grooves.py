@@ -33,7 +33,7 @@ def shapes_of_cleared(outline: Outline, across: float, radius: float, bar: float
 
 
 def _around(shape: Shape, inside: int, count: int) -> Shape:
-    """What has no name of its own, with the number of pieces that stand within it, if no other area may hold them."""
+    """A shape without a name, with the number of pieces that stand within it, if no other area may hold them."""
     if shape.name != "contour" or not inside or count > 1:
         return shape
     return shape._replace(values={**shape.values, "stands_inside": float(inside)})

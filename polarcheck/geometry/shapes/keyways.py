@@ -11,7 +11,7 @@ from polarcheck.foundation.arrays import Mask
 from polarcheck.geometry.shapes.rings import Ring
 from polarcheck.geometry.shapes.shape import SAME, SAME_DIRECTION, Shape, off_axis, turned_by
 
-#: How far a point may be from the line or the circle that it touches [mm].
+#: Greatest distance of a point from the line or the circle that it touches [mm].
 _TOUCHES = 3 * SAME
 #: A keyway is narrower than this share of the circle.
 _WIDEST = 0.9

@@ -15,7 +15,7 @@ _PARALLEL = 5 * SAME_DIRECTION
 
 
 def flats_of(found: Sequence[Ring]) -> list[Shape]:
-    """What open rings of one straight side each make together: flats, and the walls of slots."""
+    """The shapes that open rings of one straight side each form together: flats, and the walls of slots."""
     if not found:
         return []
     row = int(found[0].row[0])

@@ -18,7 +18,7 @@ _MOST_SIDES = 12
 _NEARLY, _NEARLY_ALL = 0.03, 0.1
 #: How much less than regular along X what becomes regular by doubling or halving its X is.
 _MIXED = (2.0, 0.5)
-#: How far a corner may be off its place in a regular polygon whose words are rounded [mm].
+#: Greatest distance of a corner from its place in a regular polygon, for rounded words [mm].
 _IN_PLACE = 0.02
 
 
@@ -33,7 +33,7 @@ class _Fit(NamedTuple):
 
 
 def polygon_of(ring: Ring, sides: Sides) -> Shape | None:
-    """What polygon these sides make; None where they bend inwards, but by words that mix radius and diameter."""
+    """The polygon of these sides; None where they bend inwards, unless words mix radius and diameter."""
     if not sides.is_convex:
         uneven = _uneven(ring, sides) if len(sides) >= 5 else None
         return uneven if uneven and "regular_by_x" in uneven.values else None
@@ -205,8 +205,8 @@ def _with_x(sides: Sides, share: Floats) -> Sides:
 
 def _where_regular(corner: Points, share: float) -> list[Mask]:
     """
-    Which corners, some but not all, must have X so many times as large for all to be those of a regular polygon about
-    the center; the fewest first.
+    Masks of corners, not all of them, whose X times `share` makes the polygon regular about the center; the fewest
+    first.
     """
     count = len(corner)
     other = _points_of(corner.real * share, corner.imag)

@@ -79,7 +79,7 @@ class Ring:
 
     @property
     def area(self) -> float:
-        """What a closed ring encloses [mm2], above 0 where it runs counterclockwise."""
+        """The area that a closed ring encloses [mm2], above 0 where it runs counterclockwise."""
         chords = (self.start.conj() * self.end).imag
         bows = np.where(self.is_line, 0.0, np.nan_to_num(self.radius) ** 2 * (self.sweep - np.sin(self.sweep)))
         return float(np.sum(chords + bows)) / 2
@@ -180,7 +180,7 @@ def _fits_beyond(ring: Ring, chosen: Rows, radius: float) -> float:
 
 
 def nearest_of(ring: Ring) -> Floats:
-    """How near each side comes to the axis, arcs as their ends and middles [mm]."""
+    """The least distance of each side from the axis, of arcs that of their ends and middles [mm]."""
     way = ring.end - ring.start
     share = np.clip(-(ring.start * way.conj()).real / np.maximum(np.abs(way) ** 2, 1e-12), 0, 1)
     on_line = np.abs(ring.start + share * way)
@@ -292,7 +292,7 @@ def _joined(ring: Ring, begins: Mask) -> Ring:
 
 
 def extents_of(ring: Ring) -> dict[str, float]:
-    """How far it reaches along X and C, as values of a shape."""
+    """The extents along X and C, as values of a shape."""
     (x_least, x_most), (c_least, c_most) = _extents(ring, 1), _extents(ring, 1j)
     return {"x_least": x_least, "x_most": x_most, "c_least": c_least, "c_most": c_most}
 

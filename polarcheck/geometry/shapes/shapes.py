@@ -28,7 +28,7 @@ def shapes_of(outline: Outline, gap: float = 0.0, bar: float = np.nan) -> list[S
 
 
 def shapes_of_rings(found: Iterable[Ring], bar: float = np.nan) -> list[Shape]:
-    """The same of rings."""
+    """The shapes of rings."""
     chains: list[Ring] = []
     others: list[Ring] = []
     for ring in found:

@@ -105,7 +105,7 @@ def _needed(spans: Spans, at: Floats, chord_error: Floats, largest_turn: float) 
 
 
 def _placed(spans: Spans, at: Floats, need: Floats, count: Rows) -> Pieces:
-    """Pieces of equal need, so many of each span."""
+    """Each span divided into `count` pieces of equal need."""
     number = np.arange(len(spans), dtype=np.float64)
     # A span without need is divided by length; a little of its length makes the need rise everywhere.
     total = need[:, -1:]
@@ -126,7 +126,7 @@ def _placed(spans: Spans, at: Floats, need: Floats, count: Rows) -> Pieces:
 
 
 def deviations(spans: Spans, pieces: Pieces) -> Floats:
-    """How far each piece is from its span [mm], float64[pieces, places between its ends]."""
+    """The distance of each piece from its span [mm], float64[pieces, points between its ends]."""
     of_piece = spans[pieces.span]
     r = np.abs(pieces.start)[:, None] + (np.abs(pieces.end) - np.abs(pieces.start))[:, None] * SHARES
     ways = of_piece.directions(pieces.first[:, None])[:, 0]

@@ -11,7 +11,7 @@ import numpy as np
 from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, States, Table, cached_property
 from polarcheck.geometry.plane import arc_sweep, cross, dot, quiet
 
-#: Places on a span where density and turn are looked at.
+#: Points of a span at which density and turn are evaluated.
 PLACES = 33
 
 
