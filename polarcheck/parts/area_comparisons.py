@@ -60,7 +60,7 @@ class AreaComparisons(Columns, frozen=True):
         return results
 
     def _differences(self, placed: Sequence[PlacedFeature]) -> Iterator[tuple[Feature, int, AreaDifference]]:
-        """The features with the places of their contours, -1 for none, and how the metal differs from each."""
+        """The features, the indices of their contours, -1 for none, and the difference of the metal from each."""
         from polarcheck.parts.metal_differences import differences
 
         for frame in sorted({one.frame for one in placed}):
@@ -102,7 +102,7 @@ class AreaComparisons(Columns, frozen=True):
     def _comparison(
         self, feature: Feature, place: int, found: AreaDifference, results: Sequence[Comparison]
     ) -> Comparison | None:
-        """What is changed of the comparison of the contour, or what stands in for it; None for nothing."""
+        """The changed comparison of the contour, or a comparison of areas in its place; None for no change."""
         from polarcheck.geometry.comparison.deviation import Difference
 
         own = [one for one in results if one.number == feature.number]
@@ -150,7 +150,7 @@ class AreaComparisons(Columns, frozen=True):
         )
 
     def _made(self, feature: Feature) -> tuple[Shape, ...]:
-        """What stands, or is cleared, in the place of a feature."""
+        """The shapes that stand, or are cleared, in the place of a feature."""
         from polarcheck.geometry.shapes.grooves import shapes_of_cleared
 
         cuts = self.milled.cuts

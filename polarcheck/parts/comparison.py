@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 TOLERANCE = 0.02
 #: Depths nearer to each other than this are equal [mm]: the Z of a program in inch has four digits.
 SAME_Z = 5e-3
-#: Differences that are equal to so many digits are as large [mm].
+#: Differences that are equal to this number of digits count as equal [mm].
 _DIGITS = 4
 
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 #: A contour that differs by more than this share of its size is another one.
 _OTHER = 0.1
-#: Of depths near the one that is stated the nearest counts, and what is so little farther away [mm].
+#: A depth counts if it is farther from the stated one than the nearest depth by no more than this [mm].
 _LEAST_INCREMENT = 1e-3
 #: A contour is compared in full with this number of curves of a drawing, the nearest ones.
 _NEAREST = 4
@@ -244,7 +244,7 @@ class ContourComparisons(Columns, frozen=True):
 
 
 def _placed(way: Way, angle: float, center: complex) -> Way:
-    """A way turned about a center [rad]."""
+    """A path turned about a center [rad]."""
     from polarcheck.geometry.comparison.placements import Placement
 
     return Placement(turned=angle).of(way, center)

@@ -1,4 +1,4 @@
-"""How what is made differs from the parts of the job: drawings, or shapes with dimensions."""
+"""Deviations of the machined parts from the parts of the job: drawings, or shapes with dimensions."""
 
 from __future__ import annotations
 

@@ -148,7 +148,7 @@ def _difference(feature: Feature, features: Sequence[Feature], cleared: _Cleared
 
 
 def _allowed(feature: Feature) -> float:
-    """What may differ, as chords may add to it [mm]."""
+    """The allowed difference, with what chords may add to it [mm]."""
     return max(feature.tolerance, _CHORDS) + _CHORDS
 
 
@@ -194,7 +194,7 @@ def _lack(feature: Feature, features: Sequence[Feature], cleared: _Cleared) -> t
 
 
 def _heights(feature: Feature, features: Sequence[Feature]) -> list[float]:
-    """The depths, of a feature and of those above it, at which what is cut away is looked for, the lowest first."""
+    """The depths of a feature and of those above it, at which missing metal is searched, the lowest first."""
     return sorted({other.z for other in features if other.z >= feature.z - SAME_Z})
 
 
@@ -206,7 +206,7 @@ def _cuts_down_to(feature: Feature, features: Sequence[Feature], cleared: _Clear
 
 
 def _lacking(feature: Feature, features: Sequence[Feature], cleared: _Cleared, z: float) -> Any:
-    """What should stand of a part, or around a pocket, just above a height, and is cut away."""
+    """The area, just above a height, that should stand of a part or around a pocket and is cut away."""
     chosen = _cuts_down_to(feature, features, cleared, z)
     if not chosen.any():
         return empty()
@@ -270,7 +270,7 @@ def _pockets_around(feature: Feature, pockets: Sequence[Feature]) -> frozenset[t
 
 
 def _must_stand(feature: Feature, features: Sequence[Feature], z: float) -> Any:
-    """What must stand of a part, or around a pocket, just above a height."""
+    """The area that must stand of a part, or around a pocket, just above a height."""
     tolerance = _allowed(feature)
     stands = within(feature.area, feature.radius, tolerance, feature.is_pocket)
     for other in features:
@@ -304,7 +304,7 @@ def _cleared_of_others(area: Any, feature: Feature, features: Sequence[Feature])
 
 
 def nearest_row(cuts: Cuts, chosen: Mask, place: complex) -> int:
-    """The row of the cut that comes nearest to a place."""
+    """The row of the cut that comes nearest to a point."""
     own = cuts[chosen]
     chords = segments(own.curves, _CHORDS)
     if not len(chords):

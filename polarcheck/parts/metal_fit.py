@@ -16,7 +16,7 @@ from polarcheck.parts.nominal_parts import NominalParts, is_closed
 if TYPE_CHECKING:
     from polarcheck.geometry.comparison.deviation import Made
 
-#: So many outlines of what is cleared are compared with the part.
+#: Outlines of the cleared area that are compared with the part.
 _MOST = 4
 
 

@@ -12,9 +12,9 @@ from polarcheck.foundation.arrays import Points
 from polarcheck.program.machines.chains import chord_count
 from polarcheck.program.machines.part import Part
 
-#: By how much a chord may leave its arc [mm].
+#: Greatest distance of a chord from its arc [mm].
 _SAGITTA = 2e-4
-#: Half the length of what has no end, such as a flat on a bar that nobody has named [mm].
+#: Half the length of a line without ends, such as a flat on an unknown bar [mm].
 _ENDLESS = 1e5
 
 

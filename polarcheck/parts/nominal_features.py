@@ -22,9 +22,9 @@ if TYPE_CHECKING:
 
 #: How far from the axis flats and slots without an end reach, as a multiple of all that is cut.
 _ENDLESS = 4.0
-#: Another place of a shape is taken where it is nearer by so much [mm], or turned by so much [deg].
+#: Another placement of a shape is taken if it is nearer by this [mm], or turned by this [deg].
 _BETTER = 1e-3
-#: So many depths of sections are tried.
+#: Depths of sections that are tried.
 _DEPTHS = 8
 
 
@@ -62,7 +62,7 @@ class NominalFeatures(Columns, frozen=True):
         return np.ones(len(section), bool) if part.section is None else section == part.section - 1
 
     def _matched(self, number: int) -> dict[int, int]:
-        """Of each curve of a part the contour that comes nearest, by its place among the comparisons."""
+        """The index of the nearest contour among the comparisons, by curve of a part."""
         results, best = self.contour_comparisons.all, dict[int, int]()
         for place, one in enumerate(results):
             if one.number == number and (one.curve not in best or one.rank < results[best[one.curve]].rank):
@@ -244,7 +244,7 @@ class NominalFeatures(Columns, frozen=True):
     # ---- areas ----
 
     def _area(self, part: Part, curves: list[Points], unit: float, turned: float) -> Any:
-        """What a shape encloses, turned about its center [rad]; what has no end reaches far beyond all cuts."""
+        """The area of a shape, turned about its center [rad]; open shapes reach far beyond all cuts."""
         from polarcheck.geometry.comparison.metal import disc, polygon_of, within_lines
 
         center = complex(*part.center) * unit
@@ -267,7 +267,7 @@ class NominalFeatures(Columns, frozen=True):
         return self.bar.known.smallest / 2
 
     def _certain(self, number: int, curves: list[Points], unit: float) -> float:
-        """How far from the axis there is metal for certain before milling."""
+        """The radius up to which there is certainly metal before milling [mm]."""
         part = self.nominal_parts.parts[number]
         bar, round_ = self._bar_radius, part.diameter / 2 * unit
         if part.shape in ("flat", "flats") and not math.isnan(round_):

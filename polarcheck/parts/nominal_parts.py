@@ -14,7 +14,7 @@ from polarcheck.program.machines.part import DrawnPart, Part
 
 #: How much farther than what is asked for the metal reaches where the bar is not known, as a share.
 BEYOND = 1.02
-#: What lies so far beyond the round that flats are milled on [mm] is the way in the air.
+#: Points farther than this [mm] beyond the round that flats are milled on are the path in the air.
 ON_ROUND = 0.1
 
 
@@ -52,7 +52,7 @@ class NominalParts(Columns, frozen=True):
         return float(np.broadcast_to(self.trace.lengths.job_scale, len(self.trace))[row])
 
     def tolerance(self, number: int, row: int) -> float:
-        """How far a part may differ [mm]."""
+        """The tolerance of a part [mm]."""
         stated = self.job.part[number].tolerance * self.job_unit(row)
         return TOLERANCE if math.isnan(stated) else stated
 
@@ -87,7 +87,7 @@ class NominalParts(Columns, frozen=True):
         return math.inf
 
     def air(self, number: int, unit: float) -> float:
-        """The radius beyond which only walls are compared, no way from one to the next [mm]; inf for none."""
+        """The radius beyond which only walls are compared, not the path between them [mm]; inf for none."""
         part = self.job.part[number]
         if part.shape in ("flat", "flats") and not math.isnan(part.diameter):
             return part.diameter / 2 * unit + ON_ROUND
