@@ -122,7 +122,7 @@ def different(values: NDArray[_Number]) -> NDArray[_Number]:
 
 
 def is_among(values: NDArray[Any], wanted: Sequence[float | str]) -> Mask:
-    """Return a mask of the values that are among those wanted."""
+    """Return a mask of the values that are among the choices."""
     if len(wanted) <= _FEW:
         matches = np.zeros(np.shape(values), bool)
         for value in wanted:

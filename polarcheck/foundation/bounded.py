@@ -169,7 +169,7 @@ def _opened_below(folder: str | os.PathLike[str], parts: tuple[str, ...]) -> int
     """
     Open a file below a folder, one part of its path after the other, and never through a link.
 
-    So nobody can redirect the path by exchanging a part of it meanwhile.
+    A part of the path that is exchanged meanwhile cannot redirect it.
     """
     # On Windows a part with a drive would replace all that stands before it.
     if ".." in parts or not parts or parts[0].startswith(("/", "\\")) or Path(*parts).drive:

@@ -68,7 +68,7 @@ class JobError(PolarcheckError):
 
 
 class StoppedError(PolarcheckError):
-    """A check that was cancelled, since nobody waits for its result any more."""
+    """A check was cancelled, since its result is no longer needed."""
 
 
 class Refusal(NamedTuple):
@@ -140,7 +140,7 @@ def escaped(number: int) -> str:
 
 def suggestion(wrong: str, known: Iterable[str], most: int = 3) -> str:
     """
-    Return a hint such as `; did you mean fanuc-30i?`; empty if no known name is similar.
+    Return a hint such as `; did you mean fanuc-30i?`; empty if no candidate is similar.
 
     In this order: the names that begin with the written one, in any case; else the nearest name; else the names that
     contain it. most: how many names are listed.

@@ -8,7 +8,7 @@ MM_PER_INCH = 25.4
 
 
 class Motion(enum.IntEnum):
-    """What a block does with its axis words."""
+    """The motion that a block makes of its axis words."""
 
     NONE = -1
     RAPID = 0
@@ -35,7 +35,7 @@ class Corner(enum.IntEnum):
 
 
 class Units(enum.IntEnum):
-    """Of lengths and feeds in the program."""
+    """The unit of lengths and feeds in the program."""
 
     INCH = 20
     MM = 21
