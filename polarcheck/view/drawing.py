@@ -26,7 +26,7 @@ from polarcheck.view.places import Face, Spot, Spots, Wanted, with_followers
 
 if TYPE_CHECKING:
     from polarcheck.columns.metal.bar import Known
-    from polarcheck.reports.made_parts.made_depths import Depth
+    from polarcheck.parts.made_depths import Depth
 
 #: The most sections of a file that are drawn.
 _MOST = 200

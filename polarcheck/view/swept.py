@@ -18,7 +18,7 @@ from polarcheck.geometry.polygons import areas
 from polarcheck.geometry.polygons.faces import GRID
 from polarcheck.geometry.polygons.standing_metal import turned
 from polarcheck.geometry.tolerances import ROUNDING
-from polarcheck.reports.made_parts.made_depths import Depth
+from polarcheck.parts.made_depths import Depth
 from polarcheck.view.extent import bar_rings
 from polarcheck.view.moves import LENGTH
 from polarcheck.view.parts import Ring, polygons_of, rings

@@ -22,8 +22,9 @@ from polarcheck.foundation.states import Units
 from polarcheck.geometry.shapes.shape import SAME, Shape
 from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.parts.as_meant import as_meant
-from polarcheck.reports.made_parts.differing_depths import Area, known_of, with_differences
-from polarcheck.reports.made_parts.made_depths import Depth, merged, put_together
+from polarcheck.parts.depth_areas import known_of
+from polarcheck.parts.made_depths import Depth, merged, put_together
+from polarcheck.reports.made_parts.differing_depths import Area, with_differences
 from polarcheck.rules.quantity import rounded
 from polarcheck.rules.tables import Tables
 from polarcheck.rules.wording.offsets import called_tool, to_give

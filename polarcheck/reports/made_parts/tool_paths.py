@@ -15,8 +15,8 @@ from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.segments import Curves
 from polarcheck.geometry.shapes.shape import Shape
 from polarcheck.geometry.tolerances import ZERO
-from polarcheck.reports.made_parts.differing_depths import within
-from polarcheck.reports.made_parts.made_depths import Depth, put_together
+from polarcheck.parts.depth_areas import within
+from polarcheck.parts.made_depths import Depth, put_together
 from polarcheck.rules.tables import Tables
 from polarcheck.rules.wording.offsets import called_tool, to_give
 

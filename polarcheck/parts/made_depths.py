@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.shapes.shape import SAME, Shape
-from polarcheck.reports.made_parts.differing_depths import are_same
+from polarcheck.parts.depth_areas import are_same
 
 #: Names of what is none of the shapes of a drawing.
 _WITHOUT_NAME = ("contour", "groove")
