@@ -21,8 +21,7 @@ from polarcheck.view.picture import DrawnPart, FindingPicture, Mark
 from polarcheck.view.stills import still as stills
 from polarcheck.view.stills.colors import ABOVE, PLAIN, SHADES, coloring, round_bounds
 from polarcheck.view.stills.numbering import entries, labels
-from polarcheck.view.stills.still import still
-from polarcheck.view.stills.text import printable, wrapped
+from polarcheck.view.stills.still import printable, still, wrapped
 
 pytestmark = pytest.mark.usefixtures("own_folder")
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import os
 import re
 from collections.abc import Callable, Iterable, Iterator
 from typing import NamedTuple
@@ -13,12 +14,30 @@ from lsprotocol import types
 from polarcheck.checking.settings import Settings
 from polarcheck.editor.open_text import OpenText
 from polarcheck.editor.structure.document import Document, block_at
-from polarcheck.editor.words import called_files, codes, variables
+from polarcheck.editor.words import codes, variables
 from polarcheck.editor.words.at_cursor import is_in
 from polarcheck.program.execution.listing import Listing
 from polarcheck.program.execution.programs import Program, block_text
 from polarcheck.program.machines.machine import Machine
 from polarcheck.program.reading.excerpt import shortened, visible
+
+_NAME = re.compile(r"O?0*+(\d{1,8})(?:\.[A-Za-z]{1,4})?", re.IGNORECASE | re.ASCII)
+#: Files of a folder that are looked at.
+_MOST_ENTRIES = 2_000
+
+
+def numbered_files(folders: Iterable[str]) -> list[tuple[int, str]]:
+    """Return number and file name of the programs in some folders; folders that cannot be listed hold none."""
+    found = []
+    for folder in folders:
+        try:
+            with os.scandir(folder) as entries:
+                names = sorted(entry.name for entry, _ in zip(entries, range(_MOST_ENTRIES), strict=False))
+        except OSError:
+            continue
+        found += [(int(match[1]), name) for name in names if (match := _NAME.fullmatch(name))]
+    return found
+
 
 #: The most items of a list; beyond them the editor asks again.
 _MOST = 500
@@ -230,7 +249,7 @@ def _programs(place: Place, typed: str) -> Iterator[Item]:
         for program in own
         if program.number is not None and program.first != place.program.first
     }
-    for number, name in called_files.numbers(place.document.folders):
+    for number, name in numbered_files(place.document.folders):
         found.setdefault(number, name)
     for number, detail in sorted(found.items()):
         yield Item(str(number), detail, types.CompletionItemKind.Module)

@@ -21,8 +21,7 @@ from polarcheck.checking.engine import in_order
 from polarcheck.checking.not_evaluated import bound_silenced
 from polarcheck.checking.suppression import silenced
 from polarcheck.files.baselines.baseline_file import SCHEMA, Contents, Entry, Key, Place, Program, program_of
-from polarcheck.files.baselines.known_places import Versions, key_of, matches, place_of, versions
-from polarcheck.files.baselines.moved import Similar
+from polarcheck.files.baselines.known_places import Similar, Versions, key_of, matches, place_of, versions
 from polarcheck.foundation.finding import BASELINE, SEVERITIES, FileReport, Finding, NotEvaluated, Outline, Silenced
 from polarcheck.program.reading.excerpt import shortened
 from polarcheck.program.reading.files import STANDARD_INPUT, shown

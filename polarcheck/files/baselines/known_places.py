@@ -16,11 +16,45 @@ from polarcheck.files.baselines.growth import blocks_of, growth, values_of
 from polarcheck.foundation.finding import FileReport, Finding, Outline
 from polarcheck.rules.rule import load_all
 
+#: A file is still the program that it was if this share of its blocks is left, or this share of the blocks of now was
+#: in it. Under another name, the longer version must have the second share in common.
+SAME, SAME_AS_PART = 0.5, 0.75
+#: Files are compared by so many of their smallest hashes first.
+_SMALLEST = 64
+#: The most files that are compared block by block with a new one.
+_COMPARED = 8
+
+
+class Similar:
+    """Compares files by their smallest hashes, which costs little, and then by their blocks."""
+
+    def __init__(self, programs: Mapping[str, Program]) -> None:
+        self._programs = programs
+        self._smallest: dict[str, frozenset[int]] = {}
+
+    def among(self, files: Iterable[str], outline: Outline, has_same_name: Callable[[str], bool]) -> dict[str, float]:
+        """Return the files whose blocks are mostly those of an outline, with the share of them."""
+        smallest = _smallest(outline.hashes)
+        ranked = sorted(files, key=lambda file: (-len(smallest & self._of(file)), not has_same_name(file), file))
+        shares = {}
+        for file in ranked[:_COMPARED]:
+            share = Versions(self._programs[file], outline).share
+            if share >= (SAME if has_same_name(file) else SAME_AS_PART):
+                shares[file] = share
+        return shares
+
+    def _of(self, file: str) -> frozenset[int]:
+        if file not in self._smallest:
+            self._smallest[file] = _smallest(self._programs[file].hashes)
+        return self._smallest[file]
+
+
+def _smallest(hashes: Iterable[int]) -> frozenset[int]:
+    return frozenset(sorted(set(hashes))[:_SMALLEST])
+
+
 #: A finding that has moved within its file has most of these blocks before it and after it.
 _AROUND = 4
-#: A file is still the program that it was if this share of its blocks is left, or this share of the blocks of now was
-#: in it.
-SAME, SAME_AS_PART = 0.5, 0.75
 #: The most places of an entry that are tried for a finding, and the most pairs of both where these may have moved.
 _TRIED, _MOST_PAIRS = 8, 20_000
 #: The span of rules with one finding for all blocks of a polar section.

@@ -16,7 +16,6 @@ from polarcheck.program.machines.axes import INCREMENTS, MOST_NAMED, address_num
 from polarcheck.program.machines.code_lists import GCodes, GCodeSystem, expanded, is_code
 from polarcheck.program.machines.feed_keys import WithRotary
 from polarcheck.program.machines.fitting import MOST
-from polarcheck.program.machines.frames import Frames
 from polarcheck.program.machines.m_codes import MCodes, PowerOn
 from polarcheck.program.machines.macro_keys import Macro
 from polarcheck.program.machines.offsets import Offsets
@@ -24,6 +23,7 @@ from polarcheck.program.machines.parameters import Meaning
 from polarcheck.program.machines.polar_keys import Polar
 from polarcheck.program.machines.values import (
     Address,
+    AddressOrNone,
     AxisAddress,
     AxisLetterOrNone,
     AxisName,
@@ -38,7 +38,62 @@ from polarcheck.program.machines.values import (
     SwitchWord,
     ascend,
 )
-from polarcheck.program.machines.writing_keys import Writing
+
+
+class Writing(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """
+    How a program for the control is written; it reads more than that. Blanks stand between the words of a block.
+
+    before: blocks in front of the block that switches the polar mode on
+    switch: block that switches it on, with C0 where a direction stands in it
+    behind: blocks right behind it
+    end: block that switches the polar mode off
+    behind_end: blocks right behind that
+    rapid_in_mode: G0 is written in the mode; where not, a line by rapid_feed stands in its place
+    rapid_feed: F of that line [mm/min]
+    arcs_by: center, radius: what may be written beside the end of an arc; the first where the program does not decide
+    arc_radius: word of the radius of an arc, as R or CR=
+    arc_split: largest angle of an arc that is written, within arcs.sweep_limit [deg]
+    helices: arcs with Z beside X and the virtual axis are written
+    live_tool_speed: word of the speed of the live tool, as S or SB=; empty where it is not known
+    subprogram_call: block that calls a subprogram, with its number in the place of #; empty where it is not known
+    subprogram_repeats: word beside it of how often the subprogram runs; empty where it is not known
+    subprogram_return: block that ends a subprogram; empty where it is not known
+    program_head: blocks at the head of a program, with its number in the place of #
+    program_end: blocks at its end
+    archive_heads: of the first and of a further program where a file has several without O; none where it cannot
+    """
+
+    before: list[Plain] = []
+    switch: Annotated[Plain, msgspec.Meta(min_length=1)]
+    behind: list[Plain] = []
+    end: Annotated[Plain, msgspec.Meta(min_length=1)]
+    behind_end: list[Plain] = []
+    rapid_in_mode: bool = False
+    rapid_feed: NotNegative
+    arcs_by: Annotated[list[Literal["center", "radius"]], msgspec.Meta(min_length=1)]
+    arc_radius: Plain
+    arc_split: Annotated[float, msgspec.Meta(gt=0, le=360)]
+    helices: bool = False
+    live_tool_speed: Plain = ""
+    subprogram_call: Plain = ""
+    subprogram_repeats: Plain = ""
+    subprogram_return: Plain = ""
+    program_head: list[Plain] = []
+    program_end: list[Plain] = []
+    archive_heads: list[Plain] = []
+
+
+class Frames(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """
+    Coordinate systems of the program, shifted and turned by words whose lists stand in [g_codes].
+
+    angle_word: address of the angle about the axis across the plane; else it is that of Z; empty without frames
+    ended_by_switch: whether what switches the polar mode on or off ends the frame in force
+    """
+
+    angle_word: AddressOrNone
+    ended_by_switch: bool
 
 
 def meanings(table: type) -> dict[str, str]:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Container
+from fnmatch import fnmatchcase
 
 import msgspec
 import numpy as np
@@ -11,14 +13,36 @@ from polarcheck.checking.settings import Settings
 from polarcheck.columns.filling import fill_down
 from polarcheck.foundation.arrays import Rows
 from polarcheck.foundation.states import Motion
+from polarcheck.program.machines.machine import Machine
 from polarcheck.rewrite.convert.block_texts import BlockTexts
 from polarcheck.rewrite.convert.heads import Heads, writes_numbers
-from polarcheck.rewrite.convert.statements import is_without_effect
 from polarcheck.rewrite.convert.translating import Translated, Translation
 from polarcheck.rewrite.writing.blocks import NewBlock
 from polarcheck.rewrite.writing.original import Original
 from polarcheck.rewrite.writing.outcome import Decision, Refusal, RefusedError, refused_at
 from polarcheck.rules.editing import Replace
+
+_WORD = re.compile(r"[$A-Z_][A-Z0-9_$]*+(?:\[[^\[\]]{0,80}+\])?=?")
+_INDEX = re.compile(r"\[[^\[\]]*+\]")
+
+
+def is_without_effect(content: str, machine: Machine) -> bool:
+    """
+    The statement moves nothing and changes no path: a message, a limit of the speed, the wait for another channel.
+
+    content: of its block, without N word and comment.
+    """
+    rest = content.upper()
+    words = [match[0] for match in _WORD.finditer(rest)][:1]
+    if not words:
+        return False
+    plain = _INDEX.sub("[*]", words[0])
+    numbered = re.sub(r"(?<=[A-Z])\d+=", "n=", plain)
+    for name, effect in machine.macro.statements.items():
+        if effect == "none" and (fnmatchcase(plain, name) or numbered == name):
+            return True
+    return False
+
 
 _MOTIONS = {Motion.RAPID: "rapid", Motion.LINE: "line", Motion.CW: "arc_clockwise", Motion.CCW: "arc_counterclockwise"}
 

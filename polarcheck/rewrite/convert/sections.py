@@ -10,13 +10,12 @@ from collections.abc import Sequence
 import msgspec
 import numpy as np
 
+from polarcheck.columns.trace import Trace
 from polarcheck.foundation.states import Motion, Side, Units
 from polarcheck.program.machines.machine import Machine
 from polarcheck.rewrite.convert.block_texts import BlockTexts
 from polarcheck.rewrite.convert.computed_blocks import ComputedBlocks
-from polarcheck.rewrite.convert.corners import Corners
-from polarcheck.rewrite.convert.section_feeds import SectionFeeds
-from polarcheck.rewrite.convert.section_refusals import refusals
+from polarcheck.rewrite.convert.section_refusals import SectionFeeds, refusals
 from polarcheck.rewrite.convert.section_words import SectionWords
 from polarcheck.rewrite.convert.translating import Translation
 from polarcheck.rewrite.writing.blocks import NewBlock
@@ -25,6 +24,36 @@ from polarcheck.rewrite.writing.outcome import Decision, RefusedError, refused_a
 from polarcheck.rewrite.writing.pen import Pen
 from polarcheck.rewrite.writing.style import Style
 from polarcheck.rules.editing import is_plain
+
+
+class Corners:
+    """
+    The codes that a section needs so that the other machine goes round its outer corners as the source does.
+
+    A control that goes round by lines, as FANUC's, meets one that goes round by arcs (G450 on Siemens) on the
+    intersection of the parallels (G451), as long as the contour turns by no more than a right angle.
+    """
+
+    def __init__(self, trace: Trace, target: Machine) -> None:
+        self.trace, self.target = trace, target
+        by_lines = trace.machine.compensation.corner != "arc"
+        codes = target.codes("corner_by_intersection"), target.codes("corner_by_arc")
+        self._codes = codes if by_lines and target.compensation.corner == "arc" and all(codes) else ([], [])
+
+    def before(self, row: int) -> NewBlock:
+        """The block behind the switch of a section; without words where it needs none. row: of the switch."""
+        return self._block(row, 0)
+
+    def behind(self, row: int) -> NewBlock:
+        """The block behind the section, which takes that back. row: of the switch that ends it."""
+        return self._block(row, 1)
+
+    def _block(self, row: int, which: int) -> NewBlock:
+        mode = self.trace.mode
+        in_section = mode.whole_section == mode.whole_section[row]
+        is_compensated = bool((self.trace.compensation.compensates & in_section).any())
+        return NewBlock(tuple(self._codes[which][:1]) if is_compensated else ())
+
 
 #: A plane that is turned by less is not turned [rad].
 _SAME_DIRECTION = 1e-9

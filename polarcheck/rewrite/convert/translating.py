@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from fractions import Fraction
 
 import msgspec
 
@@ -11,19 +12,59 @@ from polarcheck.foundation.arrays import stretch
 from polarcheck.foundation.states import NO_MOVE, FeedMode
 from polarcheck.program.machines.code_lists import numbers
 from polarcheck.program.machines.codes import code_numbers
+from polarcheck.program.machines.machine import Machine
 from polarcheck.rewrite.convert.axis_words import AxisWords
 from polarcheck.rewrite.convert.calls import Calls
 from polarcheck.rewrite.convert.cycles import WITH_ARGUMENTS, CycleWords
-from polarcheck.rewrite.convert.dwells import amount, counts_turns, word_for
 from polarcheck.rewrite.convert.g_meanings import GMeanings
 from polarcheck.rewrite.convert.m_meanings import MMeanings
 from polarcheck.rewrite.convert.measures import Measures
-from polarcheck.rewrite.convert.number_text import number_of
+from polarcheck.rewrite.convert.number_text import number_of, rounded
 from polarcheck.rewrite.convert.speeds import SpeedWords
 from polarcheck.rewrite.convert.spindle_roles import SpindleRoles
 from polarcheck.rewrite.convert.tool_words import ToolWords
 from polarcheck.rewrite.writing.original import Original
 from polarcheck.rewrite.writing.outcome import Decision, refused_at
+
+#: The part of a second that a word counts; one with a point may count another.
+_SECONDS = {"seconds": Fraction(1), "hundredths": Fraction(1, 100), "thousandths": Fraction(1, 1000)}
+_THOUSANDTH = Fraction(1, 1000)
+
+
+def counts_turns(machine: Machine, address: str, per_revolution: bool) -> bool:
+    """The word of a dwell counts turns of the spindle."""
+    by_mode = per_revolution and machine.feed.dwell_per_revolution == "turns"
+    return machine.feed.dwell_words[address] == "turns" or by_mode
+
+
+def amount(machine: Machine, address: str, number: str, least: Fraction) -> Fraction:
+    """What the number of a dwell counts [s, or turns]. least: the least increment of lengths, in which X may count."""
+    unit, value = machine.feed.dwell_words[address], Fraction(number)
+    if unit == "as-lengths":
+        in_increments = "." not in number and machine.control.number_without_point == "least-increment"
+        return value * least if in_increments else value
+    if unit == "thousandths-or-seconds":
+        return value if "." in number else value * _THOUSANDTH
+    return value * _SECONDS.get(unit, Fraction(1))
+
+
+def word_for(machine: Machine, dwell: Fraction, is_turns: bool, per_revolution: bool, preferred: str) -> str:
+    """
+    The word of a dwell on a machine; empty where it has none for it.
+
+    dwell: [s, or turns]. preferred: the address that the original has.
+    """
+    words = [word for word in machine.feed.dwell_words if counts_turns(machine, word, per_revolution) == is_turns]
+    if not words:
+        return ""
+    address = preferred if preferred in words else words[0]
+    unit = machine.feed.dwell_words[address]
+    if unit in ("thousandths", "thousandths-or-seconds"):
+        return f"{address}{round(dwell / _THOUSANDTH)}"
+    if unit == "hundredths":
+        return f"{address}{round(dwell * 100)}"
+    return address + rounded(dwell, _THOUSANDTH)
+
 
 #: Lists of codes that say what the other words of their block are for.
 _OF_ITS_BLOCK = frozenset((*NO_MOVE, *WITH_ARGUMENTS, "thread_cutting"))

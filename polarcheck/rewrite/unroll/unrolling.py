@@ -7,11 +7,12 @@ from collections.abc import Iterator, Sequence
 import msgspec
 import numpy as np
 
+from polarcheck.checking.check import check_runs
 from polarcheck.columns.path.tool_center import ToolCenter
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Floats
+from polarcheck.foundation.finding import SEVERITIES, Severity
 from polarcheck.rewrite.unroll import measuring, rates
-from polarcheck.rewrite.unroll.errors import errors
 from polarcheck.rewrite.unroll.rates import FEEDS as FEEDS
 from polarcheck.rewrite.unroll.steps import Steps, steps_of
 from polarcheck.rewrite.unroll.stretches import Stretch, refusals, stretches
@@ -22,6 +23,28 @@ from polarcheck.rewrite.writing.original import Original, read
 from polarcheck.rewrite.writing.outcome import Figure, Outcome, Refusal, RefusedError
 from polarcheck.rewrite.writing.style_of import style_of
 from polarcheck.rewrite.writing.unchanged import changed_words
+from polarcheck.rules.rule import load_all
+
+#: Groups of rules about text that a control reads otherwise, or not at all.
+_GROUPS = ("text", "macro")
+#: Further rules of that kind. Errors of the mode itself, such as a rate of C or a code that it does not allow, end with
+#: it; where the path of the tool center is not certain, the columns say so.
+_RULES = (
+    "arc-center-on-path", "arc-end-off-circle", "arc-off-polar-plane", "arc-radius-too-small", "arc-without-center",
+    "arc-word-of-other-plane", "cancel-on-arc", "incremental-word-of-other-code-system", "linear-axis-never-programmed",
+    "modal-state-wrong-at-entry", "origin-shifted-in-polar", "polar-axis-number-wrong", "polar-shift-incremental",
+    "second-axis-never-programmed", "start-up-on-arc", "wrong-axis-address-in-polar",
+)  # fmt: skip
+
+
+def errors(original: Original) -> Iterator[Refusal]:
+    """Yield the errors of a check in sections, whatever their severity is set to, and allow comments aside."""
+    rules = [rule for name, rule in load_all().items() if rule.group in _GROUPS or name in _RULES]
+    report = check_runs([("", original.tables)], rules, inline=False)
+    for finding in report.findings:
+        if finding.section_line is not None and SEVERITIES[finding.severity] >= Severity.ERROR:
+            yield Refusal(finding.line, f"{finding.message} [{finding.rule}]")
+
 
 #: How far the tool center may leave its path [mm].
 DEFAULT_CHORD_ERROR = 0.005
