@@ -30,7 +30,7 @@ from typing import NamedTuple
 import numpy as np
 
 from polarcheck.foundation.states import Motion, Side
-from polarcheck.geometry.cutter_compensation.compensation import Method, Path, Phase, ToolPath, tool_center_path
+from polarcheck.geometry.cutter_compensation.offset_path import Method, Path, Phase, ToolPath, tool_center_path
 
 NAN = complex(math.nan, math.nan)
 

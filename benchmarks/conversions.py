@@ -32,7 +32,7 @@ from polarcheck.files.settings.of_programs import OfPrograms, Options, on_machin
 from polarcheck.foundation.errors import PolarcheckError, RefusedError  # noqa: E402
 from polarcheck.program.machines import profiles  # noqa: E402
 from polarcheck.rewrite.convert.converting import converted  # noqa: E402
-from polarcheck.rewrite.writing.rewriting import rewritten  # noqa: E402
+from polarcheck.rewrite.writing.rewritten_program import rewritten  # noqa: E402
 
 BASE = "fanuc-30i"
 #: Of the programs of a machine so many are random sections.

@@ -42,9 +42,9 @@ if TYPE_CHECKING:
     from polarcheck.program.machines.job import Tool as Tool
     from polarcheck.program.machines.job import WorkOffset as WorkOffset
     from polarcheck.program.machines.machine import Machine as Machine
-    from polarcheck.program.machines.part import Part as Part
+    from polarcheck.program.machines.part_keys import Part as Part
     from polarcheck.rewrite.certify.results import Certificate as Certificate
-    from polarcheck.rewrite.compare.report import Comparison as Comparison
+    from polarcheck.rewrite.compare.comparison_report import Comparison as Comparison
 
 
 #: What is public, and the module of each; the imports above tell type checkers the same.
@@ -63,14 +63,14 @@ _MODULES = {
     "render": "api.rendering",
     "trace": "api.traces",
     "trace_text": "api.traces",
-    "Comparison": "rewrite.compare.report",
+    "Comparison": "rewrite.compare.comparison_report",
     "Feeds": "api.feed_tables",
     "Certificate": "rewrite.certify.results",
     "FileReport": "foundation.finding",
     "Finding": "foundation.finding",
     "Machine": "program.machines.machine",
     "MadePart": "api.parts",
-    "Part": "program.machines.part",
+    "Part": "program.machines.part_keys",
     "Report": "foundation.finding",
     "Stock": "program.machines.job",
     "Tool": "program.machines.job",

@@ -36,18 +36,18 @@ from polarcheck.program.machines import profiles
 from polarcheck.program.machines.feed_keys import WITH_ROTARY
 from polarcheck.program.reading.source import read_source
 from polarcheck.reports.pages.painting import plain
-from polarcheck.rewrite.compare import page as comparison
-from polarcheck.rewrite.compare.comparison import Revision, compared, default_tolerance
-from polarcheck.rewrite.compare.report import DIFFERS, SAME_METAL
+from polarcheck.rewrite.compare import comparison_page as comparison
+from polarcheck.rewrite.compare.comparison_report import DIFFERS, SAME_METAL
+from polarcheck.rewrite.compare.revision_comparison import Revision, compared, default_tolerance
 from polarcheck.rewrite.compensate.centering import centered
 from polarcheck.rewrite.compensate.compensating import Compensating, compensated
 from polarcheck.rewrite.convert.converting import converted
 from polarcheck.rewrite.roll.rolling import Rolling, rolled
-from polarcheck.rewrite.unroll.rates import FEEDS
+from polarcheck.rewrite.unroll.unrolled_feeds import FEEDS
 from polarcheck.rewrite.unroll.unrolling import Unrolling, unrolled
 from polarcheck.rewrite.writing.original import Original
 from polarcheck.rewrite.writing.outcome import Outcome, RefusedError
-from polarcheck.rewrite.writing.rewriting import Work, rewritten
+from polarcheck.rewrite.writing.rewritten_program import Work, rewritten
 
 #: As long as a check in SETUPS may take [s].
 _SECONDS = 5.0

@@ -44,7 +44,7 @@ from polarcheck.program.execution.programs import read_text
 from polarcheck.program.machines import offset_table, profiles
 from polarcheck.program.machines.job import Job, check_work_offsets, from_table
 from polarcheck.program.reading import source
-from polarcheck.reports.pages import executed, schema
+from polarcheck.reports.pages import executed, json_schema
 from polarcheck.rules.examples import examples
 from polarcheck.rules.rule import load_all
 
@@ -280,7 +280,7 @@ def _rendered(report: Report, lines: dict[str, dict[int, str]]) -> None:
 
 @functools.cache
 def _validator() -> Any:
-    return jsonschema.Draft202012Validator(schema.schema("report"))
+    return jsonschema.Draft202012Validator(json_schema.schema("report"))
 
 
 def fits_schema(data: bytes, setup: int) -> None:

@@ -7,7 +7,16 @@ from typing import Any
 
 import msgspec
 
-from polarcheck.view.picture import FindingPicture, Mark, MoveTable, PartPicture, Picture, Points, Rates, SectionPicture
+from polarcheck.view.picture_data import (
+    FindingPicture,
+    Mark,
+    MoveTable,
+    PartPicture,
+    Picture,
+    Points,
+    Rates,
+    SectionPicture,
+)
 
 FLATS = 6
 R = 4.0

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from polarcheck.foundation.states import Corner, Motion
-from polarcheck.geometry.cutter_compensation.compensation import Path
+from polarcheck.geometry.cutter_compensation.offset_path import Path
 
 #: In the order of the fields of Path, without the last.
 PATH_TYPES = (np.int64, np.int16, np.bool_, *[complex] * 3, np.int16, np.bool_, np.float64, complex, np.bool_)

@@ -23,7 +23,7 @@ import shapely  # type: ignore[import-untyped]
 from polarcheck.columns.path.moves import z_along
 from polarcheck.foundation.finding import MadeInSection, MadeShape
 from polarcheck.foundation.states import Motion
-from polarcheck.geometry.cutter_compensation.compensation import Phase
+from polarcheck.geometry.cutter_compensation.offset_path import Phase
 from polarcheck.geometry.plane import arc_sweep
 from polarcheck.rules.tables import Tables
 

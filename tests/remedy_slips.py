@@ -19,7 +19,7 @@ from slip_words import Draw, Plant, block_changed, block_missing, digit_wrong, p
 
 from polarcheck.checking.settings import Settings
 from polarcheck.foundation.finding import FileReport, Finding
-from polarcheck.rewrite.fixes.fixing import with_fixes
+from polarcheck.rewrite.fixes.fix_rounds import with_fixes
 from polarcheck.rules.rule import load_all
 
 GRADES = ("right", "place", "else there", "no advice", "elsewhere")

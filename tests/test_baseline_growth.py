@@ -11,7 +11,7 @@ from programs import job_of, machine_of, settings_of
 from test_known_places import FILE, call, write
 
 from polarcheck.checking import check
-from polarcheck.checking.outline import with_outline
+from polarcheck.checking.block_outline import with_outline
 from polarcheck.files.baselines.baseline import Baseline
 from polarcheck.files.baselines.baseline_file import Contents, read
 from polarcheck.foundation.finding import FileReport

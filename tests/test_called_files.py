@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from programs import ROOT, report_of, said, tables_of, trace_of
 
-from polarcheck.program.execution import execute, library, programs
-from polarcheck.program.execution.library import Library
+from polarcheck.program.execution import called_programs, execute, programs
+from polarcheck.program.execution.called_programs import Library
 from polarcheck.program.execution.programs import ProgramName
 from polarcheck.program.reading import source
 from polarcheck.program.reading.joining import joined
@@ -35,7 +35,7 @@ def counts(monkeypatch: pytest.MonkeyPatch) -> Counter[str]:
         monkeypatch.setattr(owner, name, count)
 
     counted(programs, "read_words", "texts")
-    counted(library, "_with_head", "files")
+    counted(called_programs, "_with_head", "files")
     counted(execute, "_run_all", "executions")
     return found
 

@@ -12,7 +12,7 @@ import pytest
 
 from polarcheck.geometry.comparison import polyline
 from polarcheck.rewrite.certify.golden import GoldenMove
-from polarcheck.rewrite.certify.paths import with_golden, with_other
+from polarcheck.rewrite.certify.near_path import with_golden, with_other
 from polarcheck.rewrite.certify.tool_path import tool_path
 
 #: The coverage counts all cases: each is a way of its own through the package.

@@ -18,8 +18,8 @@ from programs import ROOT
 import polarcheck
 from polarcheck.commands import main
 from polarcheck.foundation.time_limit import current_limit
-from polarcheck.program.machines.part import Part
-from polarcheck.rewrite.certify import paths
+from polarcheck.program.machines.part_keys import Part
+from polarcheck.rewrite.certify import near_path
 
 EXAMPLE = ROOT / "docs" / "certify"
 PAGE = (ROOT / "docs" / "certify.md").read_text("utf-8")
@@ -443,7 +443,7 @@ def test_python_gives_the_certificate_of_the_command(example: Path) -> None:
 
 @pytest.mark.slow
 def test_the_suite_is_a_manifest_with_drawings(tmp_path: Path) -> None:
-    from polarcheck.program.machines import drawing
+    from polarcheck.program.machines import drawing_file
     from polarcheck.rewrite.certify.jobs import JOBS
     from polarcheck.rewrite.certify.manifest import FEATURES
 
@@ -453,7 +453,7 @@ def test_the_suite_is_a_manifest_with_drawings(tmp_path: Path) -> None:
     assert tuple(JOBS) == FEATURES
     for name in JOBS:
         assert f"\n## {name}\n" in words
-        drawn = drawing.part_of(Path(f"suite/jobs/{name}.dxf"), name, Part(drawing=""))
+        drawn = drawing_file.part_of(Path(f"suite/jobs/{name}.dxf"), name, Part(drawing=""))
         assert len(drawn.curves) == 1
     assert "no cases" in certify("suite/post.toml").stderr
     again = certify("init", "suite")
@@ -530,7 +530,7 @@ def test_paths_are_compared_within_the_time_of_their_case(example: Path, monkeyp
         raise TooHardError("these take too long")
 
     edit("post.toml", "[controls.lathe-7]\n", "[controls.lathe-7]\nrun.max_seconds = 6.5\n")
-    monkeypatch.setattr(paths, "path_deviation", compared)
+    monkeypatch.setattr(near_path, "path_deviation", compared)
     found = certificate("post.toml")
     assert set(limits) == {6.5, 8.0}
     texts = [reason for case in found["cases"] for reason in case["reasons"]]

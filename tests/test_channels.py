@@ -17,7 +17,7 @@ from polarcheck.columns.trace import Trace
 from polarcheck.commands import main
 from polarcheck.foundation.finding import FileReport, Finding
 from polarcheck.program.machines import profiles
-from polarcheck.program.reading.channels import channels
+from polarcheck.program.reading.channel_texts import channels
 from polarcheck.program.reading.source import read_source
 
 FIRST = """G98 G40 G97

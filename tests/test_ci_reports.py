@@ -24,10 +24,10 @@ from test_reports import file, finding, missing, report
 from polarcheck.foundation.finding import Edit, FileReport, Fix, Silenced, Undecided
 from polarcheck.program.reading import files
 from polarcheck.program.reading.excerpt import visible, without_commands
-from polarcheck.program.reading.names import spelled, unspelled
+from polarcheck.program.reading.file_names import spelled, unspelled
 from polarcheck.reports import PER_FILE, Background, formats, pieces, render
 from polarcheck.reports.ci import rule_help
-from polarcheck.reports.ci.paths import from_root, uri
+from polarcheck.reports.ci.repository_paths import from_root, uri
 from polarcheck.reports.ci.step_summary import step_summary
 from polarcheck.reports.github import MOST
 from polarcheck.rules.rule import load_all

@@ -26,7 +26,7 @@ from polarcheck.files.batch import tasks as batch
 from polarcheck.program.machines import profiles
 from polarcheck.program.machines.machine import Machine
 from polarcheck.program.machines.profiles import names
-from polarcheck.reports.pages import schema
+from polarcheck.reports.pages import json_schema
 from polarcheck.rules.rule import load_all
 
 #: What processes import is what these tests import, wherever they run.
@@ -840,7 +840,7 @@ def test_schemas_are_valid_and_say_what_they_are(name: str) -> None:
 def test_built_in_machines_fit_their_schema_and_wrong_ones_do_not() -> None:
     import tomllib
 
-    valid = jsonschema.Draft202012Validator(schema.schema("machine"))
+    valid = jsonschema.Draft202012Validator(json_schema.schema("machine"))
     for path in profiles.FOLDER.glob("*.toml"):
         valid.validate(tomllib.loads(path.read_text("utf-8")))
     for wrong in ({"limits": {"c_fed": 3}}, {"limits": {"c_feed": "fast"}}, {"limits": {"c_feed": {"source": "x"}}}):
@@ -848,7 +848,7 @@ def test_built_in_machines_fit_their_schema_and_wrong_ones_do_not() -> None:
 
 
 def test_jobs_fit_their_schema_and_wrong_ones_do_not() -> None:
-    valid = jsonschema.Draft202012Validator(schema.schema("job"))
+    valid = jsonschema.Draft202012Validator(json_schema.schema("job"))
     valid.validate(
         {"machine": "fanuc", "tools": {"8": {"radius": 0.375}}, "limits": {"c_feed": 3600}, "select": ["feed"]}
     )
@@ -865,7 +865,7 @@ def test_a_report_fits_its_schema() -> None:
     make(a__nc=RAPID, b__nc=COMPENSATED)
     result = check(".", "--select", "rapid-in-polar,start-up-shorter-than-radius", "--format", "json")
     shown = json.loads(result.stdout, parse_constant=pytest.fail)
-    jsonschema.Draft202012Validator(schema.schema("report")).validate(shown)
+    jsonschema.Draft202012Validator(json_schema.schema("report")).validate(shown)
 
 
 # ---- what is imported ----

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from programs import report_of, said, trace_of
 
-from polarcheck.program.machines.codes import NO_CODE, code, code_numbers, code_set, renumbered, spelled
+from polarcheck.program.machines.code_tables import NO_CODE, code, code_numbers, code_set, renumbered, spelled
 
 
 @pytest.mark.parametrize(("word", "number"), [("G0", 0), ("G12.1", 121), ("G112", 1120), ("M35", 350), ("G54.1", 541)])

@@ -25,10 +25,10 @@ import polarcheck
 from polarcheck.checking import check
 from polarcheck.commands import main
 from polarcheck.reports.pages.painting import plain
+from polarcheck.rewrite.compare import comparison_page as page
 from polarcheck.rewrite.compare import differences
-from polarcheck.rewrite.compare import page as page
-from polarcheck.rewrite.compare.comparison import Revision, compared, default_tolerance
-from polarcheck.rewrite.compare.report import DIFFERS, NOT_COMPARED, SAME_METAL, SAME_WORDS, Comparison
+from polarcheck.rewrite.compare.comparison_report import DIFFERS, NOT_COMPARED, SAME_METAL, SAME_WORDS, Comparison
+from polarcheck.rewrite.compare.revision_comparison import Revision, compared, default_tolerance
 from polarcheck.rewrite.schemas import schema
 
 HEXAGON = (ROOT / "sample_programs" / "hexagon.nc").read_text()

@@ -19,7 +19,7 @@ from polarcheck.rewrite.compensate.centering import centered
 from polarcheck.rewrite.compensate.compensating import Compensating, compensated
 from polarcheck.rewrite.compensate.contours import SIDES
 from polarcheck.rewrite.writing.outcome import Outcome, RefusedError
-from polarcheck.rewrite.writing.rewriting import rewritten
+from polarcheck.rewrite.writing.rewritten_program import rewritten
 
 R = 4.0
 #: Two words may each be off by half a least increment, and both ends of a line.

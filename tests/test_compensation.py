@@ -17,7 +17,7 @@ from plane_moves import path_of_rows, points_along, turn_of
 from programs import SHARED
 
 from polarcheck.foundation.states import Motion, Side
-from polarcheck.geometry.cutter_compensation.compensation import Method, Path, Phase, ToolPath, tool_center_path
+from polarcheck.geometry.cutter_compensation.offset_path import Method, Path, Phase, ToolPath, tool_center_path
 from polarcheck.geometry.plane import arc_sweep
 
 CASES = SHARED / "facts" / "compensation_cases.json"

@@ -27,7 +27,7 @@ from polarcheck.commands.trace import trace as trace_command
 from polarcheck.program.machines import toml_lines
 from polarcheck.program.machines.job import Job, Programs, Running, Stock, Tool, WorkOffset
 from polarcheck.program.reading.globs import Globs, is_pattern
-from polarcheck.reports.pages import schema
+from polarcheck.reports.pages import json_schema
 
 pytestmark = pytest.mark.usefixtures("own_folder")
 
@@ -870,7 +870,7 @@ def test_what_init_suggests_is_a_job_file_where_the_marks_are_taken_away() -> No
         {"files": ["O2.nc"], "tools": {"8": {"radius": 5.0}}},
     ]
     assert radii("O1.nc", "O2.nc") == {"O1.nc": 4, "O2.nc": 5}
-    jsonschema.validate(found, schema.schema("job"))
+    jsonschema.validate(found, json_schema.schema("job"))
 
 
 @pytest.mark.parametrize("there", ["polarcheck.toml", "pyproject.toml"])
@@ -977,14 +977,14 @@ def test_init_reads_each_program_and_stops_at_none_that_cannot_be_read() -> None
     ],
 )
 def test_the_schema_knows_each_key(text: str, is_valid: bool) -> None:
-    found = jsonschema.Draft202012Validator(schema.schema("job")).is_valid(tomllib.loads(text))
+    found = jsonschema.Draft202012Validator(json_schema.schema("job")).is_valid(tomllib.loads(text))
     assert found is is_valid
 
 
 def test_sample_job_files_fit_the_schema() -> None:
     paths = sorted((ROOT / "sample_programs").rglob("polarcheck.toml"))
     assert len(paths) > 5
-    validator = jsonschema.Draft202012Validator(schema.schema("job"))
+    validator = jsonschema.Draft202012Validator(json_schema.schema("job"))
     for path in paths:
         validator.validate(tomllib.loads(path.read_text("utf-8")))
 
@@ -1009,7 +1009,7 @@ def test_each_job_file_of_the_page_is_one() -> None:
     blocks = re.findall(r"```toml\n(.*?)```", PAGE.read_text("utf-8"), re.DOTALL)
     assert len(blocks) > 2
     for block in blocks:
-        jsonschema.validate(tomllib.loads(block), schema.schema("job"))
+        jsonschema.validate(tomllib.loads(block), json_schema.schema("job"))
 
 
 # ---- as a process ----

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from plane_moves import path_of_rows, points_along, turn_of
 
 from polarcheck.foundation.states import Motion, Side
-from polarcheck.geometry.cutter_compensation.compensation import Method, Path, Phase, tool_center_path
+from polarcheck.geometry.cutter_compensation.offset_path import Method, Path, Phase, tool_center_path
 from polarcheck.geometry.overcuts.own_loop import TOLERANCE, overcuts
 from polarcheck.geometry.segments import Curves
 

@@ -27,7 +27,7 @@ from polarcheck.rewrite.convert import converting
 from polarcheck.rewrite.convert.converting import converted
 from polarcheck.rewrite.writing.outcome import Outcome, RefusedError
 from polarcheck.rewrite.writing.pen import Pen
-from polarcheck.rewrite.writing.rewriting import rewritten
+from polarcheck.rewrite.writing.rewritten_program import rewritten
 
 #: A hexagon with an arc, in compensation, as a post for a Takisawa writes it.
 HEXAGON = """\

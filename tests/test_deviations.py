@@ -27,12 +27,12 @@ from polarcheck.commands import main
 from polarcheck.geometry.comparison.deviation import turned_radius
 from polarcheck.geometry.comparison.measured_path import way_of_curves
 from polarcheck.geometry.tolerances import ADJUSTMENT
-from polarcheck.parts.comparison import Comparison
 from polarcheck.parts.deviations import Deviations
-from polarcheck.program.machines import drawing
+from polarcheck.parts.part_comparison import Comparison
+from polarcheck.program.machines import drawing_file
 from polarcheck.program.machines.job import Job, Stock
-from polarcheck.program.machines.part import DrawnPart
-from polarcheck.reports.made_parts.comparison import compared
+from polarcheck.program.machines.part_keys import DrawnPart
+from polarcheck.reports.made_parts.compared_contours import compared
 
 HEAD = "O1\nG21 G40 G97 G98 G18\nT0101\nG0 X150. Z2. C0\nG12.1\n"
 TAIL = "G13.1\nG0 X160.\nM30\n"
@@ -375,7 +375,7 @@ def test_arcs_are_bulges_in_a_file_and_agreement_is_told_with_its_worst_place(tm
     document.modelspace().add_lwpolyline(points, close=True)
     document.saveas(tmp_path / "d.dxf")
     text = HEAD + "G1 X80. C0. F300\nZ-1.\nG42 X18. C0\nC12.\nG3 X18. C-12. I-9. J-12.\nG1 C0\nG40 X80.\n" + TAIL
-    job = msgspec.structs.replace(job_of(), part=[drawing.part_of(tmp_path / "d.dxf", "d.dxf")])
+    job = msgspec.structs.replace(job_of(), part=[drawing_file.part_of(tmp_path / "d.dxf", "d.dxf")])
     (found,) = compared(tables_of(text, "fanuc-30i", "1:radius=4", job=job))
     assert found.agrees
     assert found.largest == pytest.approx(0, abs=1e-3)

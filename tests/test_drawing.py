@@ -17,7 +17,7 @@ from click.testing import CliRunner
 from polarcheck.errors import JobError
 
 from polarcheck.commands import main
-from polarcheck.program.machines import drawing
+from polarcheck.program.machines import drawing_file
 from polarcheck.program.machines.chains import joined
 
 Draw = Callable[[Any], object]
@@ -34,7 +34,7 @@ def written(path: Path, draw: Draw, version: str = "R2010", units: int | None = 
 
 
 def curves(path: Path) -> list[np.ndarray[Any, Any]]:
-    return [np.array(curve) for curve in drawing.read_drawing(path, "part.dxf").curves]
+    return [np.array(curve) for curve in drawing_file.read_drawing(path, "part.dxf").curves]
 
 
 def area(curve: np.ndarray[Any, Any]) -> float:
@@ -72,7 +72,7 @@ def test_lines_and_arcs_of_r12_in_any_order(tmp_path: Path) -> None:
     path = written(tmp_path / "a.dxf", draw, "R12")
     (curve,) = curves(path)
     assert area(curve) == pytest.approx(D_SHAFT, abs=0.1)
-    assert math.isnan(drawing.read_drawing(path, "").scale)
+    assert math.isnan(drawing_file.read_drawing(path, "").scale)
 
 
 def test_ellipses_splines_and_blocks(tmp_path: Path) -> None:
@@ -101,7 +101,7 @@ def test_units(tmp_path: Path, units: int | None, scale: float) -> None:
         text = path.read_text()
         assert "$INSUNITS" in text
         path.write_text(text.replace("$INSUNITS", "$INSUNITZ"))
-    found = drawing.read_drawing(path, "").scale
+    found = drawing_file.read_drawing(path, "").scale
     assert found == scale or (math.isnan(found) and math.isnan(scale))
 
 
@@ -155,7 +155,7 @@ def test_of_named_layers_only_what_lies_on_them_counts(
     tmp_path: Path, version: str, layers: list[str], diameters: list[float]
 ) -> None:
     path = written(tmp_path / "a.dxf", layered, version)
-    found = drawing.read_drawing(path, "part.dxf", layers).curves
+    found = drawing_file.read_drawing(path, "part.dxf", layers).curves
     assert sorted(2 * abs(curve[0]) for curve in found) == pytest.approx(diameters)
 
 
@@ -177,7 +177,7 @@ def test_a_layer_that_is_not_there_is_told_with_those_that_are(tmp_path: Path, l
             space.doc.layers.add("Empty")
 
     with pytest.raises(JobError) as raised:
-        drawing.read_drawing(written(tmp_path / "a.dxf", draw), "part.dxf", layers)
+        drawing_file.read_drawing(written(tmp_path / "a.dxf", draw), "part.dxf", layers)
     assert str(raised.value) == message
 
 
@@ -187,13 +187,13 @@ def test_of_many_layers_the_first_are_named(tmp_path: Path) -> None:
             space.add_line((0, 0), (1, number), dxfattribs={"layer": f"L{number:02}"})
 
     with pytest.raises(JobError, match=r"has no layer x; its layers are 0, L00, .*, L10 and 9 more$"):
-        drawing.read_drawing(written(tmp_path / "a.dxf", draw), "part.dxf", ["x"])
+        drawing_file.read_drawing(written(tmp_path / "a.dxf", draw), "part.dxf", ["x"])
 
 
 def test_what_was_passed_over_is_told_where_nothing_is_left(tmp_path: Path) -> None:
     path = written(tmp_path / "a.dxf", lambda space: [space.add_text("x"), space.add_text("y")])
     with pytest.raises(JobError, match=r"^part\.dxf: shows no line, arc or curve of a part; ignored: 2 TEXT$"):
-        drawing.read_drawing(path, "part.dxf")
+        drawing_file.read_drawing(path, "part.dxf")
 
 
 def bomb(space: Any) -> None:
@@ -225,7 +225,7 @@ def grid(space: Any) -> None:
 def test_hostile_drawings_are_refused_in_one_line(tmp_path: Path, draw: Draw, said: str) -> None:
     path = written(tmp_path / "a.dxf", draw)
     with pytest.raises(JobError, match=said) as raised:
-        drawing.read_drawing(path, "part.dxf")
+        drawing_file.read_drawing(path, "part.dxf")
     assert "\n" not in str(raised.value)
 
 
@@ -245,7 +245,7 @@ def test_broken_files_are_told_in_one_line(tmp_path: Path, data: bytes) -> None:
     path = tmp_path / "a.dxf"
     path.write_bytes(data)
     with pytest.raises(JobError, match=r"^part\.dxf: .+$") as raised:
-        drawing.read_drawing(path, "part.dxf")
+        drawing_file.read_drawing(path, "part.dxf")
     assert "\n" not in str(raised.value)
 
 
@@ -281,9 +281,8 @@ def test_reading_a_drawing_leaves_nothing_behind(tmp_path: Path) -> None:
     """ezdxf would write a list of all fonts into the home folder."""
     path = written(tmp_path / "part.dxf", d_shaft)
     (tmp_path / "home").mkdir()
-    code = (
-        f"from polarcheck.program.machines.drawing import *; print(len(read_drawing(Path({str(path)!r}), '').curves))"
-    )
+    module = "polarcheck.program.machines.drawing_file"
+    code = f"from {module} import *; print(len(read_drawing(Path({str(path)!r}), '').curves))"
     environment = {key: value for key, value in os.environ.items() if not key.startswith("XDG_")}
     environment |= {"HOME": str(tmp_path / "home"), "USERPROFILE": str(tmp_path / "home")}
     done = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=True)

@@ -13,7 +13,7 @@ from programs import job_of, report_of, said, tables_of, trace_of
 from test_cli import call, check, make
 
 from polarcheck.program.machines.offset_keys import canonical, key_of
-from polarcheck.reports.pages import executed, schema
+from polarcheck.reports.pages import executed, json_schema
 
 pytestmark = pytest.mark.usefixtures("own_folder")
 
@@ -105,7 +105,7 @@ def test_the_machine_says_which_edge_a_tool_change_calls(edge: int, calls: str, 
 def test_a_job_gives_edges_by_their_keys(key: str, calls: str) -> None:
     job = {"tools": {key: {"radius": 4.0}}}
     assert section_of(face(calls), job=job)[1:] == (4.0, "job")
-    jsonschema.Draft202012Validator(schema.schema("job")).validate(job)
+    jsonschema.Draft202012Validator(json_schema.schema("job")).validate(job)
 
 
 def test_the_command_line_changes_the_edge_of_the_job() -> None:
@@ -164,7 +164,7 @@ def test_the_report_holds_name_and_edge() -> None:
         polarcheck__toml='machine = "siemens-transmit"\n[tools."MILL_8/1"]\nradius = 4\n',
     )
     result = check("a.mpf", "b.mpf", "--tool", "8/2:radius=3", "--format", "json")
-    jsonschema.Draft202012Validator(schema.schema("report")).validate(json.loads(result.stdout))
+    jsonschema.Draft202012Validator(json_schema.schema("report")).validate(json.loads(result.stdout))
     found = [file["polar_sections"][0] for file in json.loads(result.stdout)["files"]]
     assert [(one["offset"], one["radius"], one["radius_source"]) for one in found] == [
         ("MILL_8/1", 4, "job"),

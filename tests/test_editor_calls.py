@@ -13,7 +13,7 @@ from test_editor_features import judged_of
 from test_editor_names import MAIN, files
 
 from polarcheck.editor import inlay_hints
-from polarcheck.editor.structure import call_hierarchy
+from polarcheck.editor.structure import call_tree
 
 pytestmark = pytest.mark.usefixtures("own_folder")
 
@@ -23,19 +23,19 @@ pytestmark = pytest.mark.usefixtures("own_folder")
 
 def test_calls_are_followed_both_ways() -> None:
     made, workspace = files(MAIN, A="O0100\nM98 P2\nM98 P50002\nM30\n", O9="(NO HEAD)\nM98 P1\nM99\n")
-    (second,) = call_hierarchy.prepare(made, types.Position(3, 5), workspace)
+    (second,) = call_tree.prepare(made, types.Position(3, 5), workspace)
     assert (second.name, second.detail, second.range.start.line) == ("O0002", "O1.NC", 11)
-    calls = call_hierarchy.incoming(made, second.data, workspace)
+    calls = call_tree.incoming(made, second.data, workspace)
     assert [(one.from_.name, [span.start.line for span in one.from_ranges]) for one in calls] == [
         ("O0001", [3, 7]),
         ("O0100", [1, 2]),
     ]
-    (first,) = call_hierarchy.prepare(made, types.Position(2, 5), workspace)
-    called = call_hierarchy.outgoing(made, first.data, workspace)
+    (first,) = call_tree.prepare(made, types.Position(2, 5), workspace)
+    called = call_tree.outgoing(made, first.data, workspace)
     assert [(one.to.name, len(one.from_ranges)) for one in called] == [("O0002", 2), ("O0003", 1)]
-    (caller,) = call_hierarchy.incoming(made, first.data, workspace)
+    (caller,) = call_tree.incoming(made, first.data, workspace)
     assert caller.from_.name == "O9.NC"
-    assert call_hierarchy.incoming(made, ["", 999], workspace) == []
+    assert call_tree.incoming(made, ["", 999], workspace) == []
 
 
 @pytest.mark.parametrize(
@@ -48,8 +48,8 @@ def test_calls_are_followed_both_ways() -> None:
 )
 def test_calls_are_those_of_the_language(machine: str, text: str, names: list[tuple[str, int]]) -> None:
     made, workspace = files(text, machine)
-    (item,) = call_hierarchy.prepare(made, types.Position(0, 0), workspace)
-    found = call_hierarchy.outgoing(made, item.data, workspace)
+    (item,) = call_tree.prepare(made, types.Position(0, 0), workspace)
+    found = call_tree.outgoing(made, item.data, workspace)
     assert [(one.to.name, len(one.from_ranges)) for one in found] == names
 
 

@@ -17,8 +17,16 @@ from polarcheck.errors import StoppedError
 from test_cli import COMPENSATED, GOOD, RAPID
 
 from polarcheck.commands import server as command
-from polarcheck.editor import actions, allowing, definition, diagnostics, hover, markdown, outline
-from polarcheck.editor.judged import Judged, judge
+from polarcheck.editor import (
+    actions,
+    allowing,
+    diagnostics,
+    go_to_definition,
+    hover_text,
+    program_markdown,
+    section_lenses,
+)
+from polarcheck.editor.analysis import Judged, judge
 from polarcheck.editor.open_text import OpenText, path_of
 from polarcheck.editor.structure.document import Document
 from polarcheck.editor.words.completions import completions
@@ -69,7 +77,7 @@ def place(line: int, character: int = 0) -> types.Position:
 
 
 def shown(judged: Judged, line: int, character: int = 0, with_markdown: bool = False) -> str:
-    found = hover.hover(judged, place(line, character), with_markdown)
+    found = hover_text.hover(judged, place(line, character), with_markdown)
     if found is None:
         return ""
     assert isinstance(found.contents, types.MarkupContent)
@@ -198,15 +206,15 @@ def test_what_does_nothing_has_no_state(line: int) -> None:
 
 
 def test_words_of_a_program_format_nothing() -> None:
-    assert markdown.plain("a*b _c_ <d>[e](f)`#1`\x1b\n") == r"a\*b \_c\_ \<d\>\[e\](f)\`#1\`\\x1b\\x0a"
-    assert markdown.plain("F < L * R, limits.c_feed, #1=2") == r"F \< L * R, limits.c_feed, #1=2"
-    assert [markdown.plain(text) for text in ("# 1", "12. b", "+ c", "12.5 mm")] == [
+    assert program_markdown.plain("a*b _c_ <d>[e](f)`#1`\x1b\n") == r"a\*b \_c\_ \<d\>\[e\](f)\`#1\`\\x1b\\x0a"
+    assert program_markdown.plain("F < L * R, limits.c_feed, #1=2") == r"F \< L * R, limits.c_feed, #1=2"
+    assert [program_markdown.plain(text) for text in ("# 1", "12. b", "+ c", "12.5 mm")] == [
         r"\# 1",
         r"12\. b",
         r"\+ c",
         "12.5 mm",
     ]
-    assert markdown.page("- 1\n\n    G1 X[#1*2]\n* x") == "\\- 1\n\n    G1 X[#1*2]\n\\* x"
+    assert program_markdown.page("- 1\n\n    G1 X[#1*2]\n* x") == "\\- 1\n\n    G1 X[#1*2]\n\\* x"
 
 
 # ---- sections ----
@@ -214,13 +222,13 @@ def test_words_of_a_program_format_nothing() -> None:
 
 def test_each_section_tells_what_it_asks_of_the_lathe() -> None:
     judged = judged_of(GOOD + COMPENSATED, tools=["1:radius=4"], changes=["limits.c_feed=3600"])
-    first, second = outline.code_lenses(judged)
+    first, second = section_lenses.code_lenses(judged)
     assert first.range == types.Range(place(2, 0), place(2, 5))
     assert first.command is not None
     assert second.command is not None
     assert re.fullmatch(r"[\d.]+ s \| C \d+ of 3600 deg/min in line \d \| no tool offset", first.command.title)
     assert second.command.title.endswith(" | R 4.000 mm (offset 1, command line)")
-    unknown = outline.code_lenses(judged_of(COMPENSATED))[0].command
+    unknown = section_lenses.code_lenses(judged_of(COMPENSATED))[0].command
     assert unknown is not None
     assert unknown.title == "time not known: no radius in line 4 | rate of C not known | R of offset 1 not known"
 
@@ -229,7 +237,7 @@ def test_each_section_tells_what_it_asks_of_the_lathe() -> None:
 
 
 def lines_led_to(judged: Judged, line: int, character: int = 0) -> list[int]:
-    found = definition.definition(judged, URI, place(line, character))
+    found = go_to_definition.definition(judged, URI, place(line, character))
     assert all(one.uri == URI for one in found)
     return [one.range.start.line + 1 for one in found]
 
@@ -273,7 +281,7 @@ def test_a_call_leads_to_the_file_in_the_folders_of_subprograms(text: str) -> No
     Path("sub").mkdir()
     Path("sub/o77.nc").write_bytes(text.encode())
     Path("polarcheck.toml").write_text('[run]\nsubprograms = ["sub"]\n', "utf-8")
-    (found,) = definition.definition(judged_of("M98 P77\nM30\n"), URI, place(1, 5))
+    (found,) = go_to_definition.definition(judged_of("M98 P77\nM30\n"), URI, place(1, 5))
     assert path_of(found.uri) == Path(os.path.realpath("sub/o77.nc"))
     head = text[: text.index("O")] if "O" in text else ""
     assert found.range.start.line == head.count("\n")
@@ -455,12 +463,12 @@ def test_any_text_gives_answers(lines: list[str], machine: str) -> None:
     text = "\n".join(lines)
     judged = judge(OpenText(text), Path("/w/O1.NC"), settings_of(machine=machine, use_config=False), [])
     diagnostics.diagnostics(judged, URI)
-    outline.code_lenses(judged)
+    section_lenses.code_lenses(judged)
     for line in range(len(lines) + 2):
         for character in (0, 4, 9):
             at = types.Position(line, character)
-            hover.hover(judged, at, True)
-            definition.definition(judged, URI, at)
+            hover_text.hover(judged, at, True)
+            go_to_definition.definition(judged, URI, at)
             actions.actions(judged, URI, 1, types.Range(at, at), True)
             allowing.completions(judged.text, at, judged)
             assert judged.settings is not None

@@ -10,7 +10,7 @@ import pytest
 from editor import Editor
 from test_cli import COMPENSATED, RAPID
 
-from polarcheck.editor import session
+from polarcheck.editor import server_session
 from polarcheck.foundation import bounded, record
 
 pytestmark = pytest.mark.usefixtures("own_folder")
@@ -23,7 +23,7 @@ LATHE = 'inherits = "fanuc-30i"\n'
 
 @pytest.fixture(autouse=True)
 def quick(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(session, "_POLL_EVERY", 0.05)
+    monkeypatch.setattr(server_session, "_POLL_EVERY", 0.05)
 
 
 def shop(**texts: str) -> None:

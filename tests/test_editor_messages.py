@@ -17,7 +17,7 @@ from test_cli import RAPID
 from polarcheck.commands.server import _Settings
 from polarcheck.editor import features, process
 from polarcheck.editor.messages import NoEditorError, handle_all
-from polarcheck.editor.session import Server
+from polarcheck.editor.server_session import Server
 
 pytestmark = pytest.mark.usefixtures("own_folder")
 

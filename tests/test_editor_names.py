@@ -16,8 +16,8 @@ from polarcheck.errors import PolarcheckError
 from polarcheck.commands.server import _Settings
 from polarcheck.editor.buffers import Buffer
 from polarcheck.editor.open_text import OpenText
-from polarcheck.editor.session import Server
-from polarcheck.editor.structure import references, rename
+from polarcheck.editor.server_session import Server
+from polarcheck.editor.structure import reference_search, renaming
 from polarcheck.editor.structure.document import Document
 from polarcheck.editor.structure.workspace import Opened, Workspace
 from polarcheck.program.machines import profiles
@@ -66,7 +66,7 @@ def used(text: str, machine: str = "fanuc", **others: str) -> list[str]:
     """The lines that refer to what stands behind ^, in other files with their name."""
     bare, position = cursor(text)
     document, workspace = files(bare, machine, **others)
-    found = references.references(document, position, workspace, with_declaration=True)
+    found = reference_search.references(document, position, workspace, with_declaration=True)
     lines = []
     for one in found:
         name = one.uri.rpartition("/")[2]
@@ -79,7 +79,7 @@ def renamed(text: str, new: str, machine: str = "fanuc", **others: str) -> dict[
     bare, position = cursor(text)
     document, workspace = files(bare, machine, **others)
     made = {}
-    for uri, edits in rename.rename(document, position, new, workspace).items():
+    for uri, edits in renaming.rename(document, position, new, workspace).items():
         name = uri.rpartition("/")[2]
         shown = document.text if name == "O1.NC" else OpenText(others[name.removesuffix(".NC")])
         changed = shown.text
@@ -260,7 +260,7 @@ def test_files_outside_the_folders_are_not_opened() -> None:
         (here / "O1.NC").as_uri(), here / "O1.NC", OpenText("O2\nM99\n"), profiles.load("fanuc").machine
     )
     workspace = Workspace(document, (), [here], lambda _: (document.machine, ()))
-    found = references.references(document, OpenText("").position(0), workspace, with_declaration=True)
+    found = reference_search.references(document, OpenText("").position(0), workspace, with_declaration=True)
     assert len(found) == 1
     assert workspace.is_complete
 
@@ -271,7 +271,7 @@ def test_an_open_document_counts_before_its_file() -> None:
     path = Path("A.NC").resolve()
     opened = [Opened(path.as_uri(), path, OpenText("O9\n\nM98 P2\n"))]
     workspace = Workspace(document, opened, [path.parent], lambda _: (document.machine, ()))
-    found = references.references(document, position, workspace, with_declaration=False)
+    found = reference_search.references(document, position, workspace, with_declaration=False)
     assert [(one.uri == path.as_uri(), one.range.start.line) for one in found] == [(False, 3), (False, 7), (True, 2)]
 
 

@@ -15,7 +15,7 @@ from test_editor_names import files
 from test_editor_structure import document
 
 from polarcheck.editor.open_text import OpenText
-from polarcheck.editor.structure import formatting, renumber
+from polarcheck.editor.structure import renumbering, spacing
 
 pytestmark = pytest.mark.usefixtures("own_folder")
 
@@ -29,7 +29,7 @@ def applied(text: OpenText, edits: list[types.TextEdit]) -> str:
 
 def format_text(text: str, machine: str = "fanuc", shown: types.Range | None = None) -> str:
     made = document(text, machine)
-    return applied(made.text, formatting.formatted(made, shown))
+    return applied(made.text, spacing.formatted(made, shown))
 
 
 # ---- formatting ----
@@ -146,7 +146,7 @@ M99 P10
 
 def renumbered(text: str, line: int = 1, machine: str = "fanuc", **others: str) -> dict[str, str]:
     made, workspace = files(text, machine, **others)
-    edits = renumber.renumber(made, types.Position(line, 0), workspace)
+    edits = renumbering.renumber(made, types.Position(line, 0), workspace)
     texts = {"O1.NC": text, **{f"{name}.NC": content for name, content in others.items()}}
     return {
         uri.rpartition("/")[2]: applied(OpenText(texts[uri.rpartition("/")[2]]), of_uri)
@@ -185,7 +185,7 @@ def test_what_is_not_known_is_refused(text: str, others: dict[str, str], reason:
 
 def test_the_action_says_beforehand_why_not() -> None:
     def title(text: str) -> Any:
-        return renumber.title(document(text), types.Position(0, 0))
+        return renumbering.title(document(text), types.Position(0, 0))
 
     assert title("O0012\nN5 X1.\n") == ("Renumber the N numbers of O0012", "")
     assert title("N5 X1.\nGOTO#1\n") == (

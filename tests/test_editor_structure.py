@@ -13,7 +13,7 @@ from lsprotocol import types
 
 from polarcheck.editor.color_names import KINDS, MODIFIERS
 from polarcheck.editor.open_text import OpenText
-from polarcheck.editor.structure import colors, folding, symbols
+from polarcheck.editor.structure import folding, symbols, token_colors
 from polarcheck.editor.structure.document import Document
 from polarcheck.program.machines import profiles
 
@@ -142,7 +142,7 @@ def test_structures_of_a_high_level_language_fold() -> None:
 
 def colors_of(made: Document, data: list[int] | None = None) -> list[tuple[int, str, str]]:
     """Line, characters and kind of each token, with its modifiers behind."""
-    numbers = colors.full(made) if data is None else data
+    numbers = token_colors.full(made) if data is None else data
     lines = made.text.text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
     line = character = 0
     found = []
@@ -199,22 +199,22 @@ def test_colors_are_those_of_the_language(machine: str, text: str, expected: str
 def test_colors_of_lines_and_differences_are_those_of_the_whole() -> None:
     before = document(MILLED)
     whole = colors_of(before)
-    shown = colors.within(before, types.Range(types.Position(7, 3), types.Position(9, 1)))
+    shown = token_colors.within(before, types.Range(types.Position(7, 3), types.Position(9, 1)))
     assert colors_of(before, shown) == [one for one in whole if 8 <= one[0] <= 10]
     after = document(MILLED.replace("G1 X5.", "G1 X5. C2."))
-    old, new = colors.full(before), colors.full(after)
-    (edit,) = colors.difference(old, new)
+    old, new = token_colors.full(before), token_colors.full(after)
+    (edit,) = token_colors.difference(old, new)
     assert [*old[: edit.start], *(edit.data or []), *old[edit.start + edit.delete_count :]] == new
     assert len(edit.data or []) <= 15
-    assert colors.difference(old, old) == []
-    assert colors.difference([], new)[0].data == new
+    assert token_colors.difference(old, old) == []
+    assert token_colors.difference([], new)[0].data == new
 
 
 @settings(max_examples=60, deadline=None)
 @given(st.text(st.sampled_from("%ON0123456789GXT#[]=()/;.\n\r\"':RIFGOTDW \U0001f600\u2013"), max_size=80), st.data())
 def test_no_text_is_too_strange(text: str, data: Any) -> None:
     made = document(text, data.draw(st.sampled_from(["fanuc", "siemens-transmit", "okuma-osp", "citizen"])))
-    numbers = colors.full(made)
+    numbers = token_colors.full(made)
     assert all(length > 0 for length in numbers[2::5])
     lines_of(symbols.symbols(made))
     folding.folding_ranges(made)

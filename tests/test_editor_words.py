@@ -11,8 +11,8 @@ from lsprotocol import types
 
 from polarcheck.commands import server as command
 from polarcheck.editor import actions
-from polarcheck.editor.hover import hover
-from polarcheck.editor.judged import Judged, judge
+from polarcheck.editor.analysis import Judged, judge
+from polarcheck.editor.hover_text import hover
 from polarcheck.editor.open_text import OpenText
 from polarcheck.editor.structure.document import Document
 from polarcheck.editor.words.completions import completions

@@ -18,7 +18,7 @@ from test_dynamics import contours, inside
 from test_feed_in_space import SPACE, helices
 
 from polarcheck.rewrite import schemas as schema
-from polarcheck.rewrite.feeds.feeds import WithFeeds, with_feeds
+from polarcheck.rewrite.feeds.feed_edits import WithFeeds, with_feeds
 from polarcheck.rewrite.feeds.table import FeedRow, FeedTable, feed_number, feed_table, highest
 from polarcheck.rules.feed_words import feed_below
 

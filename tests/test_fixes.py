@@ -31,9 +31,9 @@ from polarcheck.checking.settings import Settings
 from polarcheck.columns.trace import Trace
 from polarcheck.commands import main
 from polarcheck.foundation.finding import FileReport
-from polarcheck.program.reading import rewriting, source
-from polarcheck.rewrite.fixes import edits, fixing
-from polarcheck.rewrite.fixes.comparison import _VERDICTS
+from polarcheck.program.reading import replacing, source
+from polarcheck.rewrite.fixes import edits, fix_rounds
+from polarcheck.rewrite.fixes.fix_comparison import _VERDICTS
 from polarcheck.rules import repair
 from polarcheck.rules.editing import Replace
 from polarcheck.rules.repair import Mended, Repair
@@ -277,15 +277,15 @@ def settings_for(machine: str = "fanuc", *tools: str, **changes: float) -> Setti
     )
 
 
-def outcome(program: str, *, unsafe: bool = True, machine: str = "fanuc", **changes: float) -> fixing.Outcome:
-    return fixing.with_fixes(program.encode(), settings_for(machine, "1:radius=4", **changes), "-", unsafe=unsafe)
+def outcome(program: str, *, unsafe: bool = True, machine: str = "fanuc", **changes: float) -> fix_rounds.Outcome:
+    return fix_rounds.with_fixes(program.encode(), settings_for(machine, "1:radius=4", **changes), "-", unsafe=unsafe)
 
 
 def test_what_somebody_has_answered_for_is_not_fixed() -> None:
     def answered(report: FileReport) -> FileReport:
         return msgspec.structs.replace(report, findings=[])
 
-    found = fixing.with_fixes(DASH.encode(), settings_for(), "-", suppress=answered)
+    found = fix_rounds.with_fixes(DASH.encode(), settings_for(), "-", suppress=answered)
     assert (found.data, found.fixed, found.refused) == (DASH.encode(), [], [])
 
 
@@ -329,7 +329,7 @@ def test_a_fix_that_does_more_than_it_says_is_not_made(wrong: str, said: str, mo
         return Mended("Faulty", True, tuple(replaced))
 
     faulty = Repair("wrong-dash", wrong_dash, ())
-    for module in (repair, fixing):
+    for module in (repair, fix_rounds):
         monkeypatch.setattr(module, "repair_of", lambda name: faulty if name == "wrong-dash" else None)
     found = outcome(program)
     assert found.data == program.encode()
@@ -373,14 +373,14 @@ def test_what_is_refused_stands_in_the_way_of_nothing() -> None:
 def test_of_many_that_are_refused_only_some_are_tried() -> None:
     program = "".join(f"O{number}\n{REFUSED}" for number in range(1, 24))
     job = job_of("1:radius=4", job={"run": {"max_seconds": 1e6}})
-    found = fixing.with_fixes(program.encode(), msgspec.structs.replace(settings_for(), job=job), "-", unsafe=True)
+    found = fix_rounds.with_fixes(program.encode(), msgspec.structs.replace(settings_for(), job=job), "-", unsafe=True)
     assert not found.fixed
-    assert len(found.refused) == fixing.MOST_REFUSED
+    assert len(found.refused) == fix_rounds.MOST_REFUSED
     assert found.is_whole
 
 
 def test_where_there_are_too_many_some_are_left(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(fixing, "MOST_CHECKS", 1)
+    monkeypatch.setattr(fix_rounds, "MOST_CHECKS", 1)
     make(a__nc=HEAD + "G17 C–10.\nX60.\nG13.1\n")
     result = check("a.nc", "--fix", "--unsafe-fixes")
     assert "warning: a.nc: it takes too long to try all of its fixes; run it once more for those that are left\n" in (
@@ -403,7 +403,7 @@ def test_a_bug_in_a_fix_leaves_the_file_and_is_told(monkeypatch: pytest.MonkeyPa
     def broken(*_: object) -> None:
         raise ZeroDivisionError("of a test")
 
-    monkeypatch.setattr(fixing, "objection", broken)
+    monkeypatch.setattr(fix_rounds, "objection", broken)
     result = check("a.nc", "--fix")
     assert result.exit_code == 3
     assert "internal error: ZeroDivisionError: of a test, while fixing a.nc" in result.stderr
@@ -562,11 +562,11 @@ def test_a_program_that_would_change_its_owner_is_not_written(
         Path(folder).chmod(0o777)
         with as_user(2000, groups):
             if is_fixed:
-                rewriting.rewrite(str(path), DASH.encode(), MINUS.encode(), keep=keep)
+                replacing.rewrite(str(path), DASH.encode(), MINUS.encode(), keep=keep)
             else:
                 said = f"not written: it belongs to user {owner}, group {group}, to whom you cannot give the new file"
                 with pytest.raises(OutputError, match=said):
-                    rewriting.rewrite(str(path), DASH.encode(), MINUS.encode(), keep=keep)
+                    replacing.rewrite(str(path), DASH.encode(), MINUS.encode(), keep=keep)
         assert path.read_bytes() == (MINUS if is_fixed else DASH).encode()
         kept = ["a.nc.orig"] if is_fixed and keep else []
         assert sorted(entry.name for entry in Path(folder).iterdir()) == ["a.nc", *kept]
@@ -628,14 +628,14 @@ def test_a_file_that_was_changed_meanwhile_is_not_written(
     change: Callable[[], None], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     make(a__nc=DASH)
-    real = fixing.with_fixes
+    real = fix_rounds.with_fixes
 
-    def slow(*arguments: object, **options: object) -> fixing.Outcome:
+    def slow(*arguments: object, **options: object) -> fix_rounds.Outcome:
         found = real(*arguments, **options)  # type: ignore[arg-type]
         change()
         return found
 
-    monkeypatch.setattr(fixing, "with_fixes", slow)
+    monkeypatch.setattr(fix_rounds, "with_fixes", slow)
     result = check("a.nc", "--fix")
     assert result.exit_code == 2
     assert "a.nc: not written: " in result.stderr
@@ -644,7 +644,7 @@ def test_a_file_that_was_changed_meanwhile_is_not_written(
 
 def test_a_file_that_is_changed_while_the_new_one_is_written_stays(monkeypatch: pytest.MonkeyPatch) -> None:
     make(a__nc=DASH)
-    real = rewriting._refuse
+    real = replacing._refuse
     times: list[int] = []
 
     def refuse(target: Path, name: str, old: bytes) -> None:
@@ -653,9 +653,9 @@ def test_a_file_that_is_changed_while_the_new_one_is_written_stays(monkeypatch: 
         times.append(1)
         real(target, name, old)
 
-    monkeypatch.setattr(rewriting, "_refuse", refuse)
+    monkeypatch.setattr(replacing, "_refuse", refuse)
     with pytest.raises(OutputError, match="it was changed since it was read"):
-        rewriting.rewrite("a.nc", DASH.encode(), b"")
+        replacing.rewrite("a.nc", DASH.encode(), b"")
     assert text_of("a.nc") == OPEN
     assert [path.name for path in Path().iterdir()] == ["a.nc"]
 
@@ -729,10 +729,10 @@ def test_fixes_make_no_program_worse_and_twice_is_once(path: Path, faults: list[
 
 
 def never_worse(data: bytes, own: Settings) -> None:
-    found = fixing.with_fixes(data, own, "-", unsafe=True)
+    found = fix_rounds.with_fixes(data, own, "-", unsafe=True)
     assert (found.data != data) == bool(found.fixed)
     if found.fixed:
-        again = fixing.with_fixes(found.data, own, "-", unsafe=True)
+        again = fix_rounds.with_fixes(found.data, own, "-", unsafe=True)
         assert again.data == found.data
         before, after = (report_of(one, own.machine, job=own.job) for one in (data, found.data))
         assert _VERDICTS.index(after.verdict) <= _VERDICTS.index(before.verdict)

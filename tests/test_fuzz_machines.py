@@ -26,7 +26,7 @@ from polarcheck.program.machines import profiles
 from polarcheck.program.machines.machine import Machine
 from polarcheck.reports.made_parts.part_report import part_of
 from polarcheck.reports.pages import executed, machine_check, manual, new_machine
-from polarcheck.rewrite.feeds import page as feeds
+from polarcheck.rewrite.feeds import feed_page as feeds
 from polarcheck.rewrite.feeds.table import FeedReport, feed_table
 from polarcheck.rules.rule import load_all
 

@@ -27,7 +27,7 @@ import polarcheck
 from polarcheck import reports
 from polarcheck.columns.trace import Trace
 from polarcheck.commands import progress
-from polarcheck.files.batch import executors, runs
+from polarcheck.files.batch import batch_run, executors
 from polarcheck.files.batch import tasks as batch
 from polarcheck.files.settings.of_programs import OfPrograms, Options
 from polarcheck.foundation.finding import UNREADABLE
@@ -534,11 +534,11 @@ def forms_of(tasks: list[batch.Task], seconds: float, monkeypatch: pytest.Monkey
         elsewhere.extend(tasks)
         yield from (batch.Outcome() for _ in tasks)
 
-    monkeypatch.setattr(runs.time, "monotonic", lambda: clock[0])
-    monkeypatch.setattr(runs, "cores", lambda: 2)
+    monkeypatch.setattr(batch_run.time, "monotonic", lambda: clock[0])
+    monkeypatch.setattr(batch_run, "cores", lambda: 2)
     monkeypatch.setattr(batch, "outcome", checked)
-    monkeypatch.setattr(runs, "_by_processes", by_others)
-    with runs.outcomes(tasks, 1000, 0) as found:
+    monkeypatch.setattr(batch_run, "_by_processes", by_others)
+    with batch_run.outcomes(tasks, 1000, 0) as found:
         assert len(list(found)) == len(tasks)
     return len(here), len(elsewhere)
 

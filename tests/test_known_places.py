@@ -10,13 +10,13 @@ import drawn_baselines
 import pytest
 from click.testing import CliRunner, Result
 
-from polarcheck.checking.outline import outline
+from polarcheck.checking.block_outline import outline
 from polarcheck.checking.settings import Settings
 from polarcheck.commands import main
-from polarcheck.editor.judged import judge
+from polarcheck.editor.analysis import judge
 from polarcheck.editor.open_text import OpenText
-from polarcheck.files.baselines.alignment import aligned
 from polarcheck.files.baselines.baseline_file import read
+from polarcheck.files.baselines.block_alignment import aligned
 from polarcheck.files.settings.of_programs import OfPrograms, Options
 from polarcheck.rules.rule import load_all
 from polarcheck.rules.vocabulary import Kind, kinds

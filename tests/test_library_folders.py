@@ -10,8 +10,8 @@ import pytest
 from programs import report_of, said
 
 from polarcheck.foundation import bounded
-from polarcheck.program.execution import library
-from polarcheck.program.execution.library import Library
+from polarcheck.program.execution import called_programs
+from polarcheck.program.execution.called_programs import Library
 from polarcheck.program.execution.programs import ProgramName
 from polarcheck.program.machines.profiles import load
 
@@ -184,7 +184,7 @@ def test_a_link_put_in_its_place_while_it_is_opened_leads_nowhere(
         exchanged.append(part)
         return read(*arguments, **options)  # type: ignore[arg-type]
 
-    monkeypatch.setattr(library.bounded, "read_file", exchanging)
+    monkeypatch.setattr(called_programs.bounded, "read_file", exchanging)
     assert of(folder) == MISSING
     assert exchanged
 
@@ -239,8 +239,8 @@ def test_many_candidates_are_not_all_read(folder: Path, monkeypatch: pytest.Monk
     for number in range(20):
         (folder / f"O1234.{chr(97 + number)}").write_text(SUB, "utf-8")
     read = []
-    original = library._read_inside
-    monkeypatch.setattr(library, "_read_inside", lambda *where: (read.append(where), original(*where))[1])
+    original = called_programs._read_inside
+    monkeypatch.setattr(called_programs, "_read_inside", lambda *where: (read.append(where), original(*where))[1])
     assert len(Library([str(folder)], load("fanuc").machine).places(ProgramName(1234, None))) == 1
     assert len(read) < 10
 
@@ -254,6 +254,6 @@ def test_a_program_of_the_file_itself_has_no_rival(folder: Path, more: Path) -> 
     # A call whose number is computed, and a folder that was brought to another machine.
     (reason,) = (entry.reason for entry in report_of("O1\n#1=1234\nM98 P#1\nM30\n", job=job).not_evaluated)
     assert reason.startswith("O1234 is in ")
-    moved = [library.MovedFolder(str(folder), "subs"), library.MovedFolder(str(more), "more")]
+    moved = [called_programs.MovedFolder(str(folder), "subs"), called_programs.MovedFolder(str(more), "more")]
     places = Library(moved, load("fanuc").machine).places(ProgramName(1234, None))
     assert [place.title for place in places] == ["subs/O1234", "more/O1234"]

@@ -16,7 +16,7 @@ from programs import report_of
 from polarcheck.commands import main
 from polarcheck.foundation import states as modal
 from polarcheck.foundation.finding import ERROR
-from polarcheck.program.machines import codes, profiles
+from polarcheck.program.machines import code_tables, profiles
 from polarcheck.program.machines.machine import Machine, OwnMachine, meanings
 from polarcheck.program.machines.parameters import Origin
 from polarcheck.program.machines.renamed import RENAMED
@@ -590,20 +590,20 @@ def test_the_profile_lists_the_modal_groups(system: str, expected: dict[str, tup
         "G66.1": ("modal_call", 66), "G4": ("", 0),
     }  # fmt: skip
     machine = profiles.load("fanuc", {"control": {"g_code_system": system}}).machine
-    names, group_of, state_of = codes.modal_tables(machine)
+    names, group_of, state_of = code_tables.modal_tables(machine)
     for word, (group, state) in (of_all | expected).items():
-        number = codes.code(word)
+        number = code_tables.code(word)
         assert (group_of[number], state_of[number]) == (names.index(group) + 1 if group else 0, state), word
 
 
 @pytest.mark.parametrize(("system", "setting"), [("A", "G50"), ("B", "G92"), ("C", "G92")])
 def test_the_profile_lists_the_codes_whose_axis_words_are_no_move(system: str, setting: str) -> None:
     machine = profiles.load("fanuc", {"control": {"g_code_system": system}}).machine
-    found = codes.code_set(code for key in modal.NO_MOVE for code in machine.codes(key))
+    found = code_tables.code_set(code for key in modal.NO_MOVE for code in machine.codes(key))
     for word in ("G4", "G10", "G28", "G30", "G52", "G53", "G65", "G66.1", "G107", "G73", setting):
-        assert found[codes.code(word)], word
+        assert found[code_tables.code(word)], word
     for word in ("G0", "G1", "G2", "G40", "G41", "G54", "G98", "G99", "G12.1"):
-        assert not found[codes.code(word)], word
+        assert not found[code_tables.code(word)], word
     assert machine.codes("coordinate_setting") == [setting]
 
 

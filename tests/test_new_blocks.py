@@ -10,7 +10,7 @@ from programs import CORPUS, machine_of, tables_of
 from polarcheck.checking.settings import Settings
 from polarcheck.program.machines.job import Job, Running
 from polarcheck.rewrite.writing import original
-from polarcheck.rewrite.writing.blocks import NewBlock, edit_behind, edits_of, edits_of_signs, with_edits
+from polarcheck.rewrite.writing.new_blocks import NewBlock, edit_behind, edits_of, edits_of_signs, with_edits
 from polarcheck.rewrite.writing.style import PLAIN, Style
 from polarcheck.rewrite.writing.style_of import style_of
 

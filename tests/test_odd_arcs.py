@@ -20,12 +20,12 @@ from polarcheck.commands import main
 from polarcheck.files.settings.of_programs import OfPrograms, Options
 from polarcheck.rewrite.compensate.compensating import Compensating, compensated
 from polarcheck.rewrite.compensate.contours import SIDES
-from polarcheck.rewrite.roll import measuring
+from polarcheck.rewrite.roll import rolled_deviation
 from polarcheck.rewrite.roll.rolling import Rolling, rolled
-from polarcheck.rewrite.writing.arc_words import swept
 from polarcheck.rewrite.writing.outcome import RefusedError
 from polarcheck.rewrite.writing.pen import Pen
-from polarcheck.rewrite.writing.rewriting import rewritten
+from polarcheck.rewrite.writing.rewritten_program import rewritten
+from polarcheck.rewrite.writing.written_arcs import swept
 
 #: Those whose sections are not written in the same words.
 OTHER_WORDS = (
@@ -201,8 +201,8 @@ def test_a_section_without_a_move_has_no_contour() -> None:
 
 def test_a_block_that_no_move_of_the_rolled_program_stands_for_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     """Nothing is inf mm away."""
-    away = measuring._away
-    monkeypatch.setattr(measuring, "_away", lambda each, *others: away(each, *others) + np.inf)
+    away = rolled_deviation._away
+    monkeypatch.setattr(rolled_deviation, "_away", lambda each, *others: away(each, *others) + np.inf)
     settings = OfPrograms(Options(machine="fanuc-30i", use_config=False))("")
     with pytest.raises(RefusedError, match="no move of the result leads to the end of this block"):
         rewritten(

@@ -10,7 +10,7 @@ import pytest
 from plane_moves import path_of_rows
 
 from polarcheck.foundation.states import Motion, Side
-from polarcheck.geometry.cutter_compensation.compensation import Method, Phase, tool_center_path
+from polarcheck.geometry.cutter_compensation.offset_path import Method, Phase, tool_center_path
 
 NAN = complex(math.nan, math.nan)
 SQUARE = [20, 20 + 20j, -20 + 20j, -20 - 20j, 20 - 20j, 20]

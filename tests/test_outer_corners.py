@@ -18,7 +18,7 @@ from programs import moves_of, report_of, tables_of
 
 from polarcheck.columns.path.moves import Moves
 from polarcheck.foundation.states import Motion
-from polarcheck.geometry.cutter_compensation.compensation import Phase
+from polarcheck.geometry.cutter_compensation.offset_path import Phase
 
 MACHINE = "siemens-transmit"
 FEED, RADIUS = 300.0, 4.0

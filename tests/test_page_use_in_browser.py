@@ -14,7 +14,7 @@ from pictures_by_hand import HALF, finding, hexagon, picture
 from test_page_in_browser import CHROMIUM, Opened, browser, frames, until
 
 from polarcheck.view.page import page
-from polarcheck.view.picture import DrawnPart, Picture, Writing
+from polarcheck.view.picture_data import DrawnPart, Picture, Writing
 
 playwright = pytest.importorskip("playwright.sync_api")
 plotly = pytest.importorskip("plotly.offline")

@@ -10,7 +10,7 @@ import pytest
 from programs import report_of, tables_of
 
 from polarcheck.foundation.finding import FileReport
-from polarcheck.reports.made_parts.comparison import compared
+from polarcheck.reports.made_parts.compared_contours import compared
 
 RULE = "part-differs-from-drawing"
 HEAD = "G21 G40 G98 T0303\n"

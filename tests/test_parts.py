@@ -12,7 +12,7 @@ from polarcheck.errors import JobError
 from polarcheck.commands import main
 from polarcheck.files.settings.of_programs import OfPrograms, Options
 from polarcheck.program.machines.job import from_table
-from polarcheck.program.machines.part import SIDES, Part
+from polarcheck.program.machines.part_keys import SIDES, Part
 
 HEXAGON = {"shape": "hexagon", "across_flats": 27.0}
 

@@ -10,7 +10,7 @@ import pytest
 from polarcheck.checking.check import read
 from polarcheck.columns.path.moves import compensation_path, tool_center_path
 from polarcheck.columns.trace import Trace
-from polarcheck.geometry.cutter_compensation import compensation
+from polarcheck.geometry.cutter_compensation import offset_path
 from polarcheck.program.machines import profiles
 from polarcheck.program.machines.job import Job, Tool
 
@@ -30,11 +30,11 @@ def test_a_path_in_parts_is_that_of_all_sections(name: str, monkeypatch: pytest.
     trace: Trace = tables["trace"]
     path = compensation_path(trace, np.flatnonzero(trace.mode.in_polar))
     whole = tool_center_path(trace, path)
-    monkeypatch.setattr(compensation, "_PART", 1)
-    assert len(compensation._parts(path.section)) == len(np.unique(path.section)) + 1 > 5
+    monkeypatch.setattr(offset_path, "_PART", 1)
+    assert len(offset_path._parts(path.section)) == len(np.unique(path.section)) + 1 > 5
     parts = tool_center_path(trace, path)
     for column in whole.__struct_fields__:
         one, other = getattr(whole, column), getattr(parts, column)
         assert one.dtype == other.dtype
         assert np.array_equal(one, other, equal_nan=True), column
-    assert np.count_nonzero(whole.phase == compensation.Phase.OFFSET) > 10
+    assert np.count_nonzero(whole.phase == offset_path.Phase.OFFSET) > 10

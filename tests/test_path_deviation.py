@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from polarcheck.foundation.states import Motion
-from polarcheck.geometry.comparison import paths
-from polarcheck.geometry.comparison.paths import SpacePath, path_deviation
+from polarcheck.geometry.comparison import path_deviation as paths
+from polarcheck.geometry.comparison.path_deviation import SpacePath, path_deviation
 from polarcheck.geometry.comparison.polyline import polyline
 
 TOLERANCE = 0.001

@@ -23,7 +23,7 @@ from polarcheck.checking import survey
 from polarcheck.columns.words import bar_comments, called_comments, comment_lengths, part_comments
 from polarcheck.editor.structure import mentions, workspace
 from polarcheck.editor.words import completions
-from polarcheck.program.execution import library, spoken_block
+from polarcheck.program.execution import called_programs, spoken_block
 from polarcheck.program.execution.programs import ProgramName
 from polarcheck.program.machines import profiles
 from polarcheck.program.machines.job import Job, with_tool
@@ -31,7 +31,7 @@ from polarcheck.program.machines.machine import Machine
 from polarcheck.program.reading import language_blocks, languages, surroundings, translation, walking
 from polarcheck.program.reading.globs import Globs
 from polarcheck.program.reading.source import read_source
-from polarcheck.rewrite.convert import calls, heads
+from polarcheck.rewrite.convert import call_words, heads
 
 pytestmark = pytest.mark.slow
 
@@ -57,7 +57,7 @@ def build_every_pattern() -> None:
         if listed := tuple(machine.macro.statements.items()):
             spoken_block._patterns.__wrapped__(listed)
         mentions._flow_pattern(machine.macro)
-        calls._pattern(machine.writing.subprogram_call, machine.writing.subprogram_repeats)
+        call_words._pattern(machine.writing.subprogram_call, machine.writing.subprogram_repeats)
         for head in machine.writing.archive_heads:
             heads._archive_pattern(head)
     spoken_block._patterns.__wrapped__(STATEMENTS)
@@ -69,9 +69,9 @@ def build_every_pattern() -> None:
         language_blocks.extract_statements(codes.copy(), name)
     surroundings._marks_of_channels(codes.copy(), "$", "!")
     survey._begins(None)
-    library.names_of(ProgramName(1234, None))
-    library.names_of(ProgramName(None, "A.B+C"))
-    library._with_head(b"G0\n", "x.nc", ProgramName(None, "OFACE"))
+    called_programs.names_of(ProgramName(1234, None))
+    called_programs.names_of(ProgramName(None, "A.B+C"))
+    called_programs._with_head(b"G0\n", "x.nc", ProgramName(None, "OFACE"))
     Globs("/programs", GLOBS)
     for head in (walking._HEAD, walking._STRICT_HEAD):
         walking._reads_as_program("", head)

@@ -8,7 +8,7 @@ import math
 import pytest
 from test_pictures import ARCS, HEAD, HEXAGON, points, section_of
 
-from polarcheck.view.picture import SectionPicture, Writing
+from polarcheck.view.picture_data import SectionPicture, Writing
 
 FRAMES = """\
 N10 G90 G94 G40 G97

@@ -18,9 +18,9 @@ from polarcheck.checking import check
 from polarcheck.foundation.states import Motion
 from polarcheck.geometry.segments import Curves
 from polarcheck.rules.rule import load_all
-from polarcheck.view import paths
-from polarcheck.view.drawing import drawn, split
-from polarcheck.view.picture import Drawn, SectionPicture
+from polarcheck.view import path_points
+from polarcheck.view.picture_data import Drawn, SectionPicture
+from polarcheck.view.run_drawing import drawn, split
 
 HEAD = "G21 G98 G40 T0808\nG0 X80. C0 Z2.\nG12.1\n"
 END = "G40 X80. F500\nG13.1\nM30\n"
@@ -134,12 +134,12 @@ def test_thinned_paths_lie_as_near_as_is_said(seed: int, most: int) -> None:
     line = np.full(count, Motion.LINE, np.int16)
     none = np.full(count, complex(np.nan, np.nan))
     zeros = np.zeros(count, np.int64)
-    whole, off = paths.chords(Curves(path[:-1], path[1:], none, line, zeros, zeros), 0.01, 10_000)
+    whole, off = path_points.chords(Curves(path[:-1], path[1:], none, line, zeros, zeros), 0.01, 10_000)
     assert np.allclose(whole.point, path)
     kept = np.zeros(count, bool)
     kept[random.integers(0, count, 10)] = True
     look = (np.arange(count) > count // 2).astype(np.int16)
-    found, more = paths.thinned(whole, kept, look, 1e-5, most)
+    found, more = path_points.thinned(whole, kept, look, 1e-5, most)
     assert len(found) < len(whole)
     assert len(found) <= most + 2 * 10 + 8
     assert distance(whole.point, found.point).max() <= more + 1e-9
@@ -399,8 +399,8 @@ def test_of_two_runs_it_is_said_which_is_drawn() -> None:
 
 
 def test_findings_are_never_thinned(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("polarcheck.view.sections._OF_PROGRAM", 30)
-    monkeypatch.setattr("polarcheck.view.sections._LEAST", 30)
+    monkeypatch.setattr("polarcheck.view.section_pictures._OF_PROGRAM", 30)
+    monkeypatch.setattr("polarcheck.view.section_pictures._LEAST", 30)
     angle = 2 * np.pi * np.arange(1, 401) / 400
     blocks = [f"X{40 * math.cos(one):.4f}C{20 * math.sin(one):.4f}" for one in angle]
     blocks[137] = "G0" + blocks[137] + "\nG1"

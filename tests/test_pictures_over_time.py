@@ -16,8 +16,8 @@ from test_pictures import ARCS, GROOVE, HEAD, HEXAGON, column, drawn_of, section
 
 import polarcheck
 from polarcheck.commands import main
-from polarcheck.view import rates
-from polarcheck.view.picture import SectionPicture
+from polarcheck.view import rate_curves
+from polarcheck.view.picture_data import SectionPicture
 
 SAMPLES = Path("sample_programs")
 NEAR_CENTER = HEAD + "G1 X50. C.05 F400\nX-50.\nC10.\nX3.\nG2 X-1. C-.4 R12.\nG1 X80.\nG13.1\nM30\n"
@@ -169,7 +169,7 @@ def test_many_points_are_left_out_where_the_curves_are_straight() -> None:
     count = 700
     zeros = np.zeros(count)
     angle = np.linspace(0, 90, count)
-    curves = rates.Samples(
+    curves = rate_curves.Samples(
         move=np.arange(count),
         t=np.linspace(0, 60, count),
         c_feed=zeros + 90,
@@ -181,14 +181,16 @@ def test_many_points_are_left_out_where_the_curves_are_straight() -> None:
     )
     keep = np.zeros(count, bool)
     keep[234] = True
-    chosen, off = rates.thinned(curves, keep, 100)
+    chosen, off = rate_curves.thinned(curves, keep, 100)
     assert len(chosen.move) <= 110
     assert 234 in chosen.move
     assert off < 0.02
-    assert rates.thinned(curves, keep, count) == (curves, 0.0)
+    assert rate_curves.thinned(curves, keep, count) == (curves, 0.0)
     # What is not straight stays by its highest and lowest values.
-    rough = rates.Samples(**{**{name: getattr(curves, name) for name in curves.__struct_fields__}, "x_feed": angle % 7})
-    chosen, off = rates.thinned(rough, keep, 100)
+    rough = rate_curves.Samples(
+        **{**{name: getattr(curves, name) for name in curves.__struct_fields__}, "x_feed": angle % 7}
+    )
+    chosen, off = rate_curves.thinned(rough, keep, 100)
     assert len(chosen.move) <= 110
     assert chosen.x_feed.max() == rough.x_feed.max()
     assert off < 2

@@ -14,7 +14,7 @@ from programs import job_of, report_of
 from test_deviations import HEAD, RULE, TAIL, drawn, polygon, program
 
 from polarcheck.program.machines.job import Job
-from polarcheck.program.machines.part import DrawnPart
+from polarcheck.program.machines.part_keys import DrawnPart
 
 EGG = [complex(20, -9), complex(20, 12), complex(-12, 18), complex(-15, -11)]
 TURN = cmath.exp(1j * math.radians(30))

@@ -10,14 +10,14 @@ from programs import job_of, machine_of, report_of
 from test_pictures import CORNERS, END, GROOVE, HEAD, HEXAGON
 
 from polarcheck.checking import check
-from polarcheck.editor.outline import summary
+from polarcheck.editor.section_lenses import summary
 from polarcheck.program.reading.source import read_source
 from polarcheck.reports.pages.resting import resting
 from polarcheck.rules.examples import examples
 from polarcheck.rules.rule import load_all
-from polarcheck.view.drawing import drawn, listing, split
-from polarcheck.view.picture import Drawn, Place, key_of
-from polarcheck.view.places import with_followers
+from polarcheck.view.finding_views import with_followers
+from polarcheck.view.picture_data import Drawn, Place, key_of
+from polarcheck.view.run_drawing import drawn, listing, split
 
 
 def pictured(program: str, *tools: str, **changes: Any) -> tuple[dict[str, Place], Drawn]:
@@ -235,12 +235,12 @@ def test_the_lines_of_the_file_are_on_the_page() -> None:
 
 
 def test_very_long_files_are_shown_in_part(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("polarcheck.view.drawing._LINES", 500)
+    monkeypatch.setattr("polarcheck.view.run_drawing._LINES", 500)
     text = "".join(f"N{number} G1 X{number % 7}.\n" for number in range(1, 2001))
     lines, first, count = listing(read_source(text.encode()), [1000, 1500])
     assert (len(lines), first, count) == (500, 800, 2000)
     assert lines[0] == "N800 G1 X2."
-    monkeypatch.setattr("polarcheck.view.drawing._CHARACTERS", 3000)
+    monkeypatch.setattr("polarcheck.view.run_drawing._CHARACTERS", 3000)
     lines, first, _ = listing(read_source(text.encode()), [])
     assert first == 1
     assert 2500 < sum(map(len, lines)) <= 3000

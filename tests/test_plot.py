@@ -14,7 +14,7 @@ from test_nothing_acts import ACTING, acting
 from test_pictures import GROOVE, HEXAGON
 
 from polarcheck.commands import picturing
-from polarcheck.view import library
+from polarcheck.view import plotly_script
 from polarcheck.view.picture_index import page_names
 
 #: Stands for plotly, of which five megabytes need not be written so often.
@@ -26,7 +26,7 @@ pytestmark = pytest.mark.usefixtures("own_folder")
 
 @pytest.fixture(autouse=True)
 def _short_library(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(library, "library", lambda: PLOTLY)
+    monkeypatch.setattr(plotly_script, "library", lambda: PLOTLY)
 
 
 class Page(HTMLParser):

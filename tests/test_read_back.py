@@ -9,7 +9,7 @@ import pytest
 from programs import job_of, machine_of, tables_of
 
 from polarcheck.checking.settings import Settings
-from polarcheck.geometry.comparison.paths import path_deviation
+from polarcheck.geometry.comparison.path_deviation import path_deviation
 from polarcheck.rewrite.writing.original import Original, read
 from polarcheck.rewrite.writing.part_paths import PartPath, path_on_part
 from polarcheck.rewrite.writing.reading_back import read_back

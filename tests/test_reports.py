@@ -18,7 +18,7 @@ from polarcheck.files.batch import tasks as batch
 from polarcheck.foundation.finding import Edit, FileReport, Finding, Fix, NotEvaluated, Report
 from polarcheck.program.reading.excerpt import Excerpt, cells, excerpt, visible
 from polarcheck.reports import Background, formats, render
-from polarcheck.reports.pages import schema
+from polarcheck.reports.pages import json_schema
 from polarcheck.reports.text import first_sentence
 from polarcheck.rules.rule import load_all
 
@@ -419,7 +419,7 @@ def test_json_fits_its_schema_and_the_schema_can_refuse() -> None:
             Background(),
         )
     )
-    check = jsonschema.Draft202012Validator(schema.schema("report"))
+    check = jsonschema.Draft202012Validator(json_schema.schema("report"))
     check.validate(shown)
     for change in ({"schema": 1}, {"files": [{**shown["files"][0], "verdict": "good"}]}, {"machine": 3}):
         assert not check.is_valid({**shown, **change})

@@ -18,7 +18,7 @@ from polarcheck.files.settings.of_programs import OfPrograms, Options, on_machin
 from polarcheck.rewrite.schemas import schema
 from polarcheck.rewrite.writing.original import Original
 from polarcheck.rewrite.writing.outcome import Decision, Figure, Outcome, Refusal, RefusedError
-from polarcheck.rewrite.writing.rewriting import in_mm
+from polarcheck.rewrite.writing.rewritten_program import in_mm
 
 pytestmark = pytest.mark.usefixtures("own_folder")
 

@@ -21,7 +21,7 @@ from polarcheck.rewrite.unroll import unrolling
 from polarcheck.rewrite.unroll.unrolling import Unrolling, unrolled
 from polarcheck.rewrite.writing.original import Original
 from polarcheck.rewrite.writing.outcome import Outcome, RefusedError
-from polarcheck.rewrite.writing.rewriting import rewritten
+from polarcheck.rewrite.writing.rewritten_program import rewritten
 
 
 def settings_of(machine: str, *tools: str) -> Settings:

@@ -19,7 +19,7 @@ from unrolled_contours import hexagon, oval, places, slot
 from polarcheck.checking.settings import Settings
 from polarcheck.commands import main
 from polarcheck.foundation.states import Motion
-from polarcheck.geometry.comparison.paths import path_deviation
+from polarcheck.geometry.comparison.path_deviation import path_deviation
 from polarcheck.rewrite.roll.rolling import Rolling, rolled
 from polarcheck.rewrite.unroll.unrolling import Unrolling, unrolled
 from polarcheck.rewrite.writing.original import Original, read

@@ -430,7 +430,7 @@ def test_without_the_extra_it_says_what_to_install(monkeypatch: pytest.MonkeyPat
 def test_the_first_answer_needs_no_tables() -> None:
     """An editor waits for it; what a check needs is loaded behind it."""
     code = (
-        "import sys, polarcheck.editor.process, polarcheck.editor.session, polarcheck.commands.server\n"
+        "import sys, polarcheck.editor.process, polarcheck.editor.server_session, polarcheck.commands.server\n"
         "assert not {'numpy', 'shapely', 'rich', 'polarcheck.checking.check'} & set(sys.modules)\n"
     )
     subprocess.run([sys.executable, "-c", code], check=True, env=environment())

@@ -23,8 +23,8 @@ from test_pictures import GROOVE, HEXAGON
 from test_plot import PLOTLY, RADIUS
 
 from polarcheck.commands import serving, watching
-from polarcheck.view import connections, library
-from polarcheck.view import serving as served
+from polarcheck.view import connections, plotly_script
+from polarcheck.view import page_server as served
 
 pytestmark = pytest.mark.usefixtures("own_folder")
 __all__ = ["browser"]  # a fixture
@@ -65,7 +65,7 @@ def visitor(monkeypatch: pytest.MonkeyPatch) -> Visitor:
         return True
 
     monkeypatch.setattr(serving, "show", show)
-    monkeypatch.setattr(library, "library", lambda: PLOTLY)
+    monkeypatch.setattr(plotly_script, "library", lambda: PLOTLY)
     return visitor
 
 

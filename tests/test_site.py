@@ -17,7 +17,7 @@ from programs import ROOT
 
 from polarcheck.commands import NAMES, main
 from polarcheck.foundation import finding
-from polarcheck.reports.pages import schema
+from polarcheck.reports.pages import json_schema
 
 DOCS = ROOT / "docs"
 if DOCS.exists():
@@ -77,7 +77,7 @@ def test_the_table_of_controls_is_up_to_date() -> None:
 
 
 def test_each_field_of_the_schema_is_explained_in_the_docstring_of_its_type() -> None:
-    definitions = schema.schema("report")["$defs"]
+    definitions = json_schema.schema("report")["$defs"]
     assert {"makes", "outline"}.isdisjoint(definitions["FileReport"]["properties"])
     for name, definition in definitions.items():
         about, meanings = report_fields.documented(getattr(finding, name))

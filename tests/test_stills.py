@@ -17,10 +17,10 @@ from test_cli import call, make
 from test_pictures import GROOVE, HEXAGON
 from test_plot import RADIUS, names_in
 
-from polarcheck.view.picture import DrawnPart, FindingPicture, Mark
+from polarcheck.view.picture_data import DrawnPart, FindingPicture, Mark
 from polarcheck.view.stills import still as stills
-from polarcheck.view.stills.colors import ABOVE, PLAIN, SHADES, coloring, round_bounds
 from polarcheck.view.stills.numbering import entries, labels
+from polarcheck.view.stills.palette import ABOVE, PLAIN, SHADES, coloring, round_bounds
 from polarcheck.view.stills.still import printable, still, wrapped
 
 pytestmark = pytest.mark.usefixtures("own_folder")

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from programs import tables_of
 
-from polarcheck.columns.contour import fitting
-from polarcheck.columns.contour.fitting import Fitting
+from polarcheck.columns.contour import fitting_radius
+from polarcheck.columns.contour.fitting_radius import Fitting
 
 HEAD, END = "T0101\nG98 G0 X100. C0\n", "M30\n"
 
@@ -78,7 +78,7 @@ def test_no_other_r_mends_what_the_control_objects_to(between: str) -> None:
 
 @pytest.mark.parametrize("sections", ["", groove(10), groove(6).replace("G41 ", "")])
 def test_without_a_cut_nothing_is_tried(sections: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(fitting, "Trial", None)
+    monkeypatch.setattr(fitting_radius, "Trial", None)
     found = fitting_of(sections)
     assert not found.never.any()
     assert np.isnan(found.radius).all()
@@ -92,5 +92,5 @@ def test_a_file_without_a_row_has_no_loop() -> None:
 def test_so_many_rows_are_not_tried(monkeypatch: pytest.MonkeyPatch) -> None:
     rows = int(np.count_nonzero(~np.isnan(fitting_of(groove(6)).radius)))
     for most, is_tried in ((rows, True), (rows - 1, False)):
-        monkeypatch.setattr(fitting, "_MANY", most)
+        monkeypatch.setattr(fitting_radius, "_MANY", most)
         assert bool(np.isnan(fitting_of(groove(6)).radius).all()) != is_tried

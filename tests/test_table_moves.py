@@ -12,7 +12,7 @@ from programs import moves_of, tables_of, trace_of
 
 from polarcheck.columns.path.moves import Moves, any_in_row, compensation_path, per_row, programmed_moves, z_along
 from polarcheck.foundation.states import Motion
-from polarcheck.geometry.cutter_compensation.compensation import Phase
+from polarcheck.geometry.cutter_compensation.offset_path import Phase
 
 PROGRAM = (
     "T0101\nG98 G0 X60. C0\nG12.1\nG1 X40. F100\nZ1.\nG3 X0 C20. I-20. J0\nG2 X-40. C0 I0\nG1 G42 X-60. F200\n"

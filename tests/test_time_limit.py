@@ -16,7 +16,7 @@ from clocks import Clock, even, jump
 from polarcheck.errors import StoppedError, TooHardError
 from programs import ROOT, report_of, said, tables_of
 
-from polarcheck.columns.contour import fitting
+from polarcheck.columns.contour import fitting_radius
 from polarcheck.commands import main
 from polarcheck.foundation.finding import FileReport
 from polarcheck.foundation.states import Motion
@@ -293,9 +293,9 @@ def test_a_trial_is_given_up_between_two_of_them(monkeypatch: pytest.MonkeyPatch
     tables = tables_of(in_mode(GROOVE), MACHINE, TOOL)
     assert tables["fitting"]._asked.any()
     tried = []
-    monkeypatch.setattr(fitting, "keep_time", lambda: tried.append(1))
+    monkeypatch.setattr(fitting_radius, "keep_time", lambda: tried.append(1))
     assert tables["fitting"].radius[-1] == pytest.approx(3, rel=0.02)
-    assert 0 < len(tried) <= fitting._TRIALS
+    assert 0 < len(tried) <= fitting_radius._TRIALS
 
 
 def test_walls_without_a_length_meet_nothing() -> None:

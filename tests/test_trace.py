@@ -15,7 +15,7 @@ from click.testing import CliRunner, Result
 
 from polarcheck import __version__
 from polarcheck.commands import main
-from polarcheck.reports.pages import schema
+from polarcheck.reports.pages import json_schema
 
 SAMPLES = Path(__file__).parent.parent / "sample_programs"
 KEYS = [
@@ -274,7 +274,7 @@ def test_json_is_one_document_with_the_moves_of_json_lines(folder: Path) -> None
     ids=["tool", "golden", "programmed"],
 )
 def test_the_document_fits_its_schema(folder: Path, arguments: tuple[str, ...]) -> None:
-    check = jsonschema.Draft202012Validator(schema.schema("trace"))
+    check = jsonschema.Draft202012Validator(json_schema.schema("trace"))
     made = document(*WITH_R, *arguments, written(folder, FACES["fanuc"]))
     check.validate(made)
     changed = [{"units": {}}, {"schema": 2}, {"requested": "both"}, {"moves": [{"line": 1}]}]

@@ -18,7 +18,7 @@ from polarcheck.commands import main
 from polarcheck.files.batch import tasks as batch
 from polarcheck.foundation.finding import Interrupted
 from polarcheck.reports import Background, formats, render
-from polarcheck.reports.pages import schema
+from polarcheck.reports.pages import json_schema
 from polarcheck.rules.rule import load_all
 
 pytestmark = pytest.mark.usefixtures("own_folder")
@@ -41,7 +41,7 @@ def call(*arguments: str, **environment: str) -> Result:
 def check(*arguments: str, **environment: str) -> dict[str, Any]:
     result = call(*arguments, "--format", "json", **environment)
     shown: dict[str, Any] = json.loads(result.stdout)
-    jsonschema.Draft202012Validator(schema.schema("report")).validate(shown)
+    jsonschema.Draft202012Validator(json_schema.schema("report")).validate(shown)
     return {**shown, "code": result.exit_code}
 
 
@@ -439,7 +439,7 @@ def test_every_report_says_that_the_run_was_interrupted(form: str) -> None:
     if form == "json":
         shown = json.loads(result.stdout)
         assert shown["interrupted"] == {"reason": reason, "checked": 1, "planned": 3, "next_path": "b.nc"}
-        jsonschema.Draft202012Validator(schema.schema("report")).validate(shown)
+        jsonschema.Draft202012Validator(json_schema.schema("report")).validate(shown)
 
 
 def test_an_interruption_before_the_first_file_has_a_place() -> None:

@@ -12,7 +12,7 @@ import msgspec
 
 from generators.tables import GENERATED, row, rule_under
 from polarcheck.foundation import finding
-from polarcheck.reports.pages import schema
+from polarcheck.reports.pages import json_schema
 from polarcheck.reports.pages.markdown import prose
 
 _BEGINNING = f"""# The fields of the JSON report
@@ -32,7 +32,7 @@ _TYPES = {"integer": "whole number", "null": "null", "array": "list", "object": 
 
 def text() -> str:
     """Return the page."""
-    definitions = schema.schema("report")["$defs"]
+    definitions = json_schema.schema("report")["$defs"]
     lines = [_BEGINNING]
     for name in _order(definitions, "Report"):
         kind = getattr(finding, name)

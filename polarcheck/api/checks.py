@@ -7,12 +7,12 @@ from collections.abc import Iterable
 from typing import Unpack
 
 from polarcheck.api.keywords import CheckKeywords, PathName, options, paths_of, takes
-from polarcheck.api.programs import NAMELESS, Call
+from polarcheck.api.loaded_program import NAMELESS, Call
 from polarcheck.api.values import flag, names, whole
 from polarcheck.files.baselines.baselines import Baselines
-from polarcheck.files.batch import runs
+from polarcheck.files.batch import batch_run
 from polarcheck.files.batch import tasks as batch
-from polarcheck.files.batch.decisions import with_own_settings
+from polarcheck.files.batch.differing_settings import with_own_settings
 from polarcheck.files.batch.tasks import Outcome, Task
 from polarcheck.files.settings.decisions import shared
 from polarcheck.files.settings.of_programs import OfPrograms
@@ -61,7 +61,7 @@ def check(
     named = paths_of(_FUNCTION, paths)
     settings_of = OfPrograms(options(_FUNCTION, CheckKeywords, keywords, exclude=patterns))
     skipped: list[Skipped] = []
-    planned = runs.planned(named, settings_of, endings, force_exclude=is_forced, skipped=skipped)
+    planned = batch_run.planned(named, settings_of, endings, force_exclude=is_forced, skipped=skipped)
     tasks, failures = planned.tasks, [*planned.failures, *planned.nothing]
     for doubt in planned.doubts:
         warnings.warn(doubt, PolarcheckWarning, stacklevel=2)
@@ -71,7 +71,7 @@ def check(
     if settings.differing:
         tasks = with_own_settings(tasks)
     baselines = Baselines(tasks, named) if any(task.settings.baseline for task in tasks) else None
-    with runs.outcomes(tasks, most, count) as outcomes:
+    with batch_run.outcomes(tasks, most, count) as outcomes:
         reports = [_report(outcome) for outcome in (baselines.outcomes(outcomes) if baselines else outcomes)]
     for doubt in (*baselines.faults, *baselines.leftovers) if baselines else ():
         warnings.warn(doubt, PolarcheckWarning, stacklevel=2)

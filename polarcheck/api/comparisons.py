@@ -6,14 +6,14 @@ import sys
 from typing import Unpack
 
 from polarcheck.api.keywords import ExecutionKeywords, PathName, takes
-from polarcheck.api.programs import NAMELESS, Call, Program
+from polarcheck.api.loaded_program import NAMELESS, Call, Program
 from polarcheck.api.values import length, short
 from polarcheck.checking import check
 from polarcheck.foundation.errors import UsageError
 from polarcheck.foundation.time_limit import seconds_for, time_limit
 from polarcheck.program.reading.files import LARGEST
-from polarcheck.rewrite.compare.comparison import Revision, compared, default_tolerance
-from polarcheck.rewrite.compare.report import Comparison
+from polarcheck.rewrite.compare.comparison_report import Comparison
+from polarcheck.rewrite.compare.revision_comparison import Revision, compared, default_tolerance
 
 #: As for the command [mm].
 _LARGEST_TOLERANCE = 10.0

@@ -8,7 +8,7 @@ from typing import Unpack
 import msgspec
 
 from polarcheck.api.keywords import ExecutionKeywords, PathName, takes
-from polarcheck.api.programs import NAMELESS, Call, Program
+from polarcheck.api.loaded_program import NAMELESS, Call, Program
 from polarcheck.checking import check
 from polarcheck.foundation.finding import Finding
 from polarcheck.program.reading.files import LARGEST

@@ -9,11 +9,11 @@ from pathlib import Path
 from typing import Any, Literal, TypeAlias, TypedDict, TypeVar
 
 from polarcheck.api.values import flag, length, names, plain, short
-from polarcheck.files.settings.keywords import keywords
+from polarcheck.files.settings.keyword_layers import keywords
 from polarcheck.files.settings.of_programs import Options
 from polarcheck.foundation.errors import UsageError, suggestion
 from polarcheck.program.machines.job import Running, Stock, Tool, WorkOffset
-from polarcheck.program.machines.part import Part
+from polarcheck.program.machines.part_keys import Part
 from polarcheck.program.reading.files import shown
 
 PathName: TypeAlias = str | os.PathLike[str]

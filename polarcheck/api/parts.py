@@ -7,11 +7,11 @@ from typing import Unpack
 import msgspec
 
 from polarcheck.api.keywords import PartKeywords, PathName, takes
-from polarcheck.api.programs import NAMELESS, Call, Program
+from polarcheck.api.loaded_program import NAMELESS, Call, Program
 from polarcheck.checking import check
 from polarcheck.foundation.finding import Finding, MadeShape, NotEvaluated, PartComparison
 from polarcheck.program.reading.files import LARGEST
-from polarcheck.reports.made_parts.comparison import compared_in
+from polarcheck.reports.made_parts.compared_contours import compared_in
 from polarcheck.reports.made_parts.part_report import part_of
 from polarcheck.rules.causes import READ_OTHERWISE
 

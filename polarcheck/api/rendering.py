@@ -5,7 +5,7 @@ from __future__ import annotations
 from polarcheck import reports
 from polarcheck.api.values import choice
 from polarcheck.files.batch import tasks as batch
-from polarcheck.files.batch.runs import folders
+from polarcheck.files.batch.batch_run import folders
 from polarcheck.foundation.errors import UsageError
 from polarcheck.foundation.finding import FileReport, Report
 from polarcheck.reports import Background

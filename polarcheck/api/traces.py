@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from polarcheck.api.keywords import ExecutionKeywords, PathName, takes
-from polarcheck.api.programs import NAMELESS, Call, Program
+from polarcheck.api.loaded_program import NAMELESS, Call, Program
 from polarcheck.api.values import choice, length
 from polarcheck.columns.path.executed_moves import KINDS, PROGRAMMED, TOOL, executed_moves
 from polarcheck.foundation.arrays import Floats, Points, Rows, Table

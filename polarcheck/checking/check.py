@@ -12,7 +12,7 @@ from typing import TypeVar
 import msgspec
 
 from polarcheck.checking.called_files import in_the_file
-from polarcheck.checking.channels import united
+from polarcheck.checking.channel_reports import united
 from polarcheck.checking.engine import Engine, in_order, with_following
 from polarcheck.checking.not_evaluated import all_unevaluated, bounds_not_reported
 from polarcheck.checking.polar_sections import known_stock, polar_sections

@@ -21,7 +21,7 @@ from polarcheck.foundation.finding import NOTE, SEVERITIES, Finding, NotEvaluate
 from polarcheck.foundation.time_limit import keep_going
 from polarcheck.program.execution.programs import name_at_head
 from polarcheck.program.execution.run import begins_program
-from polarcheck.program.machines.codes import code_numbers, code_set
+from polarcheck.program.machines.code_tables import code_numbers, code_set
 from polarcheck.program.reading.excerpt import shortened
 from polarcheck.rules import places
 from polarcheck.rules.places import PLACES, Place

@@ -9,7 +9,7 @@ from polarcheck.columns.modes.other_mode import OtherMode
 from polarcheck.columns.path.infeed import Infeed
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Rows
-from polarcheck.program.machines.axes import NOT_NAMED
+from polarcheck.program.machines.axis_table import NOT_NAMED
 from polarcheck.program.machines.machine import Machine
 from polarcheck.rules.remedies import place
 from polarcheck.rules.wording.written import block_and_line, executed_word, written

@@ -21,7 +21,7 @@ from polarcheck.foundation.errors import TooHardError
 from polarcheck.foundation.finding import FileReport, KnownStock, PolarSection
 from polarcheck.foundation.states import Units
 from polarcheck.program.machines.code_lists import expanded
-from polarcheck.program.machines.codes import CODE_LIMIT, code_numbers
+from polarcheck.program.machines.code_tables import CODE_LIMIT, code_numbers
 from polarcheck.program.machines.machine import Machine
 from polarcheck.program.reading.words import Text
 from polarcheck.rules.quantity import rounded

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from polarcheck.columns.feed.feedrate import Feedrate
-from polarcheck.columns.modes.blocks import ExecutedBlocks
+from polarcheck.columns.modes.executed_blocks import ExecutedBlocks
 from polarcheck.columns.modes.modal import ModalStates
 from polarcheck.columns.modes.mode import PolarMode
 from polarcheck.columns.modes.offsets import ToolOffsets

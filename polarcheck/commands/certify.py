@@ -172,7 +172,7 @@ def _update(loaded: Loaded, certified: dict[str, Certified], chosen: frozenset[s
 def _report(certificate: Certificate, form: str, columns: int = COLUMNS, is_colored: bool = False) -> str:
     """Return the report in a format."""
     if form == "html":
-        from polarcheck.rewrite.certify.html import html
+        from polarcheck.rewrite.certify.certificate_page import html
 
         return html(certificate)
     if form == "json":
@@ -181,7 +181,7 @@ def _report(certificate: Certificate, form: str, columns: int = COLUMNS, is_colo
         return f"{encoded(certificate, indent=2)}\n"
     from polarcheck.reports import painted
     from polarcheck.reports.pages.painting import plain
-    from polarcheck.rewrite.certify.text import text
+    from polarcheck.rewrite.certify.certificate_text import text
 
     return text(certificate, columns, painted if is_colored else plain)
 

@@ -223,7 +223,7 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
     overwriting.refuse(written, tasks)
     run_settings = decisions.shared((task.settings for task in tasks), arguments.diff_base)
     if run_settings.differing:
-        from polarcheck.files.batch.decisions import with_own_settings
+        from polarcheck.files.batch.differing_settings import with_own_settings
 
         tasks = with_own_settings(tasks)
     looked_for = partial(settings_of.looked_for, walked=arguments.paths)
@@ -291,7 +291,7 @@ def _options(arguments: _Arguments) -> Options:
     if picturing.FORMAT in (arguments.form, *(form for form, _ in arguments.outputs)):
         extras += picturing.extras()
     if arguments.part:
-        from polarcheck.reports.made_parts.comparison import compared_in
+        from polarcheck.reports.made_parts.compared_contours import compared_in
         from polarcheck.reports.made_parts.part_report import part_of
 
         extras = (*extras, part_of, compared_in)
@@ -335,7 +335,7 @@ def _excesses(report: Report, tasks: Sequence[Task]) -> Sequence[str]:
     """Return a line for each --max-warnings that is exceeded."""
     if all(task.settings.decided.max_warnings is None for task in tasks):
         return ()
-    from polarcheck.files.batch.decisions import too_many_warnings
+    from polarcheck.files.batch.differing_settings import too_many_warnings
 
     return [*too_many_warnings(report.files, tasks)]
 

@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     from polarcheck.commands.running import Faults
     from polarcheck.files.batch.tasks import Task
     from polarcheck.files.settings.of_programs import OfPrograms
-    from polarcheck.rewrite.compare.comparison import Revision
-    from polarcheck.rewrite.compare.report import Comparison
+    from polarcheck.rewrite.compare.comparison_report import Comparison
+    from polarcheck.rewrite.compare.revision_comparison import Revision
 
 #: What git gives a diff driver: path, then file, hash and mode of both sides.
 _GIT_ARGUMENTS = 7
@@ -101,8 +101,8 @@ def _compare(
     from polarcheck.program.reading.excerpt import head
     from polarcheck.reports import painted
     from polarcheck.reports.pages.painting import plain
-    from polarcheck.rewrite.compare import page as page
-    from polarcheck.rewrite.compare.report import DIFFERS, NOT_COMPARED
+    from polarcheck.rewrite.compare import comparison_page as page
+    from polarcheck.rewrite.compare.comparison_report import DIFFERS, NOT_COMPARED
 
     keep_within_memory()
     pair = _arguments(paths, named or "", is_git)
@@ -190,7 +190,7 @@ def _compared(old: Task, new: Task, tolerance: float | None, max_size: int) -> t
     from polarcheck.foundation.states import MM_PER_INCH, Units
     from polarcheck.foundation.time_limit import seconds_for, time_limit
     from polarcheck.program.reading import files
-    from polarcheck.rewrite.compare.comparison import compared, default_tolerance
+    from polarcheck.rewrite.compare.revision_comparison import compared, default_tolerance
 
     data = [files.read_program(task.path, max_size) for task in (old, new)]
     seconds = max(task.settings.job.run.max_seconds for task in (old, new))
@@ -205,7 +205,7 @@ def _compared(old: Task, new: Task, tolerance: float | None, max_size: int) -> t
 
 def _revision(task: Task, data: bytes) -> Revision:
     from polarcheck.checking import check
-    from polarcheck.rewrite.compare.comparison import Revision
+    from polarcheck.rewrite.compare.revision_comparison import Revision
 
     settings = task.settings
     runs = check.read(data, settings.machine, settings.job, task.title, settings.encoding)

@@ -13,7 +13,7 @@ from polarcheck.foundation.errors import UsageError
 
 if TYPE_CHECKING:
     from polarcheck.checking.settings import Settings
-    from polarcheck.rewrite.writing.rewriting import Work
+    from polarcheck.rewrite.writing.rewritten_program import Work
 
 #: Those of polarcheck.rewrite.compensate.contours, which is imported late.
 _SIDES = ("left", "right", "part-inside", "part-outside")

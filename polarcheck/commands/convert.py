@@ -12,7 +12,7 @@ from polarcheck.commands.rewriting import Command, rewriting
 
 if TYPE_CHECKING:
     from polarcheck.checking.settings import Settings
-    from polarcheck.rewrite.writing.rewriting import Work
+    from polarcheck.rewrite.writing.rewritten_program import Work
 
 
 @click.command(short_help="Write programs for another control, or say why not.")

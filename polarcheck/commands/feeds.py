@@ -36,14 +36,14 @@ def feeds(path: str, form: str, diff: bool, no_config: bool, max_size: int, **ar
     --diff shows the program with these F; it writes nothing. Where the program is for another control, so that nothing
     of the table can be believed, standard error says so.
     """
-    from polarcheck.api import feed_tables, programs
+    from polarcheck.api import feed_tables, loaded_program
     from polarcheck.files.settings.of_programs import Options
     from polarcheck.foundation.memory import keep_within_memory
 
     keep_within_memory()
     if diff and form != "text":
         raise UsageError(f"--diff shows a diff: leave out --format {form}")
-    program = programs.of_file(path, Options(use_config=not no_config, **arguments), max_size)
+    program = loaded_program.of_file(path, Options(use_config=not no_config, **arguments), max_size)
     with program.runs() as found:
         doubts, missing = feed_tables.doubts(program, found)
         for doubt in doubts:
@@ -60,7 +60,7 @@ def feeds(path: str, form: str, diff: bool, no_config: bool, max_size: int, **ar
 def _show_table(title: str, machine: str, runs: list[Tables], form: str) -> None:
     import msgspec
 
-    from polarcheck.rewrite.feeds import page as pages
+    from polarcheck.rewrite.feeds import feed_page as pages
     from polarcheck.rewrite.feeds.table import FeedReport, feed_table
 
     if form == "csv":
@@ -74,7 +74,7 @@ def _show_table(title: str, machine: str, runs: list[Tables], form: str) -> None
 
 
 def _show_diff(title: str, data: bytes, runs: list[Tables], encoding: str | None) -> int:
-    from polarcheck.rewrite.feeds.feeds import with_feeds
+    from polarcheck.rewrite.feeds.feed_edits import with_feeds
 
     edited = with_feeds(title, data, runs, encoding)
     if edited is None:

@@ -20,7 +20,7 @@ from polarcheck.foundation.errors import OutputError, PolarcheckError, SourceErr
 if TYPE_CHECKING:
     from polarcheck.files.batch.tasks import Task
     from polarcheck.foundation.finding import FileReport
-    from polarcheck.rewrite.fixes.fixing import Outcome
+    from polarcheck.rewrite.fixes.fix_rounds import Outcome
 
 #: The most fixes of a file that are listed.
 _LISTED = 20
@@ -188,7 +188,7 @@ class _Work:
             self._count(outcome, task.title)
 
     def _outcome(self, task: Task, data: bytes, path: str) -> Outcome | None:
-        from polarcheck.rewrite.fixes.fixing import with_fixes
+        from polarcheck.rewrite.fixes.fix_rounds import with_fixes
 
         try:
             return with_fixes(
@@ -216,7 +216,7 @@ class _Work:
             self.status = max(self.status, COULD_NOT_RUN)
 
     def _written(self, path: str, old: bytes, new: bytes) -> bool:
-        from polarcheck.program.reading.rewriting import rewrite
+        from polarcheck.program.reading.replacing import rewrite
 
         try:
             rewrite(path, old, new, keep=self.wanted.backup)

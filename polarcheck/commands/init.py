@@ -106,8 +106,8 @@ def _init(folder: str, machine: str | None, extensions: tuple[str, ...], schema:
     from polarcheck.program.machines.job import FILE_NAME
     from polarcheck.program.reading import files, walking
     from polarcheck.program.reading.excerpt import head, visible
+    from polarcheck.reports.pages import json_schema as schemas
     from polarcheck.reports.pages import new_job
-    from polarcheck.reports.pages import schema as schemas
 
     path = Path(folder, FILE_NAME)
     existing = job_files.in_folder(Path(folder))

@@ -141,12 +141,12 @@ def write(wanted: Wanted, task: Task, old: bytes, new: bytes, output: Path | Non
 
     Raises OutputError if it cannot be written; then the file is as it was.
     """
-    from polarcheck.program.reading import files, rewriting
+    from polarcheck.program.reading import files, replacing
 
     if wanted.in_place:
         if new == old:
             return None
-        rewriting.rewrite(task.path, old, new, keep=True)
+        replacing.rewrite(task.path, old, new, keep=True)
         return task.title
     if output is None or wanted.diff:
         return None

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from polarcheck.files.batch.tasks import Outcome, Task
     from polarcheck.foundation.finding import FileReport
     from polarcheck.reports import Background
-    from polarcheck.view.picture import Drawn
+    from polarcheck.view.picture_data import Drawn
 
 #: The format that holds pictures.
 FORMAT = "html"
@@ -28,8 +28,8 @@ def extras(*, for_page: bool = True) -> tuple[Extra, ...]:
 
     for_page: they are drawn on a page. Raises UsageError if plotly is missing, which pages need.
     """
-    from polarcheck.view.drawing import drawn
-    from polarcheck.view.library import require
+    from polarcheck.view.plotly_script import require
+    from polarcheck.view.run_drawing import drawn
 
     if for_page:
         require()
@@ -82,7 +82,7 @@ class Pictures:
                 continue
             import msgspec
 
-            from polarcheck.view.drawing import split  # not needed without pictures
+            from polarcheck.view.run_drawing import split  # not needed without pictures
 
             report, drawn = split(outcome.report)
             plain = msgspec.structs.replace(outcome, report=report)
@@ -132,14 +132,14 @@ class Folder(Pictures):
     @property
     def outputs(self) -> list[Path]:
         """Return all files that will be written."""
-        from polarcheck.view.library import FILE_NAME
         from polarcheck.view.picture_index import INDEX
+        from polarcheck.view.plotly_script import FILE_NAME
 
         return [self._folder / name for name in (INDEX, FILE_NAME, *self._names.values())]
 
     def begin(self, background: Background) -> None:
         """Create the folder, and write the library that all pages share."""
-        from polarcheck.view.library import FILE_NAME, library
+        from polarcheck.view.plotly_script import FILE_NAME, library
 
         self._background = background
         create_folder(self._folder)
@@ -147,10 +147,10 @@ class Folder(Pictures):
 
     def store(self, outcome: Outcome, drawn: Drawn) -> None:
         """Write the page of a program."""
-        from polarcheck.view.library import FILE_NAME
         from polarcheck.view.page import page
+        from polarcheck.view.page_data import picture
         from polarcheck.view.picture_index import entry
-        from polarcheck.view.pictured import picture
+        from polarcheck.view.plotly_script import FILE_NAME
 
         report = outcome.report
         assert report is not None

@@ -85,7 +85,7 @@ def unread(summary: Summary) -> list[str]:
 
 def background(plain: Background, tasks: Iterable[Task]) -> Background:
     """Add the settings of each file, and the folders that paths are relative to, to a background."""
-    from polarcheck.files.batch.runs import folders
+    from polarcheck.files.batch.batch_run import folders
     from polarcheck.files.batch.tasks import settings_of
 
     root, folder = folders()

@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from polarcheck.commands.running import Faults
     from polarcheck.files.batch.tasks import Task
     from polarcheck.rewrite.writing.outcome import Figure, Outcome
-    from polarcheck.rewrite.writing.report import Rewriting
-    from polarcheck.rewrite.writing.rewriting import Work
+    from polarcheck.rewrite.writing.rewriting_report import Rewriting
+    from polarcheck.rewrite.writing.rewritten_program import Work
 
 #: The most lines about one program of each kind.
 _LISTED = 20
@@ -163,7 +163,7 @@ class _Programs:
     def rewrite(self, task: Task) -> None:
         """Rewrite a program, write the new one, and say what was done."""
         from polarcheck.program.reading import files
-        from polarcheck.rewrite.writing.rewriting import rewritten
+        from polarcheck.rewrite.writing.rewritten_program import rewritten
 
         work = self._command.work(task.settings)
         original = _Original(task, b"")
@@ -189,7 +189,7 @@ class _Programs:
         """Write what has come of the programs to standard output."""
         import msgspec
 
-        from polarcheck.rewrite.writing.report import RewritingReport
+        from polarcheck.rewrite.writing.rewriting_report import RewritingReport
 
         report = RewritingReport(schema=1, command=self._command.name, files=self._of_json)
         show(msgspec.json.format(msgspec.json.encode(report), indent=2) + b"\n")
@@ -226,7 +226,7 @@ class _Programs:
         _list(outcome.notes, lambda note: f"{title}: {note}", f"{title}: {{}} more notes")
 
     def _refused(self, original: _Original, error: RefusedError) -> None:
-        from polarcheck.rewrite.writing.report import Reason
+        from polarcheck.rewrite.writing.rewriting_report import Reason
 
         title = original.title
         self.status = max(self.status, COULD_NOT_RUN)
@@ -240,7 +240,7 @@ class _Programs:
             say(f"{title}: not {self._command.done}: nothing is written")
 
     def _failed(self, original: _Original, line: str) -> None:
-        from polarcheck.rewrite.writing.report import Reason
+        from polarcheck.rewrite.writing.rewriting_report import Reason
 
         self.status = max(self.status, COULD_NOT_RUN)
         self._of_json.append(self._entry(original, [Reason(None, line)]))
@@ -249,7 +249,7 @@ class _Programs:
     def _entry(
         self, original: _Original, refusals: Sequence[Any], outcome: Outcome | None = None, written: str | None = None
     ) -> Rewriting:
-        from polarcheck.rewrite.writing.report import Rewriting
+        from polarcheck.rewrite.writing.rewriting_report import Rewriting
 
         machine = original.task.settings.machine_id
         return Rewriting(

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from polarcheck.checking.settings import Settings
     from polarcheck.rewrite.writing.original import Original
     from polarcheck.rewrite.writing.outcome import Outcome
-    from polarcheck.rewrite.writing.rewriting import Work
+    from polarcheck.rewrite.writing.rewritten_program import Work
 
 
 @click.command(short_help="Write plain moves of X and C as polar sections of lines and arcs.")
@@ -48,7 +48,7 @@ def roll(tolerance: float | None, feed: str | None, keep_c: bool) -> Command:
 
     def work(settings: Settings) -> Work:
         from polarcheck.rewrite.roll.rolling import Rolling, rolled
-        from polarcheck.rewrite.writing.rewriting import in_mm
+        from polarcheck.rewrite.writing.rewritten_program import in_mm
 
         def rolls(original: Original) -> Outcome:
             allowed = 0.01 if tolerance is None else in_mm(original, tolerance)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from polarcheck.commands import silencing
 from polarcheck.commands.exit_codes import BUG, CLEAN, COULD_NOT_RUN
 from polarcheck.commands.output import bug_lines, say, say_lines, warn
-from polarcheck.files.batch import runs
+from polarcheck.files.batch import batch_run
 from polarcheck.foundation import record
 from polarcheck.program.reading.files import STANDARD_INPUT
 
@@ -76,7 +76,7 @@ def planned(
     named: the file that standard input is judged as (standard_input.judged_as).
     skipped: takes what the walks did not read.
     """
-    found = runs.planned(paths, settings_of, extensions, force_exclude=force_exclude, named=named, skipped=skipped)
+    found = batch_run.planned(paths, settings_of, extensions, force_exclude=force_exclude, named=named, skipped=skipped)
     faults.failures += found.failures
     faults.nothing += found.nothing
     for line in found.doubts:
@@ -134,7 +134,7 @@ class Runner:
             return batch.gather(itertools.chain(reported, also), faults.failures.append, faults.bug, show)
 
     def _outcomes(self, tasks: Sequence[Task]) -> contextlib.AbstractContextManager[Generator[Outcome, None, None]]:
-        return runs.outcomes(tasks, self._most, self._workers, self._cluster)
+        return batch_run.outcomes(tasks, self._most, self._workers, self._cluster)
 
 
 def cache(most: int, folder: str | None) -> Cache:

@@ -20,7 +20,7 @@ def schema(name: str) -> None:
     Show a JSON Schema: of a report, polarcheck.toml (job), a machine profile, a feed table, a trace, a comparison,
     what comes of rewriting a program, or the manifest and the certificate of a post.
     """
-    from polarcheck.reports.pages import schema as schemas
+    from polarcheck.reports.pages import json_schema as schemas
 
     if name in _REWRITTEN:
         from polarcheck.rewrite.schemas import schema as of_wing

@@ -55,7 +55,7 @@ def _serve(no_config: bool, trust: tuple[Path, ...], arguments: dict[str, Any]) 
     if os.isatty(streams.source):
         say("an editor starts the server, and speaks to it over standard input; Ctrl-C ends it")
     from polarcheck.editor.features import register
-    from polarcheck.editor.session import Server
+    from polarcheck.editor.server_session import Server
 
     # The server runs for hours, so garbage is collected, which other commands leave to the end of the process.
     gc.enable()

@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     from polarcheck.files.settings.of_programs import Options
     from polarcheck.foundation.finding import FileReport
     from polarcheck.reports import Background
-    from polarcheck.view.picture import Drawn
-    from polarcheck.view.serving import Site
+    from polarcheck.view.page_server import Site
+    from polarcheck.view.picture_data import Drawn
 
 #: The length of a version.
 _DIGITS = 16
@@ -95,7 +95,7 @@ def serve(wish: Wish) -> int:
 
     Raises OutputError if the port is taken; UsageError or Exit if there is nothing to serve.
     """
-    from polarcheck.view.serving import Server, Site
+    from polarcheck.view.page_server import Server, Site
 
     site = Site()
     server = Server(site, wish.port, lambda error: say_lines(bug_lines(error, wish.debug)))
@@ -186,10 +186,10 @@ class _Rounds:
     @contextlib.contextmanager
     def _outcomes(self, tasks: Sequence[Task]) -> Iterator[Generator[Outcome, None, None]]:
         """Yield a generator of outcomes without their drawings, whose pages are put on the site."""
-        from polarcheck.files.batch import runs
+        from polarcheck.files.batch import batch_run
 
         workers = self._wish.workers if self.count == 1 else 1
-        with runs.outcomes(tasks, self._wish.most, workers) as outcomes:
+        with batch_run.outcomes(tasks, self._wish.most, workers) as outcomes:
             yield self._pages.taken(outcomes)
 
 
@@ -207,8 +207,8 @@ class _Pages(picturing.Pictures):
 
     def begin(self, background: Background) -> None:
         """Prepare for a run, and put plotly on the site."""
-        from polarcheck.view.library import FILE_NAME, library
-        from polarcheck.view.serving import Served
+        from polarcheck.view.page_server import Served
+        from polarcheck.view.plotly_script import FILE_NAME, library
 
         self._background = background
         if self._site.get(FILE_NAME) is None:
@@ -223,9 +223,9 @@ class _Pages(picturing.Pictures):
         """Put the page of a program on the site."""
         import msgspec
 
-        from polarcheck.view.library import FILE_NAME
         from polarcheck.view.page import page
-        from polarcheck.view.pictured import picture
+        from polarcheck.view.page_data import picture
+        from polarcheck.view.plotly_script import FILE_NAME
 
         report = outcome.report
         assert report is not None
@@ -257,7 +257,7 @@ class _Pages(picturing.Pictures):
         self._put(_FIRST, index(entries, version=version), version)
 
     def _put(self, name: str, text: str, version: str) -> None:
-        from polarcheck.view.serving import Served
+        from polarcheck.view.page_server import Served
 
         path = self._folder / (name or _FIRST_FILE)
         write(path, text)

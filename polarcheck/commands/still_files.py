@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from polarcheck.files.batch.tasks import Task
     from polarcheck.foundation.finding import FileReport
     from polarcheck.reports import Background
-    from polarcheck.view.picture import Drawn
+    from polarcheck.view.picture_data import Drawn
 
 _FORMATS = ("png", "svg")
 
@@ -75,7 +75,7 @@ class Stills:
         """Write the pictures of a program. Raises OutputError if one cannot be written."""
         if not self._names:
             return
-        from polarcheck.view.pictured import picture
+        from polarcheck.view.page_data import picture
         from polarcheck.view.stills.still import MOST, still
 
         pictured = picture(report, background._replace(drawn={report.path: drawn}))

@@ -59,7 +59,7 @@ def trace(
     programmed: those moves have "programmed" under path, a line on standard error says what to give, and the exit code
     is 1. --format json always shows moves, without --path those of the tool center.
     """
-    from polarcheck.api import programs
+    from polarcheck.api import loaded_program
     from polarcheck.files.settings.of_programs import Options
     from polarcheck.foundation.memory import keep_within_memory
     from polarcheck.reports.pages import executed, trace_report
@@ -72,7 +72,7 @@ def trace(
     on_terminal = is_terminal(sys.stdout)
     form = form or ("table" if on_terminal and not golden else "csv")
     which = which or ("tool" if form == "json" or shown_too else None)
-    program = programs.of_file(path, Options(use_config=not no_config, **arguments), max_size)
+    program = loaded_program.of_file(path, Options(use_config=not no_config, **arguments), max_size)
     # One run for each channel, since --block-skip has a single state in this command.
     with program.runs() as runs:
         paths = [(tables["trace"], tables["tool_center"]) for _, tables in runs]

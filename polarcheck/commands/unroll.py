@@ -11,9 +11,9 @@ from polarcheck.commands.rewriting import Command, length, rewriting
 
 if TYPE_CHECKING:
     from polarcheck.checking.settings import Settings
-    from polarcheck.rewrite.writing.rewriting import Work
+    from polarcheck.rewrite.writing.rewritten_program import Work
 
-#: Those of polarcheck.rewrite.unroll.rates, which is imported late.
+#: Those of polarcheck.rewrite.unroll.unrolled_feeds, which is imported late.
 _FEEDS = ("inverse-time", "per-minute", "per-minute-c", "per-minute-diameter", "stepwise")
 
 
@@ -42,7 +42,7 @@ def unroll(chord_error: float | None, feed: str | None) -> Command:
 
     def work(settings: Settings) -> Work:
         from polarcheck.rewrite.unroll.unrolling import DEFAULT_CHORD_ERROR, Unrolling, unrolled
-        from polarcheck.rewrite.writing.rewriting import in_mm
+        from polarcheck.rewrite.writing.rewritten_program import in_mm
 
         return lambda original: unrolled(
             original,

@@ -7,8 +7,8 @@ from collections.abc import Iterable, Iterator
 from lsprotocol import types
 
 from polarcheck.editor.allowing import allow
+from polarcheck.editor.analysis import Judged
 from polarcheck.editor.diagnostics import diagnostic
-from polarcheck.editor.judged import Judged
 from polarcheck.foundation.finding import Edit, Finding
 from polarcheck.program.reading.excerpt import visible
 from polarcheck.rules.rule import load_all

@@ -8,9 +8,9 @@ from lsprotocol import types
 
 from polarcheck.columns.words import allow_mention
 from polarcheck.columns.words.allow_syntax import ALLOW, FILE, OFF, ON
-from polarcheck.editor.judged import Judged
-from polarcheck.editor.markdown import page
+from polarcheck.editor.analysis import Judged
 from polarcheck.editor.open_text import OpenText
+from polarcheck.editor.program_markdown import page
 from polarcheck.foundation.finding import Edit, Finding
 from polarcheck.program.machines.machine import Machine
 from polarcheck.rules.rule import Rule, load_all

@@ -20,7 +20,7 @@ from polarcheck.foundation.record import Seen
 
 if TYPE_CHECKING:
     from polarcheck.checking.settings import Settings
-    from polarcheck.editor.judged import Judged, SettingsOf
+    from polarcheck.editor.analysis import Judged, SettingsOf
 
 #: The least and the most pause after the last key before a check begins; in between, the time of the last check [s].
 _PAUSE, _LONGEST_PAUSE = 0.25, 2.0
@@ -158,7 +158,7 @@ class Buffers:
         self, text: OpenText, buffer: Buffer, texts: Mapping[str, OpenText], is_stopped: Callable[[], bool]
     ) -> Judged | None:
         """Check a text, in the worker thread; None if the check is cancelled."""
-        from polarcheck.editor.judged import Judged, judge
+        from polarcheck.editor.analysis import Judged, judge
 
         path = buffer.path
         try:

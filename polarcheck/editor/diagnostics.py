@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from lsprotocol import types
 
-from polarcheck.editor.judged import Judged
+from polarcheck.editor.analysis import Judged
 from polarcheck.foundation.finding import FileReport, Finding
 from polarcheck.program.reading.excerpt import visible
 

@@ -14,7 +14,7 @@ from polarcheck.foundation.errors import PolarcheckError
 
 if TYPE_CHECKING:
     from polarcheck.checking.settings import Settings
-    from polarcheck.editor.judged import SettingsOf
+    from polarcheck.editor.analysis import SettingsOf
     from polarcheck.editor.open_text import OpenText
     from polarcheck.editor.structure.document import Document
     from polarcheck.editor.structure.workspace import Workspace

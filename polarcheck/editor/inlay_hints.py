@@ -8,7 +8,7 @@ import numpy as np
 from lsprotocol import types
 
 from polarcheck.columns.trace import Trace
-from polarcheck.editor.judged import Judged
+from polarcheck.editor.analysis import Judged
 from polarcheck.foundation.errors import TooHardError
 from polarcheck.foundation.time_limit import time_limit
 from polarcheck.rules.quantity import in_row

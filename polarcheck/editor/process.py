@@ -16,7 +16,7 @@ from polarcheck.foundation.errors import UsageError
 
 if TYPE_CHECKING:
     from polarcheck.editor.protocol import Protocol
-    from polarcheck.editor.session import Server
+    from polarcheck.editor.server_session import Server
 
 _CHUNK = 1 << 16
 #: The longest line of a header [bytes].

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from lsprotocol import types
 
 if TYPE_CHECKING:
-    from polarcheck.editor.session import Server
+    from polarcheck.editor.server_session import Server
 
 
 def workspace_edit(server: Server, edits: Mapping[str, list[types.TextEdit]]) -> types.WorkspaceEdit:

@@ -12,10 +12,10 @@ from polarcheck.columns.metal.bar import Bar
 from polarcheck.columns.metal.milled import Milled
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Columns, cached_property
-from polarcheck.parts.comparison import SAME_Z, Comparison
 from polarcheck.parts.contour_comparisons import ContourComparisons
 from polarcheck.parts.nominal_features import NominalFeatures, PlacedFeature
 from polarcheck.parts.nominal_parts import NominalParts
+from polarcheck.parts.part_comparison import SAME_Z, Comparison
 
 if TYPE_CHECKING:
     from polarcheck.geometry.shapes.shape import Shape

@@ -14,8 +14,8 @@ from polarcheck.columns.metal.finished import Finished, Level
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Columns, cached_property
 from polarcheck.foundation.time_limit import keep_time
-from polarcheck.parts.comparison import SAME_Z, Comparison, Contour, Fit, Target
 from polarcheck.parts.nominal_parts import NominalParts
+from polarcheck.parts.part_comparison import SAME_Z, Comparison, Contour, Fit, Target
 
 if TYPE_CHECKING:
     from polarcheck.geometry.comparison.measured_path import Way

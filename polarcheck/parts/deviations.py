@@ -11,10 +11,10 @@ from polarcheck.columns.contour.skipped_loops import SkipReason
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Columns, Floats, Mask, cached_property
 from polarcheck.parts.area_comparisons import AreaComparisons
-from polarcheck.parts.comparison import Comparison, Fit
 from polarcheck.parts.contour_comparisons import ContourComparisons
 from polarcheck.parts.nominal_parts import NominalParts
-from polarcheck.program.machines.part import Part
+from polarcheck.parts.part_comparison import Comparison, Fit
+from polarcheck.program.machines.part_keys import Part
 
 
 class Deviations(Columns, frozen=True):

@@ -11,7 +11,7 @@ from polarcheck.foundation.errors import JobError
 from polarcheck.foundation.finding import MadeShape
 from polarcheck.foundation.states import MM_PER_INCH
 from polarcheck.program.machines.job import from_table
-from polarcheck.program.machines.part import SIDES
+from polarcheck.program.machines.part_keys import SIDES
 
 #: Names of regular polygons by their number of sides.
 _NAMES = {count: name for name, count in SIDES.items()}

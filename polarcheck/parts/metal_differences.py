@@ -18,7 +18,7 @@ import shapely  # type: ignore[import-untyped]
 from polarcheck.columns.metal.milled import Cuts
 from polarcheck.foundation.arrays import Floats, Mask
 from polarcheck.foundation.time_limit import keep_time
-from polarcheck.geometry.comparison.metal import (
+from polarcheck.geometry.comparison.metal_left import (
     NOTHING,
     Extreme,
     beside,
@@ -36,7 +36,7 @@ from polarcheck.geometry.comparison.metal import (
 from polarcheck.geometry.polygons import areas
 from polarcheck.geometry.polygons.faces import coordinates
 from polarcheck.geometry.segments import segments
-from polarcheck.parts.comparison import SAME_Z
+from polarcheck.parts.part_comparison import SAME_Z
 
 #: What the chords of rounds may add to a difference, beside the tolerance [mm].
 _CHORDS = 0.004

@@ -10,8 +10,8 @@ import numpy as np
 
 from polarcheck.columns.metal.milled import Milled
 from polarcheck.foundation.time_limit import keep_time
-from polarcheck.parts.comparison import SAME_Z, Comparison, Fit
 from polarcheck.parts.nominal_parts import NominalParts, is_closed
+from polarcheck.parts.part_comparison import SAME_Z, Comparison, Fit
 
 if TYPE_CHECKING:
     from polarcheck.geometry.comparison.deviation import Made
@@ -46,7 +46,7 @@ def _outlines(result: Comparison, milled: Milled) -> Iterator[Made]:
     """The closed outlines of what the largest cutter clears at the depth of a part, the longest first."""
     from polarcheck.geometry.comparison.deviation import made_of
     from polarcheck.geometry.comparison.measured_path import way_of_outline
-    from polarcheck.geometry.comparison.metal import polygon_of
+    from polarcheck.geometry.comparison.metal_left import polygon_of
 
     cuts = milled.cuts
     chosen = (cuts.frame == milled.frame_of_section[result.section]) & (cuts.low <= result.z + SAME_Z)

@@ -12,10 +12,10 @@ from polarcheck.columns.metal.bar import Bar
 from polarcheck.columns.metal.milled import Milled
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Columns, Mask, Points, cached_property, is_among
-from polarcheck.parts.comparison import SAME_Z
 from polarcheck.parts.contour_comparisons import ContourComparisons
 from polarcheck.parts.nominal_parts import BEYOND, NominalParts, is_closed
-from polarcheck.program.machines.part import Part
+from polarcheck.parts.part_comparison import SAME_Z
+from polarcheck.program.machines.part_keys import Part
 
 if TYPE_CHECKING:
     from polarcheck.parts.metal_differences import Feature
@@ -109,7 +109,7 @@ class NominalFeatures(Columns, frozen=True):
         """The closed curves of a drawing, each with the comparison of its contour."""
         from polarcheck.geometry.comparison.deviation import turned_radius
         from polarcheck.geometry.comparison.measured_path import way_of_curves
-        from polarcheck.geometry.comparison.metal import is_circle, is_inside, polygon_of
+        from polarcheck.geometry.comparison.metal_left import is_circle, is_inside, polygon_of
 
         row = int(self.trace.mode.sections.enter[section])
         curves = self.nominal_parts.curves(number, self.nominal_parts.unit(number, row))
@@ -144,7 +144,7 @@ class NominalFeatures(Columns, frozen=True):
         self, number: int, curves: list[Points], place: int, section: int, own: Mask
     ) -> list[tuple[Feature, int]]:
         """Curves that end in the air: on one side of each there is the part, on the other what is milled."""
-        from polarcheck.geometry.comparison.metal import sides_of
+        from polarcheck.geometry.comparison.metal_left import sides_of
 
         far = _ENDLESS * max(self._reach, *(float(np.abs(curve).max()) for curve in curves))
         nearest = max(float(np.abs(curve).min()) for curve in curves)
@@ -173,7 +173,7 @@ class NominalFeatures(Columns, frozen=True):
 
         depth: by the number of a ring, how many others enclose it.
         """
-        from polarcheck.geometry.comparison.metal import is_inside
+        from polarcheck.geometry.comparison.metal_left import is_inside
 
         result: list[tuple[Feature, int]] = []
         for feature, place in sorted(rings, key=lambda ring: depth[ring[0].curve]):
@@ -245,7 +245,7 @@ class NominalFeatures(Columns, frozen=True):
 
     def _area(self, part: Part, curves: list[Points], unit: float, turned: float) -> Any:
         """The area of a shape, turned about its center [rad]; open shapes reach far beyond all cuts."""
-        from polarcheck.geometry.comparison.metal import disc, polygon_of, within_lines
+        from polarcheck.geometry.comparison.metal_left import disc, polygon_of, within_lines
 
         center = complex(*part.center) * unit
         curves = [center + (curve - center) * np.exp(1j * turned) for curve in curves]

@@ -8,9 +8,9 @@ import numpy as np
 
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Columns, Mask, Points, cached_property, is_among
-from polarcheck.parts.comparison import SAME_Z, TOLERANCE
+from polarcheck.parts.part_comparison import SAME_Z, TOLERANCE
 from polarcheck.program.machines.job import Job
-from polarcheck.program.machines.part import DrawnPart, Part
+from polarcheck.program.machines.part_keys import DrawnPart, Part
 
 #: How much farther than what is asked for the metal reaches where the bar is not known, as a share.
 BEYOND = 1.02
@@ -69,7 +69,7 @@ class NominalParts(Columns, frozen=True):
         part = self.job.part[number]
         if isinstance(part, DrawnPart):
             return [np.array(curve, complex) * complex(unit) for curve in part.curves]
-        from polarcheck.parts.nominal import curves_of
+        from polarcheck.parts.nominal_curves import curves_of
 
         return curves_of(part, unit)
 

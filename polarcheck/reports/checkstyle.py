@@ -10,7 +10,7 @@ from msgspec import UNSET
 
 from polarcheck.foundation.finding import UNREADABLE
 from polarcheck.reports.ci import xml
-from polarcheck.reports.ci.paths import from_root
+from polarcheck.reports.ci.repository_paths import from_root
 
 if TYPE_CHECKING:
     from polarcheck.foundation.finding import FileReport, Report

@@ -11,7 +11,7 @@ from msgspec import UNSET
 
 from polarcheck.foundation.finding import UNREADABLE
 from polarcheck.program.reading.excerpt import visible
-from polarcheck.reports.ci.paths import from_root
+from polarcheck.reports.ci.repository_paths import from_root
 from polarcheck.reports.json import encoded
 
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import msgspec
 
-from polarcheck.program.reading.names import with_characters
+from polarcheck.program.reading.file_names import with_characters
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -12,7 +12,7 @@ from msgspec import UNSET
 from polarcheck.checking.check import FAILING, reaches
 from polarcheck.foundation.finding import FAIL, UNREADABLE, Undecided
 from polarcheck.reports.ci import xml
-from polarcheck.reports.ci.paths import from_root
+from polarcheck.reports.ci.repository_paths import from_root
 from polarcheck.reports.concise import line
 from polarcheck.reports.pages.resting import resting
 

@@ -11,7 +11,7 @@ from polarcheck.foundation.finding import ALLOW, BASELINE, UNREADABLE, Silenced
 from polarcheck.program.reading.excerpt import visible
 from polarcheck.reports import settings_lines
 from polarcheck.reports.ci import rule_help
-from polarcheck.reports.ci.paths import uri
+from polarcheck.reports.ci.repository_paths import uri
 from polarcheck.reports.json import encoded
 
 if TYPE_CHECKING:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import msgspec
 
 from polarcheck.foundation.finding import VERDICTS
-from polarcheck.reports.pages.schema import Schema, headed, without_nan
+from polarcheck.reports.pages.json_schema import Schema, headed, without_nan
 from polarcheck.rewrite.certify.manifest import DECIDED, Manifest
 from polarcheck.rewrite.certify.results import SCHEMA, STATES, Certificate
 
@@ -26,7 +26,7 @@ def _feeds() -> Schema:
 
 
 def _comparison() -> Schema:
-    from polarcheck.rewrite.compare.report import CHANGES, VERDICTS, ComparisonReport
+    from polarcheck.rewrite.compare.comparison_report import CHANGES, VERDICTS, ComparisonReport
 
     content: Schema = msgspec.json.schema(ComparisonReport)
     content["$defs"]["ComparisonReport"]["properties"]["schema"] = {"const": 1}
@@ -36,7 +36,7 @@ def _comparison() -> Schema:
 
 
 def _rewriting() -> Schema:
-    from polarcheck.rewrite.writing.report import COMMANDS, RewritingReport
+    from polarcheck.rewrite.writing.rewriting_report import COMMANDS, RewritingReport
 
     content: Schema = msgspec.json.schema(RewritingReport)
     properties = content["$defs"]["RewritingReport"]["properties"]

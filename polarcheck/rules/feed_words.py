@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from polarcheck.columns.feed.feedrate import Feedrate
-from polarcheck.columns.modes.blocks import ExecutedBlocks
+from polarcheck.columns.modes.executed_blocks import ExecutedBlocks
 from polarcheck.columns.path.axes import PlaneAxes
 from polarcheck.columns.path.lengths import Lengths
 from polarcheck.columns.trace import Trace

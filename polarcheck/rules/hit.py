@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any, TypeAlias
 
 from polarcheck.columns.trace import Trace
-from polarcheck.program.machines.codes import code_numbers, spelled
+from polarcheck.program.machines.code_tables import code_numbers, spelled
 from polarcheck.rules.places import Place
 from polarcheck.rules.quantity import Quantity, in_row
 from polarcheck.rules.wording import offsets, written

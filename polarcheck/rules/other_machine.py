@@ -13,7 +13,7 @@ from polarcheck.program.machines import profiles
 from polarcheck.program.machines.machine import Machine
 from polarcheck.program.machines.profiles import Profile
 from polarcheck.program.reading import source
-from polarcheck.program.reading.channels import channel_like
+from polarcheck.program.reading.channel_texts import channel_like
 from polarcheck.program.reading.translation import translated
 from polarcheck.program.reading.words import read_words
 from polarcheck.rules.remedies import is_chosen

@@ -12,7 +12,7 @@ from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Mask, Rows, stretch
 from polarcheck.program.execution.run import Run
 from polarcheck.program.machines.code_lists import numbers
-from polarcheck.program.machines.codes import code_numbers
+from polarcheck.program.machines.code_tables import code_numbers
 from polarcheck.program.reading.excerpt import shortened
 from polarcheck.program.reading.words import Text
 from polarcheck.rules.tables import SPANS, Tables

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from polarcheck.columns.contour.slots import Slots
     from polarcheck.columns.contour.tangency import Tangency
     from polarcheck.columns.feed.feedrate import Feedrate
-    from polarcheck.columns.modes.blocks import ExecutedBlocks
+    from polarcheck.columns.modes.executed_blocks import ExecutedBlocks
     from polarcheck.columns.modes.modal import ModalStates
     from polarcheck.columns.modes.mode import PolarMode
     from polarcheck.columns.modes.since import Since
@@ -53,7 +53,7 @@ class Maker:
 
 #: Each table by its name. Its parameters name the tables that it is made from.
 TABLES = {
-    "blocks": Maker("polarcheck.columns.modes.blocks:ExecutedBlocks"),
+    "blocks": Maker("polarcheck.columns.modes.executed_blocks:ExecutedBlocks"),
     "modal": Maker("polarcheck.columns.modes.modal:ModalStates"),
     "tools": Maker("polarcheck.columns.modes.tools:CalledTools"),
     "coordinates": Maker("polarcheck.columns.path.coordinates:Coordinates"),
@@ -81,7 +81,7 @@ TABLES = {
     "spindles": Maker("polarcheck.columns.modes.spindles:Spindles"),
     "ramps": Maker("polarcheck.columns.path.ramps:Ramps", SECTION),
     "overcuts": Maker("polarcheck.columns.contour.overcuts:Overcuts", SECTION),
-    "fitting": Maker("polarcheck.columns.contour.fitting:Fitting"),
+    "fitting": Maker("polarcheck.columns.contour.fitting_radius:Fitting"),
     "entry_angles": Maker("polarcheck.columns.modes.entry_angles:EntryAngles", SECTION),
     "misplaced_ramps": Maker("polarcheck.columns.contour.misplaced_ramps:MisplacedRamps", SECTION),
     "mirrored": Maker("polarcheck.columns.contour.mirrored:Mirrored", SECTION),
@@ -111,10 +111,10 @@ TABLES = {
     "passes": Maker("polarcheck.columns.contour.passes:Passes"),
     "same_circle": Maker("polarcheck.columns.contour.same_circle:SameCircle", ARC),
     "tangency": Maker("polarcheck.columns.contour.tangency:Tangency", ARC),
-    "part_comments": Maker("polarcheck.columns.metal.part_comments:PartComments", SECTION, COMMENT),
+    "part_comments": Maker("polarcheck.columns.metal.stated_parts:PartComments", SECTION, COMMENT),
     "travel": Maker("polarcheck.columns.path.travel:Travel"),
     "center": Maker("polarcheck.columns.path.center:Center", SECTION),
-    "feeds": Maker("polarcheck.columns.feed.feeds:Feeds", SECTION),
+    "feeds": Maker("polarcheck.columns.feed.programmed_feeds:Feeds", SECTION),
     "feed_ranges": Maker("polarcheck.columns.feed.feed_ranges:FeedRanges", SECTION),
     "unpointed": Maker("polarcheck.columns.words.unpointed:Unpointed"),
     "stock_comments": Maker("polarcheck.columns.words.stock_comments:StockComments"),

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from polarcheck.foundation.arrays import Points
-from polarcheck.view.moves import LENGTH
-from polarcheck.view.parts import Ring
+from polarcheck.view.drawn_moves import LENGTH
+from polarcheck.view.part_rings import Ring
 
 #: The room around all that is drawn, as a share of its size.
 _AROUND = 0.04

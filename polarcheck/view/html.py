@@ -12,9 +12,9 @@ if TYPE_CHECKING:
 def html(report: Report, background: Background) -> str:
     """Return one page for all files; it contains plotly if anything is drawn."""
     from polarcheck.reports.pages.unread import unread
-    from polarcheck.view.library import library
     from polarcheck.view.page import page
-    from polarcheck.view.pictured import picture
+    from polarcheck.view.page_data import picture
+    from polarcheck.view.plotly_script import library
 
     pictures = [picture(file, background) for file in report.files]
     drawn = library() if any(picture.sections for picture in pictures) else ""

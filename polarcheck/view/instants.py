@@ -7,7 +7,7 @@ import numpy as np
 from polarcheck.foundation.arrays import Floats, Mask, Points, Rows
 from polarcheck.foundation.states import Motion
 from polarcheck.geometry.plane import angle_between, arc_sweep, cleared, cross, dot, quiet
-from polarcheck.view.rates import Samples, Segments
+from polarcheck.view.rate_curves import Samples, Segments
 
 #: The turn of C, or of an arc about its own center, between two points [rad].
 _STEP = np.radians(4.0)

@@ -23,9 +23,9 @@ from polarcheck.geometry.polygons.faces import GRID
 from polarcheck.geometry.segments import segments
 from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.rules.quantity import in_row
-from polarcheck.view.moves import LENGTH
-from polarcheck.view.parts import Ring, polygons_of, rings
-from polarcheck.view.picture import Mark
+from polarcheck.view.drawn_moves import LENGTH
+from polarcheck.view.part_rings import Ring, polygons_of, rings
+from polarcheck.view.picture_data import Mark
 
 #: The most marks of a kind in a section; the deepest are chosen.
 MOST = 300

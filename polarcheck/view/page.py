@@ -19,7 +19,7 @@ import msgspec
 
 from polarcheck.foundation.finding import SEVERITIES
 from polarcheck.program.reading.excerpt import visible
-from polarcheck.view.picture import FindingPicture, Mark, Picture, SectionPicture
+from polarcheck.view.picture_data import FindingPicture, Mark, Picture, SectionPicture
 
 #: The scripts; each may use those before it.
 _SCRIPTS = (

@@ -11,7 +11,7 @@ from polarcheck.foundation.finding import UNREADABLE
 from polarcheck.program.reading.excerpt import visible
 from polarcheck.reports import SEVERITIES, counted
 from polarcheck.reports.text import verdict
-from polarcheck.view.library import FILE_NAME
+from polarcheck.view.plotly_script import FILE_NAME
 
 if TYPE_CHECKING:
     from polarcheck.foundation.finding import FileReport

@@ -8,7 +8,7 @@ from collections.abc import Collection, Iterator, Sequence
 import msgspec
 import numpy as np
 
-from polarcheck.checking.channels import first_runs
+from polarcheck.checking.channel_reports import first_runs
 from polarcheck.checking.polar_sections import polar_sections
 from polarcheck.columns.path.moves import Moves, programmed_moves
 from polarcheck.columns.path.tool_center import ToolCenter

@@ -19,10 +19,10 @@ from polarcheck.geometry.polygons.faces import GRID
 from polarcheck.geometry.polygons.standing_metal import turned
 from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.parts.made_depths import Depth
+from polarcheck.view.drawn_moves import LENGTH
 from polarcheck.view.extent import bar_rings
-from polarcheck.view.moves import LENGTH
-from polarcheck.view.parts import Ring, polygons_of, rings
-from polarcheck.view.picture import PartPicture
+from polarcheck.view.part_rings import Ring, polygons_of, rings
+from polarcheck.view.picture_data import PartPicture
 
 #: How far metal is shown beyond what is cleared, as a share of its extent.
 _AROUND = 0.1

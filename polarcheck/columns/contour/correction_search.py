@@ -13,9 +13,9 @@ from polarcheck.columns.contour.plane_loops import PlaneLoop
 from polarcheck.columns.trace import Trace
 from polarcheck.columns.words.slips import Slip, plain_number, slip_of
 from polarcheck.foundation.arrays import Floats, Points, cached_property
-from polarcheck.geometry.regularity.places import each_once, missing_places
+from polarcheck.geometry.regularity.symmetric_corners import each_once, missing_places
 from polarcheck.geometry.regularity.symmetry import Symmetry
-from polarcheck.program.machines.axes import INCREMENTS
+from polarcheck.program.machines.axis_table import INCREMENTS
 
 #: Least number of corners of a contour that repeats itself in a turn, and of one that is only its own mirror image.
 _CORNERS, _MIRRORED_CORNERS = 5, 6

@@ -13,7 +13,7 @@ from polarcheck.columns.path.tool_center import ToolCenter
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, Table, cached_property, different, repeated
 from polarcheck.foundation.states import Side
-from polarcheck.geometry.cutter_compensation.compensation import Phase
+from polarcheck.geometry.cutter_compensation.offset_path import Phase
 from polarcheck.geometry.tolerances import ADJUSTMENT, ROUNDING
 
 if TYPE_CHECKING:

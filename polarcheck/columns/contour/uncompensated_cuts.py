@@ -12,7 +12,7 @@ from polarcheck.columns.path.tool_center import ToolCenter
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Columns, Floats, Mask, Points, Rows, cached_property
 from polarcheck.foundation.states import Motion
-from polarcheck.geometry.cutter_compensation.compensation import Phase
+from polarcheck.geometry.cutter_compensation.offset_path import Phase
 from polarcheck.geometry.overcuts.uncompensated_moves import Bare, flat_loops, may_reach
 from polarcheck.geometry.segments import Curves
 from polarcheck.geometry.tolerances import ADJUSTMENT, ROUNDING

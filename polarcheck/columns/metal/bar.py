@@ -17,7 +17,7 @@ from polarcheck.columns.words.stock_comments import StockComments
 from polarcheck.foundation.arrays import Columns, Floats, Mask, Rows, Table, cached_property, different, is_among
 from polarcheck.foundation.states import Motion
 from polarcheck.geometry.tolerances import ROUNDING
-from polarcheck.program.machines.axes import INCREMENTS
+from polarcheck.program.machines.axis_table import INCREMENTS
 
 #: Across corners of a hexagon, by its width across flats.
 _CORNERS = 2 / np.sqrt(3)

@@ -9,11 +9,11 @@ from numpy.typing import NDArray
 
 from polarcheck.columns.filling import fill_down, happened
 from polarcheck.columns.lookups import Lookups
-from polarcheck.columns.modes.blocks import ExecutedBlocks
+from polarcheck.columns.modes.executed_blocks import ExecutedBlocks
 from polarcheck.foundation.arrays import Mask, Rows, States, cached_property, computed, is_among, repeated
 from polarcheck.foundation.states import NO_MOVE, STATES, Distance, FeedMode, Motion, Side, Units
 from polarcheck.program.execution.run import Run
-from polarcheck.program.machines.codes import code, modal_tables
+from polarcheck.program.machines.code_tables import code, modal_tables
 from polarcheck.program.machines.job import Job
 from polarcheck.program.machines.machine import Machine
 

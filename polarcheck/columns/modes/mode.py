@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from polarcheck.columns.filling import before, fill_down, happened
-from polarcheck.columns.modes.blocks import ExecutedBlocks
+from polarcheck.columns.modes.executed_blocks import ExecutedBlocks
 from polarcheck.columns.modes.modal import ModalStates
 from polarcheck.columns.modes.sections import Marks, Sections, find_sections, section_column
 from polarcheck.columns.modes.tools import CalledTools
@@ -13,7 +13,7 @@ from polarcheck.columns.path.axes import PlaneAxes
 from polarcheck.foundation.arrays import Columns, Mask, Rows, cached_property, is_among
 from polarcheck.foundation.states import Motion
 from polarcheck.program.execution.run import Run
-from polarcheck.program.machines.codes import code_numbers, code_set
+from polarcheck.program.machines.code_tables import code_numbers, code_set
 from polarcheck.program.machines.machine import Machine
 from polarcheck.program.reading.words import NumberFault
 

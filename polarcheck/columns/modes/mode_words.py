@@ -8,7 +8,7 @@ from polarcheck.columns.filling import before
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Columns, Mask, cached_property
 from polarcheck.program.machines.code_lists import is_code, numbers
-from polarcheck.program.machines.codes import NO_CODE, code_set
+from polarcheck.program.machines.code_tables import NO_CODE, code_set
 from polarcheck.program.reading.words import NumberFault
 
 

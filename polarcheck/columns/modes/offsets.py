@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from polarcheck.columns.modes.blocks import ExecutedBlocks
+from polarcheck.columns.modes.executed_blocks import ExecutedBlocks
 from polarcheck.columns.modes.modal import ModalStates
 from polarcheck.columns.modes.mode import PolarMode
 from polarcheck.columns.modes.offset_settings import (
@@ -28,7 +28,7 @@ from polarcheck.foundation.arrays import Columns, Floats, Mask, Rows, cached_pro
 from polarcheck.program.execution.run import NO_VARIABLE, Run
 from polarcheck.program.machines.job import Job
 from polarcheck.program.machines.machine import Machine
-from polarcheck.program.machines.offsets import place_in
+from polarcheck.program.machines.offset_calls import place_in
 from polarcheck.program.reading.words import Text
 
 #: R of no cutter: it is a length, which mills give in the same words [mm].

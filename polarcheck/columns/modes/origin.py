@@ -12,7 +12,7 @@ from polarcheck.columns.modes.offset_settings import Settings, X, in_order, of_l
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Columns, Floats, Mask, Rows, cached_property, repeated
 from polarcheck.program.machines.code_lists import numbers
-from polarcheck.program.machines.offsets import steps_above
+from polarcheck.program.machines.offset_calls import steps_above
 from polarcheck.program.machines.own_language import shown
 
 #: Numbers of further work offsets begin here: G54.1 P1 is 1001.

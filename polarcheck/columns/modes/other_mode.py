@@ -13,9 +13,9 @@ from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Columns, Mask, Rows, cached_property, is_among
 from polarcheck.foundation.states import Motion
 from polarcheck.program.machines import profiles
-from polarcheck.program.machines.axes import AXES
+from polarcheck.program.machines.axis_table import AXES
 from polarcheck.program.machines.code_lists import is_code
-from polarcheck.program.machines.codes import CODE_LIMIT, code, code_numbers, code_set
+from polarcheck.program.machines.code_tables import CODE_LIMIT, code, code_numbers, code_set
 from polarcheck.program.machines.profiles import Profile
 from polarcheck.program.reading.translation import spans
 from polarcheck.program.reading.words import NumberFault, Words

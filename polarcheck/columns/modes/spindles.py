@@ -9,7 +9,7 @@ from polarcheck.columns.filling import before, happened
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Mask, Rows, cached_property
 from polarcheck.geometry.tolerances import ROUNDING
-from polarcheck.program.machines.codes import NO_CODE
+from polarcheck.program.machines.code_tables import NO_CODE
 from polarcheck.program.machines.m_codes import OF_EVERY_LATHE
 
 

@@ -9,8 +9,8 @@ import numpy as np
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Columns, Mask, cached_property, is_among
 from polarcheck.foundation.states import Motion
-from polarcheck.program.machines.axes import AXES
-from polarcheck.program.machines.codes import code, code_set
+from polarcheck.program.machines.axis_table import AXES
+from polarcheck.program.machines.code_tables import code, code_set
 
 _AT_FEED = (Motion.LINE, Motion.CW, Motion.CCW)
 #: Characters of a code such as G121, of which the builder's other one is the number below.

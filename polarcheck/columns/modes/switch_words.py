@@ -10,7 +10,7 @@ from polarcheck.columns.path.infeed import CUT, Infeed
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Columns, Floats, Mask, cached_property, is_among
 from polarcheck.foundation.states import Distance
-from polarcheck.program.machines.axes import INCREMENTS, numbers_of
+from polarcheck.program.machines.axis_table import INCREMENTS, numbers_of
 from polarcheck.program.reading.words import NumberFault
 
 #: The words that name axes, each with the kind of its axis.

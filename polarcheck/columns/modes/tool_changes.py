@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from polarcheck.columns.filling import fill_down
-from polarcheck.columns.modes.blocks import ExecutedBlocks
+from polarcheck.columns.modes.executed_blocks import ExecutedBlocks
 from polarcheck.foundation.arrays import Mask, Rows
 
 #: A T of so many digits before the point is a tool alone: T05.01, T012. A longer one has its offset: T0505.

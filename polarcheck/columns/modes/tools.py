@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from polarcheck.columns.filling import before, fill_down, happened
-from polarcheck.columns.modes.blocks import ExecutedBlocks
+from polarcheck.columns.modes.executed_blocks import ExecutedBlocks
 from polarcheck.columns.modes.tool_changes import OFFSET_COUNT, called_tools
 from polarcheck.foundation.arrays import Columns, Mask, Rows, cached_property
 from polarcheck.program.execution.run import Run

@@ -9,7 +9,7 @@ from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Columns, Mask, Rows, cached_property
 from polarcheck.foundation.states import Motion
 from polarcheck.geometry.plane import angle_between
-from polarcheck.program.machines.codes import code_set
+from polarcheck.program.machines.code_tables import code_set
 
 #: Lists of G codes that may stand in a block of a contour and give R, I and J no meaning of their own.
 _PLAIN = (

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from polarcheck.columns.filling import fill_down, happened
-from polarcheck.columns.modes.blocks import ExecutedBlocks
+from polarcheck.columns.modes.executed_blocks import ExecutedBlocks
 from polarcheck.columns.modes.modal import ModalStates
 from polarcheck.columns.path.coordinates import Coordinates
 from polarcheck.foundation.arrays import (
@@ -33,10 +33,10 @@ from polarcheck.foundation.arrays import (
 )
 from polarcheck.foundation.states import Motion
 from polarcheck.program.execution.run import Run
-from polarcheck.program.machines.axes import AXES, INCREMENTS, axis_of, numbers_of
+from polarcheck.program.machines.axis_table import AXES, INCREMENTS, axis_of, numbers_of
 from polarcheck.program.machines.machine import Machine
 from polarcheck.program.machines.polar_keys import LinearAddress
-from polarcheck.program.machines.values import MOST_AXES
+from polarcheck.program.machines.value_checks import MOST_AXES
 
 _X = ord("X")
 _UNKNOWN = 0

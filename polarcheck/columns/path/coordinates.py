@@ -6,7 +6,7 @@ import numpy as np
 
 from polarcheck.columns.filling import fill_down
 from polarcheck.columns.lookups import Lookups
-from polarcheck.columns.modes.blocks import ExecutedBlocks
+from polarcheck.columns.modes.executed_blocks import ExecutedBlocks
 from polarcheck.columns.modes.modal import ModalStates
 from polarcheck.foundation.arrays import Floats, Mask, Rows, cached_property, is_among
 from polarcheck.program.execution.run import Run

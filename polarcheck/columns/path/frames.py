@@ -13,7 +13,7 @@ import msgspec
 import numpy as np
 
 from polarcheck.columns.filling import fill_down, positions
-from polarcheck.columns.modes.blocks import ExecutedBlocks
+from polarcheck.columns.modes.executed_blocks import ExecutedBlocks
 from polarcheck.columns.modes.modal import ModalStates
 from polarcheck.columns.modes.mode import PolarMode
 from polarcheck.columns.path.axes import PlaneAxes

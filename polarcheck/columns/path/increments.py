@@ -10,7 +10,7 @@ from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Columns, Floats, Mask, Points, Rows, cached_property
 from polarcheck.foundation.states import Motion
 from polarcheck.geometry.plane import arc_sweep
-from polarcheck.program.machines.axes import INCREMENTS
+from polarcheck.program.machines.axis_table import INCREMENTS
 
 #: Share of the moves of a contour that are increments, and the least number of moves.
 _MOSTLY, _LEAST_MOVES = 0.75, 4

@@ -29,7 +29,7 @@ from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Columns, Floats, Mask, Points, Rows, States, cached_property, repeated
 from polarcheck.foundation.states import Motion, Side
 from polarcheck.geometry import enclosed, polar
-from polarcheck.geometry.cutter_compensation.compensation import ToolPath
+from polarcheck.geometry.cutter_compensation.offset_path import ToolPath
 
 #: Points of one contour nearer than this are one [mm]: the rounding of coordinates to 0.001 mm.
 CLOSED = 0.002

@@ -11,7 +11,7 @@ from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, States, Table, cached_property, is_among
 from polarcheck.foundation.states import ArcFeed, Motion
 from polarcheck.geometry import polar, rates
-from polarcheck.geometry.cutter_compensation import compensation
+from polarcheck.geometry.cutter_compensation import offset_path
 from polarcheck.geometry.tolerances import ZERO
 
 
@@ -104,7 +104,7 @@ class Moves(Table, frozen=True, dict=True):
     @cached_property
     def is_of_tool(self) -> Mask:
         """The tool center runs there: its path is known or, without G41 and G42, the programmed one."""
-        return np.asarray(self.known | (self.phase == compensation.Phase.CANCELLED))
+        return np.asarray(self.known | (self.phase == offset_path.Phase.CANCELLED))
 
     @cached_property
     def time(self) -> Floats:
@@ -214,9 +214,9 @@ def _kind(trace: Trace, row: Rows) -> States:
     return np.where(trace.path.is_arc[row] & np.isnan(trace.path.center[row]), Motion.LINE, kind).astype(np.int16)
 
 
-def compensation_path(trace: Trace, row: Rows) -> compensation.Path:
+def compensation_path(trace: Trace, row: Rows) -> offset_path.Path:
     """Some rows as cutter compensation takes them."""
-    return compensation.Path(
+    return offset_path.Path(
         section=trace.mode.section[row],
         motion=_kind(trace, row),
         moves=trace.axes.moves_plane[row],
@@ -232,12 +232,12 @@ def compensation_path(trace: Trace, row: Rows) -> compensation.Path:
     )
 
 
-def tool_center_path(trace: Trace, path: compensation.Path) -> compensation.ToolPath:
+def tool_center_path(trace: Trace, path: offset_path.Path) -> offset_path.ToolPath:
     """The path of the tool center as this machine compensates."""
     settings = trace.machine.compensation
-    return compensation.tool_center_path(
+    return offset_path.tool_center_path(
         path,
-        compensation.Method(
+        offset_path.Method(
             start_up=settings.start_up,
             start_up_moving=settings.start_up_with_move,
             read_ahead=settings.read_ahead,
@@ -249,7 +249,7 @@ def tool_center_path(trace: Trace, path: compensation.Path) -> compensation.Tool
     )
 
 
-def of_tool(trace: Trace, tool: compensation.ToolPath, row: Rows) -> Moves:
+def of_tool(trace: Trace, tool: offset_path.ToolPath, row: Rows) -> Moves:
     """The moves of a tool center path; row: the rows of the trace that it was given."""
     at = row[tool.row]
     length = polar.length(tool.start, tool.end, tool.center, tool.kind)
@@ -272,7 +272,7 @@ def of_tool(trace: Trace, tool: compensation.ToolPath, row: Rows) -> Moves:
     )
 
 
-def _arc_share(trace: Trace, tool: compensation.ToolPath, row: Rows) -> Floats:
+def _arc_share(trace: Trace, tool: offset_path.ToolPath, row: Rows) -> Floats:
     """Share of F with which the tool center runs along arcs where F is that of the contour: R of its arc by that."""
     where = trace.modal.state("arc_feed")[row]
     share = np.ones(len(row))

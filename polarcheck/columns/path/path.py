@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from polarcheck.columns.filling import before, fill_down, positions
-from polarcheck.columns.modes.blocks import ExecutedBlocks
+from polarcheck.columns.modes.executed_blocks import ExecutedBlocks
 from polarcheck.columns.modes.modal import ModalStates
 from polarcheck.columns.modes.mode import PolarMode
 from polarcheck.columns.modes.tools import CalledTools
@@ -36,7 +36,7 @@ from polarcheck.geometry import polar
 from polarcheck.geometry.plane import angle_between
 from polarcheck.geometry.tolerances import ZERO
 from polarcheck.program.execution.run import Run
-from polarcheck.program.machines.axes import INCREMENTS
+from polarcheck.program.machines.axis_table import INCREMENTS
 from polarcheck.program.machines.code_lists import numbers
 from polarcheck.program.machines.machine import Machine
 

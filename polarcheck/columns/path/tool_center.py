@@ -16,7 +16,7 @@ from polarcheck.columns.trace import Trace
 from polarcheck.columns.words.last_digit import half_of_last_digit
 from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, cached_property
 from polarcheck.foundation.states import Motion, Side
-from polarcheck.geometry.cutter_compensation.compensation import Path, ToolPath
+from polarcheck.geometry.cutter_compensation.offset_path import Path, ToolPath
 from polarcheck.geometry.rounding import kept_ends, may_turn_back
 from polarcheck.geometry.tolerances import SHARE
 

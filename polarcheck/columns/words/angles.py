@@ -8,7 +8,7 @@ import numpy as np
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Columns, Floats, Mask, Rows, cached_property, is_among, repeated
 from polarcheck.foundation.states import Motion
-from polarcheck.program.machines.codes import code_set
+from polarcheck.program.machines.code_tables import code_set
 
 #: So many moves one after another are a series.
 _LEAST_COUNT = 3

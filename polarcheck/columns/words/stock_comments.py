@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from polarcheck.columns.modes.blocks import ExecutedBlocks
+from polarcheck.columns.modes.executed_blocks import ExecutedBlocks
 from polarcheck.columns.path.lengths import Lengths
 from polarcheck.columns.words.bar_comments import WORDS, bar_in
 from polarcheck.columns.words.comment_lengths import comments_with

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from polarcheck.columns.modes.blocks import ExecutedBlocks
+from polarcheck.columns.modes.executed_blocks import ExecutedBlocks
 from polarcheck.columns.modes.tools import CalledTools
 from polarcheck.columns.words.tool_numbers import named_tool
 from polarcheck.foundation.arrays import Columns, Mask, Rows, cached_property

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from polarcheck.foundation.arrays import Mask, Rows, cached_property, is_among, repeated
 from polarcheck.program.execution.programs import block_text, find_programs
 from polarcheck.program.machines.code_lists import is_code
-from polarcheck.program.machines.codes import NO_CODE, code_numbers, code_set, modal_tables
+from polarcheck.program.machines.code_tables import NO_CODE, code_numbers, code_set, modal_tables
 from polarcheck.program.machines.machine import Machine
 from polarcheck.program.reading.source import OTHER
 from polarcheck.program.reading.surroundings import BLANKS

@@ -11,7 +11,7 @@ import pkgutil
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from polarcheck.editor.session import Server
+    from polarcheck.editor.server_session import Server
 
 
 def register(server: Server) -> None:

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 from lsprotocol import types
 
 if TYPE_CHECKING:
+    from polarcheck.editor.analysis import Judged
     from polarcheck.editor.buffers import Buffer
-    from polarcheck.editor.judged import Judged
-    from polarcheck.editor.session import Server
+    from polarcheck.editor.server_session import Server
 
 
 def register(server: Server) -> None:
@@ -32,7 +32,7 @@ def register(server: Server) -> None:
                 publish(uri)
 
     def checked(buffer: Buffer, judged: Judged) -> None:
-        from polarcheck.editor.broken_settings import broken
+        from polarcheck.editor.settings_fault import broken
 
         update(buffer.uri, broken(judged.error, judged.read) if judged.error else None)
 

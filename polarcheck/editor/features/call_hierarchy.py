@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from lsprotocol import types
 
 if TYPE_CHECKING:
-    from polarcheck.editor.session import Server
+    from polarcheck.editor.server_session import Server
     from polarcheck.editor.structure.document import Document
 
 
@@ -17,7 +17,7 @@ def register(server: Server) -> None:
     @server.feature(types.TEXT_DOCUMENT_PREPARE_CALL_HIERARCHY)
     async def prepare_call_hierarchy(params: types.CallHierarchyPrepareParams) -> list[types.CallHierarchyItem]:
         def find(document: Document) -> list[types.CallHierarchyItem]:
-            from polarcheck.editor.structure.call_hierarchy import prepare
+            from polarcheck.editor.structure.call_tree import prepare
 
             return prepare(document, params.position, server.documents.workspace(document))
 
@@ -28,7 +28,7 @@ def register(server: Server) -> None:
         params: types.CallHierarchyIncomingCallsParams,
     ) -> list[types.CallHierarchyIncomingCall]:
         def find(document: Document) -> list[types.CallHierarchyIncomingCall]:
-            from polarcheck.editor.structure.call_hierarchy import incoming
+            from polarcheck.editor.structure.call_tree import incoming
 
             return incoming(document, params.item.data, server.documents.workspace(document))
 
@@ -39,7 +39,7 @@ def register(server: Server) -> None:
         params: types.CallHierarchyOutgoingCallsParams,
     ) -> list[types.CallHierarchyOutgoingCall]:
         def find(document: Document) -> list[types.CallHierarchyOutgoingCall]:
-            from polarcheck.editor.structure.call_hierarchy import outgoing
+            from polarcheck.editor.structure.call_tree import outgoing
 
             return outgoing(document, params.item.data, server.documents.workspace(document))
 

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 from lsprotocol import types
 
 if TYPE_CHECKING:
-    from polarcheck.editor.judged import Judged
-    from polarcheck.editor.session import Server
+    from polarcheck.editor.analysis import Judged
+    from polarcheck.editor.server_session import Server
 
 
 def _quick_fixes(

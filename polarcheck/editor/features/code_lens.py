@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 from lsprotocol import types
 
 if TYPE_CHECKING:
+    from polarcheck.editor.analysis import Judged
     from polarcheck.editor.buffers import Buffer
-    from polarcheck.editor.judged import Judged
-    from polarcheck.editor.session import Server
+    from polarcheck.editor.server_session import Server
 
 
 def register(server: Server) -> None:
@@ -18,7 +18,7 @@ def register(server: Server) -> None:
     @server.feature(types.TEXT_DOCUMENT_CODE_LENS, types.CodeLensOptions())
     async def code_lens(params: types.CodeLensParams) -> list[types.CodeLens]:
         def find(judged: Judged) -> list[types.CodeLens]:
-            from polarcheck.editor.outline import code_lenses
+            from polarcheck.editor.section_lenses import code_lenses
 
             return code_lenses(judged)
 

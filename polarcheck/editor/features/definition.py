@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 from lsprotocol import types
 
 if TYPE_CHECKING:
-    from polarcheck.editor.judged import Judged
-    from polarcheck.editor.session import Server
+    from polarcheck.editor.analysis import Judged
+    from polarcheck.editor.server_session import Server
     from polarcheck.editor.structure.document import Document
 
 
@@ -18,12 +18,12 @@ def register(server: Server) -> None:
     @server.feature(types.TEXT_DOCUMENT_DEFINITION)
     async def definition(params: types.DefinitionParams) -> list[types.Location]:
         def find(judged: Judged) -> list[types.Location]:
-            from polarcheck.editor.definition import definition
+            from polarcheck.editor.go_to_definition import definition
 
             return definition(judged, params.text_document.uri, params.position)
 
         def find_assignments(document: Document) -> list[types.Location]:
-            from polarcheck.editor.structure.references import assignments
+            from polarcheck.editor.structure.reference_search import assignments
 
             # Variables stand in macro blocks alone; elsewhere the text need not be searched for them.
             if not any(listing.text.blocks.is_macro[block] for listing, block in document.at(params.position)):

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from lsprotocol import types
 
 if TYPE_CHECKING:
-    from polarcheck.editor.session import Server
+    from polarcheck.editor.server_session import Server
     from polarcheck.editor.structure.document import Document
 
 
@@ -17,7 +17,7 @@ def register(server: Server) -> None:
     @server.feature(types.TEXT_DOCUMENT_FORMATTING)
     async def formatting(params: types.DocumentFormattingParams) -> list[types.TextEdit]:
         def find(document: Document) -> list[types.TextEdit]:
-            from polarcheck.editor.structure.formatting import formatted
+            from polarcheck.editor.structure.spacing import formatted
 
             return formatted(document)
 
@@ -26,7 +26,7 @@ def register(server: Server) -> None:
     @server.feature(types.TEXT_DOCUMENT_RANGE_FORMATTING)
     async def range_formatting(params: types.DocumentRangeFormattingParams) -> list[types.TextEdit]:
         def find(document: Document) -> list[types.TextEdit]:
-            from polarcheck.editor.structure.formatting import formatted
+            from polarcheck.editor.structure.spacing import formatted
 
             return formatted(document, params.range)
 

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 from lsprotocol import types
 
 if TYPE_CHECKING:
-    from polarcheck.editor.judged import Judged
-    from polarcheck.editor.session import Server
+    from polarcheck.editor.analysis import Judged
+    from polarcheck.editor.server_session import Server
 
 
 def register(server: Server) -> None:
@@ -17,7 +17,7 @@ def register(server: Server) -> None:
     @server.feature(types.TEXT_DOCUMENT_HOVER)
     async def hover(params: types.HoverParams) -> types.Hover | None:
         def find(judged: Judged) -> types.Hover | None:
-            from polarcheck.editor.hover import hover
+            from polarcheck.editor.hover_text import hover
 
             of_text = server.client_capabilities.text_document
             shown = of_text.hover.content_format if of_text is not None and of_text.hover is not None else None

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 from lsprotocol import types
 
 if TYPE_CHECKING:
+    from polarcheck.editor.analysis import Judged
     from polarcheck.editor.buffers import Buffer
-    from polarcheck.editor.judged import Judged
-    from polarcheck.editor.session import Server
+    from polarcheck.editor.server_session import Server
 
 #: The section of the editor's settings, and the key in it.
 _SECTION, _KEY = "polarcheck", "inlayHints"

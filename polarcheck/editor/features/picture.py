@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from polarcheck.editor.analysis import Judged
     from polarcheck.editor.buffers import Buffer
-    from polarcheck.editor.judged import Judged
-    from polarcheck.editor.session import Server
+    from polarcheck.editor.server_session import Server
 
 #: Requests and a notification of our own.
 PICTURE, LIBRARY, VERDICT = "polarcheck/picture", "polarcheck/library", "polarcheck/verdict"
@@ -18,38 +18,38 @@ def register(server: Server) -> None:
 
     @server.feature(PICTURE)
     async def picture(params: Any) -> dict[str, str]:
-        from polarcheck.editor import pictured
+        from polarcheck.editor import picture_view
 
         uri, address, sources = (
-            pictured.text_of(params, "uri"),
-            pictured.text_of(params, "library", ""),
-            pictured.text_of(params, "sources", ""),
+            picture_view.text_of(params, "uri"),
+            picture_view.text_of(params, "library", ""),
+            picture_view.text_of(params, "sources", ""),
         )
         buffer = server.buffers.open.get(uri)
         if buffer is None:
-            raise pictured.RequestFailed("the program is not open in the editor")
+            raise picture_view.RequestFailed("the program is not open in the editor")
 
         def draw(judged: Judged) -> str:
-            return pictured.picture(
+            return picture_view.picture(
                 judged, server.folders_of(judged.path), lambda: buffer.judged is not judged, address, sources
             )
 
         html = await server.ask(uri, draw, None)
         if html is None:
-            raise pictured.Changed("the program has been closed")
+            raise picture_view.Changed("the program has been closed")
         return {"html": html}
 
     @server.feature(LIBRARY)
     def library(params: Any) -> dict[str, str]:
-        from polarcheck.editor import pictured
+        from polarcheck.editor import picture_view
 
-        return {"path": pictured.library()}
+        return {"path": picture_view.library()}
 
     def publish(buffer: Buffer, judged: Judged) -> None:
-        from polarcheck.editor import pictured
+        from polarcheck.editor import picture_view
 
-        extras = pictured.member(server.client_capabilities.experimental, "polarcheck")
-        if pictured.member(extras, "verdict") is True:
-            server.protocol.notify(VERDICT, pictured.verdict(judged, buffer.uri, buffer.version))
+        extras = picture_view.member(server.client_capabilities.experimental, "polarcheck")
+        if picture_view.member(extras, "verdict") is True:
+            server.protocol.notify(VERDICT, picture_view.verdict(judged, buffer.uri, buffer.version))
 
     server.published.append(publish)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from lsprotocol import types
 
 if TYPE_CHECKING:
-    from polarcheck.editor.session import Server
+    from polarcheck.editor.server_session import Server
     from polarcheck.editor.structure.document import Document
 
 
@@ -17,7 +17,7 @@ def register(server: Server) -> None:
     @server.feature(types.TEXT_DOCUMENT_REFERENCES)
     async def references(params: types.ReferenceParams) -> list[types.Location]:
         def find(document: Document) -> list[types.Location]:
-            from polarcheck.editor.structure.references import references
+            from polarcheck.editor.structure.reference_search import references
 
             workspace = server.documents.workspace(document)
             declared = params.context.include_declaration
@@ -28,7 +28,7 @@ def register(server: Server) -> None:
     @server.feature(types.TEXT_DOCUMENT_DOCUMENT_HIGHLIGHT)
     async def document_highlight(params: types.DocumentHighlightParams) -> list[types.DocumentHighlight]:
         def find(document: Document) -> list[types.DocumentHighlight]:
-            from polarcheck.editor.structure.references import highlights
+            from polarcheck.editor.structure.reference_search import highlights
 
             return highlights(document, params.position)
 

@@ -9,7 +9,7 @@ from lsprotocol import types
 from pygls.exceptions import JsonRpcException
 
 if TYPE_CHECKING:
-    from polarcheck.editor.session import Server
+    from polarcheck.editor.server_session import Server
     from polarcheck.editor.structure.document import Document
 
 #: RequestFailed of the protocol: the editor shows the message.
@@ -22,7 +22,7 @@ def register(server: Server) -> None:
     """Register the features."""
 
     async def ask(uri: str, function: Callable[[Document], Result | None]) -> Result | None:
-        from polarcheck.editor.structure.rename import RenameError
+        from polarcheck.editor.structure.renaming import RenameError
 
         none: Result | None = None
         try:
@@ -33,7 +33,7 @@ def register(server: Server) -> None:
     @server.feature(types.TEXT_DOCUMENT_PREPARE_RENAME)
     async def prepare_rename(params: types.PrepareRenameParams) -> types.PrepareRenamePlaceholder | None:
         def find(document: Document) -> types.PrepareRenamePlaceholder | None:
-            from polarcheck.editor.structure.rename import prepare
+            from polarcheck.editor.structure.renaming import prepare
 
             return prepare(document, params.position, server.documents.workspace(document))
 
@@ -44,7 +44,7 @@ def register(server: Server) -> None:
         from polarcheck.editor.workspace_edits import workspace_edit
 
         def find(document: Document) -> types.WorkspaceEdit:
-            from polarcheck.editor.structure.rename import rename
+            from polarcheck.editor.structure.renaming import rename
 
             edits = rename(document, params.position, params.new_name, server.documents.workspace(document))
             return workspace_edit(server, edits)

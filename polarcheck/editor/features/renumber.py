@@ -8,7 +8,7 @@ from lsprotocol import types
 from pygls.exceptions import JsonRpcException
 
 if TYPE_CHECKING:
-    from polarcheck.editor.session import Server
+    from polarcheck.editor.server_session import Server
     from polarcheck.editor.structure.document import Document
 
 #: RequestFailed of the protocol: the editor shows the message.
@@ -23,7 +23,7 @@ def register(server: Server) -> None:
         uri, position = params.text_document.uri, params.range.start
 
         def find(document: Document) -> tuple[str, str] | None:
-            from polarcheck.editor.structure.renumber import title
+            from polarcheck.editor.structure.renumbering import title
 
             return title(document, position)
 
@@ -40,11 +40,11 @@ def register(server: Server) -> None:
         return [action]
 
     async def edits(uri: str, position: types.Position) -> types.WorkspaceEdit | None:
-        from polarcheck.editor.structure.renumber import RenumberError
+        from polarcheck.editor.structure.renumbering import RenumberError
         from polarcheck.editor.workspace_edits import workspace_edit
 
         def find(document: Document) -> types.WorkspaceEdit | None:
-            from polarcheck.editor.structure.renumber import renumber
+            from polarcheck.editor.structure.renumbering import renumber
 
             return workspace_edit(server, renumber(document, position, server.documents.workspace(document)))
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from lsprotocol import types
 
 if TYPE_CHECKING:
-    from polarcheck.editor.session import Server
+    from polarcheck.editor.server_session import Server
     from polarcheck.editor.structure.document import Document
 
 #: The answers to which a difference can be asked for.
@@ -31,9 +31,9 @@ def register(server: Server) -> None:
         return str(count)
 
     def full(document: Document) -> list[int]:
-        from polarcheck.editor.structure import colors
+        from polarcheck.editor.structure import token_colors
 
-        return colors.full(document)
+        return token_colors.full(document)
 
     @server.feature(types.TEXT_DOCUMENT_SEMANTIC_TOKENS_FULL, LEGEND)
     async def semantic_tokens_full(params: types.SemanticTokensParams) -> types.SemanticTokens:
@@ -49,15 +49,15 @@ def register(server: Server) -> None:
         number = remember(data)
         if before is None:
             return types.SemanticTokens(data, number)
-        from polarcheck.editor.structure import colors
+        from polarcheck.editor.structure import token_colors
 
-        return types.SemanticTokensDelta(colors.difference(before, data), number)
+        return types.SemanticTokensDelta(token_colors.difference(before, data), number)
 
     @server.feature(types.TEXT_DOCUMENT_SEMANTIC_TOKENS_RANGE, LEGEND)
     async def semantic_tokens_range(params: types.SemanticTokensRangeParams) -> types.SemanticTokens:
         def find(document: Document) -> list[int]:
-            from polarcheck.editor.structure import colors
+            from polarcheck.editor.structure import token_colors
 
-            return colors.within(document, params.range)
+            return token_colors.within(document, params.range)
 
         return types.SemanticTokens(await server.documents.ask(params.text_document.uri, find, []))

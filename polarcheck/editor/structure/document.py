@@ -16,7 +16,7 @@ from polarcheck.foundation.arrays import Mask, cached_property
 from polarcheck.program.execution.listing import Listing
 from polarcheck.program.execution.programs import read_text
 from polarcheck.program.machines.machine import Machine
-from polarcheck.program.reading.channels import channels
+from polarcheck.program.reading.channel_texts import channels
 from polarcheck.program.reading.source import read_source
 from polarcheck.program.reading.words import Text
 

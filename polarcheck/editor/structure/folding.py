@@ -6,9 +6,9 @@ from collections.abc import Iterator
 
 from lsprotocol import types
 
-from polarcheck.editor.structure import stretches
+from polarcheck.editor.structure import block_ranges
+from polarcheck.editor.structure.block_ranges import Stretch
 from polarcheck.editor.structure.document import Document
-from polarcheck.editor.structure.stretches import Stretch
 from polarcheck.program.execution.listing import Listing
 
 #: The most ranges of a document, if the editor does not say.
@@ -33,11 +33,11 @@ def folding_ranges(document: Document, most: int | None = None) -> list[types.Fo
 def _stretches(listing: Listing) -> Iterator[tuple[Stretch, types.FoldingRangeKind | None]]:
     for program in listing.programs.programs:
         if program.first < program.end:
-            yield Stretch(program.first, stretches.last_written(listing, program)), types.FoldingRangeKind.Region
-            for group in (stretches.tools, stretches.polar_sections):
+            yield Stretch(program.first, block_ranges.last_written(listing, program)), types.FoldingRangeKind.Region
+            for group in (block_ranges.tools, block_ranges.polar_sections):
                 yield from ((one, types.FoldingRangeKind.Region) for one in group(listing, program))
-            yield from ((one, None) for one in stretches.loops(listing, program))
-    yield from ((one, types.FoldingRangeKind.Comment) for one in stretches.comments(listing))
+            yield from ((one, None) for one in block_ranges.loops(listing, program))
+    yield from ((one, types.FoldingRangeKind.Comment) for one in block_ranges.comments(listing))
 
 
 def _lines(document: Document, listing: Listing, stretch: Stretch) -> tuple[int, int]:

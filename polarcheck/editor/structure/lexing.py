@@ -8,9 +8,9 @@ from collections.abc import Iterable, Iterator
 from typing import Final, NamedTuple
 
 from polarcheck.program.execution.custom_macro import KEYWORD
+from polarcheck.program.execution.flow_keywords import KEYWORDS
 from polarcheck.program.execution.high_level import is_custom_macro
 from polarcheck.program.execution.high_level_tokens import GRAMMAR, tokens_of
-from polarcheck.program.execution.keywords import KEYWORDS
 from polarcheck.program.execution.listing import Listing
 from polarcheck.program.execution.macro_tokens import NAMES, NUMBER, Characters
 from polarcheck.program.execution.programs import block_text

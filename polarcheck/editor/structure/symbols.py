@@ -8,8 +8,8 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from lsprotocol import types
 
-from polarcheck.editor.outline import sections_by_line, summary
-from polarcheck.editor.structure import stretches
+from polarcheck.editor.section_lenses import sections_by_line, summary
+from polarcheck.editor.structure import block_ranges
 from polarcheck.editor.structure.document import Document, is_written
 from polarcheck.editor.structure.mention import Kind, Role
 from polarcheck.editor.structure.mentions import mentions_of
@@ -41,7 +41,7 @@ def _of_program(
     text = listing.text
     name = f"O{program.number:04d}" if program.number is not None else _name_of(program, document)
     channel = f"{text.source.channel}: " if text.source.channel else ""
-    last = stretches.last_written(listing, program)
+    last = block_ranges.last_written(listing, program)
     comment = _comment(listing, program.first) if program.has_head else ""
     kind = types.SymbolKind.Function
     symbol = _symbol(document, listing, program.first, last, channel + name, kind, comment)
@@ -72,7 +72,7 @@ def _symbol(
 
 
 def _tools(document: Document, listing: Listing, program: Program) -> Iterator[types.DocumentSymbol]:
-    for stretch in stretches.tools(listing, program):
+    for stretch in block_ranges.tools(listing, program):
         name = _without_comments(listing, stretch.first)
         comment = _comment(listing, stretch.first) or _comment_above(listing, stretch.first, program)
         yield _symbol(document, listing, *stretch, name, types.SymbolKind.Class, comment)
@@ -83,7 +83,7 @@ def _sections(
 ) -> Iterator[types.DocumentSymbol]:
     of_channel = [one for one in sections if (one.channel or "") == listing.text.source.channel]
     by_line = sections_by_line(of_channel)
-    for stretch in stretches.polar_sections(listing, program):
+    for stretch in block_ranges.polar_sections(listing, program):
         line = int(listing.text.blocks.line[stretch.first])
         detail = summary(*by_line[line]) if line in by_line else ""
         name = _without_comments(listing, stretch.first)

@@ -14,7 +14,7 @@ from typing import NamedTuple
 from polarcheck.editor.open_text import OpenText
 from polarcheck.editor.structure.document import Document
 from polarcheck.foundation import bounded
-from polarcheck.program.execution.library import Library, names_of
+from polarcheck.program.execution.called_programs import Library, names_of
 from polarcheck.program.execution.programs import ProgramName
 from polarcheck.program.machines.machine import Machine
 from polarcheck.program.reading.source import read_source

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from lsprotocol import types
 
-from polarcheck.editor.judged import Judged
+from polarcheck.editor.analysis import Judged
 from polarcheck.editor.structure.lexing import Token, tokens
 from polarcheck.program.execution.listing import Listing
 from polarcheck.program.reading.words import Spans, Text

@@ -14,7 +14,7 @@ from lsprotocol import types
 from polarcheck.checking.settings import Settings
 from polarcheck.editor.open_text import OpenText
 from polarcheck.editor.structure.document import Document, block_at
-from polarcheck.editor.words import codes, variables
+from polarcheck.editor.words import code_meanings, variables
 from polarcheck.editor.words.at_cursor import is_in
 from polarcheck.program.execution.listing import Listing
 from polarcheck.program.execution.programs import Program, block_text
@@ -144,7 +144,7 @@ def _before(document: Document, position: types.Position) -> str | None:
 def _codes(place: Place, typed: str) -> Iterator[Item]:
     """Yield the codes of the control; those that switch the polar mode, and those of the program, come first."""
     machine, letter = place.document.machine, typed[0].upper()
-    known = {code: text for code, text in codes.known_codes(machine).items() if code[0] == letter}
+    known = {code: text for code, text in code_meanings.known_codes(machine).items() if code[0] == letter}
     switches = [code for code in (*machine.polar.on, *machine.polar.off) if code in known]
     used = [code for code in _used(place.listing, letter) if code in known]
     explained = [code for code, text in known.items() if text]
@@ -298,7 +298,7 @@ def _words(place: Place, typed: str) -> Iterator[Item]:
     """Yield the words of the control's own language that stand for codes."""
     for word, meant in place.document.machine.control.native_words.items():
         if word.upper().startswith(typed.upper()):
-            detail = codes.known_codes(place.document.machine).get(meant, "") or f"read as {meant}"
+            detail = code_meanings.known_codes(place.document.machine).get(meant, "") or f"read as {meant}"
             yield Item(word, detail, types.CompletionItemKind.Keyword)
 
 

@@ -7,8 +7,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from polarcheck.columns.trace import Trace
-from polarcheck.editor.judged import Judged
-from polarcheck.editor.words import codes, in_force, variables
+from polarcheck.editor.analysis import Judged
+from polarcheck.editor.words import code_meanings, in_force, variables
 from polarcheck.editor.words.at_cursor import CursorWord
 from polarcheck.foundation.arrays import Rows
 from polarcheck.foundation.states import FeedMode, Units
@@ -29,7 +29,7 @@ def meaning_of(word: CursorWord, machine: Machine) -> str:
     if word.kind != "word" or word.letter in _AS_EVER:
         return ""
     for code in _codes_of(word):
-        for meaning in codes.meanings_of(code, machine):
+        for meaning in code_meanings.meanings_of(code, machine):
             text = _of_list(word.letter, code, meaning.key.rpartition(".")[2], machine)
             if text:
                 return text
@@ -94,7 +94,7 @@ def explained(word: CursorWord, judged: Judged, trace: Trace | None, row: int | 
     if word.letter in ("G", "M"):
         code = _code(word)
         if code:
-            known = codes.known_codes(machine).get(code)
+            known = code_meanings.known_codes(machine).get(code)
             written = "".join(word.text.source.excerpt(word.start, word.end).split()).upper()
             name = code if written.startswith(word.letter) else f"{written} ({code})"
             title = f"{name}: {known}" if known else name
@@ -114,16 +114,16 @@ def _of_code(code: str, judged: Judged, trace: Trace | None, row: int | None) ->
     """Yield sources and effects of a code."""
     assert judged.settings is not None
     machine = judged.settings.machine
-    found = codes.meanings_of(code, machine)
+    found = code_meanings.meanings_of(code, machine)
     if not found:
-        if codes.is_known(code, machine):
+        if code_meanings.is_known(code, machine):
             yield "meaning", "a code of this control; polarcheck follows nothing of it"
         elif code[0] == "G":
             yield "meaning", f"not among the codes of {machine.title}"
         else:
             yield "meaning", f"not in the profile of {machine.title}; [m_codes] of a machine file says what it does"
     for meaning in found[:2]:
-        source = codes.source_of(meaning.key, judged)
+        source = code_meanings.source_of(meaning.key, judged)
         yield "source", f"{source} ({meaning.key})" if source else meaning.key
     if code[0] != "G":
         return

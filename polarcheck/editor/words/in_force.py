@@ -8,7 +8,7 @@ import numpy as np
 
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.states import OF_CODE, STATES
-from polarcheck.program.machines.codes import code, modal_tables, spelled
+from polarcheck.program.machines.code_tables import code, modal_tables, spelled
 from polarcheck.program.machines.machine import Machine
 
 #: The modal groups in the order in which they are listed.

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 import numpy as np
 
 from polarcheck.columns.trace import Trace
-from polarcheck.editor.judged import Judged
+from polarcheck.editor.analysis import Judged
 from polarcheck.editor.words.at_cursor import CursorWord
 from polarcheck.program.execution.macro import VariableKind, Variables
 from polarcheck.program.execution.run import ValueSet

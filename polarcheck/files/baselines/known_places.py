@@ -10,8 +10,8 @@ from typing import NamedTuple
 
 from msgspec import UnsetType
 
-from polarcheck.files.baselines.alignment import aligned
 from polarcheck.files.baselines.baseline_file import Entry, Key, Place, Program
+from polarcheck.files.baselines.block_alignment import aligned
 from polarcheck.files.baselines.growth import blocks_of, growth, values_of
 from polarcheck.foundation.finding import FileReport, Finding, Outline
 from polarcheck.rules.rule import load_all

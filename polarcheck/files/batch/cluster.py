@@ -33,7 +33,7 @@ from polarcheck.files.batch.executors import Sent, packed
 from polarcheck.files.batch.tasks import Outcome, Task, forget, outcome, unreadable
 from polarcheck.foundation.errors import ClusterError, SourceError
 from polarcheck.foundation.version import __version__
-from polarcheck.program.execution import library
+from polarcheck.program.execution import called_programs
 from polarcheck.program.reading import files
 
 #: Limits of one submission: each takes some milliseconds on a cluster [files, bytes].
@@ -277,7 +277,7 @@ def pack(settings: Settings) -> bytes:
 
     Raises ClusterError where these are too large.
     """
-    folders = [library.contents(folder) for folder in settings.job.run.subprograms]
+    folders = [called_programs.contents(folder) for folder in settings.job.run.subprograms]
     size = sum(len(data) for folder in folders for data in folder.values())
     if size > _MOST_CALLED:
         named = ", ".join(files.shown(folder) for folder in settings.job.run.subprograms)
@@ -344,7 +344,7 @@ def _unpacked(content: bytes) -> tuple[Settings, Path | None]:
         folder.mkdir()
         for name, data in contents.items():
             (folder / name).write_bytes(data)
-        paths.append(library.MovedFolder(str(folder), settings.job.run.subprograms[number]))
+        paths.append(called_programs.MovedFolder(str(folder), settings.job.run.subprograms[number]))
     run = msgspec.structs.replace(settings.job.run, subprograms=paths)
     job = msgspec.structs.replace(settings.job, run=run)
     return msgspec.structs.replace(settings, job=job), made

@@ -172,9 +172,9 @@ def plan(
             if key[0] in read:
                 unread_files.append(_offset_table(tasks.pop(key).path))
     if skipped is not None and unread_files:
-        from polarcheck.files.batch import unread
+        from polarcheck.files.batch import unread_programs
 
-        skipped += unread.once(unread_files, {path for path, _ in tasks}, real)
+        skipped += unread_programs.once(unread_files, {path for path, _ in tasks}, real)
     return list(tasks.values())
 
 
@@ -212,7 +212,7 @@ def _walked(
     skipped: list[Skipped],
 ) -> list[str]:
     """Return the programs of a folder; take what is not read, and tell of what cannot be."""
-    from polarcheck.files.batch import unread
+    from polarcheck.files.batch import unread_programs
     from polarcheck.program.reading import walking
 
     failures: list[str] = []
@@ -221,7 +221,7 @@ def _walked(
     for failure in failures:
         tell(failure)
     if not found and not failures:
-        warn(f"{files.shown(folder)}: {unread.none_in_folder(passed)}")
+        warn(f"{files.shown(folder)}: {unread_programs.none_in_folder(passed)}")
     skipped += passed
     return found
 
@@ -372,7 +372,7 @@ def _check(task: Task, data: bytes) -> tuple[FileReport, Source, set[str], Basis
         for extra in settings.extras:
             report = extra(report, found)
         if settings.baseline is not None:
-            from polarcheck.checking.outline import with_outline
+            from polarcheck.checking.block_outline import with_outline
 
             report = with_outline(report, found)
         offsets = _offsets(found) if settings.job.tools else set()
@@ -435,10 +435,10 @@ def report(
         unreadable=verdicts[UNREADABLE],
     )
     if skipped:
-        from polarcheck.files.batch import unread
+        from polarcheck.files.batch import unread_programs
 
-        skipped = unread.never_called(skipped, called_files, files.RealPaths())
-        not_read, excluded = unread.by_ending(skipped), unread.excluded(skipped)
+        skipped = unread_programs.never_called(skipped, called_files, files.RealPaths())
+        not_read, excluded = unread_programs.by_ending(skipped), unread_programs.excluded(skipped)
         summary = msgspec.structs.replace(summary, not_read=not_read, excluded=excluded)
     return Report(
         schema=SCHEMA,

@@ -164,7 +164,7 @@ class _Library:
     """The folders of called programs of some settings; each program is looked for once."""
 
     def __init__(self, settings: Settings) -> None:
-        from polarcheck.program.execution.library import Library  # few files call others
+        from polarcheck.program.execution.called_programs import Library  # few files call others
 
         self._library = Library(settings.job.run.subprograms, settings.machine)
         self._known: dict[tuple[int | None, str | None], LookUp] = {}

@@ -16,8 +16,8 @@ from polarcheck.foundation import bounded, record
 from polarcheck.foundation.errors import JobError
 from polarcheck.foundation.record import Remembered
 from polarcheck.program.machines import toml_text
-from polarcheck.program.machines.fitting import MisfitError, fitted, shown
 from polarcheck.program.machines.job import FILE_NAME, PROJECT, Job
+from polarcheck.program.machines.value_types import MisfitError, fitted, shown
 from polarcheck.program.reading.files import RealPaths
 
 if TYPE_CHECKING:

@@ -17,10 +17,10 @@ from polarcheck.foundation.errors import JobError
 from polarcheck.foundation.record import Remembered, note
 from polarcheck.foundation.states import MM_PER_INCH
 from polarcheck.program.machines import profiles
-from polarcheck.program.machines.fitting import shown
 from polarcheck.program.machines.job import Job, Tool, from_table
 from polarcheck.program.machines.offset_keys import canonical
-from polarcheck.program.machines.part import LENGTHS, Part
+from polarcheck.program.machines.part_keys import LENGTHS, Part
+from polarcheck.program.machines.value_types import shown
 
 #: Keys that select files, and are no settings of a program.
 _OF_FILES = ("extend", "exclude", "programs", "files", "part", "root")
@@ -267,9 +267,9 @@ def _drawn(part: Part, layer: Layer) -> Part:
     """Return a part with its drawing, if it has one."""
     if part.drawing is None:
         return part
-    from polarcheck.program.machines import drawing
+    from polarcheck.program.machines import drawing_file
 
-    return drawing.part_of(Path(part.drawing), f"{layer.at('part.drawing')}: drawing: {part.drawing}", part)
+    return drawing_file.part_of(Path(part.drawing), f"{layer.at('part.drawing')}: drawing: {part.drawing}", part)
 
 
 def _leaves(table: Mapping[str, Any], *outer: str) -> Iterator[tuple[tuple[str, ...], Any]]:

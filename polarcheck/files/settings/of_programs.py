@@ -23,13 +23,13 @@ from polarcheck.foundation.record import Remembered, note, recorded
 from polarcheck.program.machines import profiles, toml_text
 from polarcheck.program.machines.job import Job, PunchedTool, Running, check_tools, check_work_offsets, with_tool
 from polarcheck.program.machines.machine import Machine
-from polarcheck.program.machines.part import Part
+from polarcheck.program.machines.part_keys import Part
 from polarcheck.program.reading.files import STANDARD_INPUT
 from polarcheck.rules.rule import Rule, load_all
 
 if TYPE_CHECKING:
     from polarcheck.files.settings.jobs_above import LeftBehind
-    from polarcheck.files.settings.keywords import Keywords
+    from polarcheck.files.settings.keyword_layers import Keywords
     from polarcheck.files.settings.walk_patterns import WalkPatterns
 
 
@@ -449,10 +449,10 @@ def _changed(job: Job, options: Options) -> Job:
 def _parts(parts: Sequence[Part], options: Options) -> list[Part]:
     """Return what programs should make: the drawings of the command line, else the parts of the job."""
     if options.drawings:
-        from polarcheck.program.machines import drawing
+        from polarcheck.program.machines import drawing_file
 
         asked = Part(drawing="", layers=list(options.drawing_layers))
-        parts = [drawing.part_of(path, str(path), asked) for path in options.drawings]
+        parts = [drawing_file.part_of(path, str(path), asked) for path in options.drawings]
     tolerance = options.tolerance
     return [
         part if tolerance is None or part.tolerance > 0 else msgspec.structs.replace(part, tolerance=tolerance)

@@ -12,7 +12,7 @@ from polarcheck.files.settings.of_programs import Applied
 from polarcheck.program.machines import profiles, toml_lines
 from polarcheck.program.machines.job import Job, PunchedTool, ReasonedRules
 from polarcheck.program.machines.parameters import Origin
-from polarcheck.program.machines.part import Part
+from polarcheck.program.machines.part_keys import Part
 
 
 class Value(NamedTuple):

@@ -9,7 +9,7 @@ from pathlib import Path
 from polarcheck.files.settings.job_files import JobFile
 from polarcheck.files.settings.job_layers import Layer
 from polarcheck.foundation.errors import UsageError
-from polarcheck.program.machines.fitting import shown
+from polarcheck.program.machines.value_types import shown
 from polarcheck.program.reading.globs import Globs, is_pattern
 from polarcheck.program.reading.walking import extensions
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from polarcheck.foundation.arrays import Floats, Mask, Points, Rows
-from polarcheck.geometry.shapes.rings import Ring
 from polarcheck.geometry.shapes.shape import SAME
+from polarcheck.geometry.shapes.side_rings import Ring
 
 #: Greatest distance of the circle of a round corner from the adjacent lines [mm].
 _TANGENT = 3 * SAME

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from polarcheck.geometry.outline import Outline
-from polarcheck.geometry.shapes.rings import Ring, rings
 from polarcheck.geometry.shapes.shape import Shape
 from polarcheck.geometry.shapes.shapes import contour_of, shapes_of_rings
+from polarcheck.geometry.shapes.side_rings import Ring, rings
 
 #: A path with material on both sides along this share of it makes a groove; at corners and crossings there is less.
 GROOVE = 0.5

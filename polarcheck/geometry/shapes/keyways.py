@@ -8,8 +8,8 @@ from typing import NamedTuple
 import numpy as np
 
 from polarcheck.foundation.arrays import Mask
-from polarcheck.geometry.shapes.rings import Ring
 from polarcheck.geometry.shapes.shape import SAME, SAME_DIRECTION, Shape, off_axis, turned_by
+from polarcheck.geometry.shapes.side_rings import Ring
 
 #: Greatest distance of a point from the line or the circle that it touches [mm].
 _TOUCHES = 3 * SAME

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from polarcheck.foundation.arrays import Floats, Points, Rows
-from polarcheck.geometry.shapes.rings import Ring
 from polarcheck.geometry.shapes.shape import SAME, SAME_DIRECTION, Shape, each_flat, off_axis, polygon_name, turned_by
+from polarcheck.geometry.shapes.side_rings import Ring
 
 #: Walls that are nearer to parallel than this are so [rad].
 _PARALLEL = 5 * SAME_DIRECTION

@@ -8,8 +8,8 @@ import numpy as np
 
 from polarcheck.foundation.arrays import Floats, Mask, Points
 from polarcheck.geometry.shapes.corners import Sides, is_at, without_chamfers
-from polarcheck.geometry.shapes.rings import Ring, extents_of
 from polarcheck.geometry.shapes.shape import SAME, SAME_DIRECTION, OddSide, Shape, off_axis, polygon_name, turned_by
+from polarcheck.geometry.shapes.side_rings import Ring, extents_of
 
 #: With more sides than this equal ones stand for a circle.
 _MOST_SIDES = 12

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from polarcheck.geometry.shapes.rings import Ring
 from polarcheck.geometry.shapes.shape import SAME, SAME_DIRECTION, Shape, each_flat, off_axis, polygon_name, turned_by
+from polarcheck.geometry.shapes.side_rings import Ring
 
 #: How far a line may be from the circle that it touches [mm].
 _TANGENT = 3 * SAME

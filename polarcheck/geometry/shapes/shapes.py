@@ -13,9 +13,9 @@ from polarcheck.geometry.shapes.corners import sides_of
 from polarcheck.geometry.shapes.keyways import keyed_round_of
 from polarcheck.geometry.shapes.open_ones import bound_one_piece, flats_of, keyway_of
 from polarcheck.geometry.shapes.polygons import cross_of, in_chords, polygon_of
-from polarcheck.geometry.shapes.rings import SHARP, Ring, directions, extents_of, rings
 from polarcheck.geometry.shapes.rounds import round_of, two_rounds_of
 from polarcheck.geometry.shapes.shape import Shape
+from polarcheck.geometry.shapes.side_rings import SHARP, Ring, directions, extents_of, rings
 
 
 def shapes_of(outline: Outline, gap: float = 0.0, bar: float = np.nan) -> list[Shape]:

@@ -8,8 +8,8 @@ from polarcheck.foundation.arrays import Floats, Points, Rows, Table
 from polarcheck.foundation.errors import TooHardError
 from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.plane import angle_between, cross, quiet
-from polarcheck.geometry.straight_axes.pieces import SHARES, distances
 from polarcheck.geometry.straight_axes.spans import Spans, places
+from polarcheck.geometry.straight_axes.spiral_pieces import SHARES, distances
 
 #: Turn of C in a piece along which X changes by more than _EVEN [rad].
 _TURN = np.radians(5.0)

@@ -21,7 +21,7 @@ from polarcheck.program.execution.expression_reader import read_expression
 from polarcheck.program.execution.kinds import FaultKind
 from polarcheck.program.execution.macro_tokens import GRAMMAR, NUMBER, Characters, MacroLexer
 from polarcheck.program.execution.statement import Kind, Number, Place, Statement, Unread, Word, whole
-from polarcheck.program.machines.axes import AXIS_LETTERS
+from polarcheck.program.machines.axis_table import AXIS_LETTERS
 from polarcheck.program.reading.excerpt import shortened
 
 _OUTPUTS: Final = ("BPRNT", "DPRNT", "POPEN", "PCLOS", "SETVN")

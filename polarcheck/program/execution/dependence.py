@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 
 from polarcheck.foundation.record import recorded
-from polarcheck.program.execution.library import Shelf, names_of
+from polarcheck.program.execution.called_programs import Shelf, names_of
 from polarcheck.program.execution.programs import ProgramName, needs_flow, read_text
 from polarcheck.program.machines.machine import Machine
-from polarcheck.program.reading.channels import channels
+from polarcheck.program.reading.channel_texts import channels
 from polarcheck.program.reading.source import Source
 
 

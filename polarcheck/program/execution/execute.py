@@ -10,16 +10,16 @@ import numpy as np
 
 from polarcheck.program.execution.arithmetic import UNKNOWN
 from polarcheck.program.execution.branches import execute_structure, is_true, is_unknown, leave_parts, repeat_part
+from polarcheck.program.execution.called_programs import Shelf
 from polarcheck.program.execution.calls import enter_program, execute_call, leave_program, modal_call
 from polarcheck.program.execution.expression import decide, evaluate
-from polarcheck.program.execution.library import Shelf
 from polarcheck.program.execution.listing import Listing
 from polarcheck.program.execution.macro import Variables, assign, step_of, word_value
 from polarcheck.program.execution.programs import Program, Search
 from polarcheck.program.execution.run import NO_VARIABLE, Assigned
 from polarcheck.program.execution.state import Restart, State, Stop
 from polarcheck.program.execution.statement import Kind, Statement, Word
-from polarcheck.program.machines.codes import code_numbers, code_set
+from polarcheck.program.machines.code_tables import code_numbers, code_set
 from polarcheck.program.machines.job import Running
 from polarcheck.program.machines.macro_keys import Macro
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from polarcheck.foundation.arrays import Mask, Rows, different, is_among, stretch
 from polarcheck.program.execution.run import Assigned, FlowFault, Remark, Run, ValueSet, is_code
 from polarcheck.program.execution.statement import Statement, Word
-from polarcheck.program.machines.axes import AXIS_LETTERS
+from polarcheck.program.machines.axis_table import AXIS_LETTERS
 from polarcheck.program.machines.machine import Machine
 from polarcheck.program.reading.words import Blocks, Text, Words
 

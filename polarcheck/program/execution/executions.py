@@ -10,9 +10,9 @@ import msgspec
 import numpy as np
 
 from polarcheck.foundation.arrays import Rows
+from polarcheck.program.execution.called_programs import Shelf
 from polarcheck.program.execution.execute import execute
 from polarcheck.program.execution.expression import Fault
-from polarcheck.program.execution.library import Shelf
 from polarcheck.program.execution.listing import Listing
 from polarcheck.program.execution.programs import Program, block_text
 from polarcheck.program.execution.run import Beside, FlowFault, Remark, Run

@@ -7,11 +7,11 @@ from collections.abc import Callable
 from typing import Final
 
 from polarcheck.program.execution.expression import Expression, constant
+from polarcheck.program.execution.flow_keywords import KEYWORDS, call_by_name, end_of
 from polarcheck.program.execution.high_level_tokens import Token
-from polarcheck.program.execution.keywords import KEYWORDS, call_by_name, end_of
-from polarcheck.program.execution.names import Names
 from polarcheck.program.execution.spoken_block import SpokenBlock
 from polarcheck.program.execution.statement import Number, Statement, Word, whole
+from polarcheck.program.execution.variable_names import Names
 from polarcheck.program.machines.machine import Machine
 
 #: What only custom macro writes: it may stand beside the statements of this language.

@@ -25,7 +25,7 @@ from polarcheck.program.execution.expression_reader import (
 )
 from polarcheck.program.execution.kinds import FaultKind
 from polarcheck.program.execution.macro_tokens import in_capitals
-from polarcheck.program.execution.names import FIRST_PARAMETER, Names
+from polarcheck.program.execution.variable_names import FIRST_PARAMETER, Names
 
 #: A name has two letters at least, so that X10Y5 is no name; any other letter is a token of its own.
 _TOKEN: Final = re.compile(

@@ -12,10 +12,10 @@ from polarcheck.program.execution.arithmetic import Arithmetic
 from polarcheck.program.execution.custom_macro import read_statement
 from polarcheck.program.execution.loops import Loops, find_loops
 from polarcheck.program.execution.macro import Variables, called_program
-from polarcheck.program.execution.names import Names
 from polarcheck.program.execution.programs import Program, ProgramName, block_text, find_programs, first_blocks, turns
 from polarcheck.program.execution.statement import Kind, Statement
 from polarcheck.program.execution.structures import Structures, find_structures
+from polarcheck.program.execution.variable_names import Names
 from polarcheck.program.machines.machine import Machine
 from polarcheck.program.reading.joining import joined
 from polarcheck.program.reading.words import Text

@@ -17,9 +17,9 @@ from msgspec.structs import replace
 from polarcheck.program.execution.arithmetic import UNKNOWN, Arithmetic, Value, round_to
 from polarcheck.program.execution.expression import DEFAULT, Fault, evaluate
 from polarcheck.program.execution.kinds import FaultKind
-from polarcheck.program.execution.names import FIRST_PARAMETER, FIRST_VARIABLE, PARAMETERS
 from polarcheck.program.execution.programs import ProgramName
 from polarcheck.program.execution.statement import Statement, Word
+from polarcheck.program.execution.variable_names import FIRST_PARAMETER, FIRST_VARIABLE, PARAMETERS
 from polarcheck.program.machines.macro_keys import Macro
 
 

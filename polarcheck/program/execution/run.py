@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from polarcheck.foundation.arrays import Mask, Rows, is_among, repeated
 from polarcheck.program.execution.kinds import FaultKind, RemarkKind
-from polarcheck.program.machines.codes import code_numbers, code_set
+from polarcheck.program.machines.code_tables import code_numbers, code_set
 from polarcheck.program.reading.words import Text, Words
 
 #: M2, M30, M99: the end of a program.

@@ -17,7 +17,7 @@ from polarcheck.program.execution.programs import block_text, needs_flow, read_t
 from polarcheck.program.execution.run import Beside, Run, straight
 from polarcheck.program.machines.job import Job
 from polarcheck.program.machines.machine import Machine
-from polarcheck.program.reading.channels import channels
+from polarcheck.program.reading.channel_texts import channels
 from polarcheck.program.reading.source import Source
 from polarcheck.program.reading.words import Text
 

@@ -12,8 +12,8 @@ from msgspec.structs import replace
 from polarcheck.foundation.states import Distance
 from polarcheck.program.execution.expression import Expression, constant
 from polarcheck.program.execution.high_level_tokens import Token, Tokens
-from polarcheck.program.execution.names import Names
 from polarcheck.program.execution.statement import Kind, Number, Statement, Unread, Word
+from polarcheck.program.execution.variable_names import Names
 from polarcheck.program.machines.machine import Machine
 from polarcheck.program.reading.excerpt import shortened
 

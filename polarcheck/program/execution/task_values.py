@@ -14,8 +14,8 @@ from typing import Final, TypeAlias
 import msgspec
 
 from polarcheck.program.execution.macro_tokens import in_capitals
-from polarcheck.program.execution.names import Names
 from polarcheck.program.execution.statement import Unread
+from polarcheck.program.execution.variable_names import Names
 from polarcheck.program.reading.excerpt import shortened
 
 #: Characters of custom macro, and the places in the block for which they stand.

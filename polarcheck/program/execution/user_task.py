@@ -15,9 +15,9 @@ from typing import Final
 from msgspec.structs import replace
 
 from polarcheck.program.execution.macro_tokens import Characters
-from polarcheck.program.execution.names import Names
 from polarcheck.program.execution.statement import Kind, Statement
 from polarcheck.program.execution.task_values import MOST, SYSTEM, UNKNOWN, Piece, Token, Values
+from polarcheck.program.execution.variable_names import Names
 from polarcheck.program.machines.machine import Machine
 
 #: Zero offset, zero shift and tool offset of Z: they move nothing on the polar plane.

@@ -15,7 +15,7 @@ from typing import Any, TypeGuard
 
 import msgspec
 
-from polarcheck.program.machines.axes import INCREMENTS, axis_of, is_rotary
+from polarcheck.program.machines.axis_table import INCREMENTS, axis_of, is_rotary
 from polarcheck.program.machines.parameters import Origin
 
 #: The rotary axis in the meanings of parameters, and the address of its incremental words (B-62754EN/01).

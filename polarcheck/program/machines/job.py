@@ -10,11 +10,11 @@ from typing import Annotated, Any, ClassVar, Literal
 import msgspec
 
 from polarcheck.foundation.errors import JobError, UsageError, suggestion
-from polarcheck.program.machines.fitting import EXPECTED, MOST, KeyedError, MisfitError, are_numbers, fitted
 from polarcheck.program.machines.machine import Machine
 from polarcheck.program.machines.offset_keys import OffsetKey, canonical, is_plain_number
-from polarcheck.program.machines.part import Part
-from polarcheck.program.machines.values import Variable
+from polarcheck.program.machines.part_keys import Part
+from polarcheck.program.machines.value_checks import Variable
+from polarcheck.program.machines.value_types import EXPECTED, MOST, KeyedError, MisfitError, are_numbers, fitted
 
 #: The file that a job stands in, and the one in which a table [tool.polarcheck] may hold it.
 FILE_NAME, PROJECT = "polarcheck.toml", "pyproject.toml"

@@ -2,7 +2,7 @@
 
 import msgspec
 
-from polarcheck.program.machines.values import CodeOrNone
+from polarcheck.program.machines.value_checks import CodeOrNone
 
 #: Lists of M codes that begin and end a state.
 SWITCHED = (

@@ -12,16 +12,15 @@ from typing import Annotated, Any, Literal, TypeAlias, TypeVar
 import msgspec
 
 from polarcheck.foundation.errors import RuleError
-from polarcheck.program.machines.axes import INCREMENTS, MOST_NAMED, address_number, axis_of, check_axes
+from polarcheck.program.machines.axis_table import INCREMENTS, MOST_NAMED, address_number, axis_of, check_axes
 from polarcheck.program.machines.code_lists import GCodes, GCodeSystem, expanded, is_code
 from polarcheck.program.machines.feed_keys import WithRotary
-from polarcheck.program.machines.fitting import MOST
 from polarcheck.program.machines.m_codes import MCodes, PowerOn
 from polarcheck.program.machines.macro_keys import Macro
-from polarcheck.program.machines.offsets import Offsets
+from polarcheck.program.machines.offset_calls import Offsets
 from polarcheck.program.machines.parameters import Meaning
 from polarcheck.program.machines.polar_keys import Polar
-from polarcheck.program.machines.values import (
+from polarcheck.program.machines.value_checks import (
     Address,
     AddressOrNone,
     AxisAddress,
@@ -38,6 +37,7 @@ from polarcheck.program.machines.values import (
     SwitchWord,
     ascend,
 )
+from polarcheck.program.machines.value_types import MOST
 
 
 class Writing(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 
 import msgspec
 
-from polarcheck.program.machines.values import (
+from polarcheck.program.machines.value_checks import (
     Address,
     AddressOrNone,
     Count,

@@ -11,7 +11,7 @@ from typing import Annotated, Final, TypeAlias
 
 import msgspec
 
-from polarcheck.program.machines.fitting import EXPECTED
+from polarcheck.program.machines.value_types import EXPECTED
 
 _NUMBER: Final = r"0*[1-9][0-9]{0,7}(?:/0*[1-9][0-9]{0,4})?"
 # What looks like a number, or like T8, is a slip, and no name.

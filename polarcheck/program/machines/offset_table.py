@@ -10,9 +10,9 @@ from typing import Any, Literal
 from polarcheck.foundation import bounded
 from polarcheck.foundation.errors import JobError
 from polarcheck.program.machines import offset_page
-from polarcheck.program.machines.fitting import MisfitError, fitted
 from polarcheck.program.machines.job import PunchedTool, Tool
 from polarcheck.program.machines.offset_page import Entry, NotUnderstoodError
+from polarcheck.program.machines.value_types import MisfitError, fitted
 
 #: A table of 10,000 offsets has half a megabyte [bytes].
 _LARGEST = 16_000_000

@@ -8,8 +8,8 @@ from typing import Any
 import msgspec
 
 from polarcheck.foundation.errors import MachineError, suggestion
-from polarcheck.program.machines.fitting import MisfitError, fitted
 from polarcheck.program.machines.renamed import refuse
+from polarcheck.program.machines.value_types import MisfitError, fitted
 
 
 class Origin(msgspec.Struct, frozen=True):

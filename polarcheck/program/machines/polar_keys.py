@@ -4,8 +4,8 @@ from typing import Literal, TypeAlias
 
 import msgspec
 
-from polarcheck.program.machines.axes import INCREMENTS
-from polarcheck.program.machines.values import (
+from polarcheck.program.machines.axis_table import INCREMENTS
+from polarcheck.program.machines.value_checks import (
     Address,
     AddressOrNone,
     AxisAddress,

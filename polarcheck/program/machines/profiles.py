@@ -15,10 +15,10 @@ from polarcheck.foundation import record
 from polarcheck.foundation.errors import MachineError, suggestion
 from polarcheck.program.machines import axis_names, parameters, toml_text
 from polarcheck.program.machines.code_lists import FRAME_LISTS
-from polarcheck.program.machines.fitting import MisfitError, fitted
 from polarcheck.program.machines.machine import Machine, OwnMachine
 from polarcheck.program.machines.parameters import Origin
 from polarcheck.program.machines.renamed import RENAMED, refuse
+from polarcheck.program.machines.value_types import MisfitError, fitted
 
 FOLDER = Path(__file__).parent
 DEFAULT = "fanuc"

@@ -7,7 +7,7 @@ import unicodedata
 
 import msgspec
 
-from polarcheck.program.reading.names import code, with_characters
+from polarcheck.program.reading.file_names import code, with_characters
 
 _TAB = 4
 _CUT = "..."

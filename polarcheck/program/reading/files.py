@@ -13,7 +13,7 @@ from pathlib import Path
 
 from polarcheck.foundation import bounded, record
 from polarcheck.foundation.errors import OutputError, SourceError
-from polarcheck.program.reading.names import spelled
+from polarcheck.program.reading.file_names import spelled
 
 STANDARD_INPUT = "-"
 #: Opened anew, a pipe or terminal there would be judged as one that lies in a folder.

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import msgspec
 import numpy as np
 
-from polarcheck.checking.channels import first_runs
+from polarcheck.checking.channel_reports import first_runs
 from polarcheck.columns.metal.finished import turned_columns
 from polarcheck.foundation.errors import TooHardError
 from polarcheck.foundation.finding import FileReport, LeftStanding, MadeInSection, MadeShape, OddSide

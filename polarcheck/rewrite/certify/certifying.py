@@ -14,7 +14,7 @@ from polarcheck.foundation.finding import Producer
 from polarcheck.foundation.time_limit import seconds_for, time_limit
 from polarcheck.foundation.version import __version__
 from polarcheck.program.reading import files
-from polarcheck.rewrite.certify import expectations, golden, paths, quoting, results
+from polarcheck.rewrite.certify import expectations, golden, near_path, quoting, results
 from polarcheck.rewrite.certify.case_runs import CaseRun, run
 from polarcheck.rewrite.certify.conditions import ConditionsOfCases
 from polarcheck.rewrite.certify.loading import Loaded
@@ -112,7 +112,7 @@ class _Alone(msgspec.Struct, frozen=True):
 
     reasons: list[str]
     golden: results.PathComparison | None
-    path: paths.Comparison
+    path: near_path.Comparison
 
     def fails(self, is_golden_there: bool) -> bool:
         """Return True if its program is wrong; a golden trace that is not there yet proves nothing."""
@@ -183,8 +183,8 @@ def _result(
     )
 
 
-_NOTHING = paths.Comparison(None, [], [])
-_Compared = tuple[results.PathComparison | None, paths.Comparison]
+_NOTHING = near_path.Comparison(None, [], [])
+_Compared = tuple[results.PathComparison | None, near_path.Comparison]
 
 
 def _golden(loaded: Loaded, case: Case, of_case: CaseRun) -> _Compared:
@@ -194,15 +194,15 @@ def _golden(loaded: Loaded, case: Case, of_case: CaseRun) -> _Compared:
     file, tolerance = loaded.beside(case.golden), loaded.tolerance(case)
     title = files.shown(case.golden)
     if not file.exists():
-        compared = paths.Comparison(None, [f"there is no golden trace {title} yet; --update writes it"], [])
+        compared = near_path.Comparison(None, [f"there is no golden trace {title} yet; --update writes it"], [])
     else:
         try:
             before = tool_path(golden.read(file), of_case.sense)
         except CertificateError as error:
-            compared = paths.Comparison(None, [str(error)], [])
+            compared = near_path.Comparison(None, [str(error)], [])
         else:
             ours = path_of_run(of_case, loaded.path_of(case))
-            compared = paths.with_golden(ours, before, tolerance, title)
+            compared = near_path.with_golden(ours, before, tolerance, title)
         outside = loaded.outside([file])
         if compared.reasons and (of_case.outside or outside):
             compared = _without_text(compared, title, outside)
@@ -221,15 +221,17 @@ def _other(loaded: Loaded, case: Case, case_runs: Mapping[str, CaseRun]) -> _Com
     title, which, tolerance = case.same_path_as, loaded.path_of(case), loaded.tolerance(case)
     of_case, other = case_runs[case.title], case_runs[title]
     if other.report is None:
-        compared = paths.Comparison(None, [f"the path is not compared: {title} was not run"], [])
+        compared = _not_compared(f"{title} was not run")
     elif not of_case.moves[which] and not other.moves[which]:
-        compared = paths.Comparison(None, [f"the path is not compared: neither this program nor {title} has any"], [])
+        compared = near_path.Comparison(
+            None, [f"the path is not compared: neither this program nor {title} has any"], []
+        )
     else:
         ours, theirs = path_of_run(of_case, which), path_of_run(other, which)
-        compared = paths.with_other(ours, theirs, tolerance, title)
+        compared = near_path.with_other(ours, theirs, tolerance, title)
         if which == "tool" and compared.deviation is not None and compared.reasons:
             programmed = path_of_run(of_case, "programmed"), path_of_run(other, "programmed")
-            if not paths.with_other(*programmed, tolerance, title).reasons:
+            if not near_path.with_other(*programmed, tolerance, title).reasons:
                 compared.reasons.append(
                     f"the programmed path is that of {title}: controls lead the tool round corners in different ways; "
                     'path = "programmed" compares what is programmed'
@@ -239,13 +241,17 @@ def _other(loaded: Loaded, case: Case, case_runs: Mapping[str, CaseRun]) -> _Com
     return _comparison(title, compared, tolerance), compared
 
 
-def _without_text(compared: paths.Comparison, title: str, outside: Sequence[str] = ()) -> paths.Comparison:
+def _not_compared(why: str) -> near_path.Comparison:
+    return near_path.Comparison(None, [f"the path is not compared: {why}"], [])
+
+
+def _without_text(compared: near_path.Comparison, title: str, outside: Sequence[str] = ()) -> near_path.Comparison:
     """Return the same comparison without lines, points and feeds, since they come from files that are not quoted."""
     remarks = [quoting.remark(outside)] if outside else []
-    return paths.Comparison(compared.deviation, [f"the path is not that of {title}"], remarks)
+    return near_path.Comparison(compared.deviation, [f"the path is not that of {title}"], remarks)
 
 
-def _comparison(reference: str, compared: paths.Comparison, tolerance: float) -> results.PathComparison:
+def _comparison(reference: str, compared: near_path.Comparison, tolerance: float) -> results.PathComparison:
     deviation = compared.deviation
     is_number = deviation is not None and deviation < float("inf")
     return results.PathComparison(

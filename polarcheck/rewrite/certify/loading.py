@@ -11,7 +11,7 @@ import msgspec
 
 from polarcheck.foundation.errors import CertificateError, suggestion
 from polarcheck.program.machines import toml_lines, toml_text
-from polarcheck.program.machines.fitting import MisfitError, fitted, listed, shown
+from polarcheck.program.machines.value_types import MisfitError, fitted, listed, shown
 from polarcheck.program.reading import files
 from polarcheck.rewrite.certify import quoting
 from polarcheck.rewrite.certify.manifest import PLACE, Case, Conditions, Manifest

@@ -6,9 +6,9 @@ from typing import Annotated, Literal
 
 import msgspec
 
-from polarcheck.program.machines.fitting import EXPECTED, KeyedError
 from polarcheck.program.machines.job import OfPrograms
-from polarcheck.program.machines.part import Part
+from polarcheck.program.machines.part_keys import Part
+from polarcheck.program.machines.value_types import EXPECTED, KeyedError
 
 #: The features of a post that the matrix lists unless the manifest has a list of its own.
 FEATURES = (

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 
 from polarcheck.foundation.errors import CertificateError, OutputError
 from polarcheck.program.reading import files
-from polarcheck.rewrite.certify import expectations, golden, paths
+from polarcheck.rewrite.certify import expectations, golden, near_path
 from polarcheck.rewrite.certify.certifying import Certified, path_of_run
 from polarcheck.rewrite.certify.loading import Loaded
 from polarcheck.rewrite.certify.tool_path import tool_path
@@ -75,7 +75,7 @@ def _change(loaded: Loaded, entry: Certified) -> str:
     """Return what a new golden trace changes, in one line."""
     before = tool_path(golden.read(loaded.beside(entry.case.golden or "")), entry.run.sense)
     ours = path_of_run(entry.run, loaded.path_of(entry.case))
-    compared = paths.with_golden(ours, before, loaded.tolerance(entry.case), "the golden trace before")
+    compared = near_path.with_golden(ours, before, loaded.tolerance(entry.case), "the golden trace before")
     deviation = compared.deviation
     if compared.reasons:
         largest = f"largest deviation {deviation:.3f} mm; " if deviation is not None else ""

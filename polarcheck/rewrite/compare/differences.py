@@ -12,11 +12,11 @@ from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Floats, Rows
 from polarcheck.foundation.states import FeedMode
 from polarcheck.geometry import polar
-from polarcheck.geometry.comparison.paths import PathDeviation, path_deviation
+from polarcheck.geometry.comparison.path_deviation import PathDeviation, path_deviation
 from polarcheck.geometry.tolerances import ZERO
-from polarcheck.rewrite.compare.report import Difference
-from polarcheck.rewrite.compare.steps import Step
-from polarcheck.rewrite.compare.stretches import Stretch, turn_of
+from polarcheck.rewrite.compare.compared_sections import Stretch, turn_of
+from polarcheck.rewrite.compare.comparison_report import Difference
+from polarcheck.rewrite.compare.orders import Step
 from polarcheck.rules.quantity import Quantity, in_row, rounded
 
 #: F that differ by no more than this share are the same: mm and inch are rounded otherwise.

@@ -8,7 +8,7 @@ import numpy as np
 
 from polarcheck.foundation.arrays import Floats, Rows
 from polarcheck.geometry.comparison.anchors import longest_rise
-from polarcheck.rewrite.compare.stretches import Stretch
+from polarcheck.rewrite.compare.compared_sections import Stretch
 
 #: Sections whose sizes differ by more than this share of them are not the same one, unless nothing else is left.
 _LIKE = 0.25

@@ -13,11 +13,11 @@ import numpy as np
 from polarcheck.columns.trace import Trace
 from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.reports.made_parts.tool_paths import above_the_face
-from polarcheck.rewrite.compensate.moves import Move, runs
+from polarcheck.rewrite.compensate.chosen_sections import Section
+from polarcheck.rewrite.compensate.contour_rings import Ring, rings_of
 from polarcheck.rewrite.compensate.parallel import NEAR, NoContourError, contour_beside
 from polarcheck.rewrite.compensate.pieces import Piece
-from polarcheck.rewrite.compensate.rings import Ring, rings_of
-from polarcheck.rewrite.compensate.sections import Section
+from polarcheck.rewrite.compensate.section_moves import Move, runs
 from polarcheck.rewrite.compensate.sides import Swept, points_along, standing_share
 
 #: A line that turns by more at its end leads to what follows [rad].

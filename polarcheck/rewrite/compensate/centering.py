@@ -10,12 +10,12 @@ from polarcheck.columns.path.moves import Moves
 from polarcheck.columns.path.tool_center import ToolCenter
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Mask
-from polarcheck.geometry.cutter_compensation.compensation import Phase
+from polarcheck.geometry.cutter_compensation.offset_path import Phase
 from polarcheck.geometry.tolerances import ZERO
-from polarcheck.rewrite.compensate.moves import Move, of_section
-from polarcheck.rewrite.compensate.sections import compensated_sections
-from polarcheck.rewrite.compensate.writing import Stroke, Strokes, new_blocks
-from polarcheck.rewrite.writing.blocks import NewBlock, edit_before, edits_of, with_edits
+from polarcheck.rewrite.compensate.chosen_sections import compensated_sections
+from polarcheck.rewrite.compensate.compensated_blocks import Stroke, Strokes, new_blocks
+from polarcheck.rewrite.compensate.section_moves import Move, of_section
+from polarcheck.rewrite.writing.new_blocks import NewBlock, edit_before, edits_of, with_edits
 from polarcheck.rewrite.writing.original import Original
 from polarcheck.rewrite.writing.outcome import Figure, Outcome, RefusedError, refusal_at, refused_at
 from polarcheck.rewrite.writing.reading_back import read_back_on_part, require_equal

@@ -13,16 +13,16 @@ from polarcheck.columns.trace import Trace
 from polarcheck.program.machines.machine import Machine
 from polarcheck.rewrite.compensate.candidates import Candidate
 from polarcheck.rewrite.compensate.centering import centered
+from polarcheck.rewrite.compensate.chosen_sections import Section, sections_of
+from polarcheck.rewrite.compensate.compensated_blocks import Stroke, new_blocks
 from polarcheck.rewrite.compensate.contours import SIDES, contours_of
-from polarcheck.rewrite.compensate.moves import Move
 from polarcheck.rewrite.compensate.parallel import NoContourError
 from polarcheck.rewrite.compensate.pieces import Piece
-from polarcheck.rewrite.compensate.ramps import Contour, with_ramps
+from polarcheck.rewrite.compensate.ramp_moves import Contour, with_ramps
 from polarcheck.rewrite.compensate.same_part import CompensatedContour, Proof, require_same_part
-from polarcheck.rewrite.compensate.sections import Section, sections_of
+from polarcheck.rewrite.compensate.section_moves import Move
 from polarcheck.rewrite.compensate.sides import Swept
-from polarcheck.rewrite.compensate.writing import Stroke, new_blocks
-from polarcheck.rewrite.writing.blocks import edits_of, with_edits
+from polarcheck.rewrite.writing.new_blocks import edits_of, with_edits
 from polarcheck.rewrite.writing.original import Original
 from polarcheck.rewrite.writing.outcome import Figure, Outcome, RefusedError, refused_at
 from polarcheck.rewrite.writing.style_of import style_of

@@ -10,10 +10,10 @@ import numpy as np
 from polarcheck.columns.trace import Trace
 from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.rewrite.compensate.candidates import Candidate, candidates_of
-from polarcheck.rewrite.compensate.moves import Move
+from polarcheck.rewrite.compensate.chosen_sections import Section
 from polarcheck.rewrite.compensate.parallel import NEAR
-from polarcheck.rewrite.compensate.ramps import Contour
-from polarcheck.rewrite.compensate.sections import Section
+from polarcheck.rewrite.compensate.ramp_moves import Contour
+from polarcheck.rewrite.compensate.section_moves import Move
 from polarcheck.rewrite.compensate.sides import Swept, points_along
 from polarcheck.rewrite.writing.outcome import Refusal, RefusedError, refusal_at, refused_at
 

@@ -11,9 +11,9 @@ import numpy as np
 from polarcheck.columns.metal.milled import Milled
 from polarcheck.columns.path.moves import Moves
 from polarcheck.foundation.arrays import Floats, Points
+from polarcheck.rewrite.compensate.chosen_sections import Section
 from polarcheck.rewrite.compensate.pieces import Piece
-from polarcheck.rewrite.compensate.ramps import Contour, Ramped
-from polarcheck.rewrite.compensate.sections import Section
+from polarcheck.rewrite.compensate.ramp_moves import Contour, Ramped
 from polarcheck.rewrite.compensate.sides import Swept
 from polarcheck.rewrite.writing.original import Original
 from polarcheck.rewrite.writing.outcome import Refusal, RefusedError, refused_at

@@ -17,7 +17,7 @@ from polarcheck.program.machines.machine import Machine
 from polarcheck.rewrite.convert.block_texts import BlockTexts
 from polarcheck.rewrite.convert.heads import Heads, writes_numbers
 from polarcheck.rewrite.convert.translating import Translated, Translation
-from polarcheck.rewrite.writing.blocks import NewBlock
+from polarcheck.rewrite.writing.new_blocks import NewBlock
 from polarcheck.rewrite.writing.original import Original
 from polarcheck.rewrite.writing.outcome import Decision, Refusal, RefusedError, refused_at
 from polarcheck.rules.editing import Replace

@@ -12,9 +12,16 @@ from polarcheck.checking.settings import Settings
 from polarcheck.foundation.states import Units
 from polarcheck.program.machines.job import Job
 from polarcheck.rewrite.convert.around import around, decision_comment
-from polarcheck.rewrite.convert.sections import sections
+from polarcheck.rewrite.convert.converted_sections import sections
 from polarcheck.rewrite.convert.translating import Translation
-from polarcheck.rewrite.writing.blocks import NewBlock, edit_before, edit_behind, edits_of, edits_of_signs, with_edits
+from polarcheck.rewrite.writing.new_blocks import (
+    NewBlock,
+    edit_before,
+    edit_behind,
+    edits_of,
+    edits_of_signs,
+    with_edits,
+)
 from polarcheck.rewrite.writing.original import Original
 from polarcheck.rewrite.writing.outcome import Decision, Figure, Outcome, Refusal, RefusedError
 from polarcheck.rewrite.writing.reading_back import ReadBack, read_back, require_equal

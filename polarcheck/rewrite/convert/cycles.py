@@ -9,7 +9,7 @@ import numpy as np
 from polarcheck.columns.filling import fill_down
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Rows, stretch
-from polarcheck.program.machines.codes import code_numbers
+from polarcheck.program.machines.code_tables import code_numbers
 from polarcheck.program.machines.machine import Machine
 from polarcheck.rewrite.convert.g_meanings import GMeanings
 from polarcheck.rewrite.convert.measures import Measures

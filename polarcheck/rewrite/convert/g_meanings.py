@@ -5,7 +5,7 @@ from __future__ import annotations
 import msgspec
 
 from polarcheck.program.machines.code_lists import GCodes, GCodeSystem
-from polarcheck.program.machines.codes import code, spelled
+from polarcheck.program.machines.code_tables import code, spelled
 from polarcheck.program.machines.machine import Machine
 from polarcheck.program.machines.own_language import shown
 

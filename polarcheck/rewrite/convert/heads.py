@@ -12,7 +12,7 @@ from polarcheck.program.machines.machine import Machine
 from polarcheck.program.machines.own_language import shown
 from polarcheck.rewrite.convert.block_texts import BlockTexts
 from polarcheck.rewrite.convert.measures import Measures
-from polarcheck.rewrite.writing.blocks import NewBlock, comment_text
+from polarcheck.rewrite.writing.new_blocks import NewBlock, comment_text
 from polarcheck.rewrite.writing.outcome import Decision
 from polarcheck.rules.editing import Replace, content_of, line_without
 

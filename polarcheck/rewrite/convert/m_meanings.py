@@ -6,7 +6,7 @@ import numpy as np
 
 from polarcheck.columns.trace import Trace
 from polarcheck.program.machines.code_lists import expanded
-from polarcheck.program.machines.codes import spelled
+from polarcheck.program.machines.code_tables import spelled
 from polarcheck.program.machines.m_codes import OF_EVERY_LATHE, MCodes
 from polarcheck.program.machines.machine import Machine
 from polarcheck.rewrite.convert.g_meanings import Meaning

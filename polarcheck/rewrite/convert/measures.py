@@ -10,7 +10,7 @@ import numpy as np
 from polarcheck.columns.path.lengths import RADIUS_FACTOR
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.states import Distance, Units
-from polarcheck.program.machines.axes import INCREMENTS
+from polarcheck.program.machines.axis_table import INCREMENTS
 from polarcheck.program.machines.machine import Machine
 from polarcheck.rewrite.convert.number_text import number_of, rescaled, rounded
 from polarcheck.rewrite.writing.outcome import refused_at

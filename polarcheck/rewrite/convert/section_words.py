@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from polarcheck.columns.trace import Trace
 from polarcheck.program.machines.code_lists import numbers
-from polarcheck.program.machines.codes import code_numbers
+from polarcheck.program.machines.code_tables import code_numbers
 from polarcheck.program.machines.machine import Machine
 from polarcheck.rewrite.convert.g_meanings import GMeanings
 

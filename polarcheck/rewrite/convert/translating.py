@@ -11,10 +11,10 @@ from polarcheck.checking.settings import Settings
 from polarcheck.foundation.arrays import stretch
 from polarcheck.foundation.states import NO_MOVE, FeedMode
 from polarcheck.program.machines.code_lists import numbers
-from polarcheck.program.machines.codes import code_numbers
+from polarcheck.program.machines.code_tables import code_numbers
 from polarcheck.program.machines.machine import Machine
 from polarcheck.rewrite.convert.axis_words import AxisWords
-from polarcheck.rewrite.convert.calls import Calls
+from polarcheck.rewrite.convert.call_words import Calls
 from polarcheck.rewrite.convert.cycles import WITH_ARGUMENTS, CycleWords
 from polarcheck.rewrite.convert.g_meanings import GMeanings
 from polarcheck.rewrite.convert.m_meanings import MMeanings

@@ -9,7 +9,7 @@ from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Mask, Rows, stretch
 from polarcheck.foundation.states import FeedMode, Motion
 from polarcheck.rewrite.roll.following import Following
-from polarcheck.rewrite.roll.stretches import Stretch
+from polarcheck.rewrite.roll.rollable import Stretch
 from polarcheck.rewrite.roll.ways import Way
 from polarcheck.rules.editing import is_plain, words_of
 

@@ -8,7 +8,7 @@ from polarcheck.columns.path.lengths import RADIUS_FACTOR
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Mask, Rows
 from polarcheck.foundation.states import Motion
-from polarcheck.rewrite.writing.blocks import jump_numbers
+from polarcheck.rewrite.writing.new_blocks import jump_numbers
 
 
 class Following:

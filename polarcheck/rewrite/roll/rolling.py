@@ -10,16 +10,16 @@ import numpy as np
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.states import Motion
 from polarcheck.geometry import polar
-from polarcheck.rewrite.roll.elements import Fit, fit_of
 from polarcheck.rewrite.roll.entries import entry_of
-from polarcheck.rewrite.roll.feeds import feeds_of
 from polarcheck.rewrite.roll.following import Following, x_factor
-from polarcheck.rewrite.roll.measuring import Measured, Section, measured_of
+from polarcheck.rewrite.roll.rollable import LEAST, Stretch, stretches
+from polarcheck.rewrite.roll.rolled_blocks import Writer
+from polarcheck.rewrite.roll.rolled_deviation import Measured, Section, measured_of
+from polarcheck.rewrite.roll.rolled_elements import Fit, fit_of
+from polarcheck.rewrite.roll.rolled_feeds import feeds_of
 from polarcheck.rewrite.roll.slowing import parts_of
-from polarcheck.rewrite.roll.stretches import LEAST, Stretch, stretches
 from polarcheck.rewrite.roll.ways import Way, per_minute_rule, through_center, way_of
-from polarcheck.rewrite.roll.writing import Writer
-from polarcheck.rewrite.writing.blocks import edit_behind, edits_of, with_edits
+from polarcheck.rewrite.writing.new_blocks import edit_behind, edits_of, with_edits
 from polarcheck.rewrite.writing.original import Original
 from polarcheck.rewrite.writing.outcome import Figure, Outcome, Refusal, RefusedError, refused_at
 from polarcheck.rewrite.writing.reading_back import ReadBack, read_back_on_part

@@ -12,8 +12,8 @@ from polarcheck.foundation.states import Motion
 from polarcheck.geometry import rates
 from polarcheck.geometry.plane import arc_sweep, quiet
 from polarcheck.program.machines.machine import Machine
-from polarcheck.rewrite.roll.elements import Element
-from polarcheck.rewrite.roll.feeds import Feeds, nice
+from polarcheck.rewrite.roll.rolled_elements import Element
+from polarcheck.rewrite.roll.rolled_feeds import Feeds, nice
 from polarcheck.rewrite.roll.ways import Way
 
 #: F is so much below what a limit allows: FANUC has F < L * R * pi / 180.

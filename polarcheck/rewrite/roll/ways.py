@@ -12,7 +12,7 @@ from polarcheck.foundation.arrays import Floats, Rows, Table
 from polarcheck.foundation.states import FeedMode
 from polarcheck.geometry.plane import quiet
 from polarcheck.geometry.tolerances import ZERO
-from polarcheck.rewrite.roll.stretches import Stretch
+from polarcheck.rewrite.roll.rollable import Stretch
 from polarcheck.rewrite.writing.outcome import Refusal, RefusedError
 from polarcheck.rewrite.writing.rotary_feed import INVERSE_TIME, block_times
 

@@ -10,9 +10,9 @@ import numpy as np
 
 from polarcheck.columns.trace import Trace
 from polarcheck.program.execution.programs import find_programs
-from polarcheck.rewrite.unroll.stretches import Stretch
-from polarcheck.rewrite.unroll.writing import Writer
-from polarcheck.rewrite.writing.blocks import NewBlock, edits_of, edits_of_ranges
+from polarcheck.rewrite.unroll.unrollable import Stretch
+from polarcheck.rewrite.unroll.unrolled_blocks import Writer
+from polarcheck.rewrite.writing.new_blocks import NewBlock, edits_of, edits_of_ranges
 from polarcheck.rewrite.writing.original import Original
 from polarcheck.rewrite.writing.outcome import refused_at
 from polarcheck.rewrite.writing.style import Style

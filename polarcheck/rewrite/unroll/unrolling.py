@@ -12,13 +12,13 @@ from polarcheck.columns.path.tool_center import ToolCenter
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Floats
 from polarcheck.foundation.finding import SEVERITIES, Severity
-from polarcheck.rewrite.unroll import measuring, rates
-from polarcheck.rewrite.unroll.rates import FEEDS as FEEDS
-from polarcheck.rewrite.unroll.steps import Steps, steps_of
-from polarcheck.rewrite.unroll.stretches import Stretch, refusals, stretches
+from polarcheck.rewrite.unroll import unrolled_deviation, unrolled_feeds
+from polarcheck.rewrite.unroll.axis_blocks import Steps, steps_of
 from polarcheck.rewrite.unroll.texts import NewText, new_text
-from polarcheck.rewrite.unroll.writing import Writer
-from polarcheck.rewrite.writing.blocks import with_edits
+from polarcheck.rewrite.unroll.unrollable import Stretch, refusals, stretches
+from polarcheck.rewrite.unroll.unrolled_blocks import Writer
+from polarcheck.rewrite.unroll.unrolled_feeds import FEEDS as FEEDS
+from polarcheck.rewrite.writing.new_blocks import with_edits
 from polarcheck.rewrite.writing.original import Original, read
 from polarcheck.rewrite.writing.outcome import Figure, Outcome, Refusal, RefusedError
 from polarcheck.rewrite.writing.style_of import style_of
@@ -74,18 +74,18 @@ def unrolled(original: Original, options: Unrolling) -> Outcome:
         raise RefusedError([Refusal(0, "there is no polar section in it")])
     if reasons := [*errors(original), *refusals(original.tables, sections)]:
         raise RefusedError(reasons)
-    feed = rates.chosen(trace, options.feed)
+    feed = unrolled_feeds.chosen(trace, options.feed)
     center: ToolCenter = original.tables["tool_center"]
     steps = steps_of(trace, center.moves, options.chord_error)
-    if reasons := rates.beyond_travel(trace, steps):
+    if reasons := unrolled_feeds.beyond_travel(trace, steps):
         raise RefusedError(reasons)
-    time = rates.times(trace, steps)
+    time = unrolled_feeds.times(trace, steps)
     style = style_of(trace)
-    writer = Writer(trace, steps, rates.feeds(trace, steps, time, feed), rates.mode_of(feed), style)
+    writer = Writer(trace, steps, unrolled_feeds.feeds(trace, steps, time, feed), unrolled_feeds.mode_of(feed), style)
     text = new_text(original, sections, writer, style)
     data, origin = with_edits(original, text.edits)
     new = read(original.path, data, original.settings)
-    measured = measuring.measured(original, new, text.spans, steps, options.chord_error, feed)
+    measured = unrolled_deviation.measured(original, new, text.spans, steps, options.chord_error, feed)
     changed = list(changed_words(trace, new.trace))
     if measured.differences or changed:
         raise RefusedError([*measured.differences, *changed])
@@ -106,7 +106,7 @@ def _notes(original: Original, steps: Steps, time: Floats, feed: str) -> list[st
         notes.append(f"through the center of C, where C turns on the spot: line {where}")
     spots = steps.row[(steps.move < 0) & (steps.x != 0)]
     notes += [f"line {line}: C is turned to where the section begins" for line in dict.fromkeys(lines[spots].tolist())]
-    slow, rows = rates.slowed(steps, time)
+    slow, rows = unrolled_feeds.slowed(steps, time)
     if slow.any():
         where = ", ".join(str(line) for line in list(dict.fromkeys(lines[rows].tolist()))[:10])
         notes.append(f"slower than its F in {len(rows)} blocks, since C or X would pass its limit: line {where}")
@@ -115,7 +115,7 @@ def _notes(original: Original, steps: Steps, time: Floats, feed: str) -> list[st
     is_beyond = bool(np.any((turns < 0) | (turns > 360)))
     if is_beyond and not control.rotary_rolls_over and "control.rotary_rolls_over" in original.settings.doubtful:
         notes.append("C is written below 0 or above 360 deg: that it does not roll over there is in doubt")
-    method = rates.method_of(trace, feed)
+    method = unrolled_feeds.method_of(trace, feed)
     if "feed.with_rotary" in original.settings.doubtful and method in trace.machine.feed.with_rotary:
         notes.append(f"that F is {method} on {trace.machine.title} is in doubt: try it above the part")
     elif method not in trace.machine.feed.with_rotary:

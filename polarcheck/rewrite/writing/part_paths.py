@@ -16,7 +16,7 @@ from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.comparison.polyline import SpacePath
 from polarcheck.geometry.plane import arc_sweep
 from polarcheck.geometry.tolerances import CHORDS_OF_FILE
-from polarcheck.rewrite.compare.stretches import ANGLE, NOWHERE, Stretch, of_sections, outside
+from polarcheck.rewrite.compare.compared_sections import ANGLE, NOWHERE, Stretch, of_sections, outside
 from polarcheck.rewrite.writing.outcome import refused_at
 from polarcheck.rules.tables import Tables
 

@@ -7,11 +7,11 @@ from collections.abc import Sequence
 
 from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.program.machines.machine import Machine
-from polarcheck.rewrite.writing.arc_words import Arc, arc_between, nearest_center, nearest_radius
-from polarcheck.rewrite.writing.blocks import NewBlock
-from polarcheck.rewrite.writing.numbers import Numbers
+from polarcheck.rewrite.writing.new_blocks import NewBlock
 from polarcheck.rewrite.writing.outcome import Refusal, RefusedError
 from polarcheck.rewrite.writing.style import PLAIN, Style
+from polarcheck.rewrite.writing.written_arcs import Arc, arc_between, nearest_center, nearest_radius
+from polarcheck.rewrite.writing.written_numbers import Numbers
 
 #: How often an arc is halved where its words would not come near enough: into 64 parts.
 _HALVINGS = 6

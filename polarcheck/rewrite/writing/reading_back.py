@@ -11,9 +11,9 @@ import numpy as np
 from polarcheck.checking.check import check_runs
 from polarcheck.checking.settings import Settings
 from polarcheck.foundation.finding import SEVERITIES, Finding, Severity
-from polarcheck.geometry.comparison.paths import path_deviation
-from polarcheck.rewrite.compare.comparison import Revision, compared, default_tolerance
-from polarcheck.rewrite.compare.report import Comparison, Difference, SectionPair
+from polarcheck.geometry.comparison.path_deviation import path_deviation
+from polarcheck.rewrite.compare.comparison_report import Comparison, Difference, SectionPair
+from polarcheck.rewrite.compare.revision_comparison import Revision, compared, default_tolerance
 from polarcheck.rewrite.writing.meanings import lost_orders, other_speeds
 from polarcheck.rewrite.writing.original import Original, read
 from polarcheck.rewrite.writing.outcome import Refusal, RefusedError

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 from polarcheck.rules.rule import ERROR, rule
 
 if TYPE_CHECKING:
-    from polarcheck.columns.modes.blocks import ExecutedBlocks
+    from polarcheck.columns.modes.executed_blocks import ExecutedBlocks
     from polarcheck.columns.modes.mode import PolarMode
     from polarcheck.columns.modes.mode_words import ModeWords
     from polarcheck.columns.modes.tools import CalledTools

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 from polarcheck.rules.rule import ERROR, Hits, rule
 
 if TYPE_CHECKING:
-    from polarcheck.columns.contour.fitting import Fitting
+    from polarcheck.columns.contour.fitting_radius import Fitting
     from polarcheck.columns.contour.overcuts import Overcuts
     from polarcheck.columns.path.compensation import CutterCompensation
     from polarcheck.rules.hit import Details, Hit

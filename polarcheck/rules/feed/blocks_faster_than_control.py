@@ -6,7 +6,7 @@ from polarcheck.geometry.tolerances import SHARE
 from polarcheck.rules.rule import WARNING, Hits, rule
 
 if TYPE_CHECKING:
-    from polarcheck.columns.feed.feeds import Feeds
+    from polarcheck.columns.feed.programmed_feeds import Feeds
     from polarcheck.program.machines.machine import Machine
     from polarcheck.rules.hit import Details, Hit
 

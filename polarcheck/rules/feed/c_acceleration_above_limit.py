@@ -6,7 +6,7 @@ from polarcheck.rules.rule import WARNING, Hits, rule
 
 if TYPE_CHECKING:
     from polarcheck.columns.feed.feedrate import Feedrate
-    from polarcheck.columns.feed.feeds import Feeds
+    from polarcheck.columns.feed.programmed_feeds import Feeds
     from polarcheck.columns.path.center import Center
     from polarcheck.columns.path.tool_center import ToolCenter
     from polarcheck.rules.hit import Details, Hit

@@ -6,7 +6,7 @@ from polarcheck.rules.rule import ERROR, WARNING, Hits, graded, rule
 
 if TYPE_CHECKING:
     from polarcheck.columns.feed.dynamics import Dynamics
-    from polarcheck.columns.feed.feeds import Feeds
+    from polarcheck.columns.feed.programmed_feeds import Feeds
     from polarcheck.columns.path.center import Center
     from polarcheck.columns.path.path import ProgrammedPath
     from polarcheck.columns.path.tool_center import ToolCenter

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from polarcheck.columns.feed.feeds import Feeds
+from polarcheck.columns.feed.programmed_feeds import Feeds
 from polarcheck.columns.path.tool_center import ToolCenter
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Mask

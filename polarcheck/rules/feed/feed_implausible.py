@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 from polarcheck.rules.rule import WARNING, Hits, rule
 
 if TYPE_CHECKING:
-    from polarcheck.columns.feed.feeds import Feeds
+    from polarcheck.columns.feed.programmed_feeds import Feeds
     from polarcheck.rules.hit import Details, Hit
 
 

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 from polarcheck.rules.rule import ERROR, rule
 
 if TYPE_CHECKING:
-    from polarcheck.columns.feed.feeds import Feeds
+    from polarcheck.columns.feed.programmed_feeds import Feeds
     from polarcheck.columns.modes.mode import PolarMode
     from polarcheck.columns.path.path import ProgrammedPath
     from polarcheck.foundation.arrays import Mask

@@ -6,7 +6,7 @@ from polarcheck.rules.rule import WARNING, rule
 
 if TYPE_CHECKING:
     from polarcheck.columns.feed.feedrate import Feedrate
-    from polarcheck.columns.feed.feeds import Feeds
+    from polarcheck.columns.feed.programmed_feeds import Feeds
     from polarcheck.columns.path.path import ProgrammedPath
     from polarcheck.foundation.arrays import Mask
     from polarcheck.program.machines.machine import Machine

@@ -7,7 +7,7 @@ from polarcheck.rules.rule import NOTE, rule
 
 if TYPE_CHECKING:
     from polarcheck.columns.feed.feed_ranges import FeedRanges
-    from polarcheck.columns.feed.feeds import Feeds
+    from polarcheck.columns.feed.programmed_feeds import Feeds
     from polarcheck.foundation.arrays import Mask
     from polarcheck.rules.hit import Details, Hit
 

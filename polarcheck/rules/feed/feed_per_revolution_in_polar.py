@@ -7,7 +7,7 @@ from polarcheck.rules.rule import NOTE, Hits, graded, rule
 
 if TYPE_CHECKING:
     from polarcheck.columns.feed.feedrate import Feedrate
-    from polarcheck.columns.feed.feeds import Feeds
+    from polarcheck.columns.feed.programmed_feeds import Feeds
     from polarcheck.columns.modes.mode import PolarMode
     from polarcheck.columns.path.path import ProgrammedPath
     from polarcheck.rules.hit import Details, Hit

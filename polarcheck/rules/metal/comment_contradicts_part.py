@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 from polarcheck.rules.rule import WARNING, Hits, rule
 
 if TYPE_CHECKING:
-    from polarcheck.columns.metal.part_comments import PartComments
+    from polarcheck.columns.metal.stated_parts import PartComments
     from polarcheck.rules.hit import Details, Hit
 
 
@@ -201,7 +201,7 @@ def comment_contradicts_part(part_comments: PartComments) -> Hits:
 
 
 def details(hit: Hit, part_comments: PartComments) -> Details:
-    from polarcheck.columns.metal.part_comments import BEYOND, DEPTH, TURNED
+    from polarcheck.columns.metal.stated_parts import BEYOND, DEPTH, TURNED
     from polarcheck.rules.wording.written import comment_in_words
 
     contradiction, text = part_comments.contradictions[hit.row], hit.trace.text

@@ -7,8 +7,8 @@ from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.rules.rule import WARNING, rule
 
 if TYPE_CHECKING:
-    from polarcheck.columns.modes.blocks import ExecutedBlocks
     from polarcheck.columns.modes.entry import Entry
+    from polarcheck.columns.modes.executed_blocks import ExecutedBlocks
     from polarcheck.columns.modes.mode import PolarMode
     from polarcheck.columns.path.axes import PlaneAxes
     from polarcheck.columns.path.path import ProgrammedPath

@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING
 from polarcheck.rules.rule import WARNING, Hits, rule
 
 if TYPE_CHECKING:
-    from polarcheck.columns.modes.blocks import ExecutedBlocks
     from polarcheck.columns.modes.entry import Entry
+    from polarcheck.columns.modes.executed_blocks import ExecutedBlocks
     from polarcheck.columns.path.axes import PlaneAxes
     from polarcheck.columns.words.angles import Angles
     from polarcheck.rules.hit import Details, Hit

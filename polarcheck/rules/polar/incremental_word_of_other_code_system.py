@@ -89,7 +89,7 @@ def incremental_word_of_other_code_system(
 
 
 def details(hit: Hit, run: Run, machine: Machine) -> Details:
-    from polarcheck.program.machines.codes import spelled
+    from polarcheck.program.machines.code_tables import spelled
 
     word, first = run.words, hit.words[0]
     address = chr(int(word.address[first]))

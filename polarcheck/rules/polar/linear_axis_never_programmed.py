@@ -6,7 +6,7 @@ from polarcheck.rules.causes import SECTION_READ_OTHERWISE
 from polarcheck.rules.rule import ERROR, rule
 
 if TYPE_CHECKING:
-    from polarcheck.columns.modes.blocks import ExecutedBlocks
+    from polarcheck.columns.modes.executed_blocks import ExecutedBlocks
     from polarcheck.columns.modes.modal import ModalStates
     from polarcheck.columns.modes.mode import PolarMode
     from polarcheck.columns.path.axes import PlaneAxes

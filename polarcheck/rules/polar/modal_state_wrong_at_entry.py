@@ -74,7 +74,7 @@ def modal_state_wrong_at_entry(modal: ModalStates, mode: PolarMode) -> Hits:
 
 
 def details(hit: Hit, modal: ModalStates, machine: Machine) -> Details:
-    from polarcheck.program.machines.codes import spelled
+    from polarcheck.program.machines.code_tables import spelled
 
     cycle = int(modal.drilling[hit.row])
     states = [(spelled("G", cycle * 10), " or ".join(machine.codes("drilling_cycle_off")))] if cycle else []

@@ -4,7 +4,7 @@ import numpy as np
 
 from polarcheck.columns.filling import before
 from polarcheck.columns.trace import Trace
-from polarcheck.program.machines.codes import code_numbers
+from polarcheck.program.machines.code_tables import code_numbers
 from polarcheck.rules.editing import blocks_behind, is_plain, without, written_word
 from polarcheck.rules.repair import Mended, repair
 

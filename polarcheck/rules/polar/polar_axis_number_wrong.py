@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 from polarcheck.rules.rule import ERROR, Hits, rule
 
 if TYPE_CHECKING:
-    from polarcheck.columns.modes.blocks import ExecutedBlocks
+    from polarcheck.columns.modes.executed_blocks import ExecutedBlocks
     from polarcheck.columns.modes.switch_words import SwitchWords
     from polarcheck.columns.path.axes import PlaneAxes
     from polarcheck.rules.hit import Details, Hit
@@ -60,7 +60,7 @@ def details(hit: Hit, switch_words: SwitchWords, axes: PlaneAxes) -> Details:
 
 def _axis_fault(hit: Hit, switch_words: SwitchWords, axes: PlaneAxes) -> str:
     """Why P or Q of a G12.1 are no pair of axes."""
-    from polarcheck.program.machines.axes import listed
+    from polarcheck.program.machines.axis_table import listed
 
     blocks, machine = hit.trace.blocks, hit.trace.machine
     if blocks.with_words(switch_words.names_axis_of_other_kind)[hit.row]:

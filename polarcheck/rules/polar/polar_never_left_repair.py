@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.columns.modes.blocks import ExecutedBlocks
+from polarcheck.columns.modes.executed_blocks import ExecutedBlocks
 from polarcheck.columns.modes.mode import PolarMode
 from polarcheck.program.execution.run import Run
 from polarcheck.program.machines.machine import Machine

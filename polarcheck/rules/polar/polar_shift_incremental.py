@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 from polarcheck.rules.rule import ERROR, Hits, rule
 
 if TYPE_CHECKING:
-    from polarcheck.columns.modes.blocks import ExecutedBlocks
+    from polarcheck.columns.modes.executed_blocks import ExecutedBlocks
     from polarcheck.columns.modes.switch_words import SwitchWords
     from polarcheck.rules.hit import Details, Hit
 

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from polarcheck.columns.modes.blocks import ExecutedBlocks
+from polarcheck.columns.modes.executed_blocks import ExecutedBlocks
 from polarcheck.columns.modes.mode import PolarMode
 from polarcheck.columns.modes.mode_words import ModeWords
 from polarcheck.columns.path.axes import PlaneAxes
@@ -113,7 +113,7 @@ def polar_switch_not_alone(
 
 def _must_be_outside(run: Run, machine: Machine, index: int) -> bool:
     """A G code that cannot stand in the mode."""
-    from polarcheck.program.machines.codes import NO_CODE, code_numbers, code_set
+    from polarcheck.program.machines.code_tables import NO_CODE, code_numbers, code_set
 
     words = run.words
     if chr(int(words.address[index])) != "G":

@@ -1,11 +1,11 @@
 from __future__ import annotations
 
 from polarcheck.columns.filling import before
-from polarcheck.columns.modes.blocks import ExecutedBlocks
+from polarcheck.columns.modes.executed_blocks import ExecutedBlocks
 from polarcheck.columns.path.axes import PlaneAxes
 from polarcheck.columns.path.path import ProgrammedPath
 from polarcheck.program.execution.run import Run
-from polarcheck.program.machines.codes import code_numbers, code_set
+from polarcheck.program.machines.code_tables import code_numbers, code_set
 from polarcheck.program.machines.machine import Machine
 from polarcheck.rules.editing import (
     begins_program,

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 from polarcheck.rules.rule import WARNING, Hits, rule
 
 if TYPE_CHECKING:
-    from polarcheck.columns.modes.blocks import ExecutedBlocks
+    from polarcheck.columns.modes.executed_blocks import ExecutedBlocks
     from polarcheck.columns.modes.procedure import Procedure
     from polarcheck.program.machines.machine import Machine
     from polarcheck.rules.hit import Details, Hit

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 from polarcheck.rules.rule import WARNING, Hits, graded, rule
 
 if TYPE_CHECKING:
-    from polarcheck.columns.modes.blocks import ExecutedBlocks
+    from polarcheck.columns.modes.executed_blocks import ExecutedBlocks
     from polarcheck.columns.modes.mode import PolarMode
     from polarcheck.columns.modes.spindles import Spindles
     from polarcheck.columns.path.axes import PlaneAxes

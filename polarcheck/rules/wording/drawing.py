@@ -8,8 +8,8 @@ import math
 from polarcheck.columns.path.lengths import Lengths
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.states import MM_PER_INCH, Units
-from polarcheck.parts.comparison import Comparison, Fit, title_of
 from polarcheck.parts.deviations import Deviations
+from polarcheck.parts.part_comparison import Comparison, Fit, title_of
 from polarcheck.rules.quantity import Quantity, in_row
 from polarcheck.rules.wording.part import Sizes, shape_in_words
 from polarcheck.rules.wording.written import point, short

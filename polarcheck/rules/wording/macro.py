@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from polarcheck.columns.words.macro_faults import Faults
-from polarcheck.program.execution.names import FIRST_PARAMETER, PARAMETERS
+from polarcheck.program.execution.variable_names import FIRST_PARAMETER, PARAMETERS
 from polarcheck.rules.hit import Hit
 
 

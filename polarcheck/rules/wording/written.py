@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import re
 
-from polarcheck.columns.modes.blocks import ExecutedBlocks
+from polarcheck.columns.modes.executed_blocks import ExecutedBlocks
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import stretch
 from polarcheck.program.execution.run import Run
-from polarcheck.program.machines.codes import code_numbers, spelled
+from polarcheck.program.machines.code_tables import code_numbers, spelled
 from polarcheck.program.machines.machine import Machine
 from polarcheck.program.machines.own_language import shown
 from polarcheck.program.reading.excerpt import shortened

@@ -12,8 +12,9 @@ from matplotlib.patches import Circle, Patch, PathPatch
 from matplotlib.path import Path
 from matplotlib.ticker import FuncFormatter, MultipleLocator
 
-from polarcheck.view.picture import Mark, Points, Role, SectionPicture
-from polarcheck.view.stills.colors import (
+from polarcheck.view.picture_data import Mark, Points, Role, SectionPicture
+from polarcheck.view.stills.numbering import Entry, labels
+from polarcheck.view.stills.palette import (
     ABOVE,
     BAR,
     BAR_EDGE,
@@ -29,7 +30,6 @@ from polarcheck.view.stills.colors import (
     UNKNOWN,
     coloring,
 )
-from polarcheck.view.stills.numbering import Entry, labels
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from polarcheck.foundation.finding import SEVERITIES
-from polarcheck.view.picture import FindingPicture, Mark, SectionPicture
+from polarcheck.view.picture_data import FindingPicture, Mark, SectionPicture
 
 #: The most entries of a list.
 _MOST = 15

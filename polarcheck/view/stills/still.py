@@ -17,10 +17,10 @@ from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 
 from polarcheck.program.reading.excerpt import visible
-from polarcheck.view.picture import Picture, SectionPicture
-from polarcheck.view.stills.colors import ABOVE, CENTER, INK, SEVERITIES, Coloring, coloring
+from polarcheck.view.picture_data import Picture, SectionPicture
 from polarcheck.view.stills.face import Window, draw_face, legend
 from polarcheck.view.stills.numbering import Entry, entries, outside
+from polarcheck.view.stills.palette import ABOVE, CENTER, INK, SEVERITIES, Coloring, coloring
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -1,0 +1,84 @@
+"""One report of the channels of a file, in which everything says to which of them it belongs."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Iterator, Sequence
+from itertools import chain
+from operator import attrgetter
+from typing import TYPE_CHECKING, TypeVar
+
+from msgspec.structs import replace
+
+from polarcheck.foundation.finding import FileReport, Finding, NotEvaluated, PolarSection
+from polarcheck.program.reading.channel_texts import stands_in
+from polarcheck.program.reading.source import Source
+
+if TYPE_CHECKING:
+    from polarcheck.rules.tables import Tables
+
+Part = TypeVar("Part", NotEvaluated, PolarSection)
+Found = TypeVar("Found", bound=Finding)
+
+_Reports = Sequence[tuple[Source, FileReport]]
+
+
+def first_runs(runs: Sequence[tuple[str, Tables]]) -> list[tuple[str, Tables]]:
+    """Of the runs of a file (check.read) the first one of each channel, which is that with block skip off."""
+    first: dict[str, tuple[str, Tables]] = {}
+    for state, tables in runs:
+        first.setdefault(tables["text"].source.channel, (state, tables))
+    return list(first.values())
+
+
+def united(reports: _Reports) -> FileReport:
+    """
+    One report of those of the channels, each with its view of the file.
+
+    A finding belongs to the channel in which its line stands, whichever runs it, and is told once. One before the first
+    mark of a channel belongs to none, where all of them show it.
+    """
+    (_, first), *_ = reports
+    sections = _each(reports, attrgetter("polar_sections"))
+    return replace(
+        first,
+        programs=list(dict.fromkeys(chain.from_iterable(report.programs for _, report in reports))),
+        blocks=sum(report.blocks for _, report in reports),
+        sections=sum(report.sections for _, report in reports),
+        polar_sections=sorted(sections, key=lambda section: section.line),
+        findings=list(_once(reports, attrgetter("findings"))),
+        silenced=list(_once(reports, attrgetter("silenced"))),
+        not_evaluated=list(_each(reports, attrgetter("not_evaluated"))),
+        looked_at=max((report.looked_at for _, report in reports), key=len),
+    )
+
+
+def _once(reports: _Reports, findings: Callable[[FileReport], Sequence[Found]]) -> Iterator[Found]:
+    shown = Counter(_key(found) for _, report in reports for found in findings(report))
+    told: set[tuple[object, ...]] = set()
+    for source, report in reports:
+        for found in findings(report):
+            key = _key(found)
+            if key in told:
+                continue
+            told.add(key)
+            owners = [one.channel for one, _ in reports if stands_in(one, found.line)]
+            if len(owners) == 1:
+                yield _of_channel(found, owners[0])
+            else:
+                yield found if shown[key] == len(reports) else _of_channel(found, source.channel)
+
+
+def _of_channel(found: Found, name: str) -> Found:
+    return replace(found, channel=name, follows=[_of_channel(one, name) for one in found.follows])
+
+
+def _key(found: Finding) -> tuple[object, ...]:
+    return found.rule, found.line, found.column, found.message
+
+
+def _each(reports: _Reports, parts: Callable[[FileReport], Sequence[Part]]) -> Iterator[Part]:
+    """What the reports have of a kind, each with the name of its channel."""
+    for source, report in reports:
+        for part in parts(report):
+            yield replace(part, channel=source.channel)

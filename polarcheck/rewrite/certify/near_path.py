@@ -1,0 +1,233 @@
+"""The path of a program beside its golden trace, or beside the path of another program."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import NamedTuple
+
+import msgspec
+import numpy as np
+
+from polarcheck.foundation.arrays import Floats
+from polarcheck.foundation.errors import TooHardError
+from polarcheck.geometry.comparison.path_deviation import PathDeviation, path_deviation
+from polarcheck.geometry.polar import length
+from polarcheck.reports import counted
+from polarcheck.rewrite.certify.tool_path import ToolPath
+
+#: F differs if it does so by more than this share: digits that a trace rounds away are no change.
+_SAME_FEED = 1e-6
+#: Angles that differ by less [deg] are the same.
+_SAME_ANGLE = 1e-6
+
+
+class Comparison(NamedTuple):
+    """
+    A path compared with another one.
+
+    deviation: the largest [mm]; None where they cannot be laid beside each other.
+    reasons: why they are not the same, each in one line. remarks: what was not compared.
+    """
+
+    deviation: float | None
+    reasons: list[str]
+    remarks: list[str]
+
+
+def with_golden(ours: ToolPath, golden: ToolPath, tolerance: float, title: str) -> Comparison:
+    """
+    Compare a path with its golden trace: points and Z within the tolerance, C at the beginning of each section, F.
+
+    tolerance: [mm]. title: of the golden trace, for the reasons.
+    """
+
+    def turned_by(number: int, mine: ToolPath, other: ToolPath) -> tuple[float, str]:
+        ours_at, other_at = float(mine.turned[number]), float(other.turned[number])
+        if np.isnan(ours_at) and np.isnan(other_at):
+            return 0.0, ""
+        if np.isnan(ours_at) or np.isnan(other_at):
+            known, where = (other_at, "there") if np.isnan(ours_at) else (ours_at, "here")
+            return 0.0, f"C at its beginning is known {where} alone, as {known:.3f} deg"
+        apart = _wrapped(ours_at - other_at)
+        if abs(np.radians(apart)) * mine.farthest > tolerance:
+            return 0.0, f"it is turned by {apart:.3f} deg against {title}"
+        return 0.0, ""
+
+    comparison = _compared(ours, golden, tolerance, title, turned_by)
+    if comparison.reasons or comparison.deviation is None:
+        return comparison
+    for number in range(len(ours.turned)):
+        mine, other = ours.of_section(number), golden.of_section(number)
+        change = _feed_change(mine, other, tolerance)
+        if change is not None:
+            line, now, before = change
+            comparison.reasons.append(f"line {line}: F is {_feed(now)}, in {title} {_feed(before)}")
+    return comparison
+
+
+def with_other(ours: ToolPath, other: ToolPath, tolerance: float, title: str) -> Comparison:
+    """
+    Compare a path with that of another program: points and Z within the tolerance, up to one turn of the whole part.
+
+    tolerance: [mm]. title: of the other case, for the reasons.
+    """
+    turns: list[float] = []
+    remarks: list[str] = []
+
+    def turned_by(number: int, mine: ToolPath, theirs: ToolPath) -> tuple[float, str]:
+        apart = ours.turned - other.turned
+        if not turns or np.isnan(apart[[0, number]]).any():
+            if turns:
+                remarks.append(f"section {number + 1}: its angle is not compared, C at its beginning is not known")
+            best = min(
+                _turns(mine, theirs, number),
+                key=lambda turn: (round(_deviation(mine, theirs, turn, tolerance), 9), abs(turn)),
+            )
+            turns.append(best)
+            return best, ""
+        turn = _wrapped(turns[0] - float(apart[number] - apart[0]))
+        off = _wrapped(turn - turns[0])
+        agrees = abs(np.radians(off)) * mine.farthest <= tolerance
+        if not agrees and _deviation(mine, theirs, turns[0], tolerance) <= tolerance:
+            return turns[0], f"it is turned by {-off:.3f} deg against {title}"
+        return turn, ""
+
+    comparison = _compared(ours, other, tolerance, title, turned_by)
+    return comparison._replace(remarks=comparison.remarks + remarks)
+
+
+def _compared(
+    ours: ToolPath,
+    other: ToolPath,
+    tolerance: float,
+    title: str,
+    turned_by: Callable[[int, ToolPath, ToolPath], tuple[float, str]],
+) -> Comparison:
+    """
+    Compare two paths section by section.
+
+    turned_by: returns the angle by which a section of the other path lies turned [deg], and why it does not agree.
+    """
+    count, expected = len(ours.turned), len(other.turned)
+    if count != expected:
+        return Comparison(
+            None,
+            [f"the path has {counted(count, 'polar section')}, {title} has {counted(expected, 'polar section')}"],
+            [],
+        )
+    if ours.is_programmed.any() != other.is_programmed.any():
+        which = "this program" if ours.is_programmed.any() else title
+        return Comparison(None, [f"R of a cutter is not known in {which}: its path is the programmed one"], [])
+    largest, reasons, remarks = 0.0, list[str](), list[str]()
+    for number in range(count):
+        mine, theirs = ours.of_section(number), other.of_section(number)
+        section = f"section {number + 1}"
+        if np.isnan(mine.z_to).all() and np.isnan(theirs.z_to).all():
+            remarks.append(f"{section}: Z is not compared, it is not known")
+            mine, theirs = _without_z(mine), _without_z(theirs)
+        known = [path.space().is_known for path in (mine, theirs)]
+        unknown = [int(np.count_nonzero(~of_path)) for of_path in known]
+        if unknown[0] != unknown[1]:
+            which = "this program" if unknown[0] > unknown[1] else title
+            return Comparison(None, [*reasons, f"{section}: a position is not known in {which}"], remarks)
+        if unknown[0]:
+            remarks.append(f"{section}: {counted(unknown[0], 'move')} not compared, a position is not known")
+            mine, theirs = mine[known[0]], theirs[known[1]]
+            if not len(mine) or not len(theirs):
+                continue
+        turn, why = turned_by(number, mine, theirs)
+        try:
+            deviation = path_deviation(theirs.space(turn), mine.space(), tolerance)
+        except TooHardError as error:
+            return Comparison(None, [*reasons, f"{section}: not compared with {title}: {error}"], remarks)
+        largest = max(largest, deviation.largest)
+        if why:
+            reasons.append(f"{section}: {why}")
+        other_turn = None if deviation.is_within or why else _turn_that_fits(mine, theirs, turn, tolerance)
+        if other_turn is not None:
+            reasons.append(f"{section}: it is turned by {_wrapped(other_turn - turn):.3f} deg against {title}")
+        elif not deviation.is_within:
+            reasons.append(_farthest_apart(deviation, mine, tolerance, title, section))
+    return Comparison(largest, reasons, remarks)
+
+
+def _farthest_apart(deviation: PathDeviation, mine: ToolPath, tolerance: float, title: str, section: str) -> str:
+    """Return how far and where a path differs from another one."""
+    place = deviation.place
+    where = section
+    at = ""
+    if place is not None:
+        where = f"line {mine.line[place.new_move]}"
+        at = f" at x {place.new.real:.3f} c {place.new.imag:.3f} z {place.new_z:.3f}"
+    most = "" if deviation.is_exact else "up to "
+    return f"{where}: {most}{deviation.largest:.3f} mm from {title}{at} (tolerance {tolerance:g})"
+
+
+def _without_z(path: ToolPath) -> ToolPath:
+    flat = np.zeros(len(path.kind))
+    return msgspec.structs.replace(path, z_from=flat, z_to=flat)
+
+
+def _deviation(mine: ToolPath, theirs: ToolPath, turned: float, tolerance: float) -> float:
+    try:
+        return path_deviation(theirs.space(turned), mine.space(), tolerance).largest
+    except TooHardError:
+        return np.inf
+
+
+def _turn_that_fits(mine: ToolPath, theirs: ToolPath, turned: float, tolerance: float) -> float | None:
+    """Return the angle by which the other path lies turned as a whole [deg]; None where it is another path."""
+    begins = _turn_of_starts(mine, theirs)
+    if abs(_wrapped(begins - turned)) < _SAME_ANGLE or _deviation(mine, theirs, begins, tolerance) > tolerance:
+        return None
+    return begins
+
+
+def _turn_of_starts(mine: ToolPath, theirs: ToolPath) -> float:
+    """Return the angle from the first point of the other path to ours [deg]."""
+    return float(np.degrees(np.angle(mine.start[0] * theirs.start[0].conj())))
+
+
+def _turns(mine: ToolPath, theirs: ToolPath, number: int) -> Iterator[float]:
+    """Yield the angles by which the other path may lie turned [deg]: not at all, as on the part, as its beginning."""
+    yield 0.0
+    on_part = _wrapped(float(theirs.turned[number] - mine.turned[number]))
+    if not np.isnan(on_part):
+        yield on_part
+    yield _turn_of_starts(mine, theirs)
+
+
+def _wrapped(angle: float) -> float:
+    """Return an angle from -180 up to 180 [deg]."""
+    return (angle + 180) % 360 - 180
+
+
+def _feed(value: float) -> str:
+    return "not known" if np.isnan(value) else f"{value:g} mm/min"
+
+
+def _feed_change(mine: ToolPath, theirs: ToolPath, tolerance: float) -> tuple[int, float, float] | None:
+    """
+    Return the line of the first move with another F than the golden trace has there, and both F; None without any.
+
+    Both paths are the same: the way from their beginning says which moves belong to each other.
+    """
+    ends = [np.cumsum(_lengths(path)) for path in (mine, theirs)]
+    if not len(ends[0]) or not len(ends[1]):
+        return None
+    shares = np.unique(np.concatenate([end / (end[-1] or 1.0) for end in ends]))
+    wide = np.diff(np.append(0.0, shares)) * ends[0][-1] > 2 * tolerance
+    middle = (shares - np.diff(np.append(0.0, shares)) / 2)[wide]
+    rows = [np.minimum(np.searchsorted(end / (end[-1] or 1.0), middle), len(end) - 1) for end in ends]
+    now, before = mine.feed[rows[0]], theirs.feed[rows[1]]
+    differs = ~np.isclose(now, before, rtol=_SAME_FEED, atol=0, equal_nan=True)
+    if not differs.any():
+        return None
+    first = int(np.argmax(differs))
+    return int(mine.line[rows[0][first]]), float(now[first]), float(before[first])
+
+
+def _lengths(path: ToolPath) -> Floats:
+    """Return the length of each move in space [mm], 0 where it is not known."""
+    on_plane = length(path.start, path.end, path.center, path.kind)
+    return np.hypot(np.nan_to_num(on_plane), np.nan_to_num(path.z_to - path.z_from))

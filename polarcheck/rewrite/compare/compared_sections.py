@@ -1,0 +1,302 @@
+"""A part of a program that is compared at once: its path, its feeds, and what it orders on the way."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+
+import msgspec
+import numpy as np
+
+from polarcheck.columns.filling import before
+from polarcheck.columns.path.moves import Moves, programmed_moves, z_along
+from polarcheck.columns.path.tool_center import ToolCenter
+from polarcheck.columns.trace import Trace
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, States
+from polarcheck.foundation.states import FeedMode, Motion
+from polarcheck.geometry import polar
+from polarcheck.geometry.comparison.polyline import SpacePath
+from polarcheck.rewrite.compare.orders import Step, special_rows
+from polarcheck.rules.wording.offsets import called_tool, to_give
+
+#: Outside sections C is compared up to this angle [deg], whatever the tolerance of lengths is.
+ANGLE = 0.001
+#: Angles that are below a full turn by less are 0 [deg].
+_NEAR_TURN = 0.01
+NOWHERE = complex("nan+nanj")
+
+
+class Stretch(msgspec.Struct, frozen=True):
+    """
+    A polar section, or what lies between two of them.
+
+    section: its number, -1 outside. rows: of the trace.
+    path: inside a section plane points on the part with Z; outside Z + 1j*X, with C in the place of Z. row: of each
+    move. rapid: moves in rapid traverse. feed_mode: FeedMode of each move. feed: F [mm per min or revolution].
+    steps: what is ordered beside the moves. knows_z: Z is written anywhere; outside always True.
+    c_scale: outside sections what stands for a degree of C in the path. is_rewritten: C counts at feed alone there.
+    needs: why the path is not known; empty where it is. as_programmed: the path is the programmed one, for want of R.
+    """
+
+    section: int
+    rows: Rows
+    path: SpacePath
+    row: Rows
+    rapid: Mask
+    feed_mode: States
+    feed: Floats
+    steps: Sequence[Step]
+    knows_z: bool = True
+    c_scale: float = 1.0
+    is_rewritten: bool = False
+    needs: str = ""
+    as_programmed: str = ""
+
+
+def of_sections(
+    trace: Trace, tool_center: ToolCenter, steps: Sequence[Step], *, is_feed_on_plane: bool = False
+) -> list[Stretch]:
+    """
+    Return the polar sections in order.
+
+    is_feed_on_plane: F is that with which the tool center moves on the plane, and not the one that is programmed: they
+    differ where F is along the contour, or along X, C and Z.
+    """
+    if not len(trace.mode.sections):
+        return []
+    of_tool = _with_z_alone(trace, tool_center.moves)
+    plain = _with_z_alone(trace, programmed_moves(trace))
+    steps_of = _by_section(trace, steps)
+    result = []
+    for number in range(len(trace.mode.sections)):
+        low, high = np.searchsorted(of_tool.section, (number, number + 1)).tolist()
+        moves = of_tool[low:high]
+        missing = moves.row[~moves.is_of_tool & np.isnan(trace.compensation.radius_of_move[moves.row])]
+        needs = as_programmed = ""
+        if len(missing):
+            row = int(missing[0])
+            missing_radius = f"R of {called_tool(trace.tools, row)} is not known"
+            as_programmed = f"{missing_radius}: {to_give(trace.tools, trace.machine, row, 'radius')}"
+            low, high = np.searchsorted(plain.section, (number, number + 1)).tolist()
+            moves = plain[low:high]
+        path, knows_z = _turned(trace, moves, number)
+        if not path.is_known.all():
+            line = int(trace.blocks.line_in_file[moves.row[np.argmin(path.is_known)]])
+            needs = f"a position of line {line} is not known"
+        rows = np.flatnonzero(trace.mode.section == number)
+        section = _stretch(trace, number, rows, path, moves.row, steps_of.get(number, ()), needs)
+        feed = section.feed * moves.plane_share if is_feed_on_plane else section.feed
+        result.append(msgspec.structs.replace(section, as_programmed=as_programmed, knows_z=knows_z, feed=feed))
+    return result
+
+
+def _by_section(trace: Trace, steps: Sequence[Step]) -> dict[int, list[Step]]:
+    by_section: dict[int, list[Step]] = {}
+    for step in steps:
+        by_section.setdefault(int(trace.mode.section[step.row]), []).append(step)
+    return by_section
+
+
+def _stretch(
+    trace: Trace,
+    section: int,
+    rows: Rows,
+    path: SpacePath,
+    row: Rows,
+    steps: Sequence[Step],
+    needs: str = "",
+) -> Stretch:
+    per_minute = trace.feedrate.feed_mode[row] == FeedMode.PER_MINUTE
+    feed = np.where(per_minute, trace.feedrate.feed[row], trace.feedrate.feed_number[row])
+    return Stretch(
+        section=section,
+        rows=rows,
+        path=path,
+        row=row,
+        rapid=trace.axes.motion[row] == Motion.RAPID,
+        feed_mode=trace.feedrate.feed_mode[row],
+        feed=feed,
+        steps=steps,
+        needs=needs,
+    )
+
+
+def _with_z_alone(trace: Trace, moves: Moves) -> Moves:
+    """The moves, and between them the blocks that move Z alone: ways of no length on the plane."""
+    alone = np.flatnonzero((trace.mode.section >= 0) & trace.path.moves_z & ~trace.path.travels)
+    alone = alone[~np.isin(alone, moves.row)]
+    if not len(alone):
+        return moves
+    section = trace.mode.section[alone]
+    behind = np.searchsorted(moves.row, alone)
+    last = np.maximum(behind - 1, 0)
+    follows = np.minimum(behind, max(len(moves) - 1, 0))
+    point = trace.path.end[alone].copy()
+    if len(moves):
+        has_next = (behind < len(moves)) & (moves.section[follows] == section)
+        point = np.where(has_next, moves.start[follows], point)
+        has_last = (behind > 0) & (moves.section[last] == section)
+        point = np.where(has_last, moves.end[last], point)
+    count = len(alone)
+    added = msgspec.structs.replace(
+        moves,
+        row=alone,
+        section=section,
+        kind=np.full(count, Motion.LINE, np.int16),
+        start=point,
+        end=point,
+        center=np.full(count, NOWHERE),
+        feed=trace.feedrate.feed[alone],
+        rise=np.zeros(count),
+        arc_share=np.ones(count),
+        known=np.ones(count, bool),
+        phase=np.zeros(count, np.int16),
+        corner=np.zeros(count, bool),
+        allowance=np.zeros(count),
+    )
+    both = Moves.concatenated([moves, added])
+    return both[np.argsort(both.row, kind="stable")]
+
+
+def turn_of(trace: Trace, section: int) -> complex:
+    """The direction of the x of a section on the part; 1 where C at its beginning is not known."""
+    if not trace.path.knows_section_entry[section]:
+        return 1 + 0j
+    return complex(np.exp(1j * np.radians(trace.path.c_axis.sense * trace.path.section_entry[section])))
+
+
+def _turned(trace: Trace, moves: Moves, section: int) -> tuple[SpacePath, bool]:
+    """The path in the frame of the part, and whether Z is known; else it is 0."""
+    turn = turn_of(trace, section)
+    z_from, z_to = z_along(trace, moves)
+    knows_z = not len(moves) or not (np.isnan(z_from).all() and np.isnan(z_to).all())
+    if not knows_z:
+        z_from = z_to = np.zeros(len(moves))
+    return SpacePath(moves.start * turn, moves.end * turn, moves.center * turn, moves.kind, z_from, z_to), knows_z
+
+
+class Rewritten(msgspec.Struct, frozen=True):
+    """
+    How a program is compared with the one for another control that is made of it.
+
+    left_out: lines of the file whose moves and orders outside of sections do not count; moves behind them follow on.
+    angle: what C may differ by behind a section [deg].
+    """
+
+    left_out: Collection[int] = ()
+    angle: float = ANGLE
+
+
+def outside(
+    trace: Trace, tolerance: float, steps: Sequence[Step], first: int, until: int, rewritten: Rewritten | None = None
+) -> Stretch:
+    """
+    Return what lies outside of sections between two rows.
+
+    tolerance: of lengths [mm]; C is scaled so that ANGLE, or that of `rewritten`, is as much. until: the row behind the
+    last.
+    """
+    rows = np.arange(first, until)
+    rows = rows[trace.mode.section[rows] < 0]
+    at_work = np.isin(trace.axes.motion[rows], (Motion.RAPID, Motion.LINE, Motion.CW, Motion.CCW))
+    moving = at_work & trace.path.moves[rows] & ~trace.modal.in_cycle[rows] & trace.modal.uses_axes[rows]
+    moving &= ~special_rows(trace)[rows]
+    left_out = np.isin(trace.blocks.line_in_file, list(rewritten.left_out if rewritten else ()))
+    is_left_out = left_out[rows]
+    row = rows[moving & ~is_left_out]
+    starts, path = trace.blocks.starts, trace.path
+    columns = [(before(column, starts, np.nan)[row], column[row]) for column in (path.x, path.z, path.c_angle)]
+    needs = ""
+    written = (("X", "U"), ("Z", "W"), trace.machine.polar.rotary_words)
+    for (_, after), words in zip(columns, written, strict=True):
+        lost = np.isnan(after) & trace.blocks.has(*words)[row]
+        if lost.any() and not needs:
+            needs = f"{words[0]} of line {int(trace.blocks.line_in_file[row[np.argmax(lost)]])} is not known"
+    if rewritten is not None and len(rows):
+        at = [before(column, starts, np.nan)[rows[0]] for column in (path.x, path.z, path.c_angle)]
+        named = [trace.blocks.has(*words)[row] for words in written]
+        columns = [
+            _following_on(here, start, np.where(names, end, np.nan))
+            for here, (start, end), names in zip(at, columns, named, strict=True)
+        ]
+    (x_from, x_to), (z_from, z_to) = (_without_unknown(*column) for column in columns[:2])
+    c_from, c_to = _without_unknown(*columns[2])
+    if rewritten is not None:
+        turn = c_to - c_from
+        turn -= 360 * np.round((turn - np.nan_to_num(path.c_turn[row])) / 360)
+        c_from, c_to = _at_feed_alone(trace, row, left_out, c_from, c_from + turn)
+    else:
+        c_from, c_to = _continuous(c_from, c_to, path.c_turn[row])
+    # C counts in the sense of the plane, which is not that of C on each lathe.
+    scale = tolerance / (rewritten.angle if rewritten else ANGLE) * trace.path.c_axis.sense
+    start, end = z_from + 1j * x_from, z_to + 1j * x_to
+    kind = trace.axes.motion[row].astype(np.int16)
+    center = _centers(trace, row, start, end, kind)
+    kind = np.where(np.isnan(center), Motion.LINE, kind).astype(np.int16)
+    of_stretch = SpacePath(start, end, center, kind, c_from * scale, c_to * scale)
+    own = set(rows[~is_left_out].tolist())
+    stretch = _stretch(trace, -1, rows, of_stretch, row, [step for step in steps if step.row in own], needs)
+    return msgspec.structs.replace(stretch, c_scale=scale, is_rewritten=rewritten is not None)
+
+
+def _without_unknown(start: Floats, end: Floats) -> tuple[Floats, Floats]:
+    """An axis that is not known yet stands where it is first known; one that never is stands at 0."""
+    values = np.column_stack((start, end)).ravel()
+    known = np.flatnonzero(~np.isnan(values))
+    if not len(known):
+        return np.zeros(len(start)), np.zeros(len(end))
+    following = known[np.minimum(np.searchsorted(known, np.arange(len(values))), len(known) - 1)]
+    filled = values[following]
+    return filled[::2], filled[1::2]
+
+
+def _following_on(here: float, start: Floats, end: Floats) -> tuple[Floats, Floats]:
+    """
+    Each move begins where the one before has ended; an axis that it does not name stands where it was named last.
+
+    here: where the axis stands before all of them; NaN where that is not known.
+    """
+    known = np.flatnonzero(~np.isnan(end))
+    if len(known):
+        last = np.searchsorted(known, np.arange(len(end)), side="right") - 1
+        end = np.where(last < 0, here, end[known[np.maximum(last, 0)]])
+    return np.append(here, end)[: len(end)], end
+
+
+def _at_feed_alone(trace: Trace, row: Rows, left_out: Mask, start: Floats, end: Floats) -> tuple[Floats, Floats]:
+    """
+    C within a turn; where several moves in rapid traverse follow each other, all of them have that of the last.
+
+    Which of them turns C, and over how many full turns, is a matter of the control.
+    """
+    sense = trace.path.c_axis.sense
+    begin = (sense * start + _NEAR_TURN) % 360 - _NEAR_TURN
+    finish = begin + sense * (end - start)
+    stops = np.append(trace.axes.motion[row] != Motion.RAPID, True)[: len(row)]
+    stops[-1:] = True
+    cycles = np.cumsum(trace.modal.in_cycle & ~left_out)
+    stops[:-1] |= np.diff(cycles[row]) > 0
+    last = np.flatnonzero(stops)[np.searchsorted(np.flatnonzero(stops), np.arange(len(row)))] if len(row) else row
+    is_rapid = trace.axes.motion[row] == Motion.RAPID
+    # A run of rapid traverse that ends with a move at feed has the C with which that begins.
+    angle = np.where(is_rapid[last], finish[last], begin[last])
+    angle = (angle + _NEAR_TURN) % 360 - _NEAR_TURN
+    return sense * np.where(is_rapid, angle, begin), sense * np.where(is_rapid, angle, finish)
+
+
+def _continuous(start: Floats, end: Floats, turn: Floats) -> tuple[Floats, Floats]:
+    """C as it turns: where it rolls over, an angle is reached the shorter way, and 360 deg more are the same place."""
+    end = np.where(np.isnan(turn), end, start + turn)
+    jump = start - np.append(start[:1], end[:-1])
+    turns = 360 * np.cumsum(np.round(jump / 360))
+    return start - turns, end - turns
+
+
+def _centers(trace: Trace, row: Rows, start: Points, end: Points, kind: States) -> Points:
+    """Centers of arcs in the plane of X and Z, by their radius or by I and K; NaN for lines, and without either."""
+    addresses = ("I", "K", trace.machine.arcs.radius_word)
+    i, k, radius = (trace.lengths.length_of(address)[row] for address in addresses)
+    is_arc = (kind == Motion.CW) | (kind == Motion.CCW)
+    by_radius = polar.center_from_radius(start, end, radius, kind, 0.01)
+    by_words = start + np.nan_to_num(k) + 1j * np.nan_to_num(i)
+    has_words = ~np.isnan(i) | ~np.isnan(k)
+    return np.where(is_arc, np.where(has_words, by_words, by_radius), NOWHERE)

@@ -1,0 +1,120 @@
+"""The state at the beginning of a polar section, and what differs there between two revisions."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from polarcheck.columns.trace import Trace
+from polarcheck.rewrite.compare.comparison_report import Difference
+from polarcheck.rewrite.compare.differences import Part
+from polarcheck.rewrite.compare.orders import speed_in_force
+from polarcheck.rules.quantity import rounded
+from polarcheck.rules.wording.offsets import called_tool
+
+_UNITS = {"radius": "mm", "c_angle": "deg", "speed": "rev/min"}
+_NAMES = {
+    "tool": "the tool",
+    "radius": "R",
+    "c_angle": "C at the beginning of the section",
+    "spindle": "the main spindle",
+    "live_tool": "the live tool",
+    "speed": "S",
+    "plane": "the plane",
+}
+#: Angles nearer than this [deg] are one.
+_SAME_ANGLE = 1e-3
+
+
+class Entry(NamedTuple):
+    """
+    State of a section.
+
+    tool: tool and offset as they are called. radius: R with which it is compensated, or that is in force [mm].
+    c_angle: [deg], from 0 to 360. speed: S as written. plane: as G17. NaN or empty where it is not known.
+    """
+
+    tool: str
+    radius: float
+    c_angle: float
+    spindle: str
+    live_tool: str
+    speed: float
+    plane: str
+
+
+def entry_of(trace: Trace, section: int) -> Entry:
+    """Return the state of a section."""
+    enter = int(trace.mode.sections.enter[section])
+    compensated = np.flatnonzero((trace.mode.section == section) & trace.compensation.compensates)
+    row = int(compensated[0]) if len(compensated) else enter
+    angle = float(trace.path.section_entry[section]) % 360 if trace.path.knows_section_entry[section] else np.nan
+    plane = int(trace.modal.state("plane")[enter])
+    return Entry(
+        tool=called_tool(trace.tools, row) if trace.tools.has_called_tool[row] else "",
+        radius=abs(float(trace.compensation.radius[row])),
+        c_angle=angle,
+        spindle=_runs(bool(trace.modal.spindle[enter])),
+        live_tool=_runs(bool(trace.modal.live_tool[enter])),
+        speed=float(speed_in_force(trace)[enter]),
+        plane=f"G{plane}" if plane else "",
+    )
+
+
+def _runs(on: bool) -> str:
+    return "runs" if on else "stands"
+
+
+def entry_differences(old: Part, new: Part, *, is_same_machine: bool, tolerance: float) -> Iterator[Difference]:
+    """Yield what differs at the beginning of two sections; across machines what means the same on both."""
+    before, after = (entry_of(part.trace, part.stretch.section) for part in (old, new))
+    lines = [part.line(int(part.trace.mode.sections.enter[part.stretch.section])) for part in (old, new)]
+    own = {"tool", "plane", *_of_one_machine(old, new)}
+    for what in Entry._fields:
+        if not is_same_machine and what in own:
+            continue
+        value, other = getattr(before, what), getattr(after, what)
+        if isinstance(value, str):
+            if value != other:
+                text = f"{_NAMES[what]}: {value or 'none'} has become {other or 'none'}"
+                yield Difference(what, text, value or None, other or None, "", *lines)
+            continue
+        apart = abs(value - other)
+        if what == "c_angle":
+            apart = min(apart, 360 - apart)
+        least = {"c_angle": _SAME_ANGLE, "radius": tolerance}.get(what, 0.0)
+        if (np.isnan(value) and np.isnan(other)) or apart <= least:
+            continue
+        if what in ("radius", "c_angle") and np.isnan(apart):
+            continue  # one of them is not known: that is no difference, and the section says so
+        shown = [_shown(part, what, number) for part, number in ((old, value), (new, other))]
+        yield Difference(
+            what,
+            f"{_NAMES[what]} was {shown[0]} and is {shown[1]}",
+            rounded(value),
+            rounded(other),
+            _UNITS[what],
+            *lines,
+        )
+
+
+def _of_one_machine(old: Part, new: Part) -> Iterator[str]:
+    """States that one of two machines does not have, or whose codes its profile does not name."""
+    traces = old.trace, new.trace
+    for what, codes in (("live_tool", "live_tool_on"), ("spindle", "spindle_on")):
+        if not all(getattr(trace.machine.m_codes, codes) for trace in traces):
+            yield what
+    if any(trace.machine.polar.plane_is_fixed for trace in traces):
+        yield "c_angle"
+    if any(np.isnan(speed_in_force(trace)).all() for trace in traces):
+        yield "speed"
+
+
+def _shown(part: Part, what: str, value: float) -> str:
+    if np.isnan(value):
+        return "not known"
+    if what == "radius":
+        return part.quantity(value, int(part.trace.mode.sections.enter[part.stretch.section])).shown("length", 1)
+    return f"{value:.3f}".rstrip("0").rstrip(".")

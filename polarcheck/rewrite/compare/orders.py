@@ -1,0 +1,194 @@
+"""What a program orders beside its moves: tools, speeds, M codes, cycles, dwells, in the order in which they run."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from polarcheck.columns.filling import before, fill_down
+from polarcheck.columns.trace import Trace
+from polarcheck.foundation.arrays import Floats, Mask, Rows
+from polarcheck.foundation.states import MM_PER_INCH, FeedMode, Units
+from polarcheck.program.machines.axis_table import FIRST_NAMED
+from polarcheck.program.machines.code_tables import code_set
+
+#: Words that plain moves are written with, and those that only name blocks.
+_OF_MOVES = ("X", "Z", "U", "W", "I", "J", "K", "R", "F", "N", "O", "/")
+_FEED_MODES: dict[int, str] = {FeedMode.PER_MINUTE: " mm/min", FeedMode.PER_REVOLUTION: " mm/rev"}
+#: Words beside the code of a call: the program or block, how often, where from.
+_OF_CALLS = "PLQH"
+#: Words that hold lengths in a cycle.
+_LENGTHS = ("X", "Y", "Z", "U", "V", "W", "I", "J", "K", "R")
+#: Lists of G codes whose states are compared as moves, feeds and entries, not as orders.
+_OF_STATES = (
+    *("rapid", "line", "arc_clockwise", "arc_counterclockwise", "plane_xy", "plane_zx", "plane_yz"),
+    *("compensation_off", "compensation_left", "compensation_right", "inch", "mm"),
+    *("feed_inverse_time", "feed_per_minute", "feed_per_revolution", "absolute", "incremental"),
+)
+#: M codes that mean the same on every lathe, and whose effect no table of states shows.
+_EVERYWHERE = ("M0", "M1", "M7", "M8", "M9")
+#: M codes that are compared across machines otherwise, or that end programs.
+_COMPARED_OTHERWISE = ("M2", "M3", "M4", "M5", "M30")
+
+
+class Step(NamedTuple):
+    """
+    An order beside the moves.
+
+    row: of the trace. tokens: its codes, and the addresses of its values. values: the numbers of these, lengths in mm
+    and radii. text: as it is shown.
+    """
+
+    row: int
+    tokens: tuple[str, ...]
+    values: tuple[float, ...]
+    text: str
+
+
+def speed_in_force(trace: Trace) -> Floats:
+    """The last S of each row as written, without the limit beside G50; NaN before the first."""
+    written = trace.blocks.has("S") & ~trace.modal.sets_coordinates
+    return fill_down(np.where(written, trace.blocks.word("S"), np.nan), written | trace.blocks.starts, np.nan)
+
+
+def special_rows(trace: Trace) -> Mask:
+    """Rows whose axis words are no end of a plain move: cycles, references, shifts, dwells, blocks not executed."""
+    modal = trace.modal
+    others = trace.blocks.listed("machine_coordinates", "repetitive_cycle") | modal.sets_coordinates
+    return np.asarray(~modal.uses_axes | modal.in_cycle | others)
+
+
+def steps(trace: Trace, *, is_same_machine: bool) -> list[Step]:
+    """
+    Return the orders of a program in the order in which they run.
+
+    is_same_machine: the other revision is for the same machine. Else only M codes count that mean the same on every
+    lathe, since which others a contour needs is a matter of the lathe.
+    """
+    return list(filter(None, map(_Reader(trace, is_same_machine).step, _rows(trace, is_same_machine).tolist())))
+
+
+def not_comparable(trace: Trace) -> list[str]:
+    """The M codes of a program that are not compared with those of another lathe."""
+    macro = trace.machine.macro
+    known = {*_EVERYWHERE, *_COMPARED_OTHERWISE, *macro.subprogram_calls, *macro.program_returns}
+    written = dict.fromkeys(f"M{value:g}" for value in trace.run.words.value[trace.blocks.m_words].tolist())
+    return [word for word in written if word not in known]
+
+
+def _rows(trace: Trace, is_same_machine: bool) -> Rows:
+    """Rows that may order something beside their moves."""
+    blocks, row = trace.blocks, trace.run.row
+    turns_side = _turns_side(trace)
+    if not is_same_machine:
+        return np.unique(np.concatenate([row[blocks.m_words], np.flatnonzero(turns_side)]))
+    usual = [trace.machine.address_number(name) for name in (*_words_of_moves(trace), "G") if name]
+    unusual = ~np.isin(trace.run.words.address, usual)
+    unusual[blocks.g_words[~_sets_state(trace)]] = True
+    return np.unique(np.concatenate([row[unusual], np.flatnonzero(special_rows(trace) | turns_side)]))
+
+
+def _words_of_moves(trace: Trace) -> set[str]:
+    polar = trace.machine.polar
+    return {*_OF_MOVES, *polar.axis_addresses, *polar.rotary_words}
+
+
+def _sets_state(trace: Trace) -> Mask:
+    """Per G word: it is of a list whose state is compared otherwise."""
+    words = [word for key in _OF_STATES for word in trace.machine.codes(key)]
+    words += [*trace.machine.polar.on, *trace.machine.polar.off]
+    return code_set([word for word in words if word.startswith("G") and " " not in word])[trace.blocks.g_codes]
+
+
+def _turns_side(trace: Trace) -> Mask:
+    """Rows that begin or end compensation where the path does not show it: outside of sections, and without R."""
+    side = trace.compensation.side
+    is_hidden = (trace.mode.section < 0) | np.isnan(trace.compensation.radius_of_move)
+    return np.asarray((side != before(side, trace.blocks.starts, 40)) & is_hidden)
+
+
+def _of_calls(trace: Trace) -> Mask:
+    """Words that call and return: what they call stands in their place, with the arguments of macros in it."""
+    blocks, macro, row = trace.blocks, trace.machine.macro, trace.run.row
+    plain = (*macro.subprogram_calls, *macro.local_calls, *macro.program_returns)
+    of_macros = (*macro.macro_calls, *macro.modal_macro_calls, *macro.modal_macro_calls_each_block)
+    words = blocks.words_at(blocks.code_indices(*plain)) | blocks.codes(*of_macros)[row]
+    beside = np.isin(trace.run.words.address, [ord(name) for name in _OF_CALLS])
+    return np.asarray(words | (beside & blocks.codes(*plain)[row]))
+
+
+class _Reader:
+    """Reads the orders of rows one after the other."""
+
+    def __init__(self, trace: Trace, is_same_machine: bool) -> None:
+        self._trace = trace
+        self._is_same_machine = is_same_machine
+        self._of_moves = _words_of_moves(trace)
+        self._special = special_rows(trace)
+        self._turns_side = _turns_side(trace)
+        self._is_left_out = trace.run.words.is_unreadable | _of_calls(trace)
+        self._is_left_out[trace.blocks.g_words[_sets_state(trace)]] = True
+        self._in_force: dict[str, float] = {}
+
+    def step(self, row: int) -> Step | None:
+        """The step of a row; None where it orders nothing that was not in force."""
+        low, high = np.searchsorted(self._trace.run.row, (row, row + 1)).tolist()
+        parts = [part for index in range(low, high) if (part := self._part(row, index)) is not None]
+        if parts and self._is_same_machine and self._trace.modal.in_cycle[row]:
+            parts.append(self._feed(row))
+        if self._turns_side[row]:
+            side = f"G{int(self._trace.compensation.side[row])}"
+            parts.insert(0, (side, None, side))
+        if not parts:
+            return None
+        tokens, values, shown = zip(*parts, strict=True)
+        return Step(row, tokens, tuple(value for value in values if value is not None), " ".join(shown))
+
+    def _part(self, row: int, index: int) -> tuple[str, float | None, str] | None:
+        """Token, value and text of a word; None for one that is compared elsewhere."""
+        words, is_special = self._trace.run.words, bool(self._special[row])
+        name, value = self._address(int(words.address[index])), float(words.value[index])
+        text = f"{name}{value:.10g}"
+        if self._is_left_out[index]:
+            return None
+        if name == "M":
+            return (text, None, text) if self._is_same_machine or text in _EVERYWHERE else None
+        if not self._is_same_machine:
+            return None
+        if name in ("S", "T"):
+            if not is_special:
+                if self._in_force.get(name) == value:
+                    return None
+                self._in_force[name] = value
+            return name, value, text
+        if name in ("N", "O", "/") or (name == "F" and self._trace.modal.in_cycle[row]):
+            return None
+        if name == "G":
+            return text, None, text
+        return (name, self._length(name, row, value), text) if is_special or name not in self._of_moves else None
+
+    def _feed(self, row: int) -> tuple[str, float | None, str]:
+        """F in force in a cycle, wherever it is written [mm per min or per revolution]."""
+        feedrate = self._trace.feedrate
+        feed = float(np.nan_to_num(feedrate.feed_number[row]))
+        mode = _FEED_MODES.get(int(feedrate.feed_mode[row]), "")
+        return f"F{mode}", feed, f"F{feed:.10g}{mode}"
+
+    def _length(self, name: str, row: int, value: float) -> float:
+        """A word of a cycle as a length [mm, X as a radius], where it may be one."""
+        trace = self._trace
+        if name not in _LENGTHS:
+            return value
+        length = float(trace.lengths.length_of(name)[row])
+        if np.isnan(length):
+            length = value * (MM_PER_INCH if trace.lengths.units[row] == Units.INCH else 1.0)
+        return length * float(trace.lengths.x_factor[row]) if name in ("X", "U") else length
+
+    def _address(self, number: int) -> str:
+        """A letter, a letter behind a comma as `,R`, or the name of an axis."""
+        if number < FIRST_NAMED:
+            return f",{chr(number).upper()}" if chr(number).islower() else chr(number)
+        control = self._trace.machine.control
+        named = [*sorted(control.named_axes), *sorted(control.spindle_words)]
+        return named[number - FIRST_NAMED] if number - FIRST_NAMED < len(named) else "?"

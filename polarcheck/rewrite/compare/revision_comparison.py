@@ -1,0 +1,391 @@
+"""Two revisions of a program compared: section by section, what lies between them, and what could not be compared."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Iterator, Sequence
+from typing import NamedTuple, TypeVar
+
+import msgspec
+import numpy as np
+from numpy.typing import NDArray
+
+from polarcheck.checking.not_evaluated import bounds_not_reported, unexecuted
+from polarcheck.checking.polar_sections import polar_sections
+from polarcheck.columns.trace import Trace
+from polarcheck.foundation.arrays import Rows
+from polarcheck.foundation.errors import TooHardError
+from polarcheck.foundation.finding import PolarSection
+from polarcheck.foundation.time_limit import keep_time
+from polarcheck.geometry.comparison.path_deviation import PathDeviation
+from polarcheck.program.reading.words import Blocks, Spans, Text
+from polarcheck.rewrite.compare.compared_sections import ANGLE, Rewritten, Stretch, of_sections, outside
+from polarcheck.rewrite.compare.comparison_report import (
+    DIFFERS,
+    NOT_COMPARED,
+    SAME_METAL,
+    SAME_WORDS,
+    Comparison,
+    Difference,
+    NotCompared,
+    Program,
+    SectionPair,
+    Side,
+)
+from polarcheck.rewrite.compare.differences import Part, depth_of, deviation_of, differences, length_of
+from polarcheck.rewrite.compare.entry_state import entry_differences
+from polarcheck.rewrite.compare.orders import not_comparable, steps
+from polarcheck.rewrite.compare.pairing import paired
+from polarcheck.rules.quantity import rounded
+from polarcheck.rules.tables import Tables
+
+
+def has_same_words(old: Trace, new: Trace) -> bool:
+    """
+    Return True if the programs have the same words in the same blocks, but for N and comments.
+
+    X10 is not X10., since controls read them differently. Comments count where R is taken from them. Blocks with macro
+    statements count by their characters. A word that the control cannot read is like no other.
+    """
+    first, second = old.text, new.text
+    if first.words.is_unreadable.any() or second.words.is_unreadable.any():
+        return False
+    if old.job.radius_from_comments and _spans(first, first.comments) != _spans(second, second.comments):
+        return False
+    macros = [_spans(text, text.blocks[text.blocks.is_macro]) for text in (first, second)]
+    return macros[0] == macros[1] and all(
+        np.array_equal(one, other) for one, other in zip(_columns(first), _columns(second), strict=True)
+    )
+
+
+def _columns(text: Text) -> Iterator[NDArray[np.generic]]:
+    words = text.words[text.words.address != ord("N")]
+    yield from (words.address, np.nan_to_num(words.value, nan=np.inf), words.has_point)
+    # Where blocks begin.
+    yield np.diff(words.block, prepend=-1) != 0
+
+
+def _spans(text: Text, spans: Blocks | Spans) -> list[bytes]:
+    """The characters of spans without spaces, in upper case."""
+    bounds = zip(spans.start.tolist(), spans.end.tolist(), strict=True)
+    return [b"".join(text.source.code[start:end].tobytes().split()).upper() for start, end in bounds]
+
+
+Item = TypeVar("Item")
+#: A run of a file as checking.check.read gives it: the state of block skip, and its tables.
+Run = tuple[str, Tables]
+
+
+class Revision(NamedTuple):
+    """
+    One of the two files.
+
+    path: as it is shown. machine: its name. runs: of all channels and states of block skip.
+    """
+
+    path: str
+    machine: str
+    runs: Sequence[Run]
+
+    @property
+    def trace(self) -> Trace:
+        """The first run."""
+        trace: Trace = self.runs[0][1]["trace"]
+        return trace
+
+
+def default_tolerance(old: Revision, new: Revision) -> float:
+    """Return the least increment of the coarser of both [mm]: neither program can say a length more closely."""
+    steps_of = (float(np.max(revision.trace.lengths.least_step, initial=0.0)) for revision in (old, new))
+    return max(*steps_of, 1e-6)
+
+
+def compared(
+    old: Revision, new: Revision, tolerance: float, left_out: Collection[int] = (), *, is_rewritten: bool = False
+) -> Comparison:
+    """
+    Compare two revisions.
+
+    tolerance: lengths that differ by no more are the same [mm]. left_out: lines of the old file whose moves and orders
+    outside of sections are not compared. is_rewritten: the new program is the old one for another control. Of sections
+    the speed of the tool center on the plane is compared then, and not F as it is programmed; behind them C is the same
+    up to what rounding of the last point comes to.
+    """
+    is_same_machine = old.trace.machine == new.trace.machine
+    runs = [_Runs(*pair, tolerance, is_same_machine, left_out, is_rewritten) for pair in _pairs_of_runs(old, new)]
+    sections = [section for run in runs for section in run.sections()]
+    between = [difference for run in runs for difference in run.outside()]
+    missing = sorted(
+        dict.fromkeys(reason for run in runs for reason in run.not_compared), key=lambda reason: not reason.matters
+    )
+    same_words = is_same_machine and old.trace.job == new.trace.job and has_same_words(old.trace, new.trace)
+    differs = bool(between) or any(section.change not in ("same", "not compared") for section in sections)
+    verdict = SAME_METAL
+    if any(run.is_broken_off for run in runs):
+        verdict = NOT_COMPARED  # what was not reached is not missing
+    elif differs:
+        verdict = DIFFERS
+    elif same_words:
+        verdict = SAME_WORDS
+    elif any(reason.matters for reason in missing):
+        verdict = NOT_COMPARED
+    if verdict == SAME_WORDS:
+        missing = [NotCompared(reason.reason, matters=False) for reason in missing]
+    measured = [value for run in runs for value in run.measured]
+    largest = max(measured, default=None, key=lambda each: each[0])
+    return Comparison(
+        old=_program(old),
+        new=_program(new),
+        verdict=verdict,
+        tolerance=tolerance,
+        deviation=None if largest is None else rounded(largest[0]),
+        is_exact=largest is None or largest[1],
+        sections=_once(sections),
+        outside=_once(between),
+        not_compared=missing,
+    )
+
+
+def _once(items: Sequence[Item]) -> list[Item]:
+    """What both states of block skip have in common stands once."""
+    return list({msgspec.json.encode(item): item for item in items}.values())
+
+
+def _program(revision: Revision) -> Program:
+    trace = revision.trace
+    return Program(revision.path, revision.machine, len(trace), len(trace.mode.sections))
+
+
+def _pairs_of_runs(old: Revision, new: Revision) -> Iterator[tuple[Tables, Tables]]:
+    """Runs of one channel and one state of block skip; a file without / has one run for both states."""
+    channels = [_by_channel(revision) for revision in (old, new)]
+    names = list(dict.fromkeys([*channels[0], *channels[1]]))
+    for name in names:
+        of_old, of_new = (by_name.get(name) or next(iter(by_name.values())) for by_name in channels)
+        for state in dict.fromkeys([*of_old, *of_new]):
+            pair = [runs.get(state) or next(iter(runs.values())) for runs in (of_old, of_new)]
+            yield pair[0], pair[1]
+
+
+def _by_channel(revision: Revision) -> dict[str, dict[str, Tables]]:
+    channels: dict[str, dict[str, Tables]] = {}
+    for state, tables in revision.runs:
+        channels.setdefault(tables["text"].source.channel or "", {})[state] = tables
+    return channels
+
+
+class _Runs:
+    """One run of each revision, compared."""
+
+    def __init__(
+        self,
+        old: Tables,
+        new: Tables,
+        tolerance: float,
+        is_same_machine: bool,
+        left_out: Collection[int],
+        is_rewritten: bool,
+    ) -> None:
+        self._tables = old, new
+        self._left_out = left_out
+        self._is_rewritten = is_rewritten
+        self._tolerance = tolerance
+        self._is_same_machine = is_same_machine
+        self._traces: tuple[Trace, Trace] = old["trace"], new["trace"]
+        self._steps = tuple(steps(trace, is_same_machine=is_same_machine) for trace in self._traces)
+        self._old, self._new = (
+            of_sections(trace, tables["tool_center"], steps, is_feed_on_plane=is_rewritten)
+            for trace, tables, steps in zip(self._traces, self._tables, self._steps, strict=True)
+        )
+        is_in_order = is_rewritten and len(self._old) == len(self._new)
+        numbers = np.arange(len(self._old))
+        self._partner, self._ordered = (numbers, numbers) if is_in_order else paired(self._old, self._new)
+        #: Largest deviations [mm], and whether they are exact.
+        self.measured: list[tuple[float, bool]] = []
+        self.not_compared: list[NotCompared] = list(self._missing())
+
+    @property
+    def is_broken_off(self) -> bool:
+        """A bound has ended one of the runs."""
+        return any(len(tables["faults"].is_bound) and tables["faults"].is_bound.any() for tables in self._tables)
+
+    def _missing(self) -> Iterator[NotCompared]:
+        for name, tables in zip(("old", "new"), self._tables, strict=True):
+            for entry in (*unexecuted(tables), *bounds_not_reported(tables, ())):
+                yield NotCompared(f"{name}: {entry.reason}", matters=entry.matters)
+            unreadable = int(np.count_nonzero(tables["words"].is_unreadable))
+            if unreadable:
+                count = "a word" if unreadable == 1 else f"{unreadable} words"
+                yield NotCompared(f"{name}: {count} that the control cannot read: polarcheck check names them")
+        if self._is_same_machine:
+            return
+        yield NotCompared("the machines differ: tool numbers, planes and G codes are not compared", matters=False)
+        for name, trace in zip(("old", "new"), self._traces, strict=True):
+            codes = not_comparable(trace)
+            if codes:
+                reason = f"{name}: {', '.join(codes)}: what another lathe needs in their place is not compared"
+                yield NotCompared(reason, matters=False)
+
+    # ---- sections ----
+
+    def sections(self) -> list[SectionPair]:
+        """Return the pairs in the order of the old revision, then the sections that were added."""
+        reports = [polar_sections(tables) for tables in self._tables]
+        known: set[tuple[str, object, object]] = set()
+        pairs = []
+        for number, partner in enumerate(self._partner.tolist()):
+            keep_time()
+            side = _side(self._old[number], self._traces[0], reports[0])
+            if partner < 0:
+                text = f"the section of line {side.line} is missing"
+                gone = Difference("section", text, old_line=side.line)
+                pairs.append(SectionPair(side, None, "missing", None, True, [gone]))
+                continue
+            other = _side(self._new[partner], self._traces[1], reports[1])
+            pairs.append(self._pair(number, partner, side, other, known))
+        taken = set(self._partner.tolist())
+        for number, section in enumerate(self._new):
+            if number not in taken:
+                side = _side(section, self._traces[1], reports[1])
+                more = Difference("section", f"the section of line {side.line} is added", new_line=side.line)
+                pairs.append(SectionPair(None, side, "added", None, True, [more]))
+        return pairs
+
+    def _pair(
+        self, number: int, partner: int, side: Side, other: Side, known: set[tuple[str, object, object]]
+    ) -> SectionPair:
+        old, new = Part(self._traces[0], self._old[number]), Part(self._traces[1], self._new[partner])
+        state = [*_left_open(old, new)]
+        state += [
+            each
+            for each in entry_differences(old, new, is_same_machine=self._is_same_machine, tolerance=self._tolerance)
+            # What holds for all sections stands in the first.
+            if (each.what, each.old, each.new) not in known
+        ]
+        known.update((each.what, each.old, each.new) for each in state if each.what != "c_angle")
+        why = self._why_not(old, new)
+        deviation, differences = None, list[Difference]()
+        if not why:
+            why, deviation, differences = self._measured(old, new)
+        if why:
+            lines = f"section of line {side.line} (old) and {other.line} (new)"
+            self.not_compared.append(NotCompared(f"{lines}: {why}"))
+        elif old.stretch.as_programmed:
+            reason = f"section of line {side.line}: {old.stretch.as_programmed}: compared as programmed, for any R"
+            self.not_compared.append(NotCompared(reason, matters=False))
+        differences = [*differences, *state]
+        change = "changed" if differences else "not compared" if why else "same"
+        if number not in self._ordered:
+            change = "moved"
+            text = f"the section of line {side.line} runs at another place in the order, in line {other.line}"
+            differences.insert(0, Difference("section", text, None, None, "", side.line, other.line))
+        largest = None if deviation is None else rounded(length_of(old, deviation))
+        return SectionPair(side, other, change, largest, deviation is None or deviation.is_exact, differences)
+
+    def _measured(self, old: Part, new: Part) -> tuple[str, PathDeviation | None, list[Difference]]:
+        """Why two parts were not compared, or how far their paths are apart and what differs."""
+        try:
+            deviation = deviation_of(old, new, self._tolerance)
+        except TooHardError as error:
+            return str(error), None, []
+        if deviation is not None and np.isfinite(deviation.largest):
+            self.measured.append((length_of(old, deviation), deviation.is_exact))
+        return "", deviation, list(differences(old, new, deviation, self._tolerance))
+
+    def _why_not(self, old: Part, new: Part) -> str:
+        for name, part in (("old", old), ("new", new)):
+            if part.stretch.needs:
+                return f"{name}: {part.stretch.needs}"
+        for what, known in (
+            ("Z", [part.stretch.knows_z for part in (old, new)]),
+            (
+                "C at its beginning",
+                [bool(part.trace.path.knows_section_entry[part.stretch.section]) for part in (old, new)],
+            ),
+        ):
+            if known[0] != known[1]:
+                return f"{'new' if known[0] else 'old'}: {what} is not known"
+        without = [part.stretch.as_programmed for part in (old, new)]
+        if bool(without[0]) != bool(without[1]):
+            return f"{'old' if without[0] else 'new'}: {without[0] or without[1]}"
+        return ""
+
+    # ---- between sections ----
+
+    def outside(self) -> list[Difference]:
+        """Return what differs between the sections that both revisions have in the same order."""
+        differences: list[Difference] = []
+        partners: Rows = self._partner[self._ordered]
+        for (low, high), (new_low, new_high) in zip(
+            _gaps(self._traces[0], self._ordered), _gaps(self._traces[1], partners), strict=True
+        ):
+            keep_time()
+            rewritten = self._rewritten(low)
+            old = self._outside(0, low, high, rewritten)
+            new = _turned_to(old, self._outside(1, new_low, new_high, rewritten))
+            why = next(
+                (f"{name}: {part.stretch.needs}" for name, part in (("old", old), ("new", new)) if part.stretch.needs),
+                "",
+            )
+            if not why:
+                why, _, differing = self._measured(old, new)
+                differences += differing
+            if why:
+                self.not_compared.append(NotCompared(f"outside of sections: {why}"))
+        return differences
+
+    def _rewritten(self, row: int) -> Rewritten | None:
+        """How moves are compared behind the section that ends above a row of the old program."""
+        if not self._is_rewritten:
+            return None
+        trace = self._traces[0]
+        radius = abs(float(trace.path.x_before[row])) if 0 < row < len(trace) else 0.0
+        angle = math.degrees(2 * self._tolerance / radius) if radius > self._tolerance else 0.0
+        return Rewritten(self._left_out, max(ANGLE, angle))
+
+    def _outside(self, side: int, first: int, until: int, rewritten: Rewritten | None) -> Part:
+        trace = self._traces[side]
+        if rewritten is not None and side:
+            rewritten = Rewritten((), rewritten.angle)
+        return Part(trace, outside(trace, self._tolerance, self._steps[side], first, until, rewritten))
+
+
+def _left_open(old: Part, new: Part) -> Iterator[Difference]:
+    """A section that is no longer left, or is left now."""
+    is_left = [bool(part.trace.mode.sections.left[part.stretch.section]) for part in (old, new)]
+    if is_left[0] != is_left[1]:
+        lines = [part.line(int(part.trace.mode.sections.enter[part.stretch.section])) for part in (old, new)]
+        text = "the polar mode is left no more" if is_left[0] else "the polar mode is left now, and was not"
+        yield Difference(
+            "section", text, "left" if is_left[0] else "open", "left" if is_left[1] else "open", "", *lines
+        )
+
+
+def _turned_to(old: Part, new: Part) -> Part:
+    """The new part with C by full turns nearer to the old one: where C stands behind a section counts its turns."""
+    paths = old.stretch.path, new.stretch.path
+    if not len(paths[0]) or not len(paths[1]):
+        return new
+    turn = 360 * new.stretch.c_scale
+    by = turn * round(float(paths[0].z_start[0] - paths[1].z_start[0]) / turn)
+    path = msgspec.structs.replace(paths[1], z_start=paths[1].z_start + by, z_end=paths[1].z_end + by)
+    return Part(new.trace, msgspec.structs.replace(new.stretch, path=path))
+
+
+def _gaps(trace: Trace, sections: Rows) -> list[tuple[int, int]]:
+    """First row and end of what lies before, between and behind some sections."""
+    enter, last = trace.mode.sections.enter[sections], trace.mode.sections.last[sections]
+    return list(zip([0, *(last + 1).tolist()], [*enter.tolist(), len(trace)], strict=True))
+
+
+def _side(section: Stretch, trace: Trace, reports: Sequence[PolarSection]) -> Side:
+    sections, number = trace.mode.sections, section.section
+    lines = trace.blocks.line_in_file
+    report = reports[number] if number < len(reports) else None
+    return Side(
+        line=int(lines[sections.enter[number]]),
+        end_line=int(lines[min(int(sections.last[number]), len(trace) - 1)]),
+        depth=depth_of(section),
+        time=report.time if report else None,
+        c_feed=report.c_feed if report else None,
+    )

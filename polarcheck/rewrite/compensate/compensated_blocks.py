@@ -1,0 +1,226 @@
+"""Blocks of polar sections with other moves in them: what else stands in them stays."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from itertools import groupby
+
+import msgspec
+import numpy as np
+
+from polarcheck.columns.trace import Trace
+from polarcheck.foundation.arrays import Mask
+from polarcheck.foundation.states import STATES, Motion, Units
+from polarcheck.rewrite.compare.compared_sections import NOWHERE
+from polarcheck.rewrite.compensate.pieces import Piece
+from polarcheck.rewrite.writing.new_blocks import NewBlock
+from polarcheck.rewrite.writing.outcome import refused_at
+from polarcheck.rewrite.writing.pen import Pen
+from polarcheck.rewrite.writing.style import Style
+from polarcheck.rules.editing import is_head, is_plain, words_of, written_word
+
+#: Modal groups that the new moves say themselves.
+_GROUPS = ("motion", "side", "distance")
+_CODES = {0: "G1", 1: "G3", -1: "G2"}
+#: A word with a number, also of an address with several letters, as CR=5.
+_NUMBER = re.compile(r"[A-Za-z]*=?[-+]?[\d.]+")
+_STATES = {int(Motion.RAPID): "G0", int(Motion.LINE): "G1", int(Motion.CW): "G2", int(Motion.CCW): "G3"}
+
+
+class Stroke(msgspec.Struct, frozen=True):
+    """
+    A move of the new program.
+
+    piece: its way. codes: in front of it, as G41. z: depth at its end [mm]; None where Z does not move.
+    """
+
+    piece: Piece
+    codes: tuple[str, ...] = ()
+    z: float | None = None
+
+
+#: The rows that are rewritten, in order, with their new moves; a row without any keeps what else stands in it.
+Strokes = Mapping[int, Sequence[Stroke]]
+
+
+def new_blocks(trace: Trace, strokes: Strokes, style: Style) -> dict[int, list[NewBlock]]:
+    """
+    Return the new blocks of a program, by the blocks in whose place they stand.
+
+    Raises RefusedError for blocks that cannot be rewritten: with macro expressions, in frames, or run several times
+    with other moves.
+    """
+    writer = _Writer(trace, style)
+    rows = sorted(strokes)
+    groups = [[row for _, row in group] for _, group in groupby(enumerate(rows), lambda pair: pair[1] - pair[0])]
+    for group in groups:
+        writer.write(group, strokes)
+    writer.require_once(rows)
+    return writer.blocks
+
+
+class _Writer:
+    """Writes groups of rows that follow one another."""
+
+    def __init__(self, trace: Trace, style: Style) -> None:
+        self.trace, self.style = trace, style
+        self.blocks: dict[int, list[NewBlock]] = {}
+        self.is_said = _said_by_moves(trace)
+        self.sets_motion = trace.modal.sets("motion")
+        block = trace.run.block
+        self.runs_again = np.bincount(block)[block] > 1
+        #: The last row of the group before, and the code of its last move.
+        self.last, self.motion = -1, ""
+        self.pens = {
+            units: Pen(trace.machine, style, units == Units.INCH)
+            for units in np.unique(trace.lengths.units[trace.mode.section >= 0]).tolist()
+        }
+
+    def write(self, group: Sequence[int], strokes: Strokes) -> None:
+        """Write rows that follow one another."""
+        trace, first, last = self.trace, group[0], group[-1]
+        pen = self.pens[int(trace.lengths.units[first])]
+        start = next((stroke.piece.start for row in group for stroke in strokes[row]), complex(trace.path.start[first]))
+        motion = self._motion_before(first)
+        at, z = start + complex(trace.path.center_shift[first]), float(trace.path.z_before[first])
+        if not self._is_section_of_group_before(first):
+            pen.at = NOWHERE
+        pen.go_on(at, z, motion)
+        if self.runs_again[first]:
+            # A block of a loop or a subprogram has the same words each time.
+            pen.forget()
+        steps = self._steps(first)
+        new: dict[int, list[NewBlock]] = {}
+        for row in group:
+            pen.numbers.line = int(self.trace.blocks.line_in_file[row])
+            self._require_plain(row)
+            moves: list[NewBlock] = []
+            for stroke in strokes[row]:
+                codes = (*steps, *stroke.codes)
+                steps = ()
+                moves += self._moves(pen, row, stroke, codes)
+            new[row] = self._with_others(row, moves)
+        feed = ""
+        for row in group:
+            new[row], feed = _with_feed(new[row], feed)
+        if feed:
+            new[last].append(NewBlock((feed,)))
+        if trace.modal.incremental[last]:
+            new[last].append(NewBlock((trace.machine.codes("incremental")[0],)))
+        kinds = [stroke.piece.turning for row in group for stroke in strokes[row]]
+        for row in group:
+            self._put(row, new[row])
+        if kinds:
+            self.motion = _CODES[kinds[-1]]
+            self._say_motion_behind(last, self.motion, pen)
+        self.last = last
+
+    def _is_section_of_group_before(self, first: int) -> bool:
+        section = self.trace.mode.section
+        return self.last >= 0 and bool(section[self.last] == section[first])
+
+    def _motion_before(self, first: int) -> str:
+        """The code of motion in force before a group; empty where the group begins with a code of its own."""
+        trace = self.trace
+        if self.sets_motion[first] or not first or trace.run.starts[first]:
+            return ""
+        between = slice(self.last + 1, first)
+        if self.motion and not (self.sets_motion[between] | trace.axes.moves[between]).any():
+            return self.motion
+        return _STATES.get(int(trace.modal.state("motion")[first - 1]), "")
+
+    def _steps(self, row: int) -> tuple[str, ...]:
+        """The code that makes words coordinates where those in force are distances."""
+        trace = self.trace
+        in_force = trace.modal.incremental[row] or (row > 0 and trace.modal.incremental[row - 1])
+        return (trace.machine.codes("absolute")[0],) if in_force else ()
+
+    def _moves(self, pen: Pen, row: int, stroke: Stroke, codes: tuple[str, ...]) -> list[NewBlock]:
+        piece, shift = stroke.piece, complex(self.trace.path.center_shift[row])
+        end = piece.end + shift
+        if piece.center is None:
+            return pen.line(end, stroke.z, codes=codes)
+        return pen.arc(end, piece.center + shift, piece.turning > 0, stroke.z, codes=codes)
+
+    def _with_others(self, row: int, moves: list[NewBlock]) -> list[NewBlock]:
+        """The moves with the other words of the block: G codes in front of the first of them, the rest behind it."""
+        run = self.trace.run
+        front: list[str] = []
+        behind: list[str] = []
+        for index in words_of(run, row):
+            word = written_word(run, index)
+            if self.is_said[index] or is_head(run, index):
+                continue
+            (front if chr(int(run.words.address[index])) == "G" else behind).append(word)
+        if not front and not behind:
+            return moves
+        first = moves[0].words if moves else ()
+        return [NewBlock((*front, *first, *behind)), *moves[1:]]
+
+    def _put(self, row: int, blocks: list[NewBlock]) -> None:
+        block = int(self.trace.run.block[row])
+        if self.blocks.setdefault(block, blocks) != blocks:
+            raise refused_at(self.trace, row, "the block runs several times, and would move otherwise each time")
+
+    def _say_motion_behind(self, row: int, code: str, pen: Pen) -> None:
+        """Say the code of the next move where it is in force from before the rewritten rows, and is another now."""
+        trace = self.trace
+        for following in range(row + 1, len(trace)):
+            if self.sets_motion[following] or trace.run.starts[following]:
+                return
+            if trace.axes.moves[following]:
+                meant = _STATES.get(int(trace.axes.motion[following]), "")
+                if meant and meant != code:
+                    own = [index for index in words_of(trace.run, following) if not is_head(trace.run, index)]
+                    words = [written_word(trace.run, index) for index in own]
+                    self._put(following, [NewBlock((pen.numbers.code(meant), *words))])
+                return
+
+    def require_once(self, rows: Sequence[int]) -> None:
+        """Raise RefusedError where a block that is rewritten runs in other rows, too."""
+        block = self.trace.run.block
+        others = np.isin(block, block[list(rows)])
+        others[list(rows)] = False
+        if others.any():
+            raise refused_at(
+                self.trace, int(np.argmax(others)), "the block runs several times, not always along a contour"
+            )
+
+    def _require_plain(self, row: int) -> None:
+        trace = self.trace
+        run = trace.run
+        words = [written_word(run, index) for index in words_of(run, row)]
+        is_macro = run.text.blocks.is_macro[int(run.block[row])]
+        if not is_plain(run, row) and (is_macro or not all(map(_NUMBER.fullmatch, words))):
+            raise refused_at(
+                self.trace, row, "its words are expressions, or in another language: write them as numbers first"
+            )
+        if trace.path.frames is not None:
+            raise refused_at(self.trace, row, "the program shifts or turns its coordinates by frames")
+
+
+def _said_by_moves(trace: Trace) -> Mask:
+    """Words that the new moves say: coordinates, arcs, codes of motion and of compensation; per executed word."""
+    blocks, machine = trace.blocks, trace.machine
+    rotary = machine.polar.rotary_words
+    words = blocks.word_indices("X", "U", "Z", "W", "I", "J", "K", *rotary, machine.arcs.radius_word)
+    keys = [key for group in _GROUPS for key in STATES[group]]
+    codes = dict.fromkeys(code for key in keys for code in machine.codes(key))
+    written = np.concatenate([words, trace.axes.virtual_words, blocks.code_indices(*codes)])
+    mask = np.zeros(len(trace.run.words), bool)
+    mask[written.astype(np.int64)] = True
+    # P, Q or X beside a dwell count seconds.
+    return mask & ~blocks.listed("dwell")[trace.run.row]
+
+
+def _with_feed(blocks: list[NewBlock], feed: str) -> tuple[list[NewBlock], str]:
+    """The blocks of a row with the F of a row above that is left without a move; and F that is still to be written."""
+    own = next((word for block in blocks for word in block.words if word[:1].upper() == "F"), "")
+    if len(blocks) == 1 and blocks[0].words == (own,):
+        return [], own
+    if not blocks or not feed:
+        return blocks, feed
+    if not own:
+        blocks = [NewBlock((*blocks[0].words, feed), blocks[0].comment), *blocks[1:]]
+    return blocks, ""

@@ -1,0 +1,383 @@
+"""The blocks of polar sections as the other machine reads them: the same points, arcs, depths and feeds."""
+
+from __future__ import annotations
+
+import cmath
+import itertools
+import math
+from collections.abc import Sequence
+
+import msgspec
+import numpy as np
+
+from polarcheck.columns.trace import Trace
+from polarcheck.foundation.states import Motion, Side, Units
+from polarcheck.program.machines.machine import Machine
+from polarcheck.rewrite.convert.block_texts import BlockTexts
+from polarcheck.rewrite.convert.computed_blocks import ComputedBlocks
+from polarcheck.rewrite.convert.section_refusals import SectionFeeds, refusals
+from polarcheck.rewrite.convert.section_words import SectionWords
+from polarcheck.rewrite.convert.translating import Translation
+from polarcheck.rewrite.writing.new_blocks import NewBlock
+from polarcheck.rewrite.writing.original import Original
+from polarcheck.rewrite.writing.outcome import Decision, RefusedError, refused_at
+from polarcheck.rewrite.writing.pen import Pen
+from polarcheck.rewrite.writing.style import Style
+from polarcheck.rules.editing import is_plain
+
+
+class Corners:
+    """
+    The codes that a section needs so that the other machine goes round its outer corners as the source does.
+
+    A control that goes round by lines, as FANUC's, meets one that goes round by arcs (G450 on Siemens) on the
+    intersection of the parallels (G451), as long as the contour turns by no more than a right angle.
+    """
+
+    def __init__(self, trace: Trace, target: Machine) -> None:
+        self.trace, self.target = trace, target
+        by_lines = trace.machine.compensation.corner != "arc"
+        codes = target.codes("corner_by_intersection"), target.codes("corner_by_arc")
+        self._codes = codes if by_lines and target.compensation.corner == "arc" and all(codes) else ([], [])
+
+    def before(self, row: int) -> NewBlock:
+        """The block behind the switch of a section; without words where it needs none. row: of the switch."""
+        return self._block(row, 0)
+
+    def behind(self, row: int) -> NewBlock:
+        """The block behind the section, which takes that back. row: of the switch that ends it."""
+        return self._block(row, 1)
+
+    def _block(self, row: int, which: int) -> NewBlock:
+        mode = self.trace.mode
+        in_section = mode.whole_section == mode.whole_section[row]
+        is_compensated = bool((self.trace.compensation.compensates & in_section).any())
+        return NewBlock(tuple(self._codes[which][:1]) if is_compensated else ())
+
+
+#: A plane that is turned by less is not turned [rad].
+_SAME_DIRECTION = 1e-9
+_ELSEWHERE = "the other control places it at another angle"
+_PLANES = {17: "plane_xy", 18: "plane_zx", 19: "plane_yz"}
+_SIDES = {Side.OFF: "compensation_off", Side.LEFT: "compensation_left", Side.RIGHT: "compensation_right"}
+
+
+class Inside(msgspec.Struct, frozen=True):
+    """
+    The blocks of polar sections.
+
+    blocks: index in text.blocks -> what stands in its place; a block that is not in it stays as it is.
+    taken: blocks of sections, those that stay as they are included.
+    decisions: what is to be decided of single words. decided: lines of the original with such words.
+    notes: what is written otherwise, and where. rapid_as_line: moves in rapid traverse are lines there.
+    """
+
+    blocks: dict[int, list[NewBlock]]
+    taken: set[int]
+    decisions: list[Decision]
+    decided: set[int]
+    notes: list[str]
+    rapid_as_line: bool
+
+
+def sections(original: Original, target: Machine, style: Style, translation: Translation) -> Inside:
+    """
+    Return the blocks of the polar sections of a program as the other machine reads them.
+
+    Raises RefusedError with all that cannot be written.
+    """
+    return _Writer(original, target, style, translation).result()
+
+
+class _Writer:
+    """
+    Writes sections one after the other.
+
+    is_same: both machines write the geometry of sections in the same words, so that these stay as they are.
+    """
+
+    def __init__(self, original: Original, target: Machine, style: Style, translation: Translation) -> None:
+        self.original, self.trace, self.target, self.style = original, original.trace, target, style
+        self.source = self.trace.machine
+        self.translation = translation
+        self.texts = BlockTexts(self.trace)
+        self.words = SectionWords(self.trace, target)
+        self.feeds = SectionFeeds(self.trace, original.tables["tool_center"].moves, target)
+        self.computed = ComputedBlocks(self.trace, target, translation.measures, self.words)
+        self.corners = Corners(self.trace, target)
+        self.is_same = self.words.is_same
+        self.blocks: dict[int, list[NewBlock]] = {}
+        self.taken: set[int] = set()
+        self.decisions: list[Decision] = []
+        self.decided: set[int] = set()
+        self.rapid_rows: list[int] = []
+        self.divided_rows: list[int] = []
+        self.turned: list[tuple[int, float]] = []
+
+    def result(self) -> Inside:
+        """Return the blocks of all sections."""
+        count = len(self.trace.mode.sections)
+        reasons = refusals(self.original, self.is_same)
+        for number in range(count) if not reasons else ():
+            try:
+                self._section(number)
+            except RefusedError as error:
+                reasons += error.refusals
+        if reasons:
+            raise RefusedError(reasons)
+        self._require_inside()
+        rapid_as_line = bool(self.rapid_rows) and not self.target.writing.rapid_in_mode
+        blocks = {block: new for block, new in self.blocks.items() if not self._is_unchanged(block, new)}
+        return Inside(blocks, self.taken, self.decisions, self.decided, self._notes(rapid_as_line), rapid_as_line)
+
+    # ---- one section ----
+
+    def _section(self, number: int) -> None:
+        trace, sections = self.trace, self.trace.mode.sections
+        enter, leave = int(sections.enter[number]), int(sections.leave[number])
+        rows = self._with_words(enter, leave)
+        if self.is_same:
+            for row in rows:
+                self._put(row, self._as_written(row))
+            return
+        pen, turn = self._pen(enter), self._turn(enter)
+        self._take_out_around(enter, leave)
+        targets = self._targets(rows)
+        for row in rows:
+            pen.numbers.line = self._line(row)
+            if int(trace.run.block[row]) in targets:
+                pen.forget()
+            self._put(row, self._row(row, enter, leave, pen, turn))
+        self._feed_behind(leave, pen)
+
+    def _with_words(self, enter: int, leave: int) -> list[int]:
+        """The rows of a section with executed words: a statement is none of them."""
+        first, behind = np.searchsorted(self.trace.run.row, (enter, leave + 1))
+        rows: list[int] = np.unique(self.trace.run.row[first:behind]).tolist()
+        # The head of a subprogram is written with those of all programs.
+        return [row for row in rows if not self.texts.has_program_number(int(self.trace.run.block[row]))]
+
+    def _targets(self, rows: Sequence[int]) -> set[int]:
+        """
+        Blocks that do not always follow the same one: the first of a subprogram or of a loop, and those behind them.
+
+        What they write may not rest on what was in force before.
+        """
+        block, depth = self.trace.run.block, self.trace.run.depth
+        return {
+            int(block[row])
+            for before, row in itertools.pairwise(rows)
+            if depth[row] != depth[before] or block[row] <= block[before]
+        }
+
+    def _pen(self, enter: int) -> Pen:
+        trace = self.trace
+        is_inch = self.translation.measures.writes_inch(enter)
+        same_units = is_inch == bool(trace.lengths.units[enter] == Units.INCH)
+        feed_inch = bool(trace.lengths.feed_units[enter] == Units.INCH) if same_units else is_inch
+        return Pen(self.target, self.style, is_inch, feed_inch)
+
+    def _turn(self, enter: int) -> complex:
+        """What points of the plane are multiplied by: where the other machine lays its plane otherwise on the part."""
+        trace, ours, theirs = self.trace, self.source.polar, self.target.polar
+        number = int(trace.mode.section[enter])
+        c_angle = float(trace.path.c_angle[enter])
+        if math.isnan(c_angle):
+            if ours.zero_angle == theirs.zero_angle and not theirs.direction_word:
+                return 1.0 + 0j
+            text = "C is not known where the mode begins, and the other control asks for it: position it, as C0"
+            raise refused_at(self.trace, enter, text)
+        of_ours = ours.c_sense * float(trace.path.section_entry[number])
+        of_theirs = 0.0 if theirs.plane_is_fixed else ours.c_sense * c_angle
+        angle = math.radians((of_ours - of_theirs + 180) % 360 - 180)
+        if abs(angle) < _SAME_DIRECTION:
+            return 1.0 + 0j
+        self.turned.append((enter, math.degrees(angle)))
+        return cmath.exp(1j * angle)
+
+    def _take_out_around(self, enter: int, leave: int) -> None:
+        """Take out the blocks that the source needs around its switches, such as the choice of a plane."""
+        trace, writing = self.trace, self.source.writing
+        for texts, rows in (
+            (writing.before[::-1], range(enter - 1, -1, -1)),
+            (writing.behind_end, range(leave + 1, len(trace))),
+        ):
+            for text, row in zip(texts, rows, strict=False):
+                block = int(trace.run.block[row])
+                if self.texts.content(block).upper() != text:
+                    break
+                self._put(row, [])
+
+    def _row(self, row: int, enter: int, leave: int, pen: Pen, turn: complex) -> list[NewBlock]:
+        """The blocks in the place of one."""
+        trace = self.trace
+        if (call := self._call(row)) is not None:
+            return [NewBlock(tuple(call))]
+        geometry, others = self.words.divided(row, self.translation.words_of(row), row in (enter, leave))
+        words = self._translated(row, others)
+        front = [word for word in words if word[:1].upper() == "G" and not self.words.is_dwell(row)]
+        behind = [word for word in words if word not in front]
+        if row == enter:
+            point = complex(trace.path.end[row]) * turn
+            angle = float(trace.path.c_angle[row]) * self.source.polar.c_sense * self.target.polar.c_sense
+            new = pen.enter(point, float(trace.path.z[row]), 0.0 if math.isnan(angle) else angle)
+            return _without_empty(NewBlock(tuple(front)), *new, self.corners.before(row), NewBlock(tuple(behind)))
+        if row == leave:
+            restored = self.corners.behind(row), self._plane_behind(enter, leave)
+            return _without_empty(NewBlock(tuple(words)), *pen.leave(), *restored)
+        codes = [*front, *self._sides(geometry)]
+        if self.computed.is_computed(row):
+            moves = self._computed_block(row, geometry, pen, turn, codes)
+        else:
+            moves = self._moves(row, pen, turn, codes)
+        if not moves:
+            return [NewBlock((*codes, *behind))] if codes or behind else []
+        return [*moves[:-1], NewBlock((*moves[-1].words, *behind), moves[-1].comment)]
+
+    def _plane_behind(self, enter: int, leave: int) -> NewBlock:
+        """The plane of before where the section selects one and arcs, cycles or compensation follow outside."""
+        trace, writing = self.trace, self.target.writing
+        planes = {code for key in _PLANES.values() for code in self.target.codes(key)}
+        selects = [any(word in planes for text in texts for word in text.split()) for texts in (
+            (*writing.before, *writing.behind), writing.behind_end
+        )]  # fmt: skip
+        key = _PLANES.get(int(trace.modal.state("plane")[enter - 1]) if enter else 0, "plane_zx")
+        if not selects[0] or selects[1] or not self.target.codes(key):
+            return NewBlock()
+        ends = np.flatnonzero(trace.mode.enters | trace.blocks.starts)
+        following = ends[ends > leave]
+        until = int(following[0]) if len(following) else len(trace)
+        behind = slice(leave + 1, until)
+        needs = np.isin(trace.axes.motion[behind], (Motion.CW, Motion.CCW)) | trace.modal.in_cycle[behind]
+        needs |= trace.compensation.side[behind] != Side.OFF
+        return NewBlock((self.target.codes(key)[0],)) if needs.any() else NewBlock()
+
+    def _moves(self, row: int, pen: Pen, turn: complex, codes: Sequence[str]) -> list[NewBlock]:
+        """The moves of a row; none where nothing moves."""
+        trace, path = self.trace, self.trace.path
+        travels, moves_z = bool(path.travels[row]), bool(path.moves_z[row])
+        if not travels and not moves_z:
+            return []
+        z = float(path.z[row]) if moves_z else None
+        if z is not None and math.isnan(z):
+            raise refused_at(self.trace, row, "Z is a distance from a place that is not known")
+        end = complex(path.end[row]) * turn if travels else None
+        if trace.axes.motion[row] == Motion.RAPID:
+            self.rapid_rows.append(row)
+            return pen.rapid(end, z, codes)
+        feed = None if self.computed.has_computed_feed(row) else self.feeds.of_row(row)
+        if end is None or not bool(path.is_arc[row]):
+            return pen.line(end, z, feed, codes)
+        is_ccw = bool(trace.axes.motion[row] == Motion.CCW)
+        blocks = pen.arc(end, complex(path.center[row]) * turn, is_ccw, z, feed, codes)
+        if len(blocks) > 1:
+            self.divided_rows.append(row)
+        return blocks
+
+    def _computed_block(
+        self, row: int, geometry: Sequence[int], pen: Pen, turn: complex, codes: Sequence[str]
+    ) -> list[NewBlock]:
+        if turn != 1:
+            raise refused_at(self.trace, row, "its words are computed, and the plane lies otherwise there")
+        path = self.trace.path
+        words = self.computed.written(row, geometry, pen)
+        feed = None if self._has_feed_word(words) or self.computed.has_computed_feed(row) else self.feeds.of_row(row)
+        end, z = complex(path.end[row]), float(path.z[row])
+        return pen.written(words, self.computed.motion(row) if words else "", end, z, feed, codes)
+
+    def _has_feed_word(self, words: Sequence[str]) -> bool:
+        return any(word.startswith("F") for word in words)
+
+    def _sides(self, geometry: Sequence[int]) -> list[str]:
+        """The codes of cutter compensation in a block, as the other machine has them."""
+        keys = [key for index in geometry if (key := self.words.key(index)) in _SIDES.values()]
+        return [self.target.codes(key)[0] for key in keys]
+
+    def _call(self, row: int) -> list[str] | None:
+        """The words of a block that calls a subprogram or returns from it; None for any other."""
+        return self.translation.calls.words_of_row(row, self.texts.content(int(self.trace.run.block[row])))
+
+    def _translated(self, row: int, words: Sequence[int]) -> list[str]:
+        if not words:
+            return []
+        texts, decisions = self.translation.translate(row, words)
+        self._decide(decisions)
+        return texts
+
+    def _as_written(self, row: int) -> list[NewBlock] | None:
+        """A block whose geometry stays as it is; None where all of it does."""
+        indices = self.translation.words_of(row)
+        if self._call(row) is not None or not is_plain(self.trace.run, row):
+            return None
+        _, others = self.words.divided(row, indices, is_switch=False)
+        written = self.translation.measures.written
+        translated = {index: self._translated(row, [index]) for index in others}
+        if all(words == [written(index)] for index, words in translated.items()):
+            return None
+        words = [word for index in indices for word in translated.get(index, [written(index)])]
+        return [NewBlock(tuple(words))]
+
+    def _feed_behind(self, leave: int, pen: Pen) -> None:
+        """Write F behind the section again where a block behind it moves by an F from within."""
+        trace = self.trace
+        takes_feed = ~np.isin(trace.axes.motion, (Motion.RAPID, Motion.NONE)) & trace.axes.moves
+        for row in range(leave + 1, len(trace)):
+            if trace.blocks.has("F")[row] or trace.blocks.starts[row] or trace.mode.section[row] >= 0:
+                return
+            if takes_feed[row]:
+                word = self.feeds.word_in_force(row, pen)
+                if word and word != pen.feed_word:
+                    block = int(trace.run.block[leave])
+                    self.blocks[block] = [*self.blocks[block], NewBlock((word,))]
+                return
+
+    # ---- blocks ----
+
+    def _put(self, row: int, new: list[NewBlock] | None) -> None:
+        block = int(self.trace.run.block[row])
+        self.taken.add(block)
+        if new is not None and self.blocks.setdefault(block, new) != new:
+            text = "the block runs several times, and would be another one each time"
+            raise refused_at(self.trace, row, text)
+
+    def _is_unchanged(self, block: int, new: Sequence[NewBlock]) -> bool:
+        if len(new) != 1 or new[0].comment:
+            return False
+        return self.style.blank.join(new[0].words) == self.style.blank.join(self.texts.content(block).split())
+
+    def _require_inside(self) -> None:
+        """Raise RefusedError for blocks that are rewritten in sections and run outside of them, too."""
+        trace = self.trace
+        outside = np.flatnonzero(trace.mode.whole_section < 0)
+        blocks = np.fromiter((block for block, new in self.blocks.items() if new), np.int64)
+        hits = outside[np.isin(trace.run.block[outside], blocks)]
+        if len(hits):
+            text = "the block runs in polar sections and outside of them, and would be another one there"
+            raise refused_at(self.trace, int(hits[0]), text)
+
+    def _decide(self, decisions: Sequence[Decision]) -> None:
+        self.decisions += [decision for decision in decisions if decision not in self.decisions]
+        self.decided |= {decision.line for decision in decisions}
+
+    def _notes(self, rapid_as_line: bool) -> list[str]:
+        notes = []
+        if rapid_as_line:
+            feed = f"F{self.target.writing.rapid_feed:g} mm/min"
+            notes.append(f"{_count(self.rapid_rows, 'move')} in rapid traverse in the mode: a line with {feed} there")
+        if self.divided_rows:
+            notes.append(f"{_count(self.divided_rows, 'arc')} divided, as the machine takes them")
+        for row, angle in self.turned:
+            notes.append(f"line {self._line(row)}: the plane is turned by {angle:.3f} deg: {_ELSEWHERE}")
+        return notes
+
+    def _line(self, row: int) -> int:
+        return int(self.trace.blocks.line_in_file[row])
+
+
+def _without_empty(*blocks: NewBlock) -> list[NewBlock]:
+    return [block for block in blocks if block.words]
+
+
+def _count(rows: Sequence[int], name: str) -> str:
+    count = len(set(rows))
+    return f"{count} {name}{'s' * (count != 1)}"

@@ -1,0 +1,248 @@
+"""Applies the fixes of a program in rounds, until no fix is left that improves it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import msgspec
+import numpy as np
+
+from polarcheck.checking.settings import Settings
+from polarcheck.foundation.arrays import Rows
+from polarcheck.foundation.errors import SourceError, TooHardError
+from polarcheck.foundation.finding import FileReport, Finding, Fix
+from polarcheck.foundation.time_limit import current_limit, seconds_for, time_limit
+from polarcheck.rewrite.fixes.edits import applied, origins, overlap, spans
+from polarcheck.rewrite.fixes.fix_comparison import State, objection, state_of
+from polarcheck.rules.editing import Replace
+from polarcheck.rules.repair import WAY, repair_of
+
+#: The most checks of one program for its fixes; further fixes wait for the next run.
+MOST_CHECKS = 200
+#: After this many refused fixes of a rule, no more fixes of that rule are tried in the program.
+MOST_REFUSED = 20
+
+#: Removes findings from a report that must not be fixed, since a baseline suppresses them.
+Suppress = Callable[[FileReport], FileReport]
+
+
+class Fixed(msgspec.Struct, frozen=True):
+    """
+    A fix that was applied.
+
+    rule: the rule whose finding it fixes.
+    line: the line in the original file (from 1).
+    title: the title of the fix.
+    """
+
+    rule: str
+    line: int
+    title: str
+
+
+class Refused(Fixed, frozen=True):
+    """A fix that was not applied, and the reason."""
+
+    reason: str
+
+
+class Outcome(msgspec.Struct, frozen=True):
+    """
+    A program with its fixes.
+
+    data: the bytes.
+    fixed, refused: the fixes that were applied, and those that were not.
+    left: the number of unsafe fixes that were not requested.
+    origin: for each line of the result its line in the original file (from 1).
+    is_whole: there was time for all fixes.
+    """
+
+    data: bytes
+    fixed: list[Fixed]
+    refused: list[Refused]
+    left: int = 0
+    origin: list[int] = []
+    is_whole: bool = True
+
+
+class _Candidate(msgspec.Struct, frozen=True):
+    """
+    A fix to try.
+
+    finding: the finding that it fixes.
+    fix: the fix.
+    spans: its edits by character position.
+    """
+
+    finding: Finding
+    fix: Fix
+    spans: list[Replace]
+
+
+#: Identifies a fix in a version of a program: rule, line, title.
+_Key = tuple[str, int, str]
+
+
+def with_fixes(
+    data: bytes,
+    settings: Settings,
+    path: str,
+    encoding: str | None = None,
+    unsafe: bool = False,
+    suppress: Suppress = lambda report: report,
+) -> Outcome:
+    """
+    Return a program with the fixes of its findings.
+
+    unsafe: apply unsafe fixes, too.
+    suppress: removes findings that must not be fixed from a report.
+
+    A fix that would cause another finding, or another tool path than it declares, is refused. Fixes that overlap are
+    applied in successive rounds. All of it has the time limit of one check; further fixes wait for the next run. Raises
+    what state_of raises for the original program.
+    """
+    with time_limit(seconds_for(len(data), settings.job.run.max_seconds)):
+        return _fixed(data, settings, path, encoding, unsafe, suppress)
+
+
+def _fixed(
+    data: bytes, settings: Settings, path: str, encoding: str | None, unsafe: bool, suppress: Suppress
+) -> Outcome:
+    state = state_of(data, settings, path, encoding)
+    work = _Work(settings, path, encoding, unsafe, suppress, len(state.source.line_starts))
+    while not work.is_over:
+        candidates = work.candidates(state)
+        if not candidates:
+            break
+        state = work.best(state, candidates) or state
+    left = sum(
+        finding.fix is not None and not finding.fix.safe and not unsafe for finding in suppress(state.selected).findings
+    )
+    return Outcome(
+        state.source.data, work.fixed, list(work.refused.values()), left, work.origin.tolist(), not work.is_over
+    )
+
+
+class _Work:
+    """
+    The state of the rounds.
+
+    fixed: the fixes applied so far.
+    refused: the fixes refused since the last one that was applied.
+    last: the program with the fixes accepted in this round.
+    checks: the number of checks so far.
+    origin: for each line of the present program its line in the original file (from 1).
+    """
+
+    def __init__(
+        self,
+        settings: Settings,
+        path: str,
+        encoding: str | None,
+        unsafe: bool,
+        suppress: Suppress,
+        lines: int,
+    ) -> None:
+        self.settings, self.path, self.encoding = settings, path, encoding
+        self.unsafe, self.suppress = unsafe, suppress
+        self.fixed: list[Fixed] = []
+        self.refused: dict[_Key, Refused] = {}
+        self.last: State | None = None
+        self.checks = 0
+        self.origin: Rows = np.arange(1, lines + 1)
+
+    @property
+    def is_over(self) -> bool:
+        """Return True once the time or the number of checks is used up."""
+        limit = current_limit()
+        return self.checks >= MOST_CHECKS or (limit is not None and limit.is_over())
+
+    def candidates(self, state: State) -> list[_Candidate]:
+        """Return the fixes to try next, in the order of the lines; none of them overlap."""
+        chosen: list[_Candidate] = []
+        taken: list[Replace] = []
+        for finding in self.suppress(state.selected).findings:
+            fix = finding.fix
+            if fix is None or not (fix.safe or self.unsafe) or _key(finding, fix) in self.refused:
+                continue
+            if self._is_exhausted(finding.rule):
+                continue
+            edits = spans(state.source, fix)
+            if not overlap(edits, taken):
+                chosen.append(_Candidate(finding, fix, edits))
+                taken += edits
+        # A fix that may change the tool path is tried alone.
+        plain = [each for each in chosen if WAY not in _changes(each)[0]]
+        return plain or chosen[:1]
+
+    def best(self, state: State, candidates: Sequence[_Candidate]) -> State | None:
+        """Return the program with as many of these fixes as possible; None if all are refused."""
+        self.last = None
+        accepted = self._accepted(state, [], candidates)
+        if self.last is None:
+            return None
+        # Refused fixes are tried again, since the accepted ones may have removed the reason.
+        self.refused = {}
+        self.fixed += [Fixed(each.finding.rule, self._line(each), each.fix.title) for each in accepted]
+        edits = [span for each in accepted for span in each.spans]
+        self.origin = self.origin[origins(state.source, self.last.source, edits) - 1]
+        return self.last
+
+    def _accepted(self, state: State, accepted: list[_Candidate], candidates: Sequence[_Candidate]) -> list[_Candidate]:
+        """Return the accepted fixes, and as many of the candidates as are accepted beside them."""
+        candidates = [each for each in candidates if not self._is_exhausted(each.finding.rule)]
+        if not candidates or self.is_over:
+            return accepted
+        after, reason = self._try(state, [*accepted, *candidates])
+        if after is not None:
+            self.last = after
+            return [*accepted, *candidates]
+        if len(candidates) == 1:
+            (refused,) = candidates
+            finding, fix = refused.finding, refused.fix
+            self.refused[_key(finding, fix)] = Refused(finding.rule, self._line(refused), fix.title, reason)
+            return accepted
+        for part in _parts(candidates):
+            accepted = self._accepted(state, accepted, part)
+        return accepted
+
+    def _is_exhausted(self, rule: str) -> bool:
+        """Return True once too many fixes of the rule were refused."""
+        return sum(refused.rule == rule for refused in self.refused.values()) >= MOST_REFUSED
+
+    def _line(self, candidate: _Candidate) -> int:
+        return int(self.origin[candidate.finding.line - 1])
+
+    def _try(self, state: State, candidates: Sequence[_Candidate]) -> tuple[State | None, str]:
+        """Apply fixes and check the result; returns it, or None and the reason why it is refused."""
+        data = applied(state.source, [span for each in candidates for span in each.spans])
+        if data is None:
+            return None, f"its encoding, {state.source.encoding}, does not give all characters back as they are"
+        self.checks += 1
+        try:
+            after = state_of(data, self.settings, self.path, self.encoding)
+            rules = {each.finding.rule for each in candidates}
+            reason = objection(state, after, rules, [_changes(each) for each in candidates])
+        except (SourceError, TooHardError) as error:
+            return None, f"the result could not be judged: {error}"
+        return (None, reason) if reason else (after, "")
+
+
+def _parts(candidates: Sequence[_Candidate]) -> list[list[_Candidate]]:
+    """Split candidates by rule, those of a single rule into halves: refused fixes are often of one rule."""
+    rules = dict.fromkeys(each.finding.rule for each in candidates)
+    if len(rules) > 1:
+        return [[each for each in candidates if each.finding.rule == rule] for rule in rules]
+    half = len(candidates) // 2
+    return [list(candidates[:half]), list(candidates[half:])]
+
+
+def _key(finding: Finding, fix: Fix) -> _Key:
+    return finding.rule, finding.line, fix.title
+
+
+def _changes(candidate: _Candidate) -> tuple[Sequence[str], range]:
+    """Return what a fix declares to change in the tool path, and in which lines."""
+    repair = repair_of(candidate.finding.rule)
+    lines = [line for edit in candidate.fix.edits for line in (edit.line, edit.end_line)]
+    return repair.changes if repair is not None else (), range(min(lines), max(lines) + 1)

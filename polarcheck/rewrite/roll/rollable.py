@@ -1,0 +1,210 @@
+"""Where a program mills by plain moves of X and C, and why some of it cannot become a polar section."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import msgspec
+import numpy as np
+
+from polarcheck.columns.trace import Trace
+from polarcheck.foundation.arrays import Mask, Rows
+from polarcheck.foundation.states import Distance, FeedMode, Motion, Side
+from polarcheck.program.machines.code_tables import code_set
+from polarcheck.rewrite.roll.following import Following
+from polarcheck.rewrite.writing.outcome import Refusal, refusal_at
+
+#: Fewer blocks of X and C are left as they are: the blocks of a section around them would be as many.
+LEAST = 8
+#: Lists of G codes that may stand in a block of a stretch: what they say is in the moves, or does not matter there.
+_CODES = ("line", "feed_inverse_time", "feed_per_minute", "absolute")
+#: A radius is not below zero by less [mm].
+_ZERO = 1e-6
+#: A block that goes on as those before it turns C by no more [deg].
+_STEP = 30.0
+_UNWINDS = (
+    "C turns back by nearly a turn here: on a lathe that takes the shorter way, --set control.rotary_rolls_over=true "
+    "or its machine file says so"
+)
+_ON_CYLINDER = "C and Z move together and X stands: that is milling on the cylinder, not on the face"
+
+
+class Stretch(msgspec.Struct, frozen=True):
+    """
+    Consecutive blocks in which X and C move at feed, beginning and ending with such a block.
+
+    first, last: rows of the trace. line: of the first, in the file, from 1. last_line: of the last.
+    """
+
+    first: int
+    last: int
+    line: int
+    last_line: int
+
+    def rows(self, trace: Trace) -> Rows:
+        """Its rows that move, or name the place where the tool stands."""
+        rows = np.arange(self.first, self.last + 1)
+        return np.asarray(rows[trace.axes.motion[rows] != Motion.NONE])
+
+
+def stretches(trace: Trace, following: Following) -> tuple[list[Stretch], list[Refusal]]:
+    """Return the stretches that can become sections, and for the others why they cannot."""
+    reasons = _reasons(trace, following)
+    result: list[Stretch] = []
+    refusals: list[Refusal] = []
+    for each in _candidates(trace):
+        reason = _first_reason(trace, each, reasons) or _reason_at_ends(trace, each, following)
+        if reason is None:
+            result.append(each)
+        else:
+            refusals.append(reason)
+    return result, refusals
+
+
+def _candidates(trace: Trace) -> Iterator[Stretch]:
+    belongs = _belongs(trace)
+    breaks = np.flatnonzero(~belongs | _jumps(trace))
+    begin = 0
+    for end in [*breaks.tolist(), len(trace)]:
+        if end - begin >= LEAST:
+            yield from _within(trace, begin, end)
+        # A row that breaks because of what stands before it may begin the next stretch.
+        begin = end if end < len(trace) and belongs[end] else end + 1
+
+
+def _within(trace: Trace, begin: int, end: int) -> Iterator[Stretch]:
+    """Stretches of rows that belong together: runs on the plane, parted by Z alone, without approaches and retracts."""
+    path, lines = trace.path, trace.blocks.line_in_file
+    rows = np.arange(begin, end)
+    turns, moves_x, moves_z = path.moves_c[rows], path.moves_x[rows], path.moves_z[rows]
+    on_plane = turns | moves_x
+    run = np.cumsum(moves_z & ~on_plane)
+    count = np.bincount(run, on_plane)
+    mills = count >= LEAST
+    # X and C that go together to another place, with Z above, are no contour.
+    goes = turns & moves_x & (np.abs(np.nan_to_num(path.c_turn[rows])) > _STEP)
+    parts = ~mills & (np.bincount(run, goes, minlength=len(count)) > 0)
+    # Where a stretch begins or ends, X beside Z alone is turning, or an approach.
+    bounds = (turns | (moves_x & ~moves_z)) & mills[run]
+    group = np.cumsum(parts)[run]
+    for own in np.split(rows, np.flatnonzero(np.diff(group)) + 1):
+        at = own[bounds[own - begin]]
+        if len(at) and turns[(chosen := slice(at[0] - begin, at[-1] + 1 - begin))].any() and moves_x[chosen].any():
+            first, last = int(at[0]), int(at[-1])
+            yield Stretch(first, last, int(lines[first]), int(lines[last]))
+
+
+def _belongs(trace: Trace) -> Mask:
+    """Rows outside of the mode with words of a straight move at feed and no others; those without words break none."""
+    blocks, machine, words = trace.blocks, trace.machine, trace.run.words
+    rotary = machine.polar.rotary_words
+    names = [name for name in ("N", "X", "U", "Z", "W", "F", *rotary) if name]
+    is_known = np.zeros(256, bool)
+    is_known[[machine.address_number(name) for name in names]] = True
+    allowed = is_known[words.address]
+    codes = code_set([code for key in _CODES for code in machine.codes(key)])
+    allowed[blocks.g_words] = codes[blocks.g_codes]
+    others = blocks.with_words(~allowed)
+    lines = (trace.axes.motion == Motion.LINE) & trace.modal.uses_axes & ~trace.modal.in_cycle
+    none = trace.axes.motion == Motion.NONE
+    return np.asarray((lines | none) & ~others & (trace.mode.whole_section < 0) & ~trace.run.unknown)
+
+
+def _jumps(trace: Trace) -> Mask:
+    """Rows before which the program does not simply go on to the next block."""
+    run, text = trace.run, trace.text
+    is_full = text.blocks.is_macro.copy()
+    is_full[text.words.block] = True
+    full = np.append(0, np.cumsum(is_full))
+    block, before = run.block[1:], run.block[:-1]
+    goes_on = (block > before) & (full[block] - full[np.minimum(before + 1, len(is_full))] == 0)
+    goes_on &= run.depth[1:] == run.depth[:-1]
+    return np.append(True, ~goes_on)[: len(trace)] | trace.blocks.starts
+
+
+def _reasons(trace: Trace, following: Following) -> list[tuple[Mask, str]]:
+    """Rows that keep a stretch from being rolled, each with the reason, in the order in which they are looked at."""
+    run, path, modal, feedrate = trace.run, trace.path, trace.modal, trace.feedrate
+    moves = trace.axes.motion == Motion.LINE
+    travels = path.moves_x | path.moves_c | path.moves_z
+    on_sub_spindle = modal.on_sub_spindle & (trace.machine.polar.sub_spindle_plane != "as-main")
+    beside = path.moves_z & (path.moves_x | path.moves_c)
+    not_beside = beside & (trace.machine.polar.other_axes != "together")
+    mode = feedrate.modal_feed_mode
+    without_f = (mode == FeedMode.INVERSE_TIME) & ~trace.blocks.has("F")
+    return [
+        (np.bincount(run.block, minlength=1)[run.block] > 1, "its blocks run several times"),
+        (_is_computed(trace), "its blocks are computed, or stand in another file"),
+        (trace.mode.contours_outside, "C beside this code is no plain move: the control follows the contour by itself"),
+        (following.jump_targets, "a jump may lead to this block"),
+        (modal.state("distance") == Distance.INCREMENTAL, "distances are in force, not coordinates"),
+        (trace.compensation.side != Side.OFF, "cutter compensation is in force: X and C are not the path of the tool"),
+        (modal.state("modal_call") != 0, "a program is called after each move"),
+        (on_sub_spindle, "which way C turns in the mode on the sub-spindle is not known"),
+        (moves & (np.isnan(path.x) | np.isnan(path.x_before)), "X is not known where it begins"),
+        (path.moves_c & np.isnan(path.c_turn), "C is not known where it begins: position it before, as C0"),
+        (_unwinds(trace), _UNWINDS),
+        (moves & np.isnan(path.z) & bool(np.isfinite(path.z).any()), "Z is not known where it begins"),
+        (beside & np.isnan(path.z_before), "Z is not known where it begins to move"),
+        (np.nan_to_num(path.local_shift) != 0, "the origin is shifted off the center of C"),
+        (travels & (mode == FeedMode.PER_REVOLUTION), "F is per revolution"),
+        (travels & without_f, "F is missing, which inverse time has in every block"),
+        (travels & ~(feedrate.written_feed > 0), "F is missing"),
+        (not_beside & path.moves_c & ~path.moves_x, _ON_CYLINDER),
+        (not_beside, f"Z moves beside X and C, with which it is not interpolated in the mode: {trace.machine.title}"),
+    ]
+
+
+def _unwinds(trace: Trace) -> Mask:
+    """Rows in which C turns against the others by nearly a turn, where the shorter way would go on as they do."""
+    turn = np.where(trace.path.moves_c & (trace.axes.motion == Motion.LINE), np.nan_to_num(trace.path.c_turn), 0.0)
+    rows = np.flatnonzero(turn)
+    own, before = turn[rows][1:], turn[rows][:-1]
+    shorter = own - 360 * np.round(own / 360)
+    result = np.zeros(len(trace), bool)
+    result[rows[1:]] = (np.abs(own) > 180) & (np.abs(shorter) <= _STEP) & (shorter * before > 0) & (own * before < 0)
+    return result
+
+
+def _is_computed(trace: Trace) -> Mask:
+    """Rows whose words do not stand in the file as they are executed."""
+    run = trace.run
+    words, code = run.words, trace.text.source.code
+    letter = code[np.minimum(words.start, len(code) - 1)]
+    letter = np.where((letter >= ord("a")) & (letter <= ord("z")), letter - 32, letter)
+    other = (words.address < 128) & (letter != words.address) & (letter != ord(":"))
+    source = trace.text.source
+    computed = trace.blocks.with_words(other) | trace.text.blocks.is_macro[run.block]
+    if source.parts:
+        computed |= trace.blocks.line >= source.parts[0].first_line
+    return computed
+
+
+def _first_reason(trace: Trace, each: Stretch, reasons: list[tuple[Mask, str]]) -> Refusal | None:
+    own = slice(each.first, each.last + 1)
+    for hits, text in reasons:
+        if hits[own].any():
+            row = each.first + int(np.argmax(hits[own]))
+            return refusal_at(trace, row, text)
+    path = trace.path
+    turning = path.moves_c[own]
+    round_cylinder = turning & path.moves_z[own] & ~path.moves_x[own]
+    if np.count_nonzero(round_cylinder) > np.count_nonzero(turning) / 2:
+        return Refusal(each.line, _ON_CYLINDER)
+    return None
+
+
+def _reason_at_ends(trace: Trace, each: Stretch, following: Following) -> Refusal | None:
+    path = trace.path
+    if path.x_before[each.first] < _ZERO:
+        return Refusal(each.line, "X is not above zero where it begins, where the mode would be switched on")
+    if path.x[each.last] < -_ZERO:
+        return Refusal(each.last_line, "X is below zero where it ends: the mode would leave it above, and C turned")
+    behind = following.behind(each.last, following.turns)
+    if behind < len(trace) and path.moves_c[behind]:
+        axis = trace.machine.polar.rotary_address
+        if not trace.blocks.has(axis)[behind] or trace.modal.is_step(axis)[behind]:
+            return refusal_at(
+                trace, behind, "C is programmed in increments behind it, from an angle that rounding shifts"
+            )
+    return None

@@ -1,0 +1,235 @@
+"""The blocks of a section in the place of those of a stretch."""
+
+from __future__ import annotations
+
+import cmath
+from collections.abc import Sequence
+
+import numpy as np
+
+from polarcheck.columns.trace import Trace
+from polarcheck.foundation.arrays import stretch
+from polarcheck.foundation.states import MM_PER_INCH, FeedMode, Motion, Units
+from polarcheck.program.machines.code_tables import code_set
+from polarcheck.rewrite.roll.entries import Entry
+from polarcheck.rewrite.roll.following import Following, x_factor
+from polarcheck.rewrite.roll.rollable import Stretch
+from polarcheck.rewrite.roll.rolled_elements import Element
+from polarcheck.rewrite.roll.ways import Way
+from polarcheck.rewrite.writing.new_blocks import NewBlock
+from polarcheck.rewrite.writing.outcome import Refusal, RefusedError
+from polarcheck.rewrite.writing.pen import Pen
+from polarcheck.rewrite.writing.style import Style
+from polarcheck.rules.editing import is_plain
+
+_PLANES = ("plane_xy", "plane_zx", "plane_yz")
+_FEED_CODES = {
+    FeedMode.INVERSE_TIME: "feed_inverse_time",
+    FeedMode.PER_MINUTE: "feed_per_minute",
+    FeedMode.PER_REVOLUTION: "feed_per_revolution",
+}
+
+
+def restored(trace: Trace, following: Following, last: int, pen: Pen, *, is_line: bool) -> list[NewBlock]:
+    """
+    Return a block with the plane, what F is, G1, X and F, each where the blocks behind the section build on it.
+
+    last: the last row of the stretch. is_line: G1 is in force behind the section. X stands where it stood, but the
+    control counts it otherwise in the mode: it is written before anything builds on it.
+    """
+    mode = FeedMode(int(trace.feedrate.modal_feed_mode[last]))
+    takes_motion = not is_line and following.takes_over(last, following.moves, following.motion)
+    on_plane = following.behind(last, following.on_plane)
+    writes_x = on_plane == len(trace) or (trace.blocks.has("X")[on_plane] and not trace.modal.is_step("X")[on_plane])
+    words = _plane(trace, following, last, pen)
+    if mode != FeedMode.PER_MINUTE and following.takes_over(last, following.at_feed, following.feed_mode):
+        words.append(feed_code(pen, mode))
+    if takes_motion or not writes_x:
+        words.append(in_case(pen, pen.numbers.code("G1")))
+    if not writes_x:
+        count = pen.numbers.increments(float(trace.path.x[last]) / x_factor(trace, last))
+        words.append(in_case(pen, pen.word("X", count)))
+    is_time = mode == FeedMode.INVERSE_TIME
+    if following.takes_over(last, following.at_feed, following.feed) or (is_time and not writes_x):
+        feed = float(trace.feedrate.written_feed[last])
+        if is_time:  # a number, and no length
+            scale = float(np.broadcast_to(trace.lengths.feed_scale, len(trace))[last])
+            feed = feed / scale * (MM_PER_INCH if pen.numbers.feed_inch else 1.0)
+        words.append(in_case(pen, "F" + pen.numbers.feed(feed)))
+    return [NewBlock(tuple(words))] if words else []
+
+
+def feed_code(pen: Pen, mode: FeedMode) -> str:
+    """The code of what F is. Raises RefusedError where the machine has none."""
+    codes = pen.machine.codes(_FEED_CODES[mode])
+    if not codes:
+        raise RefusedError([Refusal(pen.numbers.line, f"no code for that F is known: {pen.machine.title}")])
+    return in_case(pen, pen.numbers.code(codes[0]))
+
+
+def in_case(pen: Pen, word: str) -> str:
+    """A word in the letters of the program."""
+    return word.lower() if pen.style.lower_case else word
+
+
+def _plane(trace: Trace, following: Following, last: int, pen: Pen) -> list[str]:
+    """The code of the plane that was in force, where the section leaves another one and arcs follow."""
+    machine, writing = trace.machine, trace.machine.writing
+    planes = {code: key for key in _PLANES for code in machine.codes(key)}
+    blocks = (*writing.before, writing.switch, *writing.behind, writing.end, *writing.behind_end)
+    after = [planes[word] for block in blocks for word in block.split() if word in planes]
+    state = int(trace.modal.state("plane")[last])
+    # Lathes begin in the plane of X and Z.
+    before = planes.get(f"G{state}", "plane_zx")
+    if not after or after[-1] == before or not following.takes_over(last, following.arcs, following.plane):
+        return []
+    return [in_case(pen, pen.numbers.code(machine.codes(before)[0]))]
+
+
+#: F of the turn back is so much of what C allows.
+_BELOW = 0.9
+
+
+class Writer:
+    """
+    Writes the section of a stretch.
+
+    first: the first row whose block is replaced. replaced: what stands in the place of each block. inserted: what
+    stands behind the block of the entry; none without an entry. positions: the word of C there, as it becomes; empty
+    where it stays.
+    """
+
+    def __init__(
+        self, trace: Trace, each: Stretch, way: Way, entry: Entry | None, style: Style, following: Following
+    ) -> None:
+        self.trace, self.each, self.way, self.entry, self.following = trace, each, way, entry, following
+        self.pen = _pen(trace, each, style)
+        run = trace.run
+        self.first = _with_feed_mode(trace, each.first) if entry is None else entry.behind + 1
+        own = slice(*stretch(run.row, self.first, each.last + 1))
+        rows = np.unique(run.row[own][run.words.address[own] != ord("N")])
+        self.replaced: dict[int, list[NewBlock]] = {block: [] for block in run.block[rows].tolist()}
+        self.inserted: list[NewBlock] = []
+        self.positions = ""
+        # A plane that begins at the switch begins where the tool stands; the others stand still on the part.
+        is_turned = entry is None and not trace.machine.polar.plane_is_fixed
+        self._turn = cmath.exp(1j * float(way.start_angle[0])) if is_turned else 1 + 0j
+
+    @property
+    def count(self) -> int:
+        """Blocks of the section."""
+        return sum(map(len, (*self.replaced.values(), self.inserted)))
+
+    def write(self, elements: Sequence[Element], feeds: Sequence[float]) -> None:
+        """
+        Write the section: the mode, the elements at the blocks at which they end, and what is in force behind it.
+
+        feeds: F of each element [mm/min]. Raises RefusedError where the machine has no words for an element.
+        """
+        trace, pen, each = self.trace, self.pen, self.each
+        if self.entry is None:
+            self._at(each.first).extend(self._entered())
+        else:
+            self._enter_above(self.entry)
+        lines = trace.blocks.line_in_file
+        for element, feed in zip(elements, feeds, strict=True):
+            row = int(self.way.row[element.until - 1])
+            pen.numbers.line = int(lines[row])
+            end = element.end / self._turn
+            if element.kind == Motion.NONE:
+                blocks = pen.line(None, element.z, feed)
+            elif element.kind == Motion.LINE:
+                blocks = pen.line(end, element.z, feed)
+            else:
+                blocks = pen.arc(end, element.center / self._turn, element.kind == Motion.CCW, element.z, feed)
+            self._at(row).extend(blocks)
+        last = self._at(each.last)
+        last += self._in_case([block for block in pen.leave() if self._makes_of_x(block) in (None, self._is_radius)])
+        is_line = elements[-1].kind in (Motion.LINE, Motion.NONE) and not trace.machine.control.motion_codes
+        last += restored(trace, self.following, each.last, pen, is_line=is_line)
+
+    def _at(self, row: int) -> list[NewBlock]:
+        return self.replaced[int(self.trace.run.block[row])]
+
+    # ---- the mode ----
+
+    def _entered(self) -> list[NewBlock]:
+        """The mode switched on where the stretch begins."""
+        point = complex(self.way.start_radius[0] * np.exp(1j * self.way.start_angle[0]))
+        direction = float(self.trace.path.c_angle_before[self.each.first]) % 360
+        z = float(self.trace.path.z_before[self.each.first])
+        return [*self._per_minute(self.first), *self._switched_on(point / self._turn, z, direction)]
+
+    def _enter_above(self, entry: Entry) -> None:
+        """The mode switched on above the part with C at 0; from there C turns back, and Z leads down."""
+        trace, pen = self.trace, self.pen
+        axis, angle = trace.machine.polar.rotary_address, pen.numbers.angle(entry.turns)
+        if entry.c_word >= 0:
+            self.positions = in_case(pen, axis + angle)
+        else:
+            words = pen.numbers.code("G0"), axis + "=" * (len(axis) > 1) + angle
+            self.inserted += self._in_case([NewBlock(words)])
+        radius = float(trace.path.x_before[entry.first])
+        self.inserted += self._per_minute(entry.behind + 1)
+        self.inserted += self._switched_on(complex(radius), float(trace.path.z_before[entry.first]))
+        feed = trace.machine.writing.rapid_feed
+        if trace.machine.limits.c_feed > 0:
+            feed = min(feed, _BELOW * float(np.radians(trace.machine.limits.c_feed)) * radius)
+        back = radius * cmath.exp(1j * float(self.way.start_angle[0]))
+        self.inserted += pen.arc(back, 0j, back.imag > 0, feed=feed)
+        for row in range(entry.first, self.each.first):
+            if not trace.path.moves_z[row]:
+                continue
+            pen.numbers.line = int(trace.blocks.line_in_file[row])
+            z, feed = float(trace.path.z[row]), float(trace.feedrate.written_feed[row])
+            is_rapid = trace.axes.motion[row] == Motion.RAPID
+            self._at(row).extend(pen.rapid(z=z) if is_rapid else pen.line(None, z, feed))
+
+    def _per_minute(self, row: int) -> list[NewBlock]:
+        """The code of F per minute where it is not in force before a row."""
+        before = row if self.trace.blocks.starts[row] else row - 1
+        if self.trace.feedrate.modal_feed_mode[before] == FeedMode.PER_MINUTE:
+            return []
+        return [NewBlock((feed_code(self.pen, FeedMode.PER_MINUTE),))]
+
+    def _switched_on(self, point: complex, z: float, direction: float = 0.0) -> list[NewBlock]:
+        """The blocks that switch the mode on, without one that makes of X what it is already."""
+        blocks = self.pen.enter(point, z, direction)
+        return self._in_case([block for block in blocks if self._makes_of_x(block) != self._is_radius])
+
+    @property
+    def _is_radius(self) -> bool:
+        return x_factor(self.trace, self.each.first) == 1
+
+    def _makes_of_x(self, block: NewBlock) -> bool | None:
+        """True where a block makes X a radius, False for a diameter, None where it does neither."""
+        control, text = self.trace.machine.control, " ".join(block.words)
+        code = control.native_words.get(text, text)
+        return True if code in control.x_radius_words else False if code in control.x_diameter_words else None
+
+    def _in_case(self, blocks: Sequence[NewBlock]) -> list[NewBlock]:
+        return [NewBlock(tuple(in_case(self.pen, word) for word in block.words)) for block in blocks]
+
+
+def _pen(trace: Trace, each: Stretch, style: Style) -> Pen:
+    units = [np.broadcast_to(column, len(trace)) for column in (trace.lengths.units, trace.lengths.feed_units)]
+    pen = Pen(trace.machine, style, *(bool(column[each.first] == Units.INCH) for column in units))
+    pen.numbers.line = each.line
+    return pen
+
+
+def _with_feed_mode(trace: Trace, row: int) -> int:
+    """The first of the rows right before one that say nothing but that F is inverse time."""
+    run, codes = trace.run, code_set(trace.machine.codes("feed_inverse_time"))
+    while row and not trace.blocks.starts[row - 1] and run.block[row - 1] < run.block[row]:
+        if run.depth[row - 1] != run.depth[row]:
+            break
+        low, high = stretch(run.row, row - 1, row)
+        letters = run.words.address[low:high].tolist()
+        if letters.count(ord("G")) != 1 or not set(letters) <= {ord("G"), ord("N")} or not is_plain(run, row - 1):
+            break
+        at = int(np.searchsorted(trace.blocks.g_words, low + letters.index(ord("G"))))
+        if not codes[trace.blocks.g_codes[at]]:
+            break
+        row -= 1
+    return row

@@ -1,0 +1,147 @@
+"""The sections of the new program, read back: how far they are from the blocks that they stand for, F, and the time."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import msgspec
+import numpy as np
+
+from polarcheck.columns.path.moves import Moves
+from polarcheck.columns.trace import Trace
+from polarcheck.foundation.arrays import Floats, Rows, stretch
+from polarcheck.foundation.states import FeedMode, Motion
+from polarcheck.foundation.time_limit import keep_time
+from polarcheck.geometry.plane import arc_sweep
+from polarcheck.geometry.straight_axes.spiral_pieces import along, distances
+from polarcheck.geometry.tolerances import ZERO
+from polarcheck.rewrite.compare.compared_sections import NOWHERE, turn_of
+from polarcheck.rewrite.roll.entries import Entry
+from polarcheck.rewrite.roll.rollable import Stretch
+from polarcheck.rewrite.roll.rolled_blocks import Writer
+from polarcheck.rewrite.roll.rolled_elements import Fit
+from polarcheck.rewrite.roll.rolled_feeds import Feeds
+from polarcheck.rewrite.roll.slowing import Parts
+from polarcheck.rewrite.roll.ways import Way
+from polarcheck.rewrite.writing.original import Original
+from polarcheck.rewrite.writing.outcome import Refusal
+
+#: Places on a block at which it is measured.
+_PLACES = np.linspace(0.125, 1, 8)[None, :]
+#: F may differ from what was meant to be written by this share: its digits.
+_SAME_FEED = 1e-3
+
+
+class Section(msgspec.Struct, frozen=True):
+    """
+    A stretch and what becomes of it.
+
+    unit: mm per unit of length that F counts. first_line: of the first block that is replaced, in the file.
+    """
+
+    stretch: Stretch
+    way: Way
+    fit: Fit
+    feeds: Feeds
+    parts: Parts
+    unit: float
+    entry: Entry | None
+    text: Writer
+    first_line: int
+
+
+class Measured(msgspec.Struct, frozen=True):
+    """
+    What was read back.
+
+    places: how far ends of blocks are from the new path at most [mm]; way: how far the ways between them are, which
+    bow. time: of the new blocks at feed [s].
+    """
+
+    differences: list[Refusal]
+    places: float
+    way: float
+    time: float
+
+
+def measured_of(
+    original: Original, new: Original, origin: Sequence[int], sections: Sequence[Section], tolerance: float
+) -> Measured:
+    """
+    Read the sections of the new program.
+
+    origin: for each of its lines the line in the original, from 1. tolerance: how far ends of blocks may be from them
+    [mm].
+    """
+    trace, moves = new.trace, new.tables["tool_center"].moves
+    stands_for = np.array([0, *origin])[np.minimum(trace.blocks.line_in_file, len(origin))]
+    enters = stands_for[trace.mode.sections.enter].tolist()
+    number_of = dict(zip(enters, range(len(enters)), strict=True))
+    differences: list[Refusal] = []
+    places = ways = time = 0.0
+    lines = original.trace.blocks.line_in_file
+    for each in sections:
+        keep_time()
+        row = each.stretch.first if each.entry is None else each.entry.behind
+        number = number_of.get(int(lines[row]))
+        if number is None:
+            differences.append(Refusal(each.stretch.line, "the section is not found in the result"))
+            continue
+        low, high = np.searchsorted(moves.section, (number, number + 1)).tolist()
+        own: Moves = moves[low:high]
+        of_line = stands_for[own.row]
+        away = _away(each, own, of_line, lines, turn_of(trace, number))
+        at_ends = away[:, -1]
+        worst = int(np.argmax(at_ends))
+        places, ways = max(places, float(at_ends[worst])), max(ways, float(away.max()))
+        if not at_ends[worst] <= tolerance:
+            line = int(lines[each.way.row[worst]])
+            text = f"the path would be {at_ends[worst]:.4f} mm away from the end of this block"
+            if np.isinf(at_ends[worst]):
+                text = "no move of the result leads to the end of this block"
+            differences.append(Refusal(line, text))
+        behind = of_line >= each.stretch.line
+        differences += _feeds(each, own[behind], of_line[behind], trace)
+        time += float(np.nansum((own.length / own.feed)[behind])) * 60
+        time += 60 * sum(
+            float(each.way.rise[element.first]) / feed
+            for element, feed in zip(each.parts.elements, each.parts.feeds, strict=True)
+            if element.kind == Motion.NONE
+        )
+    return Measured(differences, places, ways, time)
+
+
+def _feeds(each: Section, moves: Moves, of_line: Rows, trace: Trace) -> list[Refusal]:
+    """F of moves that none of the elements was to have."""
+    meant = np.sort(each.parts.feeds)
+    at = np.clip(np.searchsorted(meant, moves.feed), 1, max(len(meant) - 1, 1))
+    nearest = np.minimum(*(np.abs(moves.feed / meant[np.minimum(at - n, len(meant) - 1)] - 1) for n in (0, 1)))
+    per_minute = trace.feedrate.feed_mode[moves.row] == FeedMode.PER_MINUTE
+    wrong = (moves.kind != Motion.RAPID) & ~((nearest <= _SAME_FEED) & per_minute)
+    return [Refusal(int(line), "F of the result is not the one that was meant") for line in of_line[wrong][:1]]
+
+
+def _away(each: Section, moves: Moves, of_line: Rows, lines: Rows, turn: complex) -> Floats:
+    """
+    How far each block on the plane is from the moves that stand for it [mm], at places along it, the last at its end.
+
+    inf where no move stands for it.
+    """
+    way = each.way
+    points = along(way.start_radius, way.radius, way.start_angle, way.angle, _PLACES)
+    away = np.repeat(np.where(way.length > ZERO, np.inf, 0.0)[:, None], points.shape[1], axis=1)
+    start, end, center = moves.start * turn, moves.end * turn, moves.center * turn
+    sweep = arc_sweep(start, end, np.where(np.isnan(center), 0, center), moves.kind)
+    center = np.where(sweep == 0, NOWHERE, center)
+    for element in each.parts.elements:
+        line = int(lines[way.row[element.until - 1]])
+        own = slice(*stretch(of_line, line, line + 1))
+        if element.kind == Motion.NONE or own.start == own.stop:
+            continue
+        # A block at a joint lies beside the element before it, too.
+        first, until = max(element.first - 1, 0), min(element.until + 1, len(way))
+        place = points[first:until].ravel()
+        place = np.broadcast_to(place, (own.stop - own.start, len(place)))
+        far = distances(place, start[own], end[own], center[own], sweep[own]).min(axis=0)
+        away[first:until] = np.minimum(away[first:until], far.reshape(until - first, -1))
+    return away

@@ -1,0 +1,99 @@
+"""The words of a section that stay where the mode is gone: M codes, dwells, and what else does not move the tool."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from polarcheck.columns.trace import Trace
+from polarcheck.foundation.arrays import stretch
+from polarcheck.program.machines.code_tables import NO_CODE, code_set
+from polarcheck.rewrite.writing.outcome import refused_at
+from polarcheck.rules.editing import is_head, is_plain, words_of, written_word
+
+#: Lists of G codes that mean nothing without the mode, or that the new blocks say themselves.
+_DROPPED = (
+    "rapid", "line", "arc_clockwise", "arc_counterclockwise", "plane_xy", "plane_zx", "plane_yz", "compensation_off",
+    "compensation_left", "compensation_right", "corner_by_arc", "corner_by_intersection", "feed_inverse_time",
+    "feed_per_minute", "feed_per_revolution", "feed_on_plane", "feed_in_space", "feed_as_machine", "feed_at_center",
+    "feed_at_contour", "feed_at_inner_contour", "absolute", "incremental", "frame_shift", "frame_shift_added",
+    "frame_rotation", "frame_rotation_added",
+)  # fmt: skip
+#: Lists of G codes whose blocks stay as they are, with all of their words.
+_UNTOUCHED = ("dwell",)
+#: Why a block with a word that a statement computes is refused.
+_COMPUTED = "a word of this block cannot be written without the statement around it"
+
+
+class Others:
+    """The words of the blocks of sections beside those of moves, of compensation and of the mode."""
+
+    def __init__(self, trace: Trace) -> None:
+        self.trace = trace
+        machine, polar = trace.machine, trace.machine.polar
+        codes = [code for key in _DROPPED for code in machine.codes(key)]
+        self._dropped_codes = code_set([*codes, *polar.on, *polar.off])
+        self._codes = np.full(len(trace.run.words), NO_CODE, np.int32)
+        self._codes[trace.blocks.g_words] = trace.blocks.g_codes
+        centers = [word for pair in polar.center_words.values() for word in pair]
+        addresses = {*polar.axis_addresses, "X", "U", "Z", "W", *centers, machine.arcs.radius_word, "F"}
+        addresses |= {machine.arcs.larger_arc_word, machine.offsets.allowance_word}
+        self._dropped_addresses = {machine.address_number(address) for address in addresses if address}
+        self._switches = trace.mode.enters | trace.mode.leaves
+        self._untouched = trace.blocks.listed(*_UNTOUCHED)
+        self._beside_offset = trace.blocks.listed("compensation_left", "compensation_right")
+        macro = machine.macro
+        calls = [*macro.subprogram_calls, *macro.macro_calls, *macro.program_returns]
+        indices = trace.blocks.code_indices(*calls)
+        self._of_call = trace.blocks.words_at(indices)
+        # A program that is repeated returns to its own beginning: the depth stays.
+        depth = trace.run.depth
+        self._hands_over = np.append(depth[1:] != depth[:-1], False)[: len(trace)]
+        self._hands_over[trace.run.row[indices]] = True
+
+    def is_changed(self, row: int) -> bool:
+        """Something of the row does not stay."""
+        if self._hands_over[row]:
+            return True
+        if self._untouched[row]:
+            return False
+        return any(self._is_dropped(index) for index in range(*stretch(self.trace.run.row, row, row + 1)))
+
+    def of_row(self, row: int) -> list[str]:
+        """
+        The words of a row that stay, as they are written.
+
+        Raises RefusedError for a word whose value a statement computes, where it is no code.
+        """
+        run = self.trace.run
+        plain, hands_over = is_plain(run, row), self._hands_over[row]
+        words = [index for index in words_of(run, row) if not is_head(run, index)]
+        if self._untouched[row]:
+            if words and not plain:
+                raise refused_at(self.trace, row, _COMPUTED)
+            return [written_word(run, index) for index in words]
+        texts = []
+        for index in words:
+            letter = chr(int(run.words.address[index]))
+            if self._is_dropped(index) or (letter == "D" and self._beside_offset[row]):
+                continue
+            # What stands beside the switch, or hands over to a program, has no meaning without it.
+            if (self._switches[row] or hands_over) and (letter not in "GMST" or self._of_call[index]):
+                continue
+            texts.append(written_word(run, index) if plain else self._computed(row, index))
+        return texts
+
+    def _is_dropped(self, index: int) -> bool:
+        address = int(self.trace.run.words.address[index])
+        if address == ord("G"):
+            return bool(self._dropped_codes[self._codes[index]])
+        return address in self._dropped_addresses
+
+    def _computed(self, row: int, index: int) -> str:
+        """A code whose value a statement computes."""
+        words = self.trace.run.words
+        letter, value = chr(int(words.address[index])), float(words.value[index])
+        if letter not in "GMST" or not math.isfinite(value):
+            raise refused_at(self.trace, row, _COMPUTED)
+        return f"{letter}{value:.15g}"

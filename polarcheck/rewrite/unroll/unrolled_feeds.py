@@ -1,0 +1,131 @@
+"""F of blocks in which X and C move together outside of the mode, so that the tool runs as fast as it did in it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from polarcheck.columns.trace import Trace
+from polarcheck.foundation.arrays import Floats, Mask, Rows
+from polarcheck.foundation.states import FeedMode
+from polarcheck.program.machines.feed_keys import WITH_ROTARY
+from polarcheck.rewrite.unroll.axis_blocks import Steps, x_factor
+from polarcheck.rewrite.writing.outcome import Refusal, RefusedError, refusal_at
+from polarcheck.rewrite.writing.rotary_feed import block_feeds
+
+#: What --feed may be: what F is, and stepwise: as the machine has it per minute, with an F for several blocks.
+FEEDS = (*WITH_ROTARY, "stepwise")
+#: F of several blocks is lower than that of any of them by no more than this share.
+_STEP = 0.1
+#: Largest F that is written; where it would be larger, the block takes longer.
+_LARGEST = 99999.0
+#: X may pass its travel limit by rounding [mm].
+_ROUNDING = 1e-6
+#: Digits of F that count.
+_DIGITS = 5
+
+
+def chosen(trace: Trace, feed: str) -> str:
+    """
+    What F is to be; feed: as the option says, empty for what the machine has.
+
+    Raises RefusedError where that is not known.
+    """
+    of_machine: Sequence[str] = trace.machine.feed.with_rotary
+    per_minute = [name for name in of_machine if name != "inverse-time"]
+    if feed == "stepwise" and not per_minute:
+        why = "how X and C share F per minute is not known"
+    elif not feed and not of_machine:
+        why = "what F is where X and C move together is not known"
+    else:
+        return feed or of_machine[0]
+    raise RefusedError(
+        [Refusal(0, f"{why} of {trace.machine.title}: feed.with_rotary of a machine file says it, or --feed for once")]
+    )
+
+
+def method_of(trace: Trace, feed: str) -> str:
+    """What F is, of WITH_ROTARY."""
+    if feed != "stepwise":
+        return feed
+    return next(name for name in trace.machine.feed.with_rotary if name != "inverse-time")
+
+
+def times(trace: Trace, steps: Steps) -> Floats:
+    """
+    How long each block takes [s]: by the F of the section, or longer where C or X would be too fast.
+    """
+    limits = trace.machine.limits
+    share = min(limits.override_share, 100) / 100 if limits.automatic_override else 1.0
+    # Where nobody knows how fast C may turn, it turns on the spot as fast as on every lathe.
+    spot = np.where(steps.move < 0, limits.c_feed_harmless, np.inf)
+    c_feed = np.fmin(limits.c_feed * share, spot)
+    longest = np.fmax(steps.time, 60 * np.abs(steps.turn) / c_feed)
+    return np.fmax(longest, np.nan_to_num(60 * np.abs(steps.radius_step) / limits.x_feed))
+
+
+def feeds(trace: Trace, steps: Steps, time: Floats, feed: str) -> Floats:
+    """F of each block as it is written, in the units of the program."""
+    unit = trace.lengths.feed_scale[steps.row]
+    exact = block_feeds(method_of(trace, feed), steps.radius_step, steps.turn, steps.rise, time / 60, unit)
+    exact = np.minimum(exact, _LARGEST)
+    if feed == "stepwise":
+        exact = _stepwise(exact, steps)
+    return _rounded(exact)
+
+
+def mode_of(feed: str) -> FeedMode:
+    return FeedMode.INVERSE_TIME if feed == "inverse-time" else FeedMode.PER_MINUTE
+
+
+def _rounded(feed: Floats) -> Floats:
+    """Five digits, no more than four behind the point, rounded down."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        digits = np.clip(_DIGITS - 1 - np.floor(np.log10(feed)), 0, 4)
+    scale = 10.0 ** np.nan_to_num(digits, nan=0.0, posinf=4.0)
+    # Down, so that no limit is passed; F0 would not move.
+    return np.where(feed > 0, np.maximum(np.floor(feed * scale * (1 + 1e-12)), 1) / scale, feed)
+
+
+def _stepwise(feed: Floats, steps: Steps) -> Floats:
+    """An F for as many blocks as it is the lowest of and no more than a tenth below any of them."""
+    values = feed.tolist()
+    begin = 0
+    while begin < len(values):
+        lowest = highest = values[begin]
+        end = begin + 1
+        while end < len(values):
+            low, high = min(lowest, values[end]), max(highest, values[end])
+            if not low >= high * (1 - _STEP):
+                break
+            lowest, highest, end = low, high, end + 1
+        values[begin:end] = [lowest] * (end - begin)
+        begin = end
+    return np.array(values, np.float64)
+
+
+def slowed(steps: Steps, time: Floats) -> tuple[Mask, Rows]:
+    """Blocks that take longer than the F of the section says, and their rows in the trace."""
+    slow = time > steps.time * (1 + 1e-9)
+    slow &= steps.move >= 0
+    return slow, steps.row[slow]
+
+
+def beyond_travel(trace: Trace, steps: Steps) -> list[Refusal]:
+    """Blocks beyond the travel of X, the first in each direction."""
+    limits = trace.machine.limits
+    scale = (x_factor(trace) * trace.lengths.least_step)[steps.row]
+    radius = steps.x * scale
+    reasons = []
+    for hits, name, limit in (
+        (radius < limits.x_minimum - _ROUNDING, "below", limits.x_minimum),
+        (radius > limits.x_maximum + _ROUNDING, "above", limits.x_maximum),
+    ):
+        if hits.any():
+            reasons.append(
+                refusal_at(
+                    trace, steps.row[np.argmax(hits)], f"X would go {name} its travel limit of {limit:g} mm as a radius"
+                )
+            )
+    return reasons

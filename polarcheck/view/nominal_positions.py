@@ -1,0 +1,85 @@
+"""
+What the job asks for, drawings and shapes, where it lies on the face of a section.
+
+Import late: shapely is slow to import.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import shapely  # type: ignore[import-untyped]
+
+from polarcheck.foundation.arrays import Points
+from polarcheck.foundation.errors import TooHardError
+from polarcheck.parts.deviations import Deviations
+from polarcheck.parts.nominal_parts import NominalParts
+from polarcheck.parts.part_comparison import Comparison, title_of
+from polarcheck.program.machines.part_keys import Part
+from polarcheck.rules.tables import Tables
+from polarcheck.view.drawn_moves import LENGTH
+from polarcheck.view.part_rings import Ring
+from polarcheck.view.picture_data import DrawnPart
+
+#: The most points of all curves of a part.
+_MOST = 20_000
+
+
+def drawn_parts(tables: Tables, section: int, tolerance: float) -> list[DrawnPart]:
+    """
+    Return what the job asks for in a section, as its section writes it, within a tolerance [mm].
+
+    A part that was compared stands as often as that, for each contour once, turned as it was compared.
+    """
+    nominal: NominalParts = tables["nominal_parts"]
+    if not nominal.parts:
+        return []
+    deviations: Deviations = tables["deviations"]
+    try:
+        compared = [one for one in deviations.comparisons if one.section == section and not one.is_superseded]
+    except TooHardError:
+        compared = []
+    found: list[DrawnPart] = []
+    for number, part in enumerate(nominal.parts):
+        if part.section not in (None, section + 1):
+            continue
+        curves = nominal.curves(number, nominal.unit(number, int(nominal.trace.mode.sections.enter[section])))
+        of_part = [*_nearest([one for one in compared if one.number == number])]
+        for one in of_part or (None,):
+            found.append(_drawn(nominal, section, part, curves, one, tolerance))
+    return found
+
+
+def _nearest(compared: Sequence[Comparison]) -> list[Comparison]:
+    """Return of the comparisons of a part one for each way in which it is turned, the worst of them."""
+    worst: dict[float, Comparison] = {}
+    for one in sorted(compared, key=lambda one: one.agrees):
+        worst.setdefault(round(float(np.nan_to_num(one.turned)), 6), one)
+    return list(worst.values())
+
+
+def _drawn(
+    nominal: NominalParts, section: int, part: Part, curves: Sequence[Points], one: Comparison | None, tolerance: float
+) -> DrawnPart:
+    row = int(nominal.trace.mode.sections.enter[section])
+    angle = -nominal.entry(row) if one is None else float(np.nan_to_num(one.turned)) - one.entry
+    rings: list[Ring] = []
+    lines: list[Ring] = []
+    while sum(map(len, curves)) > _MOST and tolerance < np.inf:
+        curves = [_simplified(curve, tolerance) for curve in curves]
+        tolerance *= 2
+    for curve in curves:
+        point = curve * np.exp(1j * angle)
+        points = list(zip(np.round(point.real, LENGTH).tolist(), np.round(point.imag, LENGTH).tolist(), strict=True))
+        is_closed = len(points) > 3 and points[0] == points[-1]
+        (rings if is_closed else lines).append(points[:-1] if is_closed else points)
+    agrees = None if one is None else one.agrees
+    z = None if one is None or np.isnan(one.z) else round(one.z, LENGTH)
+    return DrawnPart(title=title_of(part), z=z, agrees=agrees, rings=rings, lines=lines)
+
+
+def _simplified(curve: Points, tolerance: float) -> Points:
+    line = shapely.simplify(shapely.LineString(np.column_stack([curve.real, curve.imag])), tolerance)
+    point = shapely.get_coordinates(line)
+    return np.asarray(point[:, 0] + 1j * point[:, 1])
