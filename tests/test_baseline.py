@@ -20,7 +20,7 @@ import polarcheck
 from polarcheck.checking.fingerprints import normal
 from polarcheck.commands import baseline as baseline_command
 from polarcheck.commands import main
-from polarcheck.files.baselines.baseline_file import Contents, Entry, Place, program_of, read, text_of
+from polarcheck.files.baselines.baseline_file import Contents, Entry, Location, program_of, read, text_of
 from polarcheck.files.settings.of_programs import Options
 
 pytestmark = pytest.mark.usefixtures("own_folder")
@@ -549,7 +549,9 @@ def test_text_of_a_file_comes_back_as_it_was() -> None:
     entries = [
         Entry(file='a"\n\x1b.nc', rule="x", fingerprint="1", severity="note", count=3, follows=["y"], reason="ü")
     ]
-    entries.append(msgspec.structs.replace(entries[0], rule="y", count=1, places=[Place(at=3, values={"depth": 0.5})]))
+    entries.append(
+        msgspec.structs.replace(entries[0], rule="y", count=1, places=[Location(at=3, values={"depth": 0.5})])
+    )
     programs = [program_of('a"\n\x1b.nc', [0, 1, 2**24 - 1], 2)]
     Path(FILE).write_text(text_of(Contents(entries, programs)), "utf-8")
     contents = read(Path(FILE))

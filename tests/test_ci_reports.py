@@ -44,7 +44,7 @@ NASTY = (
 )
 #: As the system has it: a blank, a backslash, marks of addresses, what acts, a byte that is no character.
 RAW_NAME = 'a b#\u00fc\\x%41:,?<"\x1b\n\udcff.nc'
-NASTY_PATH = files.shown(f"part s/{RAW_NAME}")
+NASTY_PATH = files.display_path(f"part s/{RAW_NAME}")
 CI_FORMATS = ("checkstyle", "github", "gitlab", "jsonl", "junit", "sarif")
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from polarcheck.foundation.states import Motion
-from polarcheck.geometry.overcuts.cuts import Cuts, cuts_into, endless, shortened, with_walls
+from polarcheck.geometry.overcuts.cuts import Cuts, assign_walls, cuts_into, endless, shortened
 from polarcheck.geometry.polygons.finished_part import Contours, FinishedParts, finished_parts
 from polarcheck.geometry.segments import Curves, Segments
 
@@ -33,7 +33,7 @@ def ways(*points: tuple[complex, complex]) -> Segments:
 def cuts_of(part: FinishedParts, pieces: Segments, group: np.ndarray, radius: np.ndarray) -> Cuts:
     """Cuts with their walls, of parts that are open or endless into the walls alone."""
     by_walls = part.open | endless(part)
-    return with_walls(part, cuts_into(part, by_walls, pieces, group, radius, TOLERANCE))
+    return assign_walls(part, cuts_into(part, by_walls, pieces, group, radius, TOLERANCE))
 
 
 SQUARE = [20, 20 + 20j, -20 + 20j, -20 - 20j, 20 - 20j, 20]

@@ -26,7 +26,7 @@ from polarcheck.editor import (
     program_markdown,
     section_lenses,
 )
-from polarcheck.editor.analysis import Judged, judge
+from polarcheck.editor.analysis import Analysis, judge
 from polarcheck.editor.open_text import OpenText, path_of
 from polarcheck.editor.structure.document import Document
 from polarcheck.editor.words.completions import completions
@@ -60,13 +60,13 @@ def settings_of(**asked: Any) -> Any:
     return command._Settings(not asked.pop("use_config", True), asked)
 
 
-def judged_of(text: str, folders: Sequence[Path] = (), **asked: Any) -> Judged:
+def judged_of(text: str, folders: Sequence[Path] = (), **asked: Any) -> Analysis:
     """A buffer beside the working folder's polarcheck.toml, if there is one."""
     here = Path(os.path.realpath("."))
     return judge(OpenText(text), here / "O1.NC", settings_of(**asked), [here, *folders])
 
 
-def report_of(judged: Judged) -> FileReport:
+def report_of(judged: Analysis) -> FileReport:
     assert judged.report is not None
     return judged.report
 
@@ -76,7 +76,7 @@ def place(line: int, character: int = 0) -> types.Position:
     return types.Position(line - 1, character)
 
 
-def shown(judged: Judged, line: int, character: int = 0, with_markdown: bool = False) -> str:
+def shown(judged: Analysis, line: int, character: int = 0, with_markdown: bool = False) -> str:
     found = hover_text.hover(judged, place(line, character), with_markdown)
     if found is None:
         return ""
@@ -84,12 +84,12 @@ def shown(judged: Judged, line: int, character: int = 0, with_markdown: bool = F
     return found.contents.value
 
 
-def state_at(judged: Judged, line: int, character: int = 0) -> str:
+def state_at(judged: Analysis, line: int, character: int = 0) -> str:
     """The state of the block, which stands below the meaning of the word."""
     return shown(judged, line, character).rpartition("\n\n")[2]
 
 
-def edited(judged: Judged, edit: types.WorkspaceEdit | None) -> str:
+def edited(judged: Analysis, edit: types.WorkspaceEdit | None) -> str:
     """The text with an edit applied, from its end on."""
     assert edit is not None
     changes = edit.changes[URI] if edit.changes else edit.document_changes[0].edits  # type: ignore[index,union-attr]
@@ -236,7 +236,7 @@ def test_each_section_tells_what_it_asks_of_the_lathe() -> None:
 # ---- where words lead ----
 
 
-def lines_led_to(judged: Judged, line: int, character: int = 0) -> list[int]:
+def lines_led_to(judged: Analysis, line: int, character: int = 0) -> list[int]:
     found = go_to_definition.definition(judged, URI, place(line, character))
     assert all(one.uri == URI for one in found)
     return [one.range.start.line + 1 for one in found]
@@ -364,7 +364,7 @@ def test_what_is_allowed_is_no_mark() -> None:
     assert [found.rule for found in report_of(allowed).silenced] == ["rapid-in-polar"]
 
 
-def labels(text: str, judged: Judged | None = None) -> list[str]:
+def labels(text: str, judged: Analysis | None = None) -> list[str]:
     """What is offered at the |."""
     before, _, after = text.partition("|")
     opened = OpenText(before + after)

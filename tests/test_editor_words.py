@@ -11,7 +11,7 @@ from lsprotocol import types
 
 from polarcheck.commands import server as command
 from polarcheck.editor import actions
-from polarcheck.editor.analysis import Judged, judge
+from polarcheck.editor.analysis import Analysis, judge
 from polarcheck.editor.hover_text import hover
 from polarcheck.editor.open_text import OpenText
 from polarcheck.editor.structure.document import Document
@@ -27,7 +27,7 @@ def at_mark(text: str) -> tuple[str, types.Position]:
     return before + after, types.Position(before.count("\n"), len(before.rpartition("\n")[2]))
 
 
-def judged_of(text: str, **asked: Any) -> Judged:
+def judged_of(text: str, **asked: Any) -> Analysis:
     return judge(OpenText(text), Path("O1.NC").absolute(), command._Settings(True, asked), [])
 
 

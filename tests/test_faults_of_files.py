@@ -442,7 +442,7 @@ def test_no_two_paths_are_shown_as_one() -> None:
     names = [name for count in range(4) for name in map("".join, itertools.product(letters, repeat=count))]
     if sys.platform == "win32":
         names = [name for name in names if "\\" not in name]
-    shown = {name: files.shown(name) for name in dict.fromkeys(names)}
+    shown = {name: files.display_path(name) for name in dict.fromkeys(names)}
     assert len(set(shown.values())) == len(shown)
     assert all(text.encode() for name, text in shown.items() if name)
     seen = {name: visible(text) for name, text in shown.items()}

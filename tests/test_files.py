@@ -201,7 +201,7 @@ def test_the_working_folder_gives_plain_names(tmp_path: Path, monkeypatch: pytes
 
 
 def test_paths_that_are_no_text_are_spelled_out() -> None:
-    assert files.shown(os.fsdecode(b"a\xff.nc")) == "a\\xff.nc"
+    assert files.display_path(os.fsdecode(b"a\xff.nc")) == "a\\xff.nc"
 
 
 # ---- writing ----

@@ -125,9 +125,9 @@ def test_a_drive_is_no_format() -> None:
 
 def test_paths_are_shown_with_slashes(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(files.os, "sep", "\\")
-    assert files.shown("programs\\sub\\O1.nc") == "programs/sub/O1.nc"
-    assert files.shown("\\\\server\\share\\O1.nc") == "//server/share/O1.nc"
-    assert files.shown("C:\\O1.nc") == "C:/O1.nc"
+    assert files.display_path("programs\\sub\\O1.nc") == "programs/sub/O1.nc"
+    assert files.display_path("\\\\server\\share\\O1.nc") == "//server/share/O1.nc"
+    assert files.display_path("C:\\O1.nc") == "C:/O1.nc"
 
 
 def test_folders_of_subprograms_come_from_the_environment_with_the_separator_of_the_system() -> None:
@@ -192,7 +192,10 @@ def test_every_folder_of_such_a_drive_is_walked() -> None:
     for name in ("a/b", "c"):
         Path(name).mkdir(parents=True)
     make(**{"a/b/one__nc": "M30", "c/two__nc": "M30"})
-    assert [files.shown(path) for path in walking.walk(".", walking.EXTENSIONS, print)] == ["a/b/one.nc", "c/two.nc"]
+    assert [files.display_path(path) for path in walking.walk(".", walking.EXTENSIONS, print)] == [
+        "a/b/one.nc",
+        "c/two.nc",
+    ]
 
 
 @pytest.mark.usefixtures("unnumbered")

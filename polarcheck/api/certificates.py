@@ -25,9 +25,9 @@ def certify(path: str | Path, *, cases: Iterable[str] = (), max_size: int = file
     function = "polarcheck.certify()"
     manifest = path_of(function, path, "the path of a manifest")
     most = whole(f"{function}: max_size", max_size, 0, files.LARGEST)
-    wanted = names(f"{function}: cases", cases)
+    chosen_cases = names(f"{function}: cases", cases)
     loaded = load(Path(manifest))
-    chosen = certifying.chosen(loaded, wanted, f"{function}: cases")
+    chosen = certifying.chosen(loaded, chosen_cases, f"{function}: cases")
     settings = certifying.conditions(loaded, certifying.needed(loaded, chosen))
     case_runs = dict(certifying.runs(loaded, settings, most))
     bug = next((run.bug for run in case_runs.values() if run.bug is not None), None)

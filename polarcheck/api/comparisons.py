@@ -41,7 +41,7 @@ def compare(
     Raises SourceError if a file cannot be read, UsageError, JobError or MachineError for a wrong setting,
     TooHardError if a program takes too long.
     """
-    calls = (_call("polarcheck.compare()", keywords, own) for own in (old_machine, new_machine))
+    calls = (_call("polarcheck.compare()", keywords, machine_of_side) for machine_of_side in (old_machine, new_machine))
     programs = [call.of_path(path, max_size) for call, path in zip(calls, (old, new), strict=True)]
     return _compared("polarcheck.compare()", programs[0], programs[1], tolerance)
 
@@ -68,7 +68,9 @@ def compare_text(
 
     Raises as `compare` does.
     """
-    calls = (_call("polarcheck.compare_text()", keywords, own) for own in (old_machine, new_machine))
+    calls = (
+        _call("polarcheck.compare_text()", keywords, machine_of_side) for machine_of_side in (old_machine, new_machine)
+    )
     programs = [call.of_text(text, name) for call, text in zip(calls, (old, new), strict=True)]
     return _compared("polarcheck.compare_text()", programs[0], programs[1], tolerance)
 
@@ -78,18 +80,24 @@ def _call(function: str, keywords: ExecutionKeywords, machine: PathName | None) 
 
 
 def _compared(function: str, old: Program, new: Program, tolerance: float | None) -> Comparison:
-    place = f"{function}: tolerance"
-    same = None if tolerance is None else length(place, tolerance, sys.float_info.max, "a length above 0 [mm]")
+    argument = f"{function}: tolerance"
+    same = None if tolerance is None else length(argument, tolerance, sys.float_info.max, "a length above 0 [mm]")
     if same is not None and same > _LARGEST_TOLERANCE:
-        raise UsageError(f"{place}: expected {_LARGEST_TOLERANCE:g} mm at most, found {short(tolerance)}")
-    seconds = sum(each.settings.job.run.max_seconds for each in (old, new))
+        raise UsageError(f"{argument}: expected {_LARGEST_TOLERANCE:g} mm at most, found {short(tolerance)}")
+    seconds = sum(program.settings.job.run.max_seconds for program in (old, new))
     with time_limit(seconds_for(len(old.data) + len(new.data), seconds)):
         first, second = (
             Revision(
-                each.path,
-                each.settings.name,
-                check.read(each.data, each.settings.machine, each.settings.job, each.path, each.settings.encoding),
+                program.path,
+                program.settings.name,
+                check.read(
+                    program.data,
+                    program.settings.machine,
+                    program.settings.job,
+                    program.path,
+                    program.settings.encoding,
+                ),
             )
-            for each in (old, new)
+            for program in (old, new)
         )
         return compared(first, second, same or default_tolerance(first, second))

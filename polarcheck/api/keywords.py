@@ -14,7 +14,7 @@ from polarcheck.files.settings.of_programs import Options
 from polarcheck.foundation.errors import UsageError, suggestion
 from polarcheck.program.machines.job import Running, Stock, Tool, WorkOffset
 from polarcheck.program.machines.part_keys import Part
-from polarcheck.program.reading.files import shown
+from polarcheck.program.reading.files import display_path
 
 PathName: TypeAlias = str | os.PathLike[str]
 Values: TypeAlias = Mapping[str, Any]
@@ -178,10 +178,10 @@ def options(function: str, kind: type, values: Mapping[str, Any], **more: Any) -
 
     Raises UsageError, which names the function and the keyword at fault.
     """
-    known = kind.__annotations__
+    kinds = kind.__annotations__
     for name in values:
-        if name not in known:
-            raise UsageError(f"{function}: unknown keyword {name}{suggestion(name, known)}")
+        if name not in kinds:
+            raise UsageError(f"{function}: unknown keyword {name}{suggestion(name, kinds)}")
     table = {
         name: plain(f"{function}: {name}", value, files=_FILES.get(name, ()))
         for name, value in values.items()
@@ -266,7 +266,7 @@ def _check(function: str, values: Mapping[str, Any]) -> None:
         raise UsageError(f"{function}: changes: expected keys with values, found {short(values['changes'])}")
     for folder in values.get("subprograms", ()):
         if not os.path.isdir(folder):  # noqa: PTH112  Path.is_dir raises for some names
-            raise UsageError(f"{function}: subprograms: there is no folder {shown(folder)}")
+            raise UsageError(f"{function}: subprograms: there is no folder {display_path(folder)}")
 
 
 def paths_of(function: str, paths: PathName | Iterable[PathName]) -> list[str]:
@@ -284,9 +284,9 @@ def paths_of(function: str, paths: PathName | Iterable[PathName]) -> list[str]:
 _A_PATH = "the path of a program or folder"
 
 
-def path_of(place: str, path: Any, expected: str = _A_PATH) -> str:
+def path_of(argument: str, path: Any, expected: str = _A_PATH) -> str:
     """Return a path as a text, as paths_of does."""
-    name = plain(place, path, files=[""]) if isinstance(path, str | os.PathLike) else None
+    name = plain(argument, path, files=[""]) if isinstance(path, str | os.PathLike) else None
     if not isinstance(name, str) or not name:
-        raise UsageError(f"{place}: expected {expected}, found {short(path)}")
+        raise UsageError(f"{argument}: expected {expected}, found {short(path)}")
     return os.path.join(os.curdir, name) if name == "-" else name  # noqa: PTH118

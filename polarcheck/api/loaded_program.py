@@ -50,7 +50,7 @@ def of_file(path: str, options: Options, max_size: int) -> Program:
     Raises SourceError, UsageError, JobError or MachineError in one line.
     """
     settings = OfPrograms(options)(path)
-    return Program(files.shown(path), files.read_program(path, max_size), settings)
+    return Program(files.display_path(path), files.read_program(path, max_size), settings)
 
 
 class Call(NamedTuple):
@@ -94,7 +94,7 @@ class Call(NamedTuple):
                 text.encode("utf-8", "backslashreplace"),
                 msgspec.structs.replace(settings, encoding="utf-8"),
             )
-        return Program(files.shown(path), text, settings)
+        return Program(files.display_path(path), text, settings)
 
     def with_one_state(self) -> Call:
         """Return the call of a function that runs a program once: block skip is off unless a keyword sets it."""

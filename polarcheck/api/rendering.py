@@ -23,8 +23,8 @@ def render(report: Report | FileReport, form: str = "text") -> str:
 
     Raises UsageError for another format.
     """
-    known = [name for name in reports.formats() if name not in reports.PER_FILE]
-    form = choice("polarcheck.render(): form", form, known, "text")
+    forms = [name for name in reports.formats() if name not in reports.PER_FILE]
+    form = choice("polarcheck.render(): form", form, forms, "text")
     if isinstance(report, FileReport):
         report = batch.report([report], report.machine)
     if not isinstance(report, Report):

@@ -100,8 +100,8 @@ class Trace(Table, frozen=True, eq=False):
             return np.zeros(0, complex)
         apart = np.append(True, np.abs(parts.start[1:] - parts.end[:-1]) > _TOUCH)
         points = np.stack([np.where(apart, np.nan, parts.start), parts.start, parts.end], axis=1)
-        wanted = np.stack([apart, apart, np.ones(len(parts), bool)], axis=1)
-        return np.asarray(points[wanted][1:])
+        used = np.stack([apart, apart, np.ones(len(parts), bool)], axis=1)
+        return np.asarray(points[used][1:])
 
     def __repr__(self) -> str:
         sections = len({*zip(self.channel.tolist(), self.section.tolist(), strict=True)})

@@ -26,31 +26,31 @@ _MOST = 1_000_000
 _LONGEST = 60
 
 
-def plain(place: str, value: Any, level: int = 0, *, files: Collection[str] = ()) -> Any:
+def plain(argument: str, value: Any, level: int = 0, *, files: Collection[str] = ()) -> Any:
     """
     Return a value as a TOML file would give it: tables, lists, numbers and texts. A key that is None is left out.
 
-    place: the function, the keyword and the key, for messages.
+    argument: the function, the keyword and the key, for messages.
     files: keys whose texts name files, and may contain bytes that are no characters; "" for the value itself.
     """
     if level > _DEEPEST:
-        raise UsageError(f"{place}: expected {_DEEPEST} tables and lists within each other at most")
+        raise UsageError(f"{argument}: expected {_DEEPEST} tables and lists within each other at most")
     if isinstance(value, msgspec.Struct):
         fields = {field.name: (getattr(value, field.name), field.default) for field in msgspec.structs.fields(value)}
         value = {name: inner for name, (inner, default) in fields.items() if not _is(inner, default)}
     if isinstance(value, Mapping):
-        return _table(place, value, level, files)
+        return _table(argument, value, level, files)
     if isinstance(value, os.PathLike):
-        value = _path(place, value)
+        value = _path(argument, value)
     if isinstance(value, str):
-        return _text(place, value, names_file="" in files)
+        return _text(argument, value, names_file="" in files)
     if isinstance(value, bool):
         return value
     if isinstance(value, numbers.Number):
-        return _number(place, value)
+        return _number(argument, value)
     if isinstance(value, Iterable) and not isinstance(value, bytes | bytearray | memoryview):
-        return [plain(place, inner, level + 1, files=files) for inner in _elements(place, value)]
-    raise UsageError(f"{place}: expected a text, a number, a list or a table, found {short(value)}")
+        return [plain(argument, inner, level + 1, files=files) for inner in _elements(argument, value)]
+    raise UsageError(f"{argument}: expected a text, a number, a list or a table, found {short(value)}")
 
 
 def _is(value: Any, default: Any) -> bool:
@@ -60,96 +60,96 @@ def _is(value: Any, default: Any) -> bool:
     return value is None or value is default or (isinstance(value, list | dict) and not value)
 
 
-def _table(place: str, value: Mapping[Any, Any], level: int, files: Collection[str]) -> dict[str, Any]:
+def _table(argument: str, value: Mapping[Any, Any], level: int, files: Collection[str]) -> dict[str, Any]:
     table = {}
     for key, inner in value.items():
         if isinstance(key, numbers.Integral):
-            name = str(_number(place, key))
+            name = str(_number(argument, key))
         elif isinstance(key, str) and key.isprintable():
             name = key
         else:
-            raise UsageError(f"{place}: expected texts or whole numbers as keys, found {short(key)}")
+            raise UsageError(f"{argument}: expected texts or whole numbers as keys, found {short(key)}")
         if inner is not None:
-            table[name] = plain(f"{place}.{name}", inner, level + 1, files=[""] if name in files else files)
+            table[name] = plain(f"{argument}.{name}", inner, level + 1, files=[""] if name in files else files)
     return table
 
 
-def _path(place: str, value: os.PathLike[Any]) -> Any:
+def _path(argument: str, value: os.PathLike[Any]) -> Any:
     try:
         return os.fspath(value)
     except TypeError:
-        raise UsageError(f"{place}: expected a path, found {short(value)}") from None
+        raise UsageError(f"{argument}: expected a path, found {short(value)}") from None
 
 
-def _text(place: str, value: str, *, names_file: bool) -> str:
+def _text(argument: str, value: str, *, names_file: bool) -> str:
     try:
         value.encode("utf-8", "surrogateescape" if names_file else "strict")
     except UnicodeEncodeError:
-        raise UsageError(f"{place}: expected a text of characters, found {short(value)}") from None
+        raise UsageError(f"{argument}: expected a text of characters, found {short(value)}") from None
     return value
 
 
-def _number(place: str, value: Any) -> int | float:
+def _number(argument: str, value: Any) -> int | float:
     if isinstance(value, numbers.Integral):
         number = int(value)
         if abs(number) >= _BEYOND:
-            raise UsageError(f"{place}: expected a number of 18 digits at most, found {short(number)}")
+            raise UsageError(f"{argument}: expected a number of 18 digits at most, found {short(number)}")
         return number
     try:
         return float(value)  # a Decimal is no numbers.Real
     except (TypeError, ValueError, OverflowError):
-        raise UsageError(f"{place}: expected a number, found {short(value)}") from None
+        raise UsageError(f"{argument}: expected a number, found {short(value)}") from None
 
 
-def _elements(place: str, value: Iterable[Any]) -> Iterable[Any]:
+def _elements(argument: str, value: Iterable[Any]) -> Iterable[Any]:
     try:
         elements = [*itertools.islice(value, _MOST + 1)]
     except TypeError:  # an array without dimensions
-        raise UsageError(f"{place}: expected a list, found {short(value)}") from None
+        raise UsageError(f"{argument}: expected a list, found {short(value)}") from None
     if len(elements) > _MOST:
-        raise UsageError(f"{place}: expected {_MOST} values at most")
+        raise UsageError(f"{argument}: expected {_MOST} values at most")
     return elements
 
 
-def names(place: str, value: Any) -> list[str]:
+def names(argument: str, value: Any) -> list[str]:
     """Return the names of a keyword that takes one or several, of files, too; none for None."""
-    listed = [] if value is None else plain(place, value, files=[""])
+    listed = [] if value is None else plain(argument, value, files=[""])
     listed = [listed] if isinstance(listed, str) else listed
     if not isinstance(listed, list) or not all(isinstance(element, str) for element in listed):
-        raise UsageError(f"{place}: expected names, found {short(value)}")
+        raise UsageError(f"{argument}: expected names, found {short(value)}")
     return listed
 
 
-def flag(place: str, value: Any) -> bool:
+def flag(argument: str, value: Any) -> bool:
     """Return True or False."""
     if not isinstance(value, bool):
-        raise UsageError(f"{place}: expected True or False, found {short(value)}")
+        raise UsageError(f"{argument}: expected True or False, found {short(value)}")
     return value
 
 
-def whole(place: str, value: Any, least: int, default: int) -> int:
+def whole(argument: str, value: Any, least: int, default: int) -> int:
     """Return a whole number; the default for None."""
     number = default if value is None else value
     if isinstance(number, bool) or not isinstance(number, numbers.Integral) or number < least:
-        raise UsageError(f"{place}: expected a whole number from {least}, found {short(value)}")
-    return int(_number(place, number))
+        raise UsageError(f"{argument}: expected a whole number from {least}, found {short(value)}")
+    return int(_number(argument, number))
 
 
-def length(place: str, value: Any, most: float, expected: str) -> float:
+def length(argument: str, value: Any, most: float, expected: str) -> float:
     """Return a number above 0. expected: the same in words, with its unit."""
-    number = value if isinstance(value, float) or value is None else plain(place, value)
+    number = value if isinstance(value, float) or value is None else plain(argument, value)
     if isinstance(number, bool) or not isinstance(number, int | float) or not 0 < number <= most:
-        raise UsageError(f"{place}: expected {expected}, found {short(value)}")
+        raise UsageError(f"{argument}: expected {expected}, found {short(value)}")
     return float(number)
 
 
-def choice(place: str, value: Any, choices: Collection[str], default: str) -> str:
+def choice(argument: str, value: Any, choices: Collection[str], default: str) -> str:
     """Return one of some texts; the default for None."""
     if value is None:
         return default
     if not isinstance(value, str) or value not in choices:
         expected = " or ".join(choices) if len(choices) == 2 else f"one of {', '.join(choices)}"
-        raise UsageError(f"{place}: expected {expected}, found {short(value)}")
+        raise UsageError(f"{argument}: expected {expected}, found {short(value)}")
     return value
 
 

@@ -64,8 +64,8 @@ def cuts(runs: Iterable[tuple[str, Tables]]) -> dict[str, dict[str, float]]:
         listed: dict[str, Listed] = tables.get("listed", {})
         for name in [name for name in listed if rules[name].gouges]:
             for key, numbers in _of_rule(listed[name], rules[name].over, tables):
-                known = worst.setdefault(key, {})
-                known.update({number: max(value, known.get(number, value)) for number, value in numbers.items()})
+                largest = worst.setdefault(key, {})
+                largest.update({number: max(value, largest.get(number, value)) for number, value in numbers.items()})
     return {key: {name: _NUMBERS[name][1] * value for name, value in numbers.items()} for key, numbers in worst.items()}
 
 
@@ -128,8 +128,8 @@ def outline(text: str, lines: Iterable[int], most: int = MOST) -> Outline:
     of = 1
     while len(hashes) > most:
         of *= 2
-        listed = [at for at, value in enumerate(hashes) if value % of == 0]
-        of_lines, hashes = [of_lines[at] for at in listed], [hashes[at] for at in listed]
+        listed = [index for index, value in enumerate(hashes) if value % of == 0]
+        of_lines, hashes = [of_lines[index] for index in listed], [hashes[index] for index in listed]
     return Outline(hashes, of, {line: bisect_right(of_lines, line) - 1 for line in with_block})
 
 
@@ -147,14 +147,18 @@ def _without_comments(texts: Sequence[Text]) -> str:
     """Return the text of the file itself, without its comments and without the programs that it calls."""
     source = texts[0].source
     text = source.text[: _end(source)]
-    pieces, at = [], 0
+    pieces, copied = [], 0
     for start, end in sorted(
-        span for one in texts for span in zip(one.comments.start.tolist(), one.comments.end.tolist(), strict=True)
+        span
+        for text_with_comments in texts
+        for span in zip(
+            text_with_comments.comments.start.tolist(), text_with_comments.comments.end.tolist(), strict=True
+        )
     ):
-        if start >= at:
-            pieces += [text[at:start], "\n" * text.count("\n", start, end)]
-            at = end
-    return "".join([*pieces, text[at:]])
+        if start >= copied:
+            pieces += [text[copied:start], "\n" * text.count("\n", start, end)]
+            copied = end
+    return "".join([*pieces, text[copied:]])
 
 
 def _end(source: Source) -> int | None:

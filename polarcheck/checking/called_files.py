@@ -62,21 +62,21 @@ def in_the_file(
     """
     if not trace.text.source.parts:
         return list(findings)
-    found: list[Finding] = []
+    collected: list[Finding] = []
     for finding in findings:
         following = in_the_file(finding.follows, trace, answered, rows)
         row = (rows or {}).get((finding.rule, finding.line, finding.column))
-        shown = _shown(finding, trace, answered, row)
-        if shown is not None and isinstance(shown, Silenced):
-            found += [msgspec.structs.replace(shown, follows=[]), *following]
-        elif shown is None:
-            found += following
+        reported = _not_suppressed(finding, trace, answered, row)
+        if reported is not None and isinstance(reported, Silenced):
+            collected += [msgspec.structs.replace(reported, follows=[]), *following]
+        elif reported is None:
+            collected += following
         else:
-            found.append(msgspec.structs.replace(shown, follows=following))
-    return found
+            collected.append(msgspec.structs.replace(reported, follows=following))
+    return collected
 
 
-def _shown(finding: Finding, trace: Trace, answered: Answered, row: int | None) -> Finding | None:
+def _not_suppressed(finding: Finding, trace: Trace, answered: Answered, row: int | None) -> Finding | None:
     source = trace.text.source
     part = source.part_of(finding.line)
     if part is None:
@@ -88,7 +88,7 @@ def _shown(finding: Finding, trace: Trace, answered: Answered, row: int | None) 
     text = source.line_text(line)
     section_line = finding.section_line
     if source.is_own(part):
-        return _at(finding, part[1], source.part_of(section_line) if section_line else None)
+        return _moved_to_call(finding, part[1], source.part_of(section_line) if section_line else None)
     shown = msgspec.structs.replace(
         finding,
         message=f"in {part[0]}, line {part[1]}, {finding.block}: {finding.message}",
@@ -103,7 +103,7 @@ def _shown(finding: Finding, trace: Trace, answered: Answered, row: int | None) 
     return answered(shown, block)
 
 
-def _at(finding: Finding, line: int, section: tuple[str, int] | None) -> Finding:
+def _moved_to_call(finding: Finding, line: int, section: tuple[str, int] | None) -> Finding:
     """A finding at a line of the file itself, with the line of its G12.1."""
     end_line = line + finding.end_line - finding.line
     section_line = section[1] if section else finding.section_line
@@ -120,8 +120,8 @@ def _call_of(trace: Trace, line: int, row: int | None) -> tuple[int, int, str] |
     if not len(rows):
         return None
     first_part = trace.text.source.parts[0].first_line
-    own = (trace.blocks.line[: rows[0]] < first_part).nonzero()[0]
-    if not len(own):
+    before_part = (trace.blocks.line[: rows[0]] < first_part).nonzero()[0]
+    if not len(before_part):
         return None
-    found = int(trace.blocks.line[own[-1]])
-    return found, int(trace.run.block[own[-1]]), trace.text.source.line_text(found).strip()
+    call_line = int(trace.blocks.line[before_part[-1]])
+    return call_line, int(trace.run.block[before_part[-1]]), trace.text.source.line_text(call_line).strip()

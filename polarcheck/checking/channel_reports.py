@@ -39,7 +39,7 @@ def united(reports: _Reports) -> FileReport:
     mark of a channel belongs to none, where all of them show it.
     """
     (_, first), *_ = reports
-    sections = _each(reports, attrgetter("polar_sections"))
+    sections = _joined(reports, attrgetter("polar_sections"))
     return replace(
         first,
         programs=list(dict.fromkeys(chain.from_iterable(report.programs for _, report in reports))),
@@ -48,36 +48,40 @@ def united(reports: _Reports) -> FileReport:
         polar_sections=sorted(sections, key=lambda section: section.line),
         findings=list(_once(reports, attrgetter("findings"))),
         silenced=list(_once(reports, attrgetter("silenced"))),
-        not_evaluated=list(_each(reports, attrgetter("not_evaluated"))),
+        not_evaluated=list(_joined(reports, attrgetter("not_evaluated"))),
         looked_at=max((report.looked_at for _, report in reports), key=len),
     )
 
 
 def _once(reports: _Reports, findings: Callable[[FileReport], Sequence[Found]]) -> Iterator[Found]:
-    shown = Counter(_key(found) for _, report in reports for found in findings(report))
-    told: set[tuple[object, ...]] = set()
+    shown = Counter(_key(entry) for _, report in reports for entry in findings(report))
+    listed: set[tuple[object, ...]] = set()
     for source, report in reports:
-        for found in findings(report):
-            key = _key(found)
-            if key in told:
+        for entry in findings(report):
+            key = _key(entry)
+            if key in listed:
                 continue
-            told.add(key)
-            owners = [one.channel for one, _ in reports if stands_in(one, found.line)]
+            listed.add(key)
+            owners = [
+                report_of_channel.channel
+                for report_of_channel, _ in reports
+                if stands_in(report_of_channel, entry.line)
+            ]
             if len(owners) == 1:
-                yield _of_channel(found, owners[0])
+                yield _of_channel(entry, owners[0])
             else:
-                yield found if shown[key] == len(reports) else _of_channel(found, source.channel)
+                yield entry if shown[key] == len(reports) else _of_channel(entry, source.channel)
 
 
-def _of_channel(found: Found, name: str) -> Found:
-    return replace(found, channel=name, follows=[_of_channel(one, name) for one in found.follows])
+def _of_channel(entry: Found, name: str) -> Found:
+    return replace(entry, channel=name, follows=[_of_channel(one, name) for one in entry.follows])
 
 
-def _key(found: Finding) -> tuple[object, ...]:
-    return found.rule, found.line, found.column, found.message
+def _key(entry: Finding) -> tuple[object, ...]:
+    return entry.rule, entry.line, entry.column, entry.message
 
 
-def _each(reports: _Reports, parts: Callable[[FileReport], Sequence[Part]]) -> Iterator[Part]:
+def _joined(reports: _Reports, parts: Callable[[FileReport], Sequence[Part]]) -> Iterator[Part]:
     """What the reports have of a kind, each with the name of its channel."""
     for source, report in reports:
         for part in parts(report):

@@ -159,11 +159,11 @@ def _check_channel(
     first = report_of(engine)
     if not more:
         return first, [engine]
-    ((other, others),) = more
+    ((other, second_tables),) = more
     of_text = {rule.name: engine.hits(rule) for rule in engine.rules.values() if rule.of_text}
     # The texts differ if one run calls a program that the other does not.
-    known = of_text if others["text"] is tables["text"] else None
-    second = engine_of(others, rules, severities, known, inline)
+    known = of_text if second_tables["text"] is tables["text"] else None
+    second = engine_of(second_tables, rules, severities, known, inline)
     return _merged((state, first), (other, report_of(second)), of_text), [engine, second]
 
 
@@ -171,13 +171,13 @@ def engine_of(
     tables: Tables,
     rules: Sequence[Rule],
     severities: Mapping[str, str] | None = None,
-    known: Mapping[str, Hits] | None = None,
+    known_hits: Mapping[str, Hits] | None = None,
     inline: bool = True,
 ) -> Engine:
     """
     Build the engine for one run, with the rules that are not off.
 
-    known: hits that are known already, by rule name.
+    known_hits: hits that are known already, by rule name.
     inline: False to ignore allow comments. Without allow comments the rules on them are left out.
     """
     machine: Machine = tables["machine"]
@@ -193,8 +193,8 @@ def engine_of(
 
         allows = Allows(tables["text"], {rule.name: rule.group for rule in load_all().values()})
         tables.give("allows", allows)
-        return Engine(tables, levels, active, known, allows)
-    return Engine(tables, levels, [rule for rule in active if "allows" not in rule.parameters], known)
+        return Engine(tables, levels, active, known_hits, allows)
+    return Engine(tables, levels, [rule for rule in active if "allows" not in rule.parameters], known_hits)
 
 
 def report_of(engine: Engine) -> FileReport:
@@ -240,39 +240,48 @@ def _merged(first: tuple[str, FileReport], second: tuple[str, FileReport], of_te
     """
     (skip_off, off), (skip_on, on) = first, second
     shown_off, shown_on = (
-        {_place(finding) for finding in _all([*report.findings, *report.silenced])} for report in (off, on)
+        {_position(finding) for finding in _all([*report.findings, *report.silenced])} for report in (off, on)
     )
 
     fixes_off, fixes_on = (
-        {_place(finding): finding.fix for finding in _all([*report.findings, *report.silenced])} for report in (off, on)
+        {_position(finding): finding.fix for finding in _all([*report.findings, *report.silenced])}
+        for report in (off, on)
     )
 
-    def labelled(finding: Found, others: set[_Place], state: str) -> Found:
-        place = _place(finding)
+    def labelled(finding: Found, rival_places: set[_Place], state: str) -> Found:
+        key = _position(finding)
         # A fix for one run must not change the other.
-        agrees = fixes_off[place] == fixes_on[place] if place in fixes_off.keys() & fixes_on.keys() else _skips(finding)
+        agrees = fixes_off[key] == fixes_on[key] if key in fixes_off.keys() & fixes_on.keys() else _skips(finding)
         if finding.fix is not None and finding.rule not in of_text and not agrees:
             finding = msgspec.structs.replace(finding, fix=None)
         # A finding of the first run is not listed again under one that only the second run has.
-        followers = (follower for follower in finding.follows if others is shown_on or _place(follower) not in others)
-        follows = [labelled(follower, others, state) for follower in followers]
-        if finding.rule in of_text or _place(finding) in others:
+        followers = (
+            follower
+            for follower in finding.follows
+            if rival_places is shown_on or _position(follower) not in rival_places
+        )
+        follows = [labelled(follower, rival_places, state) for follower in followers]
+        if finding.rule in of_text or _position(finding) in rival_places:
             return msgspec.structs.replace(finding, follows=follows)
         return msgspec.structs.replace(finding, message=f"{finding.message} (with block skip {state})", follows=follows)
 
-    following = {_place(finding): finding.follows for finding in on.findings}
+    following = {_position(finding): finding.follows for finding in on.findings}
     findings = []
     for finding in off.findings:
         more = [
             labelled(follower, shown_off, skip_on)
-            for follower in following.get(_place(finding), ())
-            if _place(follower) not in shown_off
+            for follower in following.get(_position(finding), ())
+            if _position(follower) not in shown_off
         ]
-        shown = labelled(finding, shown_on, skip_off)
-        findings.append(with_following(shown, [*shown.follows, *more]))
-    findings += [labelled(finding, shown_off, skip_on) for finding in on.findings if _place(finding) not in shown_off]
+        labelled_finding = labelled(finding, shown_on, skip_off)
+        findings.append(with_following(labelled_finding, [*labelled_finding.follows, *more]))
+    findings += [
+        labelled(finding, shown_off, skip_on) for finding in on.findings if _position(finding) not in shown_off
+    ]
     silenced = [labelled(finding, shown_on, skip_off) for finding in off.silenced]
-    silenced += [labelled(finding, shown_off, skip_on) for finding in on.silenced if _place(finding) not in shown_off]
+    silenced += [
+        labelled(finding, shown_off, skip_on) for finding in on.silenced if _position(finding) not in shown_off
+    ]
     not_evaluated = list(dict.fromkeys((*off.not_evaluated, *on.not_evaluated)))
     findings = in_order(findings)
     return msgspec.structs.replace(
@@ -303,27 +312,27 @@ def _worst(off: Sequence[PolarSection], on: Sequence[PolarSection]) -> list[Pola
     return [of_run[key] for key in sorted(of_run)]
 
 
-def _worse(one: PolarSection, other: PolarSection) -> PolarSection:
-    fastest = max(one, other, key=lambda section: math.inf if section.c_feed is None else section.c_feed)
-    reasons = dict.fromkeys(reason for section in (one, other) for reason in section.time_not_known or ())
-    known = max(section.time_known or section.time or 0.0 for section in (one, other))
+def _worse(first: PolarSection, second: PolarSection) -> PolarSection:
+    fastest = max(first, second, key=lambda section: math.inf if section.c_feed is None else section.c_feed)
+    reasons = dict.fromkeys(reason for section in (first, second) for reason in section.time_not_known or ())
+    known = max(section.time_known or section.time or 0.0 for section in (first, second))
     return msgspec.structs.replace(
         fastest,
-        nearest=_fold(min, one.nearest, other.nearest),
-        center_line=one.center_line or other.center_line,
-        ramp_used=max((used for used in (one.ramp_used, other.ramp_used) if used is not None), default=None),
-        time=_fold(max, one.time, other.time),
+        nearest=_fold(min, first.nearest, second.nearest),
+        center_line=first.center_line or second.center_line,
+        ramp_used=max((used for used in (first.ramp_used, second.ramp_used) if used is not None), default=None),
+        time=_fold(max, first.time, second.time),
         time_known=known if reasons else msgspec.UNSET,
         time_not_known=list(reasons) or msgspec.UNSET,
     )
 
 
-def _fold(worst: Callable[..., float], one: float | None, other: float | None) -> float | None:
+def _fold(worst: Callable[..., float], first: float | None, second: float | None) -> float | None:
     """Return the worst value; None if one run does not know it."""
-    return None if one is None or other is None else worst(one, other)
+    return None if first is None or second is None else worst(first, second)
 
 
-def _place(finding: Finding) -> _Place:
+def _position(finding: Finding) -> _Place:
     return finding.rule, finding.line, finding.column
 
 

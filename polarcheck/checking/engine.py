@@ -190,10 +190,10 @@ class Engine:
         """Return the finding as shown at a block: silenced if an allow comment of that block names its rule."""
         if self.allows is None or isinstance(finding, Silenced):
             return finding
-        at = np.array([block])
-        if not self.allows.silenced(finding.rule, at)[0]:
+        block_index = np.array([block])
+        if not self.allows.silenced(finding.rule, block_index)[0]:
             return finding
-        self.used |= self.allows.used(finding.rule, at)
+        self.used |= self.allows.used(finding.rule, block_index)
         return allowed(finding, self.allows.reason(finding.rule, block))
 
     def _listed(self, rule: Rule) -> Listed | None:
@@ -216,23 +216,23 @@ class Engine:
         findings: list[Finding] = []
         causes: list[tuple[str, int] | None] = []
         for follows in (False, True):
-            at = np.flatnonzero((cause >= 0) == follows)
-            if not len(at):
+            listed = np.flatnonzero((cause >= 0) == follows)
+            if not len(listed):
                 continue
-            chosen, group, count = self._merged(rule, index[at], hits.worst)
-            is_silent = self._silenced(rule, index[at[chosen]])
-            silent[at] = is_silent[group]
+            chosen, group, count = self._merged(rule, index[listed], hits.worst)
+            is_silent = self._silenced(rule, index[listed[chosen]])
+            silent[listed] = is_silent[group]
             for quiet in (False, True) if is_silent.any() else (False,):
                 # Cut each list separately: silenced findings must not displace reported ones.
                 groups = np.flatnonzero(is_silent == quiet)
                 number_of = np.full(len(chosen), -1)
                 number_of[groups] = np.minimum(np.arange(len(groups)), LISTED - 1) + len(findings)
-                finding[at[is_silent[group] == quiet]] = number_of[group[is_silent[group] == quiet]]
+                finding[listed[is_silent[group] == quiet]] = number_of[group[is_silent[group] == quiet]]
                 for number, runs in zip(chosen[groups][:LISTED].tolist(), count[groups].tolist(), strict=False):
-                    first = at[number]
-                    place = PLACES[rule.over](self.tables, int(index[first]))
-                    one_finding = self._finding(rule, place, hits, runs)
-                    findings.append(self._allowed(one_finding, place) if quiet else one_finding)
+                    first = listed[number]
+                    located = PLACES[rule.over](self.tables, int(index[first]))
+                    one_finding = self._finding(rule, located, hits, runs)
+                    findings.append(self._allowed(one_finding, located) if quiet else one_finding)
                     has_cause = follows and not quiet
                     causes.append((self._names[cause[first]], int(element[first])) if has_cause else None)
                 if len(groups) > LISTED:
@@ -282,24 +282,24 @@ class Engine:
             for name in names:
                 if name not in self.rules:
                     continue
-                other = self.rules[name]
-                other_hits = self._reported(other, np.flatnonzero(self.hits(other).mask))
+                rule_of_cause = self.rules[name]
+                other_hits = self._reported(rule_of_cause, np.flatnonzero(self.hits(rule_of_cause).mask))
                 if not len(other_hits):
                     continue
                 try:
-                    other_spans = places.span_of(OF_CAUSE.get(span, span), other.over, self.tables)[other_hits]
+                    other_spans = places.span_of(OF_CAUSE.get(span, span), rule_of_cause.over, self.tables)[other_hits]
                     spans = places.span_of(span, rule.over, self.tables)[index]
                 except TooHardError:
                     continue  # the reach of the cause is not known: the finding stays a root finding
                 order = np.argsort(other_spans, kind="stable")
-                at = order[np.minimum(np.searchsorted(other_spans[order], spans), len(other_hits) - 1)]
-                is_caused = (other_spans[at] == spans) & (spans >= 0) & (cause < 0)
+                index_of_cause = order[np.minimum(np.searchsorted(other_spans[order], spans), len(other_hits) - 1)]
+                is_caused = (other_spans[index_of_cause] == spans) & (spans >= 0) & (cause < 0)
                 if span in OF_CAUSE:
-                    rows_of_cause = places.rows(other.over, self.tables)[other_hits[at]]
+                    rows_of_cause = places.rows(rule_of_cause.over, self.tables)[other_hits[index_of_cause]]
                     is_caused &= rows_of_cause < places.rows(rule.over, self.tables)[index]
                 if span in may_follow:
                     is_caused &= may_follow[span][index]
-                cause[is_caused], element[is_caused] = self._names.index(name), other_hits[at[is_caused]]
+                cause[is_caused], element[is_caused] = self._names.index(name), other_hits[index_of_cause[is_caused]]
         return cause, element
 
     def _merged(self, rule: Rule, index: Rows, worst: Floats | None) -> tuple[Rows, Rows, Rows]:
@@ -335,28 +335,30 @@ class Engine:
         order = np.argsort(first, kind="stable")
         return first[order], np.argsort(order)[group], count[order]
 
-    def _finding(self, rule: Rule, place: Place, hits: Hits, count: int) -> Finding:
+    def _finding(self, rule: Rule, element: Place, hits: Hits, count: int) -> Finding:
         from polarcheck.checking.fingerprints import fingerprint
         from polarcheck.rules.hit import Hit
         from polarcheck.rules.message import fill
         from polarcheck.rules.repair import fix_of
 
         trace = self.trace
-        at = (
-            places.words_at_fault(self.tables, place.row, rule.at, hits.at) if rule.over in ("rows", "sections") else []
+        word_list = (
+            places.words_at_fault(self.tables, element.row, rule.at, hits.at)
+            if rule.over in ("rows", "sections")
+            else []
         )
-        start, end = places.span(self.tables, place, at)
+        start, end = places.span(self.tables, element, word_list)
         source = trace.text.source
         line, end_line = source.line_of(start), source.line_of(max(end - 1, start))
-        severity = _severity(rule, hits, place).name.lower()
+        severity = _severity(rule, hits, element).name.lower()
         is_note = trace.machine.severities.get(rule.name, severity) == NOTE.name.lower()
-        text, values = fill(rule, hits, self.tables, Hit(trace, place, at, count))
-        if rule.over in ("rows", "sections") and place.row >= 0 and trace.run.depth[place.row]:
-            self.rows_in_calls[rule.name, line, start - int(source.line_starts[line - 1]) + 1] = place.row
-            text += in_call(trace, places.rows(rule.over, self.tables)[hits.mask], place.row)
-        block = places.block_text(trace.text, place.block)
-        section = int(trace.mode.section[place.row]) if place.row >= 0 else -1
-        kind = Undecided if hits.undecided is not None and hits.undecided[place.index] else Finding
+        text, values = fill(rule, hits, self.tables, Hit(trace, element, word_list, count))
+        if rule.over in ("rows", "sections") and element.row >= 0 and trace.run.depth[element.row]:
+            self.rows_in_calls[rule.name, line, start - int(source.line_starts[line - 1]) + 1] = element.row
+            text += in_call(trace, places.rows(rule.over, self.tables)[hits.mask], element.row)
+        block = places.block_text(trace.text, element.block)
+        section = int(trace.mode.section[element.row]) if element.row >= 0 else -1
+        kind = Undecided if hits.undecided is not None and hits.undecided[element.index] else Finding
         return kind(
             rule=rule.name,
             severity=self.severities.get(rule.name, severity),
@@ -366,14 +368,14 @@ class Engine:
             end_line=end_line,
             end_column=end - int(source.line_starts[end_line - 1]) + 1,
             block=block,
-            program=self._program_name(place.block),
+            program=self._program_name(element.block),
             section_line=int(trace.blocks.line[trace.mode.sections.enter[section]]) if section >= 0 else None,
-            alarm=None if is_note else self._alarm(rule, at),
+            alarm=None if is_note else self._alarm(rule, word_list),
             values=values,
             count=count,
             source=rule.source,
-            fingerprint=fingerprint(rule, trace.text, place),
-            fix=fix_of(rule, hits, self.tables, place, count),
+            fingerprint=fingerprint(rule, trace.text, element),
+            fix=fix_of(rule, hits, self.tables, element, count),
         )
 
     def _alarm(self, rule: Rule, at: list[int]) -> str | None:
@@ -386,8 +388,8 @@ class Engine:
         return alarm if not len(written) or code_set(machine.codes_of_alarm(alarm))[written].any() else None
 
     def _program_name(self, block: int) -> str | None:
-        at = bisect.bisect_right(self.heads, block, key=lambda head: head[0])
-        return self.heads[at - 1][1] if at else None
+        index = bisect.bisect_right(self.heads, block, key=lambda head: head[0])
+        return self.heads[index - 1][1] if index else None
 
 
 def too_hard(rule: Rule, error: TooHardError, trace: Trace) -> NotEvaluated:

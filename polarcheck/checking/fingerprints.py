@@ -32,21 +32,21 @@ def fingerprint(rule: Rule, text: Text, place: Place) -> str:
     return hashlib.sha256(f"{rule.name}\0{words}".encode("utf-8", "replace")).hexdigest()[:16]
 
 
-def _words(text: Text, place: Place) -> str:
+def _words(text: Text, element: Place) -> str:
     """The words of the block; where it has none, as before a comment, the characters at fault."""
-    start, end = int(text.blocks.start[place.block]), int(text.blocks.end[place.block])
+    start, end = int(text.blocks.start[element.block]), int(text.blocks.end[element.block])
     end = min(end, start + _LONGEST)
     found = normal(_without_comments(text, start, end))
-    return found or normal(text.source.excerpt(place.start, min(place.end, place.start + _LONGEST)))
+    return found or normal(text.source.excerpt(element.start, min(element.end, element.start + _LONGEST)))
 
 
 def _without_comments(text: Text, start: int, end: int) -> str:
     comments = text.comments
-    pieces, at = [], start
+    pieces, copied = [], start
     for number in range(*np.searchsorted(comments.start, [start, end]).tolist()):
-        pieces.append(text.source.excerpt(at, max(int(comments.start[number]), at)))
-        at = max(at, int(comments.end[number]))
-    return "".join([*pieces, text.source.excerpt(at, end) if at < end else ""])
+        pieces.append(text.source.excerpt(copied, max(int(comments.start[number]), copied)))
+        copied = max(copied, int(comments.end[number]))
+    return "".join([*pieces, text.source.excerpt(copied, end) if copied < end else ""])
 
 
 def normal(words: str) -> str:

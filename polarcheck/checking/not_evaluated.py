@@ -73,7 +73,7 @@ def all_unevaluated(tables: Tables, rules: Iterable[Rule]) -> Iterator[NotEvalua
     yield from unexecuted(tables)
     for rule in rules:
         if (rule.companion("needs") or rule.name in _EXTRA_REASONS) and tables.may_hold(rule.parameters):
-            yield from told(unevaluated(tables, rule), tables["machine"])
+            yield from merged_by_reason(unevaluated(tables, rule), tables["machine"])
 
 
 def bounds_not_reported(tables: Tables, findings: Iterable[Finding]) -> Iterator[NotEvaluated]:
@@ -100,7 +100,7 @@ def _is_of_bound(finding: Finding) -> bool:
     return finding.rule == ENDLESS_LOOP and isinstance(finding, Undecided)
 
 
-def told(missing: Iterable[Missing], machine: Machine) -> Iterator[NotEvaluated]:
+def merged_by_reason(missing: Iterable[Missing], machine: Machine) -> Iterator[NotEvaluated]:
     """Merge the entries of one rule: one report per reason, with the text of the first entry of each cause."""
     causes: dict[tuple[int, int | str, bool], list[Missing]] = {}
     for entry in sorted(missing, key=lambda entry: entry.kind):
@@ -248,8 +248,8 @@ def _c_axis_without_limit(tables: Tables, rule: Rule) -> Iterator[Missing]:
     rows = np.flatnonzero(tables["center"].cuts_off_center & np.isfinite(c_feed))
     if not np.isnan(trace.machine.limits.c_feed) or not len(rows):
         return
-    at = int(rows[np.argmax(c_feed[rows])])
-    line, rate, axis = int(trace.blocks.line[at]), float(c_feed[at]), trace.machine.polar.rotary_address
+    row = int(rows[np.argmax(c_feed[rows])])
+    line, rate, axis = int(trace.blocks.line[row]), float(c_feed[row]), trace.machine.polar.rotary_address
     reason = (
         f"{trace.machine.title} gives no limit of the {axis} axis; highest rate found {rate:.0f} deg/min, line {line}"
     )
@@ -337,12 +337,12 @@ def _parts_not_compared(tables: Tables, rule: Rule) -> Iterator[Missing]:
 def _skipped_loops(tables: Tables, rule: Rule, rows: Mask, reason: str, matters: bool = True) -> Iterator[Missing]:
     """Yield an entry for each of the first NAMED loops in these rows, and one for all further loops."""
     trace: Trace = tables["trace"]
-    at = np.flatnonzero(rows & tables["ramps"].compensated)
-    if not len(at):
+    skipped = np.flatnonzero(rows & tables["ramps"].compensated)
+    if not len(skipped):
         return
-    first, counts = _groups(tables["ramps"].loop[at])
+    first, counts = _groups(tables["ramps"].loop[skipped])
     order = np.argsort(first)
-    for number, count in zip(at[first[order]][:NAMED].tolist(), counts[order].tolist(), strict=False):
+    for number, count in zip(skipped[first[order]][:NAMED].tolist(), counts[order].tolist(), strict=False):
         sentence = f"the contour at line {int(trace.blocks.line[number])} {reason}"
         yield Missing(rule.name, SAID, f"{sentence} {number}", sentence, count, matters)
     if len(first) > NAMED:

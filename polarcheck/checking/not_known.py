@@ -124,8 +124,8 @@ def _position(tables: Tables, row: int) -> str:
         return (
             f"the position is not known: {axis} was not programmed before the polar mode; write G0 {axis}... before it"
         )
-    at = int(lost[-1])
-    written = f"line {int(trace.blocks.line[at])}, {block_in_line(trace.run, at, _BLOCK_LENGTH)}"
+    row_lost = int(lost[-1])
+    written = f"line {int(trace.blocks.line[row_lost])}, {block_in_line(trace.run, row_lost, _BLOCK_LENGTH)}"
     axes = f"X and {trace.machine.polar.rotary_address}"
     remedy = f"--subprograms FOLDER says where called programs lie, or program {axes} after it"
     return f"the position is not known after {written}, which is not executed; {remedy}"

@@ -45,16 +45,16 @@ def known_stock(tables: Tables) -> KnownStock | None:
     if not len(tables["sections"]):
         return None
     bar: Bar = tables["bar"]
-    known = bar.known
-    if known.source == "none" and np.isnan(known.face):
+    stock = bar.known
+    if stock.source == "none" and np.isnan(stock.face):
         return None
-    (line, end_line), (face_line, face_end_line) = known.lines, known.face_lines
+    (line, end_line), (face_line, face_end_line) = stock.lines, stock.face_lines
     return KnownStock(
-        diameter=rounded(known.smallest),
-        largest=rounded(known.largest),
-        bore=rounded(known.bore),
-        face=rounded(known.face),
-        source=known.source,
+        diameter=rounded(stock.smallest),
+        largest=rounded(stock.largest),
+        bore=rounded(stock.bore),
+        face=rounded(stock.face),
+        source=stock.source,
         line=line or None,
         end_line=end_line or None,
         face_line=face_line or None,
@@ -73,12 +73,12 @@ def _polar_sections(trace: Trace, dynamics: Dynamics, center: Center, ramps: Ram
     nearest = _of_sections(sections, np.where(trace.path.cuts, tool_center.nearest, np.inf), np.minimum, np.inf)
     ramp = _ramp_used(trace, ramps)
     limit, rotary = rounded(trace.machine.limits.c_feed), trace.machine.polar.rotary_address
-    found = []
+    listed = []
     for index, (enter, end, row, fast) in enumerate(
         zip(sections.enter.tolist(), sections.last.tolist(), at_entry.tolist(), fastest.tolist(), strict=True)
     ):
         time = float(dynamics.section_time[index])
-        found.append(
+        listed.append(
             PolarSection(
                 line=int(trace.blocks.line_in_file[enter]),
                 end_line=int(trace.blocks.line_in_file[min(end, len(trace) - 1)]),
@@ -97,7 +97,7 @@ def _polar_sections(trace: Trace, dynamics: Dynamics, center: Center, ramps: Ram
                 **(_of_known_blocks(dynamics, index) if np.isnan(time) else {}),
             )
         )
-    return found
+    return listed
 
 
 def _of_known_blocks(dynamics: Dynamics, section: int) -> dict[str, Any]:
@@ -132,9 +132,9 @@ def _of_sections(sections: Sections, values: Floats, fold: np.ufunc, none: float
     """Per section the least or the largest of the values of its rows; NaN where there is none, or one is not known."""
     # From each G12.1 to its end, and from there to the next, which is left out.
     bounds = np.column_stack((sections.enter, sections.leave)).ravel()
-    found: Floats = fold.reduceat(np.append(values, none), bounds)[::2]
-    found[np.isinf(found)] = np.nan
-    return found
+    folded: Floats = fold.reduceat(np.append(values, none), bounds)[::2]
+    folded[np.isinf(folded)] = np.nan
+    return folded
 
 
 def _fastest(trace: Trace, c_feed: Floats, highest: Floats) -> Rows:
@@ -143,8 +143,8 @@ def _fastest(trace: Trace, c_feed: Floats, highest: Floats) -> Rows:
         (trace.mode.section >= 0) & (c_feed > 0) & (c_feed == np.append(highest, np.nan)[trace.mode.section])
     )
     rows = np.full(len(trace.mode.sections), -1)
-    found = np.flatnonzero(is_highest)[::-1]
-    rows[trace.mode.section[found]] = found
+    highest_rows = np.flatnonzero(is_highest)[::-1]
+    rows[trace.mode.section[highest_rows]] = highest_rows
     return rows
 
 

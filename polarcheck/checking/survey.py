@@ -53,27 +53,27 @@ class Survey(msgspec.Struct, frozen=True):
     units: list[str]
 
 
-def survey(paths: Sequence[str], asked: Profile | None, awaited: Iterable[str] | None = None) -> Survey:
+def survey(paths: Sequence[str], requested: Profile | None, awaited: Iterable[str] | None = None) -> Survey:
     """
     Read the programs of some paths; those that cannot be read tell nothing.
 
-    asked: the machine, if somebody knows it; else those that fit are looked for. awaited: the same paths, as they are
-    gone through.
+    requested: the machine, if somebody knows it; else those that fit are looked for. awaited: the same paths, as they
+    are gone through.
     """
-    begins = _begins(asked)
-    known = [asked] if asked else list(profiles.built_in())
-    found: list[tuple[str, bytes]] = []
+    begins = _begins(requested)
+    known = [requested] if requested else list(profiles.built_in())
+    contents: list[tuple[str, bytes]] = []
     for path in paths if awaited is None else awaited:
         data = _data(path)
         if data is not None and begins.search(data.replace(b"\0", b"")):  # UTF-16, too
-            found.append((path, data))
-    fitting = _fitting([data for _, data in _sample(found)], known)
+            contents.append((path, data))
+    fitting = _fitting([data for _, data in _sample(contents)], known)
     names = [profile.name for profile in fitting]
-    chosen = _chosen(asked, fitting)
+    chosen = _chosen(requested, fitting)
     offsets: dict[str, list[Told]] = {}
     units: set[str] = set()
     polar = []
-    for path, data in found:
+    for path, data in contents:
         tables = _tables(data, chosen.machine)
         if tables is None or not len(tables["trace"].mode.sections):
             continue
@@ -85,9 +85,9 @@ def survey(paths: Sequence[str], asked: Profile | None, awaited: Iterable[str] |
     return Survey(len(paths), polar, chosen.name, names, offsets, sorted(units))
 
 
-def _chosen(asked: Profile | None, fitting: Sequence[Profile]) -> Profile:
-    if asked is not None:
-        return asked
+def _chosen(requested: Profile | None, fitting: Sequence[Profile]) -> Profile:
+    if requested is not None:
+        return requested
     default = profiles.load(profiles.DEFAULT)
     return default if not fitting or default.name in [profile.name for profile in fitting] else fitting[0]
 
@@ -99,23 +99,23 @@ def _data(path: str) -> bytes | None:
         return None
 
 
-def _begins(asked: Profile | None) -> re.Pattern[bytes]:
+def _begins(requested: Profile | None) -> re.Pattern[bytes]:
     """What begins the polar mode, as it may be written: most programs of a folder need no closer look."""
-    known = [asked] if asked else profiles.built_in()
+    known = [requested] if requested else profiles.built_in()
     codes = {word for profile in known for word in (*profile.machine.polar.on, *profile.machine.control.native_words)}
     return re.compile(rb"(?i)" + b"|".join(sorted(_written(code) for code in codes)))
 
 
 def _written(code: str) -> bytes:
-    found = _NUMBERED.fullmatch(code)
-    if found is None:
+    match = _NUMBERED.fullmatch(code)
+    if match is None:
         return re.escape(code).encode()
-    point = rf"\s*\.\s*{found[3]}" if found[3] else r"(?:\.0*)?"
-    return rf"{found[1]}\s*0*{found[2]}{point}(?!\d)".encode()
+    point = rf"\s*\.\s*{match[3]}" if match[3] else r"(?:\.0*)?"
+    return rf"{match[1]}\s*0*{match[2]}{point}(?!\d)".encode()
 
 
-def _sample(found: Sequence[tuple[str, bytes]]) -> Sequence[tuple[str, bytes]]:
-    return found[:: max(1, -(-len(found) // _TRIED))]
+def _sample(contents: Sequence[tuple[str, bytes]]) -> Sequence[tuple[str, bytes]]:
+    return contents[:: max(1, -(-len(contents) // _TRIED))]
 
 
 def _tables(data: bytes, machine: Machine) -> Tables | None:
@@ -126,19 +126,19 @@ def _tables(data: bytes, machine: Machine) -> Tables | None:
         return None
 
 
-def _fitting(programs: Sequence[bytes], known: Sequence[Profile]) -> list[Profile]:
+def _fitting(programs: Sequence[bytes], tried: Sequence[Profile]) -> list[Profile]:
     """The machines that read all of the programs well which any machine reads."""
     reading: list[set[str]] = []
     for data in programs:
         well = set()
-        for profile in known:
+        for profile in tried:
             tables = _tables(data, profile.machine)
             if tables is not None and _reads(tables):
                 well.add(profile.name)
         if well:
             reading.append(well)
     names = set.intersection(*reading) if reading else set()
-    return [profile for profile in known if profile.name in names]
+    return [profile for profile in tried if profile.name in names]
 
 
 def _reads(tables: Tables) -> bool:
@@ -155,9 +155,9 @@ def _of_program(path: str, trace: Trace) -> Iterator[tuple[str, Told]]:
     needed = needed if needed.any() else trace.mode.in_polar
     given = np.unique(trace.tools.offset_number[needed & (trace.offsets.radius_set_in < 0)])
     for number in given[given > 0].tolist():
-        key, told = trace.tools.offset_key(number), trace.offsets.radii_in_comments.get(number)
+        key, comment = trace.tools.offset_key(number), trace.offsets.radii_in_comments.get(number)
         if key:
-            yield key, Told(path, told.radius, told.comment) if told else Told(path)
+            yield key, Told(path, comment.radius, comment.comment) if comment else Told(path)
 
 
 def _units(trace: Trace) -> Iterator[str]:

@@ -18,13 +18,13 @@ _SELDOM = 4
 def fill_down(values: NDArray[Scalar], written: Mask, before: object) -> NDArray[Scalar]:
     """What is in force in each row: the last written value at or above it, `before` where none is."""
     start = np.array([before], values.dtype)
-    at = written.nonzero()[0]
-    if len(at) * _SELDOM < len(values):
-        if len(at) and not at[0] and is_uniform(values[at]) and values.dtype != np.bool_:
+    written_rows = written.nonzero()[0]
+    if len(written_rows) * _SELDOM < len(values):
+        if len(written_rows) and not written_rows[0] and is_uniform(values[written_rows]) and values.dtype != np.bool_:
             return repeated(values[0], len(values))
-        count = np.append(at, len(values))
-        count[1:] -= at
-        return np.repeat(np.concatenate((start, values[at])), count)
+        count = np.append(written_rows, len(values))
+        count[1:] -= written_rows
+        return np.repeat(np.concatenate((start, values[written_rows])), count)
     last = np.maximum.accumulate(np.where(written, np.arange(1, len(values) + 1), 0))
     filled: NDArray[Scalar] = np.concatenate((start, values))[last]
     return filled

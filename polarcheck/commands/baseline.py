@@ -100,7 +100,7 @@ def update(ctx: click.Context, /, paths: tuple[str, ...], **arguments: Any) -> N
 
     Programs that are not among the paths keep what is known of them.
     """
-    ctx.exit(_run(paths, options.DEBUG in ctx.meta, _known, _updated, **arguments))
+    ctx.exit(_run(paths, options.DEBUG in ctx.meta, _contents, _updated, **arguments))
 
 
 @_deciding
@@ -115,7 +115,7 @@ def prune(ctx: click.Context, /, paths: tuple[str, ...], **arguments: Any) -> No
 
     Kept is what could not be evaluated now, and what is known of programs that are not among the paths.
     """
-    ctx.exit(_run(paths, options.DEBUG in ctx.meta, _known, _pruned, **arguments))
+    ctx.exit(_run(paths, options.DEBUG in ctx.meta, _contents, _pruned, **arguments))
 
 
 def _none_yet(path: Path) -> Contents:
@@ -125,18 +125,20 @@ def _none_yet(path: Path) -> Contents:
     from polarcheck.program.reading import files
 
     if path.exists() or path.is_symlink():
-        name = files.shown(str(path))
+        name = files.display_path(str(path))
         raise BaselineError(f"-o {name}: is there already; `polarcheck baseline update` rewrites it, or name another")
     return Contents()
 
 
-def _known(path: Path) -> Contents:
+def _contents(path: Path) -> Contents:
     from polarcheck.files.baselines import baseline_file
     from polarcheck.foundation.errors import BaselineError
     from polarcheck.program.reading import files
 
     if not path.exists():
-        raise BaselineError(f"-o {files.shown(str(path))}: there is none; `polarcheck baseline create` writes it")
+        raise BaselineError(
+            f"-o {files.display_path(str(path))}: there is none; `polarcheck baseline create` writes it"
+        )
     return baseline_file.read(path)
 
 
@@ -174,18 +176,18 @@ def _run(
     target = output or _of_jobs(tasks)
     contents = read(target)
     tasks = _with_baseline(tasks, target)
-    overwriting.refuse_name(os.path.realpath(target), f"-o {files.shown(str(target))}")
+    overwriting.refuse_name(os.path.realpath(target), f"-o {files.display_path(str(target))}")
     checked = running.Runner(max_size, workers, cluster).check(tasks, Bar(len(tasks), not quiet), faults)
     status = faults.report()
     if checked.stopped is not None:
         interrupted, how = signals.exit_status(checked.stopped)
         say(f"{how}; nothing is written")
         return interrupted
-    known = Baseline(contents, target.parent, (task.place for task in tasks), paths)
-    updated, summary = make(known, contents, checked, tasks, reason)
+    baseline = Baseline(contents, target.parent, (task.place for task in tasks), paths)
+    updated, summary = make(baseline, contents, checked, tasks, reason)
     files.write(target, baseline_file.text_of(updated), rewrites=True)
     if not quiet:
-        show(f"{head(files.shown(str(target)))}: {summary}\n")
+        show(f"{head(files.display_path(str(target)))}: {summary}\n")
     return status
 
 
@@ -196,8 +198,8 @@ def _of_jobs(tasks: list[Task]) -> Path:
 
     named = {str(task.settings.baseline) for task in tasks if task.settings.baseline is not None}
     if len(named) > 1:
-        shown = ", ".join(files.shown(path) for path in sorted(named))
-        raise UsageError(f"-o: these programs have several baselines, {shown}; update those of one at a time")
+        paths_listed = ", ".join(files.display_path(path) for path in sorted(named))
+        raise UsageError(f"-o: these programs have several baselines, {paths_listed}; update those of one at a time")
     return Path(named.pop() if named else _FILE)
 
 
@@ -213,26 +215,26 @@ def _with_baseline(tasks: list[Task], path: Path) -> list[Task]:
     return [msgspec.structs.replace(task, settings=of_settings[id(task.settings)]) for task in tasks]
 
 
-def _updated(known: Baseline, before: Contents, checked: Checked, tasks: list[Task], reason: str) -> _Result:
+def _updated(baseline: Baseline, before: Contents, checked: Checked, tasks: list[Task], reason: str) -> _Result:
     from polarcheck.files.baselines.baselines import evaluated
     from polarcheck.files.batch.tasks import settings_of
 
     settings = settings_of(tasks)
-    updated = known.updated(((report, evaluated(report, settings[report.path])) for report in checked.files), reason)
-    was, now = known.total(before.entries), known.total(updated.contents.entries)
+    updated = baseline.updated(((report, evaluated(report, settings[report.path])) for report in checked.files), reason)
+    was, now = baseline.total(before.entries), baseline.total(updated.contents.entries)
     changed = f"; {updated.new} new, {was + updated.new - now} gone" if was else ""
     return updated.contents, f"{_counts(updated.contents)} known{changed}"
 
 
-def _pruned(known: Baseline, before: Contents, checked: Checked, tasks: list[Task], reason: str) -> _Result:
+def _pruned(baseline: Baseline, before: Contents, checked: Checked, tasks: list[Task], reason: str) -> _Result:
     from polarcheck.files.baselines.baselines import evaluated
     from polarcheck.files.batch.tasks import settings_of
 
     settings = settings_of(tasks)
     for report in checked.files:
-        known.without_known(report, evaluated(report, settings[report.path]))
-    left = known.pruned()
-    return left, f"{_counts(left)} known; {known.total(before.entries) - known.total(left.entries)} gone"
+        baseline.without_known(report, evaluated(report, settings[report.path]))
+    pruned = baseline.pruned()
+    return pruned, f"{_counts(pruned)} known; {baseline.total(before.entries) - baseline.total(pruned.entries)} gone"
 
 
 def _counts(contents: Contents) -> str:

@@ -120,8 +120,8 @@ def _certify(
         status = _update(loaded, certified, frozenset(chosen))
         certified = certifying.judged(loaded, settings, case_runs)
     certificate = certifying.certificate(loaded, {name: certified[name] for name in certified if name in chosen})
-    for other, output in outputs:
-        files.write(output, _report(certificate, other))
+    for extra_form, output in outputs:
+        files.write(output, _report(certificate, extra_form))
     is_colored = in_color(color)
     report = _report(certificate, form, columns(), is_colored)
     show(report if form == "text" else report.encode(), is_colored or None)
@@ -143,7 +143,7 @@ def _refuse(outputs: list[tuple[str, Path]], loaded: Loaded, settings: Mapping[s
     from polarcheck.files.batch.tasks import Task
     from polarcheck.foundation import record
     from polarcheck.foundation.errors import OutputError
-    from polarcheck.program.reading.files import shown
+    from polarcheck.program.reading.files import display_path
 
     named = [file for case in loaded.cases.values() for file in (case.program, case.golden) if file is not None]
     record.note(*map(loaded.beside, [*named, *loaded.named_files()]))
@@ -152,7 +152,7 @@ def _refuse(outputs: list[tuple[str, Path]], loaded: Loaded, settings: Mapping[s
     goldens = {os.path.realpath(loaded.beside(case.golden)) for case in loaded.cases.values() if case.golden}
     for _, output in outputs:
         if os.path.realpath(output) in goldens:
-            raise OutputError(f"-o {shown(str(output))}: is a golden trace of the manifest; name another file")
+            raise OutputError(f"-o {display_path(str(output))}: is a golden trace of the manifest; name another file")
 
 
 def _update(loaded: Loaded, certified: dict[str, Certified], chosen: frozenset[str]) -> int:

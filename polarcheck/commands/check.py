@@ -107,7 +107,9 @@ def check(ctx: click.Context, /, paths: tuple[str, ...], watch: bool, with_calle
         changed = changed_files(paths, {"--diff-base": arguments["diff_base"], "--watch": watch})
         paths = (os.curdir,)
     elif not paths:
-        raise click.MissingParameter(ctx=ctx, param=next(one for one in ctx.command.params if one.name == "paths"))
+        raise click.MissingParameter(
+            ctx=ctx, param=next(parameter for parameter in ctx.command.params if parameter.name == "paths")
+        )
     fields = {name: arguments.pop(name) for name in _Arguments._fields if name in arguments}
     arguments["named"] = options.variables(ctx)
     chosen = _Arguments(
@@ -241,12 +243,12 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
         return max(faults.report(), fixed.status)
     form = arguments.form or ("text" if len(tasks) <= _LONG or arguments.shown_too else "short")
     if not arguments.quiet:
-        tasks = reporting.with_makes(tasks, (form, *(other for other, _ in arguments.outputs)))
+        tasks = reporting.with_makes(tasks, (form, *(extra for extra, _ in arguments.outputs)))
     plain = _background(arguments, tasks, pictures, fixed.fixed, has_baseline=baselines is not None)
     bar = progress.Bar(len(tasks), not arguments.quiet)
-    shown = plain._replace(columns=columns(), color=is_colored)
+    console = plain._replace(columns=columns(), color=is_colored)
     live_report = live.Live(
-        form, shown, len(tasks), bar.hide, in_place_of_findings=arguments.statistics, to_error=fixed.has_output
+        form, console, len(tasks), bar.hide, in_place_of_findings=arguments.statistics, to_error=fixed.has_output
     )
     cache = None if arguments.no_cache else running.cache(arguments.max_size, arguments.cache_dir)
     runner = running.Runner(arguments.max_size, arguments.workers, arguments.cluster, seen, cache)

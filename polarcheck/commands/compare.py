@@ -113,26 +113,26 @@ def _compare(
         return CLEAN if is_git else FINDINGS
     faults = Faults(bool(arguments.pop("debug", False)))
     settings = [
-        OfPrograms(Options(machine=own or machine, use_config=not no_config, **arguments))
-        for own in (old_machine, new_machine)
+        OfPrograms(Options(machine=machine_of_side or machine, use_config=not no_config, **arguments))
+        for machine_of_side in (old_machine, new_machine)
     ]
     pairs, only_old, only_new = _files(pair, settings, extensions, faults)
-    found = []
+    comparisons = []
     for old, new in pairs:
         try:
-            found.append(_compared(old, new, same_up_to, max_size))
+            comparisons.append(_compared(old, new, same_up_to, max_size))
         except TooHardError as error:
             faults.failures.append(f"{old.title} | {new.title}: {error}")
         except PolarcheckError as error:
             faults.failures.append(str(error))
     if form == "json":
-        show(page.json([each for each, _ in found], only_old, only_new))
+        show(page.json([comparison for comparison, _ in comparisons], only_old, only_new))
     else:
         has_color = in_color(color)
-        for each, inch in found:
-            show(page.text(each, inch=inch, paint=painted if has_color else plain), has_color or None)
+        for comparison, inch in comparisons:
+            show(page.text(comparison, inch=inch, paint=painted if has_color else plain), has_color or None)
         show(page.single_files(only_old, only_new))
-    verdicts = {each.verdict for each, _ in found}
+    verdicts = {comparison.verdict for comparison, _ in comparisons}
     status = FINDINGS if DIFFERS in verdicts or only_old or only_new else CLEAN
     status = max(status, COULD_NOT_RUN if NOT_COMPARED in verdicts else CLEAN, faults.report())
     # git takes any other code for a driver that has died.
@@ -168,7 +168,7 @@ def _files(
         for folder, of in zip(pair[:2], settings, strict=True)
     ]
     both = [(task, programs[1][name]) for name, task in programs[0].items() if name in programs[1]]
-    only = [sorted(set(programs[at]) - set(programs[1 - at])) for at in (0, 1)]
+    only = [sorted(set(programs[side]) - set(programs[1 - side])) for side in (0, 1)]
     return both, only[0], only[1]
 
 
@@ -181,7 +181,7 @@ def _of_files(pair: _Pair, settings: Sequence[OfPrograms]) -> list[tuple[Task, T
         has_file = [of.applied(path).file.path is not None for of, path in zip(settings, places, strict=True)]
         if has_file[0] != has_file[1]:
             places = [places[has_file.index(True)]] * 2
-    tasks = [Task(path, of(place)) for path, of, place in zip(pair[:2], settings, places, strict=True)]
+    tasks = [Task(path, of(title)) for path, of, title in zip(pair[:2], settings, places, strict=True)]
     return [(tasks[0], tasks[1])]
 
 

@@ -151,7 +151,7 @@ def _tool(begun: str) -> Iterator[Item]:
 
 
 def _encodings(begun: str) -> Iterator[Item]:
-    known = {
+    encodings = {
         "utf-8": "",
         "utf-16": "",
         "cp1252": "Western Europe",
@@ -161,7 +161,7 @@ def _encodings(begun: str) -> Iterator[Item]:
         "gb18030": "Chinese",
         "euc_kr": "Korean",
     }
-    yield from (_item(name, about) for name, about in known.items() if name.startswith(begun))
+    yield from (_item(name, about) for name, about in encodings.items() if name.startswith(begun))
 
 
 def _nothing(begun: str) -> Iterator[Item]:

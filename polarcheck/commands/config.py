@@ -47,11 +47,11 @@ def show(ctx: click.Context, /, path: str, **arguments: Any) -> None:
     polarcheck config show O1234.NC
     polarcheck config show O1234.NC --tool 8:radius=4
     """
-    text = _shown(ctx, path, **arguments)
+    text = _effective(ctx, path, **arguments)
     print_out(text if arguments["form"] == "text" else text.encode())
 
 
-def _shown(
+def _effective(
     ctx: click.Context, path: str, *, form: str, no_config: bool, extensions: tuple[str, ...], **arguments: Any
 ) -> str:
     from polarcheck.files.settings import origins
@@ -63,7 +63,7 @@ def _shown(
     settings_of = OfPrograms(Options(use_config=not no_config, **arguments))
     applied = settings_of.applied(path)
     if path != files.STANDARD_INPUT and not os.path.lexists(path):
-        warn(f"{files.shown(path)}: there is no such file; this is what would apply to it")
+        warn(f"{files.display_path(path)}: there is no such file; this is what would apply to it")
     of_command = dict(pair.split("=", 1) for pair in arguments["severities"])
     rows = [page.Row(*value) for value in origins.values(applied, _sources(ctx), of_command)]
     if exclude:
@@ -82,17 +82,17 @@ def _shown(
         if layer.entry
     ]
     excluded = settings_of.is_within_excluded(path)
-    behind = settings_of.behind(applied.file)
+    ignored = settings_of.behind(applied.file)
     if form == "json":
-        left = {"file": str(behind.outer), "keys": behind.keys} if behind else None
-        return page.as_json(files.shown(path), names, entries, excluded, rows, left)
+        not_taken = {"file": str(ignored.outer), "keys": ignored.keys} if ignored else None
+        return page.as_json(files.display_path(path), names, entries, excluded, rows, not_taken)
     heads = [f"job file: {' extends '.join(names) or 'none'}", *(f"[[programs]]: {entry}" for entry in entries)]
-    if behind:
-        heads.append(f'not taken over from {behind.outer}: {", ".join(behind.keys)}; extend = ".." would')
+    if ignored:
+        heads.append(f'not taken over from {ignored.outer}: {", ".join(ignored.keys)}; extend = ".." would')
     if excluded:
         heads.append("excluded: no walk through a folder finds it")
     heads.append(f"the other values of the machine: polarcheck machines {applied.settings.name}")
-    return page.text(files.shown(path), heads, rows)
+    return page.text(files.display_path(path), heads, rows)
 
 
 def _with_excluded(row: Row, patterns: Sequence[str]) -> Row:

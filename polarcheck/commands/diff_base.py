@@ -29,13 +29,13 @@ with_callers = option(
 _FROM = "PRE_COMMIT_FROM_REF"
 
 
-def changed_files(paths: Sequence[str], others: Mapping[str, object]) -> Sequence[str]:
+def changed_files(paths: Sequence[str], options: Mapping[str, object]) -> Sequence[str]:
     """
     Return the changed files of --with-callers; others: the options that exclude it.
 
     Raises UsageError for a folder, standard input, and a file outside of the current folder.
     """
-    for name, value in others.items():
+    for name, value in options.items():
         if value:
             raise UsageError(f"--with-callers: not with {name}, which chooses programs, too")
     here = os.path.join(os.path.realpath(os.curdir), "")  # noqa: PTH118

@@ -43,8 +43,8 @@ def explain(rule: str, program: str | None, machine: str | None, max_size: int) 
     alarm = selection.of_alarm(rule, load_all(), profile)
     if alarm and applied and program:
         reported = _reported(program, applied, max_size)
-        alarm.sort(key=lambda one: one.name not in reported)
-        count = max(sum(one.name in reported for one in alarm), 1)
+        alarm.sort(key=lambda rule_of_alarm: rule_of_alarm.name not in reported)
+        count = max(sum(rule_of_alarm.name in reported for rule_of_alarm in alarm), 1)
         show(manual.alarm_pages(alarm, count, profile))
     elif alarm:
         show(manual.alarm_pages(alarm, 1, profile))
@@ -62,5 +62,5 @@ def _reported(program: str, applied: Settings, max_size: int) -> set[str]:
     keep_within_memory()
     data = files.read_program(program, max_size)
     with time_limit(seconds_for(len(data), applied.job.run.max_seconds)):
-        runs = check.read(data, applied.machine, applied.job, files.shown(program), applied.encoding)
+        runs = check.read(data, applied.machine, applied.job, files.display_path(program), applied.encoding)
         return {finding.rule for finding in check.check_runs(runs, applied.rules, applied.severities).findings}

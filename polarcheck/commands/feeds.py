@@ -44,13 +44,13 @@ def feeds(path: str, form: str, diff: bool, no_config: bool, max_size: int, **ar
     if diff and form != "text":
         raise UsageError(f"--diff shows a diff: leave out --format {form}")
     program = loaded_program.of_file(path, Options(use_config=not no_config, **arguments), max_size)
-    with program.runs() as found:
-        doubts, missing = feed_tables.doubts(program, found)
+    with program.runs() as executed:
+        doubts, missing = feed_tables.doubts(program, executed)
         for doubt in doubts:
             warn(f"{program.path}:{doubt.line}: {doubt.full_message} [{doubt.rule}]")
         for unknown in missing:
             warn(unknown)
-        runs = [tables for _, tables in found]
+        runs = [tables for _, tables in executed]
         if diff:
             return _show_diff(program.path, program.data, runs, program.settings.encoding)
         _show_table(program.path, program.settings.machine_id, runs, form)

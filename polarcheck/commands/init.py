@@ -116,10 +116,10 @@ def _init(folder: str, machine: str | None, extensions: tuple[str, ...], schema:
     profile = profile_of(machine) if machine else None
     nearest = job_files.Nearest().of(Path(folder))
     outer = Path(os.path.relpath(nearest, folder)).as_posix() if nearest else None
-    wanted = walking.extensions(extensions) or walking.EXTENSIONS
-    programs = [str(Path(program)) for program in walking.walk(folder, wanted, warn)]
+    endings = walking.extensions(extensions) or walking.EXTENSIONS
+    programs = [str(Path(program)) for program in walking.walk(folder, endings, warn)]
     if not programs:
-        warn(f"{files.shown(folder)}: no NC programs in this folder; --extensions names other endings")
+        warn(f"{files.display_path(folder)}: no NC programs in this folder; --extensions names other endings")
     named = [os.path.relpath(program, folder) for program in programs]
     results = survey.survey(programs, profile, Bar(len(programs), not quiet).watched(programs))
     results = new_job.relative(results, dict(zip(programs, named, strict=True)))
@@ -129,14 +129,14 @@ def _init(folder: str, machine: str | None, extensions: tuple[str, ...], schema:
     files.write(path, new_job.text(results, written, outer, schema, extensions))
     if is_new:
         files.write(schema_path, schemas.as_text(schemas.schema("job")))
-    lines = [f"{head(files.shown(str(path)))} written: {new_job.summary(results)}"]
+    lines = [f"{head(files.display_path(str(path)))} written: {new_job.summary(results)}"]
     if schema:
         lies = "beside it, for editors" if is_new else "is there already, and stays as it is"
-        lines.append(f"{head(files.shown(str(schema_path)))} {lies}")
+        lines.append(f"{head(files.display_path(str(schema_path)))} {lies}")
     if outer:
         lines.append(f"{head(outer)} has applied here so far: `extend` in the new file lets it apply still")
     lines += ["still to fill in:", *(f"  {line}" for line in new_job.left_open(results, written))]
-    lines.append(f"then: polarcheck check {files.shown(folder)}")
+    lines.append(f"then: polarcheck check {files.display_path(folder)}")
     return [visible(line) for line in lines]
 
 

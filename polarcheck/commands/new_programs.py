@@ -60,28 +60,28 @@ OPTIONS: Sequence[Decorator] = (
 )  # fmt: skip
 
 
-def refuse(wanted: Wanted, paths: Sequence[str]) -> None:
+def refuse(request: Wanted, paths: Sequence[str]) -> None:
     """Raise UsageError for options that exclude each other; warn of those without effect."""
     from polarcheck.program.reading import files
 
-    if wanted.diff:
-        others = {"-o": wanted.out, "--in-place": wanted.in_place, "--format json": wanted.form == "json"}
-        for name, is_set in others.items():
+    if request.diff:
+        options = {"-o": request.out, "--in-place": request.in_place, "--format json": request.form == "json"}
+        for name, is_set in options.items():
             if is_set:
                 raise UsageError(f"--diff shows what would change, and writes nothing: leave out {name}")
-    if wanted.in_place and wanted.out is not None:
+    if request.in_place and request.out is not None:
         raise UsageError("--in-place writes over the program: leave out -o")
-    if wanted.in_place and any(map(files.is_standard_input, paths)):
+    if request.in_place and any(map(files.is_standard_input, paths)):
         raise UsageError("--in-place: expected a file, found standard input")
-    if wanted.in_place and not wanted.backup:
+    if request.in_place and not request.backup:
         raise UsageError("--in-place writes over the program: give --backup, too, which keeps it as FILE.orig")
-    if wanted.out == "":
+    if request.out == "":
         raise UsageError("-o: expected the name of a file or folder")
-    if wanted.force and wanted.out is None:
+    if request.force and request.out is None:
         warn("--force does nothing without -o")
 
 
-def outputs(wanted: Wanted, tasks: Sequence[Task], paths: Sequence[str]) -> Mapping[str, Path]:
+def outputs(request: Wanted, tasks: Sequence[Task], paths: Sequence[str]) -> Mapping[str, Path]:
     """
     Return the file of each new program by the place of its task; empty without -o.
 
@@ -96,27 +96,27 @@ def outputs(wanted: Wanted, tasks: Sequence[Task], paths: Sequence[str]) -> Mapp
     from polarcheck.program.reading import files
 
     several = len(tasks) > 1 or len(paths) > 1 or any(map(os.path.isdir, paths))
-    if wanted.out is None:
-        if several and not (wanted.in_place or wanted.diff or wanted.form == "json"):
+    if request.out is None:
+        if several and not (request.in_place or request.diff or request.form == "json"):
             raise UsageError("several programs: expected -o FOLDER, --in-place or --diff")
         return {}
-    shown = files.shown(wanted.out)
-    is_folder = wanted.out.endswith(_FOLDER_ENDS) or os.path.isdir(wanted.out)  # noqa: PTH112  Path.is_dir raises for some names
-    if several and not is_folder and os.path.exists(wanted.out):  # noqa: PTH110
-        raise UsageError(f"-o {shown}: expected a folder for several programs, found a file")
+    out = files.display_path(request.out)
+    is_folder = request.out.endswith(_FOLDER_ENDS) or os.path.isdir(request.out)  # noqa: PTH112  Path.is_dir raises for some names
+    if several and not is_folder and os.path.exists(request.out):  # noqa: PTH110
+        raise UsageError(f"-o {out}: expected a folder for several programs, found a file")
     folders = folders_of(tasks)
     by_task: dict[str, Path] = {}
     for task in tasks:
-        output = Path(wanted.out)
+        output = Path(request.out)
         if is_folder or several:
             if files.is_standard_input(task.place):
-                raise UsageError(f"-o {shown}: a folder; name the file, or give --stdin-filename")
+                raise UsageError(f"-o {out}: a folder; name the file, or give --stdin-filename")
             output /= _name_in_folder(task.place, paths)
-        named = f"-o {files.shown(str(output))}"
+        named = f"-o {files.display_path(str(output))}"
         if output in by_task.values():
             raise UsageError(f"{named}: two programs would be written to this file")
         refuse_input(output, named, folders)
-        if not wanted.force:
+        if not request.force:
             _refuse_existing(output)
         by_task[task.place] = output
     return by_task
@@ -132,10 +132,10 @@ def _refuse_existing(output: Path) -> None:
     from polarcheck.program.reading import files
 
     if output.is_file():
-        raise OutputError(f"-o {files.shown(str(output))}: it is there already; --force replaces it")
+        raise OutputError(f"-o {files.display_path(str(output))}: it is there already; --force replaces it")
 
 
-def write(wanted: Wanted, task: Task, old: bytes, new: bytes, output: Path | None) -> str | None:
+def write(request: Wanted, task: Task, old: bytes, new: bytes, output: Path | None) -> str | None:
     """
     Write a new program into its file; return the file. None if it goes to standard output, or nothing is written.
 
@@ -143,26 +143,26 @@ def write(wanted: Wanted, task: Task, old: bytes, new: bytes, output: Path | Non
     """
     from polarcheck.program.reading import files, replacing
 
-    if wanted.in_place:
+    if request.in_place:
         if new == old:
             return None
         replacing.rewrite(task.path, old, new, keep=True)
         return task.title
-    if output is None or wanted.diff:
+    if output is None or request.diff:
         return None
 
     def refuse_new(written: Path) -> None:
         """Raise OutputError if somebody else has written the file meanwhile."""
-        if not wanted.force:
+        if not request.force:
             _refuse_existing(output)
 
     try:
         output.parent.mkdir(parents=True, exist_ok=True)
     except (OSError, ValueError) as error:
         said = getattr(error, "strerror", None) or error
-        raise OutputError(f"{files.shown(str(output.parent))}: {said}") from None
+        raise OutputError(f"{files.display_path(str(output.parent))}: {said}") from None
     files.write(output, new, refuse_new)
-    return files.shown(str(output))
+    return files.display_path(str(output))
 
 
 def print_program(data: bytes, path: str, encoding: str | None) -> None:

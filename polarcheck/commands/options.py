@@ -285,9 +285,9 @@ def executing(what: str, *, both: bool = True, machine: Decorator = machine) -> 
     both: a program may be run with block skip both on and off.
     machine: the option --machine.
     """
-    each = (machine, changes, tools, offsets, units, config, no_config, _block_skip if both else _single_block_skip)
+    shared = (machine, changes, tools, offsets, units, config, no_config, _block_skip if both else _single_block_skip)
     more = (subprograms, _max_blocks, _max_statements, _max_seconds, radius_from_comments, encoding(what))
-    return _all(*each, *more)
+    return _all(*shared, *more)
 
 
 #: The options that say what programs should make.

@@ -119,12 +119,12 @@ def _write_error(line: str) -> None:
     # Imported late: most runs do not need its tables of characters.
     from polarcheck.program.reading.excerpt import visible, without_commands
 
-    shown = without_commands(visible(line))
-    if len(shown) > _LONGEST:
-        shown = f"{shown[:_HEAD]} ... {shown[-_TAIL:]}"
+    text = without_commands(visible(line))
+    if len(text) > _LONGEST:
+        text = f"{text[:_HEAD]} ... {text[-_TAIL:]}"
     # If standard error is closed, only the exit code reports the error.
     with contextlib.suppress(OSError, ValueError):
-        click.echo(shown, err=True)
+        click.echo(text, err=True)
 
 
 def is_terminal(stream: TextIO | None) -> bool:

@@ -28,7 +28,7 @@ def refuse_input(output: Path, named: str, folders: Mapping[str, str]) -> None:
     target = Path(_real(output))
     folder = folders.get(str(target.parent))
     if folder is not None and target.exists():
-        raise OutputError(f"{named}: a file in {files.shown(folder)}, a folder of subprograms; name another one")
+        raise OutputError(f"{named}: a file in {files.display_path(folder)}, a folder of subprograms; name another one")
 
 
 def refuse_name(output: str | Path, named: str) -> None:
@@ -55,7 +55,7 @@ def refuse(outputs: Sequence[Path], tasks: Sequence[Task], options: Mapping[Path
     written: set[str] = set()
     for output in outputs:
         target = _real(output)
-        named = f"{(options or {}).get(output, '-o')} {files.shown(str(output))}"
+        named = f"{(options or {}).get(output, '-o')} {files.display_path(str(output))}"
         refuse_input(output, named, folders)
         if target in places:  # standard input is judged as a file that need not be there
             raise OutputError(f"{named}: it is read by this run; name another file")

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from polarcheck.commands.output import is_terminal
 from polarcheck.foundation.errors import OutputError, UsageError
-from polarcheck.program.reading.files import shown, write
+from polarcheck.program.reading.files import display_path, write
 
 if TYPE_CHECKING:
     from polarcheck.checking.settings import Extra
@@ -55,7 +55,7 @@ def create_folder(folder: Path) -> None:
         folder.mkdir(exist_ok=True)
     except (OSError, ValueError) as error:
         said = getattr(error, "strerror", None) or error
-        raise OutputError(f"{shown(str(folder))}: {said}") from None
+        raise OutputError(f"{display_path(str(folder))}: {said}") from None
 
 
 class Pictures:
@@ -190,7 +190,7 @@ def of_outputs(
     if to_output or any(form == FORMAT for form, _ in files):
         refuse(tasks, to_output and is_terminal(sys.stdout), example)
     if len(folders) > 1:
-        raise UsageError(f"{example}{shown(str(folders[1]))}: pages are written to one folder only")
+        raise UsageError(f"{example}{display_path(str(folders[1]))}: pages are written to one folder only")
     if not folders:
         return Pictures(), files, [path for _, path in files]
     folder = Folder(folders[0], tasks)

@@ -49,9 +49,9 @@ def extras(shown_too: str | None, form: str | None, outputs: Iterable[tuple[str,
     """Return the functions that add paths to reports. Raises UsageError for a format that cannot show paths."""
     if shown_too is None:
         return ()
-    for other in (form or _TEXT, *(form for form, _ in outputs)):
-        if other != _TEXT:
-            raise UsageError(f"--show {shown_too}: expected --format {_TEXT}, found {other}")
+    for extra in (form or _TEXT, *(form for form, _ in outputs)):
+        if extra != _TEXT:
+            raise UsageError(f"--show {shown_too}: expected --format {_TEXT}, found {extra}")
     from polarcheck.view.section_view import with_views
 
     return (with_views,)
@@ -112,7 +112,7 @@ def written(outputs: Iterable[tuple[str, Path]], form: str, report: Report, plai
             _append(summary, report, plain)
         except (OSError, ValueError) as error:
             said = getattr(error, "strerror", None) or error
-            yield OutputError(f"{STEP_SUMMARY}: {files.shown(summary)}: {said}")
+            yield OutputError(f"{STEP_SUMMARY}: {files.display_path(summary)}: {said}")
 
 
 def _append(path: str, report: Report, plain: Background) -> None:

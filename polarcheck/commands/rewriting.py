@@ -56,9 +56,9 @@ def rewriting(*of_command: Decorator, machine: Decorator = options.machine) -> D
 
     def decorated(function: Any) -> Any:
         def called(ctx: click.Context, /, **arguments: Any) -> None:
-            wanted = Wanted(*(arguments.pop(name) for name in Wanted._fields))
+            request = Wanted(*(arguments.pop(name) for name in Wanted._fields))
             shared = {name: arguments.pop(name) for name in list(arguments) if name not in own}
-            ctx.exit(_run(function(**arguments), wanted, is_debug=options.DEBUG in ctx.meta, **shared))
+            ctx.exit(_run(function(**arguments), request, is_debug=options.DEBUG in ctx.meta, **shared))
 
         functools.update_wrapper(called, function)
         command: Any = click.pass_context(called)
@@ -95,7 +95,7 @@ def length(*names: str, default: float, largest: float, environment: bool = True
 
 def _run(
     command: Command,
-    wanted: Wanted,
+    request: Wanted,
     *,
     is_debug: bool,
     paths: tuple[str, ...],
@@ -111,16 +111,16 @@ def _run(
     from polarcheck.foundation.memory import keep_within_memory
 
     keep_within_memory()
-    new_programs.refuse(wanted, paths)
+    new_programs.refuse(request, paths)
     named = standard_input.judged_as(paths, stdin_filename)
     faults = Faults(is_debug)
     settings_of = OfPrograms(Options(use_config=not no_config, **arguments))
     tasks = planned(paths, settings_of, extensions, faults, named=named)
-    programs = _Programs(command, wanted, max_size, new_programs.outputs(wanted, tasks, paths), faults)
-    with contextlib.closing(Bar(len(tasks), not wanted.quiet).watched(tasks)) as awaited:
+    programs = _Programs(command, request, max_size, new_programs.outputs(request, tasks, paths), faults)
+    with contextlib.closing(Bar(len(tasks), not request.quiet).watched(tasks)) as awaited:
         for task in awaited:
             programs.rewrite(task)
-    if wanted.form == "json":
+    if request.form == "json":
         programs.show_json()
     return max(programs.status, faults.report())
 
@@ -153,9 +153,9 @@ class _Programs:
     """
 
     def __init__(
-        self, command: Command, wanted: Wanted, most: int, outputs: Mapping[str, Path], faults: Faults
+        self, command: Command, request: Wanted, most: int, outputs: Mapping[str, Path], faults: Faults
     ) -> None:
-        self._command, self._wanted, self._most = command, wanted, most
+        self._command, self._wanted, self._most = command, request, most
         self._outputs, self._faults = outputs, faults
         self._of_json: list[Rewriting] = []
         self.status = CLEAN
@@ -195,21 +195,21 @@ class _Programs:
         show(msgspec.json.format(msgspec.json.encode(report), indent=2) + b"\n")
 
     def _done(self, original: _Original, outcome: Outcome, written: str | None) -> None:
-        wanted, settings = self._wanted, original.task.settings
+        request, settings = self._wanted, original.task.settings
         changes = outcome.data != original.data
-        if outcome.decisions or (wanted.diff and changes):
+        if outcome.decisions or (request.diff and changes):
             self.status = max(self.status, FINDINGS)
-        if wanted.form == "json":
+        if request.form == "json":
             self._of_json.append(self._entry(original, [], outcome, written))
             return
-        if wanted.diff:
+        if request.diff:
             from polarcheck.rewrite.fixes.difference import difference
 
             lines = difference(original.title, original.data, outcome.data, outcome.origin, settings.encoding)
-            show_diff(lines, in_color(wanted.color))
-        elif written is None and not wanted.in_place:
+            show_diff(lines, in_color(request.color))
+        elif written is None and not request.in_place:
             new_programs.print_program(outcome.data, original.title, settings.encoding)
-        if not wanted.quiet:
+        if not request.quiet:
             self._say(original, outcome, written)
         _say_decisions(original.title, outcome)
 
@@ -230,11 +230,13 @@ class _Programs:
 
         title = original.title
         self.status = max(self.status, COULD_NOT_RUN)
-        self._of_json.append(self._entry(original, [Reason(each.line or None, each.text) for each in error.refusals]))
+        self._of_json.append(
+            self._entry(original, [Reason(reason.line or None, reason.text) for reason in error.refusals])
+        )
         if self._wanted.form != "json":
             _list(
                 error.refusals,
-                lambda refusal: f"{_place(title, refusal.line)}: {refusal.text}",
+                lambda refusal: f"{_location(title, refusal.line)}: {refusal.text}",
                 f"{title}: {{}} more reasons",
             )
             say(f"{title}: not {self._command.done}: nothing is written")
@@ -269,7 +271,7 @@ class _Programs:
 def _say_decisions(title: str, outcome: Outcome) -> None:
     _list(
         outcome.decisions,
-        lambda decision: f"{_place(title, decision.line)}: to decide: {decision.text}",
+        lambda decision: f"{_location(title, decision.line)}: to decide: {decision.text}",
         f"{title}: {{}} more to decide",
     )
     if outcome.decisions:
@@ -283,7 +285,7 @@ def _list(elements: Sequence[Any], line: Callable[[Any], str], rest: str) -> Non
         say(rest.format(len(elements) - _LISTED))
 
 
-def _place(title: str, line: int) -> str:
+def _location(title: str, line: int) -> str:
     return f"{title}:{line}" if line else title
 
 

@@ -76,13 +76,13 @@ def planned(
     named: the file that standard input is judged as (standard_input.judged_as).
     skipped: takes what the walks did not read.
     """
-    found = batch_run.planned(paths, settings_of, extensions, force_exclude=force_exclude, named=named, skipped=skipped)
-    faults.failures += found.failures
-    faults.nothing += found.nothing
-    for line in found.doubts:
+    plan = batch_run.planned(paths, settings_of, extensions, force_exclude=force_exclude, named=named, skipped=skipped)
+    faults.failures += plan.failures
+    faults.nothing += plan.nothing
+    for line in plan.doubts:
         warn(line)
-    record.note(*(_STANDARD_INPUT if task.place == STANDARD_INPUT else task.place for task in found.tasks))
-    return found.tasks
+    record.note(*(_STANDARD_INPUT if task.place == STANDARD_INPUT else task.place for task in plan.tasks))
+    return plan.tasks
 
 
 class Runner:

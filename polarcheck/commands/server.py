@@ -98,5 +98,5 @@ def _trusted(trust: tuple[Path, ...], arguments: dict[str, Any]) -> list[Path]:
     files = [arguments["config"], arguments["offsets"]]
     if arguments["machine"] and os.path.isfile(arguments["machine"]):  # noqa: PTH113  Path.is_file raises for some names
         files.append(Path(arguments["machine"]))
-    beside = [Path(os.path.realpath(file)).parent for file in files if file is not None]
-    return [*trust, *beside, *map(Path, arguments["subprograms"])]
+    folders = [Path(os.path.realpath(file)).parent for file in files if file is not None]
+    return [*trust, *folders, *map(Path, arguments["subprograms"])]

@@ -74,17 +74,17 @@ class Wish(NamedTuple):
     debug: bool
 
 
-def refuse(serve: bool, paths: Sequence[str], others: dict[str, object], wanted: dict[str, bool]) -> None:
+def refuse(serve: bool, paths: Sequence[str], options: dict[str, object], serving: dict[str, bool]) -> None:
     """
     Raise UsageError for options that do not go together.
 
-    others: options that are for one page, by their names.
-    wanted: options that need --serve, by their names.
+    options: options that are for one page, by their names.
+    serving: options that need --serve, by their names.
     """
     if serve:
-        watching.refuse(paths, others, "--serve")
+        watching.refuse(paths, options, "--serve")
         return
-    for name, is_given in wanted.items():
+    for name, is_given in serving.items():
         if is_given:
             raise UsageError(f"{name}: only with --serve")
 

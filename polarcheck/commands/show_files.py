@@ -32,11 +32,11 @@ class Listed(NamedTuple):
     programs: int
 
 
-def refuse(form: str | None, others: dict[str, object]) -> None:
+def refuse(form: str | None, options: dict[str, object]) -> None:
     """Raise UsageError for a format that cannot hold the list, and for options (by name) that need a check."""
     if form not in (None, *_FORMATS):
         raise UsageError(f"--show-files: expected --format {', '.join(_FORMATS)}, found {form}")
-    for name, value in others.items():
+    for name, value in options.items():
         if value:
             raise UsageError(f"--show-files checks nothing: leave {name} out")
 
@@ -63,13 +63,13 @@ def _read(tasks: Iterable[Task]) -> Iterator[Listed]:
 
 
 def _not_read(skipped: Iterable[Skipped], tasks: Iterable[Task]) -> Iterator[Listed]:
-    from polarcheck.program.reading.files import RealPaths, shown
+    from polarcheck.program.reading.files import RealPaths, display_path
 
     real = RealPaths()
     of_jobs = {id(task.settings): task.settings.job.run.subprograms for task in tasks}
     folders = {real.folder(folder) for named in of_jobs.values() for folder in named}
     for entry in skipped:
-        path = shown(entry.path) + ("/" if os.path.isdir(entry.path) else "")  # noqa: PTH112
+        path = display_path(entry.path) + ("/" if os.path.isdir(entry.path) else "")  # noqa: PTH112
         is_called = entry.reason == "ending" and os.path.dirname(real.of(entry.path)) in folders  # noqa: PTH120
         reason = _reason(entry) + ("; programs that call it execute it" if is_called else "")
         yield Listed(path, False, reason, entry.programs)

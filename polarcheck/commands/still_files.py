@@ -13,7 +13,7 @@ from polarcheck.commands import picturing
 from polarcheck.commands.options import option
 from polarcheck.commands.output import warn
 from polarcheck.foundation.errors import UsageError
-from polarcheck.program.reading.files import shown, write
+from polarcheck.program.reading.files import display_path, write
 
 if TYPE_CHECKING:
     from polarcheck.files.batch.tasks import Task
@@ -102,20 +102,20 @@ def targets(png: str | None, svg: str | None, output: str | None) -> tuple[list[
     for form, value in named:
         ending = Path(value).suffix.lower()[1:]
         if value == "-" or (ending in (*_FORMATS, "html") and ending != form):
-            raise UsageError(f"--{form} {shown(value)}: expected a name that ends in .{form}, or a folder")
+            raise UsageError(f"--{form} {display_path(value)}: expected a name that ends in .{form}, or a folder")
     return [(form, Path(value)) for form, value in named], output
 
 
-def _names(wanted: Sequence[tuple[str, Path]], tasks: Sequence[Task]) -> Iterator[tuple[str, list[tuple[str, Path]]]]:
+def _names(stills: Sequence[tuple[str, Path]], tasks: Sequence[Task]) -> Iterator[tuple[str, list[tuple[str, Path]]]]:
     """Yield each program and the format and file of its pictures."""
-    if not wanted:
+    if not stills:
         return
     from polarcheck.view.picture_index import page_names
 
     pages = page_names(task.title for task in tasks)
     for task, page in zip(tasks, pages, strict=True):
         files = []
-        for form, path in wanted:
+        for form, path in stills:
             if picturing.is_folder(path):
                 files.append((form, path / f"{page.removesuffix('.html')}.{form}"))
             elif len(tasks) > 1:

@@ -58,13 +58,13 @@ class Seen:
         for look in looks:
             self._look |= look
         keys = [f"{number}\n{task.path}" for number, task in _numbered(tasks)]
-        known = [self._of_programs.get(key) for key in keys]
-        are_new = [old is None or old[0] != look for old, look in zip(known, looks, strict=True)]
-        self._of_programs = {key: old for key, old in zip(keys, known, strict=True) if old is not None}
+        former = [self._of_programs.get(key) for key in keys]
+        are_new = [old is None or old[0] != look for old, look in zip(former, looks, strict=True)]
+        self._of_programs = {key: old for key, old in zip(keys, former, strict=True) if old is not None}
         with check([task for task, is_new in zip(tasks, are_new, strict=True) if is_new]) as fresh:
 
             def merged() -> Generator[Outcome, None, None]:
-                for key, look, is_new, old in zip(keys, looks, are_new, known, strict=True):
+                for key, look, is_new, old in zip(keys, looks, are_new, former, strict=True):
                     outcome = next(fresh) if is_new or old is None else old[1]
                     self._of_programs[key] = look, outcome
                     yield outcome
@@ -136,11 +136,11 @@ def _surroundings(paths: Iterable[str]) -> Iterator[str]:
                 inner_folders[:] = [name for name in inner_folders if not name.startswith(".")]
 
 
-def refuse(paths: Sequence[str], others: Mapping[str, object], option: str = "--watch") -> None:
+def refuse(paths: Sequence[str], options: Mapping[str, object], option: str = "--watch") -> None:
     """Raise UsageError for standard input, and for other options that exclude --watch, or another option like it."""
     if "-" in paths:
         raise UsageError(f"{option}: standard input comes once; name a file or folder")
-    for name, value in others.items():
+    for name, value in options.items():
         if value:
             raise UsageError(f"{option}: not with {name}, which is for one look")
 

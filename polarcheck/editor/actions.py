@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 from lsprotocol import types
 
 from polarcheck.editor.allowing import allow
-from polarcheck.editor.analysis import Judged
+from polarcheck.editor.analysis import Analysis
 from polarcheck.editor.diagnostics import diagnostic
 from polarcheck.foundation.finding import Edit, Finding
 from polarcheck.program.reading.excerpt import visible
@@ -18,7 +18,7 @@ _MOST = 50
 
 
 def actions(
-    judged: Judged, uri: str, version: int | None, selected: types.Range, with_versions: bool
+    analysis: Analysis, uri: str, version: int | None, selected: types.Range, with_versions: bool
 ) -> list[types.CodeAction]:
     """
     Return the actions for the findings in a selection, grouped by finding.
@@ -30,43 +30,43 @@ def actions(
         types.CodeAction(
             title=visible(title),
             kind=types.CodeActionKind.QuickFix,
-            diagnostics=[diagnostic(finding, judged, uri)],
+            diagnostics=[diagnostic(finding, analysis, uri)],
             is_preferred=is_preferred or None,
-            edit=_edit(edits, judged, uri, version, with_versions),
+            edit=_edit(edits, analysis, uri, version, with_versions),
         )
-        for finding in _in(judged, selected)[:_MOST]
-        for title, is_preferred, edits in _offered(finding, judged)
+        for finding in _in(analysis, selected)[:_MOST]
+        for title, is_preferred, edits in _offered(finding, analysis)
     ]
 
 
-def _in(judged: Judged, selected: types.Range) -> list[Finding]:
-    if judged.report is None:
+def _in(analysis: Analysis, selected: types.Range) -> list[Finding]:
+    if analysis.report is None:
         return []
-    text = judged.text
+    text = analysis.text
     first, last = text.offset(selected.start), text.offset(selected.end)
     return [
         finding
-        for finding in judged.report.findings
+        for finding in analysis.report.findings
         if text.offset_of(finding.line, finding.column) <= last
         and text.offset_of(finding.end_line, finding.end_column) >= first
     ]
 
 
-def _offered(finding: Finding, judged: Judged) -> Iterator[tuple[str, bool, list[Edit]]]:
+def _offered(finding: Finding, analysis: Analysis) -> Iterator[tuple[str, bool, list[Edit]]]:
     if finding.fix is not None:
         # An editor may apply a preferred action unseen, so a fix that moves an axis is not preferred.
         note = "" if finding.fix.safe else " (moves an axis: look at it)"
         yield f"{finding.fix.title}{note}", finding.fix.safe, finding.fix.edits
     rule = load_all().get(finding.rule)
-    if judged.settings is not None and judged.settings.inline and (rule is None or rule.group != "silence"):
-        yield f"Allow {finding.rule} here", False, [allow(finding, judged)]
+    if analysis.settings is not None and analysis.settings.inline and (rule is None or rule.group != "silence"):
+        yield f"Allow {finding.rule} here", False, [allow(finding, analysis)]
 
 
 def _edit(
-    edits: Iterable[Edit], judged: Judged, uri: str, version: int | None, with_versions: bool
+    edits: Iterable[Edit], analysis: Analysis, uri: str, version: int | None, with_versions: bool
 ) -> types.WorkspaceEdit:
     changes = [
-        types.TextEdit(judged.text.range_of(edit.line, edit.column, edit.end_line, edit.end_column), edit.text)
+        types.TextEdit(analysis.text.range_of(edit.line, edit.column, edit.end_line, edit.end_column), edit.text)
         for edit in edits
     ]
     if with_versions:

@@ -8,7 +8,7 @@ from lsprotocol import types
 
 from polarcheck.columns.words import allow_mention
 from polarcheck.columns.words.allow_syntax import ALLOW, FILE, OFF, ON
-from polarcheck.editor.analysis import Judged
+from polarcheck.editor.analysis import Analysis
 from polarcheck.editor.open_text import OpenText
 from polarcheck.editor.program_markdown import page
 from polarcheck.foundation.finding import Edit, Finding
@@ -40,17 +40,17 @@ def comment(rule: str, machine: Machine) -> str:
     return f"({WORD} {ALLOW} {rule.upper()} )"
 
 
-def allow(finding: Finding, judged: Judged) -> Edit:
+def allow(finding: Finding, analysis: Analysis) -> Edit:
     """
     Return the edit that allows a finding: a comment at the end of its block, or on a line before the block.
 
     The latter if the block ends in a comment that would swallow the new one.
     """
-    assert judged.settings is not None
-    machine, line = judged.settings.machine, judged.text.line_text(finding.line)
+    assert analysis.settings is not None
+    machine, line = analysis.settings.machine, analysis.text.line_text(finding.line)
     written = comment(finding.rule, machine)
     if _is_open(line, machine) or finding.end_line != finding.line:
-        ends = _line_end(judged.text)
+        ends = _line_end(analysis.text)
         return Edit(line=finding.line, column=1, end_line=finding.line, end_column=1, text=f"{written}{ends}")
     column = len(line.rstrip()) + 1
     return Edit(line=finding.line, column=column, end_line=finding.line, end_column=column, text=f" {written}")
@@ -68,51 +68,51 @@ def _line_end(text: OpenText) -> str:
     return "\r\n" if "\r\n" in text.text else "\n" if "\n" in text.text else "\r" if "\r" in text.text else "\n"
 
 
-def completions(text: OpenText, position: types.Position, judged: Judged | None) -> list[types.CompletionItem]:
+def completions(text: OpenText, position: types.Position, analysis: Analysis | None) -> list[types.CompletionItem]:
     """Return the completions in an allow comment: the keywords, then the names of rules and groups."""
     offset = text.offset(position)
     line = text.line_of(position)
     before = text.text[text.offset_of(line) : offset]
     keyword = _KEYWORD.search(before)
     if keyword:
-        place = text.range(offset - len(keyword[1]), offset)
+        range_typed = text.range(offset - len(keyword[1]), offset)
         return [
             types.CompletionItem(
                 label=name,
                 kind=types.CompletionItemKind.Keyword,
                 detail=detail,
                 sort_text=f"{number}",
-                text_edit=types.TextEdit(place, f"{name} "),
+                text_edit=types.TextEdit(range_typed, f"{name} "),
             )
             for number, (name, detail) in enumerate(_KEYWORDS.items())
         ]
     name = _NAME.search(before)
     if not name:
         return []
-    place = text.range(offset - len(name[1]), offset)
+    range_typed = text.range(offset - len(name[1]), offset)
     rules = load_all()
-    near = _near(judged, line)
+    near = _near(analysis, line)
     groups = dict.fromkeys(rule.group for rule in rules.values())
-    return [_of_rule(rule, place, rule.name in near) for rule in rules.values()] + [
+    return [_of_rule(rule, range_typed, rule.name in near) for rule in rules.values()] + [
         types.CompletionItem(
             label=group.upper(),
             kind=types.CompletionItemKind.Module,
             detail=f"all rules of {group}",
             sort_text=f"2{group}",
-            text_edit=types.TextEdit(place, f"{group.upper()} "),
+            text_edit=types.TextEdit(range_typed, f"{group.upper()} "),
         )
         for group in groups
     ]
 
 
-def _near(judged: Judged | None, line: int) -> set[str]:
+def _near(analysis: Analysis | None, line: int) -> set[str]:
     """Return the rules with a finding in a line or the next one."""
-    if judged is None or judged.report is None:
+    if analysis is None or analysis.report is None:
         return set()
-    return {finding.rule for finding in judged.report.findings if line <= finding.line <= line + 1}
+    return {finding.rule for finding in analysis.report.findings if line <= finding.line <= line + 1}
 
 
-def _of_rule(rule: Rule, place: types.Range, is_near: bool) -> types.CompletionItem:
+def _of_rule(rule: Rule, range_typed: types.Range, is_near: bool) -> types.CompletionItem:
     name = rule.name.upper()
     return types.CompletionItem(
         label=name,
@@ -121,7 +121,7 @@ def _of_rule(rule: Rule, place: types.Range, is_near: bool) -> types.CompletionI
         data=rule.name,
         sort_text=f"{'0' if is_near else '1'}{rule.name}",
         preselect=is_near or None,
-        text_edit=types.TextEdit(place, f"{name} "),
+        text_edit=types.TextEdit(range_typed, f"{name} "),
     )
 
 

@@ -33,7 +33,7 @@ class SettingsOf(Protocol):
         """Return what is left of the settings while they cannot be used."""
 
 
-class Judged(NamedTuple):
+class Analysis(NamedTuple):
     """
     The result of a check of one state of a buffer.
 
@@ -88,8 +88,8 @@ def _without_known(
     from polarcheck.files.baselines.baselines import Baselines
     from polarcheck.files.batch.tasks import Task
 
-    known = Baselines([Task(str(path), settings)], [])
-    return known.without_known(with_outline(report, runs))
+    baselines = Baselines([Task(str(path), settings)], [])
+    return baselines.without_known(with_outline(report, runs))
 
 
 def judge(
@@ -99,7 +99,7 @@ def judge(
     folders: Sequence[Path],
     is_stopped: Callable[[], bool] = lambda: False,
     last: Settings | None = None,
-) -> Judged:
+) -> Analysis:
     """
     Check a buffer as if it were saved. Only files in the folders and in those of subprograms are opened.
 
@@ -113,11 +113,11 @@ def judge(
             settings = settings_of(path)
             job = settings.job
             with time_limit(seconds_for(len(text.data), job.run.max_seconds), is_stopped):
-                runs = check.read(text.data, settings.machine, job, files.shown(str(path)))
+                runs = check.read(text.data, settings.machine, job, files.display_path(str(path)))
                 report = check.check_runs(runs, settings.rules, settings.severities, settings.inline)
                 if settings.baseline is not None:
                     report = _without_known(report, runs, path, settings)
-            return Judged(text, path, "", settings, runs, report, read)
+            return Analysis(text, path, "", settings, runs, report, read)
         except StoppedError:
             raise
         except PolarcheckError as caught:
@@ -125,14 +125,14 @@ def judge(
         except MemoryError:
             error = "there is not enough memory to check this program"
         settings = settings or last or settings_of.fallback(path)
-        return Judged(text, path, error, settings, read=read, plain=_plain(text, path, settings, is_stopped))
+        return Analysis(text, path, error, settings, read=read, plain=_plain(text, path, settings, is_stopped))
 
 
 def _plain(text: OpenText, path: Path, settings: Settings, is_stopped: Callable[[], bool]) -> list[Text]:
     """Return the text of each channel of a program that could not be checked."""
     try:
         with time_limit(seconds_for(len(text.data), settings.job.run.max_seconds), is_stopped):
-            return texts_of(source.read_source(text.data, files.shown(str(path))), settings.machine)
+            return texts_of(source.read_source(text.data, files.display_path(str(path))), settings.machine)
     except StoppedError:
         raise
     except (PolarcheckError, MemoryError):

@@ -20,7 +20,7 @@ from polarcheck.foundation.record import Seen
 
 if TYPE_CHECKING:
     from polarcheck.checking.settings import Settings
-    from polarcheck.editor.analysis import Judged, SettingsOf
+    from polarcheck.editor.analysis import Analysis, SettingsOf
 
 #: The least and the most pause after the last key before a check begins; in between, the time of the last check [s].
 _PAUSE, _LONGEST_PAUSE = 0.25, 2.0
@@ -48,7 +48,7 @@ class Buffer:
         self.path = path
         self.text = text
         self.version = version
-        self.judged: Judged | None = None
+        self.judged: Analysis | None = None
         self.pause = _PAUSE
         self.is_open = True
         self.stopped = threading.Event()
@@ -80,7 +80,7 @@ class Buffers:
         self,
         settings_of: SettingsOf,
         folders_of: Callable[[Path], Sequence[Path]],
-        publish: Callable[[Buffer, Judged], Awaitable[None]],
+        publish: Callable[[Buffer, Analysis], Awaitable[None]],
         bug: Callable[[Exception, str], None],
     ) -> None:
         self.worker = Worker()
@@ -122,9 +122,9 @@ class Buffers:
         """Return the texts of all documents, by the paths of their files with all links resolved."""
         return {buffer.real: buffer.text for buffer in self.open.values()}
 
-    async def ask(self, function: Callable[[Judged], Result], judged: Judged) -> Result:
+    async def ask(self, function: Callable[[Analysis], Result], analysis: Analysis) -> Result:
         """Apply a function to a result, in the worker thread; it reads files as a check does."""
-        return await self.worker.do(_apply, function, judged, self._folders_of(judged.path), self.texts())
+        return await self.worker.do(_apply, function, analysis, self._folders_of(analysis.path), self.texts())
 
     def touch(self, buffer: Buffer, delay: float) -> None:
         """Cancel the check of a document, and check it again after a delay [s] without a change."""
@@ -138,27 +138,27 @@ class Buffers:
                 await asyncio.wait_for(buffer.hurry.wait(), delay)
         text, begun = buffer.text, time.monotonic()
         texts = self.texts()
-        judged = await self.worker.do(self._judge, text, buffer, texts, buffer.stopped.is_set)
-        if judged is None:
+        analysis = await self.worker.do(self._judge, text, buffer, texts, buffer.stopped.is_set)
+        if analysis is None:
             return
         now = self.texts()
-        if any(texts.get(path) is not now.get(path) for path in judged.read):
+        if any(texts.get(path) is not now.get(path) for path in analysis.read):
             self.touch(buffer, buffer.pause)
             return
         buffer.pause = min(max(_PAUSE, time.monotonic() - begun), _LONGEST_PAUSE)
-        buffer.judged, buffer.read = judged, dict(judged.read)
-        if not judged.error:
-            buffer.settings = judged.settings
+        buffer.judged, buffer.read = analysis, dict(analysis.read)
+        if not analysis.error:
+            buffer.settings = analysis.settings
         try:
-            await self._publish(buffer, judged)
+            await self._publish(buffer, analysis)
         except Exception as error:
             self._bug(error, str(buffer.path))
 
     def _judge(
         self, text: OpenText, buffer: Buffer, texts: Mapping[str, OpenText], is_stopped: Callable[[], bool]
-    ) -> Judged | None:
+    ) -> Analysis | None:
         """Check a text, in the worker thread; None if the check is cancelled."""
-        from polarcheck.editor.analysis import Judged, judge
+        from polarcheck.editor.analysis import Analysis, judge
 
         path = buffer.path
         try:
@@ -168,9 +168,9 @@ class Buffers:
             return None
         except Exception as error:
             self._bug(error, str(path))
-            return Judged(text, path, f"internal error of polarcheck: {type(error).__name__}: {error}")
+            return Analysis(text, path, f"internal error of polarcheck: {type(error).__name__}: {error}")
 
-    async def judged(self, uri: str, *, soon: bool = False) -> Judged | None:
+    async def judged(self, uri: str, *, soon: bool = False) -> Analysis | None:
         """
         Return the result of the check of a document's present text, once it is there; None if it is not open.
 
@@ -189,11 +189,11 @@ class Buffers:
     async def check_stale(self) -> None:
         """Check each document again if a file has changed that its last result depends on."""
         for buffer in list(self.open.values()):
-            judged = buffer.judged
-            if judged is None:
+            analysis = buffer.judged
+            if analysis is None:
                 continue
             now = await self.worker.do(_unchanged, buffer.read)
-            if not buffer.is_open or buffer.judged is not judged:
+            if not buffer.is_open or buffer.judged is not analysis:
                 continue
             if now is None:
                 self.touch(buffer, 0.0)
@@ -206,10 +206,10 @@ def _data(texts: Mapping[str, OpenText]) -> dict[str, Callable[[], bytes]]:
 
 
 def _apply(
-    function: Callable[[Judged], Result], judged: Judged, folders: Sequence[Path], texts: Mapping[str, OpenText]
+    function: Callable[[Analysis], Result], analysis: Analysis, folders: Sequence[Path], texts: Mapping[str, OpenText]
 ) -> Result:
     with bounded.only_below(folders), bounded.open_in_editor(_data(texts)):
-        return function(judged)
+        return function(analysis)
 
 
 def _unchanged(read: Mapping[str, Seen]) -> dict[str, Seen] | None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from lsprotocol import types
 
-from polarcheck.editor.analysis import Judged
+from polarcheck.editor.analysis import Analysis
 from polarcheck.foundation.finding import FileReport, Finding
 from polarcheck.program.reading.excerpt import visible
 
@@ -19,49 +19,50 @@ _SEVERITIES = {
 }
 
 
-def diagnostics(judged: Judged, uri: str) -> list[types.Diagnostic]:
+def diagnostics(analysis: Analysis, uri: str) -> list[types.Diagnostic]:
     """Return all diagnostics of a document."""
-    if judged.report is None:
+    if analysis.report is None:
         return [
             types.Diagnostic(
-                range=judged.text.line_range(1),
+                range=analysis.text.line_range(1),
                 severity=types.DiagnosticSeverity.Error,
                 code=NOT_CHECKED,
                 source=SOURCE,
-                message=visible(f"This program is not checked. {judged.error}"),
+                message=visible(f"This program is not checked. {analysis.error}"),
             )
         ]
-    return [*(diagnostic(finding, judged, uri) for finding in judged.report.findings), *_not_evaluated(judged)]
+    return [*(diagnostic(finding, analysis, uri) for finding in analysis.report.findings), *_not_evaluated(analysis)]
 
 
-def diagnostic(finding: Finding, judged: Judged, uri: str) -> types.Diagnostic:
+def diagnostic(finding: Finding, analysis: Analysis, uri: str) -> types.Diagnostic:
     """Return a finding as a diagnostic, with its G12.1 and the findings that follow from it."""
     alarm = f" (alarm {finding.alarm})" if finding.alarm else ""
     return types.Diagnostic(
-        range=judged.text.range_of(finding.line, finding.column, finding.end_line, finding.end_column),
+        range=analysis.text.range_of(finding.line, finding.column, finding.end_line, finding.end_column),
         severity=_SEVERITIES[finding.severity],
         code=finding.rule,
         source=SOURCE,
         message=visible(f"{finding.full_message}{alarm}"),
-        related_information=_related(finding, judged, uri) or None,
+        related_information=_related(finding, analysis, uri) or None,
     )
 
 
-def _related(finding: Finding, judged: Judged, uri: str) -> list[types.DiagnosticRelatedInformation]:
+def _related(finding: Finding, analysis: Analysis, uri: str) -> list[types.DiagnosticRelatedInformation]:
     places = []
     if finding.section_line is not None and finding.section_line != finding.line:
-        places.append((judged.text.line_range(finding.section_line), "the polar section begins here"))
+        places.append((analysis.text.line_range(finding.section_line), "the polar section begins here"))
     for effect in finding.follows[:_MOST_RELATED]:
-        place = judged.text.range_of(effect.line, effect.column, effect.end_line, effect.end_column)
-        places.append((place, f"follows from it: {effect.message} [{effect.rule}]"))
+        effect_range = analysis.text.range_of(effect.line, effect.column, effect.end_line, effect.end_column)
+        places.append((effect_range, f"follows from it: {effect.message} [{effect.rule}]"))
     return [
-        types.DiagnosticRelatedInformation(types.Location(uri, place), visible(message)) for place, message in places
+        types.DiagnosticRelatedInformation(types.Location(uri, effect_range), visible(message))
+        for effect_range, message in places
     ]
 
 
-def _not_evaluated(judged: Judged) -> list[types.Diagnostic]:
+def _not_evaluated(analysis: Analysis) -> list[types.Diagnostic]:
     """Return a diagnostic per reason for what matters and could not be judged, at the first polar section."""
-    report = judged.report
+    report = analysis.report
     assert report is not None
     rules: dict[str, list[str]] = {}
     for gap in report.not_evaluated:
@@ -69,7 +70,7 @@ def _not_evaluated(judged: Judged) -> list[types.Diagnostic]:
             rules.setdefault(gap.reason, []).append(gap.rule)
     return [
         types.Diagnostic(
-            range=judged.text.line_range(_first_section(report)),
+            range=analysis.text.line_range(_first_section(report)),
             severity=types.DiagnosticSeverity.Information,
             code=NOT_EVALUATED,
             source=SOURCE,

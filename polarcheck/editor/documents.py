@@ -66,23 +66,23 @@ class Documents:
         if uri in self.buffers.open or path is None:
             return await self.ask(uri, function, none)
         folders = [folder for buffer in self.buffers.open.values() for folder in self.folders_of(buffer.path)]
-        known = [document for _, document in self._known.values()]
-        return await self.worker.do(self._apply_to_file, function, path, folders, known, none)
+        documents = [document for _, document in self._known.values()]
+        return await self.worker.do(self._apply_to_file, function, path, folders, documents, none)
 
     def _apply_to_file(
         self,
         function: Callable[[Document], Result],
         path: Path,
         folders: Sequence[Path],
-        known: Sequence[Document],
+        documents: Sequence[Document],
         none: Result,
     ) -> Result:
         from polarcheck.editor.structure.workspace import Workspace
 
-        for document in known:
-            found = Workspace(document, (), folders, self.machine_of).file(path)
-            if found is not None:
-                return function(found)
+        for document in documents:
+            document_of_file = Workspace(document, (), folders, self.machine_of).file(path)
+            if document_of_file is not None:
+                return function(document_of_file)
         return none
 
     def _apply(
@@ -96,10 +96,10 @@ class Documents:
 
         for uri in self._known.keys() - self.buffers.open.keys():
             self._known.pop(uri, None)
-        known_settings, known = self._known.get(buffer.uri, (None, None))
+        known_settings, cached = self._known.get(buffer.uri, (None, None))
         settings = settings or known_settings
-        if known is not None and known.text is text and settings is known_settings:
-            return known
+        if cached is not None and cached.text is text and settings is known_settings:
+            return cached
         machine, folders = self.machine_of(buffer.path, settings)
         document = Document(buffer.uri, buffer.path, text, machine, folders)
         self._known[buffer.uri] = settings, document

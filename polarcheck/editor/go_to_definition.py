@@ -8,7 +8,7 @@ from pathlib import Path
 
 from lsprotocol import types
 
-from polarcheck.editor.analysis import Judged
+from polarcheck.editor.analysis import Analysis
 from polarcheck.editor.open_text import OpenText
 from polarcheck.editor.words.at_cursor import block_of
 from polarcheck.program.execution.called_programs import Library
@@ -26,13 +26,13 @@ _HEAD = re.compile(r"\s*+(?:/\d?\s*+)?(?:[NO]\s*+\d{1,9}|[A-Z_]\w{0,60}+:)", re.
 _JUMPS = (Kind.GOTO, Kind.IF_GOTO)
 
 
-def definition(judged: Judged, uri: str, position: types.Position) -> list[types.Location]:
+def definition(analysis: Analysis, uri: str, position: types.Position) -> list[types.Location]:
     """Return the places that the block at a position refers to; of several numbers the one under the cursor counts."""
-    if judged.settings is None:
+    if analysis.settings is None:
         return []
-    machine = judged.settings.machine
-    character = judged.text.character_of(position)
-    for text in judged.texts:
+    machine = analysis.settings.machine
+    character = analysis.text.character_of(position)
+    for text in analysis.texts:
         block = block_of(text, character)
         if block is None:
             continue
@@ -40,28 +40,28 @@ def definition(judged: Judged, uri: str, position: types.Position) -> list[types
         listing = Listing([read_text(text.source, machine)] if text.source.parts else [text], machine)
         if block >= len(listing.text.blocks):
             continue
-        at = character - int(listing.text.blocks.start[block])
+        offset_in_block = character - int(listing.text.blocks.start[block])
         head = _HEAD.match(block_text(listing.text, block))
-        if head is not None and at <= head.end():
+        if head is not None and offset_in_block <= head.end():
             # An editor that is led to where it is shows the references.
-            return [_at_block(judged.text, uri, listing.text, block)]
+            return [_at_block(analysis.text, uri, listing.text, block)]
         called = listing.called_in(block)
         if called is not None:
-            return _of_program(called, listing, judged, uri)
-        targets = list(_targets(listing, block, at))
+            return _of_program(called, listing, analysis, uri)
+        targets = list(_targets(listing, block, offset_in_block))
         if targets:
-            return [_at_block(judged.text, uri, listing.text, target) for target in dict.fromkeys(targets)]
+            return [_at_block(analysis.text, uri, listing.text, target) for target in dict.fromkeys(targets)]
     return []
 
 
-def _of_program(called: ProgramName, listing: Listing, judged: Judged, uri: str) -> list[types.Location]:
+def _of_program(called: ProgramName, listing: Listing, analysis: Analysis, uri: str) -> list[types.Location]:
     programs = [program for program in listing.programs.named(called) if program.file == 0]
     if programs:
-        return [_at_block(judged.text, uri, listing.text, programs[0].first)]
-    assert judged.settings is not None
-    places = Library(judged.settings.job.run.subprograms, judged.settings.machine).places(called)
-    machine, units = judged.settings.machine, judged.text.units
-    return [_in_file(place.path, place.data, called, machine, units) for place in places]
+        return [_at_block(analysis.text, uri, listing.text, programs[0].first)]
+    assert analysis.settings is not None
+    places = Library(analysis.settings.job.run.subprograms, analysis.settings.machine).places(called)
+    machine, units = analysis.settings.machine, analysis.text.units
+    return [_in_file(file.path, file.data, called, machine, units) for file in places]
 
 
 def _in_file(path: Path, data: bytes, called: ProgramName, machine: Machine, units: str) -> types.Location:
@@ -74,12 +74,12 @@ def _in_file(path: Path, data: bytes, called: ProgramName, machine: Machine, uni
     return _at_block(text, uri, programs.text, named[0].first) if named else types.Location(uri, text.line_range(1))
 
 
-def _at_block(shown: OpenText, uri: str, text: Text, block: int) -> types.Location:
-    start, end = (shown.place_of(int(places[block])) for places in (text.blocks.start, text.blocks.end))
-    return types.Location(uri, shown.range(start, end))
+def _at_block(document: OpenText, uri: str, text: Text, block: int) -> types.Location:
+    start, end = (document.place_of(int(places[block])) for places in (text.blocks.start, text.blocks.end))
+    return types.Location(uri, document.range(start, end))
 
 
-def _targets(listing: Listing, block: int, at: int) -> Iterator[int]:
+def _targets(listing: Listing, block: int, offset_in_block: int) -> Iterator[int]:
     """Yield the blocks that a block jumps to by number or label, the number under the cursor first."""
     program = listing.programs.around(block)
     statement = listing.statement(block)
@@ -89,13 +89,13 @@ def _targets(listing: Listing, block: int, at: int) -> Iterator[int]:
             if target is not None:
                 yield target
     written = block_text(listing.text, block)
-    numbers = sorted(_NUMBER.finditer(written), key=lambda match: not match.start() <= at <= match.end())
+    numbers = sorted(_NUMBER.finditer(written), key=lambda match: not match.start() <= offset_in_block <= match.end())
     if not numbers:
         return
     number = int(numbers[0][1])
     returns = statement.call in listing.macro.program_returns
-    for place in [*(_callers(listing, program) if returns else ()), program]:
-        target = listing.programs.jump(place, number, block if place is program else place.first - 1)
+    for searched in [*(_callers(listing, program) if returns else ()), program]:
+        target = listing.programs.jump(searched, number, block if searched is program else searched.first - 1)
         if target is not None:
             yield target
             return

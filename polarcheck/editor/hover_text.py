@@ -11,7 +11,7 @@ from lsprotocol import types
 from polarcheck.checking.polar_sections import radius_source
 from polarcheck.columns.path.tool_center import ToolCenter
 from polarcheck.columns.trace import Trace
-from polarcheck.editor.analysis import Judged
+from polarcheck.editor.analysis import Analysis
 from polarcheck.editor.program_markdown import page, plain
 from polarcheck.editor.words.at_cursor import CursorWord, word_at
 from polarcheck.editor.words.explained import explained
@@ -42,77 +42,79 @@ _MOTIONS = {
 _FEED_MODES = {FeedMode.PER_MINUTE: "/min", FeedMode.PER_REVOLUTION: "/rev", FeedMode.INVERSE_TIME: "inverse time"}
 
 
-def hover(judged: Judged, position: types.Position, with_markdown: bool) -> types.Hover | None:
+def hover(analysis: Analysis, position: types.Position, with_markdown: bool) -> types.Hover | None:
     """Return the pages of the findings at a position, its word, and the state of its block; None without any."""
-    if judged.report is None:
+    if analysis.report is None:
         return None
-    findings, word = at(judged, position), word_at(judged, position)
+    findings, word = findings_at(analysis, position), word_at(analysis, position)
     parts: list[str] = []
-    line = judged.text.line_of(position)
-    place = judged.text.line_range(line)
+    line = analysis.text.line_of(position)
+    range_of_hover = analysis.text.line_range(line)
     if word is not None:
-        place = judged.text.range(judged.text.place_of(word.start), judged.text.place_of(word.end))
+        range_of_hover = analysis.text.range(analysis.text.place_of(word.start), analysis.text.place_of(word.end))
     if findings:
-        parts.append(_pages(judged, findings, with_markdown))
+        parts.append(_pages(analysis, findings, with_markdown))
         first = findings[0]
-        place = judged.text.range_of(first.line, first.column, first.end_line, first.end_column)
+        range_of_hover = analysis.text.range_of(first.line, first.column, first.end_line, first.end_column)
     try:
         with time_limit(_PATIENCE):
-            parts += [_listed(title, facts, with_markdown) for title, facts in _facts_at(judged, line, word, findings)]
+            parts += [
+                _listed(title, facts, with_markdown) for title, facts in _facts_at(analysis, line, word, findings)
+            ]
     except TooHardError as error:
         parts.append(_listed("", [("not evaluated", str(error))], with_markdown))
     if not parts:
         return None
     text = ("\n\n---\n\n" if with_markdown else "\n\n").join(parts)
     kind = types.MarkupKind.Markdown if with_markdown else types.MarkupKind.PlainText
-    return types.Hover(types.MarkupContent(kind, text), place)
+    return types.Hover(types.MarkupContent(kind, text), range_of_hover)
 
 
 def _facts_at(
-    judged: Judged, line: int, word: CursorWord | None, findings: list[Finding]
+    analysis: Analysis, line: int, word: CursorWord | None, findings: list[Finding]
 ) -> Iterator[tuple[str, list[tuple[str, str]]]]:
     """Yield the title and the facts of a word, then those of its block; beside findings the word alone."""
-    execution = judged.row_of(line)
+    execution = analysis.row_of(line)
     if word is not None:
         trace, row = (execution[0]["trace"], execution[1]) if execution is not None else (None, None)
-        if trace is None and judged.runs:
-            trace = judged.runs[0][1]["trace"]
-        title, facts = explained(word, judged, trace, row)
+        if trace is None and analysis.runs:
+            trace = analysis.runs[0][1]["trace"]
+        title, facts = explained(word, analysis, trace, row)
         if title:
             yield title, facts
     if not findings:
-        title, facts = state(judged, line)
+        title, facts = state(analysis, line)
         if facts:
             yield title, facts
 
 
-def at(judged: Judged, position: types.Position) -> list[Finding]:
+def findings_at(analysis: Analysis, position: types.Position) -> list[Finding]:
     """Return the findings whose words are at a position."""
-    if judged.report is None:
+    if analysis.report is None:
         return []
-    offset, text = judged.text.offset(position), judged.text
+    offset, text = analysis.text.offset(position), analysis.text
     return [
         finding
-        for finding in judged.report.findings
+        for finding in analysis.report.findings
         if text.offset_of(finding.line, finding.column)
         <= offset
         <= text.offset_of(finding.end_line, finding.end_column)
     ]
 
 
-def _pages(judged: Judged, findings: list[Finding], with_markdown: bool) -> str:
-    assert judged.settings is not None
+def _pages(analysis: Analysis, findings: list[Finding], with_markdown: bool) -> str:
+    assert analysis.settings is not None
     rules = load_all()
     names = [name for name in dict.fromkeys(finding.rule for finding in findings) if name in rules]
     if not with_markdown:
-        return manual.pages((rules[name] for name in names), judged.settings.machine)
-    shown = []
+        return manual.pages((rules[name] for name in names), analysis.settings.machine)
+    texts = []
     for name in names:
-        _, _, body = manual.pages([rules[name]], judged.settings.machine).partition("\n\n")
+        _, _, body = manual.pages([rules[name]], analysis.settings.machine).partition("\n\n")
         alarms = [finding.alarm for finding in findings if finding.rule == name and finding.alarm]
         alarm = f", alarm {plain(alarms[0])}" if alarms else ""
-        shown.append(f"**{name}**{alarm}\n\n{page(body.strip())}")
-    return "\n\n---\n\n".join(shown)
+        texts.append(f"**{name}**{alarm}\n\n{page(body.strip())}")
+    return "\n\n---\n\n".join(texts)
 
 
 def _listed(title: str, facts: list[tuple[str, str]], with_markdown: bool) -> str:
@@ -122,13 +124,13 @@ def _listed(title: str, facts: list[tuple[str, str]], with_markdown: bool) -> st
     return "\n".join([*([title] if title else []), *(f"{name}: {fact}" for name, fact in facts)])
 
 
-def state(judged: Judged, line: int) -> tuple[str, list[tuple[str, str]]]:
+def state(analysis: Analysis, line: int) -> tuple[str, list[tuple[str, str]]]:
     """
     Return the state after the first run of a block: a title, and facts by name, in the units of the program.
 
     Both are empty for a line that is not executed.
     """
-    execution = judged.row_of(line)
+    execution = analysis.row_of(line)
     if execution is None:
         return "", []
     tables, row, count = execution
@@ -180,16 +182,16 @@ def _position(trace: Trace, row: int) -> Iterator[str]:
     is_diameter = bool(trace.lengths.x_factor[row] < 1)
     linear = chr(trace.axes.linear_axis[row])
     x = trace.path.end[row].real if inside else trace.path.x[row]
-    yield f"{linear} {_shown(in_row(x, trace.lengths, row), 'diameter')}{' (diameter)' if is_diameter else ' (radius)'}"
+    yield f"{linear} {_text(in_row(x, trace.lengths, row), 'diameter')}{' (diameter)' if is_diameter else ' (radius)'}"
     if inside:
         virtual = in_row(trace.path.end[row].imag, trace.lengths, row)
-        yield f"{trace.axes.virtual_axis_of(row)} {_shown(virtual, 'length')} (length)"
-    yield f"Z {_shown(in_row(trace.path.z[row], trace.lengths, row), 'length')}"
+        yield f"{trace.axes.virtual_axis_of(row)} {_text(virtual, 'length')} (length)"
+    yield f"Z {_text(in_row(trace.path.z[row], trace.lengths, row), 'length')}"
     angle = float(trace.path.c_angle[row])
     yield f"{trace.machine.polar.rotary_address} axis {f'{angle:.3f} deg' if math.isfinite(angle) else _UNKNOWN}"
 
 
-def _shown(value: Quantity, form: str) -> str:
+def _text(value: Quantity, form: str) -> str:
     return value.shown(form) if np.isfinite(value.value) else _UNKNOWN
 
 
@@ -199,7 +201,7 @@ def _offset(trace: Trace, row: int) -> str:
         return "none in force"
     radius = in_row(float(trace.compensation.radius[row]), trace.lengths, row)
     source = f" ({radius_source(trace, row)})" if np.isfinite(radius.value) else ""
-    return f"{key}, R {_shown(radius, 'length')}{source}"
+    return f"{key}, R {_text(radius, 'length')}{source}"
 
 
 def _feed(trace: Trace, row: int) -> str:
@@ -223,7 +225,7 @@ def _of_tool_center(tool_center: ToolCenter, trace: Trace, row: int) -> Iterator
     of_limit = f" of {limit:.0f}" if math.isfinite(limit) else ""
     rate = _AT_ONCE if math.isinf(c_feed) else _UNKNOWN
     yield "C axis", f"{c_feed:.0f}{of_limit} deg/min" if math.isfinite(c_feed) else rate
-    yield "nearest to the center", _shown(in_row(float(tool_center.nearest[row]), trace.lengths, row), "length")
+    yield "nearest to the center", _text(in_row(float(tool_center.nearest[row]), trace.lengths, row), "length")
     allowed = in_row(float(tool_center.feed_allowed[row]), trace.lengths, row)
     if of_limit and np.isfinite(allowed.value):
         yield "highest F here", f"{allowed:highest}"

@@ -8,7 +8,7 @@ import numpy as np
 from lsprotocol import types
 
 from polarcheck.columns.trace import Trace
-from polarcheck.editor.analysis import Judged
+from polarcheck.editor.analysis import Analysis
 from polarcheck.foundation.errors import TooHardError
 from polarcheck.foundation.time_limit import time_limit
 from polarcheck.rules.quantity import in_row
@@ -22,26 +22,26 @@ _PATIENCE = 5.0
 _MOST = 5_000
 
 
-def inlay_hints(judged: Judged, shown: types.Range, what: str) -> list[types.InlayHint]:
+def inlay_hints(analysis: Analysis, visible: types.Range, what: str) -> list[types.InlayHint]:
     """Return the hints of the lines of a range; what: C_ANGLE or HIGHEST_FEED. Unknown values are left out."""
     if what not in (C_ANGLE, HIGHEST_FEED):
         return []
-    first, last = judged.text.line_of(shown.start), judged.text.line_of(shown.end)
+    first, last = analysis.text.line_of(visible.start), analysis.text.line_of(visible.end)
     hints: dict[int, types.InlayHint] = {}
     try:
         with time_limit(_PATIENCE):
-            for _, tables in judged.runs:
+            for _, tables in analysis.runs:
                 trace: Trace = tables["trace"]
                 for line, label, remark in _of_run(tables, trace, first, last, what):
                     if line not in hints:
-                        hints[line] = _hint(judged, line, label, remark)
+                        hints[line] = _hint(analysis, line, label, remark)
     except TooHardError:
         return []
     return [hints[line] for line in sorted(hints)][:_MOST]
 
 
-def _hint(judged: Judged, line: int, label: str, remark: str) -> types.InlayHint:
-    end = judged.text.line_range(line).end
+def _hint(analysis: Analysis, line: int, label: str, remark: str) -> types.InlayHint:
+    end = analysis.text.line_range(line).end
     return types.InlayHint(position=end, label=label, tooltip=remark, padding_left=True)
 
 

@@ -74,8 +74,8 @@ def _structured(message: dict[str, Any], protocol: Protocol) -> Any:
         return protocol.structure_message(message)
     except JsonRpcException as error:
         faults = transform_error(error.__cause__ or error, path="params")
-        shown = shortened(str(faults[0]) if faults else str(error), _LONGEST_FAULT)
-        raise JsonRpcInvalidParams(f"Invalid Params: {visible(shown)}") from error
+        fault = shortened(str(faults[0]) if faults else str(error), _LONGEST_FAULT)
+        raise JsonRpcInvalidParams(f"Invalid Params: {visible(fault)}") from error
 
 
 def _number(message: Any) -> int | str | None:

@@ -11,7 +11,7 @@ from typing import Any
 import msgspec
 from pygls.exceptions import JsonRpcException, JsonRpcInvalidParams
 
-from polarcheck.editor.analysis import Judged
+from polarcheck.editor.analysis import Analysis
 from polarcheck.foundation.errors import PolarcheckError, StoppedError
 from polarcheck.foundation.time_limit import seconds_for, time_limit
 from polarcheck.program.reading import files
@@ -61,15 +61,15 @@ def library() -> str:
     """Return the path of plotly's JavaScript, which pages load. Raises RequestFailed if it is not installed."""
     import importlib.util
 
-    found = importlib.util.find_spec("plotly")
-    path = Path(found.origin).parent / "package_data" / "plotly.min.js" if found and found.origin else None
+    spec = importlib.util.find_spec("plotly")
+    path = Path(spec.origin).parent / "package_data" / "plotly.min.js" if spec and spec.origin else None
     if path is None or not path.is_file():
         raise RequestFailed("pictures need plotly, of the extra [plot]: pip install plotly")
     return str(path)
 
 
 def picture(
-    judged: Judged, folders: Sequence[Path], is_stopped: Callable[[], bool], address: str = "", sources: str = ""
+    analysis: Analysis, folders: Sequence[Path], is_stopped: Callable[[], bool], address: str = "", sources: str = ""
 ) -> str:
     """
     Return the page of a checked program.
@@ -83,19 +83,19 @@ def picture(
     """
     if not _SOURCES.fullmatch(sources):
         raise JsonRpcInvalidParams("sources must be sources of a content security policy")
-    if judged.report is None or judged.settings is None:
-        raise RequestFailed(visible(f"This program is not checked. {judged.error}"))
+    if analysis.report is None or analysis.settings is None:
+        raise RequestFailed(visible(f"This program is not checked. {analysis.error}"))
     from polarcheck.reports import Background
     from polarcheck.view import page_data
     from polarcheck.view.page import page
     from polarcheck.view.run_drawing import drawn, split
 
     try:
-        with time_limit(seconds_for(len(judged.text.data), judged.settings.job.run.max_seconds), is_stopped):
+        with time_limit(seconds_for(len(analysis.text.data), analysis.settings.job.run.max_seconds), is_stopped):
             named = msgspec.structs.replace(
-                judged.report, path=_title(judged.path, folders), machine=visible(judged.settings.machine_id)
+                analysis.report, path=_title(analysis.path, folders), machine=visible(analysis.settings.machine_id)
             )
-            report, drawing = split(drawn(named, judged.runs))
+            report, drawing = split(drawn(named, analysis.runs))
     except StoppedError:
         raise Changed("the text has changed") from None
     except PolarcheckError as error:
@@ -103,20 +103,22 @@ def picture(
     except MemoryError:
         raise RequestFailed("there is not enough memory to draw this program") from None
     background = Background(
-        rules=_rules(), settings={report.path: judged.settings}, drawn={} if drawing is None else {report.path: drawing}
+        rules=_rules(),
+        settings={report.path: analysis.settings},
+        drawn={} if drawing is None else {report.path: drawing},
     )
-    shown = page_data.picture(report, background)
+    plot = page_data.picture(report, background)
     if address:
-        return page([shown], beside=address, sources=sources)
+        return page([plot], beside=address, sources=sources)
     from polarcheck.view.plotly_script import library as javascript
 
-    return page([shown], javascript())
+    return page([plot], javascript())
 
 
 def _title(path: Path, folders: Sequence[Path]) -> str:
     """Return the path of a program as the editor shows it: from the folder that is open."""
     inside = [folder for folder in folders if path.is_relative_to(folder) and folder != path.parent]
-    return files.shown(str(path.relative_to(inside[0])) if inside else path.name)
+    return files.display_path(str(path.relative_to(inside[0])) if inside else path.name)
 
 
 @functools.cache
@@ -126,7 +128,7 @@ def _rules() -> Any:
     return load_all()
 
 
-def verdict(judged: Judged, uri: str, version: int | None) -> dict[str, Any]:
+def verdict(analysis: Analysis, uri: str, version: int | None) -> dict[str, Any]:
     """
     Return the verdict of a document, for a status bar.
 
@@ -137,15 +139,15 @@ def verdict(judged: Judged, uri: str, version: int | None) -> dict[str, Any]:
     machine: the title of the machine, and its name in parentheses.
     reasons: why it is not verified or not checked, in a line each.
     """
-    if judged.report is None:
+    if analysis.report is None:
         counts, state, machine, sections = {}, _NOT_CHECKED, "", 0
-        reasons = [judged.error]
+        reasons = [analysis.error]
     else:
-        report = judged.report
+        report = analysis.report
         severities = [finding.severity for finding in report.findings]
         counts = {severity: severities.count(severity) for severity in ("error", "warning", "note")}
         state, sections = report.verdict, report.sections
-        settings = judged.settings
+        settings = analysis.settings
         machine = f"{settings.machine.title} ({settings.machine_id})" if settings is not None else ""
         reasons = list(dict.fromkeys(gap.reason for gap in report.not_evaluated if gap.matters))
     return {

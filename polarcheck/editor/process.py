@@ -58,10 +58,10 @@ class _Sink:
         self._sink, self._ended = sink, ended
 
     def write(self, data: bytes) -> None:
-        left = memoryview(data)
+        remaining = memoryview(data)
         try:
-            while left:
-                left = left[os.write(self._sink, left) :]
+            while remaining:
+                remaining = remaining[os.write(self._sink, remaining) :]
         except OSError:
             self._ended()
 

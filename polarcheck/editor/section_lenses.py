@@ -7,19 +7,19 @@ from collections.abc import Iterable
 
 from lsprotocol import types
 
-from polarcheck.editor.analysis import Judged
+from polarcheck.editor.analysis import Analysis
 from polarcheck.foundation.finding import PolarSection
 from polarcheck.foundation.states import MM_PER_INCH
 from polarcheck.program.reading.excerpt import visible
 
 
-def code_lenses(judged: Judged) -> list[types.CodeLens]:
+def code_lenses(analysis: Analysis) -> list[types.CodeLens]:
     """Return a line above each G12.1: time, highest rate of C and its limit, radius."""
-    if judged.report is None:
+    if analysis.report is None:
         return []
     return [
-        types.CodeLens(judged.text.line_range(line), types.Command(visible(summary(section, runs)), ""))
-        for line, (section, runs) in sections_by_line(judged.report.polar_sections).items()
+        types.CodeLens(analysis.text.line_range(line), types.Command(visible(summary(section, runs)), ""))
+        for line, (section, runs) in sections_by_line(analysis.report.polar_sections).items()
     ]
 
 
@@ -42,14 +42,14 @@ def sections_by_line(sections: Iterable[PolarSection]) -> dict[int, tuple[PolarS
 def summary(section: PolarSection, runs: int = 1) -> str:
     """Return a line on a polar section, in the units of the program; runs: how often it is run."""
     limit = f" of {section.c_feed_limit:.0f}" if section.c_feed_limit is not None else ""
-    at = f" in line {section.c_feed_line}" if section.c_feed_line is not None else ""
-    rate = "rate of C not known" if section.c_feed is None else f"C {section.c_feed:.0f}{limit} deg/min{at}"
+    line = f" in line {section.c_feed_line}" if section.c_feed_line is not None else ""
+    rate = "rate of C not known" if section.c_feed is None else f"C {section.c_feed:.0f}{limit} deg/min{line}"
     if section.center_line:
         rate += f", no angle at the center in line {section.center_line}"
     time = "time not known" if section.time is None else f"{section.time:.1f} s"
     if section.time_not_known:
-        known = f"{section.time_known:.1f} s without" if section.time_known else "time not known:"
-        time = f"{known} {', '.join(section.time_not_known)}"
+        prefix = f"{section.time_known:.1f} s without" if section.time_known else "time not known:"
+        time = f"{prefix} {', '.join(section.time_not_known)}"
     channel = f"{section.channel}: " if section.channel else ""
     often = f" | the highest of {runs} runs" if runs > 1 else ""
     return f"{channel}{time} | {rate} | {_radius(section)}{often}"

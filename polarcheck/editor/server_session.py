@@ -20,7 +20,7 @@ from polarcheck.foundation.version import __version__
 from polarcheck.program.reading.excerpt import shortened, visible
 
 if TYPE_CHECKING:
-    from polarcheck.editor.analysis import Judged, SettingsOf
+    from polarcheck.editor.analysis import Analysis, SettingsOf
 
 #: How often settings and called programs are checked for changes: network drives send no events [s].
 _POLL_EVERY = 2.0
@@ -59,7 +59,7 @@ class Server(LanguageServer):
         self.rewritings: list[Callable[[types.CodeActionParams], Awaitable[list[types.CodeAction]]]] = []
         self.options: list[Callable[[Any], object]] = []
         self.configured: list[Callable[..., Awaitable[None]]] = []
-        self.published: list[Callable[[Buffer, Judged], None]] = []
+        self.published: list[Callable[[Buffer, Analysis], None]] = []
         self.gone: list[Callable[[str], None]] = []
 
     # ---- what may be opened ----
@@ -109,22 +109,24 @@ class Server(LanguageServer):
             for forget in self.gone:
                 forget(uri)
 
-    async def _publish(self, buffer: Buffer, judged: Judged) -> None:
+    async def _publish(self, buffer: Buffer, analysis: Analysis) -> None:
         from polarcheck.editor.diagnostics import diagnostics
 
-        marks = await self.buffers.worker.do(diagnostics, judged, buffer.uri)
-        if buffer.judged is not judged:
+        marks = await self.buffers.worker.do(diagnostics, analysis, buffer.uri)
+        if buffer.judged is not analysis:
             return
         self.text_document_publish_diagnostics(types.PublishDiagnosticsParams(buffer.uri, marks, buffer.version))
         for notify in self.published:
-            notify(buffer, judged)
+            notify(buffer, analysis)
 
     # ---- requests ----
 
-    async def ask(self, uri: str, function: Callable[[Judged], Result], none: Result, *, soon: bool = False) -> Result:
+    async def ask(
+        self, uri: str, function: Callable[[Analysis], Result], none: Result, *, soon: bool = False
+    ) -> Result:
         """Apply a function to the checked document; return `none` if there is no such document."""
-        judged = await self.buffers.judged(uri, soon=soon)
-        return none if judged is None else await self.buffers.ask(function, judged)
+        analysis = await self.buffers.judged(uri, soon=soon)
+        return none if analysis is None else await self.buffers.ask(function, analysis)
 
     def prefers_markdown(self, formats: Sequence[types.MarkupKind] | None) -> bool:
         """Return True if Markdown is among the formats that the editor shows."""
@@ -142,8 +144,8 @@ class Server(LanguageServer):
             self._loop.call_soon_threadsafe(self._show_bug, visible(f"{summary} while checking {path}"), text)
 
     def _show_bug(self, summary: str, text: str) -> None:
-        shown = "\n".join(visible(line) for line in text.splitlines())
-        self.window_log_message(types.LogMessageParams(types.MessageType.Error, f"{summary}\n{shown}"))
+        lines = "\n".join(visible(line) for line in text.splitlines())
+        self.window_log_message(types.LogMessageParams(types.MessageType.Error, f"{summary}\n{lines}"))
         kind = summary.partition(" while checking ")[0]
         if kind not in self._bugs:
             self._bugs.add(kind)

@@ -28,9 +28,9 @@ def broken(error: str, read: Mapping[str, object]) -> tuple[str, types.Diagnosti
     if match is None or os.path.abspath(match[1]) not in read:  # noqa: PTH100  Path.absolute leaves `..`
         return None
     line = max(int(match[2] or 1) - 1, 0)
-    place = types.Range(types.Position(line, 0), types.Position(line, _END_OF_LINE))
+    range_of_line = types.Range(types.Position(line, 0), types.Position(line, _END_OF_LINE))
     return Path(os.path.abspath(match[1])).as_uri(), types.Diagnostic(  # noqa: PTH100
-        range=place,
+        range=range_of_line,
         severity=types.DiagnosticSeverity.Error,
         code=NOT_CHECKED,
         source=SOURCE,

@@ -22,8 +22,8 @@ def workspace_edit(server: Server, edits: Mapping[str, list[types.TextEdit]]) ->
         document_changes=[
             types.TextDocumentEdit(
                 types.OptionalVersionedTextDocumentIdentifier(uri, opened[uri].version if uri in opened else None),
-                list(found),
+                list(text_edits),
             )
-            for uri, found in edits.items()
+            for uri, text_edits in edits.items()
         ]
     )

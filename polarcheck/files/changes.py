@@ -65,7 +65,7 @@ class Changes:
         Return True for a file that is a program by its look, where it may have been an offset table of any job before.
         """
         return walking.is_by_look(task.path) and (
-            any(self._concern_settings(other.settings) for other in tasks)
+            any(self._concern_settings(candidate.settings) for candidate in tasks)
             or not all(map(os.path.lexists, self._difference.paths))
             or any(map(self._was_job_file, self._difference.paths))
         )
@@ -153,7 +153,7 @@ def since(name: str, tasks: Sequence[Task], looked_for: LookedFor, most: int = f
             continue
         root = repositories.root(os.path.dirname(task.path))  # noqa: PTH120
         if root is None:
-            raise UsageError(f"{ref}: {files.shown(task.path)} lies in no git repository")
+            raise UsageError(f"{ref}: {files.display_path(task.path)} lies in no git repository")
         roots.add(root)
     difference = git.none()
     for root in sorted({*roots, *_around(roots, repositories, ref)}, key=len):

@@ -10,7 +10,7 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 from polarcheck.foundation.errors import UsageError, suggestion
-from polarcheck.program.reading.files import RealPaths, shown
+from polarcheck.program.reading.files import RealPaths, display_path
 
 if TYPE_CHECKING:
     import subprocess
@@ -169,12 +169,12 @@ def holds_submodule(root: str, inner: str, ref: Reference) -> bool:
 def tracked(root: str, ref: Reference) -> set[str]:
     """Return the files that the next commit holds, by absolute path, those of submodules too. Raises UsageError."""
     paths: set[str] = set()
-    left = [(root, 0)]
-    while left:
-        here, depth = left.pop()
+    todo = [(root, 0)]
+    while todo:
+        here, depth = todo.pop()
         paths.update(_path(here, name) for name in _parts(_output(here, ref, "ls-files", "-z", "--cached")))
         inner = [_path(here, name) for name in _submodules(here, ref)]
-        left += [(path, depth + 1) for path in inner if depth < _MOST_NESTED and _is_repository(path, ref)]
+        todo += [(path, depth + 1) for path in inner if depth < _MOST_NESTED and _is_repository(path, ref)]
     return paths
 
 
@@ -191,8 +191,8 @@ class _Comparison:
         compared = ("--cached", "--raw", "-z", "--no-renames", "--ignore-submodules=none", base, "--")
         raw = _parts(_output(self._root, self._ref, "diff-index", *compared))
         staged = dict(zip(raw[1::2], (entry.removeprefix(":").split(" ") for entry in raw[::2]), strict=True))
-        others = () if of_index else ("--others",)
-        entries = _entries(_output(self._root, self._ref, "ls-files", "-z", "-v", "--stage", "--cached", *others))
+        untracked = () if of_index else ("--others",)
+        entries = _entries(_output(self._root, self._ref, "ls-files", "-z", "-v", "--stage", "--cached", *untracked))
         names = set(staged)
         former = {name: entry.content for name, entry in entries.items()}
         former |= {name: fields[2] for name, fields in staged.items()}  # zeros where there was none
@@ -309,7 +309,7 @@ def _require_top_level(root: str, ref: Reference) -> None:
     except OSError:
         is_same = False
     if not is_same:
-        raise UsageError(f"{ref}: {shown(root)}: its .git belongs to the work tree {shown(top)}")
+        raise UsageError(f"{ref}: {display_path(root)}: its .git belongs to the work tree {display_path(top)}")
 
 
 def _without_filters(root: str, ref: Reference) -> list[str]:
@@ -324,7 +324,7 @@ def _without_filters(root: str, ref: Reference) -> list[str]:
     options: list[str] = []
     for name in dict.fromkeys(key.rpartition(".")[0] for key in _parts(output)):
         if "=" in name:  # git -c would take what stands before it for the key
-            raise UsageError(f"{ref}: {shown(root)}: rename {name} in the configuration of git: = in a name")
+            raise UsageError(f"{ref}: {display_path(root)}: rename {name} in the configuration of git: = in a name")
         for setting in ("clean=", "smudge=", "process=", "required=false"):
             options += ("-c", f"{name}.{setting}")
     return options
@@ -349,7 +349,7 @@ def _missing(root: str, ref: Reference) -> str:
     if _output(root, ref, "rev-parse", "--is-shallow-repository").strip() == b"true":
         return "the clone is shallow and has no such commit: fetch it (git fetch --unshallow; CI: depth 0)"
     names = _output(root, ref, "for-each-ref", "--format=%(refname:short)").decode("utf-8", "replace").split("\n")
-    return f"git knows no such commit in {shown(root)}{suggestion(ref.name, filter(None, names))}"
+    return f"git knows no such commit in {display_path(root)}{suggestion(ref.name, filter(None, names))}"
 
 
 def _output(root: str, ref: Reference, *words: str, options: Sequence[str] = ()) -> bytes:

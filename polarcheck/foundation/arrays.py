@@ -121,17 +121,17 @@ def different(values: NDArray[_Number]) -> NDArray[_Number]:
     return rising[np.append(True, rising[1:] != rising[:-1])] if len(rising) else rising
 
 
-def is_among(values: NDArray[Any], wanted: Sequence[float | str]) -> Mask:
+def is_among(values: NDArray[Any], choices: Sequence[float | str]) -> Mask:
     """Return a mask of the values that are among the choices."""
-    if len(wanted) <= _FEW:
+    if len(choices) <= _FEW:
         matches = np.zeros(np.shape(values), bool)
-        for value in wanted:
+        for value in choices:
             # Python 3.11 looks up six attributes of the class of an enum, each by a function, where NumPy meets one.
             matches |= values == (int(value) if isinstance(value, int) else value)
         return matches
     if values.dtype == np.uint8:
         table = np.zeros(256, bool)
-        table[np.array(wanted, np.intp)] = True
+        table[np.array(choices, np.intp)] = True
         return np.asarray(table[values])
-    known = np.sort(np.array(wanted))
-    return np.asarray(known[np.minimum(known.searchsorted(values), len(known) - 1)] == values)
+    ordered = np.sort(np.array(choices))
+    return np.asarray(ordered[np.minimum(ordered.searchsorted(values), len(ordered) - 1)] == values)

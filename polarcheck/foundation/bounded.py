@@ -149,8 +149,8 @@ def decoded(data: bytes, otherwise: str = "utf-8") -> str:
         return data[len(mark) :].decode(encoding)
     except UnicodeDecodeError as error:
         line = data.count(b"\n", 0, error.start) + 1
-        place = f"line {line}" if encoding == otherwise else f"byte {error.start + 1}"
-        raise ValueError(f"{place} is not {encoding.upper()}; save the file as UTF-8") from None
+        location = f"line {line}" if encoding == otherwise else f"byte {error.start + 1}"
+        raise ValueError(f"{location} is not {encoding.upper()}; save the file as UTF-8") from None
 
 
 def megabytes(size: int) -> str:
@@ -229,12 +229,12 @@ def _head_of_pipe(descriptor: int) -> bytes:
 def _read_all(read_chunk: Callable[[int], bytes], first: int, limit: int, remark: str, head: bytes = b"") -> bytes:
     """Return head and all chunks up to the first empty one; first: the size of the first read [bytes]."""
     chunks = [head] if head else []
-    left, wanted = limit + 1 - len(head), first
-    while left > 0 and (chunk := read_chunk(min(wanted, left))):
+    remaining, size = limit + 1 - len(head), first
+    while remaining > 0 and (chunk := read_chunk(min(size, remaining))):
         chunks.append(chunk)
-        left -= len(chunk)
-        wanted = _CHUNK
-    if left <= 0:
+        remaining -= len(chunk)
+        size = _CHUNK
+    if remaining <= 0:
         raise _too_large(limit, remark)
     return b"".join(chunks)
 

@@ -88,7 +88,7 @@ class RefusedError(PolarcheckError):
     def __init__(self, refusals: Iterable[Refusal]) -> None:
         self.refusals = tuple(refusals)
         super().__init__(
-            "; ".join(f"line {each.line}: {each.text}" if each.line else each.text for each in self.refusals)
+            "; ".join(f"line {fault.line}: {fault.text}" if fault.line else fault.text for fault in self.refusals)
         )
 
 
@@ -138,14 +138,14 @@ def escaped(number: int) -> str:
     return f"\\x{number:02x}" if number < 256 else f"\\u{number:04x}" if number < 65536 else f"\\U{number:08x}"
 
 
-def suggestion(wrong: str, known: Iterable[str], most: int = 3) -> str:
+def suggestion(wrong: str, candidates: Iterable[str], most: int = 3) -> str:
     """
     Return a hint such as `; did you mean fanuc-30i?`; empty if no candidate is similar.
 
     In this order: the names that begin with the written one, in any case; else the nearest name; else the names that
     contain it. most: how many names are listed.
     """
-    names = {name.lower(): name for name in known}
+    names = {name.lower(): name for name in candidates}
     word = wrong.strip().lower()
     near = [word] if word in names else [name for name in names if name.startswith(word)]
     if not near or len(word) < _LEAST:
@@ -154,5 +154,5 @@ def suggestion(wrong: str, known: Iterable[str], most: int = 3) -> str:
         near = difflib.get_close_matches(word, names, 1)
     if not near and len(word) >= _LEAST:
         near = [name for name in names if word in name]
-    *others, last = [names[name] for name in near[:most]] or [""]
-    return f"; did you mean {', '.join(others)}{' or ' if others else ''}{last}?" if last else ""
+    *rest, last = [names[name] for name in near[:most]] or [""]
+    return f"; did you mean {', '.join(rest)}{' or ' if rest else ''}{last}?" if last else ""

@@ -95,15 +95,15 @@ class Limit:
         once it can have reached the end.
         """
         if not self._is_late and (now := time.monotonic()) > self._next_look:
-            left = self._left(now)
-            self._next_look = now + left
-            self._is_late = left < 0
+            remaining = self._left(now)
+            self._next_look = now + remaining
+            self._is_late = remaining < 0
         return self._is_late
 
     def _left(self, now: float) -> float:
         """Return the least time that is left [s], negative once it is over; now: time.monotonic [s]."""
-        left = min(self._end - self.clock(), self._end_of_waiting - now)
-        return left if self._around is None else min(left, self._around._left(now))
+        remaining = min(self._end - self.clock(), self._end_of_waiting - now)
+        return remaining if self._around is None else min(remaining, self._around._left(now))
 
     def is_over(self) -> bool:
         """Return True once no more work should be done: the time is over, or the check is cancelled."""

@@ -85,15 +85,15 @@ class Pieces(msgspec.Struct, frozen=True):
     @quiet
     def _of_held(self, of_point: _OfPoint) -> Floats:
         """The largest value of the points of each piece on which C is held; 0 on the others."""
-        found = np.zeros(len(self.move))
+        largest = np.zeros(len(self.move))
         held = np.flatnonzero(self.held)
         share = (1 - np.cos(np.linspace(0.0, np.pi, _POINTS)[:, None])) / 2
         for first in range(0, len(held), _AT_ONCE):
             rows = held[first : first + _AT_ONCE]
             start, end, center = self.start[rows], self.end[rows], self.center[rows]
             spokes = Spokes.of(start, end, center, self.kind[rows])
-            found[rows] = np.abs(of_point(*spokes.at(share * spokes.length), spokes.bend)).max(axis=0)
-        return found
+            largest[rows] = np.abs(of_point(*spokes.at(share * spokes.length), spokes.bend)).max(axis=0)
+        return largest
 
 
 class Spokes(Table, frozen=True):
@@ -122,11 +122,11 @@ class Spokes(Table, frozen=True):
         return cls(start, np.asarray(spoke / np.abs(spoke), np.complex128), center, radius, bend, length, is_arc)
 
     @quiet
-    def at(self, way: Floats) -> tuple[Points, Points]:
+    def at(self, distance: Floats) -> tuple[Points, Points]:
         """Points and directions at these distances from the start [mm]."""
-        turned = self.toward * np.exp(1j * way * self.bend)
+        turned = self.toward * np.exp(1j * distance * self.bend)
         on_arc = self.center + np.where(self.is_arc, self.radius, 0.0) * turned
-        point = np.where(self.is_arc, on_arc, self.start + way * self.toward)
+        point = np.where(self.is_arc, on_arc, self.start + distance * self.toward)
         return point, np.where(self.is_arc, turned * 1j * np.sign(self.bend), self.toward)
 
 
@@ -156,41 +156,41 @@ def pieces(start: Points, end: Points, center: Points, kind: States, feed: Float
     """The moves in parts; all is known, and F [mm/min] and the rate of C that is allowed [deg/min] are above 0."""
     room = np.radians(allowed) / feed
     spokes = Spokes.of(start, end, center, kind)
-    way = _ways(start, end, center, kind, room)
+    distance = _limit_distances(start, end, center, kind, room)
     length = spokes.length[:, None]
-    way = np.where((way > 0) & (way < length), way, length)
-    way = np.sort(np.concatenate((np.zeros((len(start), 1)), way, length), axis=1), axis=1)
-    is_piece = np.diff(way, axis=1) > _SHORTEST
+    distance = np.where((distance > 0) & (distance < length), distance, length)
+    distance = np.sort(np.concatenate((np.zeros((len(start), 1)), distance, length), axis=1), axis=1)
+    is_piece = np.diff(distance, axis=1) > _SHORTEST
     is_piece[:, 0] |= ~is_piece.any(axis=1)
-    move, at = np.nonzero(is_piece)
+    move, index = np.nonzero(is_piece)
     last = np.append(move[1:] != move[:-1], True)[: len(move)]
     # A part that is too short for a piece of its own joins the piece before it.
-    finish = np.where(last, spokes.length[move], np.append(way[move[1:], at[1:]], 0.0))
-    own = spokes[move]
-    begin = np.where(np.append(True, move[1:] != move[:-1])[: len(move)], 0.0, way[move, at])
-    points = np.where(begin == 0, start[move], own.at(begin)[0])
-    ends = np.where(last, end[move], own.at(finish)[0])
-    middle = own.at((begin + finish) / 2)
+    finish = np.where(last, spokes.length[move], np.append(distance[move[1:], index[1:]], 0.0))
+    spoke = spokes[move]
+    begin = np.where(np.append(True, move[1:] != move[:-1])[: len(move)], 0.0, distance[move, index])
+    points = np.where(begin == 0, start[move], spoke.at(begin)[0])
+    ends = np.where(last, end[move], spoke.at(finish)[0])
+    middle = spoke.at((begin + finish) / 2)
     held = np.abs(c_per_way(*middle)) > room[move]
     return Pieces(move, points, ends, center[move], kind[move], held, feed[move], allowed)
 
 
-def _ways(start: Points, end: Points, center: Points, kind: States, room: Floats) -> Floats:
+def _limit_distances(start: Points, end: Points, center: Points, kind: States, room: Floats) -> Floats:
     """Where C would turn as fast as there is room for [mm from the start]: four values for each move, NaN for none."""
     lines = lines_from_center(start, end)
     # Through the center itself C makes half a turn in one point, and none beside it.
     reach = np.where(lines.offset == 0, np.nan, np.sqrt(lines.offset / room - lines.offset**2))
     none = np.full(len(start), np.nan)
-    way = np.stack((-lines.before - reach, -lines.before + reach, none, none), axis=1)
+    distance = np.stack((-lines.before - reach, -lines.before + reach, none, none), axis=1)
     arcs = arcs_from_center(start, end, center, kind, rows := rows_of_arcs(kind))
-    power, asked = arcs.inside * arcs.around, 2 * arcs.radius * room[rows]
+    power, allowed = arcs.inside * arcs.around, 2 * arcs.radius * room[rows]
     sign = np.copysign(1.0, arcs.sweep)
-    found = []
-    for turn in (asked, -asked):
+    distances = []
+    for turn in (allowed, -allowed):
         angle = np.arccos((power / (turn - 1) - arcs.radius**2 - arcs.away**2) / (2 * arcs.radius * arcs.away))
         for side in (angle, -angle):
             ahead = np.angle(arcs.center * np.exp(1j * side) / (arcs.start - arcs.center)) * sign
             ahead = np.where(ahead < 0, ahead + 2 * np.pi, ahead)
-            found.append(np.where(arcs.through, np.nan, ahead * arcs.radius))
-    way[rows] = np.stack(found, axis=1)
-    return way
+            distances.append(np.where(arcs.through, np.nan, ahead * arcs.radius))
+    distance[rows] = np.stack(distances, axis=1)
+    return distance

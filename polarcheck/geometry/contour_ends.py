@@ -235,10 +235,10 @@ def crossings(start: Points, end: Points, of: Rows, middle: Points) -> tuple[Row
     ):
         rows = np.flatnonzero((a_across < 0) != (b_across < 0))
         share = a_across[rows] / (a_across[rows] - b_across[rows])
-        at = a_along[rows] + share * (b_along[rows] - a_along[rows])
-        axes.append(2 * number + (at < 0))
+        position = a_along[rows] + share * (b_along[rows] - a_along[rows])
+        axes.append(2 * number + (position < 0))
         groups.append(of[rows])
-        apart.append(np.abs(at))
+        apart.append(np.abs(position))
     return np.concatenate(axes), np.concatenate(groups), np.concatenate(apart)
 
 

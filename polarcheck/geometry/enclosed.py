@@ -14,13 +14,13 @@ from polarcheck.geometry.polar import c_sweep
 
 
 @quiet
-def go_round(start: Points, end: Points, center: Points, kind: States, way: Rows, count: int) -> Mask:
+def go_round(start: Points, end: Points, center: Points, kind: States, path: Rows, count: int) -> Mask:
     """A boolean for each of `count` paths: it goes round the center. way: the path of each move, ascending."""
-    first = np.flatnonzero(np.diff(way, prepend=-1))
-    last = np.append(first[1:], len(way)) - 1
+    first = np.flatnonzero(np.diff(path, prepend=-1))
+    last = np.append(first[1:], len(path)) - 1
     turns = np.radians(c_sweep(start, end, center, kind))
     turns[last] += angle_between(end[last], start[first])
-    turn = np.bincount(way, weights=turns, minlength=count)
+    turn = np.bincount(path, weights=turns, minlength=count)
     # A path round the center makes whole turns, any other path makes none.
     return np.asarray(np.abs(turn) > np.pi)
 

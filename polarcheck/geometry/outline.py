@@ -91,8 +91,8 @@ def _linked(start: Points, end: Points) -> Rows:
     if not meets.any():
         return order
     after = np.full(len(first), -1)
-    before, behind = np.nonzero(meets)
-    after[is_open[before]] = is_open[behind]
+    before, following = np.nonzero(meets)
+    after[is_open[before]] = is_open[following]
     chains: dict[int, None] = {}
     begins = [*np.setdiff1d(np.arange(len(first)), after).tolist(), *range(len(first))]
     for chain in begins:
@@ -107,7 +107,7 @@ def _from_block(move: Rows, first: Rows, count: Rows, closed: Mask) -> Rows:
     order = np.arange(len(move))
     last = first + count - 1
     for begin, end in zip(first[closed].tolist(), last[closed].tolist(), strict=True):
-        other = np.flatnonzero(move[begin : end + 1] != move[begin])
-        if move[begin] == move[end] and len(other):
-            order[begin : end + 1] = np.roll(order[begin : end + 1], -int(other[0]))
+        changes = np.flatnonzero(move[begin : end + 1] != move[begin])
+        if move[begin] == move[end] and len(changes):
+            order[begin : end + 1] = np.roll(order[begin : end + 1], -int(changes[0]))
     return order

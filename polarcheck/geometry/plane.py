@@ -66,10 +66,10 @@ class LinesFromCenter(msgspec.Struct, frozen=True):
 
 def lines_from_center(start: Points, end: Points) -> LinesFromCenter:
     start, end = cleared(start), cleared(end)
-    way = end - start
-    long = np.abs(way)
+    vector = end - start
+    long = np.abs(vector)
     long[long == 0] = 1
-    u = way * (1 / long)
+    u = vector * (1 / long)
     first, last = np.abs(start), np.abs(end)
     # From the end nearer to the center, lest a small d drown in the rounding of large coordinates.
     offset = np.abs(cross(np.where(first <= last, start, end), u))

@@ -88,8 +88,8 @@ def center_from_radius(
     left = (kind == Motion.CCW) == (radius > 0)
     center = start + half + np.where(left, 1j, -1j) * half * (height / reach)
     fits = 2 * (reach - np.abs(radius)) <= np.maximum(tolerance, NOISE * reach)
-    known = fits & (reach > ZERO / 2) & (radius != 0) & ((kind == Motion.CW) | (kind == Motion.CCW))
-    return np.where(known, center, complex("nan+nanj"))
+    has_center = fits & (reach > ZERO / 2) & (radius != 0) & ((kind == Motion.CW) | (kind == Motion.CCW))
+    return np.where(has_center, center, complex("nan+nanj"))
 
 
 @quiet
@@ -184,12 +184,12 @@ def c_angles(
     count = len(section)
     sweep = c_sweep(start, end, center, kind)
     leaving, arriving = _directions(cleared(start), cleared(end), center, kind)
-    known = ~np.isnan(sweep) & (section >= 0)
+    is_known = ~np.isnan(sweep) & (section >= 0)
     row = np.arange(count)
     begins = np.append(True, section[1:] != section[:-1])[:count]
     first = np.maximum.accumulate(np.where(begins, row, 0))
     turned = ((start.imag == 0) & (start.real < 0))[first] & (not axis.is_fixed)
-    seen = known & (leaving != 0)
+    seen = is_known & (leaving != 0)
     last = np.maximum.accumulate(np.where(seen, row, -1))
     before = np.append(-1, last[:-1])[:count]
     continues = before >= first
@@ -197,12 +197,12 @@ def c_angles(
     zero = np.where(turned, -1.0 + 0j, 1.0 + 0j)
     here = np.degrees(angle_between(zero, leaving))
     jump = np.where(continues, np.degrees(angle_between(arriving[before], leaving)), here)
-    total = np.cumsum(np.where(known, np.where(seen, jump, 0.0) + sweep, 0.0))
+    total = np.cumsum(np.where(is_known, np.where(seen, jump, 0.0) + sweep, 0.0))
     earlier = np.append(0.0, total[:-1])[:count]
     turns = total - sweep - earlier[first]
     # The sum knows the whole turns, the point itself the rest; so no rounding piles up.
     turns = np.where(seen, here + 360 * np.round((turns - here) / 360), turns)
-    c_from = np.where(known, entry[np.where(section >= 0, section, 0)] + axis.sense * turns, np.nan)
+    c_from = np.where(is_known, entry[np.where(section >= 0, section, 0)] + axis.sense * turns, np.nan)
     return c_from, c_from + axis.sense * sweep
 
 

@@ -80,8 +80,8 @@ def c_acceleration(start: Points, end: Points, center: Points, kind: States, fee
     """
     lines = lines_from_center(start, end)
     shortest = np.where(lines.has_foot, 0.0, np.minimum(np.abs(lines.before), np.abs(lines.after)))
-    way = np.clip(lines.offset / np.sqrt(3), shortest, np.maximum(np.abs(lines.before), np.abs(lines.after)))
-    bend = 2 * lines.offset * way / (lines.offset**2 + way**2) ** 2
+    distance = np.clip(lines.offset / np.sqrt(3), shortest, np.maximum(np.abs(lines.before), np.abs(lines.after)))
+    bend = 2 * lines.offset * distance / (lines.offset**2 + distance**2) ** 2
     bend = np.where(lines.offset == 0, np.where(lines.has_foot, np.inf, 0.0), bend)
     arcs = arcs_from_center(start, end, center, kind, rows := rows_of_arcs(kind))
     bend[rows] = _c_bend_of_arcs(arcs)
@@ -99,9 +99,9 @@ def _c_bend_of_arcs(arcs: ArcsFromCenter) -> Floats:
     r_squared = arcs.inside**2 + b * above
     extreme = np.abs(arcs.inside) * arcs.around * arcs.away * sine / (arcs.radius * r_squared**2)
     ahead = arcs.center * (above - 1 + 1j * sine)
-    behind = arcs.center * (above - 1 - 1j * sine)
+    mirrored = arcs.center * (above - 1 - 1j * sine)
     spoke = arcs.start - arcs.center
-    passes = passes_toward(spoke, arcs.sweep, ahead) | passes_toward(spoke, arcs.sweep, behind)
+    passes = passes_toward(spoke, arcs.sweep, ahead) | passes_toward(spoke, arcs.sweep, mirrored)
     bend = np.where(passes, np.maximum(bend, extreme), bend)
     bend = np.where(arcs.through, np.where(arcs.crosses, np.inf, 0.0), bend)
     return np.where((arcs.radius == 0) | (arcs.away == 0), 0.0, bend) + arcs.unknown
@@ -117,8 +117,8 @@ def _c_bend_at(arcs: ArcsFromCenter, point: Points) -> Floats:
 def x_feed(start: Points, end: Points, center: Points, kind: States, feed: Floats | float) -> Floats:
     """Largest |X rate| along each move [mm/min, X as a radius]; never above F."""
     lines = lines_from_center(start, end)
-    way = np.maximum(np.abs(lines.before), np.abs(lines.after))
-    share = np.where(way == 0, way, way / np.hypot(lines.offset, way))
+    distance = np.maximum(np.abs(lines.before), np.abs(lines.after))
+    share = np.where(distance == 0, distance, distance / np.hypot(lines.offset, distance))
     arcs = arcs_from_center(start, end, center, kind, rows := rows_of_arcs(kind))
     share[rows] = _x_share_of_arcs(arcs)
     return _scaled(share, feed)
@@ -131,8 +131,8 @@ def _x_share_of_arcs(arcs: ArcsFromCenter) -> Floats:
     cosine = -less / more
     sine = np.sqrt((more - less) * (more + less)) / more
     spoke = arcs.start - arcs.center
-    ahead, behind = arcs.center * (cosine + 1j * sine), arcs.center * (cosine - 1j * sine)
-    passes = passes_toward(spoke, arcs.sweep, ahead) | passes_toward(spoke, arcs.sweep, behind)
+    ahead, mirrored = arcs.center * (cosine + 1j * sine), arcs.center * (cosine - 1j * sine)
+    passes = passes_toward(spoke, arcs.sweep, ahead) | passes_toward(spoke, arcs.sweep, mirrored)
     share = np.where(passes, arcs.away / more, share)
     return np.where((arcs.radius == 0) | (arcs.away == 0), 0.0, share) + arcs.unknown
 

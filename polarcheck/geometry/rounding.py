@@ -55,10 +55,10 @@ def _halved(start: Points, end: Points, half: Points, kept: Mask, rows: Rows) ->
     reach = np.abs(along.imag) * half[rows[first]].real + np.abs(along.real) * half[rows[first]].imag
 
     spread = np.repeat(along.conj(), count)
-    place = (end[rows] - np.repeat(begin, count)) * spread
-    beyond = np.maximum(np.maximum(-place.real, place.real - np.repeat(length, count)), 0.0)
-    beyond[last], place[last] = 0.0, 0.0
-    aside = np.maximum.reduceat(place.imag, first) - np.minimum.reduceat(place.imag, first)
+    local = (end[rows] - np.repeat(begin, count)) * spread
+    beyond = np.maximum(np.maximum(-local.real, local.real - np.repeat(length, count)), 0.0)
+    beyond[last], local[last] = 0.0, 0.0
+    aside = np.maximum.reduceat(local.imag, first) - np.minimum.reduceat(local.imag, first)
     wide = 2 * _STRIP * reach
     widest = np.abs(half[rows[first]]) * 2 * _STRIP
     is_open = (aside > wide) | (np.maximum.reduceat(beyond, first) > widest)
@@ -71,11 +71,11 @@ def _halved(start: Points, end: Points, half: Points, kept: Mask, rows: Rows) ->
     kept[rows[turns]] = True
     is_open |= np.logical_or.reduceat(turns, first)
 
-    far = np.maximum(np.abs(place.imag), beyond)
+    far = np.maximum(np.abs(local.imag), beyond)
     at_most = np.repeat(np.maximum.reduceat(far, first), count)
     farthest = np.flatnonzero((far == at_most) & (far > 0))
     number = np.repeat(np.arange(len(first)), count)[farthest]
-    number, one = np.unique(number, return_index=True)
-    chosen = farthest[one]
+    number, index = np.unique(number, return_index=True)
+    chosen = farthest[index]
     kept[rows[chosen[is_open[number]]]] = True
     return np.asarray(rows[np.repeat(is_open & (count > 1), count)])

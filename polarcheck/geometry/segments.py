@@ -61,9 +61,9 @@ def segments(moves: Curves, tolerance: float) -> Segments:
     keep_time()
     start, end, center = moves.start, moves.end, moves.center
     arcs = (moves.kind == Motion.CW) | (moves.kind == Motion.CCW)
-    known = ~(np.isnan(start) | np.isnan(end) | (arcs & np.isnan(center)))
-    count = known.astype(np.int64)
-    round_ = np.flatnonzero(arcs & known)
+    is_known = ~(np.isnan(start) | np.isnan(end) | (arcs & np.isnan(center)))
+    count = is_known.astype(np.int64)
+    round_ = np.flatnonzero(arcs & is_known)
     spoke, last = start[round_] - center[round_], end[round_] - center[round_]
     sweep = arc_sweep(start[round_], end[round_], center[round_], moves.kind[round_])
     unit = _angle_of_chords(np.maximum(np.abs(spoke), np.abs(last)), tolerance) * np.where(sweep < 0, -1, 1)
@@ -80,13 +80,13 @@ def segments(moves: Curves, tolerance: float) -> Segments:
     on_arc = np.flatnonzero(arcs[move])
     which = np.repeat(np.arange(len(round_)), count[round_])
     of_arc = round_[which]
-    place = on_arc - (np.cumsum(count) - count)[of_arc]
-    turned = (first[which] + place - 1) * unit[which] - np.angle(spoke)[which]
-    share = np.divide(turned, sweep[which], out=np.zeros(len(which)), where=place > 0)
+    index = on_arc - (np.cumsum(count) - count)[of_arc]
+    turned = (first[which] + index - 1) * unit[which] - np.angle(spoke)[which]
+    share = np.divide(turned, sweep[which], out=np.zeros(len(which)), where=index > 0)
     # An end that is not quite on the circle is reached in a spiral, at the same angles as by the tool center.
     growth = np.where(spoke == 0, 0, np.abs(last) / np.maximum(np.abs(spoke), ZERO) - 1)
     on = spoke[which] * (1 + growth[which] * share) * np.exp(1j * sweep[which] * share)
-    begin[on_arc] = np.where(place == 0, begin[on_arc], center[of_arc] + on)
+    begin[on_arc] = np.where(index == 0, begin[on_arc], center[of_arc] + on)
     inner = on_arc[1:][of_arc[1:] == of_arc[:-1]]
     until[inner - 1] = begin[inner]
     result = Segments(begin, until, move, loop)
@@ -134,28 +134,29 @@ def directions(start: Points, end: Points, center: Points, kind: States) -> tupl
     """The unit directions of curves at their start and at their end."""
     turning = np.where(kind == Motion.CCW, 1j, -1j)
     is_arc = ~np.isnan(center)
-    way = end - start
-    before = np.where(is_arc, turning * (start - center), way)
-    after = np.where(is_arc, turning * (end - center), way)
+    vector = end - start
+    before = np.where(is_arc, turning * (start - center), vector)
+    after = np.where(is_arc, turning * (end - center), vector)
     return _unit(before), _unit(after)
 
 
-def _unit(way: Points) -> Points:
-    unit: Points = way / np.maximum(np.abs(way), ZERO)
+def _unit(vector: Points) -> Points:
+    unit: Points = vector / np.maximum(np.abs(vector), ZERO)
     return unit
 
 
 def boxes(curves: Curves, first: Rows) -> Floats:
     """Boxes of runs of curves, each from one `first` to the next: least x and c, greatest x and c [mm]."""
     low, high = (
-        [extreme(at(curves.start), at(curves.end)) for at in (np.real, np.imag)] for extreme in (np.minimum, np.maximum)
+        [extreme(part(curves.start), part(curves.end)) for part in (np.real, np.imag)]
+        for extreme in (np.minimum, np.maximum)
     )
     arcs = np.flatnonzero(((curves.kind == Motion.CW) | (curves.kind == Motion.CCW)) & ~np.isnan(curves.center))
     if len(arcs):
         middle = curves.center[arcs]
         reach = np.maximum(np.abs(curves.start[arcs] - middle), np.abs(curves.end[arcs] - middle))
-        for side, at in enumerate((middle.real, middle.imag)):
-            low[side][arcs], high[side][arcs] = at - reach, at + reach
+        for side, part in enumerate((middle.real, middle.imag)):
+            low[side][arcs], high[side][arcs] = part - reach, part + reach
     sides = [np.minimum.reduceat(side, first) for side in low] + [np.maximum.reduceat(side, first) for side in high]
     return np.array(sides)
 
@@ -173,9 +174,9 @@ def reach_from_start(curves: Curves) -> Floats:
     return reach
 
 
-def members(loop: Rows, wanted: Rows) -> tuple[Rows, Rows]:
+def members(loop: Rows, requested: Rows) -> tuple[Rows, Rows]:
     """The rows of each requested loop, loop after loop, and the index of the requested loop of each row."""
-    low, high = np.searchsorted(loop, wanted), np.searchsorted(loop, wanted, side="right")
-    group = np.repeat(np.arange(len(wanted)), high - low)
+    low, high = np.searchsorted(loop, requested), np.searchsorted(loop, requested, side="right")
+    group = np.repeat(np.arange(len(requested)), high - low)
     before = np.cumsum(high - low) - (high - low)
     return np.arange(len(group)) - before[group] + low[group], group

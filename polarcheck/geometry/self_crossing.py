@@ -37,15 +37,15 @@ def self_crossings(start: Points, end: Points) -> Crossing:
     earlier, later = _pairs(start, end)
     if not len(earlier):
         return Crossing(none, none, np.zeros(0, np.complex128))
-    way, other = (end - start)[earlier], (end - start)[later]
+    vector, later_vector = (end - start)[earlier], (end - start)[later]
     between = start[later] - start[earlier]
-    area = cross(way, other)
-    oblique = np.abs(area) > np.sin(_ANGLE) * np.abs(way) * np.abs(other)
+    area = cross(vector, later_vector)
+    oblique = np.abs(area) > np.sin(_ANGLE) * np.abs(vector) * np.abs(later_vector)
     with np.errstate(divide="ignore", invalid="ignore"):
-        along, across = cross(between, other) / area, cross(between, way) / area
-        meets = oblique & _within(along, np.abs(way)) & _within(across, np.abs(other))
+        along, across = cross(between, later_vector) / area, cross(between, vector) / area
+        meets = oblique & _within(along, np.abs(vector)) & _within(across, np.abs(later_vector))
     earlier, later, along, across = earlier[meets], later[meets], along[meets], across[meets]
-    place = start[earlier] + np.clip(along, 0, 1) * way[meets]
+    point = start[earlier] + np.clip(along, 0, 1) * vector[meets]
     length = np.abs(end - start)
     ends = np.cumsum(length)
     first, second = (
@@ -53,11 +53,15 @@ def self_crossings(start: Points, end: Points) -> Crossing:
         for segment, share in ((earlier, along), (later, across))
     )
     inside = (first > _ASIDE) & (second - first > 4 * _ASIDE) & (second < ends[-1] - _ASIDE)
-    earlier, later, place, first, second = earlier[inside], later[inside], place[inside], first[inside], second[inside]
+    earlier, later, point, first, second = earlier[inside], later[inside], point[inside], first[inside], second[inside]
     crosses = _alternate(
-        *(_at(start, end, ends, middle + aside) - place for middle in (first, second) for aside in (-_ASIDE, _ASIDE))
+        *(
+            _points(start, end, ends, middle + aside) - point
+            for middle in (first, second)
+            for aside in (-_ASIDE, _ASIDE)
+        )
     )
-    return Crossing(earlier[crosses], later[crosses], place[crosses])
+    return Crossing(earlier[crosses], later[crosses], point[crosses])
 
 
 def _within(share: Floats, length: Floats) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
@@ -80,18 +84,18 @@ def _pairs(start: Points, end: Points) -> tuple[Rows, Rows]:
     many = until - np.arange(count) - 1
     if many.sum() > _PAIRS:
         return none, none
-    one = np.repeat(np.arange(count), many)
-    two = np.arange(len(one)) - np.repeat(np.cumsum(many) - many, many) + one + 1
-    one, two = order[one], order[two]
-    earlier, later = np.minimum(one, two), np.maximum(one, two)
+    first = np.repeat(np.arange(count), many)
+    second = np.arange(len(first)) - np.repeat(np.cumsum(many) - many, many) + first + 1
+    first, second = order[first], order[second]
+    earlier, later = np.minimum(first, second), np.maximum(first, second)
     meets = (later - earlier > 1) & (low_c[earlier] <= high_c[later]) & (low_c[later] <= high_c[earlier])
     return earlier[meets], later[meets]
 
 
-def _at(start: Points, end: Points, ends: Floats, way: Floats) -> Points:
+def _points(start: Points, end: Points, ends: Floats, distance: Floats) -> Points:
     """The points of the path at these distances along it."""
-    known, points = np.append(0.0, ends), np.append(start[:1], end)
-    return np.interp(way, known, points.real) + 1j * np.interp(way, known, points.imag)
+    lengths, points = np.append(0.0, ends), np.append(start[:1], end)
+    return np.interp(distance, lengths, points.real) + 1j * np.interp(distance, lengths, points.imag)
 
 
 def _alternate(
@@ -99,7 +103,7 @@ def _alternate(
 ) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
     """True where two strands cross: the ends of one lie on both sides of the other, by more than the least angle."""
     from_before = [np.angle(point * before.conj()) % (2 * np.pi) for point in (after, before_other, after_other)]
-    limit, *others = from_before
-    inside = [(angle > _ANGLE) & (angle < limit - _ANGLE) for angle in others]
-    outside = [(angle > limit + _ANGLE) & (angle < 2 * np.pi - _ANGLE) for angle in others]
+    limit, *arms = from_before
+    inside = [(angle > _ANGLE) & (angle < limit - _ANGLE) for angle in arms]
+    outside = [(angle > limit + _ANGLE) & (angle < 2 * np.pi - _ANGLE) for angle in arms]
     return np.asarray((inside[0] & outside[1]) | (outside[0] & inside[1]))

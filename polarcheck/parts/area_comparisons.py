@@ -49,32 +49,32 @@ class AreaComparisons(Columns, frozen=True):
             return results
         compared = list(self._differences(placed))
         for feature, _, difference in compared:
-            results = [self._as_left(one, feature, difference) for one in results]
+            results = [self._as_left(result, feature, difference) for result in results]
         contours = tuple(results)
         for feature, contour, difference in compared:
-            found = self._comparison(feature, contour, difference, contours)
-            if found is not None and contour < 0:
-                results.append(found)
-            elif found is not None:
-                results[contour] = found
+            comparison = self._comparison(feature, contour, difference, contours)
+            if comparison is not None and contour < 0:
+                results.append(comparison)
+            elif comparison is not None:
+                results[contour] = comparison
         return results
 
     def _differences(self, placed: Sequence[PlacedFeature]) -> Iterator[tuple[Feature, int, AreaDifference]]:
         """The features, the indices of their contours, -1 for none, and the difference of the metal from each."""
         from polarcheck.parts.metal_differences import differences
 
-        for frame in sorted({one.frame for one in placed}):
+        for frame in sorted({shape.frame for shape in placed}):
             of_frame = self.milled.cuts.frame == frame
-            features = [one for one in placed if one.frame == frame]
+            features = [shape for shape in placed if shape.frame == frame]
             chosen = [
-                one.feature._replace(cuts=one.feature.cuts[of_frame], own_cuts=one.feature.own_cuts[of_frame])
-                for one in features
+                shape.feature._replace(cuts=shape.feature.cuts[of_frame], own_cuts=shape.feature.own_cuts[of_frame])
+                for shape in features
             ]
-            for one, difference in zip(features, differences(chosen, self.milled.cuts[of_frame]), strict=True):
-                yield one.feature, one.contour, difference
+            for shape, difference in zip(features, differences(chosen, self.milled.cuts[of_frame]), strict=True):
+                yield shape.feature, shape.contour, difference
 
     @staticmethod
-    def _as_left(result: Comparison, feature: Feature, found: AreaDifference) -> Comparison:
+    def _as_left(result: Comparison, feature: Feature, metal: AreaDifference) -> Comparison:
         """
         The comparison of a contour, without what the cutter does not cut away: a corner that is sharp in the program
         and round in the drawing is as it should be where R of the cutter rounds it.
@@ -82,15 +82,15 @@ class AreaComparisons(Columns, frozen=True):
         is_own = result.number == feature.number and (feature.curve < 0 or result.curve in (-1, feature.curve))
         is_closed = result.contour is not None and result.contour.is_closed and not result.is_other_way_round
         is_deep = result.difference.deep > result.tolerance
-        if not (is_own and is_closed and is_deep and found.is_made and found.deep.size == 0):
+        if not (is_own and is_closed and is_deep and metal.is_made and metal.deep.size == 0):
             return result
         return result._replace(difference=result.difference._replace(deep=0.0))
 
     def why_not(self, number: int) -> str:
         """Why a part was compared with nothing; empty where another reason is given."""
         part = self.nominal_parts.parts[number]
-        own = ~np.isnan(self.trace.compensation.radius[self.nominal_parts.in_offset_mode])
-        if not own.all():
+        is_known = ~np.isnan(self.trace.compensation.radius[self.nominal_parts.in_offset_mode])
+        if not is_known.all():
             return ""
         unknown = np.flatnonzero(self.milled.is_unknown)
         if len(unknown):
@@ -100,30 +100,33 @@ class AreaComparisons(Columns, frozen=True):
         return "its curves do not close, and no contour comes near to them"
 
     def _comparison(
-        self, feature: Feature, place: int, found: AreaDifference, results: Sequence[Comparison]
+        self, feature: Feature, index: int, metal: AreaDifference, results: Sequence[Comparison]
     ) -> Comparison | None:
         """The changed comparison of the contour, or a comparison of areas in its place; None for no change."""
         from polarcheck.geometry.comparison.deviation import Difference
 
-        own = [one for one in results if one.number == feature.number]
-        if any(one.differs and (place < 0 or one.curve in (-1, feature.curve) or feature.curve < 0) for one in own):
+        peers = [result for result in results if result.number == feature.number]
+        if any(
+            result.differs and (index < 0 or result.curve in (-1, feature.curve) or feature.curve < 0)
+            for result in peers
+        ):
             return None
-        if feature.may_be_absent and not found.is_made:
+        if feature.may_be_absent and not metal.is_made:
             return None
-        base = results[place] if place >= 0 else None
-        if found.is_none and base is not None:
+        base = results[index] if index >= 0 else None
+        if metal.is_none and base is not None:
             is_partial = base.is_partial and not feature.excess_is_judged
-            changed = is_partial != base.is_partial or found.island.size > 0
-            return base._replace(is_partial=is_partial, island=found.island.size > 0) if changed else None
-        if found.is_none and not feature.excess_is_judged:
+            changed = is_partial != base.is_partial or metal.island.size > 0
+            return base._replace(is_partial=is_partial, island=metal.island.size > 0) if changed else None
+        if metal.is_none and not feature.excess_is_judged:
             return None
-        proud, deep, is_made = found.proud.size, found.deep.size, found.is_made or base is not None
-        if found.is_none:
-            proud = min(found.off, feature.tolerance) if is_made else found.off
+        proud, deep, is_made = metal.proud.size, metal.deep.size, metal.is_made or base is not None
+        if metal.is_none:
+            proud = min(metal.off, feature.tolerance) if is_made else metal.off
         difference = Difference(
-            proud=proud, proud_at=found.proud.place, deep=deep, deep_at=found.deep.place, mean=0.0, length=1.0
+            proud=proud, proud_at=metal.proud.place, deep=deep, deep_at=metal.deep.place, mean=0.0, length=1.0
         )
-        row = found.proud_row if proud >= deep else found.deep_row
+        row = metal.proud_row if proud >= deep else metal.deep_row
         if row < 0:
             row = int(
                 self.milled.cuts.curves.row[self.nominal_features.cuts_of(self.nominal_parts.parts[feature.number])][0]
@@ -144,9 +147,9 @@ class AreaComparisons(Columns, frozen=True):
             row=row,
             entry=self.nominal_parts.entry(row),
             angle_not_compared=self.nominal_parts.angle_not_compared(feature.number, section),
-            island=found.is_none and found.island.size > 0,
-            is_made=is_made or not found.is_none,
-            made=() if found.is_none and is_made else self._made(feature),
+            island=metal.is_none and metal.island.size > 0,
+            is_made=is_made or not metal.is_none,
+            made=() if metal.is_none and is_made else self._made(feature),
         )
 
     def _made(self, feature: Feature) -> tuple[Shape, ...]:

@@ -31,6 +31,6 @@ def as_meant(trace: Trace, section: int) -> str:
     inch = bool(trace.lengths.units[row] == Units.INCH)
     read = f"{value * control.least_increment_inch:.4f}" if inch else f"{value * control.least_increment:.3f}"
     more = len(words) - 1
-    others = f" (and {more} more number{'s' if more > 1 else ''} without a decimal point)" if more else ""
+    remark = f" (and {more} more number{'s' if more > 1 else ''} without a decimal point)" if more else ""
     line = int(trace.blocks.line_in_file[row])
-    return f"line {line}: {word} is taken as {word}., as probably meant{others}; the control reads {read}"
+    return f"line {line}: {word} is taken as {word}., as probably meant{remark}; the control reads {read}"

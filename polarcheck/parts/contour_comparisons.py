@@ -18,7 +18,7 @@ from polarcheck.parts.nominal_parts import NominalParts
 from polarcheck.parts.part_comparison import SAME_Z, Comparison, Contour, Fit, Target
 
 if TYPE_CHECKING:
-    from polarcheck.geometry.comparison.measured_path import Way
+    from polarcheck.geometry.comparison.measured_path import MeasuredPath
 
 #: A contour that differs by more than this share of its size is another one.
 _OTHER = 0.1
@@ -82,19 +82,19 @@ class ContourComparisons(Columns, frozen=True):
         ]
 
     def _contours_of(self, level: Level, of_one_section: bool, of_all: bool) -> Iterator[Contour]:
-        from polarcheck.geometry.comparison.deviation import made_of
+        from polarcheck.geometry.comparison.deviation import machined_part
 
         outline, bar = level.outline, self.bar.known.largest / 2
         closed = outline.closed[outline.chain]
         for number in np.unique(outline.chain[closed]).tolist():
             keep_time()
-            made = made_of(outline[outline.chain == number], level.polygon, bar)
-            start, end = made.way.start - made.way.start[0], made.way.end - made.way.start[0]
+            machined = machined_part(outline[outline.chain == number], level.polygon, bar)
+            start, end = machined.way.start - machined.way.start[0], machined.way.end - machined.way.start[0]
             is_pocket = float((start.conj() * end).imag.sum()) < 0
-            yield Contour(level, made, True, is_pocket, of_one_section, of_all)
+            yield Contour(level, machined, True, is_pocket, of_one_section, of_all)
         if not closed.all():
-            made = made_of(outline[~closed], level.polygon, bar)
-            yield Contour(level, made, False, False, of_one_section, of_all)
+            machined = machined_part(outline[~closed], level.polygon, bar)
+            yield Contour(level, machined, False, False, of_one_section, of_all)
 
     def _targets(self, contour: Contour) -> list[Target]:
         """The curves that a contour may be meant for: those on its side, or if there are none, those on the other."""
@@ -120,17 +120,17 @@ class ContourComparisons(Columns, frozen=True):
             return False
         if not math.isnan(part.z):
             stated = self.nominal_parts.z(number, int(level.walls.row[0]))
-            off = [abs(other.z - stated) for other in self.finished.levels if not math.isnan(other.z)]
+            off = [abs(peer.z - stated) for peer in self.finished.levels if not math.isnan(peer.z)]
             allowed = self.nominal_parts.z_tolerance(number, int(level.walls.row[0]))
             return abs(level.z - stated) <= min(allowed, min(off, default=0.0) + _LEAST_INCREMENT)
         if part.drawing is not None:
             return True
-        own = set(level.sections)
-        depths = [other.z for other in self.finished.levels if other.section in own and len(other.outline)]
+        sections = set(level.sections)
+        depths = [peer.z for peer in self.finished.levels if peer.section in sections and len(peer.outline)]
         return math.isnan(level.z) or level.z <= np.nanmin(depths) + SAME_Z
 
     def _curves_of(self, number: int, row: int, is_closed: bool) -> list[Target]:
-        from polarcheck.geometry.comparison.measured_path import way_of_curves
+        from polarcheck.geometry.comparison.measured_path import path_of_curves
 
         part = self.nominal_parts.parts[number]
         scale = self.nominal_parts.unit(number, row)
@@ -139,11 +139,11 @@ class ContourComparisons(Columns, frozen=True):
             curves = self.nominal_parts.curves(number, scale)
             rings = [number for number, curve in enumerate(curves) if curve[0] == curve[-1]]
             if not is_closed or not rings:
-                way = way_of_curves(curves)
-                self._known[key] = [Target(number, part, -1, way, scale, False, len(rings) == len(curves))]
+                path = path_of_curves(curves)
+                self._known[key] = [Target(number, part, -1, path, scale, False, len(rings) == len(curves))]
             else:
                 self._known[key] = [
-                    Target(number, part, ring, way_of_curves([curves[ring]]), scale, True, True) for ring in rings
+                    Target(number, part, ring, path_of_curves([curves[ring]]), scale, True, True) for ring in rings
                 ]
         return self._known[key]
 
@@ -160,22 +160,22 @@ class ContourComparisons(Columns, frozen=True):
         results: list[Comparison] = []
         for target in self._targets(contour):
             keep_time()
-            part, angle, way = target.part, math.nan, target.way
+            part, angle, curve = target.part, math.nan, target.way
             angle_not_compared = self.nominal_parts.angle_not_compared(target.number, contour.level.section)
             if angle_not_compared:
-                angle, way = self._turned(contour, target)
+                angle, curve = self._turned(contour, target)
             both_ways = target.is_closed and contour.is_closed
             metal = self.nominal_parts.air(target.number, target.scale)
-            deviation = difference(contour.made, way, both_ways=both_ways, metal=metal)
+            deviation = difference(contour.made, curve, both_ways=both_ways, metal=metal)
             row = int(contour.made.outline.row[max(deviation.of, 0)])
             is_other_way = (
                 contour.is_closed and target.is_closed and part.drawing is None and part.is_pocket != contour.is_pocket
             )
             if is_other_way:
                 # The whole area is wrong, up to its center.
-                depth = float(np.abs(way.start - way.start.mean()).min())
+                depth = float(np.abs(curve.start - curve.start.mean()).min())
                 deviation = deviation._replace(deep=depth) if contour.is_pocket else deviation._replace(proud=depth)
-            partial = not contour.is_closed and target.rings and math.isinf(min(turned_radius(way), contour.made.bar))
+            partial = not contour.is_closed and target.rings and math.isinf(min(turned_radius(curve), contour.made.bar))
             results.append(
                 Comparison(
                     number=target.number,
@@ -198,19 +198,19 @@ class ContourComparisons(Columns, frozen=True):
         results = [deviation for deviation in results if deviation.difference.length]
         return min(results, key=lambda deviation: deviation.difference.mean, default=None)
 
-    def _turned(self, contour: Contour, target: Target) -> tuple[float, Way]:
+    def _turned(self, contour: Contour, target: Target) -> tuple[float, MeasuredPath]:
         """The best angle of a shape that may have any angle [rad], and the shape turned by it."""
         from polarcheck.geometry.comparison.alignment import best_turn
-        from polarcheck.geometry.comparison.measured_path import way_of
+        from polarcheck.geometry.comparison.measured_path import path_of
 
         is_known = bool(self.trace.path.knows_section_entry[contour.level.section])
         center = target.scale * complex(*target.part.center) if is_known else 0j
-        way = contour.made.way
+        path = contour.made.way
         if math.isfinite(self.nominal_parts.air(target.number, target.scale)):
             # Of flats and slots the walls say the angle, not what leads from one to the next.
-            lines = ~contour.made.outline.is_arc[way.of]
-            way = way_of(way.start[lines], way.end[lines], way.of[lines]) if lines.any() else way
-        angle = best_turn(way, target.way, center)
+            lines = ~contour.made.outline.is_arc[path.of]
+            path = path_of(path.start[lines], path.end[lines], path.of[lines]) if lines.any() else path
+        angle = best_turn(path, target.way, center)
         return angle, _placed(target.way, angle, center)
 
     def _is_superseded(self, result: Comparison, best: Comparison) -> bool:
@@ -235,16 +235,16 @@ class ContourComparisons(Columns, frozen=True):
         is_drawn = result.part.drawing is not None
         curves = [target.way]
         if is_drawn and target.is_closed:
-            others = self._curves_of(result.number, int(contour.level.outline.row[0]), contour.is_closed)
-            curves += [other.way for other in others if other.curve != target.curve]
+            candidates = self._curves_of(result.number, int(contour.level.outline.row[0]), contour.is_closed)
+            curves += [candidate.way for candidate in candidates if candidate.curve != target.curve]
         freedom = Freedom(is_drawn, math.isnan(result.turned), result.part.shape == "circle")
         center = target.scale * complex(*result.part.center)
         fit = better_placement(contour.made, curves, center, result.difference, result.tolerance, freedom)
         return None if fit is None else Fit(*fit)
 
 
-def _placed(way: Way, angle: float, center: complex) -> Way:
+def _placed(path: MeasuredPath, angle: float, center: complex) -> MeasuredPath:
     """A path turned about a center [rad]."""
     from polarcheck.geometry.comparison.placements import Placement
 
-    return Placement(turned=angle).of(way, center)
+    return Placement(turned=angle).of(path, center)

@@ -41,7 +41,7 @@ class _Keys(NamedTuple):
     counts: Mapping[str, int] = MappingProxyType({})
 
 
-def job_entry(made: MadeShape, bar: float | None, *, inch: bool) -> dict[str, Any]:
+def job_entry(part: MadeShape, bar: float | None, *, inch: bool) -> dict[str, Any]:
     """
     The keys of a [[part]] with which a shape agrees.
 
@@ -50,24 +50,24 @@ def job_entry(made: MadeShape, bar: float | None, *, inch: bool) -> dict[str, An
 
     Raises NoEntryError for what [[part]] has no shape for.
     """
-    value = made.values
-    if made.shape not in _SHAPES:
-        raise NoEntryError("not known" if made.shape is None else f"a {made.shape} is no shape of [[part]]")
-    if made.odd or not made.is_regular or not value.keys().isdisjoint(_UNEVEN):
+    value = part.values
+    if part.shape not in _SHAPES:
+        raise NoEntryError("not known" if part.shape is None else f"a {part.shape} is no shape of [[part]]")
+    if part.odd or not part.is_regular or not value.keys().isdisjoint(_UNEVEN):
         raise NoEntryError("its sides or corners differ from each other")
-    keys = _SHAPES[made.shape](made, math.nan if bar is None else bar)
+    keys = _SHAPES[part.shape](part, math.nan if bar is None else bar)
     entry: dict[str, Any] = {"shape": keys.shape, **keys.counts}
     entry |= {key: _length(length, inch) for key, length in keys.lengths.items()}
     # From an angle of C that is not known nothing can be compared.
-    is_known = all(section.angle is not None for section in made.sections)
+    is_known = all(section.angle is not None for section in part.sections)
     if "turned" in value and keys.shape != "circle" and is_known:
         entry["turned"] = round(value["turned"], _ANGLE_DIGITS) + 0.0
     if "center_x" in value:
         entry["center"] = [_length(value[key], inch) for key in ("center_x", "center_c")]
-    if made.inside and keys.shape != "slot":
+    if part.inside and keys.shape != "slot":
         entry["inside"] = True
-    if made.z is not None:
-        entry["z"] = _length(made.z, inch)
+    if part.z is not None:
+        entry["z"] = _length(part.z, inch)
     try:
         from_table({"part": [entry]}, "")
     except JobError as error:
@@ -83,34 +83,34 @@ def _length(value: float, inch: bool) -> float:
 _UNEVEN = {"least", "corner_least", "regular_by_x", "turned_1"}
 
 
-def _circle(made: MadeShape, bar: float) -> _Keys:
-    diameter, chords = made.values["diameter"], made.values.get("chords", math.inf)
+def _circle(part: MadeShape, bar: float) -> _Keys:
+    diameter, chords = part.values["diameter"], part.values.get("chords", math.inf)
     if diameter / 2 * (1 - math.cos(math.pi / chords)) > _CHORDS:
         raise NoEntryError(f"it is a circle in {chords:.0f} straight lines")
     return _Keys("circle", {"diameter": diameter})
 
 
-def _polygon(made: MadeShape, bar: float) -> _Keys:
-    count, across = int(made.values["sides"]), made.values["across_flats"]
-    corners = _corners(made)
-    diameter = made.values.get("corner_diameter", bar)
+def _polygon(part: MadeShape, bar: float) -> _Keys:
+    count, across = int(part.values["sides"]), part.values["across_flats"]
+    corners = _corners(part)
+    diameter = part.values.get("corner_diameter", bar)
     # Corners that the bar cuts off are those of flats on a round.
-    if not made.inside and not corners and across < diameter < across / math.cos(math.pi / count) - _BEYOND:
+    if not part.inside and not corners and across < diameter < across / math.cos(math.pi / count) - _BEYOND:
         return _Keys("flats", {"across_flats": across, "diameter": diameter}, {"count": count})
     return _Keys(_NAMES[count], {"across_flats": across, **corners})
 
 
-def _rectangle(made: MadeShape, bar: float) -> _Keys:
-    return _Keys("rectangle", {"width": made.values["width"], "length": made.values["length"], **_corners(made)})
+def _rectangle(part: MadeShape, bar: float) -> _Keys:
+    return _Keys("rectangle", {"width": part.values["width"], "length": part.values["length"], **_corners(part)})
 
 
-def _corners(made: MadeShape) -> dict[str, float]:
+def _corners(part: MadeShape) -> dict[str, float]:
     names = {"corner_radius": "corner_radius", "corner_chamfer": "chamfer"}
-    return {key: made.values[name] for name, key in names.items() if name in made.values}
+    return {key: part.values[name] for name, key in names.items() if name in part.values}
 
 
-def _flats(made: MadeShape, bar: float) -> _Keys:
-    value = made.values
+def _flats(part: MadeShape, bar: float) -> _Keys:
+    value = part.values
     count, distance = int(value["flats"]), value.get("distance", math.nan)
     if not distance > 0 or "joined" in value:
         raise NoEntryError("its flats are joined by an arc" if distance > 0 else "it reaches beyond the center")
@@ -121,9 +121,9 @@ def _flats(made: MadeShape, bar: float) -> _Keys:
     return _Keys("flats", {"across_flats": 2 * distance, **on_round}, {"count": count})
 
 
-def _slot(made: MadeShape, bar: float) -> _Keys:
-    value = made.values
-    if made.inside:
+def _slot(part: MadeShape, bar: float) -> _Keys:
+    value = part.values
+    if part.inside:
         return _Keys("slot", {key: value[key] for key in ("width", "length") if key in value})
     # A boss with round ends.
     return _Keys("rectangle", {**{key: value[key] for key in ("width", "length")}, "corner_radius": value["radius"]})

@@ -21,7 +21,8 @@ from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.comparison.metal_left import (
     NOTHING,
     Extreme,
-    beside,
+    area_to_clear,
+    area_to_keep,
     cleared_by,
     disc,
     empty,
@@ -31,7 +32,6 @@ from polarcheck.geometry.comparison.metal_left import (
     joined,
     off_wall,
     reachable,
-    within,
 )
 from polarcheck.geometry.polygons import areas
 from polarcheck.geometry.polygons.faces import coordinates
@@ -108,15 +108,15 @@ class AreaDifference(NamedTuple):
 def differences(features: Sequence[Feature], cuts: Cuts) -> list[AreaDifference]:
     """The difference of each feature. Raises TooHardError where areas are too many."""
     cleared = _Cleared(cuts)
-    is_there = [not one.may_be_absent or _is_made(_off_wall(one, cleared), one.radius / 2) for one in features]
-    pockets = [one for one in itertools.compress(features, is_there) if one.is_pocket]
-    features = [one._replace(pockets=_pockets_around(one, pockets)) for one in features]
+    is_there = [not shape.may_be_absent or _is_made(_off_wall(shape, cleared), shape.radius / 2) for shape in features]
+    pockets = [shape for shape in itertools.compress(features, is_there) if shape.is_pocket]
+    features = [shape._replace(pockets=_pockets_around(shape, pockets)) for shape in features]
     present = [*itertools.compress(features, is_there)]
-    found = []
+    results = []
     for feature in features:
         keep_time()
-        found.append(_difference(feature, present, cleared))
-    return found
+        results.append(_difference(feature, present, cleared))
+    return results
 
 
 class _Cleared:
@@ -129,8 +129,8 @@ class _Cleared:
     def by(self, chosen: Mask) -> Any:
         key = chosen.tobytes()
         if key not in self._known:
-            own = self.cuts[chosen]
-            self._known[key] = cleared_by(own.curves, own.radius) if len(own) else empty()
+            cuts = self.cuts[chosen]
+            self._known[key] = cleared_by(cuts.curves, cuts.radius) if len(cuts) else empty()
         return self._known[key]
 
 
@@ -158,7 +158,7 @@ def _excess(feature: Feature, features: Sequence[Feature], cleared: _Cleared) ->
     gone = cleared.by(cleared.cuts.low <= feature.z + SAME_Z)
     around = _parts_around(feature, features)
     metal = areas.union(disc(feature.certain), around)
-    near = areas.intersection(beside(feature.area, feature.radius, tolerance, feature.is_pocket), metal)
+    near = areas.intersection(area_to_clear(feature.area, feature.radius, tolerance, feature.is_pocket), metal)
     stays = areas.difference(_cleared_of_others(near, feature, features), gone)
     side = areas.intersection(feature.area, metal) if feature.is_pocket else areas.difference(metal, feature.area)
     whole = areas.difference(_cleared_of_others(side, feature, features), gone)
@@ -183,26 +183,26 @@ def _lack(feature: Feature, features: Sequence[Feature], cleared: _Cleared) -> t
     worst, row = NOTHING, -1
     for z in _heights(feature, features):
         lacks = _lacking(feature, features, cleared, z)
-        found = farthest(lacks, lacks, feature.area)
-        if found.size <= worst.size:
+        extreme = farthest(lacks, lacks, feature.area)
+        if extreme.size <= worst.size:
             continue
-        lacks = _without_those_of_others(lacks, feature, features, cleared)
-        found = farthest(lacks, lacks, feature.area)
-        if found.size > worst.size:
-            worst, row = found, nearest_row(cleared.cuts, _cuts_down_to(feature, features, cleared, z), found.place)
+        lacks = _without_shared(lacks, feature, features, cleared)
+        extreme = farthest(lacks, lacks, feature.area)
+        if extreme.size > worst.size:
+            worst, row = extreme, nearest_row(cleared.cuts, _cuts_down_to(feature, features, cleared, z), extreme.place)
     return worst, row
 
 
 def _heights(feature: Feature, features: Sequence[Feature]) -> list[float]:
     """The depths of a feature and of those above it, at which missing metal is searched, the lowest first."""
-    return sorted({other.z for other in features if other.z >= feature.z - SAME_Z})
+    return sorted({peer.z for peer in features if peer.z >= feature.z - SAME_Z})
 
 
 def _cuts_down_to(feature: Feature, features: Sequence[Feature], cleared: _Cleared, z: float) -> Mask:
     """The cuts that may cut away what stands: above the highest of all depths each one, below it those no higher."""
-    own = feature.own_cuts if feature.is_pocket else feature.cuts
+    cuts = feature.own_cuts if feature.is_pocket else feature.cuts
     is_highest = z == _heights(feature, features)[-1]
-    return own if is_highest else own & (cleared.cuts.high <= z + SAME_Z)
+    return cuts if is_highest else cuts & (cleared.cuts.high <= z + SAME_Z)
 
 
 def _lacking(feature: Feature, features: Sequence[Feature], cleared: _Cleared, z: float) -> Any:
@@ -216,24 +216,24 @@ def _lacking(feature: Feature, features: Sequence[Feature], cleared: _Cleared, z
     return areas.intersection(stands, cleared.by(chosen))
 
 
-def _without_those_of_others(lacks: Any, feature: Feature, features: Sequence[Feature], cleared: _Cleared) -> Any:
+def _without_shared(lacks: Any, feature: Feature, features: Sequence[Feature], cleared: _Cleared) -> Any:
     """
     What is missing of a feature, less what is missing of another one as well and lies nearer to the wall of that: a
     pocket that is milled too wide is no fault of the part around it. What is as near to both belongs to the first.
     """
     pieces, is_later = shapely.get_parts(lacks), False
-    for other in features:
-        if other is feature:
+    for peer in features:
+        if peer is feature:
             is_later = True
             continue
-        if other.may_be_absent:
+        if peer.may_be_absent:
             continue
-        far, far_of_other = (shapely.distance(pieces, shapely.boundary(one.area)) for one in (feature, other))
-        is_nearer = far_of_other < far - _CHORDS if is_later else far_of_other <= far + _CHORDS
+        far, far_of_peer = (shapely.distance(pieces, shapely.boundary(shape.area)) for shape in (feature, peer))
+        is_nearer = far_of_peer < far - _CHORDS if is_later else far_of_peer <= far + _CHORDS
         if is_nearer.any():
             keep_time()
-            of_other = joined([_lacking(other, features, cleared, z) for z in _heights(other, features)])
-            rest = shapely.area(areas.difference(pieces, grown(of_other, _CHORDS)))
+            of_peer = joined([_lacking(peer, features, cleared, z) for z in _heights(peer, features)])
+            rest = shapely.area(areas.difference(pieces, grown(of_peer, _CHORDS)))
             pieces = pieces[~is_nearer | (rest > _SHARED * shapely.area(pieces))]
     return joined([*pieces])
 
@@ -249,69 +249,69 @@ def _is_made(off: Floats, by: float) -> bool:
 
 def _parts_around(feature: Feature, features: Sequence[Feature]) -> Any:
     """Other parts, where there is metal for certain before milling; none around an island in a pocket."""
-    others = [other for other in features if other is not feature]
-    if any(other.is_pocket and is_inside(feature.area, other.area, feature.tolerance) for other in others):
+    peers = [peer for peer in features if peer is not feature]
+    if any(peer.is_pocket and is_inside(feature.area, peer.area, feature.tolerance) for peer in peers):
         return empty()
-    return joined([other.area for other in others if not other.is_pocket])
+    return joined([peer.area for peer in peers if not peer.is_pocket])
 
 
-def _are_apart(one: Any, other: Any) -> bool:
-    both = shapely.area(areas.intersection(one, other))
-    return bool(both <= _SHARED * min(shapely.area(one), shapely.area(other)))
+def _are_apart(first: Any, second: Any) -> bool:
+    both = shapely.area(areas.intersection(first, second))
+    return bool(both <= _SHARED * min(shapely.area(first), shapely.area(second)))
 
 
 def _pockets_around(feature: Feature, pockets: Sequence[Feature]) -> frozenset[tuple[int, int]]:
     """The pockets that a feature lies in, by their number and curve."""
     keep_time()
-    others = (other for other in pockets if other is not feature)
+    remaining = (pocket for pocket in pockets if pocket is not feature)
     return frozenset(
-        (other.number, other.curve) for other in others if is_inside(feature.area, other.area, _allowed(feature))
+        (pocket.number, pocket.curve) for pocket in remaining if is_inside(feature.area, pocket.area, _allowed(feature))
     )
 
 
 def _must_stand(feature: Feature, features: Sequence[Feature], z: float) -> Any:
     """The area that must stand of a part, or around a pocket, just above a height."""
     tolerance = _allowed(feature)
-    stands = within(feature.area, feature.radius, tolerance, feature.is_pocket)
-    for other in features:
-        if other is feature or other.z > z + SAME_Z:
+    stands = area_to_keep(feature.area, feature.radius, tolerance, feature.is_pocket)
+    for peer in features:
+        if peer is feature or peer.z > z + SAME_Z:
             continue
-        if other.is_pocket:
-            if feature.is_pocket or (other.number, other.curve) not in feature.pockets:
-                stands = areas.difference(stands, grown(other.area, tolerance))
+        if peer.is_pocket:
+            if feature.is_pocket or (peer.number, peer.curve) not in feature.pockets:
+                stands = areas.difference(stands, grown(peer.area, tolerance))
         # Around a part there is nothing; around an island that holds in its own pocket only.
-        elif other.pockets <= feature.pockets and (feature.is_pocket or not _are_apart(feature.area, other.area)):
-            stands = areas.intersection(stands, grown(other.area, -tolerance))
+        elif peer.pockets <= feature.pockets and (feature.is_pocket or not _are_apart(feature.area, peer.area)):
+            stands = areas.intersection(stands, grown(peer.area, -tolerance))
     return stands
 
 
 def _cleared_of_others(area: Any, feature: Feature, features: Sequence[Feature]) -> Any:
     """An area beside the walls of a feature, without what other features need or keep the cutter from."""
-    for other in features:
-        if other is feature:
+    for peer in features:
+        if peer is feature:
             continue
-        if other.is_pocket:
-            if not feature.is_pocket and is_inside(feature.area, other.area, feature.tolerance):
-                area = areas.intersection(area, reachable(other.area, feature.radius, True))
+        if peer.is_pocket:
+            if not feature.is_pocket and is_inside(feature.area, peer.area, feature.tolerance):
+                area = areas.intersection(area, reachable(peer.area, feature.radius, True))
         elif feature.is_pocket:
-            if is_inside(other.area, feature.area, feature.tolerance):
-                around = areas.difference(feature.area, other.area)
+            if is_inside(peer.area, feature.area, feature.tolerance):
+                around = areas.difference(feature.area, peer.area)
                 area = areas.intersection(area, reachable(around, feature.radius, True))
-        elif not is_inside(feature.area, other.area, feature.tolerance):
-            both = joined([feature.area, other.area])
+        elif not is_inside(feature.area, peer.area, feature.tolerance):
+            both = joined([feature.area, peer.area])
             area = areas.difference(area, reachable(both, feature.radius, False))
     return area
 
 
-def nearest_row(cuts: Cuts, chosen: Mask, place: complex) -> int:
+def nearest_row(cuts: Cuts, chosen: Mask, point: complex) -> int:
     """The row of the cut that comes nearest to a point."""
-    own = cuts[chosen]
-    chords = segments(own.curves, _CHORDS)
+    selected = cuts[chosen]
+    chords = segments(selected.curves, _CHORDS)
     if not len(chords):
-        return int(own.curves.row[0]) if len(own) else -1
+        return int(selected.curves.row[0]) if len(selected) else -1
     lines = shapely.linestrings(np.stack([coordinates(chords.start), coordinates(chords.end)], axis=1))
-    far = shapely.distance(lines, shapely.points(place.real, place.imag))
-    return int(own.curves.row[chords.move[int(np.argmin(far))]])
+    far = shapely.distance(lines, shapely.points(point.real, point.imag))
+    return int(selected.curves.row[chords.move[int(np.argmin(far))]])
 
 
 def distance_of_wall(feature: Feature, cuts: Cuts) -> float:
@@ -323,9 +323,9 @@ def distance_of_wall(feature: Feature, cuts: Cuts) -> float:
 
 def directions_of(cuts: Cuts, chosen: Mask, most: int = 8) -> list[float]:
     """The directions of the longest straight cuts [deg], from 0 to 180."""
-    own = cuts.curves[chosen & np.isnan(cuts.curves.center)]
-    way = own.end - own.start
-    angle = np.round(np.degrees(np.angle(way)) % 180, 3) % 180
-    each, number = np.unique(angle, return_inverse=True)
-    length = np.bincount(number.ravel(), weights=np.abs(way), minlength=len(each))
-    return [float(each[at]) for at in np.argsort(-length, kind="stable")[:most]]
+    curves = cuts.curves[chosen & np.isnan(cuts.curves.center)]
+    vector = curves.end - curves.start
+    angle = np.round(np.degrees(np.angle(vector)) % 180, 3) % 180
+    distinct, number = np.unique(angle, return_inverse=True)
+    length = np.bincount(number.ravel(), weights=np.abs(vector), minlength=len(distinct))
+    return [float(distinct[index]) for index in np.argsort(-length, kind="stable")[:most]]

@@ -57,30 +57,30 @@ def _flats(part: Part, sagitta: float, endless: float) -> list[list[complex]]:
         return [[normal * complex(apart, side * endless) for side in (-1, 1)] for normal in normals]
     radius, share = part.diameter / 2, math.pi / count
     half = min(math.acos(apart / radius), share)
-    corner, found = cmath.rect(apart / math.cos(half), half), []
+    corner, points = cmath.rect(apart / math.cos(half), half), []
     for normal in normals:
-        found += [normal * corner.conjugate(), normal * corner]
+        points += [normal * corner.conjugate(), normal * corner]
         if half < share:
-            found += _arc(0j, normal * corner, 2 * (share - half), sagitta)[1:-1]
-    return [_closed(found)]
+            points += _arc(0j, normal * corner, 2 * (share - half), sagitta)[1:-1]
+    return [_closed(points)]
 
 
 def _cornered(corners: Sequence[complex], part: Part, sagitta: float, radius: float = math.nan) -> list[complex]:
     """A convex polygon, counterclockwise, with the corners of the part, or with others that are round."""
     radius = part.corner_radius if math.isnan(radius) else radius
-    found: list[complex] = []
+    points: list[complex] = []
     for number, corner in enumerate(corners):
         before, after = (corners[(number + step) % len(corners)] - corner for step in (-1, 1))
         before, after = before / abs(before), after / abs(after)
         turned = math.pi - abs(cmath.phase(after / before))
         if not math.isnan(part.chamfer):
-            found += [corner + before * part.chamfer, corner + after * part.chamfer]
+            points += [corner + before * part.chamfer, corner + after * part.chamfer]
         elif not math.isnan(radius):
             start = corner + before * radius * math.tan(turned / 2)
-            found += _arc(start - 1j * before * radius, start, turned, sagitta)
+            points += _arc(start - 1j * before * radius, start, turned, sagitta)
         else:
-            found.append(corner)
-    return found
+            points.append(corner)
+    return points
 
 
 def _arc(center: complex, start: complex, sweep: float, sagitta: float) -> list[complex]:

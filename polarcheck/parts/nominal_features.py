@@ -54,7 +54,7 @@ class NominalFeatures(Columns, frozen=True):
     @cached_property
     def all(self) -> list[PlacedFeature]:
         """The features of all parts of which something is milled."""
-        return [one for number in range(len(self.nominal_parts.parts)) for one in self._features(number)]
+        return [feature for number in range(len(self.nominal_parts.parts)) for feature in self._features(number)]
 
     def cuts_of(self, part: Part) -> Mask:
         """The cuts in the sections of a part."""
@@ -64,84 +64,84 @@ class NominalFeatures(Columns, frozen=True):
     def _matched(self, number: int) -> dict[int, int]:
         """The index of the nearest contour among the comparisons, by curve of a part."""
         results, best = self.contour_comparisons.all, dict[int, int]()
-        for place, one in enumerate(results):
-            if one.number == number and (one.curve not in best or one.rank < results[best[one.curve]].rank):
-                best[one.curve] = place
+        for index, result in enumerate(results):
+            if result.number == number and (result.curve not in best or result.rank < results[best[result.curve]].rank):
+                best[result.curve] = index
         return best
 
     def _features(self, number: int) -> list[PlacedFeature]:
         """The closed curves of a part: the frame of each, and the comparison of its contour, -1 for none."""
         part, matched = self.nominal_parts.parts[number], self._matched(number)
-        own = self.cuts_of(part)
-        if not own.any():
+        chosen = self.cuts_of(part)
+        if not chosen.any():
             return []
         results = self.contour_comparisons.all
-        nearest = min(matched.values(), key=lambda place: results[place].rank, default=-1)
-        section = results[nearest].section if nearest >= 0 else int(self.milled.cuts.section[own][0])
+        nearest = min(matched.values(), key=lambda index: results[index].rank, default=-1)
+        section = results[nearest].section if nearest >= 0 else int(self.milled.cuts.section[chosen][0])
         frame = int(self.milled.frame_of_section[section])
-        own = own & (self.milled.cuts.frame == frame)
+        chosen = chosen & (self.milled.cuts.frame == frame)
         if part.drawing is not None:
             angle = results[nearest].turned if nearest >= 0 else math.nan
-            found = self._of_drawing(number, matched, 0.0 if math.isnan(angle) else angle, section, own)
+            features = self._of_drawing(number, matched, 0.0 if math.isnan(angle) else angle, section, chosen)
         else:
-            found = [(self._of_shape(number, nearest, section, own), nearest)]
-        return [PlacedFeature(frame, feature, contour) for feature, contour in found]
+            features = [(self._of_shape(number, nearest, section, chosen), nearest)]
+        return [PlacedFeature(frame, feature, contour) for feature, contour in features]
 
-    def _of_shape(self, number: int, place: int, section: int, own: Mask) -> Feature:
+    def _of_shape(self, number: int, index: int, section: int, chosen: Mask) -> Feature:
         part = self.nominal_parts.parts[number]
         row = int(self.trace.mode.sections.enter[section])
         unit = self.nominal_parts.unit(number, row)
         results, curves = self.contour_comparisons.all, self.nominal_parts.curves(number, unit)
-        angle = results[place].turned if place >= 0 else math.nan
-        feature = self._feature(number, -1, place, section, own)._replace(
+        angle = results[index].turned if index >= 0 else math.nan
+        feature = self._feature(number, -1, index, section, chosen)._replace(
             area=self._area(part, curves, unit, 0.0 if math.isnan(angle) else angle),
             is_pocket=part.is_pocket,
             certain=self._certain(number, curves, unit),
             most=self._most(number, curves, unit),
         )
-        if place < 0:
+        if index < 0:
             return self._best_placed(feature, curves, unit, section)
         return feature
 
     def _of_drawing(
-        self, number: int, matched: dict[int, int], angle: float, section: int, own: Mask
+        self, number: int, matched: dict[int, int], angle: float, section: int, chosen: Mask
     ) -> list[tuple[Feature, int]]:
         """The closed curves of a drawing, each with the comparison of its contour."""
         from polarcheck.geometry.comparison.deviation import turned_radius
-        from polarcheck.geometry.comparison.measured_path import way_of_curves
+        from polarcheck.geometry.comparison.measured_path import path_of_curves
         from polarcheck.geometry.comparison.metal_left import is_circle, is_inside, polygon_of
 
         row = int(self.trace.mode.sections.enter[section])
         curves = self.nominal_parts.curves(number, self.nominal_parts.unit(number, row))
         curves = [curve * np.exp(1j * angle) for curve in curves]
-        rings = {at: polygon_of(curve) for at, curve in enumerate(curves) if is_closed(curve)}
+        rings = {ring: polygon_of(curve) for ring, curve in enumerate(curves) if is_closed(curve)}
         if not rings:
-            return self._of_open_curves(number, curves, matched.get(-1, -1), section, own)
+            return self._of_open_curves(number, curves, matched.get(-1, -1), section, chosen)
         depth = {
-            at: sum(is_inside(area, other) for other in rings.values() if other is not area)
-            for at, area in rings.items()
+            ring: sum(is_inside(area, outer) for outer in rings.values() if outer is not area)
+            for ring, area in rings.items()
         }
-        reach = max(float(np.abs(curves[at]).max()) for at in rings)
-        bar, round_ = self._bar_radius, turned_radius(way_of_curves([curves[at] for at in rings]))
+        reach = max(float(np.abs(curves[ring]).max()) for ring in rings)
+        bar, round_ = self._bar_radius, turned_radius(path_of_curves([curves[ring] for ring in rings]))
         certain = min(BEYOND * reach if math.isnan(bar) else bar, round_)
-        found = []
-        for at, area in rings.items():
-            place = matched.get(at, -1)
+        features = []
+        for ring, area in rings.items():
+            index = matched.get(ring, -1)
             # Holes are drilled, and the outermost ring may be that of the bar.
-            is_of_bar = depth[at] == 0 and not reach < bar - float(self.milled.cuts.radius[own].max())
-            may_be_absent = place < 0 and bool(matched) and (is_circle(area) or is_of_bar)
-            if place < 0:
-                place = matched.get(-1, -1)
-            feature = self._feature(number, at, place, section, own)
+            is_of_bar = depth[ring] == 0 and not reach < bar - float(self.milled.cuts.radius[chosen].max())
+            may_be_absent = index < 0 and bool(matched) and (is_circle(area) or is_of_bar)
+            if index < 0:
+                index = matched.get(-1, -1)
+            feature = self._feature(number, ring, index, section, chosen)
             feature = feature._replace(area=area, certain=certain, may_be_absent=may_be_absent)
-            found.append((feature if place >= 0 else self._nearest([feature]), place))
-        found = self._with_roles(found, depth)
-        if not matched and len(found) == 1:
-            return [(self._as_boss_or_pocket(found[0][0]), -1)]
-        return found
+            features.append((feature if index >= 0 else self._nearest([feature]), index))
+        features = self._with_roles(features, depth)
+        if not matched and len(features) == 1:
+            return [(self._as_boss_or_pocket(features[0][0]), -1)]
+        return features
 
     def _of_open_curves(
-        self, number: int, curves: list[Points], place: int, section: int, own: Mask
+        self, number: int, curves: list[Points], index: int, section: int, chosen: Mask
     ) -> list[tuple[Feature, int]]:
         """Curves that end in the air: on one side of each there is the part, on the other what is milled."""
         from polarcheck.geometry.comparison.metal_left import sides_of
@@ -150,10 +150,10 @@ class NominalFeatures(Columns, frozen=True):
         nearest = max(float(np.abs(curve).min()) for curve in curves)
         bar = self._bar_radius
         certain = BEYOND * nearest if math.isnan(bar) else bar
-        feature = self._feature(number, -1, place, section, own)._replace(
+        feature = self._feature(number, -1, index, section, chosen)._replace(
             area=sides_of(curves, far), certain=certain, most=min(self._most_of_bar, certain)
         )
-        return [(self._as_boss_or_pocket(feature), place)]
+        return [(self._as_boss_or_pocket(feature), index)]
 
     def _as_boss_or_pocket(self, feature: Feature) -> Feature:
         """A ring that no contour is compared with: a part or a pocket, whichever differs less."""
@@ -162,9 +162,9 @@ class NominalFeatures(Columns, frozen=True):
         cuts = self.milled.cuts[feature.cuts]
         tried = []
         for is_pocket in (False, True):
-            own = np.ones(len(cuts), bool)
-            (found,) = differences([feature._replace(is_pocket=is_pocket, cuts=own, own_cuts=own)], cuts)
-            tried.append((found.proud.area + found.deep.area, is_pocket))
+            chosen = np.ones(len(cuts), bool)
+            (difference,) = differences([feature._replace(is_pocket=is_pocket, cuts=chosen, own_cuts=chosen)], cuts)
+            tried.append((difference.proud.area + difference.deep.area, is_pocket))
         return feature._replace(is_pocket=min(tried)[1])
 
     def _with_roles(self, rings: list[tuple[Feature, int]], depth: dict[int, int]) -> list[tuple[Feature, int]]:
@@ -176,22 +176,22 @@ class NominalFeatures(Columns, frozen=True):
         from polarcheck.geometry.comparison.metal_left import is_inside
 
         result: list[tuple[Feature, int]] = []
-        for feature, place in sorted(rings, key=lambda ring: depth[ring[0].curve]):
-            contour = self.contour_comparisons.all[place].contour if place >= 0 else None
-            around = [other for other, _ in result if is_inside(feature.area, other.area)]
+        for feature, index in sorted(rings, key=lambda ring: depth[ring[0].curve]):
+            contour = self.contour_comparisons.all[index].contour if index >= 0 else None
+            around = [outer for outer, _ in result if is_inside(feature.area, outer.area)]
             is_pocket = contour.is_pocket if contour is not None else bool(around) and not around[-1].is_pocket
             if around and is_pocket == around[-1].is_pocket:
                 # A part stands on a part, and a pocket lies in a pocket.
                 lower = around[-1].z - feature.z
                 is_pocket ^= lower >= -SAME_Z if not is_pocket else lower <= SAME_Z
-            result.append((feature._replace(is_pocket=is_pocket), place))
+            result.append((feature._replace(is_pocket=is_pocket), index))
         return result
 
-    def _feature(self, number: int, curve: int, place: int, section: int, own: Mask) -> Feature:
+    def _feature(self, number: int, curve: int, index: int, section: int, chosen: Mask) -> Feature:
         """The feature without its area."""
         from polarcheck.parts.metal_differences import Feature
 
-        contour = self.contour_comparisons.all[place].contour if place >= 0 else None
+        contour = self.contour_comparisons.all[index].contour if index >= 0 else None
         radius = contour.level.radius if contour is not None else 0.0
         row = int(self.trace.mode.sections.enter[section])
         return Feature(
@@ -200,26 +200,26 @@ class NominalFeatures(Columns, frozen=True):
             area=None,
             is_pocket=False,
             may_be_absent=False,
-            z=self._depth(number, place, row, own),
-            radius=float(radius or self.milled.cuts.radius[own].max()),
+            z=self._depth(number, index, row, chosen),
+            radius=float(radius or self.milled.cuts.radius[chosen].max()),
             tolerance=self.nominal_parts.tolerance(number, row),
             certain=math.nan,
             most=self._most_of_bar,
             excess_is_judged=self._is_all_known(section),
             is_bar_known=self.bar.known.source != "none",
             is_solid=not self.milled.is_drilled and self.bar.known.bore == 0,
-            cuts=own,
-            own_cuts=own & ~self._of_other_contours(number),
+            cuts=chosen,
+            own_cuts=chosen & ~self._of_other_contours(number),
         )
 
-    def _depth(self, number: int, place: int, row: int, own: Mask) -> float:
+    def _depth(self, number: int, index: int, row: int, chosen: Mask) -> float:
         stated = self.nominal_parts.z(number, row)
         if not math.isnan(stated):
-            low = self.milled.cuts.low[own]
+            low = self.milled.cuts.low[chosen]
             nearest = float(low[np.argmin(np.abs(low - stated))])
             return nearest if abs(nearest - stated) <= self.nominal_parts.z_tolerance(number, row) else stated
-        of_contour = self.contour_comparisons.all[place].z if place >= 0 else math.nan
-        return float(self.milled.cuts.low[own].min()) if math.isnan(of_contour) else of_contour
+        of_contour = self.contour_comparisons.all[index].z if index >= 0 else math.nan
+        return float(self.milled.cuts.low[chosen].min()) if math.isnan(of_contour) else of_contour
 
     def _is_all_known(self, section: int) -> bool:
         """All that is cut on the face is known, and how its sections are turned to each other."""
@@ -233,9 +233,9 @@ class NominalFeatures(Columns, frozen=True):
             if contour.is_closed and not contour.is_pocket
         ]
         loops += [
-            np.unique(self.overcuts.loop[one.contour.made.outline.row])
-            for one in self.contour_comparisons.all
-            if one.number != number and one.contour is not None
+            np.unique(self.overcuts.loop[result.contour.made.outline.row])
+            for result in self.contour_comparisons.all
+            if result.number != number and result.contour is not None
         ]
         if not loops:
             return np.zeros(len(self.milled.cuts), bool)
@@ -305,7 +305,7 @@ class NominalFeatures(Columns, frozen=True):
             for angle in directions_of(cuts, cuts.low <= cuts.low.max()):
                 for quarter in (0.0, 90.0, 180.0, 270.0):
                     turn = (angle + quarter) % period
-                    if all(abs(turn - other) > _BETTER for other in tried):
+                    if all(abs(turn - earlier) > _BETTER for earlier in tried):
                         tried.append(turn)
         turns = sorted(tried, key=lambda turn: min(turn, period - turn))
         places = [feature._replace(area=self._area(part, curves, unit, math.radians(turn))) for turn in turns]
@@ -321,15 +321,15 @@ class NominalFeatures(Columns, frozen=True):
         depths = [feature.z]
         if math.isnan(self.nominal_parts.parts[feature.number].z):
             depths = sorted(
-                {round(float(cuts.low[cuts.section == one].min()), 6) for one in set(cuts.section.tolist())}
+                {round(float(cuts.low[cuts.section == section].min()), 6) for section in set(cuts.section.tolist())}
             )
         best, least = feature, math.inf
         for z in depths[:_DEPTHS]:
             at_depth = cuts[np.abs(cuts.low - z) <= SAME_Z]
             if not len(at_depth):
                 continue
-            for place in places:
-                candidate = place._replace(z=z, radius=float(at_depth.radius.max()))
+            for placed in places:
+                candidate = placed._replace(z=z, radius=float(at_depth.radius.max()))
                 far = distance_of_wall(candidate, at_depth)
                 if far < least - _BETTER:
                     best, least = candidate, far

@@ -96,8 +96,8 @@ class NominalParts(Columns, frozen=True):
     def entry(self, row: int) -> float:
         """C at the beginning of the section of a row [rad], 0 where it is not known."""
         section = int(self.trace.mode.section[row])
-        known = section >= 0 and self.trace.path.knows_section_entry[section]
-        return math.radians(float(self.trace.path.section_entry[section])) if known else 0.0
+        is_known = section >= 0 and self.trace.path.knows_section_entry[section]
+        return math.radians(float(self.trace.path.section_entry[section])) if is_known else 0.0
 
     def angle_not_compared(self, number: int, section: int) -> str:
         """Why the angle of a part is not compared in a section; empty where it is, or where the part has none."""

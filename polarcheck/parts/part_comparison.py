@@ -11,8 +11,8 @@ from polarcheck.program.machines.part_keys import Part
 
 if TYPE_CHECKING:
     from polarcheck.columns.metal.finished import Level
-    from polarcheck.geometry.comparison.deviation import Difference, Made
-    from polarcheck.geometry.comparison.measured_path import Way
+    from polarcheck.geometry.comparison.deviation import Difference, MachinedPart
+    from polarcheck.geometry.comparison.measured_path import MeasuredPath
     from polarcheck.geometry.comparison.placements import Placement
     from polarcheck.geometry.shapes.shape import Shape
 
@@ -52,7 +52,7 @@ class Target(NamedTuple):
     number: int
     part: Part
     curve: int
-    way: Way
+    way: MeasuredPath
     scale: float
     is_closed: bool
     rings: bool
@@ -66,7 +66,7 @@ class Contour(NamedTuple):
     """
 
     level: Level
-    made: Made
+    made: MachinedPart
     is_closed: bool
     is_pocket: bool
     of_one_section: bool

@@ -49,7 +49,7 @@ def unreadable_line(file: FileReport, color: bool = False) -> str:
 
 def silenced_line(file: FileReport, finding: Silenced) -> str:
     """Return the line of a silenced finding, in a form that the patterns of editors do not match."""
-    return without_commands(f"{_place(file.path, finding)}: silenced: {why_silenced(finding)}")
+    return without_commands(f"{_location(file.path, finding)}: silenced: {why_silenced(finding)}")
 
 
 def why_silenced(finding: Silenced) -> str:
@@ -63,9 +63,9 @@ def line(file: FileReport, finding: Finding, color: bool = False) -> str:
     severity = visible(finding.severity)
     severity = painted(finding.severity, severity) if color else severity
     message = visible(f"{finding.full_message} [{finding.rule}]")
-    return without_commands(f"{_place(file.path, finding)}: {severity}: {message}")
+    return without_commands(f"{_location(file.path, finding)}: {severity}: {message}")
 
 
-def _place(path: str, finding: Finding | Silenced) -> str:
+def _location(path: str, finding: Finding | Silenced) -> str:
     """Return the position of a finding."""
     return f"{head(path)}:{finding.line}:{finding.column}"

@@ -36,14 +36,14 @@ def github(report: Report, background: Background) -> str:
 def _lines(report: Report, background: Background) -> Iterator[str]:
     findings = [(file, finding) for file in report.files for finding in file.findings]
     ranks = {severity: rank for rank, severity in enumerate(SEVERITIES)}
-    shown = Counter[str]()
+    counts = Counter[str]()
     for file, finding in sorted(findings, key=lambda entry: ranks.get(entry[1].severity, len(ranks))):
-        shown[_level(finding)] += 1
-        if shown[_level(finding)] <= MOST:
+        counts[_level(finding)] += 1
+        if counts[_level(finding)] <= MOST:
             yield _annotation(file, finding, background)
     for name, reason, path in _not_checked(report):
-        shown["error"] += 1
-        if shown["error"] <= MOST:
+        counts["error"] += 1
+        if counts["error"] <= MOST:
             place = {"title": name, **({"file": from_root(path, background)} if path else {})}
             yield _command("error", place, reason)
     for file in report.files:
@@ -56,9 +56,9 @@ def _lines(report: Report, background: Background) -> Iterator[str]:
             yield "::endgroup::"
     if report.files and not background.quiet:
         yield from (_plain(f"polarcheck: {text}") for text in (*settings_lines(report), summary(report)))
-    left = {level: number - MOST for level, number in shown.items() if number > MOST}
-    if left:
-        kinds = ", ".join(counted(number, level) for level, number in left.items())
+    unlisted = {level: number - MOST for level, number in counts.items() if number > MOST}
+    if unlisted:
+        kinds = ", ".join(counted(number, level) for level, number in unlisted.items())
         where = "run without -q for all" if background.quiet else "the groups above hold all"
         yield f"polarcheck: {kinds} more without an annotation, of which GitHub shows {MOST} of a kind; {where}"
 
@@ -77,14 +77,16 @@ def _level(finding: Finding) -> str:
 
 
 def _annotation(file: FileReport, finding: Finding, background: Background) -> str:
-    place: dict[str, str | int] = {"title": f"{finding.rule}, alarm {finding.alarm}" if finding.alarm else finding.rule}
+    properties: dict[str, str | int] = {
+        "title": f"{finding.rule}, alarm {finding.alarm}" if finding.alarm else finding.rule
+    }
     if file.path != STANDARD_INPUT:
-        place["file"] = from_root(file.path, background)
-    place |= {"line": finding.line, "endLine": finding.end_line}
+        properties["file"] = from_root(file.path, background)
+    properties |= {"line": finding.line, "endLine": finding.end_line}
     if finding.line == finding.end_line:
         # GitHub counts the last column in; a finding ends at the column after it.
-        place |= {"col": finding.column, "endColumn": max(finding.end_column - 1, finding.column)}
-    return _command(_level(finding), place, finding.full_message)
+        properties |= {"col": finding.column, "endColumn": max(finding.end_column - 1, finding.column)}
+    return _command(_level(finding), properties, finding.full_message)
 
 
 def _command(level: str, place: Mapping[str, str | int], message: str) -> str:

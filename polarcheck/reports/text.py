@@ -87,29 +87,33 @@ def _parts(background: Background, are_listed: bool) -> Parts:
     explained: dict[str, None] = {}
 
     def of_file(file: FileReport, lines: Mapping[int, str]) -> str:
-        shown = list[str]()
+        lines_shown = list[str]()
         for finding in file.findings:
             rule = background.rules.get(finding.rule)
-            shown += _finding(finding, file, lines, rule, finding.rule not in explained, page)
-            shown += _following(finding, background.following, page)
-            shown.append("")
+            lines_shown += _finding(finding, file, lines, rule, finding.rule not in explained, page)
+            lines_shown += _following(finding, background.following, page)
+            lines_shown.append("")
             explained[finding.rule] = None
         if are_listed and not background.quiet:
-            shown += _not_evaluated([file], page)
-        shown += _part(file, page)
+            lines_shown += _not_evaluated([file], page)
+        lines_shown += _part(file, page)
         if background.silenced:
-            shown += _silenced(file, page)
-        shown += _views(file, page, background.dots)
-        return without_commands("".join(line + "\n" for line in shown))
+            lines_shown += _silenced(file, page)
+        lines_shown += _views(file, page, background.dots)
+        return without_commands("".join(line + "\n" for line in lines_shown))
 
     def end(report: Report) -> str:
-        shown = list[str]()
+        lines_shown = list[str]()
         if not background.quiet and report.files:
-            shown += [] if are_listed else _not_evaluated(report.files, page)
-            shown += [*_verdicts(report, page), "", *settings_lines(report), summary(report, background.fixed)]
-            known = next((rule for rule in explained if rule in background.rules), None)
-            shown += [page.paint("aside", f"More about a rule: polarcheck explain {known}")] if known else []
-        return without_commands("".join(line + "\n" for line in shown))
+            lines_shown += [] if are_listed else _not_evaluated(report.files, page)
+            lines_shown += [*_verdicts(report, page), "", *settings_lines(report), summary(report, background.fixed)]
+            explained_rule = next((rule for rule in explained if rule in background.rules), None)
+            lines_shown += (
+                [page.paint("aside", f"More about a rule: polarcheck explain {explained_rule}")]
+                if explained_rule
+                else []
+            )
+        return without_commands("".join(line + "\n" for line in lines_shown))
 
     return Parts(of_file, end)
 
@@ -160,14 +164,14 @@ def _finding(
     finding: Finding, file: FileReport, lines: Mapping[int, str], rule: Rule | None, is_first: bool, page: _Page
 ) -> Iterator[str]:
     yield from page.heading(finding.severity, finding.message)
-    place = f"{file.path}:{finding.line}:{finding.column}"
+    location = f"{file.path}:{finding.line}:{finding.column}"
     if finding.channel:
-        place += f", channel {finding.channel}"
+        location += f", channel {finding.channel}"
     if finding.program and len(file.programs) > 1:
-        place += f", program {finding.program}"
+        location += f", program {finding.program}"
     if finding.count > 1 and not (rule and rule.once):
-        place += f", in {finding.count} runs of the block"
-    yield from page.labelled("at", place)
+        location += f", in {finding.count} runs of the block"
+    yield from page.labelled("at", location)
     yield from _excerpt(finding, lines, page)
     yield from page.labelled("rule", f"{finding.rule}, alarm {finding.alarm}" if finding.alarm else finding.rule)
     why = first_sentence(rule.page) if rule and is_first else ""
@@ -187,10 +191,10 @@ def _excerpt(finding: Finding, lines: Mapping[int, str], page: _Page) -> Iterato
         return
     line = lines[finding.line]
     end = finding.end_column - 1 if finding.end_line == finding.line else len(line)
-    shown = excerpt(line, finding.column - 1, end, room)
-    yield _numbered(finding.line, shown.text, page)
-    mark = page.paint(finding.severity, "^" * shown.marked)
-    yield f"{page.paint('aside', ' ' * _GUTTER + ' |')} {' ' * shown.first}{mark}"
+    marked_line = excerpt(line, finding.column - 1, end, room)
+    yield _numbered(finding.line, marked_line.text, page)
+    mark = page.paint(finding.severity, "^" * marked_line.marked)
+    yield f"{page.paint('aside', ' ' * _GUTTER + ' |')} {' ' * marked_line.first}{mark}"
 
 
 def _numbered(line: int, text: str, page: _Page) -> str:
@@ -226,11 +230,11 @@ class _Reason:
         self.rules |= dict.fromkeys(missing.rule for missing in group)
         blocks: dict[str, int] = {}
         for missing in group:
-            place = f"{file.path}, channel {missing.channel}" if missing.channel else file.path
-            blocks[place] = max(missing.blocks, blocks.get(place, 0))
-        for place, count in blocks.items():
+            title = f"{file.path}, channel {missing.channel}" if missing.channel else file.path
+            blocks[title] = max(missing.blocks, blocks.get(title, 0))
+        for title, count in blocks.items():
             if len(self.places) < _PLACES:
-                self.places[place] = count
+                self.places[title] = count
             else:
                 self.more += 1
 

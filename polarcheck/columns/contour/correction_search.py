@@ -98,10 +98,10 @@ class _Search:
             return None
         places = missing_places(point, self.tolerance)
         ends = np.append(self.loop.point[:_ENDS], self.loop.point[-_ENDS:])
-        found = [*self._fitting(self._of_words(np.append(places, ends))), *self._fitting(self._of_steps())]
-        if not found and len(places):
-            found = [*self._fitting(self._of_blocks(places))]
-        return min(found, key=lambda one: one[:2])[2] if found else None
+        trials = [*self._fitting(self._of_words(np.append(places, ends))), *self._fitting(self._of_steps())]
+        if not trials and len(places):
+            trials = [*self._fitting(self._of_blocks(places))]
+        return min(trials, key=lambda one: one[:2])[2] if trials else None
 
     def _fitting(self, trials: Iterator[_Trial]) -> Iterator[tuple[int, int, Correction]]:
         """The trials that make the contour regular: what they leave free, their number, the correction."""
@@ -123,14 +123,14 @@ class _Search:
         others = indices[(rows < self.loop.row[0]) | (rows > self.loop.row[-1])]
         return bool(np.any(np.abs(trace.run.words.value[others] - float(word[2])) < _SAME_NUMBER))
 
-    def _row(self, at: int) -> int:
+    def _row(self, corner: int) -> int:
         """The row of a block of the loop; behind the last one, that of the next move."""
         rows = self.loop.row
-        if at < len(rows):
-            return int(rows[at])
+        if corner < len(rows):
+            return int(rows[corner])
         last = int(rows[-1])
-        behind = np.flatnonzero(self.trace.path.travels[last + 1 :])
-        return last + 1 + int(behind[0]) if len(behind) else last
+        following = np.flatnonzero(self.trace.path.travels[last + 1 :])
+        return last + 1 + int(following[0]) if len(following) else last
 
     def _is_better(self, symmetry: Symmetry, trial: _Trial) -> bool:
         written, plain = self.written, trial.slip.plain
@@ -175,15 +175,18 @@ class _Search:
 
     def _axis(self, addresses: tuple[str, str], scale: Floats, direction: complex, digit: float) -> _Axis:
         trace, rows = self.trace, self.loop.row
-        place = {row: at for at, row in enumerate(rows.tolist())}
+        place = {row: index_of_step for index_of_step, row in enumerate(rows.tolist())}
         word, is_step = [-1] * len(rows), [False] * len(rows)
         for number, address in enumerate(addresses):
             indices = trace.blocks.word_indices(address)
             low, high = np.searchsorted(trace.run.row[indices], (rows[0], rows[-1] + 1)).tolist()
             for index in indices[low:high].tolist():
-                at = place.get(int(trace.run.row[index]))
-                if at is not None:
-                    word[at], is_step[at] = index, bool(number) or bool(trace.modal.is_step(address)[rows[at]])
+                index_of_step = place.get(int(trace.run.row[index]))
+                if index_of_step is not None:
+                    word[index_of_step], is_step[index_of_step] = (
+                        index,
+                        bool(number) or bool(trace.modal.is_step(address)[rows[index_of_step]]),
+                    )
         return _Axis(*addresses, word, is_step, scale.tolist(), direction, digit)
 
     def _of_words(self, places: Points) -> Iterator[_Trial]:
@@ -194,9 +197,9 @@ class _Search:
         for number, axis in enumerate(self._axes):
             local = away / axis.direction
             along = np.abs(local.imag) <= tolerance * 2
-            for at, place in np.argwhere(along & (np.abs(local.real) >= 2 * tolerance)).tolist():
-                shift = float(local[at, place].real)
-                for begin in _writers(axis, at):
+            for corner, place in np.argwhere(along & (np.abs(local.real) >= 2 * tolerance)).tolist():
+                shift = float(local[corner, place].real)
+                for begin in _writers(axis, corner):
                     key = (number, begin, round(shift, 2))
                     if key not in tried:
                         tried.add(key)
@@ -213,39 +216,39 @@ class _Search:
             moved[begin:end] += shift * axis.direction
             yield _Trial(begin, axis.word[begin], slip, moved, self.loop)
 
-    def _slip(self, axis: _Axis, at: int, shift: float) -> Slip | None:
+    def _slip(self, axis: _Axis, corner: int, shift: float) -> Slip | None:
         """The slip that shifts a word of an axis, or leaves it out."""
-        trace, index, step = self.trace, axis.word[at], shift / axis.scale[at]
+        trace, index, step = self.trace, axis.word[corner], shift / axis.scale[corner]
         # A point at the wrong place gives a word more digits than the others have.
-        least = float(trace.lengths.least_increment[self.loop.row[at]])
-        tolerance = _DIGITS * max(2 * axis.digit / axis.scale[at], least)
+        least = float(trace.lengths.least_increment[self.loop.row[corner]])
+        tolerance = _DIGITS * max(2 * axis.digit / axis.scale[corner], least)
         if index < 0:
-            value = float((self.loop.point[at] / axis.direction).real) / axis.scale[at] + step
+            value = float((self.loop.point[corner] / axis.direction).real) / axis.scale[corner] + step
             return Slip(f"{axis.address}{self._as_elsewhere(axis, value, tolerance)}", "a word is missing", False)
         words = trace.run.words
         value = float(words.value[index])
         written = trace.run.text.source.excerpt(int(words.start[index]), int(words.end[index])).replace(" ", "")
         address = written[: len(written) - len(written.lstrip("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz="))]
         slip = slip_of(written[len(address) :], value + step, tolerance)
-        if slip is None and value and self._is_of_neighbor(axis, at, tolerance):
+        if slip is None and value and self._is_of_neighbor(axis, corner, tolerance):
             slip = Slip("", "it is that of the block beside it", False)
-        if slip is None and axis is self._axes[1] and self._looks_like_angle(value, value * axis.scale[at]):
+        if slip is None and axis is self._axes[1] and self._looks_like_angle(value, value * axis.scale[corner]):
             slip = Slip("", "it looks like an angle", False)
         if slip is None:
             return None
         return slip._replace(text=f"{address}{self._as_elsewhere(axis, value + step, tolerance, slip.text)}")
 
-    def _is_of_neighbor(self, axis: _Axis, at: int, tolerance: float) -> bool:
+    def _is_of_neighbor(self, axis: _Axis, corner: int, tolerance: float) -> bool:
         value = self.trace.run.words.value
-        beside = [axis.word[other] for other in (at - 1, at + 1) if 0 <= other < len(axis.word)]
-        return any(word >= 0 and abs(float(value[word] - value[axis.word[at]])) <= tolerance for word in beside)
+        beside = [axis.word[neighbor] for neighbor in (corner - 1, corner + 1) if 0 <= neighbor < len(axis.word)]
+        return any(word >= 0 and abs(float(value[word] - value[axis.word[corner]])) <= tolerance for word in beside)
 
     def _looks_like_angle(self, value: float, length: float) -> bool:
         """A number is one of the usual angles, and as a length twice as far out as any other point of the loop."""
         point = self.loop.point
-        others = np.abs(point)[np.abs(np.abs(point.imag) - abs(length)) > self.tolerance]
+        off_axis = np.abs(point)[np.abs(np.abs(point.imag) - abs(length)) > self.tolerance]
         is_usual = value % _PART_OF_TURN == 0 and 2 * _PART_OF_TURN <= abs(value) <= _FULL_TURN
-        return bool(is_usual and len(others) and abs(length) > 2 * others.max())
+        return bool(is_usual and len(off_axis) and abs(length) > 2 * off_axis.max())
 
     def _as_elsewhere(self, axis: _Axis, value: float, tolerance: float, slip: str = "") -> str:
         """A value as another block of the loop has it, with the sign that it needs."""
@@ -262,7 +265,7 @@ class _Search:
         """Incremental words and blocks with which the path would close."""
         axes, point = self._axes, self.loop.point
         count = len(point)
-        steps = [at for at in range(1, count) if all(axis.is_step[at] or axis.word[at] < 0 for axis in axes)]
+        steps = [step for step in range(1, count) if all(axis.is_step[step] or axis.word[step] < 0 for axis in axes)]
         if len(steps) < count / 2:
             return
         for first in range(min(_ENDS, count)):
@@ -270,28 +273,28 @@ class _Search:
                 gap = complex(point[first] - point[last])
                 if abs(gap) <= 2 * self.tolerance:
                     continue
-                for at in steps:
-                    if first < at <= last:
-                        yield from self._closing(at, gap)
+                for step in steps:
+                    if first < step <= last:
+                        yield from self._closing(step, gap)
 
-    def _closing(self, at: int, gap: complex) -> Iterator[_Trial]:
+    def _closing(self, corner: int, gap: complex) -> Iterator[_Trial]:
         """What in a block of increments closes a gap: a word, the block run once less, or another one before it."""
         for axis in self._axes:
             local = gap / axis.direction
-            if axis.word[at] >= 0 and abs(local.imag) <= 2 * self.tolerance:
-                yield from self._changed(axis, at, local.real)
+            if axis.word[corner] >= 0 and abs(local.imag) <= 2 * self.tolerance:
+                yield from self._changed(axis, corner, local.real)
         point = self.loop.point
-        if abs(point[at] - point[at - 1] + gap) <= 2 * self.tolerance and at > 1:
+        if abs(point[corner] - point[corner - 1] + gap) <= 2 * self.tolerance and corner > 1:
             moved = point.copy()
-            moved[at:] += gap
-            yield _Trial(at, -1, Slip("", "it stands there twice", False), moved, self.loop)
-        shifted = np.append(point[:at], point[at - 1 :] + gap)
+            moved[corner:] += gap
+            yield _Trial(corner, -1, Slip("", "it stands there twice", False), moved, self.loop)
+        shifted = np.append(point[:corner], point[corner - 1 :] + gap)
         text = " ".join(
-            f"{axis.step_address}{plain_number(round((gap / axis.direction).real / axis.scale[at], 4))}"
+            f"{axis.step_address}{plain_number(round((gap / axis.direction).real / axis.scale[corner], 4))}"
             for axis in self._axes
             if abs((gap / axis.direction).real) > self.tolerance
         )
-        yield _Trial(at, -1, Slip(text, "a block is missing", False), shifted, self._with_edge(at - 1, 0))
+        yield _Trial(corner, -1, Slip(text, "a block is missing", False), shifted, self._with_edge(corner - 1, 0))
 
     # ---- one block ----
 
@@ -301,10 +304,10 @@ class _Search:
         for first in range(_ENDS):
             yield self._with_block(len(point) - 1, complex(point[first]), 0)
         detour = np.abs(places[:, None] - point[:-1]) + np.abs(places[:, None] - point[1:]) - np.abs(np.diff(point))
-        for place in range(len(places)):
-            for at in np.argsort(detour[place])[:_GAPS].tolist():
+        for index in range(len(places)):
+            for at in np.argsort(detour[index])[:_GAPS].tolist():
                 for turns in dict.fromkeys((0, self._usual_arc[0])):
-                    yield self._with_block(at, complex(places[place]), turns)
+                    yield self._with_block(at, complex(places[index]), turns)
 
     @cached_property
     def _usual_arc(self) -> tuple[int, float]:
@@ -318,40 +321,43 @@ class _Search:
         usual = float(kinds[np.argmax(count)])
         return (1 if usual > 0 else -1), float(radius[np.argmin(np.abs(senses * radius - usual))])
 
-    def _with_edge(self, at: int, turns: int) -> PlaneLoop:
+    def _with_edge(self, corner: int, turns: int) -> PlaneLoop:
         """The loop with one more line or usual arc behind a block."""
         loop = self.loop
         return loop._replace(
-            turns=np.insert(loop.turns, at, turns),
-            radius=np.insert(loop.radius, at, self._usual_arc[1] if turns else np.nan),
-            to_center=np.insert(loop.to_center, at, 0),
+            turns=np.insert(loop.turns, corner, turns),
+            radius=np.insert(loop.radius, corner, self._usual_arc[1] if turns else np.nan),
+            to_center=np.insert(loop.to_center, corner, 0),
         )
 
-    def _with_block(self, at: int, place: complex, turns: int) -> _Trial:
+    def _with_block(self, corner: int, point: complex, turns: int) -> _Trial:
         """One more line, or arc, behind a block."""
         moved, parts = self.loop.point.copy(), []
         for axis in self._axes:
-            shift = ((place - moved[at]) / axis.direction).real
-            end = at + 1
+            shift = ((point - moved[corner]) / axis.direction).real
+            end = corner + 1
             while end < len(axis.word) and axis.word[end] < 0:
                 end += 1
-            moved[at + 1 : end] += shift * axis.direction
-            value, tolerance = (place / axis.direction).real / axis.scale[at], 2 * self.tolerance / axis.scale[at]
+            moved[corner + 1 : end] += shift * axis.direction
+            value, tolerance = (
+                (point / axis.direction).real / axis.scale[corner],
+                2 * self.tolerance / axis.scale[corner],
+            )
             parts.append(f"{axis.address}{self._as_elsewhere(axis, value, tolerance)}")
         if turns:
-            machine, scale = self.trace.machine, float(self.trace.lengths.scale[self.loop.row[at]])
+            machine, scale = self.trace.machine, float(self.trace.lengths.scale[self.loop.row[corner]])
             codes = machine.codes("arc_clockwise" if turns < 0 else "arc_counterclockwise")
             code = next(iter(codes), "G2" if turns < 0 else "G3")
             parts = [code, *parts, f"{machine.arcs.radius_word}{plain_number(round(self._usual_arc[1] / scale, 4))}"]
         slip = Slip(" ".join(parts), "a block is missing", False)
-        return _Trial(at + 1, -1, slip, np.insert(moved, at + 1, place), self._with_edge(at, turns))
+        return _Trial(corner + 1, -1, slip, np.insert(moved, corner + 1, point), self._with_edge(corner, turns))
 
 
-def _writers(axis: _Axis, at: int) -> Iterator[int]:
+def _writers(axis: _Axis, corner: int) -> Iterator[int]:
     """The blocks whose word of an axis moves a point, and the block itself where it has none."""
-    if axis.word[at] < 0 and at:
-        yield at
-    for begin in range(at, -1, -1):
+    if axis.word[corner] < 0 and corner:
+        yield corner
+    for begin in range(corner, -1, -1):
         if axis.word[begin] >= 0:
             yield begin
             if not axis.is_step[begin]:

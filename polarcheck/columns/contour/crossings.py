@@ -94,7 +94,7 @@ class Crossings(Columns, frozen=True):
         chosen = chosen[:_MOST]
         chosen = chosen[np.cumsum(count[chosen]) <= _MOST_MOVES]
         found = [self._crossing_of(int(first[which]), int(last[which]), bool(passes.closed[which])) for which in chosen]
-        return [one for one in found if one is not None]
+        return [crossing for crossing in found if crossing is not None]
 
     def _crossing_of(self, first: int, last: int, closed: bool) -> _Found | None:
         from polarcheck.geometry.segments import Curves, segments
@@ -112,8 +112,8 @@ class Crossings(Columns, frozen=True):
             keep &= (earlier >= first + _ENDS) & (later <= last - _ENDS)
         if not keep.any():
             return None
-        at = np.flatnonzero(keep)[np.argmin(later[keep])]
-        return _Found(later[[at]], earlier[[at]], crossing.place[[at]], np.zeros(1, bool))
+        nearest = np.flatnonzero(keep)[np.argmin(later[keep])]
+        return _Found(later[[nearest]], earlier[[nearest]], crossing.place[[nearest]], np.zeros(1, bool))
 
     # ---- cheap tests: which passes cannot cross themselves ----
 
@@ -153,9 +153,9 @@ class Crossings(Columns, frozen=True):
 
     def of_row(self, row: int) -> tuple[int, complex, bool]:
         """The earlier row that a row crosses, the place, and whether it runs back along it."""
-        at = int(np.flatnonzero(self.passes.row[self._found.move] == row)[0])
-        into = int(self.passes.row[self._found.into[at]])
-        return into, complex(self._found.place[at]), bool(self._found.back[at])
+        index = int(np.flatnonzero(self.passes.row[self._found.move] == row)[0])
+        into = int(self.passes.row[self._found.into[index]])
+        return into, complex(self._found.place[index]), bool(self._found.back[index])
 
 
 def _nothing() -> _Found:

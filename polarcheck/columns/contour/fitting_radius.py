@@ -28,9 +28,9 @@ class Fitting(Columns, frozen=True):
     def _worst(self, values: Floats) -> Floats:
         """The largest of these values in the loop of each row."""
         loop = self.since.compensation
-        found = np.zeros(int(loop.max(initial=0)) + 1)
-        np.maximum.at(found, loop, values)
-        return found[loop]
+        worst = np.zeros(int(loop.max(initial=0)) + 1)
+        np.maximum.at(worst, loop, values)
+        return worst[loop]
 
     def _any(self, rows: Mask) -> Mask:
         return self._worst(rows.astype(float)) > 0
@@ -38,8 +38,8 @@ class Fitting(Columns, frozen=True):
     @cached_property
     def _asked(self) -> Mask:
         """The rows of the loops that are cut into; none if they are too many."""
-        asked = self._any(self.overcuts.depth > 0)
-        return asked & (np.count_nonzero(asked) <= _MANY)
+        cut_into = self._any(self.overcuts.depth > 0)
+        return cut_into & (np.count_nonzero(cut_into) <= _MANY)
 
     def _trial(self, radius: Floats) -> Trial:
         signed = radius * np.sign(self.trace.compensation.radius)
@@ -56,23 +56,23 @@ class Fitting(Columns, frozen=True):
     @cached_property
     def radius(self) -> Floats:
         """The largest R that leaves the loop of the row whole [mm]; NaN where there is none, or it is not known."""
-        own = np.abs(self.trace.compensation.radius)
-        wanted = self._asked & ~self.never
-        low, high = np.where(wanted, 0.0, np.nan), own
-        if not wanted.any():
+        programmed = np.abs(self.trace.compensation.radius)
+        searched = self._asked & ~self.never
+        low, high = np.where(searched, 0.0, np.nan), programmed
+        if not searched.any():
             return low
         depth = self.overcuts.depth
-        tried = own - self._worst(depth) / 2  # between parallel walls that is it
+        tried = programmed - self._worst(depth) / 2  # between parallel walls that is it
         for _ in range(_TRIALS):
             keep_time()
             trial = self._trial(tried)
             fails = self._any(trial.fails)
             low, high = np.where(fails, low, tried), np.where(fails, tried, high)
-            depth = np.zeros(len(own))
+            depth = np.zeros(len(programmed))
             np.maximum.at(depth, trial.cuts.row, trial.cuts.depth)
             nearer = tried - self._worst(depth) / 2
             half = np.where(low > 0, (low + high) / 2, np.where(nearer < tried, nearer, tried / 2))
             tried = np.where(fails, half, np.minimum(low * (1 + _NEAR), half))
             if not (high - low > _NEAR * high).any():
                 break
-        return np.where(wanted & (low > 0) & (high - low <= 2 * _NEAR * high), low, np.nan)
+        return np.where(searched & (low > 0) & (high - low <= 2 * _NEAR * high), low, np.nan)

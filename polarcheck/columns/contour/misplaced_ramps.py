@@ -143,8 +143,8 @@ class MisplacedRamps(Columns, frozen=True):
         follows[:-1] = moves.starts_up[:-1] & moves.cancels[1:] & (moves.section[:-1] == moves.section[1:])
         # Between them nothing may move but Z: a block of which it is not known where it leads may be the contour.
         opens = np.append(0, np.cumsum((trace.axes.moves & ~trace.axes.commands_z) | trace.run.unknown))
-        at = np.flatnonzero(follows)
-        follows[at] = opens[moves.row[at + 1]] == opens[moves.row[at] + 1]
+        following_rows = np.flatnonzero(follows)
+        follows[following_rows] = opens[moves.row[following_rows + 1]] == opens[moves.row[following_rows] + 1]
         return trace.blocks.mask_of(moves.row[follows])
 
     @cached_property
@@ -175,28 +175,30 @@ class MisplacedRamps(Columns, frozen=True):
         starts, until = starts[whole], until[whole]
         final = moves.start[np.minimum(until, n - 1)]
         near = np.abs(moves.end[starts] - final) <= _SAME
-        for at, end, place, closes in zip(starts.tolist(), until.tolist(), final.tolist(), near.tolist(), strict=True):
-            row = -1 if closes else self._cut_before(at, end, place, bare)
+        for start, end, place, closes in zip(
+            starts.tolist(), until.tolist(), final.tolist(), near.tolist(), strict=True
+        ):
+            row = -1 if closes else self._cut_before(start, end, place, bare)
             if row >= 0:
-                late[moves.row[at]] = row
+                late[moves.row[start]] = row
         return late
 
-    def _cut_before(self, at: int, end: int, final: complex, bare: Mask) -> int:
-        """The row of the move that has cut the contour of the start-up `at` before it; -1 for none."""
+    def _cut_before(self, start: int, end: int, final: complex, bare: Mask) -> int:
+        """The row of the move that has cut the contour of the start-up `start` before it; -1 for none."""
         moves = self._moves
-        first = at
-        while first and bare[first - 1] and moves.section[first - 1] == moves.section[at] and at - first < _MOST:
+        first = start
+        while first and bare[first - 1] and moves.section[first - 1] == moves.section[start] and start - first < _MOST:
             first -= 1
-        vertices = moves.end[at:end]
+        vertices = moves.end[start:end]
         if np.any(np.abs(vertices[1:] - vertices[0]) <= _SAME):
             return -1
-        touched = np.flatnonzero(np.abs(moves.end[first:at] - final) <= _SAME)
+        touched = np.flatnonzero(np.abs(moves.end[first:start] - final) <= _SAME)
         if len(touched):
             return int(moves.row[first + int(touched[0])])
-        lead, leave = at - 1, end
+        lead, leave = start - 1, end
         if leave >= len(moves.row) or not moves.cancels[leave] or first == lead:
             return -1
-        begins = moves.feed[lead] < moves.feed[lead - 1] * (1 - SHARE) and moves.feed[at] == moves.feed[lead]
+        begins = moves.feed[lead] < moves.feed[lead - 1] * (1 - SHARE) and moves.feed[start] == moves.feed[lead]
         symmetrical = _mirrors(complex(moves.start[lead]), complex(moves.end[leave])) and _mirrors(
             complex(moves.end[lead]), complex(moves.start[leave])
         )
@@ -234,9 +236,9 @@ class MisplacedRamps(Columns, frozen=True):
         return column
 
 
-def _mirrors(one: complex, other: complex) -> bool:
+def _mirrors(first: complex, second: complex) -> bool:
     """The points are the same, or mirror images about an axis of the plane or the center."""
-    return abs(abs(one.real) - abs(other.real)) <= _SAME and abs(abs(one.imag) - abs(other.imag)) <= _SAME
+    return abs(abs(first.real) - abs(second.real)) <= _SAME and abs(abs(first.imag) - abs(second.imag)) <= _SAME
 
 
 def _across_flats(ends: Points) -> float:

@@ -140,13 +140,13 @@ class Overcuts:
     def _wall_beside(self) -> Rows:
         """The row of the wall after a start-up or before an offset cancel; -1 for none and for other rows."""
         trace = self.trace
-        beside = np.full(len(trace), -1)
+        adjacent = np.full(len(trace), -1)
         moving = np.flatnonzero(trace.mode.in_polar & trace.path.travels)
         is_wall = (trace.compensation.compensates & ~trace.compensation.starts_up)[moving]
-        beside[moving[:-1]] = np.where(trace.compensation.starts_up[moving[:-1]] & is_wall[1:], moving[1:], -1)
+        adjacent[moving[:-1]] = np.where(trace.compensation.starts_up[moving[:-1]] & is_wall[1:], moving[1:], -1)
         cancels = trace.compensation.cancels[moving[1:]]
-        beside[moving[1:][cancels]] = np.where(is_wall[:-1], moving[:-1], -1)[cancels]
-        return beside
+        adjacent[moving[1:][cancels]] = np.where(is_wall[:-1], moving[:-1], -1)[cancels]
+        return adjacent
 
     @cached_property
     def objected(self) -> Mask:
@@ -351,8 +351,8 @@ class Overcuts:
         block, cutting, cut = self.trace.run.block, self.cuts.row, self.cuts.into
         moving = np.flatnonzero(self.trace.path.on_plane)
         involved = np.isin(moving, np.concatenate([cutting, cut])) & (self.loop[moving] >= 0)
-        beside = np.flatnonzero(involved[1:] & involved[:-1] & (np.diff(self.loop[moving]) == 0))
-        cutting, cut = np.append(cutting, moving[beside]), np.append(cut, moving[beside + 1])
+        pairs = np.flatnonzero(involved[1:] & involved[:-1] & (np.diff(self.loop[moving]) == 0))
+        cutting, cut = np.append(cutting, moving[pairs]), np.append(cut, moving[pairs + 1])
         for pair in zip(block[cutting].tolist(), block[cut].tolist(), strict=True):
             left_root, right_root = root(pair[0]), root(pair[1])
             first[max(left_root, right_root)] = min(left_root, right_root)

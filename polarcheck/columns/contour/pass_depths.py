@@ -90,12 +90,12 @@ class PassDepths(Columns, frozen=True):
                 yield row, value
 
 
-def _is_slip(written: float, meant: float) -> bool:
+def _is_slip(written: float, intended: float) -> bool:
     """The digits of one number are those of the other and one more, or its point is elsewhere."""
-    long, short = (f"{abs(value):.4f}".replace(".", "").strip("0") for value in (written, meant))
-    if (written < 0) != (meant < 0) or not short:
+    long, short = (f"{abs(value):.4f}".replace(".", "").strip("0") for value in (written, intended))
+    if (written < 0) != (intended < 0) or not short:
         return False
-    return long == short or any(long[:at] + long[at + 1 :] == short for at in range(len(long)))
+    return long == short or any(long[:index] + long[index + 1 :] == short for index in range(len(long)))
 
 
 def _outlier(z: Floats) -> tuple[int, float] | None:
@@ -115,16 +115,16 @@ def _outlier(z: Floats) -> tuple[int, float] | None:
         if step <= ROUNDING or steps.max() > _FAR * step:
             continue
         before = levels[number - 1] if number else np.inf
-        behind = levels[number + 1] if number + 1 < len(levels) else -np.inf
-        if behind + ROUNDING < levels[number] < before - ROUNDING and (
-            behind > -np.inf or before - levels[number] <= _FAR * steps.max()
+        after = levels[number + 1] if number + 1 < len(levels) else -np.inf
+        if after + ROUNDING < levels[number] < before - ROUNDING and (
+            after > -np.inf or before - levels[number] <= _FAR * steps.max()
         ):
             continue
         is_again = abs(levels[number] - before) <= ROUNDING
-        if abs(levels[number] - behind) <= ROUNDING:
+        if abs(levels[number] - after) <= ROUNDING:
             continue  # the later one counts
-        if is_again and (number + 1 == len(levels) or before - behind < _SKIPPED * step):
+        if is_again and (number + 1 == len(levels) or before - after < _SKIPPED * step):
             continue  # a spring pass
-        fits = (before + behind) / 2 if np.isfinite(before + behind) else before - step if number else behind + step
+        fits = (before + after) / 2 if np.isfinite(before + after) else before - step if number else after + step
         off[float(levels[number])] = number - ahead, float(fits)
     return next(iter(off.values())) if len(off) == 1 else None

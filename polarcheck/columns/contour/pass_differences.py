@@ -45,7 +45,11 @@ class PassDifferences(Columns, frozen=True):
     @cached_property
     def found(self) -> dict[int, Difference]:
         """The differences, by the row that differs."""
-        return {one.row: one for differences in reversed(self._by_group) for one in reversed(differences)}
+        return {
+            difference.row: difference
+            for differences in reversed(self._by_group)
+            for difference in reversed(differences)
+        }
 
     @cached_property
     def _by_group(self) -> list[list[Difference]]:
@@ -98,11 +102,11 @@ class PassDifferences(Columns, frozen=True):
         differences = []
         for place, kind in enumerate(order.tolist()):
             for model in order[:place].tolist():
-                found = self._difference(
+                difference = self._difference(
                     int(group[first[kind]]), int(group[first[model]]), bool(count[model] > count[kind])
                 )
-                if found is not None:
-                    differences.append(found)
+                if difference is not None:
+                    differences.append(difference)
                     break
         return differences
 
@@ -115,30 +119,30 @@ class PassDifferences(Columns, frozen=True):
 
     def _difference(self, number: int, model: int, is_rare: bool) -> Difference | None:
         """Where a pass differs from a model of it, if a slip explains that; is_rare: more passes are as the model."""
-        one, two = self._items(number), self._items(model)
-        shorter = min(len(one), len(two))
-        head = _agreeing(one[:shorter], two[:shorter])
-        tail = min(_agreeing(one[::-1][:shorter], two[::-1][:shorter]), shorter - head)
-        differing = len(one) - head - tail, len(two) - head - tail
+        items, two = self._items(number), self._items(model)
+        shorter = min(len(items), len(two))
+        head = _agreeing(items[:shorter], two[:shorter])
+        tail = min(_agreeing(items[::-1][:shorter], two[::-1][:shorter]), shorter - head)
+        differing = len(items) - head - tail, len(two) - head - tail
         if not 0 < max(differing) <= _MOST_DIFFERING or head + tail < max(_LEAST_AGREEING, max(differing)):
             return None
         if not tail:
             return None
-        row, other = (int(self.passes.row[self.passes.first[which] + head]) for which in (number, model))
-        if self.trace.run.block[row] == self.trace.run.block[other] and differing[0] == differing[1]:
+        row, model_row = (int(self.passes.row[self.passes.first[which] + head]) for which in (number, model))
+        if self.trace.run.block[row] == self.trace.run.block[model_row] and differing[0] == differing[1]:
             return None
         if differing[0] == differing[1]:
-            here, there = one[head : head + differing[0]], two[head : head + differing[0]]
+            here, there = items[head : head + differing[0]], two[head : head + differing[0]]
             if np.abs(here - there).max() < _OTHER:
                 return None
-            explained = is_rare or self._is_slip(here, there, row, other)
+            explained = is_rare or self._is_slip(here, there, row, model_row)
         else:
             explained = sorted(differing) == [0, 1] and self._turns_at(number if differing[0] else model, head)
         if not explained:
             return None
         passes = self.passes
         first, last = (int(passes.row[ends[model]]) for ends in (passes.first, passes.last))
-        return Difference(row, other, differing[0] < differing[1], first, last)
+        return Difference(row, model_row, differing[0] < differing[1], first, last)
 
     def _turns_at(self, number: int, place: int) -> bool:
         """The pass turns where a block of it ends that the other one does not have: it is no point on a line."""

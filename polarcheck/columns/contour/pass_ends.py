@@ -47,9 +47,9 @@ class PassEnds(Columns, frozen=True):
         # An arc at the end leads away from a contour.
         leads_out &= ~trace.path.is_arc[moving[last]]
         below = trace.path.z[moving[last]] < self.workpiece.top - ROUNDING
-        found = (np.abs(start) > half - ROUNDING) & (np.abs(end) < half - _EDGE) & leads_out & below
-        found &= ~self._goes_back(out, start)
-        result[moving[last[found]]] = True
+        leaves = (np.abs(start) > half - ROUNDING) & (np.abs(end) < half - _EDGE) & leads_out & below
+        leaves &= ~self._goes_back(out, start)
+        result[moving[last[leaves]]] = True
         return result
 
     @property
@@ -66,8 +66,8 @@ class PassEnds(Columns, frozen=True):
     def _goes_back(self, out: Rows, start: Points) -> Mask:
         """The way out comes back to where the pass began: it runs in what the pass has cut."""
         path = self.trace.path
-        way = path.end[out] - path.start[out]
+        chord = path.end[out] - path.start[out]
         with np.errstate(invalid="ignore", divide="ignore"):
-            share = np.clip(((start - path.start[out]) * way.conj()).real / np.abs(way) ** 2, 0, 1)
-        apart = np.abs(start - path.start[out] - share * way)
+            share = np.clip(((start - path.start[out]) * chord.conj()).real / np.abs(chord) ** 2, 0, 1)
+        apart = np.abs(start - path.start[out] - share * chord)
         return np.asarray(apart <= np.nan_to_num(self.workpiece.radius[out]) / 2)

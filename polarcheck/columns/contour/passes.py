@@ -158,10 +158,10 @@ class Passes(Columns, frozen=True):
         """Directions in which each move begins and ends; not of length one."""
         turning = np.where(self.motion == Motion.CCW, 1j, -1j)
         is_arc = is_among(self.motion, (Motion.CW, Motion.CCW)) & ~np.isnan(self.center)
-        way = self.end - self.start
+        chord = self.end - self.start
         return (
-            np.where(is_arc, turning * (self.start - self.center), way),
-            np.where(is_arc, turning * (self.end - self.center), way),
+            np.where(is_arc, turning * (self.start - self.center), chord),
+            np.where(is_arc, turning * (self.end - self.center), chord),
         )
 
     @cached_property

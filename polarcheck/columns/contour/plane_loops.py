@@ -89,18 +89,20 @@ def smooth_share(loop: PlaneLoop, point: Points) -> float:
     point: where its blocks end.
     """
     last = len(loop.turns)
-    first = next((at for at in range(min(_LEADS, last - 2)) if abs(point[at] - point[last]) <= loop.tolerance), None)
+    first = next(
+        (index for index in range(min(_LEADS, last - 2)) if abs(point[index] - point[last]) <= loop.tolerance), None
+    )
     if first is None or np.count_nonzero(loop.turns[first:]) < _FEWEST_ARCS:
         return 0.0
     bulge = loop.bulges(point)[first:]
-    way = np.diff(point)[first:]
+    chord = np.diff(point)[first:]
     turned = 2 * np.arctan(bulge)
-    into, out = way * np.exp(1j * turned), way * np.exp(-1j * turned)
+    into, out = chord * np.exp(1j * turned), chord * np.exp(-1j * turned)
     turn = np.abs(np.angle(out * np.roll(into, 1).conj()))
-    beside = (loop.turns[first:] != 0) | (np.roll(loop.turns[first:], 1) != 0)
-    if np.count_nonzero(beside) < _FEWEST_ENDS or np.isnan(bulge).all():
+    at_arc = (loop.turns[first:] != 0) | (np.roll(loop.turns[first:], 1) != 0)
+    if np.count_nonzero(at_arc) < _FEWEST_ENDS or np.isnan(bulge).all():
         return 0.0
-    return float(np.count_nonzero(turn[beside] <= _SMOOTH) / np.count_nonzero(beside))
+    return float(np.count_nonzero(turn[at_arc] <= _SMOOTH) / np.count_nonzero(at_arc))
 
 
 def loops_of(trace: Trace) -> list[PlaneLoop]:
@@ -151,21 +153,29 @@ def _different(trace: Trace, rows: Rows, first: Rows, count: Rows) -> Iterator[P
     travels = np.flatnonzero(trace.path.travels)
     by_radius = trace.lengths.length_of(trace.machine.arcs.radius_word)
     to_center = np.nan_to_num(trace.path.center - trace.path.start)
-    work, known = 0, set[bytes]()
+    work, keys = 0, set[bytes]()
     for begin, size in zip(first.tolist(), count.tolist(), strict=True):
-        own = rows[begin : begin + size]
-        point = np.append(trace.path.start[own[:1]], trace.path.end[own])
-        motion = trace.axes.motion[own]
+        rows_of_loop = rows[begin : begin + size]
+        point = np.append(trace.path.start[rows_of_loop[:1]], trace.path.end[rows_of_loop])
+        motion = trace.axes.motion[rows_of_loop]
         turns = np.where(motion == Motion.CW, -1, np.where(motion == Motion.CCW, 1, 0)).astype(np.int64)
-        radius = np.where(turns != 0, by_radius[own], np.nan)
+        radius = np.where(turns != 0, by_radius[rows_of_loop], np.nan)
         key = np.round(point, 5).tobytes() + turns.tobytes() + radius.tobytes()
-        if key in known:
+        if key in keys:
             continue
-        known.add(key)
+        keys.add(key)
         work += size**2 + _WORK_OF_LOOP
         if work > _WORK:
             return
-        above = int(travels[max(int(np.searchsorted(travels, own[0])) - 1, 0)])
-        digit = complex(half[own[0]])
+        above = int(travels[max(int(np.searchsorted(travels, rows_of_loop[0])) - 1, 0)])
+        digit = complex(half[rows_of_loop[0]])
         tolerance = float(np.clip(_DIGITS * abs(digit), _SAME, _SAME_AT_MOST))
-        yield PlaneLoop(np.append(min(above, own[0]), own), point, turns, radius, to_center[own], tolerance, digit)
+        yield PlaneLoop(
+            np.append(min(above, rows_of_loop[0]), rows_of_loop),
+            point,
+            turns,
+            radius,
+            to_center[rows_of_loop],
+            tolerance,
+            digit,
+        )

@@ -48,16 +48,16 @@ class Regularity(Columns, frozen=True):
     @cached_property
     def x_readings(self) -> dict[int, XReading]:
         """By section how its contours are regular with X as the other of diameter and radius, and not as it is read."""
-        found: dict[int, XReading] = {}
+        by_section: dict[int, XReading] = {}
         objects: set[int] = set()
         for loop, written in self._loops:
             section = int(self.trace.mode.section[loop.row[-1]])
             reading = self._other_reading(loop, written)
             if reading is not None:
-                found.setdefault(section, reading)
+                by_section.setdefault(section, reading)
             elif written is not None and (written.order > _PLAIN_ORDER or smooth_share(loop, loop.point) == 1):
                 objects.add(section)
-        return {section: reading for section, reading in found.items() if section not in objects}
+        return {section: reading for section, reading in by_section.items() if section not in objects}
 
     def _other_reading(self, loop: PlaneLoop, written: Symmetry | None) -> XReading | None:
         """How a loop is regular with all of X twice or half as large."""
@@ -88,7 +88,7 @@ class Regularity(Columns, frozen=True):
     @cached_property
     def corrections(self) -> dict[int, Correction]:
         """By row what makes a contour regular."""
-        found: dict[int, Correction] = {}
+        by_row: dict[int, Correction] = {}
         for loop, written in self._loops:
             if written is not None and written.is_turned:
                 continue
@@ -97,8 +97,8 @@ class Regularity(Columns, frozen=True):
 
             correction = correction_of(self.trace, loop, written)
             if correction is not None:
-                found.setdefault(correction.row, correction)
-        return found
+                by_row.setdefault(correction.row, correction)
+        return by_row
 
     @cached_property
     def is_wrong(self) -> Mask:

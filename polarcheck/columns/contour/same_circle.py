@@ -72,18 +72,21 @@ class SameCircle(Columns, frozen=True):
         on_bar &= sense[passes.number[move]] == passes.motion[move]
         center[on_bar], radius[on_bar] = 0, at_bar[on_bar]
         near = on_bar & self._is_slip(move, radius)
-        beside = np.zeros(len(move), bool)
-        for other, joint, far in ((passes.beside[0][move], start, end), (passes.beside[1][move], end, start)):
+        adjacent = np.zeros(len(move), bool)
+        for neighbor, joint, far in ((passes.beside[0][move], start, end), (passes.beside[1][move], end, start)):
             known = (
-                (other >= 0) & passes.is_arc[other] & (passes.motion[other] == passes.motion[move]) & (other != move)
+                (neighbor >= 0)
+                & passes.is_arc[neighbor]
+                & (passes.motion[neighbor] == passes.motion[move])
+                & (neighbor != move)
             )
-            about = passes.center[other]
+            about = passes.center[neighbor]
             size = np.abs(joint - about)
             fits = known & (np.abs(np.abs(far - about) - size) <= _SAME) & (np.abs(about - passes.center[move]) > _SAME)
             # In a circle of two halves each of them lies on the circle of the other one.
             fits &= passes.beside[0][move] != passes.beside[1][move]
-            center[fits], radius[fits], beside[fits] = about[fits], size[fits], True
-        chosen = near | beside
+            center[fits], radius[fits], adjacent[fits] = about[fits], size[fits], True
+        chosen = near | adjacent
         return self._meant(move[chosen], center[chosen], radius[chosen])
 
     @cached_property
@@ -100,11 +103,11 @@ class SameCircle(Columns, frozen=True):
         on_bar = np.abs(np.abs(start) - at_bar[number]) <= _SAME
         on_bar &= (np.abs(np.abs(end) - at_bar[number]) <= _SAME) & (sense[number] != motion)
         chosen = on_bar & (np.abs(size - at_bar[number]) <= _SAME)
-        for other, far in ((passes.beside[0][move], end), (passes.beside[1][move], start)):
-            about = passes.center[other]
-            fits = (other >= 0) & passes.is_arc[other] & (passes.motion[other] != motion)
+        for neighbor, far in ((passes.beside[0][move], end), (passes.beside[1][move], start)):
+            about = passes.center[neighbor]
+            fits = (neighbor >= 0) & passes.is_arc[neighbor] & (passes.motion[neighbor] != motion)
             fits &= (np.abs(np.abs(far - about) - size) <= _SAME) & (np.abs(about - passes.center[move]) > _SAME)
-            joint = np.abs(passes.start[other] - about)
+            joint = np.abs(passes.start[neighbor] - about)
             chosen |= fits & (np.abs(joint - size) <= _SAME) & (passes.beside[0][move] != passes.beside[1][move])
         return trace.blocks.mask_of(passes.row[move[chosen]])
 
@@ -126,10 +129,10 @@ class SameCircle(Columns, frozen=True):
         slip = np.abs(ratio - 1) <= _NEAR
         slip |= (np.abs(ratio[:, None] - _FACTORS) <= 2e-3 * _FACTORS).any(axis=1)
         scale = self.trace.lengths.scale[passes.row[move]]
-        for at in np.flatnonzero(~slip & ~np.isnan(radius)).tolist()[:100]:
-            unit = float(scale[at])
-            found = slip_of(plain_number(written[at] / unit), float(radius[at]) / unit, _SAME / unit)
-            slip[at] = found is not None and found.plain
+        for index in np.flatnonzero(~slip & ~np.isnan(radius)).tolist()[:100]:
+            unit = float(scale[index])
+            slip_found = slip_of(plain_number(written[index] / unit), float(radius[index]) / unit, _SAME / unit)
+            slip[index] = slip_found is not None and slip_found.plain
         return np.asarray(slip)
 
     @cached_property
@@ -137,29 +140,33 @@ class SameCircle(Columns, frozen=True):
         """Arcs of one R, one after the other, on the circle through whose ends that R is mistaken by a factor."""
         passes = self.passes
         following = passes.beside[1]
-        judged = self._judged
-        one = np.flatnonzero(judged & (following >= 0))
-        two = following[one]
+        candidates = self._judged
+        former = np.flatnonzero(candidates & (following >= 0))
+        two = following[former]
         size = np.abs(passes.start - passes.center)
-        alike = judged[two] & (passes.motion[one] == passes.motion[two]) & (np.abs(size[one] - size[two]) <= _SAME)
-        alike &= (np.abs(passes.turns[1][one]) > _CORNER) & (one != two)
-        one, two = one[alike], two[alike]
-        if not len(one):
+        alike = (
+            candidates[two]
+            & (passes.motion[former] == passes.motion[two])
+            & (np.abs(size[former] - size[two]) <= _SAME)
+        )
+        alike &= (np.abs(passes.turns[1][former]) > _CORNER) & (former != two)
+        former, two = former[alike], two[alike]
+        if not len(former):
             return _nothing()
-        center = _circumcenter(passes.start[one], passes.end[one], passes.end[two])
+        center = _circumcenter(passes.start[former], passes.end[former], passes.end[two])
         # Two halves of a circle.
-        halves = np.abs(passes.start[one] - passes.end[two]) <= _SAME
-        center = np.where(halves, (passes.start[one] + passes.end[one]) / 2, center)
-        radius = np.abs(passes.end[one] - center)
-        ratio = _ratio(size[one], radius)
+        halves = np.abs(passes.start[former] - passes.end[two]) <= _SAME
+        center = np.where(halves, (passes.start[former] + passes.end[former]) / 2, center)
+        radius = np.abs(passes.end[former] - center)
+        ratio = _ratio(size[former], radius)
         chosen = (np.abs(ratio[:, None] - _FACTORS) <= 2e-3 * _FACTORS).any(axis=1)
         # The sides of a rectangle may bulge; a circle is parted at round angles.
-        spoke = np.degrees(np.angle(passes.end[one] - center))
+        spoke = np.degrees(np.angle(passes.end[former] - center))
         chosen &= np.abs(spoke / _ROUND - np.rint(spoke / _ROUND)) * _ROUND < _ROUNDING
         # The way round the circle is that of the arcs.
-        turn = cross(passes.end[one] - passes.start[one], passes.end[two] - passes.end[one])
-        chosen &= halves | ((turn > 0) == (passes.motion[one] == Motion.CCW))
-        move = np.concatenate([one[chosen], two[chosen]])
+        turn = cross(passes.end[former] - passes.start[former], passes.end[two] - passes.end[former])
+        chosen &= halves | ((turn > 0) == (passes.motion[former] == Motion.CCW))
+        move = np.concatenate([former[chosen], two[chosen]])
         both_center, both_radius = np.tile(center[chosen], 2), np.tile(radius[chosen], 2)
         if not len(move):
             return _nothing()
@@ -181,13 +188,13 @@ def _ratio(written: Floats, radius: Floats) -> Floats:
         return np.asarray(written / radius)
 
 
-def _circumcenter(one: Points, two: Points, three: Points) -> Points:
+def _circumcenter(first_point: Points, two: Points, three: Points) -> Points:
     """The center of the circle through three points; NaN where they lie on a line."""
-    first, second = two - one, three - one
+    first, second = two - first_point, three - first_point
     area = 2 * cross(first, second)
     with np.errstate(divide="ignore", invalid="ignore"):
         off = (np.abs(first) ** 2 * second - np.abs(second) ** 2 * first) * (-1j) / area
-    center: Points = one + off
+    center: Points = first_point + off
     return center
 
 

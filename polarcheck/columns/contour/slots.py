@@ -33,16 +33,16 @@ class Slots(Columns, frozen=True):
         from polarcheck.geometry.overcuts import other_loops
         from polarcheck.geometry.polygons.finished_part import Contours
 
-        walls, left = self.overcuts.walls
+        walls, material_left = self.overcuts.walls
         chosen = several[walls.row]
-        walls, left = walls[chosen], left[chosen]
+        walls, material_left = walls[chosen], material_left[chosen]
         path, is_ramp = self.overcuts.path
-        beside = np.isin(path.loop, walls.loop) & ~self.overcuts.objected[path.row]
-        path, is_ramp = path[beside], is_ramp[beside]
+        of_walls = np.isin(path.loop, walls.loop) & ~self.overcuts.objected[path.row]
+        path, is_ramp = path[of_walls], is_ramp[of_walls]
         radius = np.abs(self.trace.compensation.radius[path.row])
         no_rows = np.zeros(0, np.int64)
         tolerance = self.trace.machine.compensation.overcut_tolerance
-        contours = Contours(walls, left, no_rows, no_rows, np.zeros(0), self.overcuts.bar, tolerance)
+        contours = Contours(walls, material_left, no_rows, no_rows, np.zeros(0), self.overcuts.bar, tolerance)
         cuts, tangled = other_loops.cuts_into_others(contours, level[walls.row], path, radius, is_ramp)
         return CutsOfRows.of(cuts, path, walls), is_ramp[cuts.move], tangled
 

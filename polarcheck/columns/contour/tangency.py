@@ -38,7 +38,7 @@ _STEP, _STEP_INCH = 0.5, 1 / 32
 _MOST = 2000
 
 
-class _Judged(NamedTuple):
+class _Candidates(NamedTuple):
     """
     The judged arcs, n of them: circles with a move on either side.
 
@@ -62,7 +62,7 @@ class Tangency(Columns, frozen=True):
     same_circle: SameCircle
 
     @cached_property
-    def _judged(self) -> _Judged:
+    def _judged(self) -> _Candidates:
         passes, arcs = self.passes, self.arcs
         previous, following = passes.beside
         is_circle = ~(arcs.is_no_circle | arcs.ends_at_start)[passes.row] & ~np.isnan(passes.center)
@@ -86,16 +86,16 @@ class Tangency(Columns, frozen=True):
         center = start + 1j * np.sign(half) * size * way
         # Half a circle is one by either sign.
         signed = np.where(np.abs(half) > np.pi / 2 + fits_within, -size, size)
-        return _Judged(move, tolerance, signed, center)
+        return _Candidates(move, tolerance, signed, center)
 
     # ---- as it is written ----
 
     @cached_property
     def is_tangent(self) -> Mask:
         """Arcs that are tangent to the moves on both sides."""
-        judged, (into, out) = self._judged, self.passes.turns
-        turn = np.maximum(np.abs(into), np.abs(out))[judged.move]
-        return self._column(judged.move[turn <= judged.tolerance])
+        candidates, (into, out) = self._judged, self.passes.turns
+        turn = np.maximum(np.abs(into), np.abs(out))[candidates.move]
+        return self._column(candidates.move[turn <= candidates.tolerance])
 
     def _column(self, moves: Rows) -> Mask:
         return self.trace.blocks.mask_of(self.passes.row[moves])
@@ -105,84 +105,89 @@ class Tangency(Columns, frozen=True):
     @cached_property
     def _misfits(self) -> Rows:
         """The judged arcs, by their number there, for which another arc is meant."""
-        passes, judged = self.passes, self._judged
-        into, out = (np.abs(turn[judged.move]) for turn in passes.turns)
+        passes, candidates = self.passes, self._judged
+        into, out = (np.abs(turn[candidates.move]) for turn in passes.turns)
         corner = np.minimum(into, out)
-        candidate = ~np.isnan(judged.radius) & (corner > np.maximum(_CORNER, _CLEARLY * judged.tolerance))
+        candidate = ~np.isnan(candidates.radius) & (corner > np.maximum(_CORNER, _CLEARLY * candidates.tolerance))
         # Arcs about the center of C are what is left of the bar.
-        candidate &= np.abs(passes.center[judged.move]) > _SAME
-        number = passes.number[judged.move]
+        candidate &= np.abs(passes.center[candidates.move]) > _SAME
+        number = passes.number[candidates.move]
         chosen = [self._misfits_of(which, candidate) for which in different(number[candidate])[:_MOST].tolist()]
         return np.concatenate([np.zeros(0, np.int64), *chosen])
 
     def _misfits_of(self, number: int, candidate: Mask) -> Rows:
         """Of the candidates of a pass those for which the rest of the pass shows that another arc is meant."""
-        passes, judged = self.passes, self._judged
-        begin, until = np.searchsorted(passes.number[judged.move], (number, number + 1)).tolist()
-        at = np.arange(begin, until)
-        wrong = at[candidate[begin:until]]
-        written, size = passes.center[judged.move], self._written[judged.move]
+        passes, candidates = self.passes, self._judged
+        begin, until = np.searchsorted(passes.number[candidates.move], (number, number + 1)).tolist()
+        of_contour = np.arange(begin, until)
+        wrong = of_contour[candidate[begin:until]]
+        written, size = passes.center[candidates.move], self._written[candidates.move]
         single = [
             index
             for index in wrong.tolist()
             if not _shares_circle(
                 written[index],
                 abs(size[index]),
-                np.delete(written[at], index - begin),
-                np.delete(np.abs(size[at]), index - begin),
+                np.delete(written[of_contour], index - begin),
+                np.delete(np.abs(size[of_contour]), index - begin),
             )
         ]
         if not single:
             return np.zeros(0, np.int64)
-        limit = judged.tolerance[at]
-        previous, following = (beside[judged.move[at]] for beside in passes.beside)
-        into, out = (np.abs(turn[judged.move[at]]) <= limit for turn in passes.turns)
+        limit = candidates.tolerance[of_contour]
+        previous, following = (beside[candidates.move[of_contour]] for beside in passes.beside)
+        into, out = (np.abs(turn[candidates.move[of_contour]]) <= limit for turn in passes.turns)
         tangent_before = into & out
-        if not tangent_before.any() and len(single) == len(at) > 1:
-            return np.array(single) if self._all_mistaken(at) else np.zeros(0, np.int64)
+        if not tangent_before.any() and len(single) == len(of_contour) > 1:
+            return np.array(single) if self._all_mistaken(of_contour) else np.zeros(0, np.int64)
         chosen = []
         for index in single:
-            move = judged.move[index]
-            tangent = (into | (previous == move)) & (out | (following == move)) & (at != index)
-            others, corners = int(tangent.sum()), len(at) - 1 - int(tangent.sum())
-            needed, had = float(judged.radius[index]), float(size[index])
+            move = candidates.move[index]
+            tangent = (into | (previous == move)) & (out | (following == move)) & (of_contour != index)
+            tangent_count, corners = int(tangent.sum()), len(of_contour) - 1 - int(tangent.sum())
+            needed, had = float(candidates.radius[index]), float(size[index])
             near = self._tolerance_of(index)
             is_sign = abs(needed + had) <= near
-            is_like = bool((np.abs(size[at][tangent] - needed) <= near).any())
+            is_like = bool((np.abs(size[of_contour][tangent] - needed) <= near).any())
             is_factor = any(abs(abs(needed) * factor - abs(had)) <= near * factor for factor in _FACTORS)
             is_slip = is_factor or self._is_mistyped(index, near)
-            if others >= 2:
-                shown = is_sign or corners == 0 or (is_slip and others >= corners) or (is_like and others > corners)
+            if tangent_count >= 2:
+                is_reported = (
+                    is_sign
+                    or corners == 0
+                    or (is_slip and tangent_count >= corners)
+                    or (is_like and tangent_count > corners)
+                )
             else:
                 # One end of a slot may be flatter than the other one on purpose.
                 sharp = min(abs(passes.turns[0][move]), abs(passes.turns[1][move])) > _SHARP
-                shown = is_sign or (is_slip and is_like) or (is_factor and corners == 0 and sharp)
-            if shown:
+                is_reported = is_sign or (is_slip and is_like) or (is_factor and corners == 0 and sharp)
+            if is_reported:
                 chosen.append((needed < 0, index))
         # Of two halves of a circle each would fit the other one: the shorter way round is meant.
         return np.array([index for is_long, index in chosen if not is_long or len(chosen) == 1], np.int64)
 
-    def _all_mistaken(self, at: Rows) -> bool:
+    def _all_mistaken(self, chosen: Rows) -> bool:
         """No arc of a pass is tangent, and all would be with an R that is mistaken in the same way."""
-        judged = self._judged
-        needed, had = judged.radius[at], self._written[judged.move[at]]
+        candidates = self._judged
+        needed, had = candidates.radius[chosen], self._written[candidates.move[chosen]]
         ratio = np.abs(had / needed)
-        near = max(self._tolerance_of(index) for index in at.tolist())
+        near = max(self._tolerance_of(index) for index in chosen.tolist())
         if np.ptp(ratio) > 2 * near / np.abs(needed).min():
             return False
         if (np.abs(ratio.mean() - np.array(_FACTORS)) <= 2 * near / np.abs(needed).min() * ratio.mean()).any():
             return True
-        row = self.passes.row[judged.move[at[0]]]
+        row = self.passes.row[candidates.move[chosen[0]]]
         step = _STEP_INCH if self.trace.lengths.units[row] == Units.INCH else _STEP
         whole = needed / self.trace.lengths.scale[row] / step
-        return bool(len(at) > 2 and np.ptp(had) <= near and (np.abs(whole - np.rint(whole)) <= near / step).all())
+        return bool(len(chosen) > 2 and np.ptp(had) <= near and (np.abs(whole - np.rint(whole)) <= near / step).all())
 
     def _tolerance_of(self, index: int) -> float:
         """What rounding leaves open of the R that would be tangent [mm]."""
-        judged, passes = self._judged, self.passes
-        move, needed = judged.move[index], abs(float(judged.radius[index]))
+        candidates, passes = self._judged, self.passes
+        move, needed = candidates.move[index], abs(float(candidates.radius[index]))
         half = np.arcsin(min(1.0, abs(passes.end[move] - passes.start[move]) / 2 / needed))
-        slack = min(float(judged.tolerance[index]), 0.05)
+        slack = min(float(candidates.tolerance[index]), 0.05)
         return float(2 * passes.half_of_last_digit[move] / np.sin(half) + needed * slack / np.tan(half) + 1e-3)
 
     def _is_mistyped(self, index: int, near: float) -> bool:
@@ -203,9 +208,9 @@ class Tangency(Columns, frozen=True):
     @cached_property
     def _meant(self) -> Meant:
         """All arcs for which another one is meant: on the circle of other arcs, else tangent to its neighbours."""
-        judged, chosen = self._judged, self._misfits
+        candidates, chosen = self._judged, self._misfits
         tolerance = np.array([self._tolerance_of(index) for index in chosen.tolist()])
-        tangent = Meant(judged.move[chosen], judged.radius[chosen], judged.center[chosen], tolerance)
+        tangent = Meant(candidates.move[chosen], candidates.radius[chosen], candidates.center[chosen], tolerance)
         parts = [self.same_circle.mistaken_together, self.same_circle.leaves_circle, tangent]
         parts = [part for part in parts if len(part.move)] or [tangent]
         if len(parts) == 1:

@@ -80,15 +80,15 @@ class UncompensatedCuts(Columns, frozen=True):
         )
         trace, (walls, left) = self.trace, self.overcuts.walls
         radius = np.abs(trace.compensation.radius[row])
-        known = (radius > ADJUSTMENT + ROUNDING) & ~np.isnan(z + np.abs(start) + np.abs(end))
+        usable = (radius > ADJUSTMENT + ROUNDING) & ~np.isnan(z + np.abs(start) + np.abs(end))
         # At Z0 or above, a move to the contour is in air.
-        known = np.flatnonzero(known & ((z < -ROUNDING) | self._is_behind_contour[row]))
-        if not len(known) or not len(walls):
+        usable = np.flatnonzero(usable & ((z < -ROUNDING) | self._is_behind_contour[row]))
+        if not len(usable) or not len(walls):
             return nothing
         kind = np.where(np.isnan(center), Motion.LINE, trace.axes.motion[row]).astype(np.int16)
         plunges = np.abs(end - start) == 0
         plunges &= np.isnan(center)
-        bare = Bare(Curves(start, end, center, kind, section, row), z, radius, plunges)[known]
+        bare = Bare(Curves(start, end, center, kind, section, row), z, radius, plunges)[usable]
         loops = flat_loops(walls, trace.mode.section[walls.row], trace.path.z[walls.row])
         bare = bare[may_reach(loops, bare)]
         if not len(bare.z):
@@ -126,8 +126,8 @@ class UncompensatedCuts(Columns, frozen=True):
             & ~(trace.path.z >= before(trace.path.z, trace.blocks.starts, np.nan))
         )
         row = np.flatnonzero(down)
-        place = trace.path.end[row]
-        return row, place, place, np.full(len(row), np.nan + 0j), trace.path.z[row], trace.mode.section[row]
+        point = trace.path.end[row]
+        return row, point, point, np.full(len(row), np.nan + 0j), trace.path.z[row], trace.mode.section[row]
 
     @property
     def _after_the_mode(self) -> tuple[Rows, Points, Points, Points, Floats, Rows]:
@@ -149,12 +149,12 @@ class UncompensatedCuts(Columns, frozen=True):
             self._has_contour & (trace.mode.section < 0) & (trace.compensation.side == trace.compensation.side_before)
         )
         last, row = last[alone[row]], row[alone[row]]
-        place = trace.path.end[last]
+        point = trace.path.end[last]
         with np.errstate(invalid="ignore"):  # at the center the direction is not known
-            direction = place / np.abs(place)
+            direction = point / np.abs(point)
         return (
             row,
-            place,
+            point,
             direction * trace.path.x[row],
             np.full(len(row), np.nan + 0j),
             trace.path.z[row],

@@ -43,9 +43,11 @@ def time_of_dwells(trace: Trace) -> Floats:
     Without any word that is a time somewhere there is none, but an exact stop. Of other rows it means nothing.
     """
     words = trace.machine.feed.dwell_words
-    time, known = _sums(trace, words)
+    time, word_count = _sums(trace, words)
     _, foreign = _sums(trace, dict.fromkeys((word for word in _OF_ANY_CONTROL if word not in words), ""))
-    is_open = (known > 1) | ((known == 0) & ((foreign > 0) | _has_other_words(trace, known + foreign == 0)))
+    is_open = (word_count > 1) | (
+        (word_count == 0) & ((foreign > 0) | _has_other_words(trace, word_count + foreign == 0))
+    )
     return np.where(is_open | in_turns(trace) | (time < 0), np.nan, time)
 
 
@@ -53,32 +55,32 @@ def _sums(trace: Trace, words: Mapping[str, str]) -> tuple[Floats, Rows]:
     """Per row the time of the last of these words [s], and how many of them there are."""
     time, count = np.zeros(len(trace)), np.zeros(len(trace), np.int64)
     for address, unit in words.items():
-        at = trace.blocks.word_indices(address)
-        row = trace.run.row[at]
-        time[row] = _seconds(trace, unit, at)
+        index = trace.blocks.word_indices(address)
+        row = trace.run.row[index]
+        time[row] = _seconds(trace, unit, index)
         np.add.at(count, row, 1)
     return time, count
 
 
-def _seconds(trace: Trace, unit: str, at: Rows) -> Floats:
+def _seconds(trace: Trace, unit: str, index: Rows) -> Floats:
     """What these words are in seconds."""
     words, control = trace.run.words, trace.machine.control
     with_point, without_point = _SECONDS.get(unit, (np.nan, np.nan))
     if unit == "as-lengths":
         with_point = 1.0
         without_point = 1.0 if control.number_without_point == "whole-unit" else control.least_increment
-    seconds = np.where(words.has_point[at], with_point, without_point) * words.value[at]
+    seconds = np.where(words.has_point[index], with_point, without_point) * words.value[index]
     # A calculated value has no point to be looked at: P#1 is a whole number of thousandths.
-    is_calculated = words.has_point[at] & (words.digits[at] == 0)
+    is_calculated = words.has_point[index] & (words.digits[index] == 0)
     if unit == "thousandths":
-        seconds = np.where(is_calculated, 0.001 * np.rint(words.value[at]), seconds)
+        seconds = np.where(is_calculated, 0.001 * np.rint(words.value[index]), seconds)
     return np.where(is_calculated & (unit == "thousandths-or-seconds"), np.nan, seconds)
 
 
 def _has_other_words(trace: Trace, rows: Mask) -> Mask:
     """Of the dwells in these rows those with a word that is not read, as S2=30."""
-    blocks, found = trace.text.blocks, np.zeros(len(trace), bool)
+    blocks, has_equals = trace.text.blocks, np.zeros(len(trace), bool)
     for row in np.flatnonzero(dwells(trace) & rows).tolist():
         block = int(trace.run.block[row])
-        found[row] = "=" in trace.text.source.excerpt(int(blocks.start[block]), int(blocks.end[block]))
-    return found
+        has_equals[row] = "=" in trace.text.source.excerpt(int(blocks.start[block]), int(blocks.end[block]))
+    return has_equals

@@ -83,8 +83,8 @@ class Dynamics:
     def pieces(self) -> automatic_override.Pieces:
         """The moves on which it acts, parted where it begins and ends; `move` is of all moves."""
         chosen = self.moves[self.is_slowed]
-        found = automatic_override.pieces(*chosen.shape, chosen.plane_feed, self.c_limit)
-        return msgspec.structs.replace(found, move=np.flatnonzero(self.is_slowed)[found.move])
+        with_override = automatic_override.pieces(*chosen.shape, chosen.plane_feed, self.c_limit)
+        return msgspec.structs.replace(with_override, move=np.flatnonzero(self.is_slowed)[with_override.move])
 
     def _largest(self, plain: Floats, name: str) -> Floats:
         """Per move the largest of its pieces; NaN in rapid traverse."""
@@ -180,7 +180,7 @@ class Dynamics:
         limits = self.trace.machine.limits
         rates = (limits.x_rapid, limits.z_rapid, limits.c_rapid)
         ways = self._way(rows)
-        times = [np.where(way <= ZERO, 0.0, 60 * way / rate) for way, rate in zip(ways, rates, strict=True)]
+        times = [np.where(length <= ZERO, 0.0, 60 * length / rate) for length, rate in zip(ways, rates, strict=True)]
         longest: Floats = np.max(np.stack(times), axis=0) if len(rows) else np.zeros(0)
         return longest
 
@@ -252,7 +252,7 @@ class Dynamics:
         """How long these rows take together."""
         known = float(np.nansum(self.time[rows]))
         hit = ((reason, rows[mask[rows]]) for reason, mask in self.unknown)
-        return Times(known, tuple((reason, len(found), int(found[0])) for reason, found in hit if len(found)))
+        return Times(known, tuple((reason, len(limited), int(limited[0])) for reason, limited in hit if len(limited)))
 
     @cached_property
     def section_time(self) -> Floats:

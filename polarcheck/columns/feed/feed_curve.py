@@ -43,21 +43,21 @@ def feed_curve(dynamics: Dynamics) -> FeedCurve:
     foot = -lines_from_center(moves.start, moves.end).before
     nearest = np.where(spokes.is_arc, 0.0, np.clip(foot, 0.0, spokes.length))
     even = np.linspace(0.0, 1.0, _POINTS)[:, None] * spokes.length
-    way = np.sort(np.concatenate((even, nearest[None])), axis=0)
-    turn = np.degrees(np.abs(c_per_way(*spokes.at(way))))
-    turn = np.where(way == way, turn, np.nan)
+    distance = np.sort(np.concatenate((even, nearest[None])), axis=0)
+    turn = np.degrees(np.abs(c_per_way(*spokes.at(distance))))
+    turn = np.where(distance == distance, turn, np.nan)
     allowed = np.where(np.isnan(dynamics.c_limit), np.inf, dynamics.c_limit / turn)
-    feed = np.fmin(np.broadcast_to(moves.plane_feed, way.shape), allowed)
-    passed = np.diff(way, axis=0) * (1 / feed[1:] + 1 / feed[:-1])
+    feed = np.fmin(np.broadcast_to(moves.plane_feed, distance.shape), allowed)
+    passed = np.diff(distance, axis=0) * (1 / feed[1:] + 1 / feed[:-1])
     share = np.concatenate((np.zeros((1, len(moves))), np.cumsum(passed, axis=0)))
     share = np.where(share[-1] > 0, share / share[-1], 0.0)
     rate = np.where(np.isnan(feed), np.nan, np.where(feed == 0, dynamics.c_limit, turn * feed))
     time = _begun(dynamics, moves.row, whole) + share * whole
-    is_new = np.concatenate((np.ones((1, len(moves)), bool), np.diff(way, axis=0) > 0))
+    is_new = np.concatenate((np.ones((1, len(moves)), bool), np.diff(distance, axis=0) > 0))
     changes = (turn.max(axis=0) - turn.min(axis=0)) * moves.plane_feed > _LITTLE * rate.max(axis=0)
     is_new[1:-1] &= changes
     is_new = is_new.T
-    row = np.repeat(moves.row, len(way)).reshape(is_new.shape)
+    row = np.repeat(moves.row, len(distance)).reshape(is_new.shape)
     feed = feed / np.where(moves.plane_share > 0, moves.plane_share, np.nan)
     return FeedCurve(row[is_new], time.T[is_new], feed.T[is_new], rate.T[is_new])
 

@@ -84,8 +84,8 @@ class FeedRanges:
     def too_high_for_cut(self) -> Mask:
         """Moves along the contour that cut, at an F above the range for cutting."""
         trace = self.trace
-        asked = self._on_contour & self._above(self.limits.cutting_maximum)
-        return asked & self.cuts_contour if asked.any() else np.zeros(len(trace), bool)
+        above = self._on_contour & self._above(self.limits.cutting_maximum)
+        return above & self.cuts_contour if above.any() else np.zeros(len(trace), bool)
 
     @cached_property
     def cuts_contour(self) -> Mask:

@@ -41,9 +41,9 @@ class Feedrate(Columns, frozen=True):
     def feed_word(self) -> Rows:
         """Where in the file the F in force is written, its first character; -1 before the first."""
         words = self.blocks.word_indices("F")
-        at = np.full(len(self.run), -1, np.int64)
-        at[self.run.row[words]] = self.run.words.start[words]
-        return fill_down(at, (self.blocks.has("F") & self._takes_feed) | self.blocks.starts, -1)
+        start = np.full(len(self.run), -1, np.int64)
+        start[self.run.row[words]] = self.run.words.start[words]
+        return fill_down(start, (self.blocks.has("F") & self._takes_feed) | self.blocks.starts, -1)
 
     @cached_property
     def _takes_feed(self) -> Mask:

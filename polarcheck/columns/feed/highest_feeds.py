@@ -52,19 +52,19 @@ class HighestFeeds(Columns, frozen=True):
             np.where(moves.known, of(*moves.shape, moves.plane_share), np.nan)
             for of in (rates.c_acceleration, rates.x_feed, rates.x_acceleration)
         )
-        found = np.full((len(LIMITS), len(trace)), np.inf)
-        found[0] = self.dynamics.tool_center.feed_allowed
+        rows_of_limits = np.full((len(LIMITS), len(trace)), np.inf)
+        rows_of_limits[0] = self.dynamics.tool_center.feed_allowed
         with np.errstate(divide="ignore"):  # what does not turn C, or move X, is not limited by it
             if not np.isnan(limits.c_acceleration):
-                found[1] = self._lowest(np.sqrt(limits.c_acceleration / c_bend))
+                rows_of_limits[1] = self._lowest(np.sqrt(limits.c_acceleration / c_bend))
             if not np.isnan(limits.x_feed):
-                found[2] = self._lowest(limits.x_feed / x_share)
+                rows_of_limits[2] = self._lowest(limits.x_feed / x_share)
             if not np.isnan(limits.x_acceleration):
-                found[3] = self._lowest(np.sqrt(limits.x_acceleration / x_bend))
+                rows_of_limits[3] = self._lowest(np.sqrt(limits.x_acceleration / x_bend))
         if not np.isnan(limits.polar_feed):
-            found[4] = limits.polar_feed
-        found[:, ~self.cuts] = np.inf
-        return found
+            rows_of_limits[4] = limits.polar_feed
+        rows_of_limits[:, ~self.cuts] = np.inf
+        return rows_of_limits
 
     def _lowest(self, feed: Floats) -> Floats:
         return per_row(feed, self.dynamics.moves, len(self.trace), np.inf, largest=False)

@@ -247,7 +247,7 @@ class Feeds(Columns, frozen=True):
             return repeated(np.float64(np.inf), len(self.trace))
         return self._feed_within(self.tool_center.x_acceleration, limit)
 
-    def _feed_within(self, asked: Floats, limit: float) -> Floats:
+    def _feed_within(self, needed: Floats, limit: float) -> Floats:
         trace = self.trace
-        share = np.divide(limit, asked, out=np.ones(len(trace)), where=~(asked <= limit))
+        share = np.divide(limit, needed, out=np.ones(len(trace)), where=~(needed <= limit))
         return np.asarray(trace.feedrate.feed * np.sqrt(share))

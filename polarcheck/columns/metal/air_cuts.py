@@ -225,25 +225,31 @@ class AirCuts(Columns, frozen=True):
         tool = trace.tools.tool_called[trace.mode.sections.enter]
 
         def sums(section: Rows, *columns: NDArray[Any]) -> list[Floats]:
-            parts = [part for one in columns for part in ((one.real, one.imag) if np.iscomplexobj(one) else (one,))]
+            parts = [
+                part
+                for column in columns
+                for part in ((column.real, column.imag) if np.iscomplexobj(column) else (column,))
+            ]
             return [np.rint(np.bincount(section, weights=part, minlength=count) / _SAME) for part in parts]
 
         # Most sections differ in the number or the depth of their moves: the others alone are compared by their places.
-        keys = np.stack([moves, tool, *sums(section, trace.path.z[rows] * _place(section))], axis=1).astype(np.float64)
+        keys = np.stack([moves, tool, *sums(section, trace.path.z[rows] * _direction(section))], axis=1).astype(
+            np.float64
+        )
         alike = _groups(keys)
         if not alike:
             return []
         kept = np.zeros(count, bool)
         kept[np.concatenate(alike)] = True
         rows, section = rows[kept[section]], section[kept[section]]
-        path, place = trace.path, _place(section)
+        path, direction = trace.path, _direction(section)
         more = sums(
             section,
             path.start[rows],
-            path.end[rows] * place,
-            np.nan_to_num(path.center[rows]) * place,
-            np.nan_to_num(trace.feedrate.feed[rows]) * place,
-            trace.axes.motion[rows] * place,
+            path.end[rows] * direction,
+            np.nan_to_num(path.center[rows]) * direction,
+            np.nan_to_num(trace.feedrate.feed[rows]) * direction,
+            trace.axes.motion[rows] * direction,
         )
         return _groups(np.concatenate([keys, np.stack(more, axis=1)], axis=1))
 
@@ -264,7 +270,7 @@ class AirCuts(Columns, frozen=True):
         return np.asarray(result)
 
 
-def _place(section: Rows) -> Rows:
+def _direction(section: Rows) -> Rows:
     """The number of each element within its section, from 1; section rises."""
     return np.arange(1, len(section) + 1) - np.searchsorted(section, section)
 

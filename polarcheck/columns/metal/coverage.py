@@ -197,7 +197,7 @@ class Coverage(Columns, frozen=True):
         ]
         if not len(corners.loop):
             return nothing, skipped_loops
-        left = _writable_columns(len(self.trace))
+        columns = _writable_columns(len(self.trace))
         hits = ribs(
             part,
             corners,
@@ -207,8 +207,8 @@ class Coverage(Columns, frozen=True):
             checked.program,
             self.swept,
         )
-        left.height[hits.row], left.width[hits.row], left.place[hits.row] = hits.height, hits.width, hits.place
-        return left, SkippedLoops.of({SkipReason.PATHS_TOO_LONG: checked.number[hits.given_up]})
+        columns.height[hits.row], columns.width[hits.row], columns.place[hits.row] = hits.height, hits.width, hits.place
+        return columns, SkippedLoops.of({SkipReason.PATHS_TOO_LONG: checked.number[hits.given_up]})
 
     def _may_be_removed(self, checked: _CheckedLoops) -> Mask:
         """True for loops whose material a tool of unknown R or on an unknown path of the program may remove."""
@@ -245,9 +245,16 @@ class Coverage(Columns, frozen=True):
         chords = segments(path, trace.machine.compensation.overcut_tolerance)
         row = path.row[chords.move]
         z = np.fmin(trace.path.z, before(trace.path.z, trace.blocks.starts, np.nan))
-        known = ~np.isnan(self._radius[row])
-        row = row[known]
-        return Swept(chords.start[known], chords.end[known], row, self._radius[row], z[row], trace.blocks.program[row])
+        with_radius = ~np.isnan(self._radius[row])
+        row = row[with_radius]
+        return Swept(
+            chords.start[with_radius],
+            chords.end[with_radius],
+            row,
+            self._radius[row],
+            z[row],
+            trace.blocks.program[row],
+        )
 
     # ---- strips ----
 
@@ -266,7 +273,7 @@ class Coverage(Columns, frozen=True):
     @cached_property
     def _strips(self) -> tuple[Left, SkippedLoops]:
         """The strips, and the loops that are not searched for strips."""
-        left = _writable_columns(len(self.trace)) if self._levels else _nothing_left(len(self.trace))
+        thickest = _writable_columns(len(self.trace)) if self._levels else _nothing_left(len(self.trace))
         skipped = [SkippedLoops.of({})]
         for level in self._levels:
             keep_time()
@@ -275,13 +282,13 @@ class Coverage(Columns, frozen=True):
                 skipped.append(SkippedLoops.of({hits: self._checked_numbers[level]}))
                 continue
             for strip in hits:
-                if strip.thickness > left.height[strip.row]:
-                    left.height[strip.row], left.place[strip.row] = strip.thickness, strip.place
+                if strip.thickness > thickest.height[strip.row]:
+                    thickest.height[strip.row], thickest.place[strip.row] = strip.thickness, strip.place
         section = self.trace.mode.whole_section
-        for number in different(section[left.height > 0]):
-            rows = np.flatnonzero((section == number) & (left.height > 0))
-            left.height[rows[rows != rows[np.argmax(left.height[rows])]]] = 0
-        return left, SkippedLoops.concatenated(skipped)
+        for number in different(section[thickest.height > 0]):
+            rows = np.flatnonzero((section == number) & (thickest.height > 0))
+            thickest.height[rows[rows != rows[np.argmax(thickest.height[rows])]]] = 0
+        return thickest, SkippedLoops.concatenated(skipped)
 
     @cached_property
     def _levels(self) -> list[Rows]:

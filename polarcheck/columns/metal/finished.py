@@ -154,7 +154,7 @@ class Finished(Columns, frozen=True):
         alone = joined.tangled or not len(joined.outline)
         return None if alone else joined._replace(sections=sections, section=sections[0], angle=levels[0].angle)
 
-    def _levels_of(self, walls: Curves, left: Mask, level: Rows) -> list[Level]:
+    def _levels_of(self, walls: Curves, material_left: Mask, level: Rows) -> list[Level]:
         if not len(walls):
             return []
         from polarcheck.geometry.polygons.finished_part import Contours, finished_parts
@@ -162,23 +162,25 @@ class Finished(Columns, frozen=True):
         trace = self.trace
         # Levels in the order in which the program comes to them.
         _, first, level = np.unique(level, return_index=True, return_inverse=True)
-        place = np.argsort(np.argsort(first))[level]
+        rank = np.argsort(np.argsort(first))[level]
         radius = np.zeros(len(first))
-        np.maximum.at(radius, place, np.nan_to_num(np.abs(trace.compensation.radius[walls.row])))
+        np.maximum.at(radius, rank, np.nan_to_num(np.abs(trace.compensation.radius[walls.row])))
         begins = np.flatnonzero(np.diff(walls.loop, prepend=-1))
-        order = np.argsort(place[begins], kind="stable")
-        loops, groups = walls.loop[begins][order], place[begins][order]
+        order = np.argsort(rank[begins], kind="stable")
+        loops, groups = walls.loop[begins][order], rank[begins][order]
         tolerance = trace.machine.compensation.overcut_tolerance
-        parts = finished_parts(Contours(walls, left, loops, groups, radius, self.overcuts.bar, tolerance, True))
-        rows = [np.flatnonzero(place == number) for number in range(len(radius))]
-        return [self._level(parts, number, radius, walls, left, chosen) for number, chosen in enumerate(rows)]
+        parts = finished_parts(
+            Contours(walls, material_left, loops, groups, radius, self.overcuts.bar, tolerance, True)
+        )
+        rows = [np.flatnonzero(rank == number) for number in range(len(radius))]
+        return [self._level(parts, number, radius, walls, material_left, chosen) for number, chosen in enumerate(rows)]
 
     def _level(self, parts: FinishedParts, number: int, radius: Any, walls: Curves, left: Mask, chosen: Rows) -> Level:
         import shapely  # type: ignore[import-untyped]
 
         from polarcheck.geometry.outline import outline_of
 
-        own, shift = parts.group == number, parts.pitch * number
+        of_group, shift = parts.group == number, parts.pitch * number
         row = int(walls.row[chosen[0]])
         return Level(
             section=int(self.trace.mode.section[row]),
@@ -188,7 +190,7 @@ class Finished(Columns, frozen=True):
             open=bool(parts.open[number]),
             gap=float(max(parts.gap[number], parts.beside[number])),
             tangled=bool(parts.tangled[number]),
-            outline=outline_of(parts.start[own] - shift, parts.end[own] - shift, parts.move[own], walls),
+            outline=outline_of(parts.start[of_group] - shift, parts.end[of_group] - shift, parts.move[of_group], walls),
             walls=walls[chosen],
             left=left[chosen],
             sections=(int(self.trace.mode.section[row]),),

@@ -83,9 +83,9 @@ class Milled(Columns, frozen=True):
         """Rows that cut, and whose R or place is not known."""
         trace, moves = self.trace, self.tool_center.moves
         cuts = trace.mode.in_polar & trace.path.cuts & self.is_along_z
-        known = np.zeros(len(trace), bool)
-        known[moves.row[moves.is_of_tool & ~np.isnan(moves.start + moves.end)]] = True
-        return np.asarray(cuts & (np.isnan(self.radius) | ~known))
+        is_known = np.zeros(len(trace), bool)
+        is_known[moves.row[moves.is_of_tool & ~np.isnan(moves.start + moves.end)]] = True
+        return np.asarray(cuts & (np.isnan(self.radius) | ~is_known))
 
     @property
     def is_drilled(self) -> bool:
@@ -117,17 +117,17 @@ class Milled(Columns, frozen=True):
         else:
             chosen &= low < self.top - _CLEARANCE
         section = moves.section[chosen]
-        own = moves[chosen]
+        chosen_moves = moves[chosen]
         return Cuts(
             curves=Curves(
-                own.start * turn[section],
-                own.end * turn[section],
-                own.center * turn[section],
-                np.where(np.isnan(own.center), Motion.LINE, own.kind).astype(np.int16),
-                np.zeros(len(own), np.int64),
-                own.row,
+                chosen_moves.start * turn[section],
+                chosen_moves.end * turn[section],
+                chosen_moves.center * turn[section],
+                np.where(np.isnan(chosen_moves.center), Motion.LINE, chosen_moves.kind).astype(np.int16),
+                np.zeros(len(chosen_moves), np.int64),
+                chosen_moves.row,
             ),
-            radius=self.radius[own.row],
+            radius=self.radius[chosen_moves.row],
             low=low[chosen],
             high=high[chosen],
             section=section,

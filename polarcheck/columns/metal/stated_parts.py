@@ -128,12 +128,18 @@ class PartComments(Columns, frozen=True):
         sections = self.trace.mode.sections
         if not 0 < len(sections) <= _MOST_SECTIONS or not len(self.trace.text.comments):
             return []
-        found = [*self._statements()]
-        of_size = self._nearest([one for one in found if one.size is not None])
-        of_depth = self._nearest([one for one in found if not np.isnan(one.depth)])
+        statements = [*self._statements()]
+        of_size = self._nearest([statement for statement in statements if statement.size is not None])
+        of_depth = self._nearest([statement for statement in statements if not np.isnan(statement.depth)])
         return [
-            PartComment(one.comment, one.size, one.depth, of_size.get(one.comment, []), of_depth.get(one.comment, []))
-            for one in found
+            PartComment(
+                statement.comment,
+                statement.size,
+                statement.depth,
+                of_size.get(statement.comment, []),
+                of_depth.get(statement.comment, []),
+            )
+            for statement in statements
         ]
 
     def _statements(self) -> Iterator[_Statement]:
@@ -155,7 +161,7 @@ class PartComments(Columns, frozen=True):
         """By comment the sections that have no nearer one."""
         of_comment: dict[int, list[int]] = {}
         for section in range(len(self.trace.mode.sections)) if statements else []:
-            ranked = [(self._nearness(section, one), one.comment) for one in statements]
+            ranked = [(self._nearness(section, statement), statement.comment) for statement in statements]
             nearness, comment = max(ranked)
             if nearness >= 0:
                 of_comment.setdefault(comment, []).append(section)
@@ -225,8 +231,8 @@ class PartComments(Columns, frozen=True):
         if np.isnan(depth) or not comment.of_depth:
             return
         z, section = self.trace.path.z, self.trace.mode.section
-        own = np.isin(section, comment.of_depth)
-        chosen = np.flatnonzero(own & self.trace.path.moves_at_feed)
+        of_comment = np.isin(section, comment.of_depth)
+        chosen = np.flatnonzero(of_comment & self.trace.path.moves_at_feed)
         top = z[self.trace.mode.sections.enter[comment.of_depth]]
         # Where the tool does not come from above Z0 nobody knows where the face is.
         if not len(chosen) or np.isnan(z[chosen]).any() or not (top > 0).all():
@@ -234,7 +240,7 @@ class PartComments(Columns, frozen=True):
         bottom = np.full(len(self.trace.mode.sections), np.inf)
         np.minimum.at(bottom, section[chosen], z[chosen])
         bottoms = bottom[np.isfinite(bottom)]
-        if bottoms.min() >= 0 or _is_depth(depth, np.subtract.outer(self._faces(~own), bottoms)).any():
+        if bottoms.min() >= 0 or _is_depth(depth, np.subtract.outer(self._faces(~of_comment), bottoms)).any():
             return
         row = int(chosen[np.argmin(z[chosen])])
         yield Contradiction(row, comment.comment, depth, -float(bottoms.min()), DEPTH)
@@ -261,11 +267,11 @@ class PartComments(Columns, frozen=True):
         size = float(np.fmax(self.stock_comments.diameter[row], across_flats * 2 / np.sqrt(3)))
         stated = size if np.isnan(across_flats) else across_flats
         largest = size + max(_SIZE_TOLERANCE, _SIZE_SHARE * size)
-        known = self.bar.known
-        if known.source == "turning" and known.smallest > largest:
-            turns = np.flatnonzero(self.trace.blocks.line_in_file == known.lines[0])
-            yield Contradiction(int(turns[0]), comment, stated, known.smallest, TURNED)
-        elif known.source == "comment" and self._may_be_beyond(largest / 2):
+        stock = self.bar.known
+        if stock.source == "turning" and stock.smallest > largest:
+            turns = np.flatnonzero(self.trace.blocks.line_in_file == stock.lines[0])
+            yield Contradiction(int(turns[0]), comment, stated, stock.smallest, TURNED)
+        elif stock.source == "comment" and self._may_be_beyond(largest / 2):
             yield from (Contradiction(at, comment, stated, made, BEYOND) for at, made in self._beyond(largest / 2))
 
     def _may_be_beyond(self, radius: float) -> bool:

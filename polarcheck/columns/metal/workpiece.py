@@ -157,7 +157,7 @@ class Workpiece(Columns, frozen=True):
         with np.errstate(invalid="ignore"):
             on_slope = (x_from + aside) * np.exp(1j * np.radians(c_from))
         end = np.where(slope, on_slope, np.where(full, begin, end))
-        ways = Ways(
+        rapids = Ways(
             row=row,
             start=np.asarray(np.where(arc | line, begin, end), np.complex128),
             end=np.asarray(end, np.complex128),
@@ -169,26 +169,26 @@ class Workpiece(Columns, frozen=True):
             plunges=moves_z & ~(z_to > z_from),
             is_sure=np.ones(len(row), bool),
         )
-        several = [ways[~np.isnan(ways.end + ways.tip) & (moves_x | moves_c | moves_z)]]
+        several = [rapids[~np.isnan(rapids.end + rapids.tip) & (moves_x | moves_c | moves_z)]]
         # X and Z, or X and C, below the face at once: in which order nobody knows.
         with np.errstate(invalid="ignore"):
-            one = x_to * np.exp(1j * np.radians(c_from))
-        low = moves_x & (z_from < self.top - _CLEARANCE) & ~np.isnan(begin + one)
+            turned_x = x_to * np.exp(1j * np.radians(c_from))
+        low = moves_x & (z_from < self.top - _CLEARANCE) & ~np.isnan(begin + turned_x)
         upward, sideways = low & moves_z & (z_to > z_from), low & moves_c & ~moves_z & ~np.isnan(end)
         for chosen in (upward, sideways):
             several.append(
                 msgspec.structs.replace(
-                    ways,
+                    rapids,
                     start=begin,
-                    end=one,
+                    end=turned_x,
                     center=np.full(len(row), np.nan + 0j),
                     kind=np.full(len(row), Motion.LINE, np.int16),
                     tip=z_from,
                     is_sure=np.zeros(len(row), bool),
                 )[chosen]
             )
-        ways = Ways.concatenated(several)
-        return ways[np.argsort(ways.row, kind="stable")]
+        rapids = Ways.concatenated(several)
+        return rapids[np.argsort(rapids.row, kind="stable")]
 
     @property
     def _z_alone(self) -> Mask:
@@ -202,8 +202,8 @@ class Workpiece(Columns, frozen=True):
         trace, moves = self.trace, self.tool_center.moves
         low = np.minimum(*z_along(trace, moves))
         turn = np.exp(1j * np.radians(trace.path.section_entry))
-        known = moves.is_of_tool & ~np.isnan(self.radius[moves.row] + low) & ~np.isnan(moves.start + moves.end)
-        moves, low = moves[known], low[known]
+        usable = moves.is_of_tool & ~np.isnan(self.radius[moves.row] + low) & ~np.isnan(moves.start + moves.end)
+        moves, low = moves[usable], low[usable]
         of_move = turn[moves.section]
         row = np.flatnonzero(
             self._z_alone & ~np.isnan(self.radius) & ~trace.modal.in_cycle & ~np.isnan(trace.path.end + trace.path.z)
@@ -213,15 +213,15 @@ class Workpiece(Columns, frozen=True):
         same = (
             (last >= 0) & (moves.section[last] == trace.mode.section[row]) if len(moves) else np.zeros(len(row), bool)
         )
-        place = np.where(same, moves.end[last], trace.path.end[row]) if len(moves) else trace.path.end[row]
-        place = place * turn[trace.mode.section[row]]
+        point = np.where(same, moves.end[last], trace.path.end[row]) if len(moves) else trace.path.end[row]
+        point = point * turn[trace.mode.section[row]]
         is_rapid = trace.axes.motion == Motion.RAPID
         rows = np.concatenate([moves.row, row])
         order = np.argsort(rows, kind="stable")
         ways = Ways(
             row=rows,
-            start=np.concatenate([moves.start * of_move, place]),
-            end=np.concatenate([moves.end * of_move, place]),
+            start=np.concatenate([moves.start * of_move, point]),
+            end=np.concatenate([moves.end * of_move, point]),
             center=np.concatenate([moves.center * of_move, np.full(len(row), np.nan + 0j)]),
             kind=np.concatenate([moves.kind, np.full(len(row), Motion.LINE)]).astype(np.int16),
             tip=np.concatenate([low, np.minimum(trace.path.z[row], trace.path.z_before[row])]),
@@ -235,8 +235,8 @@ class Workpiece(Columns, frozen=True):
     @cached_property
     def _all(self) -> Ways:
         """Both, in the order of the program."""
-        ways = Ways.concatenated([self._outside, self._inside])
-        return ways[np.argsort(ways.row, kind="stable")]
+        moves = Ways.concatenated([self._outside, self._inside])
+        return moves[np.argsort(moves.row, kind="stable")]
 
     @cached_property
     def _with_all_rapids(self) -> Ways:
@@ -248,12 +248,14 @@ class Workpiece(Columns, frozen=True):
         rapid_on_plane = self.is_rapid[self.tool_center.moves.row].any()
         return self._all if rapid_on_plane or (self.is_rapid & self._z_alone).any() else self._outside
 
-    def _sweeps(self, ways: Ways) -> Sweeps:
+    def _sweeps(self, moves: Ways) -> Sweeps:
         from polarcheck.geometry.polygons.standing_metal import Sweeps
         from polarcheck.geometry.segments import Curves
 
-        loop = np.zeros(len(ways), np.int64)
-        return Sweeps(Curves(ways.start, ways.end, ways.center, ways.kind, loop, ways.row), ways.radius, ways.tip)
+        loop = np.zeros(len(moves), np.int64)
+        return Sweeps(
+            Curves(moves.start, moves.end, moves.center, moves.kind, loop, moves.row), moves.radius, moves.tip
+        )
 
     # ---- the bar ----
 
@@ -266,14 +268,14 @@ class Workpiece(Columns, frozen=True):
     @cached_property
     def _into_bar(self) -> Ways:
         """Moves in rapid traverse with the tip below the face and the cutter within the circle of the bar."""
-        bar, ways = self.bar.known, self._with_all_rapids
-        low = ways.is_rapid & (ways.tip < self.top - _CLEARANCE)
+        bar, moves = self.bar.known, self._with_all_rapids
+        low = moves.is_rapid & (moves.tip < self.top - _CLEARANCE)
         if not low.any():
-            return ways[low]
-        within = (ways.nearest - ways.radius < bar.smallest / 2 - ROUNDING) & (
-            ways.farthest + ways.radius > bar.bore / 2 + ROUNDING
+            return moves[low]
+        within = (moves.nearest - moves.radius < bar.smallest / 2 - ROUNDING) & (
+            moves.farthest + moves.radius > bar.bore / 2 + ROUNDING
         )
-        return ways[low & within]
+        return moves[low & within]
 
     @cached_property
     def through_bar(self) -> Hits:
@@ -281,22 +283,22 @@ class Workpiece(Columns, frozen=True):
         bar = self.bar.known
         if np.isnan(bar.smallest + bar.bore):
             return Hits.none()
-        ways = self._into_bar
-        ways = ways[ways.row < self._unknown_from]
-        if not len(ways):
+        moves = self._into_bar
+        moves = moves[moves.row < self._unknown_from]
+        if not len(moves):
             return Hits.none()
-        self._bound(ways)
+        self._bound(moves)
         from polarcheck.geometry.polygons.standing_metal import disc, hits_on_bar
 
         stands = disc(bar.smallest, bar.bore)
         lower = self._all[(self._all.tip < self.top) & self._all.is_sure]
-        hit, place = hits_on_bar(self._sweeps(ways), stands, self._sweeps(lower), *self._holes)
-        return Hits(ways.row[hit], place[hit], ways.is_sure[hit])
+        hit, place = hits_on_bar(self._sweeps(moves), stands, self._sweeps(lower), *self._holes)
+        return Hits(moves.row[hit], place[hit], moves.is_sure[hit])
 
-    def _bound(self, ways: Ways) -> None:
-        if len(ways) > _MOST_WAYS or len(self._all) > _MOST_MOVES:
+    def _bound(self, mills: Ways) -> None:
+        if len(mills) > _MOST_WAYS or len(self._all) > _MOST_MOVES:
             raise TooHardError(
-                f"{len(ways)} ways of mills at depth and {len(self._all)} moves are too many to follow the metal: "
+                f"{len(mills)} ways of mills at depth and {len(self._all)} moves are too many to follow the metal: "
                 "check its sections in separate files"
             )
 
@@ -364,20 +366,20 @@ class Workpiece(Columns, frozen=True):
 
         Rapid traverse, and the first move behind a section at feed: a retract is missing there.
         """
-        trace, ways, walls = self.trace, self._outside, self.overcuts.walls[0]
-        if not len(walls) or not len(ways):
-            return ways[np.zeros(len(ways), bool)]
+        trace, moves, walls = self.trace, self._outside, self.overcuts.walls[0]
+        if not len(walls) or not len(moves):
+            return moves[np.zeros(len(moves), bool)]
         top = self._highest_wall
         first = np.zeros(len(trace), bool)
         moving = np.flatnonzero(trace.axes.moves | trace.mode.enters)
         after = np.searchsorted(moving, np.flatnonzero(trace.mode.leaves), side="right")
         first[moving[after[after < len(moving)]]] = True
-        low = (ways.is_rapid | first[ways.row]) & (ways.tip <= top + _CLEARANCE)
+        low = (moves.is_rapid | first[moves.row]) & (moves.tip <= top + _CLEARANCE)
         if not low.any():
-            return ways[low]
+            return moves[low]
         farthest = polar.farthest(walls.start, walls.end, walls.center, walls.kind)
         reach = float(np.max(farthest + np.where(self._walls_of_pockets, 2 * self.overcuts.radius[walls.row], 0)))
-        return ways[low & (ways.nearest - ways.radius < reach)]
+        return moves[low & (moves.nearest - moves.radius < reach)]
 
     @property
     def _highest_wall(self) -> float:
@@ -408,23 +410,23 @@ class Workpiece(Columns, frozen=True):
     @cached_property
     def through_part(self) -> Hits:
         """Ways to a place through the finished part."""
-        ways = self._over_contour
-        if not len(ways):
+        rapids = self._over_contour
+        if not len(rapids):
             return Hits.none()
-        self._bound(ways)
+        self._bound(rapids)
         from polarcheck.geometry.polygons.standing_metal import hits_on_part, lines_along, turned
 
         moves = self._inside
         cleared = self._sweeps(moves[~moves.is_rapid])
-        hit, place = np.zeros(len(ways), bool), np.full(len(ways), np.nan + 0j)
-        sweeps = self._sweeps(ways)
+        hit, point = np.zeros(len(rapids), bool), np.full(len(rapids), np.nan + 0j)
+        sweeps = self._sweeps(rapids)
         for level, top in self._levels:
             angle = float(np.radians(self.trace.path.section_entry[level.section]))
             part, walls = turned(level.polygon, angle), turned(lines_along(level.walls), angle)
             more, where = hits_on_part(sweeps, part, walls, level.radius, top, level.z, cleared)
-            place[more & ~hit] = where[more & ~hit]
+            point[more & ~hit] = where[more & ~hit]
             hit |= more
-        return Hits(ways.row[hit], place[hit], ways.is_sure[hit])
+        return Hits(rapids.row[hit], point[hit], rapids.is_sure[hit])
 
     @property
     def _levels(self) -> list[tuple[Level, float]]:
@@ -505,8 +507,8 @@ class Workpiece(Columns, frozen=True):
     @cached_property
     def plunges(self) -> Mask:
         """Rows that go down to their place, of those with all moves in rapid traverse."""
-        ways = self._with_all_rapids
-        return self._mask(ways.row[ways.plunges])
+        moves = self._with_all_rapids
+        return self._mask(moves.row[moves.plunges])
 
     @cached_property
     def is_rapid(self) -> Mask:

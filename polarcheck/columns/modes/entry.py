@@ -130,9 +130,9 @@ class Entry(Columns, frozen=True):
         first move; also where the program has selected none, and the profile wants none. A row of unknown effect before
         the first move may select it.
         """
-        trace, wanted = self.trace, self.trace.machine.polar.plane_before
-        right = (trace.modal.state("plane") == 0) | trace.modal.has_state("plane", wanted) | (not wanted)
-        selects = trace.mode.first_in_section((trace.blocks.codes(*wanted) | trace.run.unknown) & trace.mode.in_polar)
+        trace, needed = self.trace, self.trace.machine.polar.plane_before
+        right = (trace.modal.state("plane") == 0) | trace.modal.has_state("plane", needed) | (not needed)
+        selects = trace.mode.first_in_section((trace.blocks.codes(*needed) | trace.run.unknown) & trace.mode.in_polar)
         if selects.any():
             first = np.full(len(trace.mode.sections), len(trace))
             moves = trace.mode.first_in_section(trace.path.moves & trace.mode.in_polar)

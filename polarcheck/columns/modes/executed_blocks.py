@@ -128,8 +128,8 @@ class ExecutedBlocks(Lookups):
 
     def _distance(self, address: str, of_words: NDArray[np.int16]) -> States:
         column = np.zeros(len(self.run), np.int16)
-        at = self.word_indices(address)
-        column[self.run.row[at]] = of_words[at]
+        index = self.word_indices(address)
+        column[self.run.row[index]] = of_words[index]
         return column
 
     def has(self, *addresses: str) -> Mask:
@@ -143,18 +143,18 @@ class ExecutedBlocks(Lookups):
 
     def consists_of(self, *addresses: str) -> Mask:
         """Whether a row has words of these addresses and no others; N and block skip may stand beside them."""
-        beside = np.zeros(256, bool)
+        allowed = np.zeros(256, bool)
         named = [self.machine.address_number(address) for address in (*addresses, "N", "/") if address]
-        beside[named] = True
-        return self.has(*addresses) & ~self.with_words(~beside[self.run.words.address])
+        allowed[named] = True
+        return self.has(*addresses) & ~self.with_words(~allowed[self.run.words.address])
 
     def in_rows(self, address: str, values: Floats) -> Floats:
         """Of values per executed word those of an address, per row: the last where it is repeated, NaN without it."""
-        at = self.word_indices(address)
-        if not len(at):
+        index = self.word_indices(address)
+        if not len(index):
             return repeated(_NOT_WRITTEN, len(self.run))
         column = np.full(len(self.run), np.nan)
-        column[self.run.row[at]] = values[at]
+        column[self.run.row[index]] = values[index]
         return column
 
     def assigns(self, ranges: Iterable[tuple[int, int]]) -> Mask:
@@ -205,14 +205,15 @@ class ExecutedBlocks(Lookups):
         """The G or M words, in order, whose codes are asked for (codes.code_set), and listed without another word."""
         order, present, begins = self._by_code[letter]
         groups = [
-            order[begin:end] for begin, end in (begins[at : at + 2] for at in codes[present].nonzero()[0].tolist())
+            order[begin:end]
+            for begin, end in (begins[number : number + 2] for number in codes[present].nonzero()[0].tolist())
         ]
         if not groups:
             return order[:0]
-        at = groups[0] if len(groups) == 1 else np.sort(np.concatenate(groups))
+        number = groups[0] if len(groups) == 1 else np.sort(np.concatenate(groups))
         if letter == "G":
-            return self.g_words[at]
-        return self.m_words[at[~self._with_other_word[at]]]
+            return self.g_words[number]
+        return self.m_words[number[~self._with_other_word[number]]]
 
     @cached_property
     def _by_code(self) -> dict[str, tuple[Rows, NDArray[np.int32], Rows]]:
@@ -227,8 +228,8 @@ class ExecutedBlocks(Lookups):
 
     def _beside(self, word: str, indices: Rows, numbers: NDArray[np.int32]) -> Mask:
         """Per G or M word: it is the code of `M3 P12`, and that other word stands in its row."""
-        first, _, other = word.partition(" ")
-        return np.asarray((numbers == code(first)) & (self.word(other[0])[self.run.row[indices]] == float(other[1:])))
+        first, _, second = word.partition(" ")
+        return np.asarray((numbers == code(first)) & (self.word(second[0])[self.run.row[indices]] == float(second[1:])))
 
     @cached_property
     def _with_other_word(self) -> Mask:

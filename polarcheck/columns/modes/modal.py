@@ -75,9 +75,9 @@ class ModalStates(Lookups):
     def _at_power_on(self, group: str) -> States:
         """The state that holds before a program has selected one, per row; of an excerpt it is what is usual."""
         states = np.full(len(self.run), _BEFORE.get(group, 0), np.int16)
-        known = getattr(self.machine.power_on, group, "")
-        if known:
-            states[self.blocks.whole_program] = self._modal[2][code(known)]
+        power_on = getattr(self.machine.power_on, group, "")
+        if power_on:
+            states[self.blocks.whole_program] = self._modal[2][code(power_on)]
         return states
 
     @cached_property
@@ -91,9 +91,9 @@ class ModalStates(Lookups):
     def motion_word(self) -> Rows:
         """Where in the file the code of motion in force is written, its first character; -1 before the first."""
         words = self.blocks.code_indices(*(code for key in STATES["motion"] for code in self.machine.codes(key)))
-        at = np.full(len(self.run), -1, np.int64)
-        at[self.run.row[words]] = self.run.words.start[words]
-        return fill_down(at, self.sets("motion") | self.blocks.starts, -1)
+        start = np.full(len(self.run), -1, np.int64)
+        start[self.run.row[words]] = self.run.words.start[words]
+        return fill_down(start, self.sets("motion") | self.blocks.starts, -1)
 
     def switched(self, on: list[str], off: list[str], spindle: str = "") -> Mask:
         """What M codes have switched on, in each row after its own; spindle: of which a speed of 0 (S1=0) stops it."""

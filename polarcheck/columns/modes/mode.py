@@ -135,13 +135,13 @@ class PolarMode(Columns, frozen=True):
         followed. Where another axis stands in a section that does not program both of its own, it may be that of the
         plane.
         """
-        known = self.axes.linear_is_known & self.axes.is_simulated
+        simulated = self.axes.linear_is_known & self.axes.is_simulated
         if not len(self.blocks.words_not_followed):
-            return known
+            return simulated
         beside = self.anywhere_in_section(self.blocks.with_words(self.blocks.words_not_followed))
         linear, virtual = self.axes.programs_linear_axis, self.axes.programs_virtual_axis
         both = self.anywhere_in_section(linear) & self.anywhere_in_section(virtual)
-        return np.asarray(known & (~beside | both))
+        return np.asarray(simulated & (~beside | both))
 
     @cached_property
     def rotary_is_followed(self) -> Mask:

@@ -37,14 +37,14 @@ class ModeWords(Columns, frozen=True):
         """Of the code or address that is named first of those in its row; `G91` is a code, `U` an address, or none."""
         trace = self.trace
         row = trace.run.row
-        found, told = np.zeros(len(row), bool), np.zeros(len(trace), bool)
+        first, listed = np.zeros(len(row), bool), np.zeros(len(trace), bool)
         for name in names:
             is_named = self.codes(name) if len(name) > 1 else trace.blocks.words_at(trace.blocks.word_indices(name))
-            at = np.flatnonzero(is_named)
-            at = at[~told[row[at]]]
-            found[at] = True
-            told[row[at]] = True
-        return found
+            index = np.flatnonzero(is_named)
+            index = index[~listed[row[index]]]
+            first[index] = True
+            listed[row[index]] = True
+        return first
 
     # ---- G codes in the mode ----
 
@@ -53,9 +53,9 @@ class ModeWords(Columns, frozen=True):
         """A G code in the mode that the profile does not allow there."""
         trace = self.trace
         allowed = code_set(trace.machine.polar.allowed_codes)
-        found = np.zeros(len(trace.run.words), bool)
-        found[trace.blocks.g_words] = ~allowed[trace.blocks.g_codes] & (trace.blocks.g_codes != NO_CODE)
-        return found & self.in_rows(trace.mode.in_polar & ~trace.path.of_machine_z)
+        forbidden = np.zeros(len(trace.run.words), bool)
+        forbidden[trace.blocks.g_words] = ~allowed[trace.blocks.g_codes] & (trace.blocks.g_codes != NO_CODE)
+        return forbidden & self.in_rows(trace.mode.in_polar & ~trace.path.of_machine_z)
 
     @cached_property
     def ends_drilling(self) -> Mask:

@@ -68,10 +68,10 @@ class Steps:
     @property
     def last(self) -> tuple[Rows, Floats]:
         """The row of the last setting in each of the rows, -1 where there is none in its program; and its value."""
-        own, value = np.full(len(self.row), -1), np.full(len(self.row), np.nan)
-        own[self.at], value[self.at] = self.settings.row, self.settings.value
-        written = own >= 0
-        last = fill_down(own, written | self.starts, -1)[self.asked]
+        setting_row, value = np.full(len(self.row), -1), np.full(len(self.row), np.nan)
+        setting_row[self.at], value[self.at] = self.settings.row, self.settings.value
+        written = setting_row >= 0
+        last = fill_down(setting_row, written | self.starts, -1)[self.asked]
         return last, fill_down(value, written | self.starts, np.nan)[self.asked]
 
     def radius(self, is_whole: Mask, program: Rows) -> tuple[Floats, Floats, Mask]:
@@ -94,8 +94,8 @@ class Steps:
 
     def _summed(self, value: Floats, absolute: Mask, added: Mask) -> Floats:
         """What some settings put together make, from 0 on; NaN from one that is not known to the next absolute one."""
-        at, step = np.full(len(self.row), np.nan), np.zeros(len(self.row))
-        at[self.at[absolute]] = value[absolute]
+        absolute_value, step = np.full(len(self.row), np.nan), np.zeros(len(self.row))
+        absolute_value[self.at[absolute]] = value[absolute]
         step[self.at[absolute & np.isnan(value)]] = np.nan
         np.add.at(step, self.at[added], value[added])
-        return positions(at, step, self.starts, np.zeros(len(self.row)))[self.asked]
+        return positions(absolute_value, step, self.starts, np.zeros(len(self.row)))[self.asked]

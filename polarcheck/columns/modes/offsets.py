@@ -199,13 +199,13 @@ class ToolOffsets(Columns, frozen=True):
         if not len(rows):
             return []
         offsets, kind = self.machine.offsets, self.blocks.word("L")[rows]
-        place = np.nan_to_num(self.blocks.word("P")[rows])
+        number_in_p = np.nan_to_num(self.blocks.word("P")[rows])
         base = offsets.geometry_from
         plain = ~self.blocks.has("L")[rows] & (base > 0)
-        is_geometry = np.where(plain, place > base, np.isin(kind, offsets.geometry))
-        known = plain | is_geometry | np.isin(kind, offsets.wear)
-        known &= place < _LONGEST_NUMBER
-        number = np.where(known, place - base * (plain & is_geometry), 0).astype(np.int64)
+        is_geometry = np.where(plain, number_in_p > base, np.isin(kind, offsets.geometry))
+        is_tool_offset = plain | is_geometry | np.isin(kind, offsets.wear)
+        is_tool_offset &= number_in_p < _LONGEST_NUMBER
+        number = np.where(is_tool_offset, number_in_p - base * (plain & is_geometry), 0).astype(np.int64)
         # Mills give lengths as they give radii: in R.
         alone = np.isin(kind, offsets.radius_alone)
         as_mill = np.zeros(len(self.run), bool)
@@ -233,11 +233,11 @@ class ToolOffsets(Columns, frozen=True):
 
     def _data(self, address: str) -> Floats:
         """A word of data input as a length [mm]: without a point the control takes it in least increments."""
-        at = self.blocks.word_indices(address)
-        words, row = self.run.words, self.run.row[at]
-        counts = ~words.has_point[at] & (self.machine.control.number_without_point == "least-increment")
+        index = self.blocks.word_indices(address)
+        words, row = self.run.words, self.run.row[index]
+        counts = ~words.has_point[index] & (self.machine.control.number_without_point == "least-increment")
         column = np.full(len(self.run), np.nan)
-        value = np.clip(words.value[at], -_LONGEST_NUMBER, _LONGEST_NUMBER)
+        value = np.clip(words.value[index], -_LONGEST_NUMBER, _LONGEST_NUMBER)
         column[row] = value * np.where(counts, self.lengths.least_increment[row], 1.0) * self.lengths.scale[row]
         return column
 
@@ -251,12 +251,12 @@ class ToolOffsets(Columns, frozen=True):
             X_WEAR: offsets.x_wear_variables,
         }
         settings = []
-        for at, assigned in self.run.assigned.items():
+        for row, assigned in self.run.assigned.items():
             for of, spans in ranges.items():
-                place = place_in(spans, assigned.variable)
-                if place and self.mode.section[at] < 0:
-                    value = assigned.value * (1.0 if of == NOSE else float(self.lengths.scale[at]))
-                    settings.append((at, place, of, value, assigned.is_step))
+                offset_number = place_in(spans, assigned.variable)
+                if offset_number and self.mode.section[row] < 0:
+                    value = assigned.value * (1.0 if of == NOSE else float(self.lengths.scale[row]))
+                    settings.append((row, offset_number, of, value, assigned.is_step))
         return of_list(settings)
 
     @cached_property

@@ -71,8 +71,8 @@ class OtherMode(Columns, frozen=True):
         """The code stands somewhere in a block of its own."""
         words = self.trace.text.words
         with_name = words.block[self._of_name(name, words)]
-        others = words.block[(words.address != ord("N")) & (words.address != ord("O"))]
-        return bool(np.any(np.searchsorted(others, with_name, "right") - np.searchsorted(others, with_name) == 1))
+        remaining = words.block[(words.address != ord("N")) & (words.address != ord("O"))]
+        return bool(np.any(np.searchsorted(remaining, with_name, "right") - np.searchsorted(remaining, with_name) == 1))
 
     @cached_property
     def _codes_in_text(self) -> Mask:
@@ -257,8 +257,8 @@ class OtherMode(Columns, frozen=True):
         if not len(bare):
             return mask
         begins, ends = spans(self.trace.text.source, name)
-        at = words.start[bare]
-        mask[bare] = np.searchsorted(begins, at, side="right") > np.searchsorted(ends, at, side="right")
+        start = words.start[bare]
+        mask[bare] = np.searchsorted(begins, start, side="right") > np.searchsorted(ends, start, side="right")
         return mask
 
 
@@ -268,7 +268,7 @@ def known_by(name: str) -> tuple[Profile, ...]:
     return tuple(
         profile
         for profile in profiles.built_in()
-        if _meant(profile, name) in profile.machine.polar.on
+        if _intended(profile, name) in profile.machine.polar.on
         and name not in profile.written.control.native_words.values()
     )
 
@@ -276,11 +276,11 @@ def known_by(name: str) -> tuple[Profile, ...]:
 def ends_of(profile: Profile, name: str) -> list[str]:
     """What ends the mode on a machine that begins it by a code or word, in its own language first."""
     control, polar = profile.machine.control, profile.machine.polar
-    code = dict(zip(polar.on, polar.off, strict=False)).get(_meant(profile, name), polar.off[0])
+    code = dict(zip(polar.on, polar.off, strict=False)).get(_intended(profile, name), polar.off[0])
     return [*(word for word, text in control.native_words.items() if text == code), code]
 
 
-def _meant(profile: Profile, name: str) -> str:
+def _intended(profile: Profile, name: str) -> str:
     """The code that a word of the machine's own language stands for; a code stands for itself."""
     return profile.machine.control.native_words.get(name, name)
 

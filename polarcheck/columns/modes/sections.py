@@ -102,12 +102,12 @@ def find_sections(marks: Marks) -> Sections:
     final = np.append(np.flatnonzero(~repeated)[1:] - 1, len(enter) - 1)
     is_empty = (last_move <= enter) & ~repeated & ~by_on
     rapid_after = _first_after(np.flatnonzero(marks.tool_ends | marks.outside | marks.rapid), last_move, count)
-    meant = np.minimum(np.where(is_empty, outside, rapid_after), limit)
+    intended = np.minimum(np.where(is_empty, outside, rapid_after), limit)
     last_return = _last_before(np.flatnonzero(marks.returns), end)
-    returned = ((by_end & (last_return >= last_cut) & (meant > last_return)) | (by_bound & ~forgotten))[final]
+    returned = ((by_end & (last_return >= last_cut) & (intended > last_return)) | (by_bound & ~forgotten))[final]
     return Sections(
         enter[~repeated],
-        np.where(forgotten, meant, end)[final],
+        np.where(forgotten, intended, end)[final],
         ~forgotten[final] | returned,
         returned,
         enter[repeated],

@@ -70,10 +70,10 @@ class SwitchSlips(Columns, frozen=True):
         if not (begins.any() or ends.any()):
             return {}
         begins = begins & (self.trace.mode.section < 0) & ~self.trace.blocks.has(*AXES)
-        found = [slip for row in np.flatnonzero(begins).tolist() for slip in self._begun_at(row, begins, ends)]
+        slips = [slip for row in np.flatnonzero(begins).tolist() for slip in self._begun_at(row, begins, ends)]
         alone = ends & self.trace.mode.in_polar & ~self.trace.blocks.has(*AXES)
-        found += [Slip(row, self._meant(row, 1), row) for row in np.flatnonzero(alone).tolist()]
-        return {slip.row: slip for slip in found}
+        slips += [Slip(row, self._meant(row, 1), row) for row in np.flatnonzero(alone).tolist()]
+        return {slip.row: slip for slip in slips}
 
     def _begun_at(self, row: int, begins: Mask, ends: Mask) -> list[Slip]:
         """The slip of a row that may begin the mode; none where no contour follows."""
@@ -82,8 +82,8 @@ class SwitchSlips(Columns, frozen=True):
         of_builder = trace.blocks.codes(*builder) & ~trace.blocks.has(*AXES)
         stops = begins | trace.mode.enters | trace.tools.changes_tool | trace.blocks.ends_program | trace.blocks.starts
         answers = trace.axes.switches_off | ends | of_builder
-        behind = np.flatnonzero((stops | answers)[row + 1 :]) + row + 1
-        end = int(behind[0]) if len(behind) else len(trace)
+        following = np.flatnonzero((stops | answers)[row + 1 :]) + row + 1
+        end = int(following[0]) if len(following) else len(trace)
         is_answered = end < len(trace) and bool(answers[end])
         cuts = is_among(trace.axes.motion, _AT_FEED) & trace.axes.programs_virtual_axis & trace.modal.uses_axes
         if not cuts[row + 1 : end].any():
@@ -126,10 +126,10 @@ class SwitchSlips(Columns, frozen=True):
         """Per executed word: the code of a slip, and that of its answer."""
         first, second = self._forms
         codes = [*first, *second, *(f"G{int(form[1:]) - 1}" for form in first if len(form) == _DIGITS)]
-        at = self.trace.blocks.code_indices(*codes)
+        index = self.trace.blocks.code_indices(*codes)
         is_slip = np.zeros(len(self.trace), bool)
         is_slip[[row for slip in self.slips.values() for row in (slip.row, slip.answer) if row >= 0]] = True
-        return self.trace.blocks.words_at(at[is_slip[self.trace.run.row[at]]])
+        return self.trace.blocks.words_at(index[is_slip[self.trace.run.row[index]]])
 
     @cached_property
     def explained(self) -> Mask:

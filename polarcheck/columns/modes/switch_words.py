@@ -54,11 +54,13 @@ class SwitchWords(Columns, frozen=True):
     def names_axis_of_other_kind(self) -> Mask:
         """Per word: P that names no linear axis, or Q that names no rotary one, by the names of the axes."""
         words, axes = self.trace.run.words, self.trace.machine.control.axes
-        found = self.names_axis & ~self.names_no_axis
-        at = np.flatnonzero(found)
+        of_other_kind = self.names_axis & ~self.names_no_axis
+        index = np.flatnonzero(of_other_kind)
         for address, kind in _KINDS.items():
-            found[at] &= (words.address[at] != ord(address)) | ~is_among(words.value[at], numbers_of(axes, kind))
-        return np.asarray(found)
+            of_other_kind[index] &= (words.address[index] != ord(address)) | ~is_among(
+                words.value[index], numbers_of(axes, kind)
+            )
+        return np.asarray(of_other_kind)
 
     @cached_property
     def names_axis_twice(self) -> Mask:

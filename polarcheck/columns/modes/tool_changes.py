@@ -22,10 +22,10 @@ def called_tools(blocks: ExecutedBlocks) -> tuple[Mask, Rows]:
     In a program with M6, a T that is a tool alone calls nothing by itself: the next M6 takes the first T beside it,
     else the last one before it. In another program, and with its offset in its digits, T calls by itself.
     """
-    words, at, most = blocks.run.words, blocks.word_indices("T"), 10**blocks.machine.control.offset_digits
-    row, written = blocks.run.row[at], np.abs(np.nan_to_num(words.value[at]))
+    words, index, most = blocks.run.words, blocks.word_indices("T"), 10**blocks.machine.control.offset_digits
+    row, written = blocks.run.row[index], np.abs(np.nan_to_num(words.value[index]))
     value = np.where(written < _LONGEST, written, 0).astype(np.int64)
-    is_alone = (value < OFFSET_COUNT) & (words.digits[at] - words.decimals[at] <= _TOOL_DIGITS)
+    is_alone = (value < OFFSET_COUNT) & (words.digits[index] - words.decimals[index] <= _TOOL_DIGITS)
     changes = blocks.codes(*blocks.machine.m_codes.tool_change)
     is_alone &= blocks.anywhere_in_program(changes)[row]
     number = np.where(is_alone, value * (OFFSET_COUNT + 1), value // most * OFFSET_COUNT + value % most)
@@ -33,5 +33,5 @@ def called_tools(blocks: ExecutedBlocks) -> tuple[Mask, Rows]:
     first[row[::-1]], last[row] = number[::-1], number
     has_t = blocks.has("T")
     prepared = fill_down(last, has_t | blocks.starts, 0)
-    calls = changes & (has_t | (prepared > 0)) | blocks.with_words(at[~is_alone])
+    calls = changes & (has_t | (prepared > 0)) | blocks.with_words(index[~is_alone])
     return calls, np.where(has_t & changes, first, prepared)

@@ -116,9 +116,9 @@ class CalledTools(Columns, frozen=True):
         names_offset, short = np.zeros(len(self.run), bool), _TOOL_DIGITS + control.offset_digits
         if not control.radius_offset_digits:
             return names_offset
-        at = self.blocks.word_indices("T")
-        is_long = (words.digits[at] > short) | (np.nan_to_num(words.value[at]) >= 10**short)
-        names_offset[self.run.row[at]] = is_long
+        index = self.blocks.word_indices("T")
+        is_long = (words.digits[index] > short) | (np.nan_to_num(words.value[index]) >= 10**short)
+        names_offset[self.run.row[index]] = is_long
         return fill_down(names_offset, self.blocks.has("T") | self.blocks.starts, False).astype(bool)
 
     @cached_property

@@ -75,25 +75,25 @@ class ArcWords(Columns, frozen=True):
         move = np.flatnonzero(~passes.is_arc & (following >= 0))
         radius = np.abs(trace.lengths.length_of(trace.machine.arcs.radius_word))[passes.row[move]]
         begins, ends = passes.tangents
-        way = passes.end[move] - passes.start[move]
+        chord = passes.end[move] - passes.start[move]
         length = np.abs(passes.end - passes.start)
-        turn = np.abs(angle_between(way, begins[following[move]]))
+        turn = np.abs(angle_between(chord, begins[following[move]]))
         too_short = radius * np.tan(np.minimum(turn, 3.0) / 2) > np.minimum(length[move], length[following[move]])
-        into = np.where(previous[move] < 0, np.nan, np.abs(angle_between(ends[previous[move]], way)))
+        into = np.where(previous[move] < 0, np.nan, np.abs(angle_between(ends[previous[move]], chord)))
         fits = (np.abs(into - turn) < _SLACK) & (np.abs(2 * radius * np.sin(into) - length[move]) < _SLACK * radius)
         return trace.blocks.mask_of(passes.row[move[too_short | fits]])
 
     def sense(self, row: int) -> Motion | None:
         """The arc that the moves beside a row speak for; None where they do not."""
         passes: Passes = self.passes
-        at = np.flatnonzero(passes.row == row)
-        if not len(at):
+        index = np.flatnonzero(passes.row == row)
+        if not len(index):
             return None
-        turns = [float(turn[at[0]]) for turn in passes.turns]
-        known: list[float] = [turn for turn in turns if not np.isnan(turn) and abs(turn) > _SLACK]
-        if not known or min(known) * max(known) < 0:
+        turns = [float(turn[index[0]]) for turn in passes.turns]
+        turns_known: list[float] = [turn for turn in turns if not np.isnan(turn) and abs(turn) > _SLACK]
+        if not turns_known or min(turns_known) * max(turns_known) < 0:
             return None
-        return Motion.CCW if known[0] > 0 else Motion.CW
+        return Motion.CCW if turns_known[0] > 0 else Motion.CW
 
     @cached_property
     def motion_word(self) -> Rows:

@@ -194,7 +194,7 @@ class Arcs(Columns, frozen=True):
         if not len(arc):
             return np.zeros(len(trace), bool)
         tolerance = trace.machine.arcs.tolerance
-        to_center, step, other = (
+        to_center, step, other_step = (
             self._to_center(arc),
             trace.path.end[arc] - trace.path.start[arc],
             self._step_otherwise(arc),
@@ -202,7 +202,7 @@ class Arcs(Columns, frozen=True):
         moves_x, moves_c = np.abs(step.real) > tolerance, np.abs(step.imag) > tolerance
         center, radius = (self.start_radius > ROUNDING)[arc], self.by_radius[arc]
         miss = np.abs(np.abs(to_center) - np.abs(step - to_center))
-        miss_otherwise = np.abs(np.abs(to_center) - np.abs(other - to_center))
+        miss_otherwise = np.abs(np.abs(to_center) - np.abs(other_step - to_center))
         limit = 2 * np.abs(self.radius[arc]) + tolerance
 
         def count(of: Mask) -> Rows:
@@ -212,7 +212,7 @@ class Arcs(Columns, frozen=True):
         by_center = ((count(fails) > 1) | (count(clearly) > 0)) & (count(fails & moves_c) > 0)
         by_radius = (count(np.abs(step) > limit) > 1) & (count(radius & moves_x & (np.abs(step) <= limit)) == 0)
         closes = center & moves_x & (miss <= tolerance)
-        objects = (center & ~(miss_otherwise <= tolerance)) | (np.abs(other) > limit)
+        objects = (center & ~(miss_otherwise <= tolerance)) | (np.abs(other_step) > limit)
         misread = (by_center | by_radius) & (count(closes | objects) == 0)
         return np.asarray((trace.mode.section >= 0) & misread[trace.mode.section])
 

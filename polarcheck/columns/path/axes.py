@@ -139,13 +139,13 @@ class PlaneAxes(Columns, frozen=True):
         """The character of the linear axis, from a G12.1 up to its G13.1; that of X elsewhere, 0 where unknown."""
         numbers = different(self.linear_number[self.switches_on]).tolist()
         addresses = {number: self.machine.linear_address_of(number) for number in numbers}
-        other = self.enters_other_axes
-        if set(addresses.values()) <= {"X"} and not other.any():
+        is_other_plane = self.enters_other_axes
+        if set(addresses.values()) <= {"X"} and not is_other_plane.any():
             return repeated(np.int16(_X), len(self.run))
         axis = np.full(len(self.run), _X, np.int16)
         for number, address in addresses.items():
             axis[self.switches_on & (self.linear_number == number)] = ord(address) if address else _UNKNOWN
-        axis[other] = _UNKNOWN
+        axis[is_other_plane] = _UNKNOWN
         return fill_down(axis, self.switches_on | self.ends_mode | self.blocks.starts, _X)
 
     @cached_property
@@ -188,8 +188,8 @@ class PlaneAxes(Columns, frozen=True):
         """Per executed word: of the addresses that the linear axis of its row has."""
         words = np.zeros(len(self.run.words), bool)
         for axis in ("X", *self.other_linear_axes):
-            at = self.blocks.word_indices(*addresses(axis))
-            words[at[self.linear_axis[self.run.row[at]] == ord(axis)]] = True
+            index = self.blocks.word_indices(*addresses(axis))
+            words[index[self.linear_axis[self.run.row[index]] == ord(axis)]] = True
         return words
 
     @cached_property
@@ -329,16 +329,16 @@ class PlaneAxes(Columns, frozen=True):
         return is_other if pair[0] in self.machine.axes else np.zeros(len(self.run), bool)
 
     def _words_of_pair(self, pair: Pair, rows: Mask) -> Rows:
-        at = self.blocks.word_indices(*pair)
-        return at[rows[self.run.row[at]]]
+        index = self.blocks.word_indices(*pair)
+        return index[rows[self.run.row[index]]]
 
     @cached_property
     def foreign_virtual_words(self) -> Mask:
         """Per executed word: of the virtual axis of a simulated mode, under an address of another form or control."""
         is_address_of_row = np.zeros(len(self.run.words), bool)
         for number, pair in enumerate((*self._forms, *self._by_number)):
-            at = self.blocks.word_indices(*pair)
-            is_address_of_row[at[self._form[self.run.row[at]] == number]] = True
+            index = self.blocks.word_indices(*pair)
+            is_address_of_row[index[self._form[self.run.row[index]] == number]] = True
         return self.blocks.words_at(self.virtual_words) & ~is_address_of_row & self.is_simulated[self.run.row]
 
     @cached_property
@@ -356,9 +356,9 @@ class PlaneAxes(Columns, frozen=True):
         letters = dict.fromkeys(word[0] for word in mode.virtual_axis_by_word)
         changes_mode = self.blocks.words_at(self.blocks.word_indices(*mode.not_simulated_beside)).copy()
         for letter in letters:
-            at = self.blocks.word_indices(letter)
+            index = self.blocks.word_indices(letter)
             known = [float(word[1:]) for word in mode.virtual_axis_by_word if word[0] == letter]
-            changes_mode[at[~np.isin(self.run.words.value[at], known)]] = True
+            changes_mode[index[~np.isin(self.run.words.value[index], known)]] = True
         return np.asarray(changes_mode & self.switches_on[self.run.row])
 
     @cached_property

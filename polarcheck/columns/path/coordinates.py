@@ -123,9 +123,9 @@ class Coordinates(Lookups):
     def meant(self, least: Floats | float) -> Floats:
         """Per word: the value that is meant; least: what an increment is."""
         value, in_increments = self.run.words.value, self._counts_increments
-        meant = np.where(in_increments, value * least, value) if in_increments.any() else value
-        too_far = np.abs(meant) > _FARTHEST
-        return np.where(too_far, np.nan, meant) if too_far.any() else meant
+        values = np.where(in_increments, value * least, value) if in_increments.any() else value
+        too_far = np.abs(values) > _FARTHEST
+        return np.where(too_far, np.nan, values) if too_far.any() else values
 
     def angle_of(self, address: str) -> Floats:
         """A word as an angle [deg]."""

@@ -171,18 +171,23 @@ def along(linear: Way, virtual: Way, turn: Points) -> Points:
         own_x, own_y = own_x + before.real * takes_x, own_y + before.imag * takes_y
         base[number + 1] = complex(own_x, own_y) if by == 1 else by * complex(own_x, own_y)
     of_row = base[np.cumsum(is_change)]
-    found = np.empty(len(turn), np.complex128)
-    found.real = x + np.where(hangs_x, of_row.real, 0.0)
-    found.imag = y + np.where(hangs_y, of_row.imag, 0.0)
+    result = np.empty(len(turn), np.complex128)
+    result.real = x + np.where(hangs_x, of_row.real, 0.0)
+    result.imag = y + np.where(hangs_y, of_row.imag, 0.0)
     turned = turn != 1
-    found[turned] *= turn[turned]
-    return found
+    result[turned] *= turn[turned]
+    return result
 
 
-def _between(way: Way, is_change: Mask) -> tuple[Floats, Mask]:
+def _between(axis_path: Way, is_change: Mask) -> tuple[Floats, Mask]:
     """An axis after each row as if it stood at 0 where the frame turned last; whether that is to be added."""
-    programmed = ~np.isnan(way.absolute)
-    starts_anew = is_change & ~way.resets
-    found = positions(way.absolute, way.increment, way.resets | starts_anew, np.where(starts_anew, 0.0, way.values))
-    hangs = fill_down(starts_anew & ~programmed, starts_anew | programmed | way.resets, False)
+    programmed = ~np.isnan(axis_path.absolute)
+    starts_anew = is_change & ~axis_path.resets
+    found = positions(
+        axis_path.absolute,
+        axis_path.increment,
+        axis_path.resets | starts_anew,
+        np.where(starts_anew, 0.0, axis_path.values),
+    )
+    hangs = fill_down(starts_anew & ~programmed, starts_anew | programmed | axis_path.resets, False)
     return found, hangs.astype(bool)

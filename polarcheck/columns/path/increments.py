@@ -51,10 +51,10 @@ class Increments(Columns, frozen=True):
         chosen = passes.compensated & ~passes.closed & (count >= _LEAST_MOVES) & (steps >= _MOSTLY * count)
         chosen &= (np.abs(self._turn) >= _ROUND) & (np.abs(self._turn) < _SPIRAL)
         gaps = [self._gap_of(which) for which in np.flatnonzero(chosen).tolist()]
-        found = [gap for gap in gaps if gap is not None]
-        if not found:
+        gaps_found = [gap for gap in gaps if gap is not None]
+        if not gaps_found:
             return nothing
-        row, end, start = zip(*found, strict=True)
+        row, end, start = zip(*gaps_found, strict=True)
         return np.array(row, np.int64), np.array(end, np.complex128), np.array(start, np.complex128)
 
     @cached_property
@@ -101,6 +101,6 @@ class Increments(Columns, frozen=True):
 
 def _nearest(point: complex, start: Points, end: Points) -> float:
     """The distance of a point to the nearest of some lines, arcs as their chords [mm]."""
-    way = end - start
-    share = np.clip(((point - start) * way.conj()).real / np.maximum(np.abs(way) ** 2, 1e-12), 0, 1)
-    return float(np.abs(start + share * way - point).min())
+    chord = end - start
+    share = np.clip(((point - start) * chord.conj()).real / np.maximum(np.abs(chord) ** 2, 1e-12), 0, 1)
+    return float(np.abs(start + share * chord - point).min())

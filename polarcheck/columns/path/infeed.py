@@ -130,11 +130,11 @@ class Infeed(Columns, frozen=True):
         gap = np.full(len(self.trace), np.nan)
         unknown = self.trace.mode.anywhere_in_section(self.trace.run.unknown)
         for row, (contour, closed) in self._contours.items():
-            way = self.trace.path.end[contour] - self.trace.path.end[contour[:1]]
+            distances = self.trace.path.end[contour] - self.trace.path.end[contour[:1]]
             if closed:
                 gap[row] = 0.0
-            elif len(way) and not np.isnan(way).any() and not unknown[row]:
-                gap[row] = np.abs(way[-1])
+            elif len(distances) and not np.isnan(distances).any() and not unknown[row]:
+                gap[row] = np.abs(distances[-1])
         return gap
 
     def offsets(self, row: int) -> Floats:
@@ -199,19 +199,19 @@ class Infeed(Columns, frozen=True):
         parts: list[Moves] = []
         done = 0
         for cycle in self._cycles.values():
-            place = int(np.searchsorted(moved, cycle.contour[0]))
-            if place == len(moved) or moved[place] != cycle.contour[0]:
+            index = int(np.searchsorted(moved, cycle.contour[0]))
+            if index == len(moved) or moved[index] != cycle.contour[0]:
                 continue
-            at = int(first[place])
-            cuts = self._moves(cycle, complex(moves.start[at]))
+            first_move = int(first[index])
+            cuts = self._moves(cycle, complex(moves.start[first_move]))
             if not len(cuts):
                 continue
-            parts.append(_between(moves, done, at))
+            parts.append(_between(moves, done, first_move))
             parts.append(cuts)
             start = moves.start.copy()
-            start[at] = cuts.end[-1]
+            start[first_move] = cuts.end[-1]
             moves = replace(moves, start=start)
-            done = at
+            done = first_move
         return Moves.concatenated([*parts, _between(moves, done, len(moves))])
 
     def _moves(self, cycle: _Cycle, start: complex) -> Moves:

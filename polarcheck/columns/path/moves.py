@@ -141,9 +141,9 @@ def _shares_of_block(row: Rows, length: Floats) -> tuple[Mask, Floats, Floats]:
     begins = np.ones(len(row), bool)
     begins[1:] = np.diff(row) != 0
     first, ends = np.flatnonzero(begins), np.append(begins[1:], True)[: len(row)]
-    way = np.cumsum(np.nan_to_num(length))
+    distance = np.cumsum(np.nan_to_num(length))
     count = np.diff(np.append(first, len(row)))
-    done = way - np.repeat((way - np.nan_to_num(length))[first], count)
+    done = distance - np.repeat((distance - np.nan_to_num(length))[first], count)
     whole = np.repeat(done[ends], count)
     after = np.where(ends, 1.0, np.divide(done, whole, out=np.zeros(len(row)), where=whole > 0))
     return begins, np.where(begins, 0.0, np.append(0.0, after[:-1])[: len(row)]), after
@@ -251,22 +251,22 @@ def tool_center_path(trace: Trace, path: offset_path.Path) -> offset_path.ToolPa
 
 def of_tool(trace: Trace, tool: offset_path.ToolPath, row: Rows) -> Moves:
     """The moves of a tool center path; row: the rows of the trace that it was given."""
-    at = row[tool.row]
+    rows = row[tool.row]
     length = polar.length(tool.start, tool.end, tool.center, tool.kind)
     return Moves(
-        row=at,
-        section=trace.mode.section[at],
+        row=rows,
+        section=trace.mode.section[rows],
         kind=tool.kind,
         start=tool.start,
         end=tool.end,
         center=tool.center,
-        feed=trace.feedrate.feed[at],
-        rise=rise_of(trace, at, length),
-        arc_share=_arc_share(trace, tool, at),
+        feed=trace.feedrate.feed[rows],
+        rise=rise_of(trace, rows, length),
+        arc_share=_arc_share(trace, tool, rows),
         known=tool.known,
         phase=tool.phase,
         corner=tool.corner,
-        allowance=np.zeros(len(at)),
+        allowance=np.zeros(len(rows)),
         entry=trace.path.section_entry,
         c_axis=trace.path.c_axis,
     )

@@ -163,8 +163,8 @@ class ProgrammedPath(Columns, frozen=True):
         steps = steps - np.where(self._shifts & (self.mode.section < 0), shifted, 0.0)
         for axis in self.axes.other_linear_axes:
             where = self.mode.in_polar & (self.axes.linear_axis == ord(axis))
-            other = self._programmed(axis, INCREMENTS[axis], 1.0, where)
-            absolute, steps = np.where(np.isnan(absolute), other[0], absolute), steps + other[1]
+            incremental = self._programmed(axis, INCREMENTS[axis], 1.0, where)
+            absolute, steps = np.where(np.isnan(absolute), incremental[0], absolute), steps + incremental[1]
         return in_frame(self.frames, self.mode.in_polar, absolute, steps, along_virtual=False)
 
     @cached_property

@@ -103,10 +103,10 @@ class Ramps(Columns, frozen=True):
         trace = self.trace
         ramp = ramp | trace.run.unknown
         events = np.flatnonzero(trace.path.travels | ends | ramp)
-        at = np.flatnonzero(rows)
-        next_event = np.append(events, len(trace))[np.searchsorted(events, at, side="right")]
+        index = np.flatnonzero(rows)
+        next_event = np.append(events, len(trace))[np.searchsorted(events, index, side="right")]
         alone = np.zeros(len(trace), bool)
-        alone[at] = ~np.append(ramp, False)[next_event]
+        alone[index] = ~np.append(ramp, False)[next_event]
         return alone
 
     @cached_property

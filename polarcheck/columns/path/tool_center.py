@@ -53,22 +53,22 @@ class ToolCenter:
     @cached_property
     def radius(self) -> Floats:
         """R with its sign [mm], NaN where it is not known."""
-        in_force, other = self.trace.compensation.radius, self.other_radius
-        return in_force if other is None else np.where(other.rows, other.radius, in_force)
+        in_force, trial = self.trace.compensation.radius, self.other_radius
+        return in_force if trial is None else np.where(trial.rows, trial.radius, in_force)
 
     @cached_property
     def _rows(self) -> Rows:
         """The rows of the trace that are compensated: those in the mode, of another R those that have it."""
-        in_polar, other = self.trace.mode.in_polar, self.other_radius
-        return np.flatnonzero(in_polar if other is None else in_polar & other.rows)
+        in_polar, trial = self.trace.mode.in_polar, self.other_radius
+        return np.flatnonzero(in_polar if trial is None else in_polar & trial.rows)
 
     @property
     def _programmed(self) -> Path:
         """Not stored: it is large, and needed again only where the tool interferes."""
-        path, other = compensation_path(self.trace, self._rows), self.other_radius
-        if other is None:
+        path, trial = compensation_path(self.trace, self._rows), self.other_radius
+        if trial is None:
             return path
-        return msgspec.structs.replace(path, section=other.group[self._rows], radius=other.radius[self._rows])
+        return msgspec.structs.replace(path, section=trial.group[self._rows], radius=trial.radius[self._rows])
 
     @cached_property
     def _path(self) -> ToolPath:
@@ -134,12 +134,12 @@ class ToolCenter:
         stretches = msgspec.structs.replace(path[rows], start=path.start[first], radius=radius)
         straight = tool_center_path(self.trace, stretches)
         faulty = straight.interferes | straight.no_intersection | straight.inside_arc_too_small
-        found = self._found(self._path.interferes & ~faulty[np.searchsorted(rows, np.arange(len(kept)))])
+        by_rounding = self._found(self._path.interferes & ~faulty[np.searchsorted(rows, np.arange(len(kept)))])
         # Among many such blocks a few that rounding may well turn round tell nothing, whatever is left of them.
         short = self._found(may_turn_back(path.start, path.end, self._half_of_last_digit, path.radius))
-        others = self.interferes & short & ~found
-        most = self.trace.mode.count_in_section(found) > self.trace.mode.count_in_section(others)
-        return np.asarray(found | (others & np.append(most, False)[self.trace.mode.section]))
+        really = self.interferes & short & ~by_rounding
+        most = self.trace.mode.count_in_section(by_rounding) > self.trace.mode.count_in_section(really)
+        return np.asarray(by_rounding | (really & np.append(most, False)[self.trace.mode.section]))
 
     @cached_property
     def no_intersection(self) -> Mask:
@@ -161,11 +161,11 @@ class ToolCenter:
         if not missing.any():
             return missing
         idle = trace.axes.moves_plane & ~trace.path.travels & ~trace.path.moves_z & trace.mode.in_polar
-        moved, at = np.cumsum(trace.path.travels), np.flatnonzero(idle)
+        moved, waiting = np.cumsum(trace.path.travels), np.flatnonzero(idle)
         rows = np.flatnonzero(missing)
-        behind = np.append(at, -1)[np.searchsorted(at, rows)]
-        own = (behind >= 0) & (moved[behind] == moved[rows])
-        return trace.blocks.mask_of(np.where(own, behind, rows))
+        last_waiting = np.append(waiting, -1)[np.searchsorted(waiting, rows)]
+        own = (last_waiting >= 0) & (moved[last_waiting] == moved[rows])
+        return trace.blocks.mask_of(np.where(own, last_waiting, rows))
 
     @cached_property
     def arc_center_on_path(self) -> Mask:

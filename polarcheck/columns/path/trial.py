@@ -23,9 +23,9 @@ class Trial(Overcuts):
     trace says stays as programmed.
     """
 
-    def __init__(self, trace: Trace, other: OtherRadius) -> None:
-        super().__init__(trace, ToolCenter(trace, Infeed(trace), other_radius=other))
-        self.tried = other.rows
+    def __init__(self, trace: Trace, trial_radius: OtherRadius) -> None:
+        super().__init__(trace, ToolCenter(trace, Infeed(trace), other_radius=trial_radius))
+        self.tried = trial_radius.rows
 
     @property
     def bar(self) -> float:

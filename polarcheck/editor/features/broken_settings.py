@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from lsprotocol import types
 
 if TYPE_CHECKING:
-    from polarcheck.editor.analysis import Judged
+    from polarcheck.editor.analysis import Analysis
     from polarcheck.editor.buffers import Buffer
     from polarcheck.editor.server_session import Server
 
@@ -17,11 +17,11 @@ def register(server: Server) -> None:
     marks: dict[str, tuple[str, types.Diagnostic]] = {}
 
     def publish(uri: str) -> None:
-        shown: list[types.Diagnostic] = []
+        published: list[types.Diagnostic] = []
         for file, mark in marks.values():
-            if file == uri and mark not in shown:
-                shown.append(mark)
-        server.text_document_publish_diagnostics(types.PublishDiagnosticsParams(uri, shown))
+            if file == uri and mark not in published:
+                published.append(mark)
+        server.text_document_publish_diagnostics(types.PublishDiagnosticsParams(uri, published))
 
     def update(document: str, mark: tuple[str, types.Diagnostic] | None) -> None:
         before = marks.pop(document, None)
@@ -31,10 +31,10 @@ def register(server: Server) -> None:
             for uri in {file for file, _ in filter(None, (before, mark))}:
                 publish(uri)
 
-    def checked(buffer: Buffer, judged: Judged) -> None:
+    def checked(buffer: Buffer, analysis: Analysis) -> None:
         from polarcheck.editor.settings_fault import broken
 
-        update(buffer.uri, broken(judged.error, judged.read) if judged.error else None)
+        update(buffer.uri, broken(analysis.error, analysis.read) if analysis.error else None)
 
     server.published.append(checked)
     server.gone.append(lambda uri: update(uri, None))

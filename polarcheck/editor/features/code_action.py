@@ -8,16 +8,16 @@ from typing import TYPE_CHECKING
 from lsprotocol import types
 
 if TYPE_CHECKING:
-    from polarcheck.editor.analysis import Judged
+    from polarcheck.editor.analysis import Analysis
     from polarcheck.editor.server_session import Server
 
 
 def _quick_fixes(
-    judged: Judged, uri: str, version: int | None, selected: types.Range, with_versions: bool
+    analysis: Analysis, uri: str, version: int | None, selected: types.Range, with_versions: bool
 ) -> list[types.CodeAction]:
     from polarcheck.editor.actions import actions
 
-    return actions(judged, uri, version, selected, with_versions)
+    return actions(analysis, uri, version, selected, with_versions)
 
 
 #: Each takes the result of a check, the document with its version, a selection, and True if edits may name a version.
@@ -46,14 +46,14 @@ def register(server: Server) -> None:
         buffer = server.buffers.open.get(uri)
         version = buffer.version if buffer is not None else None
 
-        def find(judged: Judged) -> list[types.CodeAction]:
+        def find(analysis: Analysis) -> list[types.CodeAction]:
             of_workspace = server.client_capabilities.workspace
             edits = of_workspace.workspace_edit if of_workspace is not None else None
             with_versions = bool(edits is not None and edits.document_changes)
             return [
                 action
                 for function in functions
-                for action in function(judged, uri, version, params.range, with_versions)
+                for action in function(analysis, uri, version, params.range, with_versions)
             ]
 
         none: list[types.CodeAction] = []
@@ -62,5 +62,7 @@ def register(server: Server) -> None:
 
 def _is_wanted(kind: types.CodeActionKind, only: Iterable[types.CodeActionKind | str] | None) -> bool:
     """Return True if the editor asks for this kind: `source` means `source.fixAll`, too."""
-    values = [str(wanted.value) if isinstance(wanted, types.CodeActionKind) else wanted for wanted in only or ()]
+    values = [
+        str(requested.value) if isinstance(requested, types.CodeActionKind) else requested for requested in only or ()
+    ]
     return not values or any(f"{kind.value}.".startswith(f"{value}.") or not value for value in values)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from lsprotocol import types
 
 if TYPE_CHECKING:
-    from polarcheck.editor.analysis import Judged
+    from polarcheck.editor.analysis import Analysis
     from polarcheck.editor.buffers import Buffer
     from polarcheck.editor.server_session import Server
 
@@ -17,14 +17,14 @@ def register(server: Server) -> None:
 
     @server.feature(types.TEXT_DOCUMENT_CODE_LENS, types.CodeLensOptions())
     async def code_lens(params: types.CodeLensParams) -> list[types.CodeLens]:
-        def find(judged: Judged) -> list[types.CodeLens]:
+        def find(analysis: Analysis) -> list[types.CodeLens]:
             from polarcheck.editor.section_lenses import code_lenses
 
-            return code_lenses(judged)
+            return code_lenses(analysis)
 
         return await server.ask(params.text_document.uri, find, [])
 
-    def refresh(buffer: Buffer, judged: Judged) -> None:
+    def refresh(buffer: Buffer, analysis: Analysis) -> None:
         of_workspace = server.client_capabilities.workspace
         lens = of_workspace.code_lens if of_workspace is not None else None
         if lens is not None and lens.refresh_support:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from lsprotocol import types
 
 if TYPE_CHECKING:
-    from polarcheck.editor.analysis import Judged
+    from polarcheck.editor.analysis import Analysis
     from polarcheck.editor.server_session import Server
     from polarcheck.editor.structure.document import Document
 
@@ -17,10 +17,10 @@ def register(server: Server) -> None:
 
     @server.feature(types.TEXT_DOCUMENT_DEFINITION)
     async def definition(params: types.DefinitionParams) -> list[types.Location]:
-        def find(judged: Judged) -> list[types.Location]:
+        def find(analysis: Analysis) -> list[types.Location]:
             from polarcheck.editor.go_to_definition import definition
 
-            return definition(judged, params.text_document.uri, params.position)
+            return definition(analysis, params.text_document.uri, params.position)
 
         def find_assignments(document: Document) -> list[types.Location]:
             from polarcheck.editor.structure.reference_search import assignments
@@ -31,5 +31,5 @@ def register(server: Server) -> None:
             return assignments(document, params.position, server.documents.workspace(document))
 
         uri = params.text_document.uri
-        found: list[types.Location] = await server.documents.ask(uri, find_assignments, [])
-        return found or await server.ask(uri, find, [], soon=True)
+        assigning: list[types.Location] = await server.documents.ask(uri, find_assignments, [])
+        return assigning or await server.ask(uri, find, [], soon=True)

@@ -17,8 +17,8 @@ def register(server: Server) -> None:
     @server.feature(types.TEXT_DOCUMENT_DOCUMENT_SYMBOL)
     async def document_symbol(params: types.DocumentSymbolParams) -> list[types.DocumentSymbol]:
         # The details of polar sections are those of the report.
-        judged = await server.buffers.judged(params.text_document.uri)
-        sections = judged.report.polar_sections if judged is not None and judged.report is not None else ()
+        analysis = await server.buffers.judged(params.text_document.uri)
+        sections = analysis.report.polar_sections if analysis is not None and analysis.report is not None else ()
 
         def find(document: Document) -> list[types.DocumentSymbol]:
             from polarcheck.editor.structure.symbols import symbols

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from lsprotocol import types
 
 if TYPE_CHECKING:
-    from polarcheck.editor.analysis import Judged
+    from polarcheck.editor.analysis import Analysis
     from polarcheck.editor.buffers import Buffer
     from polarcheck.editor.server_session import Server
 
@@ -34,9 +34,9 @@ def register(server: Server) -> None:
         section = settings.get(_SECTION) if isinstance(settings, dict) else None
         of_workspace = server.client_capabilities.workspace
         if section is None and of_workspace is not None and of_workspace.configuration:
-            wanted = types.ConfigurationParams([types.ConfigurationItem(section=_SECTION)])
+            request = types.ConfigurationParams([types.ConfigurationItem(section=_SECTION)])
             with contextlib.suppress(Exception):  # an editor that does not answer has no settings
-                section = next(iter(await server.workspace_configuration_async(wanted)), None)
+                section = next(iter(await server.workspace_configuration_async(request)), None)
         if choose(section):
             refresh()
 
@@ -46,7 +46,7 @@ def register(server: Server) -> None:
         if of_hints is not None and of_hints.refresh_support:
             server.workspace_inlay_hint_refresh(None)
 
-    def published(buffer: Buffer, judged: Judged) -> None:
+    def published(buffer: Buffer, analysis: Analysis) -> None:
         if chosen != _OFF:
             refresh()
 
@@ -56,9 +56,9 @@ def register(server: Server) -> None:
 
     @server.feature(types.TEXT_DOCUMENT_INLAY_HINT)
     async def inlay_hint(params: types.InlayHintParams) -> list[types.InlayHint]:
-        def find(judged: Judged) -> list[types.InlayHint]:
+        def find(analysis: Analysis) -> list[types.InlayHint]:
             from polarcheck.editor.inlay_hints import inlay_hints
 
-            return inlay_hints(judged, params.range, chosen)
+            return inlay_hints(analysis, params.range, chosen)
 
         return [] if chosen == _OFF else await server.ask(params.text_document.uri, find, [])

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from polarcheck.editor.analysis import Judged
+    from polarcheck.editor.analysis import Analysis
     from polarcheck.editor.buffers import Buffer
     from polarcheck.editor.server_session import Server
 
@@ -29,9 +29,9 @@ def register(server: Server) -> None:
         if buffer is None:
             raise picture_view.RequestFailed("the program is not open in the editor")
 
-        def draw(judged: Judged) -> str:
+        def draw(analysis: Analysis) -> str:
             return picture_view.picture(
-                judged, server.folders_of(judged.path), lambda: buffer.judged is not judged, address, sources
+                analysis, server.folders_of(analysis.path), lambda: buffer.judged is not analysis, address, sources
             )
 
         html = await server.ask(uri, draw, None)
@@ -45,11 +45,11 @@ def register(server: Server) -> None:
 
         return {"path": picture_view.library()}
 
-    def publish(buffer: Buffer, judged: Judged) -> None:
+    def publish(buffer: Buffer, analysis: Analysis) -> None:
         from polarcheck.editor import picture_view
 
         extras = picture_view.member(server.client_capabilities.experimental, "polarcheck")
         if picture_view.member(extras, "verdict") is True:
-            server.protocol.notify(VERDICT, picture_view.verdict(judged, buffer.uri, buffer.version))
+            server.protocol.notify(VERDICT, picture_view.verdict(analysis, buffer.uri, buffer.version))
 
     server.published.append(publish)

@@ -27,12 +27,12 @@ def register(server: Server) -> None:
 
             return title(document, position)
 
-        found = await server.documents.ask(uri, find, None)
-        if found is None:
+        offer = await server.documents.ask(uri, find, None)
+        if offer is None:
             return []
-        action = types.CodeAction(found[0], types.CodeActionKind.RefactorRewrite)
-        if found[1]:
-            action.disabled = types.CodeActionDisabled(found[1])
+        action = types.CodeAction(offer[0], types.CodeActionKind.RefactorRewrite)
+        if offer[1]:
+            action.disabled = types.CodeActionDisabled(offer[1])
         elif _can_resolve(server):
             action.data = {"uri": uri, "line": position.line, "character": position.character}
         else:

@@ -59,11 +59,13 @@ def _tool_words(listing: Listing, program: Program) -> Iterator[tuple[int, str]]
         start, end = int(listing.text.blocks.start[block]), int(listing.text.blocks.end[block])
         if "T" not in source.excerpt(start, end).upper():
             continue
-        found = tokens(listing, block)
-        for token, following in itertools.pairwise(found):
+        lexed = tokens(listing, block)
+        for token, following in itertools.pairwise(lexed):
             if token.text != "T" or token.kind != "address":
                 continue
-            named = next((one for one in found if one.start > token.start and one.kind == "string"), None)
+            named = next(
+                (candidate for candidate in lexed if candidate.start > token.start and candidate.kind == "string"), None
+            )
             if following.kind == "number":
                 number = float(following.text) if following.text.isdecimal() and len(following.text) < 10 else math.nan
                 yield block, _tool(number, digits)
@@ -86,14 +88,14 @@ def polar_sections(listing: Listing, program: Program) -> list[Stretch]:
     on = part.block[is_code(part, polar.on)].tolist()
     off = part.block[is_code(part, [*polar.off, *polar.ended_by])].tolist()
     begin: int | None = None
-    found = []
+    sections = []
     for block, begins in sorted([*((block, True) for block in on), *((block, False) for block in off)]):
         if begins and begin is None:
             begin = block
         elif not begins and begin is not None:
-            found.append(Stretch(begin, block))
+            sections.append(Stretch(begin, block))
             begin = None
-    return found if begin is None else [*found, Stretch(begin, last_written(listing, program))]
+    return sections if begin is None else [*sections, Stretch(begin, last_written(listing, program))]
 
 
 def loops(listing: Listing, program: Program) -> list[Stretch]:
@@ -103,12 +105,12 @@ def loops(listing: Listing, program: Program) -> list[Stretch]:
     hits = [match.start() + first for match in _KEYWORD.finditer(text.source.code[first:end].tobytes())]
     blocks = np.unique(np.searchsorted(text.blocks.start, hits, side="right") - 1)
     statements = [(block, listing.statement(block)) for block in blocks[text.blocks.is_macro[blocks]].tolist()]
-    found = [Stretch(*pair) for pair in find_loops(statements, listing.macro.loop_levels).end.items()]
+    stretches = [Stretch(*pair) for pair in find_loops(statements, listing.macro.loop_levels).end.items()]
     structures = find_structures(statements)
     for head, last in structures.end.items():
         between = structures.other.get(head)
-        found.append(Stretch(head, last if between is None else max(between - 1, head)))
-    return found
+        stretches.append(Stretch(head, last if between is None else max(between - 1, head)))
+    return stretches
 
 
 def comments(listing: Listing) -> list[Stretch]:

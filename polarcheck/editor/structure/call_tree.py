@@ -51,17 +51,17 @@ def outgoing(document: Document, item: Any, workspace: Workspace) -> list[types.
     if owner is None:
         return []
     calls = [mention for mention in owner.all if mention.kind is Kind.PROGRAM and mention.role is Role.REFERS]
-    found = [Use(called, mention) for mention in calls for called in uses.resolved(owner, called_name(mention))]
+    uses_called = [Use(called, mention) for mention in calls for called in uses.resolved(owner, called_name(mention))]
     return [
         types.CallHierarchyOutgoingCall(_item(uses_of[0].owner), [_range(owner, use.mention) for use in uses_of])
-        for uses_of in _grouped(found)[:_MOST]
+        for uses_of in _grouped(uses_called)[:_MOST]
     ]
 
 
-def _grouped(found: list[Use]) -> list[list[Use]]:
+def _grouped(uses_listed: list[Use]) -> list[list[Use]]:
     """Return mentions by their program, in order."""
     groups: dict[tuple[str, str, int], list[Use]] = {}
-    for use in found:
+    for use in uses_listed:
         groups.setdefault(use.owner.key, []).append(use)
     return list(groups.values())
 

@@ -41,15 +41,15 @@ class Token(NamedTuple):
 def tokens(listing: Listing, block: int, text: str | None = None) -> list[Token]:
     """Return the tokens of a block, without comments; text: of the block, if it is at hand (programs.block_text)."""
     written, language = block_text(listing.text, block) if text is None else text, listing.macro.language
-    found: Iterable[Token]
+    lexed: Iterable[Token]
     if language == "high-level" and not is_custom_macro(written):
-        found = _high_level(written, listing)
+        lexed = _high_level(written, listing)
     elif language == "user-task":
-        found = _user_task(written, listing)
+        lexed = _user_task(written, listing)
     else:
-        found = _custom_macro(written)
+        lexed = _custom_macro(written)
     start = int(listing.text.blocks.start[block])
-    return [Token(kind, name, begin + start, end + start) for kind, name, begin, end in found]
+    return [Token(kind, name, begin + start, end + start) for kind, name, begin, end in lexed]
 
 
 # ---- custom macro ----
@@ -71,26 +71,26 @@ def _custom_macro(block: str) -> tuple[Token, ...]:
 
 def _custom_macro_tokens(block: str) -> Iterator[Token]:
     characters = Characters.of_block(block)
-    text, places, at, last, count = characters.text, characters.places, 0, "", 0
-    while at < len(text) and count < _MOST:
-        match = _CUSTOM.match(text, at)
+    text, places, position, last, count = characters.text, characters.places, 0, "", 0
+    while position < len(text) and count < _MOST:
+        match = _CUSTOM.match(text, position)
         if match is None:
-            at += 1
+            position += 1
             continue
         kind, end = match.lastgroup or "", match.end()
         if kind == "operator" and match[0].isalpha() and last not in _OPERANDS and last != "]":
             # A word such as M0 in a block that has no expression before it.
-            keyword = KEYWORD.match(text, at)
-            kind, end = ("keyword", keyword.end()) if keyword else ("address", at + 1)
+            keyword = KEYWORD.match(text, position)
+            kind, end = ("keyword", keyword.end()) if keyword else ("address", position + 1)
         elif kind == "number" and match[0][0] in "+-" and last in (*_OPERANDS, "]"):
-            kind, end = "operator", at + 1
-        start, after = places[at], places[end - 1] + 1
+            kind, end = "operator", position + 1
+        start, after = places[position], places[end - 1] + 1
         if match[0] == "#":
             yield Token("computed", "#", start, after)
         elif kind != "sign":
-            yield Token(kind, text[at:end], start, after)
+            yield Token(kind, text[position:end], start, after)
         last = text[end - 1 : end] if kind == "sign" else kind
-        at, count = end, count + 1
+        position, count = end, count + 1
 
 
 # ---- a high-level language ----
@@ -100,14 +100,14 @@ _LEADING: Final = ("GOTO", "GOTOF", "GOTOB", "GOTOC")
 
 
 def _high_level(block: str, listing: Listing) -> Iterator[Token]:
-    found = tokens_of(block, _MOST)
+    lexed = tokens_of(block, _MOST)
     letter = listing.macro.parameter_letter
     skips = 0
-    for index, token in enumerate(found[:-1]):
+    for index, token in enumerate(lexed[:-1]):
         if skips:
             skips -= 1
             continue
-        last, following = found[index - 1] if index else None, found[index + 1]
+        last, following = lexed[index - 1] if index else None, lexed[index + 1]
         if token.kind == "name":
             kind = _kind_of_name(token.text, following.text, listing)
             is_led_to = last is not None and kind == "name" and last.text in _LEADING
@@ -116,7 +116,7 @@ def _high_level(block: str, listing: Listing) -> Iterator[Token]:
             is_value = last is not None and (
                 (last.kind == "sign" and last.text not in ")]:") or (last.kind == "name" and last.end < token.start)
             )
-            is_target = index + 2 < len(found) and found[index + 2].text == "="
+            is_target = index + 2 < len(lexed) and lexed[index + 2].text == "="
             if token.text == letter and following.kind == "number" and (is_value or is_target):
                 skips = 1
                 yield Token("variable", f"{token.text}{following.text}", token.start, following.end)
@@ -157,15 +157,15 @@ _SEQUENCE_NAME: Final = re.compile(r"N[A-Z][A-Z0-9]{0,3}")
 
 
 def _user_task(block: str, listing: Listing) -> Iterator[Token]:
-    found = Values(block, listing.names).tokens[:_MOST]
+    lexed = Values(block, listing.names).tokens[:_MOST]
     skips = depth = 0
     is_head = True
-    for index, token in enumerate(found):
+    for index, token in enumerate(lexed):
         if skips:
             skips -= 1
             continue
-        last = found[index - 1] if index else None
-        following = found[index + 1] if index + 1 < len(found) else None
+        last = lexed[index - 1] if index else None
+        following = lexed[index + 1] if index + 1 < len(lexed) else None
         is_target = following is not None and following.text == "="
         if token.kind == "sign":
             depth += {"[": 1, "]": -1}.get(token.text, 0)

@@ -49,9 +49,18 @@ class Mentions:
     def __init__(self, listing: Listing) -> None:
         self.listing = listing
         self.computed: list[Computed] = []
-        found = [*self._numbers(), *self._labels(), *self._heads(), *self._flow(), *self._cycles(), *self._variables()]
-        found.sort(key=_PLACE)
-        self.all = [one for one, before in zip(found, [None, *found], strict=False) if one != before]
+        mentions = [
+            *self._numbers(),
+            *self._labels(),
+            *self._heads(),
+            *self._flow(),
+            *self._cycles(),
+            *self._variables(),
+        ]
+        mentions.sort(key=_PLACE)
+        self.all = [
+            following for following, before in zip(mentions, [None, *mentions], strict=False) if following != before
+        ]
         self._blocks = [mention.block for mention in self.all]
 
     def of_program(self, program: Program) -> list[Mention]:
@@ -92,8 +101,8 @@ class Mentions:
         """N numbers at blocks."""
         text = self.listing.text
         words = text.words
-        at = np.flatnonzero((words.address == ord("N")) & (words.value < _NUMBER_LIMIT) & (words.value >= 0))
-        columns = (words.start[at].tolist(), words.end[at].tolist(), words.block[at].tolist())
+        index = np.flatnonzero((words.address == ord("N")) & (words.value < _NUMBER_LIMIT) & (words.value >= 0))
+        columns = (words.start[index].tolist(), words.end[index].tolist(), words.block[index].tolist())
         cycles = self._cycle_blocks if self.listing.macro.language == "user-task" else frozenset()
         content = text.source.text
         for start, end, block in zip(*columns, strict=True):
@@ -228,9 +237,9 @@ class Mentions:
         word = words.get("<") if called.name is not None else words.get("P")
         if word is None:
             return
-        place = _place_of_name(written, word, called)
-        if place is not None:
-            first, end = place
+        name_span = _place_of_name(written, word, called)
+        if name_span is not None:
+            first, end = name_span
             digits = written[first:end]
             repeats = macro.repeats_in_p and is_subprogram and called.number is not None and len(digits) > 4
             has_repeats = repeats and int(digits) > _REPEATED - 1
@@ -271,13 +280,13 @@ class Mentions:
         words = text.words
         for block in sorted(self._cycle_blocks):
             low, high = np.searchsorted(words.block, (block, block + 1)).tolist()
-            found = {chr(words.address[index]): index for index in reversed(range(low, high))}
+            indices = {chr(words.address[index]): index for index in reversed(range(low, high))}
             if self.listing.macro.language == "user-task":
                 yield from self._cycle_names(block)
-            if not {"P", "Q"} <= found.keys() or {"X", "Z"} & found.keys():
+            if not {"P", "Q"} <= indices.keys() or {"X", "Z"} & indices.keys():
                 continue
             targets = self.listing.programs.targets(self.listing.programs.around(block))
-            pair = [found["P"], found["Q"]]
+            pair = [indices["P"], indices["Q"]]
             numbers = [int(words.value[index]) if _is_whole(float(words.value[index])) else -1 for index in pair]
             if any(words.has_point[index] for index in pair) or not all(number in targets for number in numbers):
                 continue
@@ -299,8 +308,8 @@ class Mentions:
 
     def _variables(self) -> Iterator[Mention]:
         for block, _, written in self._macro_blocks:
-            found = tokens(self.listing, block, written)
-            for token, following in itertools.zip_longest(found, found[1:]):
+            lexed = tokens(self.listing, block, written)
+            for token, following in itertools.zip_longest(lexed, lexed[1:]):
                 if token.kind == "computed":
                     self.computed.append(Computed(Kind.VARIABLE, block))
                 elif token.kind == "variable" or token.text.startswith("#_"):
@@ -312,7 +321,7 @@ class Mentions:
 
 def _flow_pattern(macro: Macro) -> re.Pattern[bytes]:
     """Return a pattern of the codes, keywords and names without which no block jumps or calls."""
-    codes = [(one[:1].encode(), re.escape(one[1:].encode())) for one in sorted(macro.flow_codes)]
+    codes = [(flow_code[:1].encode(), re.escape(flow_code[1:].encode())) for flow_code in sorted(macro.flow_codes)]
     parts = [rb"GO", *(rb"%s[ \t]{0,3}0{0,3}%s(?![0-9])" % code for code in codes)]
     if macro.language == "high-level":
         parts += [rb"[A-Z_]{2}", rb"L[0-9]"]
@@ -340,15 +349,15 @@ def _place_of_name(written: str, word: Word, called: ProgramName) -> tuple[int, 
         digits = _DIGITS.search(written, word.start, word.end)
         return digits.span() if digits else None
     name = called.name or ""
-    capitals, wanted = in_capitals(written), in_capitals(name)
-    at = capitals.find(wanted, word.start) if wanted else -1
-    while at >= 0:
-        end = at + len(wanted)
+    capitals, pattern = in_capitals(written), in_capitals(name)
+    start = capitals.find(pattern, word.start) if pattern else -1
+    while start >= 0:
+        end = start + len(pattern)
         after = capitals[end : end + 1]
         is_whole = not (after.isalnum() or after == "_") or capitals[end : end + 4] in ("_SPF", "_MPF")
-        if is_whole and not capitals[at - 1 : at].isalnum():
-            return at, end
-        at = capitals.find(wanted, at + 1)
+        if is_whole and not capitals[start - 1 : start].isalnum():
+            return start, end
+        start = capitals.find(pattern, start + 1)
     return None
 
 

@@ -23,8 +23,8 @@ def references(
     use = uses.at(document.text.character_of(position))
     if use is None:
         return []
-    found = uses.same(use)
-    return [location(one) for one in found if with_declaration or one.mention.role is not Role.DEFINES][:_MOST]
+    same = uses.same(use)
+    return [location(user) for user in same if with_declaration or user.mention.role is not Role.DEFINES][:_MOST]
 
 
 def assignments(document: Document, position: types.Position, workspace: Workspace) -> list[types.Location]:
@@ -33,7 +33,7 @@ def assignments(document: Document, position: types.Position, workspace: Workspa
     use = uses.at(document.text.character_of(position))
     if use is None or use.mention.kind is not Kind.VARIABLE:
         return []
-    return [location(one) for one in uses.same(use) if one.mention.role is Role.ASSIGNS][:_MOST]
+    return [location(user) for user in uses.same(use) if user.mention.role is Role.ASSIGNS][:_MOST]
 
 
 def highlights(document: Document, position: types.Position) -> list[types.DocumentHighlight]:
@@ -43,9 +43,9 @@ def highlights(document: Document, position: types.Position) -> list[types.Docum
     if use is None:
         return []
     return [
-        types.DocumentHighlight(location(one).range, _highlight(one))
-        for one in uses.same(use)[:_MOST]
-        if one.owner.document is document
+        types.DocumentHighlight(location(user).range, _highlight(user))
+        for user in uses.same(use)[:_MOST]
+        if user.owner.document is document
     ]
 
 
@@ -63,7 +63,7 @@ def location(use: Use) -> types.Location:
 
 def by_document(uses: Iterable[Use]) -> dict[str, list[Use]]:
     """Return mentions by the URI of their document."""
-    found: dict[str, list[Use]] = {}
+    uses_by_uri: dict[str, list[Use]] = {}
     for use in uses:
-        found.setdefault(use.owner.document.uri, []).append(use)
-    return found
+        uses_by_uri.setdefault(use.owner.document.uri, []).append(use)
+    return uses_by_uri

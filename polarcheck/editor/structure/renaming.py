@@ -64,8 +64,8 @@ def rename(
     if use is None:
         raise RenameError("there is no N number, label, variable or program here")
     _refuse_system(uses, use)
-    wanted = _Renaming(uses, use, new_name.strip())
-    edits = wanted.edits()
+    renaming = _Renaming(uses, use, new_name.strip())
+    edits = renaming.edits()
     if not workspace.is_complete and use.mention.kind in (Kind.PROGRAM, Kind.VARIABLE):
         raise RenameError("not all files of the workspace could be looked at: open a smaller folder")
     return edits
@@ -96,15 +96,17 @@ class _Renaming:
         }[self.mention.kind]()
         if key in self.mention.keys and self.mention.kind is not Kind.PROGRAM:
             return {}
-        found = self.uses.same(self.use)
+        same = self.uses.same(self.use)
         if self.mention.kind is not Kind.PROGRAM or key not in self.mention.keys:
-            self._check(key, found)
+            self._check(key, same)
         return {
             uri: [
-                types.TextEdit(one.owner.document.range(one.mention.start, one.mention.end), self._written(one, key))
-                for one in of_document
+                types.TextEdit(
+                    user.owner.document.range(user.mention.start, user.mention.end), self._written(user, key)
+                )
+                for user in of_document
             ]
-            for uri, of_document in by_document(found).items()
+            for uri, of_document in by_document(same).items()
         }
 
     # ---- the new name ----
@@ -151,14 +153,14 @@ class _Renaming:
 
     # ---- what stands against it ----
 
-    def _check(self, key: int | str, found: list[Use]) -> None:
+    def _check(self, key: int | str, same: list[Use]) -> None:
         check = {
             Kind.SEQUENCE: self._check_number,
             Kind.LABEL: self._check_there,
             Kind.VARIABLE: self._check_variable,
             Kind.PROGRAM: self._check_program,
         }[self.mention.kind]
-        check(key, found)
+        check(key, same)
 
     def _line(self, owner: Owner, block: int) -> str:
         """Return a place as messages name it: line 5, or line 5 of O2.NC."""
@@ -171,20 +173,20 @@ class _Renaming:
 
     def _refuse_computed(self, owners: Iterable[Owner], kind: Kind, what: str, into: Into = Into.OWN) -> None:
         for owner in owners:
-            for one in owner.mentions.computed:
-                inside = owner.program.first <= one.block < owner.program.end
-                if one.kind is kind and one.into is into and inside:
-                    raise RenameError(f"{self._line(owner, one.block)} {what}: it may be {self.mention.shown}")
+            for computed in owner.mentions.computed:
+                inside = owner.program.first <= computed.block < owner.program.end
+                if computed.kind is kind and computed.into is into and inside:
+                    raise RenameError(f"{self._line(owner, computed.block)} {what}: it may be {self.mention.shown}")
 
-    def _check_there(self, key: int | str, found: list[Use]) -> None:
-        owners = {one.owner.key: one.owner for one in found}
+    def _check_there(self, key: int | str, same: list[Use]) -> None:
+        owners = {mention.owner.key: mention.owner for mention in same}
         for owner in owners.values():
-            for one in owner.all:
-                if one.kind is self.mention.kind and key in one.keys:
-                    shown = self._renamed(key).shown
-                    raise RenameError(f"{shown} is there already, in {self._line(owner, one.block)}")
+            for mention in owner.all:
+                if mention.kind is self.mention.kind and key in mention.keys:
+                    text = self._renamed(key).shown
+                    raise RenameError(f"{text} is there already, in {self._line(owner, mention.block)}")
 
-    def _check_number(self, key: int | str, found: list[Use]) -> None:
+    def _check_number(self, key: int | str, same: list[Use]) -> None:
         targets = self.uses.targets(self.use)
         what = "computes the number that it goes to"
         self._refuse_computed(targets, Kind.SEQUENCE, what)
@@ -192,25 +194,25 @@ class _Renaming:
             self._refuse_computed(self.uses.callees(target), Kind.SEQUENCE, what, Into.CALLER)
             self._refuse_computed(self.uses.callers(target), Kind.SEQUENCE, what, Into.CALLED)
         self._check_there(key, [Use(target, self.mention) for target in targets])
-        wanted = {target.key for target in targets}
-        for one in found:
-            if one.mention.into is not Into.OWN:
-                others = [target for target in self.uses.targets(one) if target.key not in wanted]
-                if others:
-                    place = self._line(one.owner, one.mention.block)
-                    other = self._line(others[0], others[0].program.first)
-                    raise RenameError(f"{place} means N{self.mention.name} of the program in {other}, too")
+        keys = {target.key for target in targets}
+        for user in same:
+            if user.mention.into is not Into.OWN:
+                rivals = [target for target in self.uses.targets(user) if target.key not in keys]
+                if rivals:
+                    location = self._line(user.owner, user.mention.block)
+                    elsewhere = self._line(rivals[0], rivals[0].program.first)
+                    raise RenameError(f"{location} means N{self.mention.name} of the program in {elsewhere}, too")
 
-    def _check_variable(self, key: int | str, found: list[Use]) -> None:
+    def _check_variable(self, key: int | str, same: list[Use]) -> None:
         scope = self.uses.scope(self.use)
         self._refuse_computed(scope, Kind.VARIABLE, "computes the number of a variable")
         before = self.uses.kind_of(self.use)
         after = self.use.owner.mentions.variable_kind(self._renamed(key))
         if after is not before:
-            shown, kind = self._renamed(key).shown, _KINDS.get(after, "none of this control")
-            raise RenameError(f"{self.mention.shown} is {_KINDS[before]}, {shown} is {kind}")
-        others = self.uses.scope(Use(self.use.owner, self._renamed(key)))
-        self._check_there(key, [Use(owner, self.mention) for owner in (*scope, *others)])
+            text, kind = self._renamed(key).shown, _KINDS.get(after, "none of this control")
+            raise RenameError(f"{self.mention.shown} is {_KINDS[before]}, {text} is {kind}")
+        hidden = self.uses.scope(Use(self.use.owner, self._renamed(key)))
+        self._check_there(key, [Use(owner, self.mention) for owner in (*scope, *hidden)])
         if before is VariableKind.LOCAL and isinstance(key, int):
             self._check_arguments(scope, key)
 
@@ -228,11 +230,11 @@ class _Renaming:
                     letter = letters.get(number)
                     repeats = number > max(ARGUMENTS.values()) or (letter or "") in "IJK"
                     if letter in addresses or (repeats and addresses & set("IJK")):
-                        place = self._line(call.owner, call.mention.block)
+                        location = self._line(call.owner, call.mention.block)
                         value = f"#{number} its value by {letter or 'I, J, K'}"
-                        raise RenameError(f"{place} gives {value}: change the call first")
+                        raise RenameError(f"{location} gives {value}: change the call first")
 
-    def _check_program(self, key: int | str, found: list[Use]) -> None:
+    def _check_program(self, key: int | str, users: list[Use]) -> None:
         probe = self._renamed(key)
         for owner in self.uses.defining(key):
             raise RenameError(f"{probe.shown} is there already, in {self._line(owner, owner.program.first)}")
@@ -240,15 +242,17 @@ class _Renaming:
         same = {owner.key: owner for name in self.mention.keys for owner in self.uses.defining(name)}
         if len(same) > 1:
             second = list(same.values())[1]
-            place = self._line(second, second.program.first)
-            raise RenameError(f"{self.mention.shown} is in {place}, too: it is not known which of them is called")
-        for one in found:
+            location = self._line(second, second.program.first)
+            raise RenameError(f"{self.mention.shown} is in {location}, too: it is not known which of them is called")
+        for user in users:
             width = len(str(key))
-            is_call = one.mention.role is Role.REFERS and isinstance(key, int)
-            macro = one.owner.mentions.listing.macro
-            if is_call and macro.repeats_in_p and one.mention.code in macro.subprogram_calls and width > 4:
-                place = self._line(one.owner, one.mention.block)
-                raise RenameError(f"{place}: P has the repeats before the last four digits, so expected four at most")
+            is_call = user.mention.role is Role.REFERS and isinstance(key, int)
+            macro = user.owner.mentions.listing.macro
+            if is_call and macro.repeats_in_p and user.mention.code in macro.subprogram_calls and width > 4:
+                location = self._line(user.owner, user.mention.block)
+                raise RenameError(
+                    f"{location}: P has the repeats before the last four digits, so expected four at most"
+                )
 
     # ---- as it is written ----
 

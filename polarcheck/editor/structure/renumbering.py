@@ -62,20 +62,20 @@ def renumber(document: Document, position: types.Position, workspace: Workspace)
         return {}
     new = _new_numbers(owner)
     _check(owner, new)
-    found = [Use(owner, mention) for mention in owner.all if _leads_inside(mention.kind, mention.into)]
-    found += _from_others(uses, owner)
+    leading = [Use(owner, mention) for mention in owner.all if _leads_inside(mention.kind, mention.into)]
+    leading += _from_others(uses, owner)
     if not workspace.is_complete:
         raise RenumberError("not all files of the workspace could be looked at: open a smaller folder")
     width = _width(owner)
     edits: dict[str, list[types.TextEdit]] = {}
-    for uri, of_document in by_document({one.key: one for one in found}.values()).items():
-        for one in of_document:
-            number = new.get(_number(one))
-            written = one.mention.written
+    for uri, of_document in by_document({user.key: user for user in leading}.values()).items():
+        for user in of_document:
+            number = new.get(_number(user))
+            written = user.mention.written
             text = f"{number:0{width if written.startswith('0') else 0}d}" if number is not None else written
             if text != written:
-                place = one.owner.document.range(one.mention.start, one.mention.end)
-                edits.setdefault(uri, []).append(types.TextEdit(place, text))
+                range_of_use = user.owner.document.range(user.mention.start, user.mention.end)
+                edits.setdefault(uri, []).append(types.TextEdit(range_of_use, text))
     return edits
 
 
@@ -98,8 +98,8 @@ def _owner_at(uses: Uses, position: types.Position) -> Owner | None:
 
 def _numbers(owner: Owner) -> list[int]:
     """Return the N numbers at the blocks of a program, in order."""
-    heads = [one for one in owner.all if one.kind is Kind.SEQUENCE and one.role is Role.DEFINES]
-    return [int(one.name) for one in heads]
+    heads = [head for head in owner.all if head.kind is Kind.SEQUENCE and head.role is Role.DEFINES]
+    return [int(head.name) for head in heads]
 
 
 def _leads_inside(kind: Kind, into: Into) -> bool:
@@ -122,7 +122,7 @@ def _new_numbers(owner: Owner) -> dict[int, int]:
 
 def _width(owner: Owner) -> int:
     """Return the digits of numbers with zeros before them."""
-    heads = [one.written for one in owner.all if one.kind is Kind.SEQUENCE and one.role is Role.DEFINES]
+    heads = [head.written for head in owner.all if head.kind is Kind.SEQUENCE and head.role is Role.DEFINES]
     return max((len(written) for written in heads if written.startswith("0")), default=0)
 
 
@@ -137,43 +137,43 @@ def _check(owner: Owner, new: dict[int, int]) -> None:
         if computed.kind is Kind.SEQUENCE and computed.into is Into.OWN and inside:
             raise RenumberError(f"{_line(owner, computed.block)} computes the number that it goes to")
     counts = Counter(_numbers(owner))
-    for one in owner.all:
-        if one.kind is not Kind.SEQUENCE or one.role is not Role.REFERS or one.into is not Into.OWN:
+    for mention in owner.all:
+        if mention.kind is not Kind.SEQUENCE or mention.role is not Role.REFERS or mention.into is not Into.OWN:
             continue
-        if counts[int(one.name)] > 1:
+        if counts[int(mention.name)] > 1:
             raise RenumberError(
-                f"{_line(owner, one.block)} goes to {one.shown}, which {counts[int(one.name)]} blocks have"
+                f"{_line(owner, mention.block)} goes to {mention.shown}, which {counts[int(mention.name)]} blocks have"
             )
-        if int(one.name) not in new:
-            raise RenumberError(f"{_line(owner, one.block)} goes to {one.shown}, which no block has")
+        if int(mention.name) not in new:
+            raise RenumberError(f"{_line(owner, mention.block)} goes to {mention.shown}, which no block has")
 
 
 def _from_others(uses: Uses, owner: Owner) -> list[Use]:
     """Return what leads into a program from those that it calls and from those that call it."""
     numbers = set(_numbers(owner))
     counts = Counter(_numbers(owner))
-    found = []
+    leading = []
     callees, callers = uses.callees(owner), uses.callers(owner)
-    for others, into in ((callees if callers else [*callees, owner], Into.CALLER), (callers, Into.CALLED)):
-        for other in others:
-            for computed in other.mentions.computed:
-                inside = other.program.first <= computed.block < other.program.end
+    for owners, into in ((callees if callers else [*callees, owner], Into.CALLER), (callers, Into.CALLED)):
+        for caller in owners:
+            for computed in caller.mentions.computed:
+                inside = caller.program.first <= computed.block < caller.program.end
                 if computed.kind is Kind.SEQUENCE and computed.into is into and inside:
-                    place = f"{_line(other, computed.block)} of {other.document.path.name}"
-                    raise RenumberError(f"{place} computes the number that it goes to")
-            for mention in other.all:
+                    location = f"{_line(caller, computed.block)} of {caller.document.path.name}"
+                    raise RenumberError(f"{location} computes the number that it goes to")
+            for mention in caller.all:
                 if mention.kind is not Kind.SEQUENCE or mention.into is not into or int(mention.name) not in numbers:
                     continue
-                use = Use(other, mention)
+                use = Use(caller, mention)
                 targets = {target.key for target in uses.targets(use)}
                 if owner.key not in targets:
                     continue
-                place = f"{_line(other, mention.block)} of {other.document.path.name}"
+                location = f"{_line(caller, mention.block)} of {caller.document.path.name}"
                 if len(targets) > 1:
-                    raise RenumberError(f"{place} means {mention.shown} of other programs, too")
+                    raise RenumberError(f"{location} means {mention.shown} of other programs, too")
                 if counts[int(mention.name)] > 1:
                     raise RenumberError(
-                        f"{place} goes to {mention.shown}, which {counts[int(mention.name)]} blocks have"
+                        f"{location} goes to {mention.shown}, which {counts[int(mention.name)]} blocks have"
                     )
-                found.append(use)
-    return found
+                leading.append(use)
+    return leading

@@ -32,20 +32,20 @@ _READS_BLANKS = re.compile(r"[\"']|DPRNT|BPRNT|SETVN|MSG|^\s*%", re.IGNORECASE)
 _ENDS_LINE = ("", "\n", "\r")
 
 
-def formatted(document: Document, shown: types.Range | None = None) -> list[types.TextEdit]:
+def formatted(document: Document, selected: types.Range | None = None) -> list[types.TextEdit]:
     """Return the edits that format a document, or the lines of a range; empty if they would change any word."""
-    edits = sorted({edit for listing in document.listings for edit in _of_listing(document, listing, shown)})
+    edits = sorted({edit for listing in document.listings for edit in _of_listing(document, listing, selected)})
     if not edits or not _is_same(document, edits):
         return []
     return [types.TextEdit(document.range(start, end), text) for start, end, text in edits]
 
 
-def _of_listing(document: Document, listing: Listing, shown: types.Range | None) -> Iterator[Edit]:
+def _of_listing(document: Document, listing: Listing, selected: types.Range | None) -> Iterator[Edit]:
     text = listing.text
     low, high = 0, len(text.blocks)
-    if shown is not None:
-        low = block_at(listing, document.text.character_of(types.Position(shown.start.line, 0)))
-        last = document.text.character_of(types.Position(shown.end.line + (shown.end.character > 0), 0))
+    if selected is not None:
+        low = block_at(listing, document.text.character_of(types.Position(selected.start.line, 0)))
+        last = document.text.character_of(types.Position(selected.end.line + (selected.end.character > 0), 0))
         high = int(np.searchsorted(text.blocks.start, last, side="left"))
     kept, nested = _kept(listing), _nested(listing)
     content = text.source.text
@@ -103,19 +103,19 @@ def _nested(listing: Listing) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
 def _pieces(listing: Listing, low: int, high: int) -> dict[int, list[tuple[int, int, str]]]:
     """Return the words and comments of each block: first character, the one behind the last, kind."""
     text = listing.text
-    found: dict[int, list[tuple[int, int, str]]] = {}
+    pieces: dict[int, list[tuple[int, int, str]]] = {}
     words = text.words
     begin, end = np.searchsorted(words.block, (low, high)).tolist()
     columns = (words.block, words.start, words.end, words.address)
     for block, start, stop, address in zip(*(column[begin:end].tolist() for column in columns), strict=True):
         kind = "/" if address == ord("/") else "," if address >= ord("a") else "word"
-        found.setdefault(block, []).append((start, stop, kind))
+        pieces.setdefault(block, []).append((start, stop, kind))
     begin, end = np.searchsorted(text.comments.block, (low, high)).tolist()
     spans = (text.comments.block, text.comments.start, text.comments.end)
     for block, start, stop in zip(*(column[begin:end].tolist() for column in spans), strict=True):
-        found.setdefault(block, []).append((start, stop, "comment"))
-        found[block].sort()
-    return found
+        pieces.setdefault(block, []).append((start, stop, "comment"))
+        pieces[block].sort()
+    return pieces
 
 
 def _of_words(content: str, pieces: list[tuple[int, int, str]]) -> Iterator[Edit]:
@@ -131,12 +131,12 @@ def _of_words(content: str, pieces: list[tuple[int, int, str]]) -> Iterator[Edit
         gap = content[end:after]
         if gap.strip(" \t"):
             continue
-        wanted = " "
+        space = " "
         if next_kind == "comment":
-            wanted = gap or " "
+            space = gap or " "
         elif not gap and (kind == "/" or next_kind in "/,"):
-            wanted = ""
-        yield from _changed(end, gap, wanted)
+            space = ""
+        yield from _changed(end, gap, space)
 
 
 def _of_statement(listing: Listing, block: int) -> Iterator[Edit]:
@@ -150,11 +150,11 @@ def _of_statement(listing: Listing, block: int) -> Iterator[Edit]:
     spans = list(zip(text.comments.start[low:high].tolist(), text.comments.end[low:high].tolist(), strict=True))
     bare, lead = len(written.rstrip()), len(written) - len(written.lstrip())
     for gap in _BLANKS.finditer(written):
-        place = start + gap.start(), start + gap.end()
-        is_inside = any(first <= place[0] < last for first, last in spans)
-        aligns = any(first == place[1] for first, _ in spans)
+        span = start + gap.start(), start + gap.end()
+        is_inside = any(first <= span[0] < last for first, last in spans)
+        aligns = any(first == span[1] for first, _ in spans)
         if not is_inside and not aligns and lead <= gap.start() < bare and gap[0] != " ":
-            yield (*place, " ")
+            yield (*span, " ")
 
 
 def _ends(content: str, start: int, end: int, *, nested: bool) -> Iterator[Edit]:
@@ -176,14 +176,14 @@ def _is_same(document: Document, edits: list[Edit]) -> bool:
     text = document.text
     lead = text.place_of(0)
     parts: list[str] = []
-    at = 0
+    end_of_last = 0
     for start, end, new in edits:
-        if start + lead < at:
+        if start + lead < end_of_last:
             return False
-        parts += [text.text[at : start + lead], new]
-        at = end + lead
+        parts += [text.text[end_of_last : start + lead], new]
+        end_of_last = end + lead
     after = Document(
-        document.uri, document.path, OpenText("".join([*parts, text.text[at:]]), text.units), document.machine
+        document.uri, document.path, OpenText("".join([*parts, text.text[end_of_last:]]), text.units), document.machine
     )
     if len(after.listings) != len(document.listings):
         return False

@@ -81,7 +81,7 @@ def _tools(document: Document, listing: Listing, program: Program) -> Iterator[t
 def _sections(
     document: Document, listing: Listing, program: Program, sections: Sequence[PolarSection]
 ) -> Iterator[types.DocumentSymbol]:
-    of_channel = [one for one in sections if (one.channel or "") == listing.text.source.channel]
+    of_channel = [section for section in sections if (section.channel or "") == listing.text.source.channel]
     by_line = sections_by_line(of_channel)
     for stretch in block_ranges.polar_sections(listing, program):
         line = int(listing.text.blocks.line[stretch.first])
@@ -92,26 +92,30 @@ def _sections(
 
 def _numbered(document: Document, listing: Listing, program: Program) -> Iterator[types.DocumentSymbol]:
     """Yield the N blocks with a comment, those that something leads to, and all of them where they are few; labels."""
-    mentions = next(one for one in mentions_of(document) if one.listing is listing)
-    heads = [one for one in mentions.of_program(program) if one.role is Role.DEFINES]
-    numbers = [one for one in heads if one.kind is Kind.SEQUENCE]
-    led_to = {one.name for one in mentions.of_program(program) if one.role is Role.REFERS and one.kind is Kind.SEQUENCE}
+    mentions = next(named for named in mentions_of(document) if named.listing is listing)
+    heads = [named for named in mentions.of_program(program) if named.role is Role.DEFINES]
+    numbers = [named for named in heads if named.kind is Kind.SEQUENCE]
+    led_to = {
+        named.name
+        for named in mentions.of_program(program)
+        if named.role is Role.REFERS and named.kind is Kind.SEQUENCE
+    }
     commented = set(listing.text.comments.block.tolist())
     is_sparse = len(numbers) <= max((program.end - program.first) // _SPARSE, _FEW)
-    shown = [one for one in numbers if is_sparse or one.block in commented or one.name in led_to]
-    shown += [one for one in heads if one.kind is Kind.LABEL]
-    for one in sorted(shown, key=lambda mention: mention.start)[:_MOST]:
-        name = f"N{one.written}" if one.kind is Kind.SEQUENCE else one.written
-        comment = _comment(listing, one.block)
-        yield _symbol(document, listing, one.block, one.block, name, types.SymbolKind.Key, comment)
+    listed = [named for named in numbers if is_sparse or named.block in commented or named.name in led_to]
+    listed += [named for named in heads if named.kind is Kind.LABEL]
+    for named in sorted(listed, key=lambda mention: mention.start)[:_MOST]:
+        name = f"N{named.written}" if named.kind is Kind.SEQUENCE else named.written
+        comment = _comment(listing, named.block)
+        yield _symbol(document, listing, named.block, named.block, name, types.SymbolKind.Key, comment)
 
 
-def _nested(found: Sequence[types.DocumentSymbol]) -> list[types.DocumentSymbol]:
+def _nested(symbols: Sequence[types.DocumentSymbol]) -> list[types.DocumentSymbol]:
     """Put each symbol into the innermost one around it; a tool whose section goes on behind it stands beside it."""
     order = {types.SymbolKind.Class: 0, types.SymbolKind.Namespace: 1}
     roots: list[types.DocumentSymbol] = []
     outer: list[types.DocumentSymbol] = []
-    for symbol in sorted(found, key=lambda one: (_begin(one), order.get(one.kind, 2))):
+    for symbol in sorted(symbols, key=lambda nested: (_begin(nested), order.get(nested.kind, 2))):
         while outer and _end(outer[-1]) < _end(symbol):
             outer.pop()
         children = outer[-1].children if outer else roots
@@ -161,5 +165,5 @@ def _without_comments(listing: Listing, block: int) -> str:
         *itertools.chain(*zip(text.comments.start[low:high], text.comments.end[low:high], strict=True)),
         end,
     ]
-    parts = (text.source.excerpt(int(edges[at]), int(edges[at + 1])) for at in range(0, len(edges), 2))
+    parts = (text.source.excerpt(int(edges[index]), int(edges[index + 1])) for index in range(0, len(edges), 2))
     return " ".join(" ".join(parts).split())

@@ -40,10 +40,10 @@ def full(document: Document) -> list[int]:
     return _encoded(document, 0, len(document.text.text))
 
 
-def within(document: Document, shown: types.Range) -> list[int]:
+def within(document: Document, visible: types.Range) -> list[int]:
     """Return the tokens of the lines of a range."""
-    first = document.text.offset(types.Position(shown.start.line, 0))
-    last = document.text.offset(types.Position(shown.end.line + 1, 0))
+    first = document.text.offset(types.Position(visible.start.line, 0))
+    last = document.text.offset(types.Position(visible.end.line + 1, 0))
     return _encoded(document, first, last)
 
 
@@ -55,9 +55,9 @@ def difference(before: Sequence[int], after: Sequence[int]) -> list[types.Semant
     begin = int(differs[0]) if len(differs) else shorter
     if begin == len(old) == len(new):
         return []
-    left = shorter - begin
-    differs = np.flatnonzero(old[len(old) - left :][::-1] != new[len(new) - left :][::-1])
-    same = int(differs[0]) if len(differs) else left
+    remaining = shorter - begin
+    differs = np.flatnonzero(old[len(old) - remaining :][::-1] != new[len(new) - remaining :][::-1])
+    same = int(differs[0]) if len(differs) else remaining
     return [types.SemanticTokensEdit(begin, len(old) - same - begin, list(after[begin : len(after) - same]))]
 
 
@@ -108,12 +108,12 @@ def _words(text: Text, low: int, high: int) -> tuple[Positions, ...]:
             letter[code] = _KIND[kind]
     is_whole = np.isin(address, [0, *_WHOLE])
     kinds = letter[address]
-    behind = np.where(is_whole, stop, start + 1 + is_corner)
+    after = np.where(is_whole, stop, start + 1 + is_corner)
     declared = np.where(np.isin(address, list(b"NO")), _DECLARATION, 0)
-    has_number = ~is_whole & (stop > behind)
+    has_number = ~is_whole & (stop > after)
     return (
-        np.concatenate((start, behind[has_number])),
-        np.concatenate((behind, stop[has_number])),
+        np.concatenate((start, after[has_number])),
+        np.concatenate((after, stop[has_number])),
         np.concatenate((kinds, np.full(int(has_number.sum()), _KIND["number"]))),
         np.concatenate((declared, np.zeros(int(has_number.sum()), np.int64))),
     )
@@ -125,17 +125,17 @@ def _of_spans(spans: Spans, low: int, high: int, kind: int, modifiers: int) -> t
     return spans.start[begin:end], spans.end[begin:end], np.full(count, kind), np.full(count, modifiers)
 
 
-def _of_statement(found: Sequence[Token]) -> Iterable[tuple[int, int, int, int]]:
+def _of_statement(tokens: Sequence[Token]) -> Iterable[tuple[int, int, int, int]]:
     """Yield the tokens of a block with statements; G, M, N and O and the number behind them are one."""
     skips = False
-    for token, following in itertools.zip_longest(found, found[1:]):
+    for token, following in itertools.zip_longest(tokens, tokens[1:]):
         if skips:
             skips = False
             continue
         code = ord(token.text[0]) if token.kind == "address" and len(token.text) == 1 else 0
         if code in _WHOLE and following is not None and following.kind == "number":
             skips = True
-            is_head = code in b"NO" and all(one.text in "/123456789" for one in found[: found.index(token)])
+            is_head = code in b"NO" and all(digit.text in "/123456789" for digit in tokens[: tokens.index(token)])
             yield token.start, following.end, _KIND[_WHOLE[code]], _DECLARATION if is_head else 0
         else:
             kind = _LETTERS.get(code, _OF_LEXING[token.kind])

@@ -105,8 +105,8 @@ class Uses:
             Kind.VARIABLE: self._variables,
             Kind.PROGRAM: self._programs,
         }[use.mention.kind]
-        found = {one.key: one for one in find(use)}
-        return [found[key] for key in sorted(found, key=lambda key: (key[0] != self.document.uri, key))]
+        by_key = {same.key: same for same in find(use)}
+        return [by_key[key] for key in sorted(by_key, key=lambda key: (key[0] != self.document.uri, key))]
 
     # ---- N numbers and labels ----
 
@@ -119,25 +119,25 @@ class Uses:
         if mention.into is Into.CALLED and mention.called is not None:
             return self.resolved(owner, mention.called)
         if mention.into is Into.CALLER:
-            callers = [one for one in self.callers(owner) if _defines(one, mention)]
+            callers = [caller for caller in self.callers(owner) if _defines(caller, mention)]
             return callers or [owner]
         return [owner]
 
     def _numbers(self, use: Use) -> Iterator[Use]:
         for target in self.targets(use):
-            yield from (one for one in _with_keys([target], use.mention) if one.mention.into is Into.OWN)
+            yield from (user for user in _with_keys([target], use.mention) if user.mention.into is Into.OWN)
             for called in self.callees(target):
-                for one in _with_keys([called], use.mention):
-                    if one.mention.into is Into.CALLER:
-                        yield one
+                for user in _with_keys([called], use.mention):
+                    if user.mention.into is Into.CALLER:
+                        yield user
             if target.mentions.listing.macro.sequence_word:
                 for caller in self.callers(target):
-                    for one in _with_keys([caller], use.mention):
-                        if one.mention.into is Into.CALLED and target.key in {t.key for t in self.targets(one)}:
-                            yield one
+                    for user in _with_keys([caller], use.mention):
+                        if user.mention.into is Into.CALLED and target.key in {t.key for t in self.targets(user)}:
+                            yield user
             if not self.callers(target):
                 # M99 P in a main program goes to a block of its own.
-                yield from (one for one in _with_keys([target], use.mention) if one.mention.into is Into.CALLER)
+                yield from (user for user in _with_keys([target], use.mention) if user.mention.into is Into.CALLER)
         yield use
 
     # ---- calls ----
@@ -150,16 +150,18 @@ class Uses:
         return self._resolved[key]
 
     def _resolve(self, caller: Owner, called: ProgramName) -> list[Owner]:
-        own = self._named(caller.document, called)
-        same_channel = [one for one in own if one.mentions is caller.mentions]
-        if own:
-            return same_channel or own
+        of_document = self._named(caller.document, called)
+        same_channel = [owner for owner in of_document if owner.mentions is caller.mentions]
+        if of_document:
+            return same_channel or of_document
         places = self.workspace.called, self._naming_in, self.workspace.of_file_name
-        for documents in (place(caller.document, called) for place in places):
+        for documents in (search(caller.document, called) for search in places):
             # A file that names no program of that name is that program from its head on.
-            found = [one for each in documents for one in self._named(each, called) or self.owners(each)[:1]]
-            if found:
-                return found
+            resolved = [
+                owner for document in documents for owner in self._named(document, called) or self.owners(document)[:1]
+            ]
+            if resolved:
+                return resolved
         return []
 
     def _naming_in(self, caller: Document, called: ProgramName) -> Iterator[Document]:
@@ -169,7 +171,7 @@ class Uses:
         return (
             document
             for document in self.workspace.matching(naming(keys))
-            if any(one.program.has_head and set(one.program.keys) & set(keys) for one in self.owners(document))
+            if any(owner.program.has_head and set(owner.program.keys) & set(keys) for owner in self.owners(document))
         )
 
     def defining(self, key: int | str) -> list[Owner]:
@@ -189,7 +191,7 @@ class Uses:
             for mention in owner.all
             if mention.kind is Kind.PROGRAM and mention.role is Role.REFERS
         }
-        return _once(one for called in calls.values() for one in self.resolved(owner, called))
+        return _once(callee for called in calls.values() for callee in self.resolved(owner, called))
 
     def callers(self, owner: Owner) -> list[Owner]:
         """Return the programs that call a program."""
@@ -200,7 +202,7 @@ class Uses:
     def calls_of(self, called: Sequence[Owner]) -> list[Use]:
         """Return the calls of programs."""
         keys = list(dict.fromkeys(key for owner in called for key in _keys(owner)))
-        wanted = {owner.key for owner in called}
+        called_keys = {owner.key for owner in called}
         if not keys:
             return []
         return [
@@ -208,7 +210,7 @@ class Uses:
             for document in self.workspace.matching(naming(keys))
             for use in self._calls(document)
             if set(use.mention.keys) & set(keys)
-            if wanted & {one.key for one in self.resolved(use.owner, called_name(use.mention))}
+            if called_keys & {callee.key for callee in self.resolved(use.owner, called_name(use.mention))}
         ]
 
     def _programs(self, use: Use) -> Iterator[Use]:
@@ -245,51 +247,51 @@ class Uses:
         kind = self.kind_of(use)
         if kind in _SHARED:
             pattern = writing(use.mention.name)
-            return [one for document in self.workspace.matching(pattern) for one in self.owners(document)]
+            return [owner for document in self.workspace.matching(pattern) for owner in self.owners(document)]
         is_local = kind is VariableKind.LOCAL
         if is_local and use.owner.mentions.listing.macro.language != "custom-macro":
             return [use.owner]
         return self._connected(use.owner, subprograms_only=is_local)
 
     def _connected(self, owner: Owner, *, subprograms_only: bool) -> list[Owner]:
-        found = {owner.key: owner}
-        left = [owner]
-        while left and len(found) < _MOST and self.workspace.has_time():
-            one = left.pop()
-            codes = set(one.mentions.listing.macro.subprogram_calls)
+        connected = {owner.key: owner}
+        stack = [owner]
+        while stack and len(connected) < _MOST and self.workspace.has_time():
+            last = stack.pop()
+            codes = set(last.mentions.listing.macro.subprogram_calls)
             calls = [
                 mention
-                for mention in one.all
+                for mention in last.all
                 if mention.kind is Kind.PROGRAM
                 and mention.role is Role.REFERS
                 and (not subprograms_only or mention.code in codes)
             ]
-            near = [called for mention in calls for called in self.resolved(one, called_name(mention))]
+            near = [called for mention in calls for called in self.resolved(last, called_name(mention))]
             near += [
                 use.owner
-                for use in self.calls_of([one])
+                for use in self.calls_of([last])
                 if not subprograms_only or use.mention.code in use.owner.mentions.listing.macro.subprogram_calls
             ]
-            for other in near:
-                if other.key not in found:
-                    found[other.key] = other
-                    left.append(other)
-        return list(found.values())
+            for neighbor in near:
+                if neighbor.key not in connected:
+                    connected[neighbor.key] = neighbor
+                    stack.append(neighbor)
+        return list(connected.values())
 
     def _variables(self, use: Use) -> Iterator[Use]:
         yield from _with_keys(self.scope(use), use.mention)
 
 
-def _with_keys(owners: Iterable[Owner], wanted: Mention) -> Iterator[Use]:
+def _with_keys(owners: Iterable[Owner], pattern: Mention) -> Iterator[Use]:
     """Yield the mentions of the same kind and name in programs."""
     for owner in owners:
         for mention in owner.all:
-            if mention.kind is wanted.kind and mention.keys == wanted.keys:
+            if mention.kind is pattern.kind and mention.keys == pattern.keys:
                 yield Use(owner, mention)
 
 
-def _defines(owner: Owner, wanted: Mention) -> bool:
-    return any(one.mention.role is Role.DEFINES for one in _with_keys([owner], wanted))
+def _defines(owner: Owner, pattern: Mention) -> bool:
+    return any(user.mention.role is Role.DEFINES for user in _with_keys([owner], pattern))
 
 
 def called_name(mention: Mention) -> ProgramName:

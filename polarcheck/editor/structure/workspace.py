@@ -57,7 +57,11 @@ class Workspace:
         self.document, self._folders, self._machine_of = document, folders, machine_of
         self.is_complete = True
         self._documents: dict[str, Document] = {_real(document.path): document}
-        self._opened = {_real(one.path): one for one in opened if one.uri != document.uri}
+        self._opened = {
+            _real(document_opened.path): document_opened
+            for document_opened in opened
+            if document_opened.uri != document.uri
+        }
         self._paths: list[str] | None = None
         self._data: dict[str, bytes | None] = {}
         self._ends = time.monotonic() + _PATIENCE
@@ -66,10 +70,10 @@ class Workspace:
         """Yield the documents whose bytes match a pattern: this one, the open ones, those in the folders."""
         yield self.document
         seen = {_real(self.document.path)}
-        for real, one in self._opened.items():
+        for real, document in self._opened.items():
             seen.add(real)
-            if pattern.search(one.text.data):
-                yield self._of_open(real, one)
+            if pattern.search(document.text.data):
+                yield self._of_open(real, document)
         for path in self._listed():
             if not self.has_time():
                 return
@@ -120,7 +124,7 @@ class Workspace:
             return []
         with contextlib.suppress(OSError):
             places = Library(caller.folders, caller.machine).places(name)
-            return [self._of_file(place.path, place.data) for place in places]
+            return [self._of_file(file.path, file.data) for file in places]
         return []
 
     def file(self, path: Path) -> Document | None:
@@ -136,18 +140,18 @@ class Workspace:
 
     def of_file_name(self, caller: Document, name: ProgramName) -> list[Document]:
         """Return the documents of the workspace whose file has the name of a program, beside the caller first."""
-        wanted = names_of(name)
-        if wanted is None:
+        pattern = names_of(name)
+        if pattern is None:
             return []
-        paths = [path for path in self._listed() if wanted.fullmatch(os.path.basename(path))]  # noqa: PTH119
+        paths = [path for path in self._listed() if pattern.fullmatch(os.path.basename(path))]  # noqa: PTH119
         folder = _real(caller.path.parent)
         paths.sort(key=lambda path: _real(Path(path).parent) != folder)
-        found = ((path, self._read(Path(path))) for path in paths[:_MOST_NAMED])
-        return [self._of_file(Path(path), data) for path, data in found if data is not None]
+        contents = ((path, self._read(Path(path))) for path in paths[:_MOST_NAMED])
+        return [self._of_file(Path(path), data) for path, data in contents if data is not None]
 
-    def _of_open(self, real: str, one: Opened) -> Document:
+    def _of_open(self, real: str, opened: Opened) -> Document:
         if real not in self._documents:
-            self._documents[real] = Document(one.uri, one.path, one.text, *self._machine_of(one.path))
+            self._documents[real] = Document(opened.uri, opened.path, opened.text, *self._machine_of(opened.path))
         return self._documents[real]
 
     def _of_file(self, path: Path, data: bytes) -> Document:

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from lsprotocol import types
 
-from polarcheck.editor.analysis import Judged
+from polarcheck.editor.analysis import Analysis
 from polarcheck.editor.structure.lexing import Token, tokens
 from polarcheck.program.execution.listing import Listing
 from polarcheck.program.reading.words import Spans, Text
@@ -45,19 +45,19 @@ class CursorWord(NamedTuple):
         return int(self.text.blocks.line[self.block])
 
 
-def word_at(judged: Judged, position: types.Position) -> CursorWord | None:
+def word_at(analysis: Analysis, position: types.Position) -> CursorWord | None:
     """Return the word at a position; None in a comment, between words, and in other files."""
-    character = judged.text.character_of(position)
-    for text in judged.texts:
+    character = analysis.text.character_of(position)
+    for text in analysis.texts:
         block = block_of(text, character)
         if block is None or is_in(character, text.comments, block):
             continue
-        words = list(_words(text, block, judged))
+        words = list(_words(text, block, analysis))
         # Between two words without a blank the cursor stands before the second one.
         inside = [word for word in words if word.start <= character < word.end]
-        found = inside or [word for word in words if word.end == character]
-        if found:
-            return found[-1]
+        touched = inside or [word for word in words if word.end == character]
+        if touched:
+            return touched[-1]
     return None
 
 
@@ -76,11 +76,11 @@ def is_in(character: int, spans: Spans, block: int) -> bool:
     return any(spans.start[index] < character < spans.end[index] for index in range(low, high))
 
 
-def _words(text: Text, block: int, judged: Judged) -> Iterator[CursorWord]:
+def _words(text: Text, block: int, analysis: Analysis) -> Iterator[CursorWord]:
     """Yield the words of a block."""
     if text.blocks.is_macro[block]:
-        assert judged.settings is not None
-        yield from _of_tokens(tokens(Listing([text], judged.settings.machine), block), block, text)
+        assert analysis.settings is not None
+        yield from _of_tokens(tokens(Listing([text], analysis.settings.machine), block), block, text)
         return
     words = text.words
     low, high = np.searchsorted(words.block, (block, block + 1)).tolist()
@@ -100,10 +100,10 @@ def _words(text: Text, block: int, judged: Judged) -> Iterator[CursorWord]:
         )
 
 
-def _of_tokens(found: Iterable[Token], block: int, text: Text) -> Iterator[CursorWord]:
+def _of_tokens(lexed: Iterable[Token], block: int, text: Text) -> Iterator[CursorWord]:
     """Yield the words, variables and names of a block with statements; a letter takes the number behind it."""
     letter: Token | None = None
-    for token in found:
+    for token in lexed:
         if letter is not None:
             value = _value(token.text) if token.kind == "number" else None
             end = token.end if value is not None else letter.end

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple
 
-from polarcheck.editor.analysis import Judged
+from polarcheck.editor.analysis import Analysis
 from polarcheck.foundation.errors import PolarcheckError
 from polarcheck.foundation.states import STATES
 from polarcheck.program.machines.code_lists import FRAME_LISTS, GCodes, GCodeSystem, expanded
@@ -71,23 +71,23 @@ def is_known(code: str, machine: Machine) -> bool:
 
 def known_codes(machine: Machine) -> Mapping[str, str]:
     """Return all codes of the control, each with its meaning in one line; empty where the profile has none."""
-    return machine.cached("codes of the editor", lambda: _known(machine))
+    return machine.cached("codes of the editor", lambda: _known_codes(machine))
 
 
-def _known(machine: Machine) -> dict[str, str]:
+def _known_codes(machine: Machine) -> dict[str, str]:
     index = _index(machine)
     listed = [*expanded(machine.control.known_codes), *machine.listed_codes, *machine.polar.on, *machine.polar.off]
-    found = {code: "" for code in expanded(listed) if code[0] in "GM"}
-    for code, known in index.items():
-        found[code] = "; ".join(meaning.text for meaning in known[:2])
-    return found
+    texts = {code: "" for code in expanded(listed) if code[0] in "GM"}
+    for code, of_code in index.items():
+        texts[code] = "; ".join(meaning.text for meaning in of_code[:2])
+    return texts
 
 
-def source_of(key: str, judged: Judged) -> str:
+def source_of(key: str, analysis: Analysis) -> str:
     """Return the source of a key of the profile; empty if it has none."""
-    if judged.settings is None:
+    if analysis.settings is None:
         return ""
-    name, machine = judged.settings.name, judged.settings.machine
+    name, machine = analysis.settings.name, analysis.settings.machine
     return machine.cached("sources of the editor", lambda: _sources(name)).get(key, "")
 
 
@@ -105,19 +105,19 @@ def _index(machine: Machine) -> Mapping[str, list[Meaning]]:
 
 
 def _indexed(machine: Machine) -> dict[str, list[Meaning]]:
-    found: dict[str, list[Meaning]] = {}
+    by_code: dict[str, list[Meaning]] = {}
     for code, meaning in _listed(machine):
         if meaning.key == "g_codes.scaling_off" and code in machine.codes("coordinate_setting"):
             continue
-        of_code = found.setdefault(code, [])
+        of_code = by_code.setdefault(code, [])
         if meaning not in of_code:
             of_code.append(meaning)
-    return found
+    return by_code
 
 
 def _listed(machine: Machine) -> Iterator[tuple[str, Meaning]]:
     for key, text in _OF_POLAR.items():
-        yield from _each(getattr(machine.polar, key), f"polar.{key}", text)
+        yield from _each_code(getattr(machine.polar, key), f"polar.{key}", text)
     for table, of_class in (("g_codes", GCodes), (machine.system_table, GCodeSystem), ("m_codes", MCodes)):
         texts = meanings(of_class)
         # What the group is about comes before what else a code does.
@@ -125,20 +125,20 @@ def _listed(machine: Machine) -> Iterator[tuple[str, Meaning]]:
         keys.sort(key=lambda key: key in ("constant_surface_speed_ended_by", "axis_words_no_move", "feed_is_lead"))
         for key in keys:
             if key not in FRAME_LISTS or getattr(getattr(machine, table), key):
-                yield from _each(getattr(getattr(machine, table), key), f"{table}.{key}", texts[key])
+                yield from _each_code(getattr(getattr(machine, table), key), f"{table}.{key}", texts[key])
     texts = meanings(Macro)
     for key in CODE_LISTS:
-        yield from _each(getattr(machine.macro, key), f"macro.{key}", texts[key])
-    for code, meant in machine.control.motion_codes.items():
-        yield code, Meaning("control.motion_codes", f"{meant} of other controls")
+        yield from _each_code(getattr(machine.macro, key), f"macro.{key}", texts[key])
+    for code, equivalent in machine.control.motion_codes.items():
+        yield code, Meaning("control.motion_codes", f"{equivalent} of other controls")
 
 
-def _each(codes: Iterable[object], key: str, text: str) -> Iterator[tuple[str, Meaning]]:
+def _each_code(codes: Iterable[object], key: str, text: str) -> Iterator[tuple[str, Meaning]]:
     table, _, name = key.partition(".")
     table = "g_codes" if table.startswith("g_code_") else table
     text = _OF_KEYS.get(f"{table}.{name}", text)
-    shown = _CODES.sub("", _PLURAL.sub(lambda match: f"{match[1]}s", text))
+    singular = _CODES.sub("", _PLURAL.sub(lambda match: f"{match[1]}s", text))
     for code in expanded(code for code in codes if isinstance(code, str)):
         if code[:1] in ("G", "M"):
             stop = "program stop; " if (code, name) == ("M0", "stops_reading_ahead") else ""
-            yield code.split(" ")[0], Meaning(key, stop + shown)
+            yield code.split(" ")[0], Meaning(key, stop + singular)

@@ -65,7 +65,7 @@ class Item(NamedTuple):
     kind: types.CompletionItemKind
 
 
-class Place(NamedTuple):
+class CursorContext(NamedTuple):
     """
     Where somebody writes.
 
@@ -86,7 +86,7 @@ class Place(NamedTuple):
 def completions(document: Document, settings: Settings | None, position: types.Position) -> types.CompletionList:
     """Return what can be written at a position; nothing in comments, and nothing where no list of it would help."""
     before = _before(document, position)
-    found: list[Item] = []
+    items: list[Item] = []
     typed = ""
     if before is not None:
         for pattern, find in _FINDERS:
@@ -96,16 +96,16 @@ def completions(document: Document, settings: Settings | None, position: types.P
             listing, block = next(iter(document.at(position)))
             if listing.programs.programs:
                 program = listing.programs.around(block_at(listing, document.text.character_of(position)))
-                place_of_cursor = Place(document, listing, block, program, settings)
-                found = list(itertools.islice(find(place_of_cursor, match[1]), _MOST + 1))
+                place_of_cursor = CursorContext(document, listing, block, program, settings)
+                items = list(itertools.islice(find(place_of_cursor, match[1]), _MOST + 1))
             typed = match[1]
             break
     offset = document.text.offset(position)
-    place = document.text.range(offset - len(typed), offset)
-    shown = [item for item in found if item.label.upper().startswith(typed.upper()[:1])]
+    range_typed = document.text.range(offset - len(typed), offset)
+    fitting = [item for item in items if item.label.upper().startswith(typed.upper()[:1])]
     return types.CompletionList(
-        is_incomplete=len(shown) > _MOST,
-        items=[_item(item, number, place) for number, item in enumerate(_nearest(shown, typed)[:_MOST])],
+        is_incomplete=len(fitting) > _MOST,
+        items=[_item(item, number, range_typed) for number, item in enumerate(_nearest(fitting, typed)[:_MOST])],
     )
 
 
@@ -114,14 +114,14 @@ def _nearest(items: list[Item], typed: str) -> list[Item]:
     return sorted(items, key=lambda item: not item.label.upper().startswith(typed.upper()))
 
 
-def _item(item: Item, number: int, place: types.Range) -> types.CompletionItem:
+def _item(item: Item, number: int, range_typed: types.Range) -> types.CompletionItem:
     return types.CompletionItem(
         label=visible(item.label),
         kind=item.kind,
         detail=visible(shortened(item.detail, _LONGEST)) or None,
         sort_text=f"{number:05d}",
         filter_text=item.label,
-        text_edit=types.TextEdit(place, item.label),
+        text_edit=types.TextEdit(range_typed, item.label),
     )
 
 
@@ -141,17 +141,17 @@ def _before(document: Document, position: types.Position) -> str | None:
 # ---- what can be written ----
 
 
-def _codes(place: Place, typed: str) -> Iterator[Item]:
+def _codes(context: CursorContext, typed: str) -> Iterator[Item]:
     """Yield the codes of the control; those that switch the polar mode, and those of the program, come first."""
-    machine, letter = place.document.machine, typed[0].upper()
-    known = {code: text for code, text in code_meanings.known_codes(machine).items() if code[0] == letter}
-    switches = [code for code in (*machine.polar.on, *machine.polar.off) if code in known]
-    used = [code for code in _used(place.listing, letter) if code in known]
-    explained = [code for code, text in known.items() if text]
+    machine, letter = context.document.machine, typed[0].upper()
+    texts = {code: text for code, text in code_meanings.known_codes(machine).items() if code[0] == letter}
+    switches = [code for code in (*machine.polar.on, *machine.polar.off) if code in texts]
+    used = [code for code in _used(context.listing, letter) if code in texts]
+    explained = [code for code, text in texts.items() if text]
     for code in dict.fromkeys([*switches, *sorted(used, key=_number), *sorted(explained, key=_number)]):
-        yield Item(code, known[code], types.CompletionItemKind.Function)
+        yield Item(code, texts[code], types.CompletionItemKind.Function)
     # The others mean nothing to polarcheck; they follow once a digit is typed.
-    for code in sorted(set(known) - set(explained), key=_number) if len(typed) > 1 else ():
+    for code in sorted(set(texts) - set(explained), key=_number) if len(typed) > 1 else ():
         if code not in used:
             yield Item(code, "", types.CompletionItemKind.Function)
 
@@ -166,39 +166,42 @@ def _used(listing: Listing, letter: str) -> list[str]:
     return [f"{letter}{value:g}" for value in values[np.isfinite(values)].tolist() if 0 <= value < 10_000]
 
 
-def _tools(place: Place, typed: str) -> Iterator[Item]:
+def _tools(context: CursorContext, typed: str) -> Iterator[Item]:
     """Yield the tools of the job and of the program, as T calls them."""
-    machine = place.document.machine
+    machine = context.document.machine
     by_edge = machine.offsets.called_by == "edge"
-    found: dict[str, str] = {}
-    words = place.listing.text.words
+    labels: dict[str, str] = {}
+    words = context.listing.text.words
     is_tool = np.flatnonzero((words.address == ord("T")) & np.isfinite(words.value))
     for index in is_tool[:_MOST].tolist():
-        written = place.listing.text.source.excerpt(int(words.start[index]), int(words.end[index])).upper()
+        written = context.listing.text.source.excerpt(int(words.start[index]), int(words.end[index])).upper()
         label = "".join(written.split())
-        found.setdefault(label, _comment(place.listing, int(words.block[index])))
+        labels.setdefault(label, _comment(context.listing, int(words.block[index])))
     digits = machine.control.offset_digits
-    units = f" {place.settings.job.units or place.settings.machine.control.units}" if place.settings else ""
-    for key, tool in place.settings.job.tools.items() if place.settings is not None else ():
+    units = f" {context.settings.job.units or context.settings.machine.control.units}" if context.settings else ""
+    for key, tool in context.settings.job.tools.items() if context.settings is not None else ():
         name = str(key)
         if by_edge:
             label = (
                 f"T{name.partition('/')[0]}" if name.partition("/")[0].isdecimal() else f'T="{name.partition("/")[0]}"'
             )
         elif name.isdecimal():
-            label = _label(int(name), digits, found)
+            label = _label(int(name), digits, labels)
         else:
             continue
         radius = f"R {tool.radius:g}{units} ({tool.source})" if tool.radius == tool.radius else ""
-        found[label] = ", ".join(filter(None, (radius, found.get(label, ""))))
-    for label, detail in found.items():
+        labels[label] = ", ".join(filter(None, (radius, labels.get(label, ""))))
+    for label, detail in labels.items():
         yield Item(label, detail, types.CompletionItemKind.EnumMember)
 
 
-def _label(number: int, digits: int, found: Iterable[str]) -> str:
+def _label(number: int, digits: int, labels: Iterable[str]) -> str:
     """Return how the program calls an offset, or how it would by the number of the tool."""
-    own = f"{number:0{digits}d}"[-digits:]
-    return next((label for label in found if len(label) > digits and label.endswith(own)), f"T{number:02d}{own}")
+    digits_needed = f"{number:0{digits}d}"[-digits:]
+    return next(
+        (label for label in labels if len(label) > digits and label.endswith(digits_needed)),
+        f"T{number:02d}{digits_needed}",
+    )
 
 
 def _comment(listing: Listing, block: int) -> str:
@@ -210,76 +213,76 @@ def _comment(listing: Listing, block: int) -> str:
     return listing.text.source.excerpt(int(comments.start[low]), int(comments.end[low])).strip("();")
 
 
-def _sequence_numbers(place: Place, typed: str) -> Iterator[Item]:
+def _sequence_numbers(context: CursorContext, typed: str) -> Iterator[Item]:
     """Yield the N numbers of the program, with what stands behind them."""
-    text, program = place.listing.text, place.program
+    text, program = context.listing.text, context.program
     begin, end = int(text.blocks.start[program.first]), int(text.blocks.end[program.end - 1])
-    found: dict[int, str] = {}
+    numbers: dict[int, str] = {}
     # By the characters: no answer at a key waits for the statements of a long program.
     for match in _NUMBERED.finditer(text.source.text, begin, end):
         if match[1].startswith(typed):
-            found.setdefault(int(match[1]), match[0])
-    for number in sorted(found):
-        yield Item(str(number), " ".join(found[number].split()), types.CompletionItemKind.Reference)
+            numbers.setdefault(int(match[1]), match[0])
+    for number in sorted(numbers):
+        yield Item(str(number), " ".join(numbers[number].split()), types.CompletionItemKind.Reference)
 
 
-def _labels(place: Place, typed: str) -> Iterator[Item]:
+def _labels(context: CursorContext, typed: str) -> Iterator[Item]:
     """Yield the labels of the program, then its N numbers."""
-    has_labels = place.document.machine.macro.language != "custom-macro"
-    labels = place.listing.programs.labels(place.program) if has_labels else {}
+    has_labels = context.document.machine.macro.language != "custom-macro"
+    labels = context.listing.programs.labels(context.program) if has_labels else {}
     for name, blocks in sorted(labels.items()):
-        yield Item(name, _shown(place.listing, blocks[0]), types.CompletionItemKind.Reference)
+        yield Item(name, _one_line(context.listing, blocks[0]), types.CompletionItemKind.Reference)
     prefix = "N" if has_labels else ""
-    for item in _sequence_numbers(place, typed.upper().removeprefix("N")):
+    for item in _sequence_numbers(context, typed.upper().removeprefix("N")):
         yield item._replace(label=f"{prefix}{item.label}")
 
 
-def _returns(place: Place, typed: str) -> Iterator[Item]:
+def _returns(context: CursorContext, typed: str) -> Iterator[Item]:
     """Yield the N numbers to which M99 P returns: those of the other programs of the file, or of its own."""
-    others = [program for program in place.listing.programs.programs if program.first != place.program.first]
-    for program in others[:_MOST] or [place.program]:
-        yield from _sequence_numbers(place._replace(program=program), typed)
+    callers = [program for program in context.listing.programs.programs if program.first != context.program.first]
+    for program in callers[:_MOST] or [context.program]:
+        yield from _sequence_numbers(context._replace(program=program), typed)
 
 
-def _programs(place: Place, typed: str) -> Iterator[Item]:
+def _programs(context: CursorContext, typed: str) -> Iterator[Item]:
     """Yield the programs of the file and of the folders of called programs, by their numbers."""
-    own = place.listing.programs.programs
-    found = {
-        program.number: _comment(place.listing, program.first)
-        for program in own
-        if program.number is not None and program.first != place.program.first
+    programs = context.listing.programs.programs
+    names = {
+        program.number: _comment(context.listing, program.first)
+        for program in programs
+        if program.number is not None and program.first != context.program.first
     }
-    for number, name in numbered_files(place.document.folders):
-        found.setdefault(number, name)
-    for number, detail in sorted(found.items()):
+    for number, name in numbered_files(context.document.folders):
+        names.setdefault(number, name)
+    for number, detail in sorted(names.items()):
         yield Item(str(number), detail, types.CompletionItemKind.Module)
 
 
-def _variables(place: Place, typed: str) -> Iterator[Item]:
+def _variables(context: CursorContext, typed: str) -> Iterator[Item]:
     """Yield the variables of the program, those with a value from the settings, and those that act by themselves."""
-    machine, first = place.document.machine, typed[0].upper()
-    used = _used_variables(place, first, typed.upper())
-    for name, block in sorted(used.items(), key=lambda found: (len(found[0]), found[0])):
-        yield Item(name, _of_variable(name, machine, _shown(place.listing, block)), _VARIABLE)
+    machine, first = context.document.machine, typed[0].upper()
+    used = _used_variables(context, first, typed.upper())
+    for name, block in sorted(used.items(), key=lambda entry: (len(entry[0]), entry[0])):
+        yield Item(name, _of_variable(name, machine, _one_line(context.listing, block)), _VARIABLE)
     if first == "#":
         macro = machine.macro
-        given = {**macro.given, **(place.settings.job.run.variables if place.settings is not None else {})}
+        given = {**macro.given, **(context.settings.job.run.variables if context.settings is not None else {})}
         for number in [*given, *macro.alarm_variables, *macro.stop_variables]:
             if f"#{number}" not in used:
                 value = f"= {given[number]:g}" if number in given else ""
                 yield Item(f"#{number}", _of_variable(f"#{number}", machine, value), _VARIABLE)
 
 
-def _used_variables(place: Place, first: str, current: str) -> dict[str, int]:
+def _used_variables(context: CursorContext, first: str, current: str) -> dict[str, int]:
     """Return the first block of each variable that the program uses, but for the one that is being typed."""
-    text = place.listing.text
+    text = context.listing.text
     used: dict[str, int] = {}
     for match in _VARIABLES.finditer(text.source.text):
         name = match[0].upper()
         if name in used or name[0] != first:
             continue
-        block = block_at(place.listing, match.start())
-        is_new = name == current and block == place.block
+        block = block_at(context.listing, match.start())
+        is_new = name == current and block == context.block
         if text.blocks.is_macro[block] and not is_new and not is_in(match.start(), text.comments, block):
             used[name] = block
     return used
@@ -294,21 +297,21 @@ def _of_variable(name: str, machine: Machine, more: str) -> str:
     return ": ".join(filter(None, (more, kind)))
 
 
-def _words(place: Place, typed: str) -> Iterator[Item]:
+def _words(context: CursorContext, typed: str) -> Iterator[Item]:
     """Yield the words of the control's own language that stand for codes."""
-    for word, meant in place.document.machine.control.native_words.items():
+    for word, equivalent in context.document.machine.control.native_words.items():
         if word.upper().startswith(typed.upper()):
-            detail = code_meanings.known_codes(place.document.machine).get(meant, "") or f"read as {meant}"
+            detail = code_meanings.known_codes(context.document.machine).get(equivalent, "") or f"read as {equivalent}"
             yield Item(word, detail, types.CompletionItemKind.Keyword)
 
 
-def _shown(listing: Listing, block: int) -> str:
+def _one_line(listing: Listing, block: int) -> str:
     """Return the text of a block in one line."""
     return " ".join(block_text(listing.text, block).split())
 
 
 #: What stands before the cursor, with what is replaced, and what can stand there; the first that fits counts.
-_FINDERS: tuple[tuple[re.Pattern[str], Callable[[Place, str], Iterator[Item]]], ...] = tuple(
+_FINDERS: tuple[tuple[re.Pattern[str], Callable[[CursorContext, str], Iterator[Item]]], ...] = tuple(
     (re.compile(pattern, re.IGNORECASE | re.ASCII), find)
     for pattern, find in (
         (r"GOTO[FBC]?[ ]{0,9}(\w{0,40})$", _labels),

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from polarcheck.columns.trace import Trace
-from polarcheck.editor.analysis import Judged
+from polarcheck.editor.analysis import Analysis
 from polarcheck.editor.words import code_meanings, in_force, variables
 from polarcheck.editor.words.at_cursor import CursorWord
 from polarcheck.foundation.arrays import Rows
@@ -76,29 +76,31 @@ _LONGEST_CODE = 8
 _AXES = {"X": "X", "Y": "Y", "Z": "Z", "U": "X", "V": "Y", "W": "Z"}
 
 
-def explained(word: CursorWord, judged: Judged, trace: Trace | None, row: int | None) -> tuple[str, Facts]:
+def explained(word: CursorWord, analysis: Analysis, trace: Trace | None, row: int | None) -> tuple[str, Facts]:
     """
     Return a word with its meaning, and facts by name; the meaning is empty if nothing is known of it.
 
     trace, row: the run that executes its block, and the first row of the block there; None if no run does.
     """
-    assert judged.settings is not None
-    machine = judged.settings.machine
+    assert analysis.settings is not None
+    machine = analysis.settings.machine
     if word.kind == "variable":
-        return word.letter, list(variables.facts_of(word, judged, row, trace))
+        return word.letter, list(variables.facts_of(word, analysis, row, trace))
     if word.kind == "name":
-        meant = machine.control.native_words.get(word.letter)
-        if meant is None:
+        code_read = machine.control.native_words.get(word.letter)
+        if code_read is None:
             return "", []
-        return f"{word.letter}: read as {meant}", list(_of_code(meant, judged, trace, row)) if meant[0] in "GM" else []
+        return f"{word.letter}: read as {code_read}", list(_of_code(code_read, analysis, trace, row)) if code_read[
+            0
+        ] in "GM" else []
     if word.letter in ("G", "M"):
         code = _code(word)
         if code:
-            known = code_meanings.known_codes(machine).get(code)
+            text = code_meanings.known_codes(machine).get(code)
             written = "".join(word.text.source.excerpt(word.start, word.end).split()).upper()
             name = code if written.startswith(word.letter) else f"{written} ({code})"
-            title = f"{name}: {known}" if known else name
-            return title, list(_of_code(code, judged, trace, row))
+            title = f"{name}: {text}" if text else name
+            return title, list(_of_code(code, analysis, trace, row))
     title = meaning_of(word, machine) or _title(word, machine, trace, row)
     return (f"{word.letter}: {title}" if title else ""), list(_more(word, trace, row))
 
@@ -110,26 +112,26 @@ def _code(word: CursorWord) -> str:
     return f"{word.letter}{word.value:g}" if word.value < 1e5 else ""
 
 
-def _of_code(code: str, judged: Judged, trace: Trace | None, row: int | None) -> Iterator[tuple[str, str]]:
+def _of_code(code: str, analysis: Analysis, trace: Trace | None, row: int | None) -> Iterator[tuple[str, str]]:
     """Yield sources and effects of a code."""
-    assert judged.settings is not None
-    machine = judged.settings.machine
-    found = code_meanings.meanings_of(code, machine)
-    if not found:
+    assert analysis.settings is not None
+    machine = analysis.settings.machine
+    meanings = code_meanings.meanings_of(code, machine)
+    if not meanings:
         if code_meanings.is_known(code, machine):
             yield "meaning", "a code of this control; polarcheck follows nothing of it"
         elif code[0] == "G":
             yield "meaning", f"not among the codes of {machine.title}"
         else:
             yield "meaning", f"not in the profile of {machine.title}; [m_codes] of a machine file says what it does"
-    for meaning in found[:2]:
-        source = code_meanings.source_of(meaning.key, judged)
+    for meaning in meanings[:2]:
+        source = code_meanings.source_of(meaning.key, analysis)
         yield "source", f"{source} ({meaning.key})" if source else meaning.key
     if code[0] != "G":
         return
     group = in_force.group_of(code, machine)
     if trace is not None and row is not None:
-        if trace.mode.in_polar[row] and found and found[0].key not in ("polar.on", "polar.off"):
+        if trace.mode.in_polar[row] and meanings and meanings[0].key not in ("polar.on", "polar.off"):
             is_allowed = code in set(expanded(machine.polar.allowed_codes))
             yield "in the polar mode", "allowed" if is_allowed else "not among the codes that may be used"
         if group:

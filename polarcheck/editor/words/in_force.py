@@ -60,8 +60,8 @@ def code_in_force(trace: Trace, group: str, row: int) -> str:
 
 def codes_in_force(trace: Trace, row: int) -> list[str]:
     """Return the codes in force behind a row, in the order of their groups."""
-    found = (code_in_force(trace, group, row) for group in _SHOWN)
-    return [word for word in dict.fromkeys(found) if word and not _acts_once(word, trace.machine)]
+    codes = (code_in_force(trace, group, row) for group in _SHOWN)
+    return [word for word in dict.fromkeys(codes) if word and not _acts_once(word, trace.machine)]
 
 
 def _is_set(trace: Trace, group: str, row: int) -> bool:
@@ -76,16 +76,16 @@ def _names(machine: Machine) -> Mapping[str, dict[int, str]]:
 
 def _named(machine: Machine) -> dict[str, dict[int, str]]:
     """Return for each group the first code that sets each state, where a state has codes of its own."""
-    found: dict[str, dict[int, str]] = {}
+    names_of_groups: dict[str, dict[int, str]] = {}
     for group, states in STATES.items():
-        names = found.setdefault(group, {})
+        names = names_of_groups.setdefault(group, {})
         for key, state in states.items():
             words = machine.codes(key)
             if state != OF_CODE and words and key not in ("motion_not_followed", "thread_cutting"):
                 names.setdefault(int(state), words[0])
     # Cycles of motion are one state of several codes.
-    found["motion"].pop(9, None)
-    return found
+    names_of_groups["motion"].pop(9, None)
+    return names_of_groups
 
 
 def _of_number(machine: Machine, group: str, state: int) -> str:

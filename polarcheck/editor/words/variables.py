@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 import numpy as np
 
 from polarcheck.columns.trace import Trace
-from polarcheck.editor.analysis import Judged
+from polarcheck.editor.analysis import Analysis
 from polarcheck.editor.words.at_cursor import CursorWord
 from polarcheck.program.execution.macro import VariableKind, Variables
 from polarcheck.program.execution.run import ValueSet
@@ -52,22 +52,22 @@ def number_of(name: str) -> int | None:
     return int(match[1]) if match else None
 
 
-def facts_of(word: CursorWord, judged: Judged, row: int | None, trace: Trace | None) -> Iterator[tuple[str, str]]:
+def facts_of(word: CursorWord, analysis: Analysis, row: int | None, trace: Trace | None) -> Iterator[tuple[str, str]]:
     """
     Yield what a variable is, and what it holds behind the first run of its block.
 
     row: the first row of the block; None if it has none.
     """
-    assert judged.settings is not None
-    machine = judged.settings.machine
+    assert analysis.settings is not None
+    machine = analysis.settings.machine
     number = number_of(word.letter)
     if number is None or (word.letter[0] != "#" and machine.macro.language == "custom-macro"):
         yield "variable", f"{word.letter}, known by its name"
         return
     yield "variable", kind_of(number, machine) if word.letter[0] == "#" else "parameter"
-    given: Mapping[int, float] = {**machine.macro.given, **judged.settings.job.run.variables}
+    given: Mapping[int, float] = {**machine.macro.given, **analysis.settings.job.run.variables}
     if number in given:
-        yield "given by the settings", _shown(given[number])
+        yield "given by the settings", _text_of(given[number])
     if trace is not None and word.letter[0] == "#":
         yield from _held(number, word, row, trace)
 
@@ -87,26 +87,26 @@ def _held(number: int, word: CursorWord, row: int | None, trace: Trace) -> Itera
         return
     level = values[last].level
     for index in range(last, -1, -1):
-        one = values[index]
+        held = values[index]
         is_local = number < _FIRST_COMMON
-        if is_local and one.level < level:
+        if is_local and held.level < level:
             return
-        if one.number == number and (not is_local or one.level == level):
-            line = int(trace.run.text.blocks.line[one.block]) if one.block >= 0 else 0
-            at = f", set in line {line}" if line and one.block != word.block else ", set here" if line else ""
-            yield f"value {when}", f"{_shown(one.value)}{at}"
+        if held.number == number and (not is_local or held.level == level):
+            line = int(trace.run.text.blocks.line[held.block]) if held.block >= 0 else 0
+            suffix = f", set in line {line}" if line and held.block != word.block else ", set here" if line else ""
+            yield f"value {when}", f"{_text_of(held.value)}{suffix}"
             return
 
 
 def _last_behind(block: int, row: int | None, number: int | None, values: Sequence[ValueSet]) -> int | None:
     """Return the last value set in the first run of a block, or of a variable in it; None if it is not known."""
-    own = next((index for index, one in enumerate(values) if one.block == block), None)
-    if own is None:
-        return None if row is None else next((i for i, one in enumerate(values) if one.row > row), len(values)) - 1
+    index_of_block = next((index for index, value in enumerate(values) if value.block == block), None)
+    if index_of_block is None:
+        return None if row is None else next((i for i, value in enumerate(values) if value.row > row), len(values)) - 1
     # What the block assigns itself, in its first run.
-    last = own
+    last = index_of_block
     while last + 1 < len(values) and values[last + 1].block == block and values[last].number != number:
-        if number is None and values[last + 1].number == values[own].number:
+        if number is None and values[last + 1].number == values[index_of_block].number:
             break
         last += 1
     return last
@@ -118,5 +118,5 @@ _MOST_BEFORE = 20
 _FIRST_COMMON = 100
 
 
-def _shown(value: float | None) -> str:
+def _text_of(value: float | None) -> str:
     return "vacant" if value is None else "not known" if value != value else f"{value:.6g}"

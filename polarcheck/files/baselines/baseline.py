@@ -20,11 +20,11 @@ from polarcheck.checking.check import verdict
 from polarcheck.checking.engine import in_order
 from polarcheck.checking.not_evaluated import bound_silenced
 from polarcheck.checking.suppression import silenced
-from polarcheck.files.baselines.baseline_file import SCHEMA, Contents, Entry, Key, Place, Program, program_of
+from polarcheck.files.baselines.baseline_file import SCHEMA, Contents, Entry, Key, Location, Program, program_of
 from polarcheck.files.baselines.known_places import Similar, Versions, key_of, matches, place_of, versions
 from polarcheck.foundation.finding import BASELINE, SEVERITIES, FileReport, Finding, NotEvaluated, Outline, Silenced
 from polarcheck.program.reading.excerpt import shortened
-from polarcheck.program.reading.files import STANDARD_INPUT, shown
+from polarcheck.program.reading.files import STANDARD_INPUT, display_path
 from polarcheck.rules.rule import load_all
 
 #: Characters of the block that an entry shows to its reader.
@@ -82,7 +82,7 @@ class Baseline:
         for entry in _added_up(contents.entries):
             self.of_file.setdefault(os.path.normcase(entry.file), []).append(entry)
         self._programs = {os.path.normcase(program.file): program for program in contents.programs}
-        self.path_of = {shown(path): self._relative(path) for path in paths}
+        self.path_of = {display_path(path): self._relative(path) for path in paths}
         self.moved: dict[str, str] = {}
         self._matched: dict[str, dict[Key, set[int]]] = {}
         self._evaluated: dict[str, Collection[str]] = {}
@@ -105,9 +105,9 @@ class Baseline:
         folder, name = os.path.split(path)
         whole = os.path.join(os.path.realpath(folder or os.curdir), name)  # noqa: PTH118
         try:
-            return shown(os.path.relpath(whole, self.folder))
+            return display_path(os.path.relpath(whole, self.folder))
         except ValueError:
-            return shown(whole)
+            return display_path(whole)
 
     def _missing_files(self) -> list[str]:
         """The files of entries that no longer exist."""
@@ -243,8 +243,8 @@ class Baseline:
         for report, evaluated in reports:
             file = self.path_of[report.path]
             of_file, both = self._known(report)
-            known = {entry.key: entry for entry in of_file}
-            reasons = {key: entry.reason for key, entry in known.items()}
+            entries_by_key = {entry.key: entry for entry in of_file}
+            reasons = {key: entry.reason for key, entry in entries_by_key.items()}
             now = _entries_of(report, file, reasons, reason)
             counts = _counted(now)
             new += (counts - _counted(of_file)).total()
@@ -257,8 +257,8 @@ class Baseline:
             updated.add(os.path.normcase(file))
         updated |= {*self._deleted_files()} | self._origins
         entries += [entry for file, of_file in self.of_file.items() if file not in updated for entry in of_file]
-        others = [program for file, program in self._programs.items() if file not in updated]
-        return Updated(_contents(_added_up(entries), [*programs.values(), *others]), new)
+        remaining = [program for file, program in self._programs.items() if file not in updated]
+        return Updated(_contents(_added_up(entries), [*programs.values(), *remaining]), new)
 
     @staticmethod
     def _may_be_there(entry: Entry, evaluated: Collection[str]) -> bool:
@@ -267,14 +267,14 @@ class Baseline:
 
     def pruned(self) -> Contents:
         """Return the baseline without the findings that no longer occur."""
-        left = {(leftover.entry.file, leftover.entry.key): leftover for leftover in self.leftovers()}
+        leftovers = {(leftover.entry.file, leftover.entry.key): leftover for leftover in self.leftovers()}
         remaining = []
         for entry in (entry for of_file in self.of_file.values() for entry in of_file):
-            leftover = left.get((entry.file, entry.key))
+            leftover = leftovers.get((entry.file, entry.key))
             if leftover is None:
                 remaining.append(entry)
             elif leftover.missing < entry.count:
-                places = [place for at, place in enumerate(entry.places) if at in leftover.matched]
+                places = [location for index, location in enumerate(entry.places) if index in leftover.matched]
                 remaining.append(msgspec.structs.replace(entry, count=entry.count - leftover.missing, places=places))
         return _contents(remaining, self._programs.values(), self.schema)
 
@@ -307,11 +307,11 @@ def _brought_up(entry: Entry, file: str, both: Versions | None) -> Entry:
     if both is not None:
         places = [
             msgspec.structs.replace(
-                place,
-                at=None if place.at is None else both.now(place.at),
-                section=None if place.section is None else both.now(place.section),
+                location,
+                at=None if location.at is None else both.now(location.at),
+                section=None if location.section is None else both.now(location.section),
             )
-            for place in places
+            for location in places
         ]
     return msgspec.structs.replace(entry, file=file, places=places)
 
@@ -351,9 +351,9 @@ def _added_up(entries: Iterable[Entry]) -> list[Entry]:
 
 
 def _merged(same: Sequence[Entry]) -> Entry:
-    places: list[Place] = []
+    places: list[Location] = []
     if any(entry.places for entry in same):
-        places = [place for entry in same for place in entry.places or [Place()] * entry.count]
+        places = [location for entry in same for location in entry.places or [Location()] * entry.count]
     return msgspec.structs.replace(
         same[0],
         count=sum(entry.count for entry in same),

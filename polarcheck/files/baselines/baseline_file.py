@@ -19,7 +19,7 @@ from polarcheck.foundation import bounded
 from polarcheck.foundation.decoding import json_decoder
 from polarcheck.foundation.errors import BaselineError, suggestion
 from polarcheck.foundation.finding import SEVERITIES
-from polarcheck.program.reading.files import shown
+from polarcheck.program.reading.files import display_path
 
 SCHEMA = 2
 #: Schemas that can be read: in the first one entries have no places.
@@ -36,7 +36,7 @@ Key = tuple[str, str]
 _Line = TypeVar("_Line", bound=msgspec.Struct)
 
 
-class Place(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, omit_defaults=True):
+class Location(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, omit_defaults=True):
     """
     Where a known finding stands, and how bad it is.
 
@@ -73,7 +73,7 @@ class Entry(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     block: str = ""
     follows: list[str] = []
     reason: str = ""
-    places: list[Place] = []
+    places: list[Location] = []
 
     @property
     def key(self) -> Key:
@@ -100,7 +100,7 @@ class Program(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
         data = base64.b64decode(self.blocks, validate=True)
         if len(self.blocks) % _CHARACTERS or len(data) % _BYTES:
             raise ValueError("incomplete")
-        return [int.from_bytes(data[at : at + _BYTES], "big") for at in range(0, len(data), _BYTES)]
+        return [int.from_bytes(data[start : start + _BYTES], "big") for start in range(0, len(data), _BYTES)]
 
 
 def program_of(file: str, hashes: Iterable[int], of: int) -> Program:
@@ -140,11 +140,11 @@ def read(path: Path) -> Contents:
     try:
         data = bounded.read_file(path, _LARGEST, "no baseline is", pipes=True)
     except OSError as error:
-        raise BaselineError(f"{shown(str(path))}: {error.strerror or error}") from None
+        raise BaselineError(f"{display_path(str(path))}: {error.strerror or error}") from None
     try:
         return _contents(_as_utf8(data))
     except ValueError as error:
-        raise BaselineError(f"{shown(str(path))}: {error}") from None
+        raise BaselineError(f"{display_path(str(path))}: {error}") from None
 
 
 def _as_utf8(data: bytes) -> bytes:
@@ -172,12 +172,12 @@ def _lines(data: bytes, raws: Sequence[msgspec.Raw], kind: type[_Line], noun: st
     """Return the lines of one kind, and their numbers in the file."""
     decoded: list[_Line] = []
     numbers: list[int] = []
-    at, number = 0, 1
+    start, number = 0, 1
     for count, raw in enumerate(raws, 1):
         text = bytes(raw)
-        end = data.index(text, at)
-        number += data.count(10, at, end)
-        at = end
+        end = data.index(text, start)
+        number += data.count(10, start, end)
+        start = end
         try:
             decoded.append(_checked(_decoded(text, kind)))
         except ValueError as error:

@@ -10,7 +10,7 @@ from pathlib import Path
 from polarcheck.files.baselines.baseline import Baseline, Leftover
 from polarcheck.files.baselines.baseline_file import Contents
 from polarcheck.foundation.errors import suggestion
-from polarcheck.program.reading.files import shown
+from polarcheck.program.reading.files import display_path
 from polarcheck.rules.rule import load_all
 
 #: The most entries in a line, and the most lines on unknown rules.
@@ -27,7 +27,7 @@ def unknown_rules(contents: Contents) -> Iterator[tuple[int, str]]:
 
 def of_contents(path: Path, contents: Contents) -> Iterator[str]:
     """Yield lines on entries of unknown rules, and of the first schema."""
-    name = shown(os.fspath(path))
+    name = display_path(os.fspath(path))
     unknown: dict[str, list[int]] = {}
     for line, rule in unknown_rules(contents):
         unknown.setdefault(rule, []).append(line)
@@ -45,16 +45,16 @@ def of_contents(path: Path, contents: Contents) -> Iterator[str]:
         )
 
 
-def of_leftovers(path: Path, known: Baseline) -> Iterator[str]:
+def of_leftovers(path: Path, baseline: Baseline) -> Iterator[str]:
     """Yield lines on moved files and on known findings that no longer occur."""
-    name = shown(os.fspath(path))
-    moved = sorted((old, new) for new, old in known.moved.items() if old)
+    name = display_path(os.fspath(path))
+    moved = sorted((old, new) for new, old in baseline.moved.items() if old)
     if moved:
         were = f"{_counted(len(moved), 'file')} {'was' if len(moved) == 1 else 'were'}"
         named = _listed(f"{old} is {new}" for old, new in moved)
         yield f"{name}: {were} moved: {named}; `polarcheck baseline update` takes the new paths"
     # Unknown rules have a line of their own.
-    leftovers = [leftover for leftover in known.leftovers() if leftover.entry.rule in load_all()]
+    leftovers = [leftover for leftover in baseline.leftovers() if leftover.entry.rule in load_all()]
     if leftovers:
         count = sum(leftover.missing for leftover in leftovers)
         occur = "occurs" if count == 1 else "occur"
@@ -72,7 +72,7 @@ def _places(leftovers: Iterable[Leftover]) -> list[str]:
         counts[f"{entry.file}, which is gone" if leftover.is_gone else f"{entry.rule} in {entry.file}"] += (
             leftover.missing
         )
-    return [f"{place} ({count})" if count > 1 else place for place, count in counts.items()]
+    return [f"{location} ({count})" if count > 1 else location for location, count in counts.items()]
 
 
 def _listed(texts: Iterable[str]) -> str:

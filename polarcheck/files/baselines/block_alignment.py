@@ -32,13 +32,13 @@ def aligned(old: Sequence[int], new: Sequence[int]) -> dict[int, int]:
         if start == end or new_start == new_end:
             continue
         pairs_here = [*_compared(old[start:end], new[new_start:new_end])]
-        pairs.update((start + at, new_start + new_at) for at, new_at in pairs_here)
+        pairs.update((start + position, new_start + new_at) for position, new_at in pairs_here)
         anchors = [] if pairs_here else _anchors(old, new, (start, end, new_start, new_end))
         if anchors:
-            for (at, new_at), (following, new_following) in zip(
+            for (position, new_at), (following, new_following) in zip(
                 [(start - 1, new_start - 1), *anchors], [*anchors, (end, new_end)], strict=True
             ):
-                stretches.append((at + 1, following, new_at + 1, new_following))
+                stretches.append((position + 1, following, new_at + 1, new_following))
             pairs.update(anchors)
     return dict(sorted(pairs.items()))
 
@@ -47,18 +47,22 @@ def _anchors(old: Sequence[int], new: Sequence[int], stretch: tuple[int, int, in
     """Return the longest chain of blocks that occur once in both stretches and have the same order in both."""
     start, end, new_start, new_end = stretch
     counts, new_counts = Counter(old[start:end]), Counter(new[new_start:new_end])
-    new_at = {value: at for at, value in enumerate(new[new_start:new_end], new_start) if new_counts[value] == 1}
+    new_at = {
+        value: position for position, value in enumerate(new[new_start:new_end], new_start) if new_counts[value] == 1
+    }
     once = [
-        (at, new_at[value]) for at, value in enumerate(old[start:end], start) if counts[value] == 1 and value in new_at
+        (position, new_at[value])
+        for position, value in enumerate(old[start:end], start)
+        if counts[value] == 1 and value in new_at
     ]
     # The longest increasing subsequence of the positions in `new`.
     ends: list[int] = []
     numbers: list[int] = []
     before: list[int] = []
-    for number, (_, at) in enumerate(once):
-        length = bisect_left(ends, at)
+    for number, (_, position) in enumerate(once):
+        length = bisect_left(ends, position)
         before.append(numbers[length - 1] if length else -1)
-        ends[length : length + 1] = [at]
+        ends[length : length + 1] = [position]
         numbers[length : length + 1] = [number]
     chain: list[_Pair] = []
     number = numbers[-1] if numbers else -1
@@ -79,11 +83,11 @@ def _compared(old: Sequence[int], new: Sequence[int]) -> Iterator[_Pair]:
     for edits in range(min(len(old) + len(new), _MOST_EDITS) + 1):
         steps.append(furthest.copy())
         for diagonal in range(-edits, edits + 1, 2):
-            at = _begin(furthest, diagonal, edits)
-            while at < len(old) and at - diagonal < len(new) and old[at] == new[at - diagonal]:
-                at += 1
-            furthest[diagonal] = at
-            if at >= len(old) and at - diagonal >= len(new):
+            position = _begin(furthest, diagonal, edits)
+            while position < len(old) and position - diagonal < len(new) and old[position] == new[position - diagonal]:
+                position += 1
+            furthest[diagonal] = position
+            if position >= len(old) and position - diagonal >= len(new):
                 yield from _traced(steps, len(old), len(new))
                 return
 
@@ -94,12 +98,12 @@ def _begin(furthest: dict[int, int], diagonal: int, edits: int) -> int:
     return furthest[diagonal + 1] if is_added else furthest[diagonal - 1] + 1
 
 
-def _traced(steps: Sequence[dict[int, int]], at: int, new_at: int) -> Iterator[_Pair]:
+def _traced(steps: Sequence[dict[int, int]], position: int, new_at: int) -> Iterator[_Pair]:
     for edits, furthest in zip(range(len(steps) - 1, -1, -1), reversed(steps), strict=True):
-        diagonal = at - new_at
+        diagonal = position - new_at
         begin = _begin(furthest, diagonal, edits)
-        while at > begin and new_at > 0:
-            at, new_at = at - 1, new_at - 1
-            yield at, new_at
+        while position > begin and new_at > 0:
+            position, new_at = position - 1, new_at - 1
+            yield position, new_at
         is_added = diagonal == -edits or (diagonal != edits and furthest[diagonal - 1] < furthest[diagonal + 1])
-        at, new_at = (begin, new_at - 1) if is_added else (begin - 1, new_at)
+        position, new_at = (begin, new_at - 1) if is_added else (begin - 1, new_at)

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 
 from msgspec import UnsetType
 
-from polarcheck.files.baselines.baseline_file import Entry, Place
+from polarcheck.files.baselines.baseline_file import Entry, Location
 from polarcheck.foundation.finding import FASTEST, FASTEST_PER_REVOLUTION, LOWEST_Z, SEVERITIES, Finding, Outline
 from polarcheck.rules.rule import Rule, load_all
 
@@ -46,25 +46,25 @@ def blocks_of(finding: Finding) -> int:
     return finding.count if rule is not None and rule.once else 0
 
 
-def growth(known: Entry, place: Place, finding: Finding, outline: Outline | UnsetType) -> list[str]:
+def growth(entry: Entry, location: Location, finding: Finding, outline: Outline | UnsetType) -> list[str]:
     """Return in words what of a known finding is worse now; empty if nothing is."""
-    return [*dict.fromkeys((*_of_kind(known, finding), *_of_numbers(place, finding, outline)))]
+    return [*dict.fromkeys((*_of_kind(entry, finding), *_of_numbers(location, finding, outline)))]
 
 
-def _of_kind(known: Entry, finding: Finding) -> Iterator[str]:
-    if SEVERITIES[finding.severity] > SEVERITIES[known.severity]:
-        yield f"known as {known.severity}, now {finding.severity}"
-    new = {follower.rule for follower in finding.follows} - {*known.follows}
+def _of_kind(entry: Entry, finding: Finding) -> Iterator[str]:
+    if SEVERITIES[finding.severity] > SEVERITIES[entry.severity]:
+        yield f"known as {entry.severity}, now {finding.severity}"
+    new = {follower.rule for follower in finding.follows} - {*entry.follows}
     if new:
         yield f"now with {', '.join(sorted(new))}"
 
 
-def _of_numbers(place: Place, finding: Finding, outline: Outline | UnsetType) -> Iterator[str]:
+def _of_numbers(location: Location, finding: Finding, outline: Outline | UnsetType) -> Iterator[str]:
     blocks = blocks_of(finding)
-    if place.blocks and blocks > place.blocks:
-        yield f"known in {place.blocks} block{'s' * (place.blocks > 1)}, now in {blocks}"
+    if location.blocks and blocks > location.blocks:
+        yield f"known in {location.blocks} block{'s' * (location.blocks > 1)}, now in {blocks}"
     now = _numbers(finding, outline)
-    for name, value in place.values.items():
+    for name, value in location.values.items():
         if name not in now:
             continue
         rule, _, last = name.rpartition(".")
@@ -73,7 +73,7 @@ def _of_numbers(place: Place, finding: Finding, outline: Outline | UnsetType) ->
         if _is_worse(signed, value, now[name], 0 if is_z else _SHARE, _ROUNDING_OF_Z if is_z else _ROUNDING):
             words = _WORDS.get(last, last.replace("_", " ").replace(_FROM, " off "))
             words = f"{rule}.{words}" if rule else words
-            yield f"known with {words}{' by' * (_FROM in name)} {_shown(value)}, now {_shown(now[name])}"
+            yield f"known with {words}{' by' * (_FROM in name)} {_quantity(value)}, now {_quantity(now[name])}"
 
 
 def _of_rule(
@@ -113,5 +113,5 @@ def _is_worse(signed: str, before: float | None, now: float | None, share: float
     return grown > share * abs(before) + rounding
 
 
-def _shown(value: float | None) -> str:
+def _quantity(value: float | None) -> str:
     return "unknown" if value is None else f"{value:.3f}".rstrip("0").rstrip(".")

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from msgspec import UnsetType
 
-from polarcheck.files.baselines.baseline_file import Entry, Key, Place, Program
+from polarcheck.files.baselines.baseline_file import Entry, Key, Location, Program
 from polarcheck.files.baselines.block_alignment import aligned
 from polarcheck.files.baselines.growth import blocks_of, growth, values_of
 from polarcheck.foundation.finding import FileReport, Finding, Outline
@@ -62,7 +62,7 @@ _SECTION = "section"
 
 
 #: Returns for findings, by number, the places of an entry that they can be.
-_Way = Callable[[Mapping[int, Place], Mapping[int, Finding]], Mapping[int, Sequence[int]]]
+_Way = Callable[[Mapping[int, Location], Mapping[int, Finding]], Mapping[int, Sequence[int]]]
 
 
 class Match(NamedTuple):
@@ -101,21 +101,21 @@ class Versions:
         self._old_of = {new: old for old, new in pairs.items()}
         self._outline = outline
 
-    def now(self, at: int) -> int | None:
+    def now(self, index: int) -> int | None:
         """Return the index in the outline of a block of the program; None if it is not there any more."""
-        old = self._in_old(at)
+        old = self._in_old(index)
         if old not in self._pairs:
             return None
         new = self._pairs[old]
         return self._new_kept[new] if 0 <= new < len(self._new) else new
 
-    def targets(self, at: int) -> set[int]:
+    def targets(self, index: int) -> set[int]:
         """
         Return where a block of the program can be now, as `target` has it.
 
         Of a long program blocks between two that are listed are the same if one of these two is.
         """
-        old = self._in_old(at)
+        old = self._in_old(index)
         places = {self._pairs[old]} if old in self._pairs else set()
         if not self._is_whole and old + 1 in self._pairs:
             places.add(self._pairs[old + 1] - 1)
@@ -123,39 +123,41 @@ class Versions:
 
     def target(self, line: int) -> int | None:
         """Return the index of the block in a line; None if no block stands there."""
-        at = self._outline.place_of_line.get(line)
-        return None if at is None else bisect_right(self._new_kept, at) - 1
+        index = self._outline.place_of_line.get(line)
+        return None if index is None else bisect_right(self._new_kept, index) - 1
 
-    def stays(self, at: int, line: int) -> bool:
+    def stays(self, index: int, line: int) -> bool:
         """Return True if a block and most of those around it are aligned with a line and the blocks around that."""
-        old, new = self._in_old(at), self.target(line)
+        old, new = self._in_old(index), self.target(line)
         return (
             new is not None
             and self._pairs.get(old) == new
             and self._most(old, lambda step: self._is_at(step, new - old))
         )
 
-    def has_moved(self, at: int, line: int) -> bool:
+    def has_moved(self, index: int, line: int) -> bool:
         """
         Return True if a block has gone from its place with most of those around it, and these are new around the line.
 
         Where the blocks around it are still at the former place, it is another block with the same surroundings. The
         ends of sections are often the same: there an alignment counts only if the blocks around agree with it.
         """
-        old, new = self._in_old(at), self.target(line)
+        old, new = self._in_old(index), self.target(line)
         if new is None or not self._most(old, lambda step: self._have_moved(step, step + new - old)):
             return False
         former = self._old_of.get(new)
         return not any(
-            self._most(block, lambda step, by=other - block: self._is_at(step, by))  # type: ignore[misc]
-            for block, other in ((old, self._pairs.get(old)), (former, new))
-            if block is not None and other is not None
+            self._most(block, lambda step, by=partner - block: self._is_at(step, by))  # type: ignore[misc]
+            for block, partner in ((old, self._pairs.get(old)), (former, new))
+            if block is not None and partner is not None
         )
 
     def _most(self, old: int, holds: Callable[[int], bool]) -> bool:
         """Return True if something holds for most blocks around one; those that the program has once say more."""
-        around = [at for at in range(old - _AROUND, old + _AROUND + 1) if at != old and 0 <= at < len(self._old)]
-        single = [at for at in around if self._counts[self._old[at]] == 1]
+        around = [
+            index for index in range(old - _AROUND, old + _AROUND + 1) if index != old and 0 <= index < len(self._old)
+        ]
+        single = [index for index in around if self._counts[self._old[index]] == 1]
         around = single if len(single) > 1 else around
         return 2 * sum(map(holds, around)) > len(around)
 
@@ -166,14 +168,14 @@ class Versions:
         is_same = 0 <= new < len(self._new) and self._old[old] == self._new[new]
         return is_same and self._pairs.get(old, new) == new and self._old_of.get(new, old) == old
 
-    def _in_old(self, at: int) -> int:
-        return bisect_right(self._kept, at) - 1
+    def _in_old(self, index: int) -> int:
+        return bisect_right(self._kept, index) - 1
 
 
 def _thinned(hashes: Sequence[int], of: int) -> tuple[list[int], list[int]]:
     """Return the indices of the hashes that are a multiple of a number, and these hashes."""
-    chosen = [at for at, value in enumerate(hashes) if value % of == 0]
-    return chosen, [hashes[at] for at in chosen]
+    chosen = [index for index, value in enumerate(hashes) if value % of == 0]
+    return chosen, [hashes[index] for index in chosen]
 
 
 def versions(program: Program | None, outline: Outline | UnsetType) -> Versions | None:
@@ -187,17 +189,17 @@ def matches(entries: Iterable[Entry], both: Versions | None, report: FileReport)
 
     Without two versions of the program findings are counted only, as those of a baseline of the first schema.
     """
-    known = {entry.key: entry for entry in entries}
+    by_key = {entry.key: entry for entry in entries}
     numbers: dict[Key, list[int]] = {}
     for number, finding in enumerate(report.findings):
-        if key_of(finding) in known:
+        if key_of(finding) in by_key:
             numbers.setdefault(key_of(finding), []).append(number)
     of_findings: list[Match | None] = [None] * len(report.findings)
     if both is not None and not both.is_same:
         return of_findings
     for key, of_key in numbers.items():
         findings = {number: report.findings[number] for number in of_key}
-        for number, match in _of_entry(known[key], both, findings, report.outline):
+        for number, match in _of_entry(by_key[key], both, findings, report.outline):
             of_findings[number] = match
     return of_findings
 
@@ -206,42 +208,50 @@ def _of_entry(
     entry: Entry, both: Versions | None, findings: Mapping[int, Finding], outline: Outline | UnsetType
 ) -> Iterator[tuple[int, Match]]:
     """Yield the numbers of findings with the places of an entry: the same block first, then others that it can be."""
-    places = dict(enumerate(entry.places or [Place()] * entry.count))
-    left = dict(findings)
-    for way in _ways(entry, both):
-        fitting = way(places, left)
+    places = dict(enumerate(entry.places or [Location()] * entry.count))
+    unmatched = dict(findings)
+    for pairing in _pairings(entry, both):
+        fitting = pairing(places, unmatched)
         for number, finding in findings.items():
-            ats = [*islice((at for at in fitting.get(number, ()) if at in places), _TRIED)]
-            if number in left and ats:
-                grown = {at: growth(entry, places[at], finding, outline) for at in ats}
-                at = min(ats, key=lambda at: bool(grown[at]))
-                yield number, Match(entry, at, grown[at])
-                del places[at], left[number]
+            ats = [*islice((index for index in fitting.get(number, ()) if index in places), _TRIED)]
+            if number in unmatched and ats:
+                grown = {index: growth(entry, places[index], finding, outline) for index in ats}
+                index = min(ats, key=lambda index: bool(grown[index]))
+                yield number, Match(entry, index, grown[index])
+                del places[index], unmatched[number]
 
 
-def _ways(entry: Entry, both: Versions | None) -> Iterator[_Way]:
+def _pairings(entry: Entry, both: Versions | None) -> Iterator[_Way]:
     """Yield the ways in which findings can be those of an entry, the surest first."""
     if both is None or not entry.places:
         yield lambda places, findings: dict.fromkeys(findings, tuple(places))
         return
     yield lambda places, findings: {
-        number: [at for at in fitting if (where := places[at].at) is None or both.stays(where, findings[number].line)]
+        number: [
+            index
+            for index in fitting
+            if (where := places[index].at) is None or both.stays(where, findings[number].line)
+        ]
         for number, fitting in _aligned(both, places, findings).items()
     }
     rule = load_all().get(entry.rule)
     if rule is not None and rule.once == _SECTION:
         # Where the first block with the fault has been mended, another one of the section stands for it.
         yield lambda places, findings: _by_index(
-            {at: both.targets(place.section) for at, place in places.items() if place.section is not None},
+            {
+                index: both.targets(location.section)
+                for index, location in places.items()
+                if location.section is not None
+            },
             {number: both.target(finding.section_line or 0) for number, finding in findings.items()},
         )
     yield lambda places, findings: _moved(both, places, findings)
     yield lambda places, findings: _aligned(both, places, findings)
 
 
-def _aligned(both: Versions, places: Mapping[int, Place], findings: Mapping[int, Finding]) -> dict[int, list[int]]:
+def _aligned(both: Versions, places: Mapping[int, Location], findings: Mapping[int, Finding]) -> dict[int, list[int]]:
     return _by_index(
-        {at: {None} if place.at is None else both.targets(place.at) for at, place in places.items()},
+        {index: {None} if location.at is None else both.targets(location.at) for index, location in places.items()},
         {number: both.target(finding.line) for number, finding in findings.items()},
     )
 
@@ -249,27 +259,31 @@ def _aligned(both: Versions, places: Mapping[int, Place], findings: Mapping[int,
 def _by_index(places: Mapping[int, Iterable[int | None]], findings: Mapping[int, int | None]) -> dict[int, list[int]]:
     """Return for each finding the places with the same index."""
     of_index: dict[int | None, list[int]] = {}
-    for at, indices in places.items():
+    for place_number, indices in places.items():
         for index in indices:
-            of_index.setdefault(index, []).append(at)
+            of_index.setdefault(index, []).append(place_number)
     return {number: of_index[index] for number, index in findings.items() if index in of_index}
 
 
-def _moved(both: Versions, places: Mapping[int, Place], findings: Mapping[int, Finding]) -> dict[int, list[int]]:
+def _moved(both: Versions, places: Mapping[int, Location], findings: Mapping[int, Finding]) -> dict[int, list[int]]:
     if len(places) * len(findings) > _MOST_PAIRS:
         return {}
     return {
-        number: [at for at, place in places.items() if place.at is not None and both.has_moved(place.at, finding.line)]
+        number: [
+            index
+            for index, location in places.items()
+            if location.at is not None and both.has_moved(location.at, finding.line)
+        ]
         for number, finding in findings.items()
     }
 
 
-def place_of(finding: Finding, outline: Outline | UnsetType) -> Place:
+def place_of(finding: Finding, outline: Outline | UnsetType) -> Location:
     """Return the place of a finding, as an entry has it."""
     lines = outline.place_of_line if isinstance(outline, Outline) else {}
     rule = load_all().get(finding.rule)
     in_section = rule is not None and rule.once == _SECTION and finding.section_line is not None
-    return Place(
+    return Location(
         at=lines.get(finding.line),
         section=lines.get(finding.section_line or 0) if in_section else None,
         blocks=blocks_of(finding),

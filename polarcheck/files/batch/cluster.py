@@ -280,7 +280,7 @@ def pack(settings: Settings) -> bytes:
     folders = [called_programs.contents(folder) for folder in settings.job.run.subprograms]
     size = sum(len(data) for folder in folders for data in folder.values())
     if size > _MOST_CALLED:
-        named = ", ".join(files.shown(folder) for folder in settings.job.run.subprograms)
+        named = ", ".join(files.display_path(folder) for folder in settings.job.run.subprograms)
         raise ClusterError(
             f"{named}: {size / 1e6:.0f} MB of subprograms are too much to be sent; name folders with less"
         )
@@ -297,7 +297,7 @@ def check_batch(batch: Batch) -> Answer:
     for key, content in batch.settings.items():
         _REMEMBER(key, content)
     keys = {key for _, key, _ in batch.items}
-    settings = {key: known for key in keys if (known := _REMEMBER(key)) is not None}
+    settings = {key: remembered for key in keys if (remembered := _REMEMBER(key)) is not None}
     if unknown := sorted(keys - settings.keys()):
         return Answer(__version__, unknown=unknown)
     outcomes = []
@@ -336,18 +336,18 @@ def _unpacked(content: bytes) -> tuple[Settings, Path | None]:
         return settings, None
     import atexit
 
-    made = Path(tempfile.mkdtemp(prefix="polarcheck-"))
-    atexit.register(functools.partial(_remove, made))
+    unpacked = Path(tempfile.mkdtemp(prefix="polarcheck-"))
+    atexit.register(functools.partial(_remove, unpacked))
     paths = []
     for number, contents in enumerate(folders):
-        folder = made / str(number)
+        folder = unpacked / str(number)
         folder.mkdir()
         for name, data in contents.items():
             (folder / name).write_bytes(data)
         paths.append(called_programs.MovedFolder(str(folder), settings.job.run.subprograms[number]))
     run = msgspec.structs.replace(settings.job.run, subprograms=paths)
     job = msgspec.structs.replace(settings.job, run=run)
-    return msgspec.structs.replace(settings, job=job), made
+    return msgspec.structs.replace(settings, job=job), unpacked
 
 
 def _remove(folder: Path | None) -> None:

@@ -229,19 +229,19 @@ class _Schedule:
             return
         numbers, alone = self._futures.pop(future)
         try:
-            found: Sequence[Outcome | None] | None = self._workers.outcomes(future, numbers)
+            outcomes: Sequence[Outcome | None] | None = self._workers.outcomes(future, numbers)
         except ClusterError:
             raise
         except self._workers.death:
-            found = [None] * len(numbers)
-        if found is None:
+            outcomes = [None] * len(numbers)
+        if outcomes is None:
             (self._again if alone else self._left).extendleft(reversed(numbers))
         else:
-            self._note(numbers, found, alone)
+            self._note(numbers, outcomes, alone)
 
-    def _note(self, numbers: list[int], found: Sequence[Outcome | None], alone: bool) -> None:
+    def _note(self, numbers: list[int], outcomes: Sequence[Outcome | None], alone: bool) -> None:
         """Note outcomes; a file that was lost, or was short of memory beside others, is repeated alone."""
-        for number, result in zip(numbers, found, strict=True):
+        for number, result in zip(numbers, outcomes, strict=True):
             if not alone and (result is None or result.short_of_memory):
                 self._again.append(number)
             else:
@@ -297,10 +297,10 @@ def packed(result: Outcome) -> Sent:
     try:
         pickle.loads(pickle.dumps(bug))  # noqa: S301  written in this line
     except Exception:  # some exceptions cannot be made again from their arguments
-        other = RuntimeError(f"{type(bug).__name__}: {bug}")
+        plain = RuntimeError(f"{type(bug).__name__}: {bug}")
         for note in getattr(bug, "__notes__", ()):
-            other.add_note(note)
-        bug = other
+            plain.add_note(note)
+        bug = plain
     return Sent(msgspec.structs.replace(result, bug=bug), lines)
 
 

@@ -61,7 +61,7 @@ class Task(msgspec.Struct, frozen=True):
     @property
     def title(self) -> str:
         """The path under which it is reported."""
-        return files.shown(self.place)
+        return files.display_path(self.place)
 
 
 class Basis(msgspec.Struct, frozen=True):
@@ -151,15 +151,15 @@ def plan(
     unread_files: list[Skipped] = []
     wanted_in: Callable[[str], Collection[str]] | None = None
     for path in paths:
-        found, is_folder = [path], path != files.STANDARD_INPUT and os.path.isdir(path)  # noqa: PTH112
+        programs, is_folder = [path], path != files.STANDARD_INPUT and os.path.isdir(path)  # noqa: PTH112
         if is_folder:
             wanted_in = wanted_in or _wanted_in(extensions, extensions_in)
-            found = _walked(path, wanted_in, excluded_in, tell, warn, unread_files)
-        for program in found:
-            place = standard_input if program == files.STANDARD_INPUT else program
-            settings = settings_of(place)
-            named = place if place != program else ""
-            key = real.of(place), id(settings)
+            programs = _walked(path, wanted_in, excluded_in, tell, warn, unread_files)
+        for program in programs:
+            title = standard_input if program == files.STANDARD_INPUT else program
+            settings = settings_of(title)
+            named = title if title != program else ""
+            key = real.of(title), id(settings)
             if not is_folder:
                 by_look.discard(key)
             elif wanted_in and key not in tasks and _is_by_look(program, wanted_in):
@@ -217,13 +217,13 @@ def _walked(
 
     failures: list[str] = []
     passed: list[Skipped] = []
-    found = list(walking.walk(folder, wanted_in, failures.append, excluded_in, passed.append))
+    programs = list(walking.walk(folder, wanted_in, failures.append, excluded_in, passed.append))
     for failure in failures:
         tell(failure)
-    if not found and not failures:
-        warn(f"{files.shown(folder)}: {unread_programs.none_in_folder(passed)}")
+    if not programs and not failures:
+        warn(f"{files.display_path(folder)}: {unread_programs.none_in_folder(passed)}")
     skipped += passed
-    return found
+    return programs
 
 
 def settings_of(tasks: Iterable[Task]) -> dict[str, Settings]:
@@ -263,21 +263,21 @@ def gather(
     spool, called, failed, stopped, broken_off = Spool(), set[str](), False, None, ""
     called_files: set[str] = set()
     try:
-        for found in outcomes:
-            if found.failure:
-                tell(found.failure)
-            if found.bug is not None:
-                bug(found.bug)
-            if found.report is not None:
-                spool.add(found.report, found.lines)
-                called |= found.called
-                if found.basis is not None:
-                    its_files = [path for look_up in found.basis.look_ups for path, _ in look_up.files]
+        for result in outcomes:
+            if result.failure:
+                tell(result.failure)
+            if result.bug is not None:
+                bug(result.bug)
+            if result.report is not None:
+                spool.add(result.report, result.lines)
+                called |= result.called
+                if result.basis is not None:
+                    its_files = [path for look_up in result.basis.look_ups for path, _ in look_up.files]
                     note(*its_files)  # a worker may have read them
                     called_files.update(its_files)
-                failed = failed or found.failed
+                failed = failed or result.failed
                 if show is not None:
-                    show(found.report, found.lines)
+                    show(result.report, result.lines)
     except KeyboardInterrupt as stop:
         stopped = stop
     except ClusterError as error:
@@ -290,7 +290,7 @@ def outcome(task: Task, most: int = files.LARGEST, data: bytes | None = None) ->
     """Return the outcome of the check of a file, or of its bytes if they were read before; raises nothing."""
     try:
         data = files.read_program(task.path, most) if data is None else data
-        found, source, called, basis = _check(task, data)
+        checked, source, called, basis = _check(task, data)
     except (SourceError, TooHardError) as error:
         return unreadable(task, str(error), data)
     except MemoryError:
@@ -300,8 +300,8 @@ def outcome(task: Task, most: int = files.LARGEST, data: bytes | None = None) ->
         error.add_note(f"while checking {task.title}")
         failed = unreadable(task, f"a fault of polarcheck: {type(error).__name__}: {error}", data)
         return msgspec.structs.replace(failed, failure="", bug=error)
-    report = msgspec.structs.replace(found, **_of_task(task, data))
-    lines = _lines(source, found) if found.findings else {}
+    report = msgspec.structs.replace(checked, **_of_task(task, data))
+    lines = _lines(source, checked) if checked.findings else {}
     return Outcome(report, lines, frozenset(called), fails(report, task.settings), basis=basis)
 
 
@@ -364,33 +364,33 @@ def _check(task: Task, data: bytes) -> tuple[FileReport, Source, set[str], Basis
     """The report, the text, the keys of the offsets that are called, where the job has any, and what this rests on."""
     settings = task.settings
     with time_limit(seconds_for(len(data), settings.job.run.max_seconds)) as limit, recorded() as read:
-        found = check.read(data, settings.machine, settings.job, task.title, settings.encoding)
-        text: Text = found[0][1]["text"]
-        report = check.check_runs(found, settings.rules, settings.severities, settings.inline, settings.deselected)
+        runs = check.read(data, settings.machine, settings.job, task.title, settings.encoding)
+        text: Text = runs[0][1]["text"]
+        report = check.check_runs(runs, settings.rules, settings.severities, settings.inline, settings.deselected)
         if settings.doubtful:
-            report = with_doubts(report, found, settings.doubtful)
+            report = with_doubts(report, runs, settings.doubtful)
         for extra in settings.extras:
-            report = extra(report, found)
+            report = extra(report, runs)
         if settings.baseline is not None:
             from polarcheck.checking.block_outline import with_outline
 
-            report = with_outline(report, found)
-        offsets = _offsets(found) if settings.job.tools else set()
+            report = with_outline(report, runs)
+        offsets = _offsets(runs) if settings.job.tools else set()
         # Whoever has left something out because the time was over has done so before this moment.
         basis = Basis(None if limit.is_over() else digest(data), tuple(read.look_ups))
         return report, text.source, offsets, basis
 
 
-def _offsets(found: Sequence[tuple[str, Tables]]) -> set[str]:
+def _offsets(runs: Sequence[tuple[str, Tables]]) -> set[str]:
     return {
         trace.tools.offset_key(number)
-        for trace in (tables["trace"] for _, tables in found)
+        for trace in (tables["trace"] for _, tables in runs)
         for number in trace.tools.called_offsets
     }
 
 
-def _lines(text: Source, found: FileReport) -> dict[int, str]:
-    numbers = {line for finding in found.findings for line in (finding.line, finding.section_line) if line is not None}
+def _lines(text: Source, report: FileReport) -> dict[int, str]:
+    numbers = {line for finding in report.findings for line in (finding.line, finding.section_line) if line is not None}
     return {line: text.line_text(line) for line in sorted(numbers) if line <= len(text.line_starts)}
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Container, Iterable, Sequence
 
 from polarcheck.foundation.finding import NotRead
-from polarcheck.program.reading.files import RealPaths, shown
+from polarcheck.program.reading.files import RealPaths, display_path
 from polarcheck.program.reading.walking import Skipped
 
 #: The most endings in a line.
@@ -34,7 +34,7 @@ def by_ending(skipped: Iterable[Skipped]) -> list[NotRead]:
     for entry in skipped:
         if entry.reason in ("ending", "device"):
             files.setdefault(entry.ending.lower(), []).append(entry.path)
-    counts = [NotRead(ending, len(paths), shown(paths[0])) for ending, paths in files.items()]
+    counts = [NotRead(ending, len(paths), display_path(paths[0])) for ending, paths in files.items()]
     return sorted(counts, key=lambda entry: (-entry.files, entry.ending))
 
 

@@ -37,17 +37,17 @@ class NoDigestError(Exception):
 @cache
 def of_code() -> bytes:
     """Return the digest of the program that judges: version, size and time of each of its files, libraries, Python."""
-    known = blake2b(digest_size=SIZE // 2)
+    digest = blake2b(digest_size=SIZE // 2)
     for part in (__version__, sys.version, sys.platform, *sorted(_states(str(_FOLDER)))):
-        known.update(part.encode("utf-8", "surrogatepass") + b"\0")
+        digest.update(part.encode("utf-8", "surrogatepass") + b"\0")
     for name in _LIBRARIES:
         spec = find_spec(name)
         if spec is not None and spec.origin:
             status = Path(spec.origin).stat()
-            known.update(
+            digest.update(
                 f"{name} {spec.origin} {status.st_size} {status.st_mtime_ns}\0".encode("utf-8", "surrogatepass")
             )
-    return known.digest()
+    return digest.digest()
 
 
 def _states(folder: str) -> Iterator[str]:
@@ -68,13 +68,13 @@ def of_settings(settings: Settings) -> bytes:
     The chain of machine files, job files, tables of tools and the options count by the values that they give. Raises
     NoDigestError.
     """
-    known = blake2b(digest_size=SIZE)
+    digest = blake2b(digest_size=SIZE)
     for name in settings.__struct_fields__:
         if name not in _PLACES:
-            known.update(name.encode())
+            digest.update(name.encode())
             for piece in _pieces(getattr(settings, name)):
-                known.update(piece)
-    return known.digest()
+                digest.update(piece)
+    return digest.digest()
 
 
 def _pieces(value: Any) -> Iterator[bytes]:

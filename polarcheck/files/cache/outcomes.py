@@ -77,10 +77,10 @@ class Cache:
                 yield from fresh
             return
         slots = [self._slot(task) for task in tasks]
-        known = [self._known(task, *slot) if slot else None for task, slot in zip(tasks, slots, strict=True)]
-        with check([task for task, entry in zip(tasks, known, strict=True) if entry is None]) as fresh:
+        entries = [self._known(task, *slot) if slot else None for task, slot in zip(tasks, slots, strict=True)]
+        with check([task for task, entry in zip(tasks, entries, strict=True) if entry is None]) as fresh:
             try:
-                for task, slot, entry in zip(tasks, slots, known, strict=True):
+                for task, slot, entry in zip(tasks, slots, entries, strict=True):
                     if entry is not None:
                         yield _outcome(entry)
                         continue
@@ -119,8 +119,8 @@ class Cache:
     def _store(self, settings: Settings) -> Store:
         folder = self._folder
         if folder is None:
-            beside = os.path.dirname(settings.job_file) if settings.job_file is not None else ""  # noqa: PTH120
-            folder = os.path.join(beside, NAME)  # noqa: PTH118
+            parent = os.path.dirname(settings.job_file) if settings.job_file is not None else ""  # noqa: PTH120
+            folder = os.path.join(parent, NAME)  # noqa: PTH118
         if folder not in self._stores:
             assert self._key is not None
             self._stores[folder] = Store(folder, digests.of_code(), self._key, links=self._folder is not None)
@@ -137,7 +137,7 @@ class Cache:
                 return None
         except (OSError, ValueError):
             return None
-        if not all(self._holds(task.settings, one) for one in entry.basis.look_ups):
+        if not all(self._holds(task.settings, look_up) for look_up in entry.basis.look_ups):
             return None
         store.use(digest)
         return data
@@ -204,11 +204,11 @@ def _outcome(data: bytes) -> Outcome:
 
 def _in_order(report: FileReport) -> Iterator[Finding]:
     """Yield all findings, those that follow from others behind these."""
-    left: list[Finding] = list(reversed(report.findings))
-    while left:
-        finding = left.pop()
+    stack: list[Finding] = list(reversed(report.findings))
+    while stack:
+        finding = stack.pop()
         yield finding
-        left += reversed(finding.follows)
+        stack += reversed(finding.follows)
 
 
 def _with_undecided(report: FileReport, numbers: frozenset[int]) -> FileReport:

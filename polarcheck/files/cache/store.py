@@ -95,11 +95,11 @@ class Store:
         """Return the entries of a file: the new ones, those that this run has used, then the others while they fit."""
         present = self._read(shard)
         used = {digest: present[digest] for digest in self._used.get(shard, ()) if digest in present}
-        wanted = used | new
-        others = {digest: data for digest, data in reversed(present.items()) if digest not in wanted}
+        needed = used | new
+        unused = {digest: data for digest, data in reversed(present.items()) if digest not in needed}
         merged: Entries = {}
         size = 0
-        for digest, data in (wanted | others).items():
+        for digest, data in (needed | unused).items():
             size += len(data) + len(digest) + 8
             if size > LARGEST:
                 break
@@ -188,13 +188,13 @@ def _create(path: str, data: bytes, mode: int = 0o666) -> None:
 
 def _replace(path: str, data: bytes) -> None:
     """Write a file whole or not at all, in the place of one that is there."""
-    beside = os.path.join(os.path.dirname(path), f".{os.urandom(8).hex()}.new")  # noqa: PTH118, PTH120
+    temporary = os.path.join(os.path.dirname(path), f".{os.urandom(8).hex()}.new")  # noqa: PTH118, PTH120
     try:
-        _create(beside, data)
-        os.replace(beside, path)  # noqa: PTH105
+        _create(temporary, data)
+        os.replace(temporary, path)  # noqa: PTH105
     except OSError:
         with contextlib.suppress(OSError):
-            os.unlink(beside)  # noqa: PTH108
+            os.unlink(temporary)  # noqa: PTH108
         raise
 
 
@@ -233,13 +233,13 @@ def user_key() -> bytes | None:
 def folder_key(folder: str) -> bytes | None:
     """Return the key in a folder; both are made if there is none. None if that is impossible."""
     path = os.path.join(folder, _KEY_NAME)  # noqa: PTH118
-    beside = f"{path}.{os.urandom(8).hex()}"
+    temporary = f"{path}.{os.urandom(8).hex()}"
     try:
         key = _read_key(path)
         if not key:
             Path(folder).mkdir(mode=0o700, parents=True, exist_ok=True)
-            _create(beside, os.urandom(_KEY), 0o600)
-            os.replace(beside, path)  # noqa: PTH105
+            _create(temporary, os.urandom(_KEY), 0o600)
+            os.replace(temporary, path)  # noqa: PTH105
             key = _read_key(path)  # that of another process which has done so at the same time
     except OSError:
         return None

@@ -11,7 +11,7 @@ from polarcheck.files.settings.job_layers import Merged
 from polarcheck.foundation.finding import Decided, RunSettings
 from polarcheck.foundation.version import __version__
 from polarcheck.program.machines.job import level_of, names_of, reason_of
-from polarcheck.program.reading.files import shown
+from polarcheck.program.reading.files import display_path
 
 #: Keys of a job that an option of the same name overrides.
 _PLAIN = ("inline", "fail_on", "max_warnings", "strict")
@@ -70,14 +70,14 @@ def decided(
     pairs = [option.partition("=") for option in options["severities"]]
     of_options = {name.strip(): level.strip().lower() for name, _, level in pairs}
     values["severities"] = {name: level_of(level) for name, level in job.severities.items()} | of_options
-    left = {name: level for name, level in job.severities.items() if name not in of_options}
-    reasons = {f"severities.{name}": reason_of(level) for name, level in left.items()}
+    of_job = {name: level for name, level in job.severities.items() if name not in of_options}
+    reasons = {f"severities.{name}": reason_of(level) for name, level in of_job.items()}
     reasons |= {} if options["select"] else {key: reason_of(getattr(job, key)) for key in ("select", "ignore")}
     return Decided(
-        machine=shown(machine),
+        machine=display_path(machine),
         changes=options["changes"],
-        baseline=None if baseline is None else shown(str(baseline)),
-        configuration=[shown(path) for path in configuration],
+        baseline=None if baseline is None else display_path(str(baseline)),
+        configuration=[display_path(path) for path in configuration],
         sources=dict(_sources(options, named, merged)),
         reasons={key: reason for key, reason in reasons.items() if reason},
         **values,
@@ -89,9 +89,11 @@ def _sources(options: Mapping[str, Any], named: Mapping[str, str], merged: Merge
     for key, option in OPTIONS.items():
         if key == "severities":
             of_job = {f"severities.{name}" for name in merged.job.severities}
-            yield from ((name, shown(merged.origins[name].title)) for name in sorted(of_job & merged.origins.keys()))
+            yield from (
+                (name, display_path(merged.origins[name].title)) for name in sorted(of_job & merged.origins.keys())
+            )
         if options[key] not in (None, ()):
             yield key, named.get(key, option).strip(" =")
         elif key in merged.origins:
             # The file alone: to find the line, the text of each job file would be read once more.
-            yield key, shown(merged.origins[key].title)
+            yield key, display_path(merged.origins[key].title)

@@ -15,7 +15,7 @@ from polarcheck.files.settings.selection import Names, Rules, select
 from polarcheck.program.machines.job import level_of, names_of, reason_of
 from polarcheck.program.machines.machine import Machine
 from polarcheck.program.machines.profiles import Profile
-from polarcheck.program.reading.files import shown
+from polarcheck.program.reading.files import display_path
 from polarcheck.rules.rule import Rule
 
 #: Levels of rules whose findings fail a file.
@@ -44,7 +44,7 @@ def deselected(
     named: Mapping[str, str],
     merged: Merged,
     profile: Profile,
-    known: Rules,
+    catalogue: Rules,
     rules: Sequence[Rule],
     levels: Mapping[str, str],
 ) -> list[str]:
@@ -54,16 +54,16 @@ def deselected(
     names: those of the command line, or of a Python function.
     named: what has set an option, where that is not the option: `POLARCHECK_SELECT=` by `select`.
     merged: the job.
-    known, rules: all rules, and those that run.
+    catalogue, rules: all rules, and those that run.
     levels: the severities that differ from those of the profile.
     """
     final = {**profile.machine.severities, **levels}
     run = {rule.name for rule in rules if rule.level(final) in _WEIGHTY}
-    if len(run) == len(known):
+    if len(run) == len(catalogue):
         return []
-    finder = _Finder(names, named, merged, profile, known)
+    finder = _Finder(names, named, merged, profile, catalogue)
     switches: dict[_Switch, list[str]] = {}
-    for rule in known.values():
+    for rule in catalogue.values():
         if rule.name not in run and (switch := finder.switch(rule)) is not None:
             switches.setdefault(switch, []).append(rule.name)
     return [_line(switch, names) for switch, names in switches.items()]
@@ -79,18 +79,18 @@ class _Finder:
     """Finds what keeps a rule from running; the weight of a rule is decided on the way."""
 
     def __init__(
-        self, options: Names, named: Mapping[str, str], merged: Merged, profile: Profile, known: Rules
+        self, options: Names, named: Mapping[str, str], merged: Merged, profile: Profile, catalogue: Rules
     ) -> None:
         machine, job = profile.machine, merged.job
         self._options, self._named, self._merged, self._profile = options, named, merged, profile
-        self._selected = _names(options.selected, known, machine) if options.selected else None
-        self._ignored = _names(options.ignored, known, machine)
+        self._selected = _names(options.selected, catalogue, machine) if options.selected else None
+        self._ignored = _names(options.ignored, catalogue, machine)
         of_job = names_of(job.select)
-        self._selected_by_job = _names(of_job, known, machine) if of_job else None
-        self._ignored_by_job = _names(names_of(job.ignore), known, machine)
-        self._of_job = {name: key for key in job.severities for name in _names([key], known, machine)}
+        self._selected_by_job = _names(of_job, catalogue, machine) if of_job else None
+        self._ignored_by_job = _names(names_of(job.ignore), catalogue, machine)
+        self._of_job = {name: key for key in job.severities for name in _names([key], catalogue, machine)}
         pairs = [(option.partition("=")[0].strip(), option) for option in options.levels]
-        self._of_options = {name: option for key, option in pairs for name in _names([key], known, machine)}
+        self._of_options = {name: option for key, option in pairs for name in _names([key], catalogue, machine)}
 
     def switch(self, rule: Rule) -> _Switch | None:
         """Return what keeps a rule of weight from running as an error or warning; None for one without weight."""
@@ -138,12 +138,12 @@ class _Finder:
 
     def _without_reason(self, key: str, form: str) -> str:
         # The file alone: to find the line, its text would be read once more for each check.
-        file = shown(self._merged.origins[key].title)
+        file = display_path(self._merged.origins[key].title)
         return f"{key} of {file}, which gives no reason; {form} keeps the pass"
 
 
-def _names(names: Sequence[str], known: Rules, machine: Machine) -> Collection[str]:
-    return select(names, known, machine).keys() if names else ()
+def _names(names: Sequence[str], catalogue: Rules, machine: Machine) -> Collection[str]:
+    return select(names, catalogue, machine).keys() if names else ()
 
 
 def _lowers(before: str, after: str) -> bool:

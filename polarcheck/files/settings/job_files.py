@@ -17,7 +17,7 @@ from polarcheck.foundation.errors import JobError
 from polarcheck.foundation.record import Remembered
 from polarcheck.program.machines import toml_text
 from polarcheck.program.machines.job import FILE_NAME, PROJECT, Job
-from polarcheck.program.machines.value_types import MisfitError, fitted, shown
+from polarcheck.program.machines.value_types import MisfitError, display, fitted
 from polarcheck.program.reading.files import RealPaths
 
 if TYPE_CHECKING:
@@ -94,10 +94,10 @@ class JobFile(msgspec.Struct, frozen=True):
 
         over: layers that lie over those of the file; with a [[part]] among them, those of the file do not count.
         """
-        found = [self.layer(number, entry) for number, entry in layers]
+        tables = [self.layer(number, entry) for number, entry in layers]
         if any(isinstance(layer, PartLayer) for layer in over):
-            found = [layer for layer in found if not isinstance(layer, PartLayer)]
-        return job_layers.merged([*found, *over])
+            tables = [layer for layer in tables if not isinstance(layer, PartLayer)]
+        return job_layers.merged([*tables, *over])
 
     @property
     def excluding(self) -> Layer | None:
@@ -129,12 +129,12 @@ class JobFile(msgspec.Struct, frozen=True):
         part = self.parts[-1] if self.parts else None
         if part is None or part.files is None:
             return []
-        left = set(range(len(part.patterns)))
+        unused = set(range(len(part.patterns)))
         for folder, name in names:
-            left -= part.files.of_file(folder, name)
+            unused -= part.files.of_file(folder, name)
         return [
-            f"{layer.at('files')}: files: no program of this folder matches {shown(pattern)}"
-            for layer, pattern in (part.patterns[index] for index in sorted(left))
+            f"{layer.at('files')}: files: no program of this folder matches {display(pattern)}"
+            for layer, pattern in (part.patterns[index] for index in sorted(unused))
         ]
 
 
@@ -242,8 +242,8 @@ def load(path: Path, *, pipes: bool = False) -> JobFile:
         identity = os.path.realpath(path)
         if identity in real:
             between = list(real.values())[list(real).index(identity) + 1 :]
-            way = f", by way of {', '.join(map(str, between))}" if between else ""
-            raise JobError(f"{named_by}: extend: {path} extends itself{way}")
+            chain = f", by way of {', '.join(map(str, between))}" if between else ""
+            raise JobError(f"{named_by}: extend: {path} extends itself{chain}")
         if len(real) == _LONGEST_CHAIN:
             raise JobError(f"{named_by}: extend: more than {_LONGEST_CHAIN} job files, one behind the other")
         real[identity] = path
@@ -257,13 +257,13 @@ def load(path: Path, *, pipes: bool = False) -> JobFile:
 
 def _extended(path: Path, written: str, named_by: str) -> Path:
     """Return the file that `extend` of a job file means; of a folder, the nearest one in it or above it."""
-    meant = Path(os.path.normpath(job_layers.beside(path.parent, written)))
-    record.note(meant)
-    if not meant.is_dir():
-        return _relative(meant)
-    nearest = Nearest().of(meant)
+    target = Path(os.path.normpath(job_layers.in_folder(path.parent, written)))
+    record.note(target)
+    if not target.is_dir():
+        return _relative(target)
+    nearest = Nearest().of(target)
     if nearest is None:
-        raise JobError(f"{named_by}: extend: {shown(written)}: there is no {FILE_NAME} in this folder or above it")
+        raise JobError(f"{named_by}: extend: {display(written)}: there is no {FILE_NAME} in this folder or above it")
     return nearest
 
 
@@ -283,7 +283,7 @@ def _part(path: Path, named_by: str, *, pipes: bool) -> tuple[Part, str | None]:
         tools = table.get("tool", {})
         table = tools.get("polarcheck", {}) if isinstance(tools, dict) else {}
         if not isinstance(table, dict):
-            raise JobError(f"{path}: tool.polarcheck: expected a table, found {shown(table)}")
+            raise JobError(f"{path}: tool.polarcheck: expected a table, found {display(table)}")
     written = Written(path, text, prefix)
     try:
         job = fitted(table, Job)
@@ -316,13 +316,13 @@ def _place_of(layer: PartLayer) -> Callable[[int], str]:
     return lambda _: layer.at("part.files")
 
 
-def _globs(base: str, patterns: Sequence[str], at: Callable[[int], str], key: str) -> Globs:
+def _globs(base: str, patterns: Sequence[str], where: Callable[[int], str], key: str) -> Globs:
     from polarcheck.program.reading.globs import Globs, is_pattern
 
     for number, pattern in enumerate(patterns):
         if not is_pattern(pattern):
             raise JobError(
-                f"{at(number)}: {key}: expected a pattern such as O12*.nc or lathe7/**, found {shown(pattern)}"
+                f"{where(number)}: {key}: expected a pattern such as O12*.nc or lathe7/**, found {display(pattern)}"
             )
     return Globs(base, patterns)
 
@@ -332,5 +332,5 @@ def _check_encoding(layer: Layer, name: str | None) -> None:
 
     if name is not None and not is_encoding(name):
         raise JobError(
-            f"{layer.at('encoding')}: encoding: unknown encoding {shown(name)}; for example utf-8, cp1252, shift_jis"
+            f"{layer.at('encoding')}: encoding: unknown encoding {display(name)}; for example utf-8, cp1252, shift_jis"
         )

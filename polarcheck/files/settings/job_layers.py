@@ -20,7 +20,7 @@ from polarcheck.program.machines import profiles
 from polarcheck.program.machines.job import Job, Tool, from_table
 from polarcheck.program.machines.offset_keys import canonical
 from polarcheck.program.machines.part_keys import LENGTHS, Part
-from polarcheck.program.machines.value_types import shown
+from polarcheck.program.machines.value_types import display
 
 #: Keys that select files, and are no settings of a program.
 _OF_FILES = ("extend", "exclude", "programs", "files", "part", "root")
@@ -141,7 +141,7 @@ class Layer:
             values["machine"] = _machine(values["machine"], folder)
         for key in ("offsets", "baseline"):
             if key in values:
-                values[key] = str(beside(folder, values[key]))
+                values[key] = str(in_folder(folder, values[key]))
         if "subprograms" in values.get("run", {}):
             folders = [self._folder(folder, written) for written in values["run"]["subprograms"]]
             values["run"] = {**values["run"], "subprograms": folders}
@@ -150,20 +150,20 @@ class Layer:
     def _folder(self, folder: Path, written: str) -> str:
         import os
 
-        path = str(beside(folder, written))
+        path = str(in_folder(folder, written))
         note(path)
         try:
             os.scandir(path).close()
         except (FileNotFoundError, NotADirectoryError, ValueError):
-            reason = f"there is no folder {shown(written)}"
+            reason = f"there is no folder {display(written)}"
         except OSError as error:
-            reason = f"{shown(written)}: {error.strerror}"
+            reason = f"{display(written)}: {error.strerror}"
         else:
             return path
         raise JobError(f"{self.at('run.subprograms')}: run.subprograms: {reason}")
 
 
-def beside(folder: Path, written: str) -> Path:
+def in_folder(folder: Path, written: str) -> Path:
     """Return the path of a file or folder that a file in this folder names; backslashes count as slashes, too."""
     path = folder / written
     if "\\" not in written:
@@ -176,7 +176,7 @@ def beside(folder: Path, written: str) -> Path:
 
 def _machine(name: str, folder: Path) -> str:
     """Return the name of a built-in machine, or the path of a machine file named in a job file."""
-    path = beside(folder, name)
+    path = in_folder(folder, name)
     if name not in profiles.names() and profiles.is_meant(path, name):
         return str(path)
     return name
@@ -197,7 +197,7 @@ class PartLayer(Layer):
         """Return a table with the entry as its only part."""
         entry = dict(self._part)
         if "drawing" in entry:
-            entry["drawing"] = str(beside(self.written.path.parent, entry["drawing"]))
+            entry["drawing"] = str(in_folder(self.written.path.parent, entry["drawing"]))
         return {"part": [entry]}
 
     def at(self, key: str) -> str:

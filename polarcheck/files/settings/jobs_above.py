@@ -58,14 +58,14 @@ def warnings(files: Iterable[JobFile], nearest: Nearest) -> list[str]:
     """Return a line for each set of job files that leave the same keys of the same file behind."""
     names: dict[LeftBehind, list[str]] = {}
     for file in files:
-        behind = left_behind(file, nearest)
-        if behind is not None:
-            names.setdefault(behind, []).append(str(file.path))
+        outer = left_behind(file, nearest)
+        if outer is not None:
+            names.setdefault(outer, []).append(str(file.path))
     return [
-        f"{_first(inner)}: {_and(behind.keys)} of {behind.outer} {'does' if len(behind.keys) == 1 else 'do'} not apply "
-        f'here; extend = ".." takes {"it" if len(behind.keys) == 1 else "them"} over, root = true says that this is '
+        f"{_first(inner)}: {_and(outer.keys)} of {outer.outer} {'does' if len(outer.keys) == 1 else 'do'} not apply "
+        f'here; extend = ".." takes {"it" if len(outer.keys) == 1 else "them"} over, root = true says that this is '
         "meant"
-        for behind, inner in names.items()
+        for outer, inner in names.items()
     ]
 
 
@@ -76,5 +76,5 @@ def _first(names: Sequence[str]) -> str:
 
 
 def _and(names: Sequence[str]) -> str:
-    *others, last = names
-    return f"{', '.join(others)} and {last}" if others else last
+    *first, last = names
+    return f"{', '.join(first)} and {last}" if first else last

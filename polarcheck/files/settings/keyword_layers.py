@@ -70,6 +70,6 @@ def keywords(function: str, table: Mapping[str, Any], changes: Mapping[str, Any]
         if not group or not name:
             raise UsageError(f"{function}: changes: expected keys TABLE.KEY as limits.c_feed, found {key!r}")
         tables.setdefault(group, {})[name] = value
-    place = _Spoken(function)
-    parts = [PartLayer(place, part, number) for number, part in enumerate(table.get("part", ()), 1)]
-    return Keywords(function, (Layer(place, table), *parts), tables)
+    source = _Spoken(function)
+    parts = [PartLayer(source, part, number) for number, part in enumerate(table.get("part", ()), 1)]
+    return Keywords(function, (Layer(source, table), *parts), tables)

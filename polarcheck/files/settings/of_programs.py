@@ -169,10 +169,10 @@ class OfPrograms:
 
     def left(self, paths: Sequence[str], warn: Callable[[str], None]) -> tuple[str, ...]:
         """Return the paths that are not excluded; call `warn` if none is left."""
-        left = tuple(path for path in paths if not self.is_within_excluded(path))
-        if not left:
+        remaining = tuple(path for path in paths if not self.is_within_excluded(path))
+        if not remaining:
             warn("all that is named is excluded: nothing is checked")
-        return left
+        return remaining
 
     def left_behind(self) -> list[str]:
         """Return a line for each job file, of those loaded so far, that leaves values of one above it behind."""
@@ -451,8 +451,8 @@ def _parts(parts: Sequence[Part], options: Options) -> list[Part]:
     if options.drawings:
         from polarcheck.program.machines import drawing_file
 
-        asked = Part(drawing="", layers=list(options.drawing_layers))
-        parts = [drawing_file.part_of(path, str(path), asked) for path in options.drawings]
+        base = Part(drawing="", layers=list(options.drawing_layers))
+        parts = [drawing_file.part_of(path, str(path), base) for path in options.drawings]
     tolerance = options.tolerance
     return [
         part if tolerance is None or part.tolerance > 0 else msgspec.structs.replace(part, tolerance=tolerance)
@@ -485,10 +485,10 @@ def changes(options: Iterable[str]) -> dict[str, Any]:
     return tables
 
 
-def _profile(name: str, over: Sequence[profiles.Change], known: Rules) -> profiles.Profile:
+def _profile(name: str, over: Sequence[profiles.Change], catalogue: Rules) -> profiles.Profile:
     try:
         profile = profiles.load(name, over)
-        selection.check_names(profile, known)
+        selection.check_names(profile, catalogue)
     except profiles.UnknownMachineError:
         raise
     except MachineError as error:
@@ -529,9 +529,9 @@ def on_machine(settings: Settings, machine: str) -> Settings:
 
     machine: name of a built-in lathe, or the path of a TOML file. Raises MachineError if it cannot be used.
     """
-    other = OfPrograms(Options(machine=machine, use_config=False))("")
+    settings_of_machine = OfPrograms(Options(machine=machine, use_config=False))("")
     return msgspec.structs.replace(
-        other,
+        settings_of_machine,
         job=msgspec.structs.replace(settings.job, machine=machine),
         encoding=settings.encoding,
         read=settings.read,

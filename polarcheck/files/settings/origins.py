@@ -80,30 +80,30 @@ def values(applied: Applied, sources: Sources, severities: Mapping[str, str]) ->
 
 def _flat(job: Job) -> dict[str, Any]:
     """The values of a job by key; of tables only what is given."""
-    found: dict[str, Any] = {}
+    values: dict[str, Any] = {}
     for field in msgspec.structs.fields(Job):
         value = getattr(job, field.name)
         if field.name in _OF_FILES or field.name == "machine":
             continue
         if field.name == "tools":
             for key, tool in value.items():
-                found |= _differing(f"tools.{key}", tool)
+                values |= _differing(f"tools.{key}", tool)
         elif field.name == "work_offsets":
             for key, offset in value.items():
-                found[f"work_offsets.{key}.x"] = offset.x
+                values[f"work_offsets.{key}.x"] = offset.x
         elif field.name == "part":
             for number, part in enumerate(value, 1):
-                found |= _differing(f"part.{number}", part)
+                values |= _differing(f"part.{number}", part)
         elif field.name == "severities":
-            found |= {f"severities.{name}": msgspec.to_builtins(level) for name, level in value.items()}
+            values |= {f"severities.{name}": msgspec.to_builtins(level) for name, level in value.items()}
         elif isinstance(value, ReasonedRules):
-            found[field.name] = msgspec.to_builtins(value)
+            values[field.name] = msgspec.to_builtins(value)
         elif isinstance(value, msgspec.Struct):
-            found |= {f"{field.name}.{key}": inner for key, inner in msgspec.structs.asdict(value).items()}
+            values |= {f"{field.name}.{key}": inner for key, inner in msgspec.structs.asdict(value).items()}
         else:
-            found[field.name] = value
-    variables = found.pop("run.variables")
-    return {**found, **{f"run.variables.{number}": value for number, value in variables.items()}}
+            values[field.name] = value
+    variables = values.pop("run.variables")
+    return {**values, **{f"run.variables.{number}": value for number, value in variables.items()}}
 
 
 def _differing(key: str, table: msgspec.Struct) -> dict[str, Any]:

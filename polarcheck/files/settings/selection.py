@@ -37,7 +37,7 @@ class Names(NamedTuple):
     spelled: Callable[[str], str] = str
 
 
-def select(names: Iterable[str], known: Rules, machine: Machine) -> Rules:
+def select(names: Iterable[str], catalogue: Rules, machine: Machine) -> Rules:
     """
     Return the rules with these names, groups or alarms (PS0146, 146) of a machine.
 
@@ -46,14 +46,14 @@ def select(names: Iterable[str], known: Rules, machine: Machine) -> Rules:
     selected: set[str] = set()
     for name in names:
         alarm = _ALARM.fullmatch(name.strip())
-        rules = _of_alarm(alarm, known, machine) if alarm else all_rules.find(name, known)
+        rules = _of_alarm(alarm, catalogue, machine) if alarm else all_rules.find(name, catalogue)
         if not rules:
             raise UsageError(f"no rule is known to give alarm {name.strip()} on {machine.title}")
         selected.update(rule.name for rule in rules)
-    return {name: rule for name, rule in known.items() if name in selected}
+    return {name: rule for name, rule in catalogue.items() if name in selected}
 
 
-def of_alarm(name: str, known: Rules, machine: Machine) -> list[Rule]:
+def of_alarm(name: str, catalogue: Rules, machine: Machine) -> list[Rule]:
     """
     Return the rules with an alarm (PS0146, 146) of a machine, in the order of its profile; none for another name.
 
@@ -62,81 +62,81 @@ def of_alarm(name: str, known: Rules, machine: Machine) -> list[Rule]:
     alarm = _ALARM.fullmatch(name.strip())
     if alarm is None:
         return []
-    select([name], known, machine)
-    return _of_alarm(alarm, known, machine)
+    select([name], catalogue, machine)
+    return _of_alarm(alarm, catalogue, machine)
 
 
-def _of_alarm(alarm: re.Match[str], known: Rules, machine: Machine) -> list[Rule]:
+def _of_alarm(alarm: re.Match[str], catalogue: Rules, machine: Machine) -> list[Rule]:
     """Return the rules with an alarm on this machine; its letters and leading zeros may be left out."""
     letters, number = alarm[1].upper(), int(alarm[2])
     rules = []
     for name, text in machine.alarms.items():
         of_rule = _ALARM.fullmatch(text)
-        if of_rule and name in known and int(of_rule[2]) == number and letters in ("", of_rule[1].upper()):
-            rules.append(known[name])
+        if of_rule and name in catalogue and int(of_rule[2]) == number and letters in ("", of_rule[1].upper()):
+            rules.append(catalogue[name])
     return rules
 
 
-def chosen(names: Names, job: Job, at: Place, known: Rules, machine: Machine) -> list[Rule]:
+def chosen(names: Names, job: Job, where: Place, catalogue: Rules, machine: Machine) -> list[Rule]:
     """
     Return the rules to run; --select overrides what the job selects and ignores.
 
-    at: returns the place of a key of the job.
+    where: returns the place of a key of the job.
 
     Raises UsageError, with the option or the key of the file, for an unknown name, and if no rule is left.
     """
-    rules, without = known, {}
+    rules, without = catalogue, {}
     if names.selected:
-        rules = _named(names.spelled("--select"), select, names.selected, known, machine)
+        rules = _named(names.spelled("--select"), select, names.selected, catalogue, machine)
     else:
         if names_of(job.select):
-            rules = _named(lambda: f"{at('select')}: select", select, names_of(job.select), known, machine)
-        without = _named(lambda: f"{at('ignore')}: ignore", select, names_of(job.ignore), known, machine)
-    without = without | _named(names.spelled("--ignore"), select, names.ignored, known, machine)
-    left = [rule for name, rule in rules.items() if name not in without]
-    if not left:
+            rules = _named(lambda: f"{where('select')}: select", select, names_of(job.select), catalogue, machine)
+        without = _named(lambda: f"{where('ignore')}: ignore", select, names_of(job.ignore), catalogue, machine)
+    without = without | _named(names.spelled("--ignore"), select, names.ignored, catalogue, machine)
+    remaining = [rule for name, rule in rules.items() if name not in without]
+    if not remaining:
         raise UsageError("no rule is left to check: all that are selected are ignored, too")
-    return left
+    return remaining
 
 
-def severities(names: Names, job: Job, at: Place, known: Rules, machine: Machine) -> dict[str, str]:
+def severities(names: Names, job: Job, where: Place, catalogue: Rules, machine: Machine) -> dict[str, str]:
     """
     Return the severities that differ from the profile, by rule; a rule that is selected by its name is never off.
 
-    at: returns the place of a key of the job.
+    where: returns the place of a key of the job.
 
     Raises UsageError, with the option or the key of the file.
     """
     of_job: dict[str, str] = {}
     for name, written in job.severities.items():
-        of_job |= _named(partial(_of_severity, at, name), _levels, [(name, level_of(written))], known, machine)
+        of_job |= _named(partial(_of_severity, where, name), _levels, [(name, level_of(written))], catalogue, machine)
     of_command = _named(
-        names.spelled("--severity"), _levels, [_pair(option) for option in names.levels], known, machine
+        names.spelled("--severity"), _levels, [_pair(option) for option in names.levels], catalogue, machine
     )
     changed = of_job | of_command
     for name in names.selected:
-        rule = known.get(name.strip().lower().replace("_", "-"))
+        rule = catalogue.get(name.strip().lower().replace("_", "-"))
         if rule and rule.name not in of_command and rule.level({**machine.severities, **changed}) == "off":
             changed[rule.name] = rule.severity.name.lower()
     return changed
 
 
-def check_names(profile: Profile, known: Rules) -> None:
+def check_names(profile: Profile, catalogue: Rules) -> None:
     """Raise MachineError, with the file and the key, if a machine names an unknown rule."""
     faults = []
     for table, names in (("alarms", profile.machine.alarms), ("severities", profile.machine.severities)):
         for name in names:
-            if name not in known:
+            if name not in catalogue:
                 key = f"{table}.{name}"
-                near = suggestion(name, known) or "; `polarcheck rules` lists them"
+                near = suggestion(name, catalogue) or "; `polarcheck rules` lists them"
                 faults.append(f"{profile.origins[key].profile}: {key}: unknown rule {name!r}{near}")
     if faults:
         raise MachineError(faults[0], faults[1:])
 
 
-def _levels(pairs: Iterable[tuple[str, str]], known: Rules, machine: Machine) -> dict[str, str]:
+def _levels(pairs: Iterable[tuple[str, str]], catalogue: Rules, machine: Machine) -> dict[str, str]:
     """Return severities by rule, from those of rules, groups or alarms; the last one for a rule counts."""
-    return {name: level for named, level in pairs for name in select([named], known, machine)}
+    return {name: level for named, level in pairs for name in select([named], catalogue, machine)}
 
 
 def _pair(option: str) -> tuple[str, str]:
@@ -146,8 +146,8 @@ def _pair(option: str) -> tuple[str, str]:
     return name, level.lower()
 
 
-def _of_severity(at: Place, name: str) -> str:
-    return f"{at(f'severities.{name}')}: severities"
+def _of_severity(where: Place, name: str) -> str:
+    return f"{where(f'severities.{name}')}: severities"
 
 
 def _named(title: str | Callable[[], str], function: Callable[..., dict[str, Any]], *arguments: Any) -> dict[str, Any]:

@@ -9,7 +9,7 @@ from pathlib import Path
 from polarcheck.files.settings.job_files import JobFile
 from polarcheck.files.settings.job_layers import Layer
 from polarcheck.foundation.errors import UsageError
-from polarcheck.program.machines.value_types import shown
+from polarcheck.program.machines.value_types import display
 from polarcheck.program.reading.globs import Globs, is_pattern
 from polarcheck.program.reading.walking import extensions
 
@@ -28,7 +28,7 @@ class WalkPatterns:
         for pattern in excluded:
             if not is_pattern(pattern):
                 raise UsageError(
-                    f"{spelled('--exclude')}: expected a pattern such as O12*.nc or lathe7/**, found {shown(pattern)}"
+                    f"{spelled('--exclude')}: expected a pattern such as O12*.nc or lathe7/**, found {display(pattern)}"
                 )
         self._excluded = list(excluded)
         self._globs = Globs(os.path.realpath(os.curdir), excluded) if excluded else None
@@ -49,10 +49,10 @@ class WalkPatterns:
         def excluded_by(name: str, is_folder: bool) -> str:
             if self._globs is not None and (numbers := self._globs.itself(folder, name, is_folder=is_folder)):
                 self._used |= numbers
-                return f"{self._spelled('--exclude')} {shown(self._excluded[min(numbers)])}"
+                return f"{self._spelled('--exclude')} {display(self._excluded[min(numbers)])}"
             if globs and layer and (numbers := globs.itself(folder, name, is_folder=is_folder)):
                 used.update(numbers)
-                return f"{layer.at('exclude')}: {shown(layer.excluded[min(numbers)])}"
+                return f"{layer.at('exclude')}: {display(layer.excluded[min(numbers)])}"
             return ""
 
         return excluded_by
@@ -67,10 +67,10 @@ class WalkPatterns:
     def unused_options(self, names: Sequence[str], programs: Iterable[str]) -> list[str]:
         """Return a line for each --exclude that excludes nothing, and each --extensions that no program has."""
         unused = [pattern for number, pattern in enumerate(self._excluded) if number not in self._used]
-        left = _unused_extensions(names, programs) if names else []
+        without_file = _unused_extensions(names, programs) if names else []
         return [
-            *(f"{self._spelled('--exclude')} {shown(pattern)} excludes nothing" for pattern in unused),
-            *(f"{self._spelled('--extensions')}: no file ends in {shown(name)}" for name in left),
+            *(f"{self._spelled('--exclude')} {display(pattern)} excludes nothing" for pattern in unused),
+            *(f"{self._spelled('--extensions')}: no file ends in {display(name)}" for name in without_file),
         ]
 
     def unused_in(self, file: JobFile) -> list[str]:
@@ -80,7 +80,7 @@ class WalkPatterns:
         if layer is None or used is None:
             return []
         return [
-            f"{layer.at('exclude')}: exclude: {shown(pattern)} excludes nothing"
+            f"{layer.at('exclude')}: exclude: {display(pattern)} excludes nothing"
             for number, pattern in enumerate(layer.excluded)
             if number not in used
         ]
@@ -89,7 +89,7 @@ class WalkPatterns:
 def unused_extensions(layer: Layer, programs: Iterable[str]) -> list[str]:
     """Return a line for each ending that a job file lists and none of its programs has."""
     return [
-        f"{layer.at('extensions')}: extensions: no file of this folder ends in {shown(name)}"
+        f"{layer.at('extensions')}: extensions: no file of this folder ends in {display(name)}"
         for name in _unused_extensions(layer.extensions, programs)
     ]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from polarcheck.foundation.arrays import Floats, Mask, Points
-from polarcheck.geometry.comparison.measured_path import Way
+from polarcheck.geometry.comparison.measured_path import MeasuredPath
 
 #: Directions from the center in which distances are compared; points sampled along a path.
 _DIRECTIONS, _POINTS = 3600, 20_000
@@ -18,69 +18,70 @@ _FARTHEST = 1.5
 _GOLDEN = (5**0.5 - 1) / 2
 
 
-def best_turn(way: Way, drawn: Way, center: complex) -> float:
+def best_turn(path: MeasuredPath, drawn: MeasuredPath, center: complex) -> float:
     """
     The angle [rad] by which the drawing is to be turned about the center to fit the path, from -pi to pi.
 
     Both are described by their distances from the center in each direction. The correlation of these distances yields a
     few candidate angles; the least mean distance along the path decides between them.
     """
-    measured, seen = _distances(way, center, np.inf)
-    other, _ = _distances(drawn, center, _FARTHEST * float(measured[seen].max(initial=0)))
-    cost = _correlated(seen * measured**2, np.ones_like(measured)) - 2 * _correlated(seen * measured, other)
-    cost += _correlated(seen.astype(float), other**2)
+    measured, seen = _distances(path, center, np.inf)
+    nominal, _ = _distances(drawn, center, _FARTHEST * float(measured[seen].max(initial=0)))
+    cost = _correlated(seen * measured**2, np.ones_like(measured)) - 2 * _correlated(seen * measured, nominal)
+    cost += _correlated(seen.astype(float), nominal**2)
     turns = np.flatnonzero((cost <= np.roll(cost, 1)) & (cost <= np.roll(cost, -1)))
     turns = turns[np.argsort(cost[turns], kind="stable")][:_TURNS]
     step = 2 * np.pi / _DIRECTIONS
     angles = np.angle(np.exp(1j * turns * step))
-    points, _ = way.at(np.linspace(0, way.length, _FEW))
+    points, _ = path.at(np.linspace(0, path.length, _FEW))
     means = np.array([_mean(points, drawn, center, angle) for angle in angles.tolist()])
     near = means <= 2 * means.min() + step * float(np.abs(points - center).max())
     least = float(angles[near][np.argmin(np.abs(angles[near]))])
     # If several angles fit, as for a hexagon, the smallest turn is taken.
     refined = [
-        _refined(points, drawn, center, at - 2 * step, at + 2 * step) for at in (least, float(angles[means.argmin()]))
+        _refined(points, drawn, center, turn - 2 * step, turn + 2 * step)
+        for turn in (least, float(angles[means.argmin()]))
     ]
     return refined[0][1] if refined[0][0] <= refined[1][0] + _AS_GOOD else refined[1][1]
 
 
-def _mean(points: Points, drawn: Way, center: complex, angle: float) -> float:
+def _mean(points: Points, drawn: MeasuredPath, center: complex, angle: float) -> float:
     """The mean distance from points to a drawing that is turned by an angle [mm]."""
     turned = center + (points - center) * np.exp(-1j * angle)
     return float(drawn.nearest(turned)[0].mean())
 
 
-def _distances(way: Way, center: complex, farthest: float) -> tuple[Floats, Mask]:
+def _distances(path: MeasuredPath, center: complex, farthest: float) -> tuple[Floats, Mask]:
     """The least distance of a path from the center in each direction; a mask of the measured directions."""
-    points, _ = way.at(np.linspace(0, way.length, _POINTS))
+    points, _ = path.at(np.linspace(0, path.length, _POINTS))
     if np.isfinite(farthest):
-        points = np.concatenate([points, _near(way, center, farthest)])
+        points = np.concatenate([points, _near(path, center, farthest)])
     spoke = points - center
     direction = np.round(np.angle(spoke) / (2 * np.pi / _DIRECTIONS)).astype(np.int64) % _DIRECTIONS
     nearest = np.full(_DIRECTIONS, np.inf)
     np.minimum.at(nearest, direction, np.abs(spoke))
     seen = np.isfinite(nearest)
-    known = np.flatnonzero(seen)
-    nearest = np.interp(np.arange(_DIRECTIONS), known, nearest[known], period=_DIRECTIONS)
+    measured = np.flatnonzero(seen)
+    nearest = np.interp(np.arange(_DIRECTIONS), measured, nearest[measured], period=_DIRECTIONS)
     return np.minimum(nearest, farthest), seen
 
 
-def _near(way: Way, center: complex, farthest: float) -> Points:
+def _near(path: MeasuredPath, center: complex, farthest: float) -> Points:
     """Points on the long segments of a path, dense enough near the center for every direction."""
-    long = np.abs(way.end - way.start) > farthest / 10
-    start, along = way.start[long], (way.end - way.start)[long]
+    long = np.abs(path.end - path.start) > farthest / 10
+    start, along = path.start[long], (path.end - path.start)[long]
     foot = np.clip(((center - start) * along.conj()).real / np.abs(along) ** 2, 0, 1)
     reach = np.minimum(2 * farthest / np.abs(along), 1)
     share = foot[:, None] + reach[:, None] * np.linspace(-1, 1, _DIRECTIONS)
     return np.asarray((start[:, None] + along[:, None] * np.clip(share, 0, 1)).ravel())
 
 
-def _correlated(one: Floats, other: Floats) -> Floats:
+def _correlated(first: Floats, second: Floats) -> Floats:
     """For each turn k the sum of first[i] * second[i - k]."""
-    return np.fft.irfft(np.fft.rfft(one) * np.conj(np.fft.rfft(other)), _DIRECTIONS)
+    return np.fft.irfft(np.fft.rfft(first) * np.conj(np.fft.rfft(second)), _DIRECTIONS)
 
 
-def _refined(points: Points, drawn: Way, center: complex, low: float, high: float) -> tuple[float, float]:
+def _refined(points: Points, drawn: MeasuredPath, center: complex, low: float, high: float) -> tuple[float, float]:
     """The least mean distance [mm] between two angles, and its angle, by golden section search."""
     inner = [high - _GOLDEN * (high - low), low + _GOLDEN * (high - low)]
     values = [_mean(points, drawn, center, angle) for angle in inner]

@@ -61,19 +61,19 @@ def longest_rise(values: Rows) -> Rows:
         return np.arange(len(values))
     keep_time()
     tops: list[int] = []
-    at: list[int] = []
-    behind: list[int] = []
+    ends: list[int] = []
+    previous: list[int] = []
     for index, value in enumerate(values.tolist()):
-        place = bisect_left(tops, value)
-        behind.append(at[place - 1] if place else -1)
-        if place == len(tops):
+        position = bisect_left(tops, value)
+        previous.append(ends[position - 1] if position else -1)
+        if position == len(tops):
             tops.append(value)
-            at.append(index)
+            ends.append(index)
         else:
-            tops[place], at[place] = value, index
+            tops[position], ends[position] = value, index
     chosen = []
-    index = at[-1]
+    index = ends[-1]
     while index >= 0:
         chosen.append(index)
-        index = behind[index]
+        index = previous[index]
     return np.array(chosen[::-1], np.int64)

@@ -15,7 +15,7 @@ import shapely  # type: ignore[import-untyped]
 
 from polarcheck.foundation.arrays import Floats, Mask, Points, Rows
 from polarcheck.geometry import polar
-from polarcheck.geometry.comparison.measured_path import Way, way_of_outline
+from polarcheck.geometry.comparison.measured_path import MeasuredPath, path_of_outline
 from polarcheck.geometry.outline import Outline
 
 #: Points up to this distance [mm] from a circle about the axis are on it.
@@ -72,7 +72,7 @@ class Difference(NamedTuple):
         return self.proud_of if self.proud >= self.deep else self.deep_of
 
 
-class Made(NamedTuple):
+class MachinedPart(NamedTuple):
     """
     The outline of a part, ready to be compared.
 
@@ -84,20 +84,20 @@ class Made(NamedTuple):
     """
 
     outline: Outline
-    way: Way
+    way: MeasuredPath
     about_axis: Mask
     polygon: Any
     bar: float
 
 
-def made_of(outline: Outline, polygon: Any, bar: float) -> Made:
+def machined_part(outline: Outline, polygon: Any, bar: float) -> MachinedPart:
     """The outline of a part, prepared for comparison. bar: radius of the stock [mm], NaN if unknown."""
     about = outline.is_arc & (np.abs(np.where(outline.is_arc, outline.center, np.inf)) <= _ABOUT_AXIS)
     shapely.prepare(polygon)
-    return Made(outline, way_of_outline(outline), about, polygon, np.inf if np.isnan(bar) else bar)
+    return MachinedPart(outline, path_of_outline(outline), about, polygon, np.inf if np.isnan(bar) else bar)
 
 
-def difference(made: Made, drawn: Way, *, both_ways: bool, metal: float = np.inf) -> Difference:
+def difference(part: MachinedPart, drawn: MeasuredPath, *, both_ways: bool, metal: float = np.inf) -> Difference:
     """
     The deviation of the chains of a part from the curves of a drawing.
 
@@ -106,12 +106,12 @@ def difference(made: Made, drawn: Way, *, both_ways: bool, metal: float = np.inf
     be the way of the tool from one wall to the next.
     """
     turned = turned_radius(drawn)
-    places = _compared(made, drawn, turned)
+    places = _compared(part, drawn, turned)
     if np.isfinite(metal):
-        between = _between_walls(made, drawn, metal)[made.way.of[made.way.at(places[0])[1]]]
+        between = _between_walls(part, drawn, metal)[part.way.of[part.way.at(places[0])[1]]]
         places = places[0], places[1] & ~between
-    first = _extremes(made.way, lambda points: _from_part(made, drawn, points), places)
-    of_part = _difference(made, first, lambda points: made.way.of[made.way.nearest(points)[2]])
+    first = _extremes(part.way, lambda points: _from_part(part, drawn, points), places)
+    of_part = _difference(part, first, lambda points: part.way.of[part.way.nearest(points)[2]])
     if not both_ways:
         return of_part
     along = drawn.samples()
@@ -119,11 +119,11 @@ def difference(made: Made, drawn: Way, *, both_ways: bool, metal: float = np.inf
     # What lies on the round of the drawing is turned, where the part is not milled there.
     on_round = np.abs(points) >= turned - _ON_CIRCLE
     inward = np.where(on_round, points * (1 - _CHORDS / np.maximum(np.abs(points), _CHORDS)), points)
-    compared = ~(on_round & _within(made.polygon, inward))
-    second = _extremes(drawn, lambda points: _from_drawing(made, points), (along, compared))
+    compared = ~(on_round & _within(part.polygon, inward))
+    second = _extremes(drawn, lambda points: _from_drawing(part, points), (along, compared))
     if not second.length:
         return of_part
-    of_drawing = _difference(made, second, lambda points: made.way.of[made.way.nearest(points)[2]])
+    of_drawing = _difference(part, second, lambda points: part.way.of[part.way.nearest(points)[2]])
     proud = of_part if of_part.proud >= of_drawing.proud else of_drawing
     deep = of_part if of_part.deep >= of_drawing.deep else of_drawing
     return Difference(*proud[:3], *deep[3:6], (of_part.mean + of_drawing.mean) / 2, of_part.length)
@@ -133,17 +133,17 @@ def _within(polygon: Any, points: Points) -> Mask:
     return np.asarray(shapely.contains_xy(polygon, points.real, points.imag))
 
 
-def _from_part(made: Made, drawn: Way, points: Points) -> Floats:
+def _from_part(part: MachinedPart, drawn: MeasuredPath, points: Points) -> Floats:
     far, closest, _ = drawn.nearest(points)
-    return np.where(_within(made.polygon, closest), far, -far)
+    return np.where(_within(part.polygon, closest), far, -far)
 
 
-def _from_drawing(made: Made, points: Points) -> Floats:
-    far, _, _ = made.way.nearest(points)
-    return np.where(_within(made.polygon, points), far, -far)
+def _from_drawing(part: MachinedPart, points: Points) -> Floats:
+    far, _, _ = part.way.nearest(points)
+    return np.where(_within(part.polygon, points), far, -far)
 
 
-def turned_radius(drawn: Way) -> float:
+def turned_radius(drawn: MeasuredPath) -> float:
     """The radius of the outermost circle about the axis that a drawing has an arc of [mm]; inf for none."""
     reach = float(np.abs(drawn.start).max(initial=0))
     on = (np.abs(drawn.start) > reach - _ON_CIRCLE) & (np.abs(drawn.end) > reach - _ON_CIRCLE)
@@ -158,13 +158,13 @@ def turned_radius(drawn: Way) -> float:
 _LEAST_ARC = 0.01
 
 
-def _compared(made: Made, drawn: Way, turned: float) -> tuple[Floats, Mask]:
+def _compared(part: MachinedPart, drawn: MeasuredPath, turned: float) -> tuple[Floats, Mask]:
     """Distances of sample points along the chains [mm], and a mask of the points to compare."""
-    along = made.way.samples()
-    points, which = made.way.at(along)
+    along = part.way.samples()
+    points, which = part.way.at(along)
     size, compared = np.abs(points), np.ones(len(points), bool)
-    compared &= size <= made.bar + _ON_CIRCLE
-    beyond = (size > turned + _ON_CIRCLE) & ~made.about_axis[made.way.of[which]]
+    compared &= size <= part.bar + _ON_CIRCLE
+    beyond = (size > turned + _ON_CIRCLE) & ~part.about_axis[part.way.of[which]]
     if beyond.any():
         run = np.cumsum(np.diff(beyond, prepend=False))
         excess = np.zeros(run[-1] + 1)
@@ -172,22 +172,22 @@ def _compared(made: Made, drawn: Way, turned: float) -> tuple[Floats, Mask]:
         compared &= ~(beyond & (excess[run] > _IN_AIR))
     far, closest, _ = drawn.nearest(points)
     compared &= ~_is_open_end(drawn, closest) | (far <= _ON_CIRCLE)
-    if np.isinf(min(turned, made.bar)):
-        compared &= ~_leading(made, which, far)
-    return along, compared if compared.any() else size <= made.bar + _ON_CIRCLE
+    if np.isinf(min(turned, part.bar)):
+        compared &= ~_leading(part, which, far)
+    return along, compared if compared.any() else size <= part.bar + _ON_CIRCLE
 
 
-def _between_walls(made: Made, drawn: Way, metal: float) -> Mask:
+def _between_walls(part: MachinedPart, drawn: MeasuredPath, metal: float) -> Mask:
     """Elements of an outline that lie beyond this radius, and are parallel to no line of the drawing."""
-    outline = made.outline
+    outline = part.outline
     nearest = polar.nearest(outline.start, outline.end, outline.center, outline.kind)
     walls = drawn.end - drawn.start
-    way = outline.end - outline.start
-    across = np.abs((way[:, None].conj() * walls).imag) / np.maximum(np.abs(way[:, None] * walls), 1e-9)
+    chord = outline.end - outline.start
+    across = np.abs((chord[:, None].conj() * walls).imag) / np.maximum(np.abs(chord[:, None] * walls), 1e-9)
     return np.asarray((nearest > metal) & (outline.is_arc | (across.min(axis=1) > _PARALLEL)))
 
 
-def _is_open_end(drawn: Way, points: Points) -> Mask:
+def _is_open_end(drawn: MeasuredPath, points: Points) -> Mask:
     """True for points at an open end of a curve of the drawing."""
     begins = np.flatnonzero(np.diff(drawn.of, prepend=-1))
     last = np.append(begins[1:], len(drawn.of)) - 1
@@ -196,13 +196,13 @@ def _is_open_end(drawn: Way, points: Points) -> Mask:
     return np.asarray(np.isin(np.round(points, 6), np.round(ends, 6)))
 
 
-def _leading(made: Made, which: Rows, far: Floats) -> Mask:
+def _leading(part: MachinedPart, which: Rows, far: Floats) -> Mask:
     """
     The points at either end of a chain that is open from which on it comes nearer to the drawing: a wall goes on beyond
     the bar, of which the drawing may show anything.
     """
-    chain = made.outline.chain[made.way.of[which]]
-    is_open = ~made.outline.closed[chain]
+    chain = part.outline.chain[part.way.of[which]]
+    is_open = ~part.outline.closed[chain]
     result = np.zeros(len(far), bool)
     for number in np.unique(chain[is_open]).tolist():
         points_of_chain = np.flatnonzero(chain == number)
@@ -227,13 +227,13 @@ class _Extremes(NamedTuple):
     length: float
 
 
-def _extremes(way: Way, measured: Callable[[Points], Floats], places: tuple[Floats, Mask]) -> _Extremes:
+def _extremes(path: MeasuredPath, measured: Callable[[Points], Floats], places: tuple[Floats, Mask]) -> _Extremes:
     """The greatest deviations along a path, refined. places: distances along the path [mm], mask to compare."""
     along, compared = places
     if not compared.any():
         return _Extremes((0.0, complex(np.nan)), (0.0, complex(np.nan)), np.inf, 0.0)
     value = np.full(len(along), np.nan)
-    value[compared] = measured(way.at(along[compared])[0])
+    value[compared] = measured(path.at(along[compared])[0])
     share = np.gradient(along) if len(along) > 1 else np.ones(1)
     length = float(share[compared].sum())
     mean = float((np.abs(value[compared]) * share[compared]).sum() / length) if length else np.inf
@@ -244,19 +244,19 @@ def _extremes(way: Way, measured: Callable[[Points], Floats], places: tuple[Floa
     for sign in (1, -1):
         best = np.argsort(np.where(compared, -sign * value, np.inf), kind="stable")[:_PLACES]
         best = best[compared[best]]
-        at, least, most = along[best], low[best], high[best]
+        peak, least, most = along[best], low[best], high[best]
         for _ in range(_TURNS):
             tried = least[:, None] + (most - least)[:, None] * np.linspace(0, 1, _PARTS + 1)
-            tried = np.concatenate([tried, at[:, None]], axis=1)
-            values = sign * measured(way.at(tried.ravel())[0]).reshape(tried.shape)
-            at = tried[np.arange(len(at)), values.argmax(axis=1)]
+            tried = np.concatenate([tried, peak[:, None]], axis=1)
+            values = sign * measured(path.at(tried.ravel())[0]).reshape(tried.shape)
+            peak = tried[np.arange(len(peak)), values.argmax(axis=1)]
             part = (most - least) / _PARTS
-            least, most = np.maximum(least, at - part), np.minimum(most, at + part)
-        values = sign * measured(way.at(at)[0])
+            least, most = np.maximum(least, peak - part), np.minimum(most, peak + part)
+        values = sign * measured(path.at(peak)[0])
         top = int(values.argmax())
         size = float(values[top])
-        where = _middle(along, compared & (sign * np.nan_to_num(value) >= size - _AS_LARGE), float(at[top]))
-        extremes.append((max(size, 0.0), complex(way.at(np.array([where]))[0][0])))
+        where = _middle(along, compared & (sign * np.nan_to_num(value) >= size - _AS_LARGE), float(peak[top]))
+        extremes.append((max(size, 0.0), complex(path.at(np.array([where]))[0][0])))
     return _Extremes(extremes[0], extremes[1], mean, length)
 
 
@@ -270,6 +270,6 @@ def _middle(along: Floats, largest: Mask, otherwise: float) -> float:
     return float(low[longest] + high[longest]) / 2 if high[longest] > low[longest] else otherwise
 
 
-def _difference(made: Made, extremes: _Extremes, element: Callable[[Points], Rows]) -> Difference:
-    of = [int(element(np.array([at]))[0]) if size > 0 else -1 for size, at in (extremes.proud, extremes.deep)]
+def _difference(part: MachinedPart, extremes: _Extremes, element: Callable[[Points], Rows]) -> Difference:
+    of = [int(element(np.array([point]))[0]) if size > 0 else -1 for size, point in (extremes.proud, extremes.deep)]
     return Difference(*extremes.proud, of[0], *extremes.deep, of[1], extremes.mean, extremes.length)

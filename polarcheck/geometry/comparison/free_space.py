@@ -87,7 +87,7 @@ def frechet(
     """
     at_start = Meeting(old[0], new[0], 0, 0)
     at_end = Meeting(old[-1], new[-1], max(len(old) - 2, 0), max(len(new) - 2, 0))
-    farther = max(at_start, at_end, key=lambda each: each.distance)
+    farther = max(at_start, at_end, key=lambda meeting: meeting.distance)
     low, high = farther.distance, upper
     if is_within(old, new, low, budget):
         return low, farther
@@ -100,8 +100,8 @@ def frechet(
     reached: Reached = {}
     is_within(old, new, high, budget, reached)
     meetings = (at_start, *reversed(_narrowest(old, new, reached)), at_end)
-    farthest = max(each.distance for each in meetings)
-    return high, next(each for each in meetings if each.distance >= farthest - 2 * precision)
+    farthest = max(meeting.distance for meeting in meetings)
+    return high, next(meeting for meeting in meetings if meeting.distance >= farthest - 2 * precision)
 
 
 def _narrowest(old: Sequence[Corner], new: Sequence[Corner], reached: Reached) -> Sequence[Meeting]:
@@ -113,12 +113,12 @@ def _narrowest(old: Sequence[Corner], new: Sequence[Corner], reached: Reached) -
         before, (low, high) = reached[edge]
         corner, line = (old[edge.corner], new) if edge.is_old else (new[edge.corner], old)
         start, end = line[edge.segment], line[edge.segment + 1]
-        way = [b - a for a, b in zip(start, end, strict=True)]
-        length = sum(part * part for part in way)
-        along = sum((p - a) * part for p, a, part in zip(corner, start, way, strict=True))
+        vector = [b - a for a, b in zip(start, end, strict=True)]
+        length = sum(part * part for part in vector)
+        along = sum((p - a) * part for p, a, part in zip(corner, start, vector, strict=True))
         # While one point waits at its start, the other one runs as far as the start of the segment.
         share = min(max(along / length if length else 0.0, low), high) if edge.corner else 0.0
-        x, c, z = (a + share * part for a, part in zip(start, way, strict=True))
+        x, c, z = (a + share * part for a, part in zip(start, vector, strict=True))
         of_corner = max(edge.corner - 1, 0)
         # A corner belongs to the segment that ends there.
         on_line = edge.segment - 1 if share == 0 and edge.segment else edge.segment

@@ -20,7 +20,7 @@ _TOLERANCE = 4e-4
 
 
 @dataclass(frozen=True, slots=True)
-class Way:
+class MeasuredPath:
     """
     Straight segments in a row, n of them.
 
@@ -63,24 +63,24 @@ class Way:
         return np.abs(points - closest), closest, which
 
 
-def way_of(start: Points, end: Points, of: Rows) -> Way:
+def path_of(start: Points, end: Points, of: Rows) -> MeasuredPath:
     """The path of these segments; segments without a length are left out."""
     long = np.abs(end - start) > 0
     start, end, of = start[long], end[long], of[long]
     ends = np.stack([start, end], axis=1)
     tree = shapely.STRtree(shapely.linestrings(np.stack([ends.real, ends.imag], axis=2)))
-    return Way(start, end, of, np.cumsum(np.abs(end - start)), tree)
+    return MeasuredPath(start, end, of, np.cumsum(np.abs(end - start)), tree)
 
 
-def way_of_outline(outline: Outline) -> Way:
+def path_of_outline(outline: Outline) -> MeasuredPath:
     """The path along an outline, with fine chords for its arcs; `of` are its elements."""
     chain, row = outline.chain, np.arange(len(outline))
     chords = segments(Curves(outline.start, outline.end, outline.center, outline.kind, chain, row), _TOLERANCE)
-    return way_of(chords.start, chords.end, chords.move)
+    return path_of(chords.start, chords.end, chords.move)
 
 
-def way_of_curves(curves: list[Points]) -> Way:
+def path_of_curves(curves: list[Points]) -> MeasuredPath:
     """The path along the curves of a drawing; `of` are these."""
     of = np.repeat(np.arange(len(curves)), [len(curve) - 1 for curve in curves])
     start, end = (np.concatenate([curve[part] for curve in curves]) for part in (slice(None, -1), slice(1, None)))
-    return way_of(start, end, of)
+    return path_of(start, end, of)

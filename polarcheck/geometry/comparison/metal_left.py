@@ -111,9 +111,9 @@ def sides_of(curves: Sequence[Points], far: float) -> Any:
     return areas.intersection(area, disc(far))
 
 
-def is_inside(one: Any, other: Any, by: float = 0.0) -> bool:
+def is_inside(inner: Any, outer: Any, by: float = 0.0) -> bool:
     """True if one area lies within another, enlarged by `by` [mm], except for a small share."""
-    return bool(shapely.area(areas.difference(one, grown(other, by))) <= _OUTSIDE * shapely.area(one))
+    return bool(shapely.area(areas.difference(inner, grown(outer, by))) <= _OUTSIDE * shapely.area(inner))
 
 
 def is_circle(area: Any) -> bool:
@@ -137,7 +137,7 @@ def reachable(area: Any, radius: float, is_pocket: bool) -> Any:
     return grown(grown(area, -size), size) if is_pocket else grown(grown(area, size), -size)
 
 
-def beside(area: Any, radius: float, tolerance: float, is_pocket: bool) -> Any:
+def area_to_clear(area: Any, radius: float, tolerance: float, is_pocket: bool) -> Any:
     """The area that a cutter must clear: outside the walls of a part or inside those of a pocket, R wide."""
     limit = reachable(area, radius, is_pocket)
     if is_pocket:
@@ -145,7 +145,7 @@ def beside(area: Any, radius: float, tolerance: float, is_pocket: bool) -> Any:
     return areas.difference(grown(limit, radius), grown(limit, tolerance))
 
 
-def within(area: Any, radius: float, tolerance: float, is_pocket: bool) -> Any:
+def area_to_keep(area: Any, radius: float, tolerance: float, is_pocket: bool) -> Any:
     """The area to keep: the part, or the surroundings of a pocket as far as a cutter on its wrong side clears."""
     if is_pocket:
         return areas.difference(grown(area, 2 * radius), grown(area, tolerance))
@@ -157,27 +157,29 @@ def joined(several: Sequence[Any]) -> Any:
     return areas.union_all(np.array(several, object)) if several else empty()
 
 
-def farthest(found: Any, whole: Any, area: Any) -> Extreme:
+def farthest(difference: Any, whole: Any, area: Any) -> Extreme:
     """
     The greatest distance of a difference from the wall.
 
-    found: the difference within the area of the search. whole: all of it. area: of the part or pocket.
+    difference: the difference within the area of the search. whole: all of it. area: of the part or pocket.
     """
     keep_time()
-    found = grown(grown(found, -_SLIVER), _SLIVER)
-    if shapely.is_empty(found) or shapely.area(found) < _SLIVER**2:
+    difference = grown(grown(difference, -_SLIVER), _SLIVER)
+    if shapely.is_empty(difference) or shapely.area(difference) < _SLIVER**2:
         return NOTHING
     pieces = shapely.get_parts(whole)
-    touching = pieces[shapely.intersects(pieces, found)]
+    touching = pieces[shapely.intersects(pieces, difference)]
     # A pocket that is not milled at all has its corners on the wall, and its middle far from it.
     middles = [polygon for polygon in touching if shapely.get_dimensions(polygon) == _AREA]
     lines = areas.maximum_inscribed_circle(np.array(middles, object)) if middles else np.zeros(0, object)
-    points = np.concatenate([shapely.get_coordinates(one) for one in (touching, found, shapely.get_point(lines, 0))])
+    points = np.concatenate(
+        [shapely.get_coordinates(geometry) for geometry in (touching, difference, shapely.get_point(lines, 0))]
+    )
     wall = shapely.boundary(area)
     shapely.prepare(wall)
     far = shapely.distance(shapely.points(points), wall)
     most = int(np.argmax(far))
-    return Extreme(float(far[most]), complex(*points[most]), float(shapely.area(found)))
+    return Extreme(float(far[most]), complex(*points[most]), float(shapely.area(difference)))
 
 
 def off_wall(cleared: Any, area: Any, radius: float, certain: float, is_pocket: bool) -> Floats:

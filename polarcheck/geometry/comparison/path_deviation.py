@@ -34,7 +34,7 @@ _PRECISION = 1e-6
 _CELLS_OF_PIECES, _CELLS_OF_WHOLE, _CELLS_OF_PROOF = 300_000, 200_000, 1_500_000
 
 
-class Place(msgspec.Struct, frozen=True):
+class Location(msgspec.Struct, frozen=True):
     """
     Where two paths are farthest apart.
 
@@ -63,7 +63,7 @@ class PathDeviation(msgspec.Struct, frozen=True):
     is_exact: bool
     is_within: bool
     rounding: float
-    place: Place | None
+    place: Location | None
 
 
 def path_deviation(old: SpacePath, new: SpacePath, tolerance: float) -> PathDeviation:
@@ -84,11 +84,11 @@ def path_deviation(old: SpacePath, new: SpacePath, tolerance: float) -> PathDevi
     if pieces.largest * _COARSE > rounding:
         # Fewer chords tell a large deviation well enough.
         pieces, of_chords = _in_chords(old, new, tolerance, pieces.largest * _COARSE)
-    largest, place = _measured(pieces, tolerance)
+    largest, location = _measured(pieces, tolerance)
     is_exact = False
     if largest > tolerance:
-        largest, place, is_exact = _proven(pieces, largest, place, tolerance)
-    return PathDeviation(largest, is_exact, largest <= tolerance, rounding + of_chords, place)
+        largest, location, is_exact = _proven(pieces, largest, location, tolerance)
+    return PathDeviation(largest, is_exact, largest <= tolerance, rounding + of_chords, location)
 
 
 def _in_chords(old: SpacePath, new: SpacePath, tolerance: float, sagitta: float) -> tuple[_Pieces, float]:
@@ -126,7 +126,7 @@ def _best_pieces(old: Polyline, new: Polyline, tolerance: float) -> _Pieces:
         if best is not None and best.largest <= tolerance:
             break
         keep_time()
-        places = [(line.point[at], line.z[at]) for line, at in zip((old, new), corners, strict=True)]
+        places = [(line.point[corner], line.z[corner]) for line, corner in zip((old, new), corners, strict=True)]
         paired = anchors(places[0], places[1], tolerance * cell)
         by_place = _pieces(old, new, corners[0][paired[0]], corners[1][paired[1]])
         best = by_place if best is None or by_place.largest < best.largest else best
@@ -138,8 +138,10 @@ def _pieces(old: Polyline, new: Polyline, old_at: Rows, new_at: Rows) -> _Pieces
     """Pieces between paired corners; the ends of the lines are paired."""
     ends = len(old) - 1, len(new) - 1
     inner = (old_at > 0) & (new_at > 0) & (old_at < ends[0]) & (new_at < ends[1])
-    old_at, new_at = (np.concatenate(([0], at[inner], [end])) for at, end in zip((old_at, new_at), ends, strict=True))
-    along = [_along(line, at) for line, at in zip((old, new), (old_at, new_at), strict=True)]
+    old_at, new_at = (
+        np.concatenate(([0], corners[inner], [end])) for corners, end in zip((old_at, new_at), ends, strict=True)
+    )
+    along = [_along(line, corners) for line, corners in zip((old, new), (old_at, new_at), strict=True)]
     moment = np.concatenate(along)
     distance = _distance(old, along[0], new, along[1], moment)
     piece = np.minimum(moment.astype(np.int64), len(old_at) - 2)
@@ -154,88 +156,88 @@ def _pieces(old: Polyline, new: Polyline, old_at: Rows, new_at: Rows) -> _Pieces
     return _Pieces(old, new, old_at, new_at, np.maximum(bound, at_corner), share)
 
 
-def _along(line: Polyline, at: Rows) -> Floats:
+def _along(line: Polyline, corners: Rows) -> Floats:
     """When a point comes to each corner: at k to the paired corner k, at an even speed between two of them."""
-    way = line.length
+    length = line.length
     if len(line) == 1:
         return np.zeros(1)
-    rising = np.append(np.diff(way[at]) > 0, True)
-    moments = np.arange(float(len(at)))
-    return np.asarray(np.interp(way, way[at][rising], moments[rising]))
+    rising = np.append(np.diff(length[corners]) > 0, True)
+    moments = np.arange(float(len(corners)))
+    return np.asarray(np.interp(length, length[corners][rising], moments[rising]))
 
 
 def _distance(old: Polyline, old_along: Floats, new: Polyline, new_along: Floats, moment: Floats) -> Floats:
     """The distance of the two points at these moments [mm]."""
-    (a, a_z), (b, b_z) = (_at(line, along, moment) for line, along in ((old, old_along), (new, new_along)))
+    (a, a_z), (b, b_z) = (_interpolated(line, along, moment) for line, along in ((old, old_along), (new, new_along)))
     return np.hypot(np.abs(a - b), a_z - b_z)
 
 
-def _at(
+def _interpolated(
     line: Polyline, along: Floats, moment: Floats
 ) -> tuple[np.ndarray[tuple[int], np.dtype[np.complex128]], Floats]:
     x, c, z = (np.interp(moment, along, part) for part in (line.point.real, line.point.imag, line.z))
     return x + 1j * c, z
 
 
-def _measured(pieces: _Pieces, tolerance: float) -> tuple[float, Place]:
+def _measured(pieces: _Pieces, tolerance: float) -> tuple[float, Location]:
     """The largest deviation of all pieces, and where it is: the piece with the largest bound is measured first."""
     budget = Budget(_CELLS_OF_PIECES)
     waiting = [(-bound, number) for number, bound in enumerate(pieces.bound.tolist())]
     heapq.heapify(waiting)
-    known: dict[int, Place] = {}
+    locations: dict[int, Location] = {}
     while True:
         keep_time()
         bound, number = -waiting[0][0], waiting[0][1]
-        if number in known or bound <= tolerance:
-            return bound, known.get(number) or _place_of_bound(pieces, number)
+        if number in locations or bound <= tolerance:
+            return bound, locations.get(number) or _location_of_bound(pieces, number)
         old, new = (_corners(pieces.old, pieces.old_at, number), _corners(pieces.new, pieces.new_at, number))
         precision = max(tolerance * _SHARE, bound * _PRECISION)
         try:
             exact, meeting = frechet(old, new, bound, precision, budget)
         except OverBudgetError:
-            return bound, _place_of_bound(pieces, number)
-        known[number] = _place(pieces, number, meeting)
+            return bound, _location_of_bound(pieces, number)
+        locations[number] = _location(pieces, number, meeting)
         heapq.heapreplace(waiting, (-exact, number))
 
 
-def _corners(line: Polyline, at: Rows, piece: int) -> list[Corner]:
-    part = line[int(at[piece]) : int(at[piece + 1]) + 1]
+def _corners(line: Polyline, corners: Rows, piece: int) -> list[Corner]:
+    part = line[int(corners[piece]) : int(corners[piece + 1]) + 1]
     return list(zip(part.point.real.tolist(), part.point.imag.tolist(), part.z.tolist(), strict=True))
 
 
-def _place(pieces: _Pieces, piece: int, meeting: Meeting) -> Place:
+def _location(pieces: _Pieces, piece: int, meeting: Meeting) -> Location:
     numbers = (pieces.old_at[piece] + meeting.in_old + 1, pieces.new_at[piece] + meeting.in_new + 1)
     old_move, new_move = (
         int(line.move[min(int(number), len(line) - 1)])
         for line, number in zip((pieces.old, pieces.new), numbers, strict=True)
     )
     (x, c, z), (new_x, new_c, new_z) = meeting.old, meeting.new
-    return Place(complex(x, c), complex(new_x, new_c), z, new_z, old_move, new_move)
+    return Location(complex(x, c), complex(new_x, new_c), z, new_z, old_move, new_move)
 
 
-def _place_of_bound(pieces: _Pieces, piece: int) -> Place:
+def _location_of_bound(pieces: _Pieces, piece: int) -> Location:
     """Where two points at even speeds are farthest apart."""
     moment = np.array([piece + pieces.share[piece]])
     sides = []
-    for line, at in ((pieces.old, pieces.old_at), (pieces.new, pieces.new_at)):
-        along = _along(line, at)
-        point, z = _at(line, along, moment)
+    for line, corners in ((pieces.old, pieces.old_at), (pieces.new, pieces.new_at)):
+        along = _along(line, corners)
+        point, z = _interpolated(line, along, moment)
         corner = min(int(np.searchsorted(along, moment[0])), len(line) - 1)
         sides.append((complex(point[0]), float(z[0]), int(line.move[corner])))
     (old, old_z, old_move), (new, new_z, new_move) = sides
-    return Place(old, new, old_z, new_z, old_move, new_move)
+    return Location(old, new, old_z, new_z, old_move, new_move)
 
 
-def _proven(pieces: _Pieces, largest: float, place: Place, tolerance: float) -> tuple[float, Place, bool]:
+def _proven(pieces: _Pieces, largest: float, location: Location, tolerance: float) -> tuple[float, Location, bool]:
     """The deviation for any pairing of corners, its place, and whether it is exact: long paths take too many cells."""
     ends = [np.array([0, len(line) - 1]) for line in (pieces.old, pieces.new)]
-    corners = [_corners(line, at, 0) for line, at in zip((pieces.old, pieces.new), ends, strict=True)]
+    corners = [_corners(line, pair, 0) for line, pair in zip((pieces.old, pieces.new), ends, strict=True)]
     whole = msgspec.structs.replace(pieces, old_at=ends[0], new_at=ends[1])
     precision = max(tolerance * _SHARE, largest * _PRECISION)
     try:
         if is_within(corners[0], corners[1], tolerance, Budget(_CELLS_OF_PROOF)):
-            return tolerance, place, False
+            return tolerance, location, False
         exact, meeting = frechet(corners[0], corners[1], largest, precision, Budget(_CELLS_OF_WHOLE))
     except OverBudgetError:
-        return largest, place, False
-    return exact, _place(whole, 0, meeting), True
+        return largest, location, False
+    return exact, _location(whole, 0, meeting), True

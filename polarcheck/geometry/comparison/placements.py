@@ -17,8 +17,8 @@ from polarcheck.foundation.arrays import Floats, Points
 from polarcheck.foundation.states import MM_PER_INCH
 from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.comparison.alignment import best_turn
-from polarcheck.geometry.comparison.deviation import Difference, Made, difference
-from polarcheck.geometry.comparison.measured_path import Way, way_of
+from polarcheck.geometry.comparison.deviation import Difference, MachinedPart, difference
+from polarcheck.geometry.comparison.measured_path import MeasuredPath, path_of
 
 #: Another placement is named if it reduces the difference at least to this share.
 _FAR_LESS = 0.05
@@ -59,9 +59,9 @@ class Placement(NamedTuple):
     turned: float = 0.0
     shift: complex = 0j
 
-    def of(self, way: Way, center: complex) -> Way:
+    def of(self, path: MeasuredPath, center: complex) -> MeasuredPath:
         """The path after this change."""
-        return way_of(self.points(way.start, center), self.points(way.end, center), way.of)
+        return path_of(self.points(path.start, center), self.points(path.end, center), path.of)
 
     def points(self, points: Points, center: complex) -> Points:
         """The points after this change."""
@@ -86,23 +86,28 @@ class Freedom(NamedTuple):
 
 
 def better_placement(
-    made: Made, ways: Sequence[Way], center: complex, now: Difference, tolerance: float, freedom: Freedom
+    part: MachinedPart,
+    curves: Sequence[MeasuredPath],
+    center: complex,
+    now: Difference,
+    tolerance: float,
+    freedom: Freedom,
 ) -> tuple[Placement, float] | None:
     """
     The simplest change of a drawing with which a contour agrees, or else the best one with which it nearly agrees, and
     the difference that remains [mm]; None if there is none.
 
-    ways: the curves of the drawing that the contour may be meant for, the one that it was compared with first.
+    curves: the curves of the drawing that the contour may be meant for, the one that it was compared with first.
     center: the point about which the drawing is turned, and the axis in a drawing that is shifted [mm].
     now: the difference without a change.
     """
     best: tuple[Placement, float] | None = None
     enough = max(tolerance, _FAR_LESS * now.largest)
-    for way, placement in _candidates(made, ways, center, enough, freedom):
+    for curve, placement in _candidates(part, curves, center, enough, freedom):
         keep_time()
         limit = min(enough, _SHIFTED_LESS * now.largest) if placement.shift else enough
-        placed = placement.of(way, center)
-        remaining = _difference_within(made, placed, limit)
+        placed = placement.of(curve, center)
+        remaining = _difference_within(part, placed, limit)
         if remaining is None:
             continue
         if remaining <= tolerance:
@@ -113,36 +118,38 @@ def better_placement(
     return best
 
 
-def agrees(made: Made, way: Way, tolerance: float) -> bool:
+def agrees(part: MachinedPart, curve: MeasuredPath, tolerance: float) -> bool:
     """Tells whether a contour agrees with a curve where that lies, within a tolerance [mm]."""
-    return _difference_within(made, way, tolerance) is not None
+    return _difference_within(part, curve, tolerance) is not None
 
 
-def _difference_within(made: Made, way: Way, limit: float) -> float | None:
+def _difference_within(part: MachinedPart, curve: MeasuredPath, limit: float) -> float | None:
     """The largest difference of a contour from a curve [mm]; None where it is above a limit, or nothing is compared."""
-    both_ways = _both_closed(made.way, way)
-    if both_ways and _mean(made.way, way) > limit:
+    both_ways = _both_closed(part.way, curve)
+    if both_ways and _mean(part.way, curve) > limit:
         return None
-    found = difference(made, way, both_ways=both_ways)
-    return found.largest if found.length and found.largest <= limit else None
+    deviation = difference(part, curve, both_ways=both_ways)
+    return deviation.largest if deviation.length and deviation.largest <= limit else None
 
 
 def _candidates(
-    made: Made, ways: Sequence[Way], center: complex, enough: float, freedom: Freedom
-) -> Iterator[tuple[Way, Placement]]:
+    part: MachinedPart, curves: Sequence[MeasuredPath], center: complex, enough: float, freedom: Freedom
+) -> Iterator[tuple[MeasuredPath, Placement]]:
     """Curves and changes of them, the simplest first: nothing is shifted that fits as it lies."""
-    plain: list[tuple[Way, Placement]] = []
+    plain: list[tuple[MeasuredPath, Placement]] = []
     for placement in _plain(freedom):
         alike = (
-            way for way in ways if not _both_closed(made.way, way) or _alike_in_size(made.way, way, placement, enough)
+            curve
+            for curve in curves
+            if not _both_closed(part.way, curve) or _alike_in_size(part.way, curve, placement, enough)
         )
-        plain += [(way, placement) for way in itertools.islice(alike, _MOST_CURVES)]
-    for place in (_turned, _shifted):
-        for way, changed in plain:
-            for placement in place(made, way, changed, center, freedom):
+        plain += [(curve, placement) for curve in itertools.islice(alike, _MOST_CURVES)]
+    for variants in (_turned, _shifted):
+        for curve, changed in plain:
+            for placement in variants(part, curve, changed, center, freedom):
                 is_turned = freedom.turns and placement.turned != 0
                 if is_turned or placement._replace(turned=0.0) != Placement():
-                    yield way, placement
+                    yield curve, placement
 
 
 def _plain(freedom: Freedom) -> Iterator[Placement]:
@@ -157,26 +164,30 @@ def _plain(freedom: Freedom) -> Iterator[Placement]:
         yield from (Placement(scale, x_factor=factor) for scale, factor in itertools.product(scales[1:], (2.0, 0.5)))
 
 
-def _turned(made: Made, way: Way, plain: Placement, center: complex, freedom: Freedom) -> Iterator[Placement]:
+def _turned(
+    part: MachinedPart, curve: MeasuredPath, plain: Placement, center: complex, freedom: Freedom
+) -> Iterator[Placement]:
     """A change as it is, and turned."""
     may_turn = _may_turn(plain, freedom)
     if freedom.turns or not may_turn:
         yield plain
     if may_turn:
-        yield plain._replace(turned=_rounded(best_turn(made.way, plain.of(way, center), center * plain.scale)))
+        yield plain._replace(turned=_rounded(best_turn(part.way, plain.of(curve, center), center * plain.scale)))
 
 
-def _shifted(made: Made, way: Way, plain: Placement, center: complex, freedom: Freedom) -> Iterator[Placement]:
+def _shifted(
+    part: MachinedPart, curve: MeasuredPath, plain: Placement, center: complex, freedom: Freedom
+) -> Iterator[Placement]:
     """A change with a shift, and turned as well."""
-    changed, middle, may_turn = plain.of(way, center), center * plain.scale, _may_turn(plain, freedom)
-    for here, there in _places(made, changed):
+    changed, middle, may_turn = plain.of(curve, center), center * plain.scale, _may_turn(plain, freedom)
+    for here, there in _places(part, changed):
         turns = [0.0] if freedom.turns or not may_turn else []
         if may_turn:
             moved = Placement(shift=there - here).of(changed, 0j)
-            turns.append(_rounded(best_turn(made.way, moved, there)))
+            turns.append(_rounded(best_turn(part.way, moved, there)))
         for turned in turns:
             shift = there - middle - (here - middle) * cmath.exp(1j * turned)
-            placement = _refined(made, way, center, plain._replace(turned=turned, shift=shift))
+            placement = _refined(part, curve, center, plain._replace(turned=turned, shift=shift))
             if abs(placement.shift) > _NO_SHIFT:
                 yield placement
 
@@ -190,25 +201,25 @@ def _rounded(angle: float) -> float:
     return 0.0 if abs(angle) < _NO_TURN else angle
 
 
-def _places(made: Made, drawn: Way) -> Iterator[tuple[complex, complex]]:
+def _places(part: MachinedPart, drawn: MeasuredPath) -> Iterator[tuple[complex, complex]]:
     """Points of the drawing and where they may be meant to be: the middle of a contour, or the center of arcs."""
-    if _both_closed(made.way, drawn):
-        yield _middle(drawn), _middle(made.way)
-    elif not _is_closed(made.way):
+    if _both_closed(part.way, drawn):
+        yield _middle(drawn), _middle(part.way)
+    elif not _is_closed(part.way):
         yield from ((center, 0j) for center in _arc_centers(drawn))
 
 
-def _refined(made: Made, way: Way, center: complex, placement: Placement) -> Placement:
+def _refined(part: MachinedPart, curve: MeasuredPath, center: complex, placement: Placement) -> Placement:
     """
     A placement near this one with the least mean distance from the contour to the drawing: the middle of a contour is
     off by a share of what a single side is off.
     """
-    if not _both_closed(made.way, way):
+    if not _both_closed(part.way, curve):
         return placement
-    points, _ = made.way.at(np.linspace(0, made.way.length, _FEW, endpoint=False))
+    points, _ = part.way.at(np.linspace(0, part.way.length, _FEW, endpoint=False))
     turns = placement.turned != 0
     for _ in range(_STEPS):
-        placed = placement.of(way, center)
+        placed = placement.of(curve, center)
         _, closest, which = placed.nearest(points)
         along = (placed.end - placed.start)[which]
         normal = 1j * along / np.abs(along)
@@ -226,65 +237,65 @@ def _refined(made: Made, way: Way, center: complex, placement: Placement) -> Pla
     return placement
 
 
-def _mean(one: Way, other: Way) -> float:
+def _mean(path: MeasuredPath, drawn: MeasuredPath) -> float:
     """The mean distance from points of one path to another path [mm]."""
-    points, _ = one.at(np.linspace(0, one.length, _FEW))
-    return float(other.nearest(points)[0].mean())
+    points, _ = path.at(np.linspace(0, path.length, _FEW))
+    return float(drawn.nearest(points)[0].mean())
 
 
-def _is_closed(way: Way) -> bool:
+def _is_closed(path: MeasuredPath) -> bool:
     """True for one ring."""
     return bool(
-        len(way.start) > 2
-        and abs(way.start[0] - way.end[-1]) <= _NO_SHIFT
-        and (np.abs(way.start[1:] - way.end[:-1]) <= _NO_SHIFT).all()
+        len(path.start) > 2
+        and abs(path.start[0] - path.end[-1]) <= _NO_SHIFT
+        and (np.abs(path.start[1:] - path.end[:-1]) <= _NO_SHIFT).all()
     )
 
 
-def _both_closed(one: Way, other: Way) -> bool:
-    return _is_closed(one) and _is_closed(other)
+def _both_closed(path: MeasuredPath, drawn: MeasuredPath) -> bool:
+    return _is_closed(path) and _is_closed(drawn)
 
 
-def _area(way: Way) -> float:
+def _area(ring: MeasuredPath) -> float:
     """The area in a ring [mm2]."""
-    return abs(float((way.start.conj() * way.end).imag.sum()) / 2)
+    return abs(float((ring.start.conj() * ring.end).imag.sum()) / 2)
 
 
-def _alike_in_size(one: Way, other: Way, plain: Placement, enough: float) -> bool:
+def _alike_in_size(path: MeasuredPath, drawn: MeasuredPath, plain: Placement, enough: float) -> bool:
     """False for rings whose areas differ by more than a strip of this width along them."""
-    area = _area(other) * plain.scale**2 * plain.x_factor
-    return abs(_area(one) - area) <= one.length * enough + np.pi * enough**2
+    area = _area(drawn) * plain.scale**2 * plain.x_factor
+    return abs(_area(path) - area) <= path.length * enough + np.pi * enough**2
 
 
-def _middle(way: Way) -> complex:
+def _middle(ring: MeasuredPath) -> complex:
     """The centroid of the area in a ring."""
-    base = way.start[0]
-    start, end = way.start - base, way.end - base
+    base = ring.start[0]
+    start, end = ring.start - base, ring.end - base
     weight = (start.conj() * end).imag
     return complex(base + ((start + end) * weight).sum() / (3 * weight.sum()))
 
 
-def _arc_centers(way: Way) -> list[complex]:
+def _arc_centers(path: MeasuredPath) -> list[complex]:
     """The centers of the longest arcs of a drawing, which is made of chords."""
-    follows = np.flatnonzero(np.abs(way.start[1:] - way.end[:-1]) == 0)
-    first, second, third = way.start[follows], way.end[follows], way.end[follows + 1]
-    one, other = second - first, third - first
-    cross = (one.conj() * other).imag
-    lengths: Floats = np.abs(other)
+    follows = np.flatnonzero(np.abs(path.start[1:] - path.end[:-1]) == 0)
+    first, second, third = path.start[follows], path.end[follows], path.end[follows + 1]
+    to_second, to_third = second - first, third - first
+    cross = (to_second.conj() * to_third).imag
+    lengths: Floats = np.abs(to_third)
     # Chords of an arc turn by some degrees at most, and are of one length.
     arc = np.abs(cross) > 1e-9 * lengths**2
-    arc &= np.abs(np.abs(one) - np.abs(third - second)) <= _SAME_CENTER * lengths
-    arc &= np.abs(np.angle((third - second) * one.conj())) < _LARGEST_TURN
+    arc &= np.abs(np.abs(to_second) - np.abs(third - second)) <= _SAME_CENTER * lengths
+    arc &= np.abs(np.angle((third - second) * to_second.conj())) < _LARGEST_TURN
     chosen = np.flatnonzero(arc)[:: len(arc) // _MOST_ARCS + 1]
-    first, one, other = first[chosen], one[chosen], other[chosen]
+    first, to_second, to_third = first[chosen], to_second[chosen], to_third[chosen]
     cross, lengths = cross[chosen], lengths[chosen]
-    centers = first + 1j * (other * np.abs(one) ** 2 - one * np.abs(other) ** 2) / (-2 * cross)
+    centers = first + 1j * (to_third * np.abs(to_second) ** 2 - to_second * np.abs(to_third) ** 2) / (-2 * cross)
     radius, lengths = np.abs(centers - first), lengths / 2
-    found: list[complex] = []
-    while len(centers) and len(found) < _CENTERS:
+    main_centers: list[complex] = []
+    while len(centers) and len(main_centers) < _CENTERS:
         near = np.abs(centers[:, None] - centers) <= _SAME_CENTER * radius
         longest = int((near * lengths).sum(axis=1).argmax())
-        found.append(complex(np.median(centers[near[longest]].real), np.median(centers[near[longest]].imag)))
-        left = ~near[longest]
-        centers, radius, lengths = centers[left], radius[left], lengths[left]
-    return found
+        main_centers.append(complex(np.median(centers[near[longest]].real), np.median(centers[near[longest]].imag)))
+        remaining = ~near[longest]
+        centers, radius, lengths = centers[remaining], radius[remaining], lengths[remaining]
+    return main_centers

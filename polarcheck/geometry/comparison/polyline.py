@@ -105,9 +105,9 @@ def _counts(sweep: Floats, radius: Floats, sagitta: float) -> Rows:
 def _without_stubs(line: Polyline) -> Polyline:
     """Corners where the one before is not; an end of a move that falls away makes the corner before it one."""
     far = np.hypot(np.abs(np.diff(line.point)), np.diff(line.z)) > ZERO
-    left = np.append(True, far)[: len(line)]
-    if left.all():
+    kept = np.append(True, far)[: len(line)]
+    if kept.all():
         return line
-    ends = np.maximum.reduceat(line.ends_move.astype(np.int8), np.flatnonzero(left)).astype(bool)
-    short = line[left]
+    ends = np.maximum.reduceat(line.ends_move.astype(np.int8), np.flatnonzero(kept)).astype(bool)
+    short = line[kept]
     return Polyline(short.point, short.z, short.move, ends)

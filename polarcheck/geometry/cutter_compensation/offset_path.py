@@ -73,7 +73,7 @@ _PART = 16_384
 _LEAD, _CORNER, _BLOCK, _TRAIL = range(4)
 
 
-class _Ways(Table, frozen=True):
+class _Moves(Table, frozen=True):
     """Some moves of the tool center, columns as in ToolPath; `order` sorts them among all others."""
 
     order: Rows
@@ -185,11 +185,11 @@ def _blocks(programmed: Programmed, vectors: Vectors) -> _Blocks:
     before = np.flatnonzero(cancels) - 1
     side[cancels], radius[cancels] = side[before], radius[before]
 
-    known = programmed.known & ~(on & ~vectors.known)
+    is_known = programmed.known & ~(on & ~vectors.known)
     entry, leave = programmed.start.copy(), np.where(on, vectors.first, programmed.end)
     joined = np.flatnonzero(_begins_at_vector(programmed))
     entry[joined] = vectors.last[joined - 1]
-    known[joined] &= vectors.known[joined - 1]
+    is_known[joined] &= vectors.known[joined - 1]
     # G41 or G40 in a block with an arc (alarm 034) shifts the tool before or after the arc, which is run with R.
     rows = np.flatnonzero((programmed.shifts_at >= 0) | (on & ~programmed.before_on & is_arc))
     entry[rows] = programmed.start[rows] + 1j * side[rows] * radius[rows] * programmed.leaving[rows]
@@ -197,9 +197,9 @@ def _blocks(programmed: Programmed, vectors: Vectors) -> _Blocks:
     leave[rows] = programmed.end[rows] + 1j * side[rows] * radius[rows] * programmed.arriving[rows]
     rows = np.flatnonzero(programmed.left_over & ~on & is_arc)
     entry[rows] = programmed.start[rows]
-    entry[~known], leave[~known] = programmed.start[~known], programmed.end[~known]
+    entry[~is_known], leave[~is_known] = programmed.start[~is_known], programmed.end[~is_known]
     in_mode = (on & (programmed.before_on | is_arc)) | (cancels & is_arc)
-    return _Blocks(entry, leave, side, radius, in_mode, known, programmed.turning.copy())
+    return _Blocks(entry, leave, side, radius, in_mode, is_known, programmed.turning.copy())
 
 
 def _begins_at_vector(programmed: Programmed) -> Mask:
@@ -259,7 +259,7 @@ def _erase(programmed: Programmed, vectors: Vectors, blocks: _Blocks, rows: Mask
     return msgspec.structs.replace(vectors, used=used), helpless
 
 
-def _leads(programmed: Programmed, blocks: _Blocks, vectors: Vectors) -> _Ways:
+def _leads(programmed: Programmed, blocks: _Blocks, vectors: Vectors) -> _Moves:
     """Lines to the start of a block: to an arc, or at once at a G41 without movement (type C)."""
     at_once = programmed.shifts_at >= 0
     ramps = at_once | (programmed.on & ~programmed.before_on & programmed.is_arc)
@@ -273,7 +273,7 @@ def _leads(programmed: Programmed, blocks: _Blocks, vectors: Vectors) -> _Ways:
     return _lines(leads * 4 + _LEAD, row, start, blocks.entry[leads], phase)
 
 
-def _trails(programmed: Programmed, blocks: _Blocks) -> _Ways:
+def _trails(programmed: Programmed, blocks: _Blocks) -> _Moves:
     """Lines from the end of a block: from an arc, or at once at a G40 without movement (type C)."""
     at_once = programmed.clears_at >= 0
     from_arc = programmed.before_on & ~programmed.on & programmed.is_arc
@@ -283,24 +283,26 @@ def _trails(programmed: Programmed, blocks: _Blocks) -> _Ways:
     return _lines(trails * 4 + _TRAIL, row, blocks.leave[trails], programmed.end[trails], phase)
 
 
-def _across_corners(programmed: Programmed, vectors: Vectors) -> _Ways:
+def _across_corners(programmed: Programmed, vectors: Vectors) -> _Moves:
     """The moves between the vectors of one corner; they belong to the latter block (M700V p. 193)."""
     several = np.flatnonzero((vectors.used.sum(axis=0) > 1) & vectors.known)
-    corner, place = np.nonzero(vectors.used.T[several])
-    vector = vectors.point[place, several[corner]]
+    corner, slot = np.nonzero(vectors.used.T[several])
+    vector = vectors.point[slot, several[corner]]
     goes_on = corner[1:] == corner[:-1]
-    at = several[corner[1:][goes_on]]
-    phase = np.full(len(at), Phase.OFFSET)
-    ways = _lines((at + 1) * 4 + _CORNER, programmed.row[at + 1], vector[:-1][goes_on], vector[1:][goes_on], phase)
-    at = ways.order // 4 - 1
-    rows = np.flatnonzero(vectors.round[at])
+    joint = several[corner[1:][goes_on]]
+    phase = np.full(len(joint), Phase.OFFSET)
+    moves = _lines(
+        (joint + 1) * 4 + _CORNER, programmed.row[joint + 1], vector[:-1][goes_on], vector[1:][goes_on], phase
+    )
+    joint = moves.order // 4 - 1
+    rows = np.flatnonzero(vectors.round[joint])
     # On the outside of a corner the tool goes round it as the contour does: to the right where it is on the left.
-    ways.kind[rows] = np.where(programmed.side[at[rows]] > 0, Motion.CW, Motion.CCW)
-    ways.center[rows] = programmed.end[at[rows]]
-    return ways
+    moves.kind[rows] = np.where(programmed.side[joint[rows]] > 0, Motion.CW, Motion.CCW)
+    moves.center[rows] = programmed.end[joint[rows]]
+    return moves
 
 
-def _along(programmed: Programmed, blocks: _Blocks) -> _Ways:
+def _along(programmed: Programmed, blocks: _Blocks) -> _Moves:
     """The blocks themselves; those that R has used up are left out."""
     on, before_on = programmed.on, programmed.before_on
     returns = (before_on | programmed.left_over) & ~on & ~programmed.is_arc
@@ -328,7 +330,7 @@ def _along(programmed: Programmed, blocks: _Blocks) -> _Ways:
     kept = np.repeat(kept, halved + 1)
     start, end, turning = blocks.entry[kept], blocks.leave[kept], blocks.turning[kept]
     end[first] = start[first + 1] = 2 * programmed.center[kept[first]] - start[first]
-    return _Ways(
+    return _Moves(
         order=kept * 4 + _BLOCK,
         row=programmed.row[kept],
         start=start,
@@ -340,10 +342,10 @@ def _along(programmed: Programmed, blocks: _Blocks) -> _Ways:
     )
 
 
-def _lines(order: Rows, row: Rows, start: Points, end: Points, phase: NDArray[np.integer]) -> _Ways:
+def _lines(order: Rows, row: Rows, start: Points, end: Points, phase: NDArray[np.integer]) -> _Moves:
     """Lines added by the control; those of no length are left out."""
     kept = np.flatnonzero(np.abs(end - start) > ZERO)
-    return _Ways(
+    return _Moves(
         order=order[kept],
         row=row[kept],
         start=start[kept],
@@ -355,7 +357,7 @@ def _lines(order: Rows, row: Rows, start: Points, end: Points, phase: NDArray[np
     )
 
 
-def _merged(*parts: _Ways) -> _Ways:
+def _merged(*parts: _Moves) -> _Moves:
     """All moves in the order in which they are run."""
-    moves = _Ways.concatenated(parts)
+    moves = _Moves.concatenated(parts)
     return moves[np.argsort(moves.order, kind="stable")]

@@ -47,16 +47,16 @@ class Vectors(msgspec.Struct, frozen=True):
     def first(self) -> Points:
         """Where the move before ends."""
         result: Points = self.point[AFTER].copy()
-        for place in (ACROSS, CORNER, BEFORE):
-            np.copyto(result, self.point[place], where=self.used[place])
+        for slot in (ACROSS, CORNER, BEFORE):
+            np.copyto(result, self.point[slot], where=self.used[slot])
         return result
 
     @property
     def last(self) -> Points:
         """Where the next move begins."""
         result: Points = self.point[BEFORE].copy()
-        for place in (CORNER, ACROSS, AFTER):
-            np.copyto(result, self.point[place], where=self.used[place])
+        for slot in (CORNER, ACROSS, AFTER):
+            np.copyto(result, self.point[slot], where=self.used[slot])
         return result
 
 
@@ -67,7 +67,7 @@ def end_vectors(programmed: Programmed, method: Method) -> Vectors:
         point=np.zeros((4, count), dtype=np.complex128),
         used=np.zeros((4, count), dtype=np.bool_),
         round=np.zeros(count, dtype=np.bool_),
-        known=_known(programmed),
+        known=_are_known(programmed),
         missing=np.zeros(count, dtype=np.bool_),
         apart=np.zeros(count, dtype=np.bool_),
     )
@@ -79,7 +79,7 @@ def end_vectors(programmed: Programmed, method: Method) -> Vectors:
     return vectors
 
 
-def _known(programmed: Programmed) -> Mask:
+def _are_known(programmed: Programmed) -> Mask:
     """A boolean per move: its vectors depend on nothing unknown."""
     alone = ~programmed.has_next | programmed.cancelled | ~programmed.read
     next_known = np.append(programmed.known[1:], False)
@@ -162,8 +162,8 @@ def _other_corners(programmed: Programmed, turned: Points, joints: _Joints, meth
 def _leads_on(corners: Corners, point: Points) -> Mask:
     """A mask of the meeting points that lie ahead of the end of the move before, and before the start of the next."""
     ahead = (point - corners.point - corners.vector_before) * corners.arriving.conj()
-    behind = (corners.point + corners.vector_after - point) * corners.leaving.conj()
-    return np.asarray(np.isfinite(point) & (ahead.real >= -ROUNDING) & (behind.real >= -ROUNDING))
+    before_next = (corners.point + corners.vector_after - point) * corners.leaving.conj()
+    return np.asarray(np.isfinite(point) & (ahead.real >= -ROUNDING) & (before_next.real >= -ROUNDING))
 
 
 def _joints(programmed: Programmed, corners: Corners, turned: Points, slanted: Mask, method: Method) -> _Joints:

@@ -151,7 +151,7 @@ def moving_rows(path: Path, method: Method) -> tuple[Programmed, Mask]:
         radius=np.abs(radius),
         cancel_vector=_directions_given(path.cancel_vector[row]),
         corner=path.corner[row],
-        **_ways(path, row, on, method),
+        **_links(path, row, on, method),
     )
     return programmed, center_on_path & path.moves
 
@@ -185,7 +185,7 @@ def _directions_given(vector: Points) -> Points:
     return result
 
 
-def _ways(path: Path, row: Rows, on: Mask, method: Method) -> dict[str, Any]:
+def _links(path: Path, row: Rows, on: Mask, method: Method) -> dict[str, Any]:
     """The columns of Programmed for the step from one moving row to the next."""
     off = path.side == Side.OFF
     writes_side = path.side_written & ~off

@@ -50,23 +50,23 @@ def _fit(samples: Samples, first: int, last: int, tolerance: float, straight: bo
     long = abs(chord)
     if long <= _NEAR:
         return None
-    place = (samples.point[first + 1 : last] - start) * (chord.conjugate() / long)
-    x, y = place.real, place.imag
+    local = (samples.point[first + 1 : last] - start) * (chord.conjugate() / long)
+    x, y = local.real, local.imag
     if not len(x):
         return 0.0, x
     reach = tolerance + samples.slack[first + 1 : last]
     u = 0.0
     if not straight:
-        found = _circle(x, y, samples.weight[first + 1 : last], reach, long)
-        if found is None:
+        fitted = _circle(x, y, samples.weight[first + 1 : last], reach, long)
+        if fitted is None:
             return None
-        u = found
+        u = fitted
     if abs(u) * long < STRAIGHT:
         u, away, along, width = 0.0, y, x, long
     else:
         center = complex(long / 2, 0.5 / u)
         radius = abs(center)
-        spoke = place - center
+        spoke = local - center
         away = np.abs(spoke) - radius
         turn = spoke * -center.conjugate()
         along = radius * np.copysign(1.0, u) * np.arctan2(turn.imag, turn.real)
@@ -91,8 +91,8 @@ def _circle(x: Floats, y: Floats, weight: Floats, reach: Floats, long: float) ->
     best = min(max(best, -_WIDEST / long), _WIDEST / long)
     height = math.sqrt(1 + (long * best) ** 2) * reach
     w = np.where(np.abs(w) < _NEAR, -_NEAR, w)
-    one, other = (y - height) / w, (y + height) / w
-    low, high = float(np.minimum(one, other).max()), float(np.maximum(one, other).min())
+    first, second = (y - height) / w, (y + height) / w
+    low, high = float(np.minimum(first, second).max()), float(np.maximum(first, second).min())
     if low > high:
         return None
     chosen = min(max(best, low), high)

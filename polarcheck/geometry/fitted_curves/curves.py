@@ -47,31 +47,31 @@ def fitted(samples: Samples, tolerance: float, noise: float) -> Curves:
     for closer in (0.5 * tolerance, 1.5 * noise):
         if closer >= tolerance:
             continue
-        found = longest_elements(samples, closer, most)
-        if found is None:
+        elements = longest_elements(samples, closer, most)
+        if elements is None:
             break
-        best = found
+        best = elements
     return _curves(samples, tolerance, best)
 
 
 def _curves(samples: Samples, tolerance: float, elements: list[Element]) -> Curves:
     last, end, center, kind = [], [], [], []
-    at = 0
-    while at < len(elements):
-        first, to, u = elements[at]
+    index = 0
+    while index < len(elements):
+        first, to, u = elements[index]
         arc = _Arc.of(samples, first, to, u)
-        while arc is not None and at + 1 < len(elements) and elements[at + 1][2] * u > 0:
-            wider = _wider(samples, tolerance, arc, elements[at + 1])
+        while arc is not None and index + 1 < len(elements) and elements[index + 1][2] * u > 0:
+            wider = _wider(samples, tolerance, arc, elements[index + 1])
             if wider is None:
                 break
-            arc, to, at = wider, elements[at + 1][1], at + 1
+            arc, to, index = wider, elements[index + 1][1], index + 1
         if arc is not None and arc.is_closed and samples.point[to] != samples.point[first]:
-            samples, elements = _closed(samples, tolerance, elements, first, to, at)
+            samples, elements = _closed(samples, tolerance, elements, first, to, index)
         last.append(to)
         end.append(complex(samples.point[to]))
         center.append(complex(math.nan, math.nan) if arc is None else arc.center)
         kind.append(int(Motion.LINE if arc is None else Motion.CCW if arc.sweep > 0 else Motion.CW))
-        at += 1
+        index += 1
     return Curves(np.array(last, np.int64), np.array(end, complex), np.array(center, complex), np.array(kind, np.int16))
 
 
@@ -133,9 +133,9 @@ def _wider(samples: Samples, tolerance: float, arc: _Arc, element: Element) -> _
     return _Arc(first, last, center, sweep, is_closed)
 
 
-def _turn(spoke: complex, other: complex, sense: float) -> tuple[float, float]:
+def _turn(spoke: complex, next_spoke: complex, sense: float) -> tuple[float, float]:
     """Return sine and cosine, times a length, of the turn between two spokes, positive in the sense of the arc."""
-    turn = other * spoke.conjugate()
+    turn = next_spoke * spoke.conjugate()
     return sense * turn.imag, turn.real
 
 
@@ -154,16 +154,16 @@ def _center(point: Points, weight: Floats) -> complex | None:
 
 
 def _closed(
-    samples: Samples, tolerance: float, elements: list[Element], first: int, last: int, at: int
+    samples: Samples, tolerance: float, elements: list[Element], first: int, last: int, index: int
 ) -> tuple[Samples, list[Element]]:
     """Put the end of a full circle on its start, and the element behind it there, too."""
     point = samples.point.copy()
     point[last] = point[first]
     moved = msgspec.structs.replace(samples, point=point)
     result = list(elements)
-    if at + 1 < len(result):
-        begin, end, u = result[at + 1]
-        found = bend(moved, begin, end, tolerance, straight=u == 0)
-        if found is not None:
-            result[at + 1] = begin, end, found
+    if index + 1 < len(result):
+        begin, end, u = result[index + 1]
+        new_u = bend(moved, begin, end, tolerance, straight=u == 0)
+        if new_u is not None:
+            result[index + 1] = begin, end, new_u
     return moved, result

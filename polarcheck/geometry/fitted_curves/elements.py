@@ -31,12 +31,12 @@ def longest_elements(samples: Samples, tolerance: float, most: float = math.inf)
     """
     joints = np.flatnonzero(samples.joint)
     elements: list[Element] = []
-    at, guess = 0, 8
-    while at < len(joints) - 1:
+    start, guess = 0, 8
+    while start < len(joints) - 1:
         keep_time()
         if len(elements) >= most:
             return None
-        first = int(joints[at])
+        first = int(joints[start])
 
         def arc(to: int, first: int = first) -> float | None:
             return bend(samples, first, int(joints[to]), tolerance)
@@ -44,29 +44,29 @@ def longest_elements(samples: Samples, tolerance: float, most: float = math.inf)
         def line(to: int, first: int = first) -> float | None:
             return bend(samples, first, int(joints[to]), tolerance, straight=True)
 
-        end = _longest(arc, at, len(joints) - 1, guess)
-        straight = end if line(end) is not None else _longest(line, at, end, max((end - at) // 2, 1))
+        end = _longest(arc, start, len(joints) - 1, guess)
+        straight = end if line(end) is not None else _longest(line, start, end, max((end - start) // 2, 1))
         far, near = (abs(samples.point[joints[to]] - samples.point[first]) for to in (end, straight))
-        is_line = far <= _ARC_GAIN * near or end == at + 1
+        is_line = far <= _ARC_GAIN * near or end == start + 1
         end = straight if is_line else end
         u = 0.0 if is_line else arc(end) or 0.0
         elements.append((first, int(joints[end]), u))
-        guess, at = max(end - at, 2), end
+        guess, start = max(end - start, 2), end
     return _joined_best(samples, tolerance, elements, joints)
 
 
-def _longest(fits: Callable[[int], float | None], at: int, last: int, guess: int) -> int:
+def _longest(fits: Callable[[int], float | None], start: int, last: int, guess: int) -> int:
     """Return the farthest joint up to which an element fits, at least the next one; by doubling, then by halving."""
-    good, step = at + 1, max(guess, 1)
+    good, step = start + 1, max(guess, 1)
     bad = last + 1
     while good < last:
-        to = min(at + step, last)
+        to = min(start + step, last)
         if to <= good:
             to = good + 1
         if fits(to) is None:
             bad = to
             break
-        good, step = to, 2 * (to - at)
+        good, step = to, 2 * (to - start)
     while bad - good > 1:
         middle = (good + bad) // 2
         if fits(middle) is None:
@@ -83,7 +83,7 @@ def _joined_best(samples: Samples, tolerance: float, elements: list[Element], jo
     result = list(elements)
     for k in range(1, len(result)):
         keep_time()
-        (first, at, u), (_, last, v) = result[k - 1], result[k]
+        (first, current, u), (_, last, v) = result[k - 1], result[k]
         if u == 0 and v == 0:
             continue  # a corner: the line ends there
 
@@ -92,24 +92,24 @@ def _joined_best(samples: Samples, tolerance: float, elements: list[Element], jo
                 samples, joint, last, tolerance, straight=v == 0
             )
 
-        best, least = at, both(at)
-        for step in _steps(at, first, last, ordinal):
+        best, least = current, both(current)
+        for step in _steps(current, first, last, ordinal):
             for to in (ordinal[best] - step, ordinal[best] + step):
                 if ordinal[first] < to < ordinal[last]:
                     joint = int(joints[to])
                     here = both(joint)
                     if here < least:
                         best, least = joint, here
-        if best != at:
+        if best != current:
             new_u = bend(samples, first, best, tolerance, straight=u == 0)
             new_v = bend(samples, best, last, tolerance, straight=v == 0)
             result[k - 1], result[k] = (first, best, new_u or 0.0), (best, last, new_v or 0.0)
     return result
 
 
-def _steps(at: int, first: int, last: int, ordinal: Rows) -> Iterator[int]:
+def _steps(joint: int, first: int, last: int, ordinal: Rows) -> Iterator[int]:
     """Yield the steps in which to search for a better joint: halves, then single joints several times."""
-    widest = int(min(ordinal[last] - ordinal[at], ordinal[at] - ordinal[first], _FARTHEST_JOINT))
+    widest = int(min(ordinal[last] - ordinal[joint], ordinal[joint] - ordinal[first], _FARTHEST_JOINT))
     step = widest // 2
     while step > 1:
         yield step

@@ -80,14 +80,14 @@ def sampled(radius: Floats, angle: Floats, z: Floats, tolerance: float, reserve:
     count = np.where(stands, np.minimum(counts(radius, angle, tolerance), 2), counts(radius, angle, tolerance))
     count = count.astype(np.int64)
     block = np.repeat(np.arange(len(count)), count)
-    place = np.arange(len(block)) - np.repeat(np.cumsum(count) - count, count) + 1
-    share = place / count[block]
+    index = np.arange(len(block)) - np.repeat(np.cumsum(count) - count, count) + 1
+    share = index / count[block]
 
     def along(values: Floats) -> Floats:
         inside = values[block] + np.diff(values)[block] * share
-        return np.append(values[:1], np.where(place == count[block], values[block + 1], inside))
+        return np.append(values[:1], np.where(index == count[block], values[block + 1], inside))
 
-    is_end = np.append(True, place == count[block])
+    is_end = np.append(True, index == count[block])
     is_free = np.append(True, stands[block]) & ~is_end
     slack = np.append(0.0, bow[block] + reserve)
     return Samples(

@@ -99,21 +99,21 @@ class _Samples(Table, frozen=True):
 
 
 def ribs(
-    part: FinishedParts, corners: Corners, radius: Floats, own: Segments, z: Floats, program: Rows, swept: Swept
+    part: FinishedParts, corners: Corners, radius: Floats, path: Segments, z: Floats, program: Rows, swept: Swept
 ) -> Ribs:
     """
     Ribs on the outlines of these parts near their corners.
 
     corners: their loop is the group of the part.
     radius, z: float64[groups] [mm]. program: int[groups].
-    own: the tool center path of each group.
+    path: the tool center path of each group.
     swept: the paths of all tools.
     """
     part = _without_fins(part, radius)
     shift = np.asarray(part.pitch * corners.loop, np.float64)
     samples = _along_outline(part, corners, shift, radius)
     samples = samples[_reachable(part, samples, radius)]
-    samples = samples[~_touched(own.shifted(part.pitch * own.loop), samples, radius)]
+    samples = samples[~_touched(path.shifted(part.pitch * path.loop), samples, radius)]
     samples = _Samples(samples.point - part.pitch * samples.group, samples.along, samples.corner, samples.group)
     if not len(samples):
         return _none()
@@ -171,26 +171,26 @@ def _along_outline(part: FinishedParts, corners: Corners, shift: Floats, radius:
     is_lead = ~_of_part(part, corners, points, corner, wall)[corner]
     corner, wall = corner[is_lead], wall[is_lead]
 
-    start, way = part.start[wall], part.end[wall] - part.start[wall]
-    length = np.maximum(np.abs(way), ZERO)
-    along = way / length
+    start, vector = part.start[wall], part.end[wall] - part.start[wall]
+    length = np.maximum(np.abs(vector), ZERO)
+    along = vector / length
     foot = ((points[corner] - start) * along.conj()).real
     low, high = (np.clip(foot + sign * reach[corner], 0, length) for sign in (-1, 1))
     step = np.sqrt(8 * WITNESS * radius[corners.loop[corner]]) / _SAMPLES
     count = np.ceil((high - low) / step).astype(np.int64)
     pair = np.repeat(np.arange(len(wall)), count)
-    place = np.arange(len(pair)) - np.repeat(np.cumsum(count) - count, count)
-    position = low[pair] + (place + 0.5) * ((high - low) / np.maximum(count, 1))[pair]
+    index = np.arange(len(pair)) - np.repeat(np.cumsum(count) - count, count)
+    position = low[pair] + (index + 0.5) * ((high - low) / np.maximum(count, 1))[pair]
     return _Samples(start[pair] + position * along[pair], along[pair], corner[pair], corners.loop[corner[pair]])
 
 
 def _of_part(part: FinishedParts, corners: Corners, points: Points, which: Rows, wall: Rows) -> Mask:
     """True for corners at which the outline turns as the blocks do; bool[corners]."""
-    way = part.end[wall] - part.start[wall]
+    vector = part.end[wall] - part.start[wall]
     arrives = np.abs(part.end[wall] - points[which]) < CORNER
     leaves = np.abs(part.start[wall] - points[which]) < CORNER
     into, out = np.zeros((2, len(points)), np.complex128)
-    into[which[arrives]], out[which[leaves]] = way[arrives], way[leaves]
+    into[which[arrives]], out[which[leaves]] = vector[arrives], vector[leaves]
     return np.asarray(np.angle(into * out.conj()) >= _SAME_TURN * corners.turn)
 
 
@@ -226,7 +226,7 @@ def _touched_by_any(
         sample, piece = tree.query(shapely.points(coordinates(batch.point)), "dwithin", limit)
         group = batch.group[sample]
         near = swept[piece]
-        distance = np.abs(_to_way(near, batch.point[sample]))
+        distance = np.abs(_to_piece(near, batch.point[sample]))
         touches = near.at_depth(z[group], program[group]) & (distance <= near.radius + _CONTACT)
         result[begin + sample[touches]] = True
         begin, pairs = begin + step, pairs + len(sample)
@@ -235,11 +235,11 @@ def _touched_by_any(
     return result[:compared], compared
 
 
-def _to_way(pieces: Swept, point: Points) -> Points:
+def _to_piece(pieces: Swept, point: Points) -> Points:
     """The vector from each point to the nearest point of a piece; the shapes broadcast."""
-    way = pieces.end - pieces.start
-    share = ((point - pieces.start) * way.conj()).real / np.maximum(np.abs(way) ** 2, ZERO**2)
-    nearest: Points = pieces.start + np.clip(share, 0, 1) * way - point
+    vector = pieces.end - pieces.start
+    share = ((point - pieces.start) * vector.conj()).real / np.maximum(np.abs(vector) ** 2, ZERO**2)
+    nearest: Points = pieces.start + np.clip(share, 0, 1) * vector - point
     return nearest
 
 
@@ -260,32 +260,32 @@ def _measured(
         return None, 0
     pair_count = len(pieces) * (len(point) + 2 * _POINTS)
     feet, rows = zip(*(_foot(pieces, point[end], along[end]) for end in (0, -1)), strict=True)
-    place, height = point[0], 0.0
+    peak, height = point[0], 0.0
     for _ in range(3):
         heights = _heights(pieces, point, along, radius)
         top = int(np.argmax(heights))
-        place, height = point[top], float(heights[top])
-        beside = max(top - 1, 0), min(top + 1, len(point) - 1)
+        peak, height = point[top], float(heights[top])
+        adjacent = max(top - 1, 0), min(top + 1, len(point) - 1)
         # At a corner of the outline the straight line to the next sample would cross the part.
-        ends = [end if abs(along[end] - along[top]) < _STRAIGHT_ON else top for end in beside]
+        ends = [end if abs(along[end] - along[top]) < _STRAIGHT_ON else top for end in adjacent]
         share = np.linspace(0, 1, _POINTS)
         point, along = point[ends[0]] + share * (point[ends[1]] - point[ends[0]]), np.full(_POINTS, along[top])
     if height <= WITNESS:
         return None, pair_count
-    return (complex(place), height, float(abs(feet[1] - feet[0])), max(rows)), pair_count
+    return (complex(peak), height, float(abs(feet[1] - feet[0])), max(rows)), pair_count
 
 
 def _foot(pieces: Swept, point: complex, along: complex) -> tuple[complex, int]:
     """The point where the tool nearest to the end of a rib touches the outline, and the row of that tool."""
-    way = _to_way(pieces, np.asarray(point))
-    beyond = np.abs(way) - pieces.radius
+    vector = _to_piece(pieces, np.asarray(point))
+    beyond = np.abs(vector) - pieces.radius
     nearest = np.flatnonzero(beyond <= beyond.min() + _CONTACT)
     runs = np.abs(((pieces.end - pieces.start)[nearest] * np.conj(along)).real)
     best = nearest[np.argmax(runs / np.maximum(np.abs(pieces.end - pieces.start)[nearest], ZERO))]
-    beside = (way[best] * np.conj(along)).real
+    shift = (vector[best] * np.conj(along)).real
     # Beyond this distance the tool does not touch this wall but one round a corner.
     limit = 2 * np.sqrt(2 * pieces.radius[best] * _CONTACT)
-    return point + np.clip(beside, -limit, limit) * along, int(pieces.row[best])
+    return point + np.clip(shift, -limit, limit) * along, int(pieces.row[best])
 
 
 def _heights(pieces: Swept, point: Points, along: Points, radius: float) -> Floats:
@@ -312,19 +312,19 @@ def first_tool(pieces: Swept, radius: Floats, point: Points, away: Points) -> Fl
 def _first_tool(pieces: Swept, radius: Floats, point: Points, away: Points) -> Floats:
     """The same for one batch: all points with all pieces at once."""
     away = away[:, None]
-    way = pieces.end - pieces.start
-    length = np.maximum(np.abs(way), ZERO)
+    vector = pieces.end - pieces.start
+    length = np.maximum(np.abs(vector), ZERO)
     distances = []
     with np.errstate(all="ignore"):  # a ray that misses a tool gives NaN
         for middle in (pieces.start, pieces.end):
             local = (middle - point[:, None]) * away.conj()
             half = np.sqrt(radius**2 - local.imag**2)
             distances.append(np.where(local.real + half > 0, local.real - half, np.inf))
-        beside = (point[:, None] - pieces.start) * (way / length).conj()
-        slope = away * (way / length).conj()
+        relative = (point[:, None] - pieces.start) * (vector / length).conj()
+        slope = away * (vector / length).conj()
         for side in (-1, 1):
-            hit = (side * radius - beside.imag) / slope.imag
-            share = beside.real + hit * slope.real
+            hit = (side * radius - relative.imag) / slope.imag
+            share = relative.real + hit * slope.real
             distances.append(np.where((hit > 0) & (share > 0) & (share < length), hit, np.inf))
     nearest = np.nan_to_num(np.concatenate(distances, axis=1), nan=np.inf).min(axis=1)
     return np.asarray(np.minimum(nearest, _FAR))
@@ -334,13 +334,13 @@ def _distinct_ribs(candidates: list[tuple[int, complex, float, float, int]], rad
     """Each rib once, at its highest: most ribs lie between two corners, and several loops may leave the same one."""
     distinct: list[tuple[int, complex, float, float, int]] = []
     for candidate in sorted(candidates, key=lambda rib: (round(rib[2], 3), rib[-1]), reverse=True):
-        if all(abs(candidate[1] - other[1]) > max(radius[candidate[0]], other[3]) for other in distinct):
+        if all(abs(candidate[1] - higher[1]) > max(radius[candidate[0]], higher[3]) for higher in distinct):
             distinct.append(candidate)
     if not distinct:
         return _none()
-    group, place, height, width, row = zip(*distinct, strict=True)
+    group, point, height, width, row = zip(*distinct, strict=True)
     none = np.zeros(0, np.int64)
-    return Ribs(np.array(group), np.array(place), np.array(height), np.array(width), np.array(row), none)
+    return Ribs(np.array(group), np.array(point), np.array(height), np.array(width), np.array(row), none)
 
 
 def _lines(start: Points, end: Points) -> Geometries:

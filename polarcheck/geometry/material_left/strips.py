@@ -98,7 +98,9 @@ def _swept_area(swept: Swept) -> Any:
     lines, last = lines_through(swept.start, swept.end, joined)
     radius = swept.radius[last]
     # A pass that is repeated deeper sweeps the same area.
-    fresh = list({key: at for at, key in enumerate(zip(shapely.to_wkb(lines), radius.tolist(), strict=True))}.values())
+    fresh = list(
+        {key: index for index, key in enumerate(zip(shapely.to_wkb(lines), radius.tolist(), strict=True))}.values()
+    )
     lines, radius = shapely.simplify(lines[fresh], _STRAIGHT), radius[fresh]
     if shapely.get_num_coordinates(lines).sum() > _MOST_PIECES:
         return None
@@ -122,8 +124,8 @@ def _strip(
     if not WITNESS < thickness < radius or shapely.distance(piece, part) < _BESIDE:
         return None
     middle = (walls.start + walls.end) / 2
-    behind = np.sort(middles.query(piece, "dwithin", _BESIDE))
-    wall_length = np.abs(walls.end - walls.start)[behind]
+    adjacent = np.sort(middles.query(piece, "dwithin", _BESIDE))
+    wall_length = np.abs(walls.end - walls.start)[adjacent]
     if runs_out:
         widest = 2 * areas.maximum_inscribed_circle(piece).length
         if length < _LONG * radius or thickness < _EVEN * widest or wall_length.sum() < length / 2:
@@ -135,11 +137,11 @@ def _strip(
         point = complex(*shapely.get_coordinates(piece.representative_point())[0])
         nearest = int(np.argmin(np.abs((swept.start + swept.end) / 2 - point)))
         return Strip(thickness, int(swept.row[nearest]), point)
-    way = (walls.end - walls.start)[behind]
-    back = np.where(left[behind], -1j, 1j) * way / np.abs(way)
-    begin = middle[behind] + _BESIDE * back
+    vector = (walls.end - walls.start)[adjacent]
+    back = np.where(left[adjacent], -1j, 1j) * vector / np.abs(vector)
+    begin = middle[adjacent] + _BESIDE * back
     across = first_tool(swept, swept.radius, begin, back) + _BESIDE
     order = np.argsort(across)
     median = order[np.searchsorted(np.cumsum(wall_length[order]), wall_length.sum() / 2)]
-    place = complex(middle[behind][median] + back[median] * across[median] / 2)
-    return Strip(float(across[median]), int(row[behind][median]), place) if across[median] < radius else None
+    location = complex(middle[adjacent][median] + back[median] * across[median] / 2)
+    return Strip(float(across[median]), int(row[adjacent][median]), location) if across[median] < radius else None

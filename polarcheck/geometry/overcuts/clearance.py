@@ -27,30 +27,30 @@ def keeps_away(contour: Curves, path: Curves, radius: Floats, tolerance: float) 
     """
     if len(contour) * len(path) > _PAIRS:
         return False
-    walls, ways = segments(contour, tolerance), segments(path, tolerance)
-    ways = ways[radius[ways.move] > tolerance]
-    if len(walls) * len(ways) > _PAIRS:
+    walls, chords = segments(contour, tolerance), segments(path, tolerance)
+    chords = chords[radius[chords.move] > tolerance]
+    if len(walls) * len(chords) > _PAIRS:
         return False
-    wall, way = np.nonzero(walls.loop[:, None] == ways.loop)
-    wall_ends, way_ends = (walls.start[wall], walls.end[wall]), (ways.start[way], ways.end[way])
+    wall, chord = np.nonzero(walls.loop[:, None] == chords.loop)
+    wall_ends, chord_ends = (walls.start[wall], walls.end[wall]), (chords.start[chord], chords.end[chord])
     distance = np.minimum.reduce(
-        [_aside(point, *line) for line, ends in ((wall_ends, way_ends), (way_ends, wall_ends)) for point in ends]
+        [_aside(point, *line) for line, ends in ((wall_ends, chord_ends), (chord_ends, wall_ends)) for point in ends]
     )
     # Pairs within rounding of the limit fail here, and the search for overcuts measures them.
-    return not (_cross(wall_ends, way_ends) | ~(distance > radius[ways.move[way]] - tolerance + ROUNDING)).any()
+    return not (_cross(wall_ends, chord_ends) | ~(distance > radius[chords.move[chord]] - tolerance + ROUNDING)).any()
 
 
 def _aside(point: Points, start: Points, end: Points) -> Floats:
     """The distance [mm] of each point from the straight line of the same row."""
-    way, to = end - start, point - start
-    along = np.clip(dot(to, way) / np.maximum(np.abs(way) ** 2, ZERO**2), 0, 1)
-    return np.asarray(np.abs(to - along * way))
+    vector, to = end - start, point - start
+    along = np.clip(dot(to, vector) / np.maximum(np.abs(vector) ** 2, ZERO**2), 0, 1)
+    return np.asarray(np.abs(to - along * vector))
 
 
-def _cross(one: tuple[Points, Points], other: tuple[Points, Points]) -> Mask:
+def _cross(walls: tuple[Points, Points], chords: tuple[Points, Points]) -> Mask:
     """True where two lines cross between their ends. Of lines that only touch, one has an end on the other."""
-    crossed = np.ones(len(one[0]), bool)
-    for (start, end), ends in ((one, other), (other, one)):
+    crossed = np.ones(len(walls[0]), bool)
+    for (start, end), ends in ((walls, chords), (chords, walls)):
         first, last = (np.sign(cross(end - start, point - start)) for point in ends)
         crossed &= first != last
     return crossed

@@ -82,7 +82,7 @@ def cuts_into(
     searched = np.isin(np.arange(len(radius)), group)
     whole, start, end = _outline(part, by_walls, searched)
     if may_be_far:
-        number, pieces, group = _beside(whole, pieces, group, radius, part.pitch)
+        number, pieces, group = _clipped(whole, pieces, group, radius, part.pitch)
     else:
         number, pieces = np.arange(len(pieces)), pieces.shifted(part.pitch * group)
     if not len(number) or not len(start):
@@ -103,14 +103,14 @@ def cuts_into(
         near = shapely.dwithin(whole[group[rows]], line, radius[group[rows]] - tolerance)
         rows, line = rows[near], line[near]
         (_, edge), aside = tree.query_nearest(line, all_matches=False, return_distance=True)
-        place, tool = ends_of(shapely.shortest_line(tree.geometries[edge], line))
+        nearest, tool = ends_of(shapely.shortest_line(tree.geometries[edge], line))
         depth = radius[group[rows]] - np.where(shapely.intersects(solid[group[rows]], line), 0, aside)
         wall = np.full(len(rows), -1)
-        cuts.append(Cuts(number[rows], pieces.move[rows], group[rows], wall, depth, aside, place, tool))
+        cuts.append(Cuts(number[rows], pieces.move[rows], group[rows], wall, depth, aside, nearest, tool))
     return Cuts.concatenated(cuts)
 
 
-def with_walls(part: FinishedParts, cuts: Cuts) -> Cuts:
+def assign_walls(part: FinishedParts, cuts: Cuts) -> Cuts:
     """
     The cuts with the walls that they go into, at a corner once for each wall.
 
@@ -119,7 +119,7 @@ def with_walls(part: FinishedParts, cuts: Cuts) -> Cuts:
     return _into(part, cuts, *_nearest_walls(part, cuts))
 
 
-def with_facing_walls(part: FinishedParts, cuts: Cuts) -> Cuts:
+def assign_facing_walls(part: FinishedParts, cuts: Cuts) -> Cuts:
     """The cuts with the wall that each goes into, at a corner the wall that faces the tool; places as `with_walls`."""
     cut, wall = _nearest_walls(part, cuts)
     along = part.end[wall] - part.start[wall]
@@ -155,14 +155,14 @@ def shortened(part: FinishedParts, radius: Floats) -> FinishedParts:
     long = part.along[:, 1] - part.along[:, 0]
     reach = np.where(part.open, radius, -np.inf)[part.group]
     with np.errstate(all="ignore"):  # infinite lengths are intended
-        one, other = ((limit - part.along[:, 0]) / long for limit in (reach, total - reach))
-    low, high = np.clip(np.minimum(one, other), 0, 1), np.clip(np.maximum(one, other), 0, 1)
-    way = part.end - part.start
-    remains = (high - low) * np.abs(way) > ZERO
+        first, second = ((limit - part.along[:, 0]) / long for limit in (reach, total - reach))
+    low, high = np.clip(np.minimum(first, second), 0, 1), np.clip(np.maximum(first, second), 0, 1)
+    vector = part.end - part.start
+    remains = (high - low) * np.abs(vector) > ZERO
     remains &= reach < total - reach
     columns = {name: getattr(part, name)[remains] for name in ("move", "group", "along", "ahead")}
     return msgspec.structs.replace(
-        part, start=(part.start + low * way)[remains], end=(part.start + high * way)[remains], **columns
+        part, start=(part.start + low * vector)[remains], end=(part.start + high * vector)[remains], **columns
     )
 
 
@@ -184,7 +184,7 @@ def _outline(part: FinishedParts, by_walls: Mask, searched: Mask) -> tuple[Geome
     return whole, np.append(start, begins), np.append(end, ends)
 
 
-def _beside(
+def _clipped(
     whole: Geometries, pieces: Segments, group: Rows, radius: Floats, pitch: float
 ) -> tuple[Rows, Segments, Rows]:
     """
@@ -194,23 +194,23 @@ def _beside(
     """
     bounds = shapely.bounds(whole)[group]
     shift = pitch * group
-    way = pieces.end - pieces.start
+    vector = pieces.end - pieces.start
     first, last = np.zeros(len(pieces)), np.ones(len(pieces))
     outside = np.isnan(bounds[:, 0])
     far = radius[group]
-    for at, along, low, high in (
-        (pieces.start.real + shift, way.real, bounds[:, 0] - far, bounds[:, 2] + far),
-        (pieces.start.imag, way.imag, bounds[:, 1] - far, bounds[:, 3] + far),
+    for coordinate, along, low, high in (
+        (pieces.start.real + shift, vector.real, bounds[:, 0] - far, bounds[:, 2] + far),
+        (pieces.start.imag, vector.imag, bounds[:, 1] - far, bounds[:, 3] + far),
     ):
         with np.errstate(all="ignore"):  # a way along the side never meets it
-            one, other = (low - at) / along, (high - at) / along
+            to_low, to_high = (low - coordinate) / along, (high - coordinate) / along
         across = np.abs(along) > ZERO
-        first = np.where(across, np.fmax(first, np.fmin(one, other)), first)
-        last = np.where(across, np.fmin(last, np.fmax(one, other)), last)
-        outside |= ~across & ((at < low) | (at > high))
+        first = np.where(across, np.fmax(first, np.fmin(to_low, to_high)), first)
+        last = np.where(across, np.fmin(last, np.fmax(to_low, to_high)), last)
+        outside |= ~across & ((coordinate < low) | (coordinate > high))
     number = np.flatnonzero(~outside & (first <= last))
     begin = pieces.start + shift
-    cut = Segments(begin + way * first, begin + way * last, pieces.move, pieces.loop)
+    cut = Segments(begin + vector * first, begin + vector * last, pieces.move, pieces.loop)
     return number, cut[number], group[number]
 
 

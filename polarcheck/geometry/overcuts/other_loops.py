@@ -13,7 +13,7 @@ import numpy as np
 import shapely  # type: ignore[import-untyped]
 
 from polarcheck.foundation.arrays import Floats, Mask, Rows
-from polarcheck.geometry.overcuts.cuts import Cuts, cuts_into, endless, shortened, with_walls
+from polarcheck.geometry.overcuts.cuts import Cuts, assign_walls, cuts_into, endless, shortened
 from polarcheck.geometry.polygons import areas
 from polarcheck.geometry.polygons.faces import lines_of
 from polarcheck.geometry.polygons.finished_part import Contours, finished_parts
@@ -33,24 +33,24 @@ def cuts_into_others(contour: Contours, level: Rows, path: Curves, radius: Float
     loops, group = _neighbours(contour.curves, level, path, float(radius.max(initial=0.0)))
     if not len(loops):
         return Cuts.none(), loops
-    place = np.minimum(np.searchsorted(loops, path.loop), len(loops) - 1)
-    chosen = np.flatnonzero(loops[place] == path.loop)
+    index = np.minimum(np.searchsorted(loops, path.loop), len(loops) - 1)
+    chosen = np.flatnonzero(loops[index] == path.loop)
     group_of_move = np.full(len(path), -1)
-    group_of_move[chosen] = group[place[chosen]]
+    group_of_move[chosen] = group[index[chosen]]
     smallest = np.full(int(group.max()) + 1, np.inf)
     np.minimum.at(smallest, group_of_move[chosen], radius[chosen])
     order = np.argsort(group, kind="stable")
     smallest = np.where(np.isfinite(smallest), smallest, 0.0)
     part = finished_parts(msgspec.structs.replace(contour, loop=loops[order], group=group[order], radius=smallest))
     tangled = loops[part.tangled[group]]
-    ways = segments(path, contour.tolerance)
-    ways = ways[group_of_move[ways.move] >= 0]
+    chords = segments(path, contour.tolerance)
+    chords = chords[group_of_move[chords.move] >= 0]
     by_walls = part.open | endless(part)
     batches = []
     for of_ramps, outline in ((False, part), (True, shortened(part, smallest))):
-        pieces = ways[is_ramp[ways.move] == of_ramps]
+        pieces = chords[is_ramp[chords.move] == of_ramps]
         cuts = cuts_into(outline, by_walls, pieces, group_of_move[pieces.move], smallest, contour.tolerance)
-        batches.append(with_walls(outline, cuts))
+        batches.append(assign_walls(outline, cuts))
     cuts = Cuts.concatenated(batches)
     return cuts[contour.curves.loop[cuts.wall] != path.loop[cuts.move]].worst(), tangled
 
@@ -95,7 +95,7 @@ def _joined_boxes(box: Floats, path: Curves, loops: Rows) -> Floats:
     begins = np.flatnonzero(np.diff(path.loop, prepend=-1))
     if not len(begins):
         return box
-    of_path, at = boxes(path, begins), np.searchsorted(loops, path.loop[begins])
-    box[:2, at] = np.minimum(box[:2, at], of_path[:2])
-    box[2:, at] = np.maximum(box[2:, at], of_path[2:])
+    of_path, index = boxes(path, begins), np.searchsorted(loops, path.loop[begins])
+    box[:2, index] = np.minimum(box[:2, index], of_path[:2])
+    box[2:, index] = np.maximum(box[2:, index], of_path[2:])
     return box

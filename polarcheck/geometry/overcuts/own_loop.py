@@ -18,7 +18,7 @@ import shapely  # type: ignore[import-untyped]
 
 from polarcheck.foundation.arrays import Floats, Mask, Points, Rows
 from polarcheck.foundation.time_limit import keep_time
-from polarcheck.geometry.overcuts.cuts import Cuts, cuts_into, with_facing_walls
+from polarcheck.geometry.overcuts.cuts import Cuts, assign_facing_walls, cuts_into
 from polarcheck.geometry.polygons import areas
 from polarcheck.geometry.polygons.faces import ends_of, gathered, lines_of, polylines
 from polarcheck.geometry.polygons.finished_part import Contours, FinishedParts, finished_parts
@@ -63,23 +63,23 @@ def overcuts(
     round the center beyond the air radius.
     """
     rows = np.flatnonzero(is_ramp | first_of_its_kind(path)) if _is_long(path) else np.arange(len(path))
-    ways = segments(path[rows], tolerance)
+    chords = segments(path[rows], tolerance)
     walls = _once(contour, tolerance)
-    ways = Segments(ways.start, ways.end, rows[ways.move], ways.loop)
-    ways = ways[(radius[ways.move] > tolerance) & np.isin(ways.loop, walls.loop)]
-    repeats = ~first_of_its_kind(path)[ways.move] if _is_long(ways) else np.zeros(len(ways), bool)
-    ways = ways[_comes_close(walls, ways, repeats, is_ramp[ways.move], radius[ways.move] - tolerance)]
-    if not len(ways):
+    chords = Segments(chords.start, chords.end, rows[chords.move], chords.loop)
+    chords = chords[(radius[chords.move] > tolerance) & np.isin(chords.loop, walls.loop)]
+    repeats = ~first_of_its_kind(path)[chords.move] if _is_long(chords) else np.zeros(len(chords), bool)
+    chords = chords[_comes_close(walls, chords, repeats, is_ramp[chords.move], radius[chords.move] - tolerance)]
+    if not len(chords):
         return Cuts.none(), np.zeros(0, np.int64)
-    loops, group = np.unique(ways.loop, return_inverse=True)
+    loops, group = np.unique(chords.loop, return_inverse=True)
     smallest = np.full(len(loops), np.inf)
-    np.minimum.at(smallest, group, radius[ways.move])
+    np.minimum.at(smallest, group, radius[chords.move])
     part = finished_parts(Contours(contour, left, loops, np.arange(len(loops)), smallest, bar, tolerance))
-    in_open = part.open[group] & is_ramp[ways.move]
-    ramps = _Ramps.of(contour, air, path, ways[in_open].shifted((part.pitch * group)[in_open]), group[in_open])
+    in_open = part.open[group] & is_ramp[chords.move]
+    ramps = _Ramps.of(contour, air, path, chords[in_open].shifted((part.pitch * group)[in_open]), group[in_open])
     own_loop = Cuts.concatenated(
         [
-            cuts_into(part, part.open, ways[~in_open], group[~in_open], smallest, tolerance, may_be_far=False),
+            cuts_into(part, part.open, chords[~in_open], group[~in_open], smallest, tolerance, may_be_far=False),
             _cuts_in_the_open(part, ramps, smallest, tolerance),
         ]
     ).worst()
@@ -91,20 +91,20 @@ def overcuts(
         levels, path, own_loop, np.where(shared, level_of_cut, -1), radius, tolerance
     )
     cuts = Cuts.concatenated(
-        [with_facing_walls(part, own_loop[unshared]), with_facing_walls(levels, compared_with_level)]
+        [assign_facing_walls(part, own_loop[unshared]), assign_facing_walls(levels, compared_with_level)]
     )
     return cuts.worst(), loops[part.tangled]
 
 
 def _levels(
-    contour: Curves, left: Mask, level: Rows, wanted: Rows, radius: float, bar: float, tolerance: float
+    contour: Curves, left: Mask, level: Rows, requested: Rows, radius: float, bar: float, tolerance: float
 ) -> FinishedParts:
     """The finished part of each of these levels, bounded by all its loops."""
     loop, first = np.unique(contour.loop, return_index=True)
-    chosen = np.flatnonzero(np.isin(level[first], wanted))
+    chosen = np.flatnonzero(np.isin(level[first], requested))
     chosen = chosen[np.argsort(level[first][chosen], kind="stable")]
-    group = np.searchsorted(wanted, level[first][chosen])
-    return finished_parts(Contours(contour, left, loop[chosen], group, np.full(len(wanted), radius), bar, tolerance))
+    group = np.searchsorted(requested, level[first][chosen])
+    return finished_parts(Contours(contour, left, loop[chosen], group, np.full(len(requested), radius), bar, tolerance))
 
 
 def _left_at_level(
@@ -116,16 +116,16 @@ def _left_at_level(
     level: int[cuts], -1 for none.
     Returns a mask of the cuts that need no comparison, and the cuts that remain of the others.
     """
-    wanted, group = np.unique(level, return_inverse=True)
-    group = group - np.count_nonzero(wanted < 0)
+    numbers, group = np.unique(level, return_inverse=True)
+    group = group - np.count_nonzero(numbers < 0)
     compared = ~np.append(levels.tangled | shapely.is_empty(levels.polygon), True)[group]
     moves = cuts.move[compared]
-    ways = segments(path[moves], tolerance)
-    group = group[compared][ways.move]
+    chords = segments(path[moves], tolerance)
+    group = group[compared][chords.move]
     smallest = np.full(len(levels.polygon), np.inf)
-    np.minimum.at(smallest, group, radius[moves[ways.move]])
-    ways = Segments(ways.start, ways.end, moves[ways.move], ways.loop)
-    remaining = cuts_into(levels, levels.open, ways, group, smallest, tolerance, may_be_far=False).worst()
+    np.minimum.at(smallest, group, radius[moves[chords.move]])
+    chords = Segments(chords.start, chords.end, moves[chords.move], chords.loop)
+    remaining = cuts_into(levels, levels.open, chords, group, smallest, tolerance, may_be_far=False).worst()
     before = cuts.depth[np.searchsorted(cuts.move, remaining.move)]
     return ~compared, msgspec.structs.replace(remaining, depth=np.minimum(remaining.depth, before))
 
@@ -146,7 +146,7 @@ def _once(curves: Curves, tolerance: float) -> Segments:
     return parts[first_of_its_kind(curves)[parts.move]] if _is_long(parts) else parts
 
 
-def _comes_close(walls: Segments, ways: Segments, repeated: Mask, is_ramp: Mask, limit: Floats) -> Mask:
+def _comes_close(walls: Segments, chords: Segments, repeated: Mask, is_ramp: Mask, limit: Floats) -> Mask:
     """
     Ramps that come nearer than the limit to a wall of their loop, and all chords of paths that do; bool[chords].
 
@@ -156,14 +156,14 @@ def _comes_close(walls: Segments, ways: Segments, repeated: Mask, is_ramp: Mask,
     contours = polylines(walls.start, walls.end, walls.loop)
     shapely.prepare(contours)
     loops = np.unique(walls.loop)
-    result = np.zeros(len(ways), bool)
-    ramps, path = np.flatnonzero(is_ramp), ways[~is_ramp]
-    lines = lines_of(ways.start[ramps], ways.end[ramps])
-    result[ramps] = shapely.dwithin(contours[np.searchsorted(loops, ways.loop[ramps])], lines, limit[ramps])
+    result = np.zeros(len(chords), bool)
+    ramps, path = np.flatnonzero(is_ramp), chords[~is_ramp]
+    lines = lines_of(chords.start[ramps], chords.end[ramps])
+    result[ramps] = shapely.dwithin(contours[np.searchsorted(loops, chords.loop[ramps])], lines, limit[ramps])
     path_loops, first, number = np.unique(path.loop, return_index=True, return_inverse=True)
     if len(path_loops):
         smallest = np.minimum.reduceat(limit[~is_ramp], first)
-        near, loop_of_way = np.zeros(len(path_loops), bool), number
+        near, loop_of_chord = np.zeros(len(path_loops), bool), number
         path, number = path[~repeated[~is_ramp]], number[~repeated[~is_ramp]]
         run = np.cumsum((np.diff(number, prepend=-1) != 0) | (np.arange(len(number)) % _LONG_RUN == 0))
         lines, loop_of_line = polylines(path.start, path.end, run), number[np.diff(run, prepend=0) != 0]
@@ -177,7 +177,7 @@ def _comes_close(walls: Segments, ways: Segments, repeated: Mask, is_ramp: Mask,
                 contours[np.searchsorted(loops, path_loops[loop_number])], lines[undecided], smallest[loop_number]
             )
             near[loop_number[close]] = True
-        result[~is_ramp] = near[loop_of_way]
+        result[~is_ramp] = near[loop_of_chord]
     return result
 
 
@@ -202,57 +202,57 @@ class _Ramps(msgspec.Struct, frozen=True):
     in_air: Mask
 
     @classmethod
-    def of(cls, contour: Curves, air: Floats, path: Curves, ways: Segments, group: Rows) -> _Ramps:
+    def of(cls, contour: Curves, air: Floats, path: Curves, chords: Segments, group: Rows) -> _Ramps:
         """Ramps from chords that are shifted to their groups."""
         order = np.argsort(contour.loop, kind="stable")
-        first = order[np.searchsorted(contour.loop[order], ways.loop)]
-        begins = path.row[ways.move] < contour.row[first]
-        far = np.abs(np.where(begins, path.start[ways.move], path.end[ways.move]))
-        return cls(ways, group, begins, air[first], far >= air[first])
+        first = order[np.searchsorted(contour.loop[order], chords.loop)]
+        begins = path.row[chords.move] < contour.row[first]
+        far = np.abs(np.where(begins, path.start[chords.move], path.end[chords.move]))
+        return cls(chords, group, begins, air[first], far >= air[first])
 
 
 def _cuts_in_the_open(part: FinishedParts, ramps: _Ramps, radius: Floats, tolerance: float) -> Cuts:
     """Cuts of ramps into contours that are open where the ramp touches them."""
-    ways, group, begins = ramps.ways, ramps.group, ramps.begins
-    if not len(ways):
+    chords, group, begins = ramps.ways, ramps.group, ramps.begins
+    if not len(chords):
         return Cuts.none()
     radius = radius[group]
     in_air = ramps.in_air & _is_round_center(part)[group]
-    lines = lines_of(ways.start, ways.end)
-    behind = areas.intersection(lines, part.polygon[group])
+    lines = lines_of(chords.start, chords.end)
+    inside = areas.intersection(lines, part.polygon[group])
     center = shapely.points(part.pitch * group[in_air], 0.0)
     within = areas.buffer(center, ramps.air[in_air], quad_segs=64)
-    behind[in_air] = areas.intersection(behind[in_air], within)
-    wall, way = members(part.group, group)
-    near = _within_reach(part, wall, ways, way, radius)
-    wall, way = wall[near], way[near]
-    length = np.where(begins[way][:, None], part.along[wall], part.ahead[wall])
+    inside[in_air] = areas.intersection(inside[in_air], within)
+    wall, chord = members(part.group, group)
+    near = _within_reach(part, wall, chords, chord, radius)
+    wall, chord = wall[near], chord[near]
+    length = np.where(begins[chord][:, None], part.along[wall], part.ahead[wall])
     cuts = [Cuts.none()]
     for low, high, path, allowed in (
-        (np.zeros(len(ways)), radius, behind, _slant(ways.end - ways.start, radius)),
-        (radius, np.full(len(ways), np.inf), lines, 0.0),
+        (np.zeros(len(chords)), radius, inside, _slant(chords.end - chords.start, radius)),
+        (radius, np.full(len(chords), np.inf), lines, 0.0),
     ):
-        start, end, chosen = _between(part, wall, length, low[way], high[way])
-        walls = gathered(lines_of(start, end), way[chosen], len(ways))
+        start, end, chosen = _between(part, wall, length, low[chord], high[chord])
+        walls = gathered(lines_of(start, end), chord[chosen], len(chords))
         if path is lines:
             walls[in_air] = areas.intersection(walls[in_air], within)
         depth = radius - shapely.distance(walls, path)
         cut = np.flatnonzero(depth > tolerance + allowed)  # NaN without walls, or with nothing behind them
-        place, tool = ends_of(shapely.shortest_line(walls[cut], path[cut]))
+        nearest, tool = ends_of(shapely.shortest_line(walls[cut], path[cut]))
         aside, unknown = (radius - depth)[cut], np.full(len(cut), -1)
-        cuts.append(Cuts(cut, ways.move[cut], group[cut], unknown, depth[cut], aside, place, tool))
+        cuts.append(Cuts(cut, chords.move[cut], group[cut], unknown, depth[cut], aside, nearest, tool))
     return Cuts.concatenated(cuts)
 
 
-def _within_reach(part: FinishedParts, wall: Rows, ways: Segments, way: Rows, reach: Floats) -> Mask:
+def _within_reach(part: FinishedParts, wall: Rows, chords: Segments, chord: Rows, reach: Floats) -> Mask:
     """Pairs of a wall and a chord whose boxes come within reach [mm] of each other; bool[pairs]."""
     result = np.ones(len(wall), bool)
     for a, b, c, d in (
-        (part.start.real, part.end.real, ways.start.real, ways.end.real),
-        (part.start.imag, part.end.imag, ways.start.imag, ways.end.imag),
+        (part.start.real, part.end.real, chords.start.real, chords.end.real),
+        (part.start.imag, part.end.imag, chords.start.imag, chords.end.imag),
     ):
         low, high = np.minimum(c, d) - reach, np.maximum(c, d) + reach
-        result &= (np.minimum(a, b)[wall] <= high[way]) & (low[way] <= np.maximum(a, b)[wall])
+        result &= (np.minimum(a, b)[wall] <= high[chord]) & (low[chord] <= np.maximum(a, b)[wall])
     return result
 
 
@@ -268,16 +268,16 @@ def _between(part: FinishedParts, wall: Rows, length: Floats, low: Floats, high:
 
     length: float64[pairs, 2] [mm], distances at which the wall starts and ends. low, high: float64[pairs] [mm].
     """
-    start, way = part.start[wall], part.end[wall] - part.start[wall]
+    start, vector = part.start[wall], part.end[wall] - part.start[wall]
     long = length[:, 1] - length[:, 0]
     with np.errstate(all="ignore"):  # infinite lengths are intended
         shares = [np.clip((limit - length[:, 0]) / long, 0, 1) for limit in (low, high)]
-    chosen = np.flatnonzero(np.abs(shares[1] - shares[0]) * np.abs(way) > ZERO)
-    from_, to = (start[chosen] + way[chosen] * share[chosen] for share in shares)
+    chosen = np.flatnonzero(np.abs(shares[1] - shares[0]) * np.abs(vector) > ZERO)
+    from_, to = (start[chosen] + vector[chosen] * share[chosen] for share in shares)
     return from_, to, chosen
 
 
-def _slant(way: Points, radius: Floats) -> Floats:
+def _slant(vector: Points, radius: Floats) -> Floats:
     """The depth [mm] at which a ramp cuts its end point if it ends perpendicular to its programmed direction."""
-    far = np.maximum(np.abs(way), ZERO)
+    far = np.maximum(np.abs(vector), ZERO)
     return np.asarray(radius * (1 - np.sqrt(np.maximum(far**2 - radius**2, 0)) / far))

@@ -14,7 +14,7 @@ import shapely  # type: ignore[import-untyped]
 
 from polarcheck.foundation.arrays import Floats, Mask, Rows
 from polarcheck.foundation.time_limit import keep_time
-from polarcheck.geometry.overcuts.cuts import Cuts, cuts_into, endless, shortened, with_walls
+from polarcheck.geometry.overcuts.cuts import Cuts, assign_walls, cuts_into, endless, shortened
 from polarcheck.geometry.overcuts.uncompensated_moves import Bare, FlatLoops
 from polarcheck.geometry.polygons.faces import coordinates, lines_of
 from polarcheck.geometry.polygons.finished_part import Contours, FinishedParts, finished_parts
@@ -47,10 +47,10 @@ def cuts_into_part(contour: Contours, loops: FlatLoops, bare: Bare) -> tuple[Cut
     if not len(groups.top):
         return Cuts.none(), none
     move, group = _pairs(groups, bare)
-    ways, group = _ways(bare, move, group, contour.tolerance)
+    chords, group = _chords(bare, move, group, contour.tolerance)
     radius = np.zeros(len(groups.top))
-    np.maximum.at(radius, group, bare.radius[ways.move])
-    near = _comes_near(contour, groups, ways, group, radius)
+    np.maximum.at(radius, group, bare.radius[chords.move])
+    near = _comes_near(contour, groups, chords, group, radius)
     near_groups = np.unique(group[near])
     if not len(near_groups):
         return Cuts.none(), none
@@ -59,19 +59,19 @@ def cuts_into_part(contour: Contours, loops: FlatLoops, bare: Bare) -> tuple[Cut
     radius = radius[near_groups]
     part = finished_parts(msgspec.structs.replace(contour, loop=groups.loop[is_near], group=number, radius=radius))
     tangled = groups.loop[is_near][part.tangled[number]]
-    ways, group = ways[near], np.searchsorted(near_groups, group[near])
+    chords, group = chords[near], np.searchsorted(near_groups, group[near])
     outline, is_endless = shortened(part, radius), endless(part)
-    cuts = cuts_into(outline, part.open | is_endless, ways, group, radius, contour.tolerance)
-    cuts = with_walls(outline, cuts)
+    cuts = cuts_into(outline, part.open | is_endless, chords, group, radius, contour.tolerance)
+    cuts = assign_walls(outline, cuts)
     deep = ~bare.plunges[cuts.move] | (cuts.aside < radius[cuts.group] - contour.tolerance)
     depth = cuts.depth - radius[cuts.group] + bare.radius[cuts.move]
-    deep &= (depth > contour.tolerance) & ~(is_endless[cuts.group] & _begins_in(part, cuts, ways))
+    deep &= (depth > contour.tolerance) & ~(is_endless[cuts.group] & _begins_in(part, cuts, chords))
     return msgspec.structs.replace(cuts, depth=depth)[deep].worst(), np.unique(tangled)
 
 
-def _begins_in(part: FinishedParts, cuts: Cuts, ways: Segments) -> Mask:
+def _begins_in(part: FinishedParts, cuts: Cuts, chords: Segments) -> Mask:
     """True where the chord of a cut begins in the part. The surroundings far from a pocket may be air."""
-    begin = ways.start[cuts.piece]
+    begin = chords.start[cuts.piece]
     beyond = np.maximum(np.abs(begin.real), np.abs(begin.imag)) >= part.pitch / 3
     points = shapely.points(coordinates(begin + part.pitch * cuts.group))
     return np.asarray(beyond | shapely.intersects(part.polygon[cuts.group], points))
@@ -112,8 +112,8 @@ def _groups(curves: Curves, loops: FlatLoops, bare: Bare) -> _Groups:
     level = np.flatnonzero(last & (z >= lowest[section] - ROUNDING))
     same = (np.diff(bounding[level]) == 0) & (np.diff(section[level]) == 0)
     level = level[np.append(~same, True)]
-    place = np.arange(len(level)) - np.searchsorted(section[level], section[level])
-    level = level[place < _DEPTHS]
+    index = np.arange(len(level)) - np.searchsorted(section[level], section[level])
+    level = level[index < _DEPTHS]
     count = level - begin[level] + 1
     group = np.repeat(np.arange(len(level)), count)
     loop = np.arange(len(group)) - np.repeat(np.cumsum(count) - count, count) + begin[level][group]
@@ -127,8 +127,8 @@ def _first_of_equal(curves: Curves, section: Rows, loop: Rows) -> Mask:
     start, first = curves.start[curve], np.searchsorted(curves.loop, loop)
     count = np.searchsorted(curves.loop, loop, side="right") - first
     begin = np.cumsum(count) - count
-    place = np.arange(1, len(curve) + 1) - np.repeat(begin, count)
-    sums = [np.add.reduceat(column, begin) for column in (start, start * place, np.abs(curves.end[curve]))]
+    index = np.arange(1, len(curve) + 1) - np.repeat(begin, count)
+    sums = [np.add.reduceat(column, begin) for column in (start, start * index, np.abs(curves.end[curve]))]
     key = [section, count, *(np.rint(part / _SAME_SUM) for total in sums for part in (total.real, total.imag))]
     _, first = np.unique(np.stack(key, axis=1), axis=0, return_index=True)
     fresh = np.zeros(len(loop), bool)
@@ -143,7 +143,7 @@ def _pairs(groups: _Groups, bare: Bare) -> tuple[Rows, Rows]:
     return move[is_deep], group[is_deep]
 
 
-def _ways(bare: Bare, move: Rows, group: Rows, tolerance: float) -> tuple[Segments, Rows]:
+def _chords(bare: Bare, move: Rows, group: Rows, tolerance: float) -> tuple[Segments, Rows]:
     """The chords of the moves, a point for a move of Z alone, and the group of each."""
     curves = msgspec.structs.replace(bare.curves[move], loop=np.arange(len(move)))
     parts = segments(curves, tolerance)
@@ -153,7 +153,7 @@ def _ways(bare: Bare, move: Rows, group: Rows, tolerance: float) -> tuple[Segmen
     return Segments(start, end, move[number], bare.curves.loop[move][number]), group[number]
 
 
-def _comes_near(contour: Contours, groups: _Groups, ways: Segments, group: Rows, radius: Floats) -> Mask:
+def _comes_near(contour: Contours, groups: _Groups, chords: Segments, group: Rows, radius: Floats) -> Mask:
     """
     True for chords that come within R of a wall, or that begin behind their nearest wall.
 
@@ -163,17 +163,17 @@ def _comes_near(contour: Contours, groups: _Groups, ways: Segments, group: Rows,
     curve, entry = members(contour.curves.loop, groups.loop)
     curves = msgspec.structs.replace(contour.curves[curve], loop=groups.group[entry])
     box = boxes(curves, np.flatnonzero(np.diff(curves.loop, prepend=-1)))[:, group]
-    inside = (ways.start.real >= box[0]) & (ways.start.real <= box[2])
-    inside &= (ways.start.imag >= box[1]) & (ways.start.imag <= box[3])
-    inside = np.flatnonzero(inside | (np.abs(ways.start) < contour.bar / 2))
-    far = 4 * float(np.abs(box).max() + max(np.abs(ways.start).max(), np.abs(ways.end).max())) + 1
-    begin = (ways.start + far * group)[inside]
-    points, line = shapely.points(coordinates(begin)), lines_of(ways.start + far * group, ways.end + far * group)
-    candidates = _nearby(curves, ways, group, radius)
+    inside = (chords.start.real >= box[0]) & (chords.start.real <= box[2])
+    inside &= (chords.start.imag >= box[1]) & (chords.start.imag <= box[3])
+    inside = np.flatnonzero(inside | (np.abs(chords.start) < contour.bar / 2))
+    far = 4 * float(np.abs(box).max() + max(np.abs(chords.start).max(), np.abs(chords.end).max())) + 1
+    begin = (chords.start + far * group)[inside]
+    points, line = shapely.points(coordinates(begin)), lines_of(chords.start + far * group, chords.end + far * group)
+    candidates = _nearby(curves, chords, group, radius)
     curves, curve = curves[candidates], curve[candidates]
     walls = segments(curves, contour.tolerance)
     start, end = walls.start + far * walls.loop, walls.end + far * walls.loop
-    near = np.zeros(len(ways), bool)
+    near = np.zeros(len(chords), bool)
     if not len(walls):
         return near
     tree = shapely.STRtree(lines_of(start, end))
@@ -186,30 +186,32 @@ def _comes_near(contour: Contours, groups: _Groups, ways: Segments, group: Rows,
         )
         near[first + close] = apart <= radius[group[first + close]]
     (begins_at, _), distance = tree.query_nearest(points, all_matches=False, return_distance=True)
-    way, wall = tree.query(points[begins_at], predicate="dwithin", distance=distance + ROUNDING)
-    way = begins_at[way]
-    aside = ((begin[way] - start[wall]) * (end - start)[wall].conj()).imag > 0
-    near[inside[way[aside != contour.left[curve[walls.move[wall]]]]]] = True
+    chord, wall = tree.query(points[begins_at], predicate="dwithin", distance=distance + ROUNDING)
+    chord = begins_at[chord]
+    aside = ((begin[chord] - start[wall]) * (end - start)[wall].conj()).imag > 0
+    near[inside[chord[aside != contour.left[curve[walls.move[wall]]]]]] = True
     return near
 
 
-def _nearby(curves: Curves, ways: Segments, group: Rows, radius: Floats) -> Rows:
+def _nearby(curves: Curves, chords: Segments, group: Rows, radius: Floats) -> Rows:
     """Curves that may be within R of a chord of their group or nearest to its start; all if pairs are too many."""
-    _, first = np.unique(np.stack([group, ways.start, ways.end], axis=1), axis=0, return_index=True)
-    start, end, group = ways.start[first], ways.end[first], group[first]
+    _, first = np.unique(np.stack([group, chords.start, chords.end], axis=1), axis=0, return_index=True)
+    start, end, group = chords.start[first], chords.end[first], group[first]
     count = np.bincount(curves.loop, minlength=len(radius))[group]
     if count.sum() > _PAIRS:
         return np.arange(len(curves))
-    curve, way = members(curves.loop, group)
+    curve, chord = members(curves.loop, group)
     long = reach_from_start(curves)
-    far = curves.start[curve] - start[way]
+    far = curves.start[curve] - start[chord]
     apart = np.abs(far)
     nearest = np.minimum.reduceat(apart, np.cumsum(count) - count)
     along = end - start
     length = np.maximum(np.abs(along), ZERO)
-    place = np.clip((far * (along / length)[way].conj()).real, 0, length[way])
-    aside = np.abs(far - place * (along / length)[way])
-    is_close = (apart - long[curve] <= nearest[way] + ROUNDING) | (aside - long[curve] <= radius[group][way] + ROUNDING)
+    foot = np.clip((far * (along / length)[chord].conj()).real, 0, length[chord])
+    aside = np.abs(far - foot * (along / length)[chord])
+    is_close = (apart - long[curve] <= nearest[chord] + ROUNDING) | (
+        aside - long[curve] <= radius[group][chord] + ROUNDING
+    )
     chosen = np.zeros(len(curves), bool)
     chosen[curve[is_close]] = True
     return np.flatnonzero(chosen)

@@ -82,10 +82,10 @@ def union_all(areas: Any, grid_size: float | None = None) -> Any:
     return _bounded(shapely.union_all, int(np.sum(shapely.get_num_coordinates(areas))), areas, grid_size=grid_size)
 
 
-def dwithin(one: Any, other: Any, distance: Any) -> Any:
+def dwithin(first: Any, second: Any, distance: Any) -> Any:
     """A boolean per pair: the first geometry lies within the distance of the second [mm]."""
-    share = np.cumsum(shapely.get_num_coordinates(other)) // _PIECES_AT_A_TIME
-    result = np.zeros(len(other), bool)
-    for part in np.split(np.arange(len(other)), np.flatnonzero(np.diff(share)) + 1):
-        result[part] = _bounded(shapely.dwithin, 0, one[part], other[part], distance=distance[part])
+    share = np.cumsum(shapely.get_num_coordinates(second)) // _PIECES_AT_A_TIME
+    result = np.zeros(len(second), bool)
+    for part in np.split(np.arange(len(second)), np.flatnonzero(np.diff(share)) + 1):
+        result[part] = _bounded(shapely.dwithin, 0, first[part], second[part], distance=distance[part])
     return result

@@ -89,15 +89,15 @@ def _without_slits(area: Any) -> Any:
 
 def _across(polygon: Any, chords: Segments, radius: float) -> float:
     keep_time()
-    way = chords.end - chords.start
-    count = np.clip(np.ceil(np.abs(way) / radius), 1, _SAMPLES).astype(np.int64)
-    of = np.repeat(np.arange(len(way)), count)
+    vector = chords.end - chords.start
+    count = np.clip(np.ceil(np.abs(vector) / radius), 1, _SAMPLES).astype(np.int64)
+    of = np.repeat(np.arange(len(vector)), count)
     share = (np.arange(len(of)) - (np.cumsum(count) - count)[of] + 0.5) / count[of]
-    at = chords.start[of] + share * way[of]
-    aside = 1j * (way / np.abs(way))[of] * (radius + _TOLERANCE)
-    length = (np.abs(way) / count)[of]
+    point = chords.start[of] + share * vector[of]
+    aside = 1j * (vector / np.abs(vector))[of] * (radius + _TOLERANCE)
+    length = (np.abs(vector) / count)[of]
     shapely.prepare(polygon)
-    left, right = (~shapely.intersects_xy(polygon, side.real, side.imag) for side in (at + aside, at - aside))
+    left, right = (~shapely.intersects_xy(polygon, side.real, side.imag) for side in (point + aside, point - aside))
     return float(length[left & right].sum() / length.sum())
 
 
@@ -115,9 +115,9 @@ def _outline(polygon: Any, path: Curves, chords: Segments, radius: float) -> Out
     move, corner, at_corner = _sources(middle, near, path, chords)
     source = np.where(at_corner, len(path) + corner, move)
     curves = _curves(path, radius)
-    found = outline_of(start, end, source, curves)
-    of = found.row
-    exact = _exact_ends(found, _beside(found, of, path, curves, radius))
+    outline = outline_of(start, end, source, curves)
+    of = outline.row
+    exact = _exact_ends(outline, _exact_curves(outline, of, path, curves, radius))
     return msgspec.structs.replace(exact, row=np.append(path.row, np.repeat(path.row, 2))[exact.row])
 
 
@@ -148,12 +148,12 @@ def _sources(middle: Points, near: Rows, path: Curves, chords: Segments) -> tupl
     A point is told by the first of all ends of moves that lie there: 2 * move, and 2 * move + 1 for its end.
     """
     move = chords.move[near]
-    begin, way = chords.start[near], chords.end[near] - chords.start[near]
-    along = ((middle - begin) * way.conj()).real / np.abs(way)
-    before, behind = along <= ROUNDING, along >= np.abs(way) - ROUNDING
+    begin, vector = chords.start[near], chords.end[near] - chords.start[near]
+    along = ((middle - begin) * vector.conj()).real / np.abs(vector)
+    before, after = along <= ROUNDING, along >= np.abs(vector) - ROUNDING
     # Ends of chords within an arc are no corners: what is round there is the arc.
     at_start = before & (np.abs(begin - path.start[move]) <= ROUNDING)
-    at_end = behind & (np.abs(begin + way - path.end[move]) <= ROUNDING)
+    at_end = after & (np.abs(begin + vector - path.end[move]) <= ROUNDING)
     ends = np.stack([path.start, path.end], axis=-1).ravel()
     keys = np.round(ends / (10 * ROUNDING))
     _, first, number = np.unique(keys, return_index=True, return_inverse=True)
@@ -174,7 +174,7 @@ def _curves(path: Curves, radius: float) -> Curves:
     )
 
 
-class _Beside(NamedTuple):
+class _ExactCurves(NamedTuple):
     """
     The exact curve of each element: a circle by its center and R, or a line by a point of it and its direction.
 
@@ -191,70 +191,70 @@ class _Beside(NamedTuple):
     end: Points
     beyond: Mask
 
-    def nearest(self, at: Points, of: Rows) -> Points:
+    def nearest(self, point: Points, of: Rows) -> Points:
         """The point of each curve that is nearest to the given point."""
-        foot = self.point[of] + ((at - self.point[of]) * self.along[of].conj()).real * self.along[of]
-        spoke = at - self.center[of]
+        foot = self.point[of] + ((point - self.point[of]) * self.along[of].conj()).real * self.along[of]
+        spoke = point - self.center[of]
         far = np.fmax(np.abs(spoke), ROUNDING)
-        return np.where(np.isnan(self.radius[of]), foot, at + spoke * (self.radius[of] / far - 1))
+        return np.where(np.isnan(self.radius[of]), foot, point + spoke * (self.radius[of] / far - 1))
 
-    def touched(self, one: Rows, other: Rows) -> Points:
+    def touched(self, element: Rows, adjacent: Rows) -> Points:
         """The point where the curve beside a move meets the circle round an end of that move; NaN where it does not."""
-        corner = self.corner[other]
-        at = self.nearest(corner, one)
-        at = np.where(self.beyond[one], 2 * self.center[one] - at, at)
-        own = np.minimum(np.abs(self.begin[one] - corner), np.abs(self.end[one] - corner)) <= 10 * ROUNDING
-        return np.where(own & np.isnan(self.corner[one]), at, np.nan)
+        corner = self.corner[adjacent]
+        point = self.nearest(corner, element)
+        point = np.where(self.beyond[element], 2 * self.center[element] - point, point)
+        at_end = np.minimum(np.abs(self.begin[element] - corner), np.abs(self.end[element] - corner)) <= 10 * ROUNDING
+        return np.where(at_end & np.isnan(self.corner[element]), point, np.nan)
 
 
-def _beside(found: Outline, of: Rows, path: Curves, curves: Curves, radius: float) -> _Beside:
+def _exact_curves(outline: Outline, of: Rows, path: Curves, curves: Curves, radius: float) -> _ExactCurves:
     """Parallel to its source, at R; on the side and at the distance at which the chords are."""
-    about = np.abs(found.start - found.center)
-    own = np.where(of < len(path), np.abs(curves.start[of] - curves.center[of]), 0.0)
-    outside, inside = own + radius, np.abs(own - radius)
+    about = np.abs(outline.start - outline.center)
+    arc_radius = np.where(of < len(path), np.abs(curves.start[of] - curves.center[of]), 0.0)
+    outside, inside = arc_radius + radius, np.abs(arc_radius - radius)
     circle = np.where(np.abs(about - outside) <= np.abs(about - inside), outside, inside)
-    way = curves.end[of] - curves.start[of]
-    along = way / np.maximum(np.abs(way), ROUNDING)
-    aside = ((found.start + found.end) / 2 - curves.start[of]) * along.conj()
+    vector = curves.end[of] - curves.start[of]
+    along = vector / np.maximum(np.abs(vector), ROUNDING)
+    aside = ((outline.start + outline.end) / 2 - curves.start[of]) * along.conj()
     point = curves.start[of] + 1j * along * np.sign(aside.imag) * radius
     is_move = of < len(path)
-    return _Beside(
-        center=found.center,
-        radius=np.where(found.is_arc, circle, np.nan),
+    return _ExactCurves(
+        center=outline.center,
+        radius=np.where(outline.is_arc, circle, np.nan),
         point=point,
         along=along,
-        corner=np.where(is_move, np.nan, found.center),
+        corner=np.where(is_move, np.nan, outline.center),
         begin=curves.start[of],
         end=curves.end[of],
-        beyond=is_move & found.is_arc & (circle == inside) & (own < radius),
+        beyond=is_move & outline.is_arc & (circle == inside) & (arc_radius < radius),
     )
 
 
-def _exact_ends(found: Outline, beside: _Beside) -> Outline:
+def _exact_ends(outline: Outline, curves: _ExactCurves) -> Outline:
     """
     The same elements, with ends where the exact curves of two of them meet: on one and on the other by turns.
 
     Round the points of a smooth path there is nothing but what its chords make: such elements are left out.
     """
-    number = np.arange(len(found))
-    before, following = _beside_in_chain(found)
-    at = found.end
+    number = np.arange(len(outline))
+    before, following = _adjacent_in_chain(outline)
+    point = outline.end
     for _ in range(_TURNS):
-        at = beside.nearest(beside.nearest(at, following), number)
+        point = curves.nearest(curves.nearest(point, following), number)
     # Curves that hardly cross meet nowhere for sure; what is far from the chords is not where they meet.
-    at = np.where(np.abs(at - found.end) <= 10 * _TOLERANCE, at, found.end)
-    for touched in (beside.touched(number, following), beside.touched(following, number)):
-        at = np.where(np.isnan(touched), at, touched)
-    exact = msgspec.structs.replace(found, start=at[before], end=at)
-    sweeps = [arc_sweep(one.start, one.end, one.center, one.kind) for one in (found, exact)]
-    kept = exact[~(found.is_arc & (np.abs(sweeps[1] - sweeps[0]) > np.pi))]
-    before, _ = _beside_in_chain(kept)
+    point = np.where(np.abs(point - outline.end) <= 10 * _TOLERANCE, point, outline.end)
+    for touched in (curves.touched(number, following), curves.touched(following, number)):
+        point = np.where(np.isnan(touched), point, touched)
+    exact = msgspec.structs.replace(outline, start=point[before], end=point)
+    sweeps = [arc_sweep(version.start, version.end, version.center, version.kind) for version in (outline, exact)]
+    kept = exact[~(outline.is_arc & (np.abs(sweeps[1] - sweeps[0]) > np.pi))]
+    before, _ = _adjacent_in_chain(kept)
     return msgspec.structs.replace(kept, start=kept.end[before])
 
 
-def _beside_in_chain(found: Outline) -> tuple[Rows, Rows]:
+def _adjacent_in_chain(outline: Outline) -> tuple[Rows, Rows]:
     """The previous and the next element of each element in its closed chain."""
-    number = np.arange(len(found))
-    first = np.searchsorted(found.chain, found.chain, side="left")
-    last = np.searchsorted(found.chain, found.chain, side="right") - 1
+    number = np.arange(len(outline))
+    first = np.searchsorted(outline.chain, outline.chain, side="left")
+    last = np.searchsorted(outline.chain, outline.chain, side="right") - 1
     return np.where(number == first, last, number - 1), np.where(number == last, first, number + 1)

@@ -25,13 +25,13 @@ _POINTS = 17
 
 
 def depth_inside(
-    contour: Curves, left: Mask, ways: tuple[Points, Points], loop: Rows, tolerance: float, gap: float
+    contour: Curves, left: Mask, lines: tuple[Points, Points], loop: Rows, tolerance: float, gap: float
 ) -> Floats:
     """
     The greatest depth [mm] of each line in the finished part of its loop; 0 where the part is unknown.
 
     contour, left: as for overcuts.own_loop.overcuts.
-    ways: complex128[n] each [mm], start and end.
+    lines: complex128[n] each [mm], start and end.
     loop: int[n], the loop of each line.
     tolerance: of the chords of arcs [mm].
     gap: the largest gap that is closed [mm].
@@ -43,15 +43,15 @@ def depth_inside(
     loops, group = np.unique(loop, return_inverse=True)
     half = np.full(len(loops), gap / 2)
     part = finished_parts(Contours(contour, left, loops, np.arange(len(loops)), half, np.nan, tolerance))
-    known = np.where(part.open, _ends_outside(contour, loops), _is_whole(part, contour, loops, tolerance))
-    start, end = ways
-    place = start[:, None] + (end - start)[:, None] * np.linspace(0, 1, _POINTS) + (part.pitch * group)[:, None]
-    points = shapely.points(coordinates(place))
+    is_known = np.where(part.open, _ends_outside(contour, loops), _is_whole(part, contour, loops, tolerance))
+    start, end = lines
+    sample = start[:, None] + (end - start)[:, None] * np.linspace(0, 1, _POINTS) + (part.pitch * group)[:, None]
+    points = shapely.points(coordinates(sample))
     shapely.prepare(part.polygon)
     inside = shapely.contains(part.polygon[group][:, None], points)
     with np.errstate(invalid="ignore"):  # an empty part has no outline
         depth = shapely.distance(shapely.boundary(part.polygon)[group][:, None], points)
-    return np.asarray(np.where(inside & known[group][:, None], depth, 0.0).max(axis=1, initial=0.0))
+    return np.asarray(np.where(inside & is_known[group][:, None], depth, 0.0).max(axis=1, initial=0.0))
 
 
 def _ends_outside(contour: Curves, loops: Rows) -> Mask:

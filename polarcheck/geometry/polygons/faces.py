@@ -179,11 +179,11 @@ def _next(lines: _Lines) -> Rows:
     origin = np.stack([lines.start, lines.end], axis=1).ravel()
     angle = np.angle(np.stack([lines.out, lines.back], axis=1).ravel())
     order = np.lexsort((angle, origin))
-    place = np.empty(len(order), np.int64)
-    place[order] = np.arange(len(order))
+    position = np.empty(len(order), np.int64)
+    position[order] = np.arange(len(order))
     first = np.searchsorted(origin[order], origin)
     last = np.searchsorted(origin[order], origin, side="right") - 1
-    clockwise = order[np.where(place == first, last, place - 1)]
+    clockwise = order[np.where(position == first, last, position - 1)]
     return np.asarray(clockwise[np.arange(len(order)) ^ 1])
 
 
@@ -210,8 +210,8 @@ def _faces(lines: _Lines) -> Rows:
     """The face to the left and to the right of each line: int[2, lines], from 0."""
     cycle, _ = _cycles(_next(lines))
     face = cycle.reshape(-1, 2).T
-    one = merged(len(cycle), *face[:, lines.joins])
-    _, number = np.unique(one[face], return_inverse=True)
+    joined = merged(len(cycle), *face[:, lines.joins])
+    _, number = np.unique(joined[face], return_inverse=True)
     return number.reshape(face.shape)
 
 
@@ -249,9 +249,9 @@ def _along(lines: _Lines, line: Rows, forward: Mask) -> tuple[Rows, Mask, Rows]:
     """The edges of these lines in order, a mask of those that keep their direction, and the line of each by index."""
     count = lines.count[line]
     of = np.repeat(np.arange(len(line)), count)
-    place = np.arange(len(of)) - np.repeat(np.cumsum(count) - count, count)
-    place = np.where(forward[of], place, count[of] - 1 - place)
-    return lines.first[line[of]] + place, forward[of], of
+    index = np.arange(len(of)) - np.repeat(np.cumsum(count) - count, count)
+    index = np.where(forward[of], index, count[of] - 1 - index)
+    return lines.first[line[of]] + index, forward[of], of
 
 
 def _polygons(start: Points, end: Points, ring: Rows, group: Rows, groups: int) -> Geometries:
@@ -278,8 +278,8 @@ def _polygons(start: Points, end: Points, ring: Rows, group: Rows, groups: int) 
         whole = _nested(solid[rings], hole[rings]) if len(rings) > _FEW else None
         if whole is None:
             whole = shapely.Polygon()
-            for one in rings:
-                whole = (areas.difference if hole[one] else areas.union)(whole, solid[one])
+            for index in rings:
+                whole = (areas.difference if hole[index] else areas.union)(whole, solid[index])
         result[of[rings[0]]] = whole
     return result
 
@@ -300,17 +300,17 @@ def _nested(solid: Geometries, hole: Mask) -> Any:
     if (hole & (around < 0)).any() or (hole[around] == hole)[around >= 0].any():
         return None
     holes: dict[int, list[Any]] = {}
-    for one in np.flatnonzero(hole).tolist():
-        holes.setdefault(int(around[one]), []).extend(shapely.get_parts(solid[one]))
+    for index in np.flatnonzero(hole).tolist():
+        holes.setdefault(int(around[index]), []).extend(shapely.get_parts(solid[index]))
     if any(part.interiors for parts in holes.values() for part in parts):
         return None
     pieces = []
-    for one in np.flatnonzero(~hole).tolist():
-        shells = shapely.get_parts(solid[one])
-        own = holes.get(one, [])
-        if own and (len(shells) > 1 or shells[0].interiors):
+    for index in np.flatnonzero(~hole).tolist():
+        shells = shapely.get_parts(solid[index])
+        voids = holes.get(index, [])
+        if voids and (len(shells) > 1 or shells[0].interiors):
             return None
-        pieces += [shapely.Polygon(shells[0].exterior, [part.exterior for part in own])] if own else list(shells)
+        pieces += [shapely.Polygon(shells[0].exterior, [part.exterior for part in voids])] if voids else list(shells)
     whole = shapely.MultiPolygon(pieces)
     return whole if shapely.is_valid(whole) else None
 
@@ -322,11 +322,11 @@ def coordinates(points: Points) -> Floats:
 
 def lines_of(start: Points, end: Points) -> Geometries:
     """Straight lines of shapely; a point for a line without a length, since GEOS finds nothing near such a line."""
-    found = np.asarray(shapely.linestrings(coordinates(np.stack([start, end], axis=-1))))
+    lines = np.asarray(shapely.linestrings(coordinates(np.stack([start, end], axis=-1))))
     still = start == end
     if still.any():
-        found[still] = shapely.points(coordinates(start[still]))
-    return found
+        lines[still] = shapely.points(coordinates(start[still]))
+    return lines
 
 
 def polylines(start: Points, end: Points, of: Rows) -> Geometries:
@@ -356,11 +356,11 @@ def lines_through(start: Points, end: Points, joined: Mask) -> tuple[Geometries,
 
 def gathered(lines: Geometries, group: Rows, count: int) -> Geometries:
     """The lines of each group as one geometry, empty for a group without lines. group: int[lines]."""
-    found = np.full(count, shapely.MultiLineString(), dtype=object)
+    result = np.full(count, shapely.MultiLineString(), dtype=object)
     has, number = np.unique(group, return_inverse=True)
     if len(has):
-        found[has] = shapely.multilinestrings(lines, indices=number)
-    return found
+        result[has] = shapely.multilinestrings(lines, indices=number)
+    return result
 
 
 def edges_of(polygons: Geometries) -> tuple[Points, Points]:

@@ -191,9 +191,9 @@ def _plane(contours: Contours) -> _Plane:
         more.append(lines)
     joined = joined_to_walls(loops, walls)
     walls, origin = _together([walls, *more, joined])
-    others = np.full(len(origin) - len(parts), -1)
-    others[len(others) - len(joined) :] = _JOINED
-    move, along, total = (np.append(column, others)[origin] for column in (row[parts.move], along, total))
+    filler = np.full(len(origin) - len(parts), -1)
+    filler[len(filler) - len(joined) :] = _JOINED
+    move, along, total = (np.append(column, filler)[origin] for column in (row[parts.move], along, total))
     last = _last_of(first, len(which))
     return _Plane(walls, move, along, total, chosen, contours.left[row], first, last, half, pitch, beside)
 
@@ -296,9 +296,9 @@ def _without_joints(faces: Standing, joined: Mask) -> tuple[Points, Points]:
     """Start and end of the edges of parts, moved to one point where a line joins an end to the wall beside it."""
     start, end, ring = faces.start.copy(), faces.end.copy(), faces.ring
     for edge in np.flatnonzero(joined).tolist():
-        before, behind = edge - 1, edge + 1
-        if behind < len(ring) and ring[behind] == ring[edge]:
-            start[behind] = start[edge]
+        before, after = edge - 1, edge + 1
+        if after < len(ring) and ring[after] == ring[edge]:
+            start[after] = start[edge]
         elif before >= 0 and ring[before] == ring[edge]:
             end[before] = end[edge]
     return start, end
@@ -321,10 +321,10 @@ def _bridges(plane: _Plane, contours: Contours) -> tuple[Walls, Floats]:
     fits &= gaps.lead_on | (gaps.length <= contours.tolerance)
     begins, ends = directions(curves.start, curves.end, curves.center, curves.kind)
     aside = np.where(plane.left, 1j, -1j)
-    for lead, way, across in ((gaps.after - 1, ends, -gaps.vector), (gaps.before + 1, begins, gaps.vector)):
+    for lead, direction, across in ((gaps.after - 1, ends, -gaps.vector), (gaps.before + 1, begins, gaps.vector)):
         lead = np.clip(lead, first[:, None], last[:, None])
         is_lead = (lead != gaps.after) & (lead != gaps.before)
-        fits &= ~is_lead | ((across * (aside * way)[lead].conj()).real <= contours.tolerance)
+        fits &= ~is_lead | ((across * (aside * direction)[lead].conj()).real <= contours.tolerance)
     length = np.where(fits, gaps.length, np.inf)
     best = np.argmin(length, axis=1)
     row = np.arange(len(first))
@@ -342,16 +342,16 @@ def _rays(plane: _Plane, contours: Contours) -> tuple[Walls, Floats]:
     curves = plane.chosen
     begins, ends = directions(curves.start, curves.end, curves.center, curves.kind)
     point = np.concatenate([curves.start[plane.first], curves.end[plane.last]])
-    way = np.concatenate([-begins[plane.first], ends[plane.last]])
+    direction = np.concatenate([-begins[plane.first], ends[plane.last]])
     group = np.concatenate([curves.loop[plane.first], curves.loop[plane.last]])
     length = np.full(len(point), np.inf)
-    for at, along in ((point.real, way.real), (point.imag, way.imag)):
+    for begin, along in ((point.real, direction.real), (point.imag, direction.imag)):
         with np.errstate(divide="ignore", invalid="ignore"):
-            length = np.fmin(length, np.where(along == 0, np.inf, (np.copysign(plane.half, along) - at) / along))
+            length = np.fmin(length, np.where(along == 0, np.inf, (np.copysign(plane.half, along) - begin) / along))
     length = np.where(np.isfinite(length), length, 0)
     longest = np.zeros(len(contours.radius))
     np.maximum.at(longest, group, length)
-    return _lines(point, point + length * way, group, plane.pitch, joins=False), longest
+    return _lines(point, point + length * direction, group, plane.pitch, joins=False), longest
 
 
 def _within_bar(polygon: Geometries, diameter: float, pitch: float) -> Geometries:

@@ -151,12 +151,12 @@ def _geos() -> Any:
         module = Path(shapely.lib.__file__)
         # The libraries that a module needs are searched with it, but on Windows.
         places = [module, *module.parent.parent.glob("[Ss]hapely.libs/geos_c*")]
-        found = None
-        for place in places:
+        geos = None
+        for path in places:
             with contextlib.suppress(OSError):
-                library = ctypes.CDLL(str(place))
+                library = ctypes.CDLL(str(path))
                 if hasattr(library, "GEOS_interruptRequest"):
-                    found = library
+                    geos = library
                     break
-        _GEOS.append(found)
+        _GEOS.append(geos)
     return _GEOS[0]

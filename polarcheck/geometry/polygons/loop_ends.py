@@ -68,10 +68,10 @@ def joined_to_walls(loops: LoopEnds, walls: Walls) -> Walls:
 
 def _foot(point: Points, walls: Walls, wall: Rows) -> Points:
     """The nearest point of a wall, for each point."""
-    begin, way = walls.start[wall], walls.end[wall] - walls.start[wall]
-    length = np.maximum(np.abs(way), TOUCH)
-    along = ((point - begin) * way.conj()).real / length
-    return np.asarray(begin + way * np.clip(along, 0, length) / length)
+    begin, vector = walls.start[wall], walls.end[wall] - walls.start[wall]
+    length = np.maximum(np.abs(vector), TOUCH)
+    along = ((point - begin) * vector.conj()).real / length
+    return np.asarray(begin + vector * np.clip(along, 0, length) / length)
 
 
 def _candidates(ends: Points, walls: Walls) -> tuple[Rows, Rows]:
@@ -89,8 +89,8 @@ def _candidates(ends: Points, walls: Walls) -> tuple[Rows, Rows]:
         stop = max(int(np.searchsorted(total, before + _PAIRS)), begins + 1)
         count = (until - first)[begins:stop]
         wall = np.repeat(np.arange(begins, stop), count)
-        place = np.arange(len(wall)) - np.repeat(np.cumsum(count) - count, count)
-        end = order[first[wall] + place]
+        index = np.arange(len(wall)) - np.repeat(np.cumsum(count) - count, count)
+        end = order[first[wall] + index]
         c, a, b = ends[end].imag, walls.start[wall].imag, walls.end[wall].imag
         near = (c >= np.minimum(a, b) - CLOSED) & (c <= np.maximum(a, b) + CLOSED)
         pairs.append((end[near], wall[near]))
@@ -125,18 +125,18 @@ def closed_beside(loops: LoopEnds, walls: Walls, loop: Rows, along: Floats) -> t
         for start, end, rows in zip((loops.end, meet, loops.end), (meet, loops.start, loops.start), chosen, strict=True)
     ]
     sizes = [size[rows] for size, rows in zip((reach, reach, length), chosen, strict=True)]
-    others = ~is_corner & ~is_step
-    for point, way, is_far in (
+    remaining = ~is_corner & ~is_step
+    for point, heading, is_far in (
         (loops.end, loops.way, 2 * along < loops.total[loop]),
         (loops.start, loops.begin, 2 * along > loops.total[loop]),
     ):
-        wall = np.flatnonzero(is_far & others[loop])
+        wall = np.flatnonzero(is_far & remaining[loop])
         foot = _foot(point[loop[wall]], walls, wall)
         distance = np.abs(foot - point[loop[wall]])
         direction = walls.end[wall] - walls.start[wall]
-        beside = (direction * way[loop[wall]].conj()).real > np.cos(_STRAIGHT) * np.abs(direction)
-        beside &= (distance <= loops.limit[loop[wall]]) & (distance > CLOSED)
-        wall, foot, distance = wall[beside], foot[beside], distance[beside]
+        is_beside = (direction * heading[loop[wall]].conj()).real > np.cos(_STRAIGHT) * np.abs(direction)
+        is_beside &= (distance <= loops.limit[loop[wall]]) & (distance > CLOSED)
+        wall, foot, distance = wall[is_beside], foot[is_beside], distance[is_beside]
         order = np.lexsort((distance, loop[wall]))
         nearest = order[np.diff(loop[wall][order], prepend=-1) != 0]
         of = loop[wall[nearest]]

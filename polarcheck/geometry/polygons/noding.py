@@ -51,13 +51,13 @@ def noded(start: Points, end: Points, group: Rows) -> Edges:
     long = np.flatnonzero(a != b)
     walls = _Walls(nodes, a[long], b[long], group[long])
     tangled = np.zeros(int(group[-1]) + 1 if len(group) else 0, bool)
-    left = CROSSINGS * np.bincount(group, minlength=len(tangled)) + FREE_CROSSINGS
+    remaining = CROSSINGS * np.bincount(group, minlength=len(tangled)) + FREE_CROSSINGS
     meetings = [_nothing_in_common()]
-    for one, other in _pairs(walls, tangled):
-        meetings.append(_meetings(walls, one, other))
+    for first, second in _pairs(walls, tangled):
+        meetings.append(_meetings(walls, first, second))
         _, crossings, _ = meetings[-1]
-        left -= np.bincount(walls.group[crossings.first], minlength=len(tangled))
-        tangled |= left < 0
+        remaining -= np.bincount(walls.group[crossings.first], minlength=len(tangled))
+        tangled |= remaining < 0
         keep_time()
     edges = _cut(walls, meetings, tangled)
     return msgspec.structs.replace(edges, wall=long[edges.wall])
@@ -107,16 +107,16 @@ class _Runs(msgspec.Struct, frozen=True):
 
 
 def _runs(walls: _Walls) -> _Runs:
-    start, way = walls.nodes[walls.a], walls.nodes[walls.b] - walls.nodes[walls.a]
-    joined = np.zeros(len(way), bool)
+    start, vector = walls.nodes[walls.a], walls.nodes[walls.b] - walls.nodes[walls.a]
+    joined = np.zeros(len(vector), bool)
     joined[1:] = (walls.b[:-1] == walls.a[1:]) & (walls.group[1:] == walls.group[:-1])
-    bend = np.zeros(len(way))
-    bend[1:] = np.abs(np.angle(way[1:] * way[:-1].conj()))
+    bend = np.zeros(len(vector))
+    bend[1:] = np.abs(np.angle(vector[1:] * vector[:-1].conj()))
     total = np.cumsum(bend)
-    begins = ~joined | (np.arange(len(way)) % _RUN == 0)
+    begins = ~joined | (np.arange(len(vector)) % _RUN == 0)
     begins[1:] |= np.floor(total[1:] / _BEND) != np.floor(total[:-1] / _BEND)
     first = np.flatnonzero(begins)
-    size = np.diff(np.append(first, len(way)))
+    size = np.diff(np.append(first, len(vector)))
     begin, end = start[first], walls.nodes[walls.b[first + size - 1]]
     along = (end - begin) / np.abs(end - begin)
     aside = ((start - np.repeat(begin, size)) * np.repeat(along.conj(), size)).imag
@@ -124,13 +124,13 @@ def _runs(walls: _Walls) -> _Runs:
     return _Runs(first, size, np.add.reduceat(bend, first), bend[first], joined[first], begin, end, along, low, high)
 
 
-def _apart(runs: _Runs, one: Rows, other: Rows) -> Mask:
+def _apart(runs: _Runs, run: Rows, second: Rows) -> Mask:
     """A boolean per pair: the second run lies wholly to one side of the strip along the line of the first."""
-    begin, across = runs.begin[one], runs.along[one].conj()
-    first, last = (((point[other] - begin) * across).imag for point in (runs.begin, runs.end))
-    wide = np.maximum(runs.high, -runs.low)[other] + TOUCH
+    begin, across = runs.begin[run], runs.along[run].conj()
+    first, last = (((point[second] - begin) * across).imag for point in (runs.begin, runs.end))
+    wide = np.maximum(runs.high, -runs.low)[second] + TOUCH
     return np.asarray(
-        (np.minimum(first, last) - wide > runs.high[one]) | (np.maximum(first, last) + wide < runs.low[one])
+        (np.minimum(first, last) - wide > runs.high[run]) | (np.maximum(first, last) + wide < runs.low[run])
     )
 
 
@@ -142,29 +142,29 @@ def _pairs(walls: _Walls, tangled: Mask) -> Iterator[tuple[Rows, Rows]]:
     group, size = walls.group[runs.first], runs.size
     box, boxes_of_walls = _boxes(walls, runs.first), _boxes(walls, np.arange(len(walls.a)))
     tree = shapely.STRtree(shapely.box(*box))
-    left = _PAIRS * np.bincount(walls.group, minlength=len(tangled)) + _FREE_PAIRS
+    remaining = _PAIRS * np.bincount(walls.group, minlength=len(tangled)) + _FREE_PAIRS
     begin, step = 0, _LEAST_AT_A_TIME
     while begin < len(group):
         keep_time()
-        asked = np.arange(begin, min(begin + step, len(group)))
-        asked = asked[~tangled[group[asked]]]
-        which, other = tree.query(shapely.box(*(side[asked] for side in box)))
+        queried = np.arange(begin, min(begin + step, len(group)))
+        queried = queried[~tangled[group[queried]]]
+        which, second = tree.query(shapely.box(*(side[queried] for side in box)))
         begin += step
         step = int(np.clip(step * _PAIRS_AT_A_TIME // (len(which) + 1), _LEAST_AT_A_TIME, 2 * step))
-        one = asked[which]
-        bent = runs.bend[one] + runs.bend[other] - runs.joint[one]
-        follows = (other == one + 1) & runs.joined[other] & (bent < _HALF_TURN)
-        kept = (one < other) & (group[one] == group[other]) & ~follows
-        one, other = one[kept], other[kept]
-        kept = ~_apart(runs, one, other)
-        one, other = one[kept], other[kept]
-        kept = ~_apart(runs, other, one)
-        one, other = one[kept], other[kept]
-        left -= np.bincount(group[one], size[one] * size[other], len(tangled)).astype(np.int64)
-        tangled |= left < 0
-        for part in _shares(size[one] * size[other]):
-            kept = part[~tangled[group[one[part]]]]
-            yield _each_wall(walls, boxes_of_walls, runs, one[kept], other[kept])
+        run = queried[which]
+        bent = runs.bend[run] + runs.bend[second] - runs.joint[run]
+        follows = (second == run + 1) & runs.joined[second] & (bent < _HALF_TURN)
+        kept = (run < second) & (group[run] == group[second]) & ~follows
+        run, second = run[kept], second[kept]
+        kept = ~_apart(runs, run, second)
+        run, second = run[kept], second[kept]
+        kept = ~_apart(runs, second, run)
+        run, second = run[kept], second[kept]
+        remaining -= np.bincount(group[run], size[run] * size[second], len(tangled)).astype(np.int64)
+        tangled |= remaining < 0
+        for part in _shares(size[run] * size[second]):
+            kept = part[~tangled[group[run[part]]]]
+            yield _each_wall(walls, boxes_of_walls, runs, run[kept], second[kept])
 
 
 #: Least x and c, greatest x and c [mm].
@@ -188,31 +188,31 @@ def _shares(count: Rows) -> list[Rows]:
     return np.split(np.arange(len(count)), np.flatnonzero(np.diff(share)) + 1)
 
 
-def _each_wall(walls: _Walls, boxes: _Boxes, runs: _Runs, one: Rows, other: Rows) -> tuple[Rows, Rows]:
+def _each_wall(walls: _Walls, boxes: _Boxes, runs: _Runs, run: Rows, second: Rows) -> tuple[Rows, Rows]:
     """Pairs of a wall of one run and a wall of the other that may meet."""
     first, size = runs.first, runs.size
-    count = size[one] * size[other]
-    pair = np.repeat(np.arange(len(one)), count)
-    place = np.arange(len(pair)) - np.repeat(np.cumsum(count) - count, count)
-    i = first[one[pair]] + place // size[other[pair]]
-    j = first[other[pair]] + place % size[other[pair]]
+    count = size[run] * size[second]
+    pair = np.repeat(np.arange(len(run)), count)
+    index = np.arange(len(pair)) - np.repeat(np.cumsum(count) - count, count)
+    i = first[run[pair]] + index // size[second[pair]]
+    j = first[second[pair]] + index % size[second[pair]]
     left, below, right, above = boxes
     kept = (left[i] <= right[j]) & (left[j] <= right[i])  # most pairs end here
     i, j = i[kept], j[kept]
     kept = (below[i] <= above[j]) & (below[j] <= above[i])
     i, j = i[kept], j[kept]
-    kept = ~_beside(walls, i, j)
+    kept = ~_lies_aside(walls, i, j)
     i, j = i[kept], j[kept]
-    kept = ~_beside(walls, j, i)
+    kept = ~_lies_aside(walls, j, i)
     return i[kept], j[kept]
 
 
-def _beside(walls: _Walls, i: Rows, j: Rows) -> Mask:
+def _lies_aside(walls: _Walls, i: Rows, j: Rows) -> Mask:
     """True where wall j lies completely on one side of the line through wall i."""
     begin, c, d = walls.nodes[walls.a[i]], walls.nodes[walls.a[j]], walls.nodes[walls.b[j]]
-    way = walls.nodes[walls.b[i]] - begin
-    far = TOUCH * np.abs(way)
-    first, last = ((c - begin) * way.conj()).imag, ((d - begin) * way.conj()).imag
+    vector = walls.nodes[walls.b[i]] - begin
+    far = TOUCH * np.abs(vector)
+    first, last = ((c - begin) * vector.conj()).imag, ((d - begin) * vector.conj()).imag
     return np.asarray(((first > far) & (last > far)) | ((first < -far) & (last < -far)))
 
 
@@ -270,26 +270,26 @@ def _meetings(walls: _Walls, i: Rows, j: Rows) -> _Meetings:
     """The points that walls i and walls j have in common."""
     nodes, ends = walls.nodes, (walls.a[i], walls.b[i], walls.a[j], walls.b[j])
     a, b, c, d = (nodes[end] for end in ends)
-    way, other = b - a, d - c
+    first, second = b - a, d - c
     touching: list[_Touches] = []
     same: list[_SameNodes] = []
     touches = np.zeros(len(i), bool)
-    for wall, own, begin, along, of_other in ((i, ends[:2], a, way, ends[2:]), (j, ends[2:], c, other, ends[:2])):
+    for wall, tips, begin, along, of_other in ((i, ends[:2], a, first, ends[2:]), (j, ends[2:], c, second, ends[:2])):
         length = np.abs(along)
         for node in of_other:
-            beside = (nodes[node] - begin) * along.conj() / length
-            place = np.clip(beside.real, 0, length)
-            near = np.abs(beside - place) <= TOUCH
-            at_start, at_end = place <= TOUCH, place >= length - TOUCH
+            local = (nodes[node] - begin) * along.conj() / length
+            foot = np.clip(local.real, 0, length)
+            near = np.abs(local - foot) <= TOUCH
+            at_start, at_end = foot <= TOUCH, foot >= length - TOUCH
             inside = np.flatnonzero(near & ~at_start & ~at_end)
-            touching.append(_Touches(node[inside], wall[inside], place[inside] / length[inside]))
-            for at, end in ((at_start, own[0]), (at_end, own[1])):
-                pair = np.flatnonzero(near & at & (node != end))
+            touching.append(_Touches(node[inside], wall[inside], foot[inside] / length[inside]))
+            for close, end in ((at_start, tips[0]), (at_end, tips[1])):
+                pair = np.flatnonzero(near & close & (node != end))
                 same.append(_SameNodes(node[pair], end[pair]))
             touches |= near
-    across = (way.conj() * other).imag
+    across = (first.conj() * second).imag
     with np.errstate(all="ignore"):  # walls along each other cross nowhere
-        t, s = ((c - a).conj() * other).imag / across, ((c - a).conj() * way).imag / across
+        t, s = ((c - a).conj() * second).imag / across, ((c - a).conj() * first).imag / across
     crosses = ~touches & (t > 0) & (t < 1) & (s > 0) & (s < 1)
     return _Touches.concatenated(touching), _Crossings(i, j, t, s)[crosses], _SameNodes.concatenated(same)
 
@@ -319,22 +319,22 @@ def _cut(walls: _Walls, meetings: list[_Meetings], tangled: Mask) -> Edges:
     inner[first_part] = False
     first[inner] = node
     last[np.flatnonzero(inner) - 1] = node
-    one = np.arange(len(nodes))
+    common = np.arange(len(nodes))
     if len(new) or len(same):
         # Where three walls meet in a point, each pair of them has found it.
         nodes, which = _vertices(nodes)
-        one = merged(len(nodes), which[same.node], which[same.other])[which]
-    first, last = one[first], one[last]
+        common = merged(len(nodes), which[same.node], which[same.other])[which]
+    first, last = common[first], common[last]
     kept = (first != last) & ~tangled[walls.group[of]]
     return Edges(nodes, first[kept], last[kept], of[kept], tangled)
 
 
-def merged(count: int, one: Rows, other: Rows) -> Rows:
+def merged(count: int, first: Rows, second: Rows) -> Rows:
     """The least equal number for each number below count, if the two numbers of each pair are equal."""
     least = np.arange(count)
-    while (least[one] != least[other]).any():
-        lower = np.minimum(least[one], least[other])
-        np.minimum.at(least, one, lower)
-        np.minimum.at(least, other, lower)
+    while (least[first] != least[second]).any():
+        lower = np.minimum(least[first], least[second])
+        np.minimum.at(least, first, lower)
+        np.minimum.at(least, second, lower)
         least = least[least]
     return least

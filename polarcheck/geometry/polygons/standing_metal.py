@@ -83,15 +83,15 @@ def turned(area: Any, angle: float) -> Any:
     turn = np.exp(1j * angle)
 
     def rotate(points: Any) -> Any:
-        place = (points[:, 0] + 1j * points[:, 1]) * turn
-        return np.column_stack([place.real, place.imag])
+        point = (points[:, 0] + 1j * points[:, 1]) * turn
+        return np.column_stack([point.real, point.imag])
 
     return shapely.transform(area, rotate) if angle else area
 
 
-def touched(way: Sweeps, standing: Any) -> Any:
+def touched(sweep: Sweeps, standing: Any) -> Any:
     """The part of the standing area that a cutter overlaps; None where it is too small to count."""
-    hit = areas.intersection(area_of(way, _TOLERANCE), standing)
+    hit = areas.intersection(area_of(sweep, _TOLERANCE), standing)
     return hit if shapely.area(hit) > _LEAST_AREA else None
 
 
@@ -128,35 +128,35 @@ class Removed:
         return area
 
 
-def hits_on_bar(ways: Sweeps, bar: Any, cleared: Sweeps, drilled: Rows, holes: Points) -> tuple[Mask, Points]:
+def hits_on_bar(sweeps: Sweeps, bar: Any, cleared: Sweeps, drilled: Rows, holes: Points) -> tuple[Mask, Points]:
     """
     A mask of the sweeps that lead through what stands of a bar, and where; each clears what it runs through.
 
-    ways: rising in rows, moves of one row side by side. cleared: all moves that cut, rising in rows.
+    sweeps: rising in rows, moves of one row side by side. cleared: all moves that cut, rising in rows.
     drilled, holes: rows that drill, rising, and where, of any size.
     """
     removed = Removed(cleared)
-    hit, place = np.zeros(len(ways), bool), np.full(len(ways), np.nan + 0j)
-    for number in range(len(ways)):
-        way = ways[np.array([number])]
-        if _is_at_hole(way, holes[: np.searchsorted(drilled, way.curves.row[0])]):
+    hit, point = np.zeros(len(sweeps), bool), np.full(len(sweeps), np.nan + 0j)
+    for number in range(len(sweeps)):
+        sweep = sweeps[np.array([number])]
+        if _is_at_hole(sweep, holes[: np.searchsorted(drilled, sweep.curves.row[0])]):
             continue
-        before = removed.until(int(way.curves.row[0]), float(way.tip[0]))
+        before = removed.until(int(sweep.curves.row[0]), float(sweep.tip[0]))
         standing = bar if before is None else areas.difference(bar, before)
-        found = touched(way, standing)
-        if found is not None:
-            hit[number], place[number] = True, place_of(found)
-    return hit, place
+        overlap = touched(sweep, standing)
+        if overlap is not None:
+            hit[number], point[number] = True, place_of(overlap)
+    return hit, point
 
 
-def _is_at_hole(way: Sweeps, holes: Points) -> bool:
+def _is_at_hole(sweep: Sweeps, holes: Points) -> bool:
     """True for a sweep that ends where something was drilled."""
-    near = np.abs(holes - way.curves.end[0]) <= way.radius[0]
+    near = np.abs(holes - sweep.curves.end[0]) <= sweep.radius[0]
     return bool(near.any())
 
 
 def hits_on_part(
-    ways: Sweeps, part: Any, walls: Any, cutter: float, top: float, level: float, cleared: Sweeps
+    sweeps: Sweeps, part: Any, walls: Any, cutter: float, top: float, level: float, cleared: Sweeps
 ) -> tuple[Mask, Points]:
     """
     A mask of the sweeps that lead through a part that must stand, within 2 R of its walls, and where.
@@ -165,20 +165,20 @@ def hits_on_part(
     top, level: the heights between which it stands for certain [mm]. cleared: all moves of the program that cut: what
     they take off is no part.
     """
-    hit, place = np.zeros(len(ways), bool), np.full(len(ways), np.nan + 0j)
+    hit, point = np.zeros(len(sweeps), bool), np.full(len(sweeps), np.nan + 0j)
     solid = areas.intersection(part, areas.buffer(walls, 2 * cutter, quad_segs=8))
     removed = Removed(cleared)
     last = int(cleared.curves.row[-1]) + 1 if len(cleared) else 0
-    for number in range(len(ways)):
-        tip = float(ways.tip[number])
+    for number in range(len(sweeps)):
+        tip = float(sweeps.tip[number])
         if tip > top + _TOLERANCE:
             continue
         taken = removed.until(last, max(tip, level))
         standing = solid if taken is None else areas.difference(solid, taken)
-        found = touched(ways[np.array([number])], standing)
-        if found is not None:
-            hit[number], place[number] = True, place_of(found)
-    return hit, place
+        overlap = touched(sweeps[np.array([number])], standing)
+        if overlap is not None:
+            hit[number], point[number] = True, place_of(overlap)
+    return hit, point
 
 
 def lines_along(curves: Curves) -> Any:

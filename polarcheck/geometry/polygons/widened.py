@@ -41,10 +41,10 @@ def widened(path: Curves, chords: Segments, radius: float, tolerance: float) -> 
     is_ring, is_pie = _shapes(path, chords, part, radius, tolerance)
     is_round = is_ring | is_pie
     center = path.center[chords.move]
-    beside = _beside_arcs(chords[is_round], part[is_round], center[is_round], is_pie[is_round], radius, 4 * steps)
+    polygons = _beside_arcs(chords[is_round], part[is_round], center[is_round], is_pie[is_round], radius, 4 * steps)
     lines = _distinct(chords[~is_round])
     straight = lines_of(lines.start, lines.end)
-    covered = [_union(beside[first : first + _AT_A_TIME]) for first in range(0, len(beside), _AT_A_TIME)]
+    covered = [_union(polygons[first : first + _AT_A_TIME]) for first in range(0, len(polygons), _AT_A_TIME)]
     for first in range(0, len(straight), _AT_A_TIME):
         covered.append(_union(areas.buffer(straight[first : first + _AT_A_TIME], radius, quad_segs=steps)))
     return _union(np.array(covered))
@@ -79,24 +79,24 @@ def _halves_of_arcs(path: Curves, chords: Segments) -> Rows:
     """
     first = np.flatnonzero(np.diff(chords.move, prepend=-1))
     count = np.diff(np.append(first, len(chords)))
-    place = _places(chords.move)
+    index = _places(chords.move)
     of = np.repeat(count, count)
     ends = np.abs(path.start - path.center), np.abs(path.end - path.center)
     on_circle = np.abs(ends[0] - ends[1]) <= TOUCH
-    inner = on_circle[chords.move] & (place > 0) & (place < of - 1)
-    return np.where(inner, 2 * chords.move + (place >= of // 2), -1)
+    inner = on_circle[chords.move] & (index > 0) & (index < of - 1)
+    return np.where(inner, 2 * chords.move + (index >= of // 2), -1)
 
 
 def _shapes(path: Curves, chords: Segments, part: Rows, radius: float, tolerance: float) -> tuple[Mask, Mask]:
     """The shape within R of each half of an arc, as two masks of chords: part of a ring, part of a disc."""
     _, number, count = np.unique(part, return_inverse=True, return_counts=True)
-    own = np.abs(chords.start - path.center[chords.move])
+    arc_radius = np.abs(chords.start - path.center[chords.move])
     with np.errstate(invalid="ignore", divide="ignore"):  # lines have no center
-        half_angle = np.arcsin(np.abs(chords.end - chords.start) / 2 / own)
-        hole = own * np.cos(half_angle) - radius
+        half_angle = np.arcsin(np.abs(chords.end - chords.start) / 2 / arc_radius)
+        hole = arc_radius * np.cos(half_angle) - radius
         is_ring = (part >= 0) & (_PAST_SPOKE * hole > radius * half_angle)
         # Beyond the center the discs round both ends must cover what the chords between them do.
-        spare = (radius - own) * own / radius * (1 - np.cos(half_angle * count[number]))
+        spare = (radius - arc_radius) * arc_radius / radius * (1 - np.cos(half_angle * count[number]))
         is_pie = (part >= 0) & (hole < 0) & (spare > tolerance)
     return is_ring, is_pie
 
@@ -115,21 +115,21 @@ def _beside_arcs(chords: Segments, part: Rows, center: Points, is_pie: Mask, rad
     outward = radius * along * np.where(((chords.start - center).conj() * along).imag > 0, -1j, 1j)
     first = np.append(True, np.diff(part) != 0)
     last = np.append(first[1:], True)
-    before, behind = (np.where(end, outward, np.roll(outward, by)) for end, by in ((first, 1), (last, -1)))
+    before, after = (np.where(end, outward, np.roll(outward, by)) for end, by in ((first, 1), (last, -1)))
     inner_start = np.where(is_pie, center, chords.start - _mitre(before, outward))
-    inner_end = np.where(is_pie, center, chords.end - _mitre(outward, behind))[last]
+    inner_end = np.where(is_pie, center, chords.end - _mitre(outward, after))[last]
     # Round the corners between the outer parallels, as a disc has it.
-    turn = np.abs(np.angle(behind / outward))
+    turn = np.abs(np.angle(after / outward))
     corner = np.repeat(np.arange(len(chords)), np.ceil(turn * corners / (2 * np.pi)).astype(np.int64))
     share = _places(corner) / np.maximum(np.bincount(corner, minlength=len(chords)), 1)[corner]
-    rounded = chords.end[corner] + outward[corner] * (behind / outward)[corner] ** share
+    rounded = chords.end[corner] + outward[corner] * (after / outward)[corner] ** share
     # Forward outside, backward inside.
     points = np.concatenate([chords.start + outward, rounded, chords.end[last] + outward[last], inner_start, inner_end])
     number, of = np.arange(len(chords)), np.cumsum(first) - 1
-    place = np.concatenate([2 * number, 2 * corner + 1 + share, 2 * number[last] + 1, -number, -number[last] - 1])
+    rank = np.concatenate([2 * number, 2 * corner + 1 + share, 2 * number[last] + 1, -number, -number[last] - 1])
     polygon = np.concatenate([of, of[corner], of[last], of, of[last]])
     is_inside = np.arange(len(points)) >= len(points) - len(inner_start) - len(inner_end)
-    order = np.lexsort((place, is_inside, polygon))
+    order = np.lexsort((rank, is_inside, polygon))
     rings = shapely.linearrings(coordinates(points[order]), indices=polygon[order])
     ends, outward_at_end = np.append(chords.start[first], chords.end[last]), np.append(outward[first], outward[last])
     return np.concatenate([shapely.polygons(rings), _discs(ends, outward_at_end, corners)])
@@ -140,9 +140,9 @@ def _places(of: Rows) -> Rows:
     return np.arange(len(of)) - np.searchsorted(of, of)
 
 
-def _mitre(one: Points, other: Points) -> Points:
+def _mitre(first: Points, second: Points) -> Points:
     """From a corner to where the parallels on either side of it meet, which have these vectors [mm]."""
-    return np.asarray((one + other) / (1 + (one.conj() * other).real / np.abs(one) ** 2))
+    return np.asarray((first + second) / (1 + (first.conj() * second).real / np.abs(first) ** 2))
 
 
 def _discs(point: Points, outward: Points, corners: int) -> Geometries:

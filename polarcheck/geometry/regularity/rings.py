@@ -63,10 +63,10 @@ def _overlapping(point: Points, bulge: Floats) -> Iterator[Ring]:
     """Rings of paths that begin within a side and end beyond that point of it."""
     for first in range(min(_LEADS, len(bulge) - _FEWEST)):
         start, end = point[first + 2 : -1], point[first + 3 :]
-        way = end - start
-        along = ((point[first] - start) * way.conj()).real / np.abs(way) ** 2
-        aside = np.abs(((point[first] - start) * way.conj()).imag) / np.abs(way)
-        onward = (way * (point[first + 1] - point[first]).conjugate()).real > 0
+        vector = end - start
+        along = ((point[first] - start) * vector.conj()).real / np.abs(vector) ** 2
+        aside = np.abs(((point[first] - start) * vector.conj()).imag) / np.abs(vector)
+        onward = (vector * (point[first + 1] - point[first]).conjugate()).real > 0
         passes = (
             (aside <= _SAME) & (along > 0) & (along <= 1) & onward & (bulge[first + 2 :] == 0) & (bulge[first] == 0)
         )
@@ -82,20 +82,20 @@ def _simplified(corner: Points, bulge: Floats) -> Ring:
     for _ in range(len(corner)):
         if len(corner) < _FEWEST:
             break
-        before, behind = np.roll(corner, 1), np.roll(corner, -1)
+        before, after = np.roll(corner, 1), np.roll(corner, -1)
         into, out = np.roll(bulge, 1), bulge
-        is_tip = (np.abs(behind - before) <= _SAME) & (into == 0) & (out == 0)
+        is_tip = (np.abs(after - before) <= _SAME) & (into == 0) & (out == 0)
         if is_tip.any():
             tip = int(np.argmax(is_tip))
             gone = np.array([tip, (tip + 1) % len(corner)])
         else:
-            gone = np.flatnonzero(_is_within(before, corner, behind, into, out))
+            gone = np.flatnonzero(_is_within(before, corner, after, into, out))
             if not len(gone):
                 break
             gone = gone[np.append(True, np.diff(gone) > 1)]
             if len(gone) > 1 and gone[0] == 0 and gone[-1] == len(corner) - 1:
                 gone = gone[:-1]
-            joined = _joined(before[gone], behind[gone], into[gone], out[gone])
+            joined = _joined(before[gone], after[gone], into[gone], out[gone])
             bulge = bulge.copy()
             bulge[gone - 1] = joined
         stays = np.ones(len(corner), bool)
@@ -104,26 +104,26 @@ def _simplified(corner: Points, bulge: Floats) -> Ring:
     return Ring(corner, bulge, bool((corner == start).any()))
 
 
-def _is_within(before: Points, corner: Points, behind: Points, into: Floats, out: Floats) -> Mask:
+def _is_within(before: Points, corner: Points, after: Points, into: Floats, out: Floats) -> Mask:
     """Corners within one straight line, or one arc."""
-    chord = behind - before
+    chord = after - before
     length = np.maximum(np.abs(chord), 1e-9)
     aside = np.abs(((corner - before) * chord.conj()).imag) / length
-    onward = ((corner - before) * (behind - corner).conj()).real > 0
+    onward = ((corner - before) * (after - corner).conj()).real > 0
     on_line = (into == 0) & (out == 0) & (aside <= _SAME) & onward
     if not (into * out > 0).any():
         return np.asarray(on_line)
     both, sweep = into * out > 0, np.abs(np.arctan(into)) + np.abs(np.arctan(out))
     on_circle = np.zeros(len(corner), bool)
-    one, other = (
+    first, second = (
         _center(begin[both], end[both], bulge[both])
-        for begin, end, bulge in ((before, corner, into), (corner, behind, out))
+        for begin, end, bulge in ((before, corner, into), (corner, after, out))
     )
-    on_circle[both] = (np.abs(one - other) <= 2 * _SAME) & (sweep[both] < 1.5)
+    on_circle[both] = (np.abs(first - second) <= 2 * _SAME) & (sweep[both] < 1.5)
     return np.asarray(on_line | on_circle)
 
 
-def _joined(before: Points, behind: Points, into: Floats, out: Floats) -> Floats:
+def _joined(before: Points, after: Points, into: Floats, out: Floats) -> Floats:
     """The bulge of two edges of one line or circle together."""
     return np.asarray(np.tan(np.arctan(into) + np.arctan(out)))
 

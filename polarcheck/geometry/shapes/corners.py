@@ -37,8 +37,8 @@ class Sides:
     @property
     def normal(self) -> Points:
         """Away from what they enclose; length 1."""
-        way = self.end - self.start
-        return np.asarray(-1j * way / np.abs(way))
+        vector = self.end - self.start
+        return np.asarray(-1j * vector / np.abs(vector))
 
     @property
     def middle(self) -> Points:
@@ -82,14 +82,14 @@ def sides_of(ring: Ring) -> Sides | None:
     if not ring.closed or np.count_nonzero(line) < 3:
         return None
     radius = np.zeros(len(ring))
-    for at in np.flatnonzero(~line).tolist():
-        before, behind = at - 1, (at + 1) % len(ring)
-        if not (line[before] and line[behind]) or not 0 < ring.sweep[at] < np.pi * 0.99:
+    for arc in np.flatnonzero(~line).tolist():
+        before, after = arc - 1, (arc + 1) % len(ring)
+        if not (line[before] and line[after]) or not 0 < ring.sweep[arc] < np.pi * 0.99:
             return None
-        beside = [abs(_distance(ring, other, ring.center[at]) - ring.radius[at]) for other in (before, behind)]
-        if max(beside) > _TANGENT:
+        gaps = [abs(_distance(ring, side, ring.center[arc]) - ring.radius[arc]) for side in (before, after)]
+        if max(gaps) > _TANGENT:
             return None
-        radius[before] = ring.radius[at]
+        radius[before] = ring.radius[arc]
     rows = np.flatnonzero(line)
     return Sides(ring.start[rows], ring.end[rows], ring.row[rows], radius[rows], np.zeros(len(rows)))
 

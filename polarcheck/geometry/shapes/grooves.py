@@ -22,13 +22,13 @@ def shapes_of_cleared(outline: Outline, across: float, radius: float, bar: float
     outline: of the cleared area, that on the right. across: share of the path beside which there is material on both
     sides. radius: R of the cutter [mm]. bar: diameter [mm], NaN if not known.
     """
-    found = list(rings(outline, 0.0, bar))
-    around = [ring for ring in found if ring.inside]
-    stands = shapes_of_rings((ring for ring in found if not ring.inside), bar)
-    inside = sum(ring.closed and not ring.inside for ring in found)
+    all_rings = list(rings(outline, 0.0, bar))
+    around = [ring for ring in all_rings if ring.inside]
+    stands = shapes_of_rings((ring for ring in all_rings if not ring.inside), bar)
+    inside = sum(ring.closed and not ring.inside for ring in all_rings)
     if across < GROOVE:
         return [*stands, *(_around(shape, inside, len(around)) for shape in shapes_of_rings(around))]
-    inner = sum(ring.area for ring in found if ring.closed and not ring.inside)
+    inner = sum(ring.area for ring in all_rings if ring.closed and not ring.inside)
     return [*stands, *(_groove(ring, radius, inner if len(around) == 1 or not inner else np.nan) for ring in around)]
 
 

@@ -48,10 +48,10 @@ def keyed_round_of(ring: Ring) -> Shape | None:
             return None
         keyways.append(keyway)
     first, count = keyways[0], len(keyways)
-    for number, other in enumerate(keyways):
-        turn = other.direction / first.direction * np.exp(-2j * np.pi * number / count)
-        one, same = ((each.width, each.distance, each.radius, each.corner) for each in (first, other))
-        if abs(np.angle(turn)) > SAME_DIRECTION or np.abs(np.subtract(one, same)).max() > 2 * SAME:
+    for number, second in enumerate(keyways):
+        turn = second.direction / first.direction * np.exp(-2j * np.pi * number / count)
+        sizes, same = ((notch.width, notch.distance, notch.radius, notch.corner) for notch in (first, second))
+        if abs(np.angle(turn)) > SAME_DIRECTION or np.abs(np.subtract(sizes, same)).max() > 2 * SAME:
             return None
     values = {"diameter": 2 * radius, "keyways": float(count), "width": first.width, "distance": first.distance}
     values |= {name: size for name, size in (("radius", first.radius), ("corner_radius", first.corner)) if size}
@@ -90,9 +90,9 @@ def _keyway_of(piece: Ring, center: complex, radius: float) -> _Keyway | None:
         bottom, end_radius = float(middle.real[1]) + size, size
         off += [middle.imag[1], piece.radius[1] - size, (piece.sweep[1] + np.sign(half) * np.pi) * size]
     else:
-        at, end_radius = last // 2, 0.0
-        bottom = float((start.real[at] + end.real[at]) / 2)
-        off += [start.real[at] - bottom, end.real[at] - bottom]
+        side, end_radius = last // 2, 0.0
+        bottom = float((start.real[side] + end.real[side]) / 2)
+        off += [start.real[side] - bottom, end.real[side] - bottom]
         if last == 4:
             corner = float(piece.radius[[1, 3]].mean())
             off += [*(piece.radius[[1, 3]] - corner), *(middle.real[[1, 3]] + corner - bottom)]

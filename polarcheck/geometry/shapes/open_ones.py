@@ -14,41 +14,41 @@ from polarcheck.geometry.shapes.side_rings import Ring
 _PARALLEL = 5 * SAME_DIRECTION
 
 
-def flats_of(found: Sequence[Ring]) -> list[Shape]:
+def flats_of(rings: Sequence[Ring]) -> list[Shape]:
     """The shapes that open rings of one straight side each form together: flats, and the walls of slots."""
-    if not found:
+    if not rings:
         return []
-    row = int(found[0].row[0])
-    normal, out, pairs = _walls(found)
+    row = int(rings[0].row[0])
+    normal, out, pairs = _walls(rings)
     slots = [_slot(complex(directions[0]), distances, row) for directions, distances in pairs]
     return [*([_flats(normal, out, row)] if len(out) else []), *slots]
 
 
-def bound_one_piece(found: Sequence[Ring], bar: float) -> bool:
+def bound_one_piece(rings: Sequence[Ring], bar: float) -> bool:
     """All walls, within the bar, lie within those that are flats: one piece stands. bar: diameter [mm], NaN unknown."""
-    normal, out, _ = _walls(found)
-    for ring in found:
+    normal, out, _ = _walls(rings)
+    for ring in rings:
         points = np.array([ring.start[0], ring.end[0]])
         if not np.isnan(bar):
             # Where it leaves the bar.
             along = points[1] - points[0]
             along /= abs(along)
-            way = (points * along.conjugate()).real
-            aside = points[0] - way[0] * along
+            ends = (points * along.conjugate()).real
+            aside = points[0] - ends[0] * along
             half = np.sqrt(max((bar / 2) ** 2 - abs(aside) ** 2, 0.0))
-            points = aside + along * np.clip(way, -half, half)
+            points = aside + along * np.clip(ends, -half, half)
         if ((points[:, None] * normal.conj()).real > out + 3 * SAME).any():
             return False
     return True
 
 
-def _walls(found: Sequence[Ring]) -> tuple[Points, Floats, list[tuple[Points, Floats]]]:
+def _walls(rings: Sequence[Ring]) -> tuple[Points, Floats, list[tuple[Points, Floats]]]:
     """The normals of flats and their distances from the axis, each wall once; and those of the walls of each slot."""
-    normal = np.array([ring.normal[0] for ring in found])
-    out = np.array([float(((ring.start[0] + ring.end[0]) / 2 * ring.normal[0].conjugate()).real) for ring in found])
+    normal = np.array([ring.normal[0] for ring in rings])
+    out = np.array([float(((ring.start[0] + ring.end[0]) / 2 * ring.normal[0].conjugate()).real) for ring in rings])
     # A wall that another one interrupts is one flat.
     again = (np.abs(np.angle(normal[:, None] * normal.conj())) <= _PARALLEL) & (np.abs(out[:, None] - out) <= SAME)
-    first = np.argmax(again, axis=1) == np.arange(len(found))
+    first = np.argmax(again, axis=1) == np.arange(len(rings))
     normal, out, slots = normal[first], out[first], []
     while (pair := _facing(normal, out)) is not None:
         slots.append((normal[pair], out[pair]))

@@ -41,11 +41,11 @@ def polygon_of(ring: Ring, sides: Sides) -> Shape | None:
     if plain is not None and plain.is_regular:
         return plain
     cut = without_chamfers(sides)
-    found = cut and (_regular(ring, cut) or _rectangle(ring, cut))
-    return found or plain or _rectangle(ring, sides) or _uneven(ring, sides)
+    shape = cut and (_regular(ring, cut) or _rectangle(ring, cut))
+    return shape or plain or _rectangle(ring, sides) or _uneven(ring, sides)
 
 
-def in_chords(ring: Ring, sides: Sides) -> Shape | None:
+def circle_of_chords(ring: Ring, sides: Sides) -> Shape | None:
     """A circle of many equal chords."""
     if len(sides) <= _MOST_SIDES or not sides.is_convex or sides.radius.any():
         return None
@@ -73,7 +73,7 @@ def _regular(ring: Ring, sides: Sides) -> Shape | None:
         return None
     turned = turned_by(np.exp(1j * fit.first), count)
     values = {"across_flats": 2 * fit.distance, "sides": float(count), "turned": turned}
-    odd = tuple(OddSide(int(sides.row[at]), 2 * float(fit.sizes[at])) for at in np.flatnonzero(~fit.good))
+    odd = tuple(OddSide(int(sides.row[index]), 2 * float(fit.sizes[index])) for index in np.flatnonzero(~fit.good))
     if odd and np.count_nonzero(fit.good) <= count / 2:
         values |= {"least": 2 * float(fit.sizes.min()), "most": 2 * float(fit.sizes.max())}
         odd = ()
@@ -209,17 +209,17 @@ def _where_regular(corner: Points, share: float) -> list[Mask]:
     first.
     """
     count = len(corner)
-    other = _points_of(corner.real * share, corner.imag)
+    scaled = _points_of(corner.real * share, corner.imag)
     turn = np.exp(2j * np.pi * np.arange(count) / count)
     # Whichever corner is right as it is, or with its X otherwise, tells where all the others are.
-    wanted = (
-        np.concatenate([corner, other])[:, None]
+    regular = (
+        np.concatenate([corner, scaled])[:, None]
         * turn[(np.arange(count) - np.arange(count)[:, None]) % count][np.tile(np.arange(count), 2)]
     )
-    as_written = np.abs(corner - wanted) <= _IN_PLACE
-    fits = (as_written | (np.abs(other - wanted) <= _IN_PLACE)).all(axis=1) & as_written.any(axis=1)
-    found = [~row for row in as_written[fits] if not row.all()]
-    return sorted(found, key=lambda taken: int(taken.sum()))
+    as_written = np.abs(corner - regular) <= _IN_PLACE
+    fits = (as_written | (np.abs(scaled - regular) <= _IN_PLACE)).all(axis=1) & as_written.any(axis=1)
+    masks = [~row for row in as_written[fits] if not row.all()]
+    return sorted(masks, key=lambda taken: int(taken.sum()))
 
 
 def _points_of(x: Floats, c: Floats) -> Points:

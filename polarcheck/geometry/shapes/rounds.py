@@ -67,16 +67,16 @@ def two_rounds_of(ring: Ring) -> Shape | None:
             within = ((ring.start[line] - ring.center[arc]) * ring.normal[line].conjugate()).real
             if abs(within - ring.radius[arc]) > _TANGENT:
                 return None
-    one, other = (complex(ring.center[arc]) for arc in arcs)
+    head, tail = (complex(ring.center[arc]) for arc in arcs)
     radius = ring.radius[arcs]
     row = int(ring.row[lines[0]])
     if abs(radius[0] - radius[1]) <= 2 * SAME:
         out = ((ring.start[lines] + ring.end[lines]) / 2 * ring.normal[lines].conj()).real
-        values = {"width": float(out.sum()), "length": abs(other - one) + float(radius.sum())}
-        values |= {"radius": float(radius.mean()), "turned": turned_by(other - one, 2), **off_axis((one + other) / 2)}
+        values = {"width": float(out.sum()), "length": abs(tail - head) + float(radius.sum())}
+        values |= {"radius": float(radius.mean()), "turned": turned_by(tail - head, 2), **off_axis((head + tail) / 2)}
         return Shape("slot", ring.inside, values, row=row)
     if radius[0] < radius[1]:
-        one, other = other, one
-    values = {"radius": float(radius.max()), "radius_small": float(radius.min()), "apart": abs(other - one)}
-    values |= {"turned": turned_by(other - one, 1), **off_axis(one)}
+        head, tail = tail, head
+    values = {"radius": float(radius.max()), "radius_small": float(radius.min()), "apart": abs(tail - head)}
+    values |= {"turned": turned_by(tail - head, 1), **off_axis(head)}
     return Shape("cam", ring.inside, values, row=row)

@@ -12,7 +12,7 @@ from polarcheck.geometry.outline import Outline
 from polarcheck.geometry.shapes.corners import sides_of
 from polarcheck.geometry.shapes.keyways import keyed_round_of
 from polarcheck.geometry.shapes.open_ones import bound_one_piece, flats_of, keyway_of
-from polarcheck.geometry.shapes.polygons import cross_of, in_chords, polygon_of
+from polarcheck.geometry.shapes.polygons import circle_of_chords, cross_of, polygon_of
 from polarcheck.geometry.shapes.rounds import round_of, two_rounds_of
 from polarcheck.geometry.shapes.shape import Shape
 from polarcheck.geometry.shapes.side_rings import SHARP, Ring, directions, extents_of, rings
@@ -27,33 +27,33 @@ def shapes_of(outline: Outline, gap: float = 0.0, bar: float = np.nan) -> list[S
     return shapes_of_rings(rings(outline, gap, bar), bar)
 
 
-def shapes_of_rings(found: Iterable[Ring], bar: float = np.nan) -> list[Shape]:
+def shapes_of_rings(rings: Iterable[Ring], bar: float = np.nan) -> list[Shape]:
     """The shapes of rings."""
     chains: list[Ring] = []
-    others: list[Ring] = []
-    for ring in found:
+    remaining: list[Ring] = []
+    for ring in rings:
         if _is_of_flats(ring):
             chains.append(ring)
         elif len(ring):
-            others.append(ring)
+            remaining.append(ring)
     single = [ring.some(np.array([side])) for ring in chains for side in range(len(ring))]
     if len(single) > len(chains) and not bound_one_piece(single, bar):
         single = [ring for ring in chains if len(ring) == 1]
-        others = [*(ring for ring in chains if len(ring) > 1), *others]
+        remaining = [*(ring for ring in chains if len(ring) > 1), *remaining]
     beyond = _beyond(min((ring.beyond for ring in single), default=np.inf))
     flats = [shape._replace(values=shape.values | beyond) for shape in flats_of(single)]
-    return flats + [_shape_of(ring) for ring in others]
+    return flats + [_shape_of(ring) for ring in remaining]
 
 
 def _shape_of(ring: Ring) -> Shape:
     keep_time()
-    found, corners = _recognised(ring), _beyond(ring.beyond)
+    shape, corners = _recognised(ring), _beyond(ring.beyond)
     sharp = _is_sharp_inside(ring)
     if sharp.any():
         corners["inside_corners"] = float(np.count_nonzero(sharp))
         fits = _fits_corners(ring, sharp)
         corners |= {"corner_reach": fits} if np.isfinite(fits) else {}
-    return found._replace(values=found.values | corners)
+    return shape._replace(values=shape.values | corners)
 
 
 def _is_of_flats(ring: Ring) -> bool:
@@ -75,13 +75,13 @@ def _fits_corners(ring: Ring, sharp: Mask) -> float:
     turn = np.abs(np.angle(np.roll(out, -1) * into.conj()))
     taken = np.where(sharp, np.tan(np.minimum(turn, 3.0) / 2), 0.0)
     taken = taken + np.roll(taken, 1)
-    beside = ring.is_line & (taken > 0)
-    return float(np.min(ring.length[beside] / taken[beside], initial=np.inf))
+    adjacent = ring.is_line & (taken > 0)
+    return float(np.min(ring.length[adjacent] / taken[adjacent], initial=np.inf))
 
 
 def _recognised(ring: Ring) -> Shape:
     sides = sides_of(ring)
-    of_sides = sides and (in_chords(ring, sides) or polygon_of(ring, sides) or cross_of(ring, sides))
+    of_sides = sides and (circle_of_chords(ring, sides) or polygon_of(ring, sides) or cross_of(ring, sides))
     of_circle = round_of(ring) or two_rounds_of(ring) or keyed_round_of(ring)
     return of_circle or of_sides or keyway_of(ring) or contour_of(ring)
 

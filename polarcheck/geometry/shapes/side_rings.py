@@ -74,8 +74,8 @@ class Ring:
     @property
     def normal(self) -> Points:
         """Of each side of a line, or of the chord of an arc, away from what is on its left; length 1."""
-        way = self.end - self.start
-        return np.asarray(-1j * way / np.maximum(np.abs(way), 1e-12))
+        vector = self.end - self.start
+        return np.asarray(-1j * vector / np.maximum(np.abs(vector), 1e-12))
 
     @property
     def area(self) -> float:
@@ -92,8 +92,8 @@ class Ring:
     def turned_round(self) -> Self:
         """The ring in the opposite direction."""
         back = np.arange(len(self))[::-1]
-        own = self.some(back)
-        return replace(own, start=self.end[back], end=self.start[back], sweep=-self.sweep[back])
+        ring = self.some(back)
+        return replace(ring, start=self.end[back], end=self.start[back], sweep=-self.sweep[back])
 
 
 def rings(outline: Outline, gap: float = 0.0, bar: float = np.nan) -> Iterator[Ring]:
@@ -113,9 +113,9 @@ def rings(outline: Outline, gap: float = 0.0, bar: float = np.nan) -> Iterator[R
 def _ring_of(part: Outline, closed: bool, gap: float) -> Ring:
     sweep = np.where(part.is_arc, arc_sweep(part.start, part.end, part.center, part.kind), 0.0)
     start, end, center, row = part.start, part.end, part.center, part.row
-    left = abs(end[-1] - start[0]) if len(row) else 0.0
-    if not closed and 0 < left <= gap + SAME:
-        corner = _corner(part, left)
+    apart = abs(end[-1] - start[0]) if len(row) else 0.0
+    if not closed and 0 < apart <= gap + SAME:
+        corner = _corner(part, apart)
         if corner is None:
             start, end = np.append(start, end[-1]), np.append(end, start[0])
             center, sweep, row = np.append(center, np.nan), np.append(sweep, 0.0), np.append(row, row[-1])
@@ -126,18 +126,18 @@ def _ring_of(part: Outline, closed: bool, gap: float) -> Ring:
     return ring.some(ring.length > _STUB)
 
 
-def _corner(part: Outline, left: float) -> complex | None:
-    """Where the last and the first line of a chain meet near its ends, `left` [mm] from each other; None for arcs."""
+def _corner(part: Outline, apart: float) -> complex | None:
+    """Where the last and the first line of a chain meet near its ends, `apart` [mm] from each other; None for arcs."""
     if part.is_arc[0] or part.is_arc[-1]:
         return None
-    begin, way = part.end[0] - part.start[0], part.end[-1] - part.start[-1]
-    across = (way.conjugate() * begin).imag / (abs(way) * abs(begin))
+    begin, vector = part.end[0] - part.start[0], part.end[-1] - part.start[-1]
+    across = (vector.conjugate() * begin).imag / (abs(vector) * abs(begin))
     if abs(across) < _MEETING:
         return None
     gap = part.start[0] - part.end[-1]
     along = (gap.conjugate() * begin).imag / abs(begin) / across
-    meet = complex(part.end[-1] + along * way / abs(way))
-    is_near = max(abs(meet - part.start[0]), abs(meet - part.end[-1])) <= left / _MEETING
+    meet = complex(part.end[-1] + along * vector / abs(vector))
+    is_near = max(abs(meet - part.start[0]), abs(meet - part.end[-1])) <= apart / _MEETING
     return meet if is_near else None
 
 
@@ -165,15 +165,15 @@ def _fits_beyond(ring: Ring, chosen: Rows, radius: float) -> float:
     into, out = directions(ring)
     largest = np.inf
     for corner, wall in ((int(chosen[-1]) + 1, int(chosen[-1])), (int(chosen[0]), int(chosen[0]))):
-        before, behind = corner - 1, corner % len(ring)
+        before, after = corner - 1, corner % len(ring)
         if not ring.is_line[wall] or (not ring.closed and not 0 < corner < len(ring)):
             continue
-        turn = float(np.angle(out[behind] * into[before].conjugate()))
+        turn = float(np.angle(out[after] * into[before].conjugate()))
         if turn > -SHARP:
             continue
-        at, way = ring.start[behind], (-into[wall] if wall == before else out[wall])
-        along = float((at * way.conjugate()).real)
-        aside = abs(at) ** 2 - along**2
+        point, direction = ring.start[after], (-into[wall] if wall == before else out[wall])
+        along = float((point * direction.conjugate()).real)
+        aside = abs(point) ** 2 - along**2
         if aside < radius**2 and along < 0:
             largest = min(largest, (-along - np.sqrt(radius**2 - aside)) / np.tan(-turn / 2))
     return float(max(largest, 0.0))
@@ -181,9 +181,9 @@ def _fits_beyond(ring: Ring, chosen: Rows, radius: float) -> float:
 
 def nearest_of(ring: Ring) -> Floats:
     """The least distance of each side from the axis, of arcs that of their ends and middles [mm]."""
-    way = ring.end - ring.start
-    share = np.clip(-(ring.start * way.conj()).real / np.maximum(np.abs(way) ** 2, 1e-12), 0, 1)
-    on_line = np.abs(ring.start + share * way)
+    vector = ring.end - ring.start
+    share = np.clip(-(ring.start * vector.conj()).real / np.maximum(np.abs(vector) ** 2, 1e-12), 0, 1)
+    on_line = np.abs(ring.start + share * vector)
     middle = np.abs(ring.center + (ring.start - ring.center) * np.exp(0.5j * ring.sweep))
     on_arc = np.minimum(np.minimum(np.abs(ring.start), np.abs(ring.end)), middle)
     nearest: Floats = np.where(ring.is_line, on_line, on_arc)
@@ -214,18 +214,18 @@ def _taken_over(ring: Ring) -> Ring | None:
     middle = np.where(ring.is_line, (ring.start + ring.end) / 2, ring.center + (ring.start - ring.center) * half)
     points, length = np.stack([ring.start, middle, ring.end]), ring.length
     for step in (1, -1):
-        beside = np.roll(np.arange(len(ring)), step)
+        neighbour = np.roll(np.arange(len(ring)), step)
         if not ring.closed:
-            beside[0 if step > 0 else -1] = 0 if step > 0 else len(ring) - 1
-        on_circle = np.abs(np.abs(points - ring.center[beside]) - ring.radius[beside])
-        on_line = np.abs(((points - ring.start[beside]) * ring.normal[beside].conj()).real)
-        line = ring.is_line[beside]
+            neighbour[0 if step > 0 else -1] = 0 if step > 0 else len(ring) - 1
+        on_circle = np.abs(np.abs(points - ring.center[neighbour]) - ring.radius[neighbour])
+        on_line = np.abs(((points - ring.start[neighbour]) * ring.normal[neighbour].conj()).real)
+        line = ring.is_line[neighbour]
         off = np.where(line, on_line, np.nan_to_num(on_circle, nan=np.inf)).max(axis=0)
-        taken = (off <= SAME) & (length < _SHORT * length[beside])
-        about = ring.center[beside]
+        taken = (off <= SAME) & (length < _SHORT * length[neighbour])
+        about = ring.center[neighbour]
         turn = np.angle((ring.end - about) * (ring.start - about).conj())
         center[taken], sweep[taken] = about[taken], np.where(line, 0.0, np.nan_to_num(turn))[taken]
-        row[taken] = ring.row[beside][taken]
+        row[taken] = ring.row[neighbour][taken]
     if np.array_equal(sweep, ring.sweep):
         return None
     return replace(ring, center=center, sweep=sweep, row=row)
@@ -238,18 +238,18 @@ def _begun_at_corner(ring: Ring) -> Ring:
     into, out = directions(ring)
     turn = np.abs(np.angle(out * np.roll(into, 1).conj()))
     kinds = ring.is_line != np.roll(ring.is_line, 1)
-    other = np.nan_to_num(np.abs(ring.center - np.roll(ring.center, 1))) > SAME
-    best = int(np.argmax(turn + 0.1 * (kinds | other)))
+    differs = np.nan_to_num(np.abs(ring.center - np.roll(ring.center, 1))) > SAME
+    best = int(np.argmax(turn + 0.1 * (kinds | differs)))
     return ring.some(np.roll(np.arange(len(ring)), -best))
 
 
 def directions(ring: Ring) -> tuple[Points, Points]:
     """Unit vectors in which each side ends, and in which it begins."""
-    way = ring.end - ring.start
+    chord = ring.end - ring.start
     turning = 1j * np.sign(ring.sweep)
-    into = np.where(ring.is_line, way, turning * (ring.end - np.nan_to_num(ring.center)))
-    out = np.where(ring.is_line, way, turning * (ring.start - np.nan_to_num(ring.center)))
-    unit: list[Points] = [np.asarray(one / np.maximum(np.abs(one), 1e-12), np.complex128) for one in (into, out)]
+    into = np.where(ring.is_line, chord, turning * (ring.end - np.nan_to_num(ring.center)))
+    out = np.where(ring.is_line, chord, turning * (ring.start - np.nan_to_num(ring.center)))
+    unit: list[Points] = [np.asarray(ray / np.maximum(np.abs(ray), 1e-12), np.complex128) for ray in (into, out)]
     return unit[0], unit[1]
 
 

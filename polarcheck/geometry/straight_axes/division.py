@@ -68,14 +68,14 @@ def _nothing() -> tuple[Rows, Floats, Floats, Points, Points, Floats]:
 
 @quiet
 def _divided(spans: Spans, chord_error: Floats, largest_turn: float, most: int) -> Pieces:
-    at = places(spans)
-    need = _needed(spans, at, chord_error, largest_turn)
+    shares = places(spans)
+    need = _needed(spans, shares, chord_error, largest_turn)
     total = need[:, -1]
-    wanted = np.maximum(np.ceil(total - 1e-9), 1)
+    count = np.maximum(np.ceil(total - 1e-9), 1)
     for _ in range(_ROUNDS):
-        if not wanted.sum() <= most:
+        if not count.sum() <= most:
             raise TooHardError(f"more than {most} blocks: use a larger chord error")
-        pieces = _placed(spans, at, need, wanted.astype(np.int64))
+        pieces = _placed(spans, shares, need, count.astype(np.int64))
         error = np.zeros(len(spans))
         np.maximum.at(error, pieces.span, np.max(deviations(spans, pieces), axis=1, initial=0.0))
         turn = np.zeros(len(spans))
@@ -83,13 +83,13 @@ def _divided(spans: Spans, chord_error: Floats, largest_turn: float, most: int) 
         more = np.maximum(np.sqrt(error / chord_error), turn / (largest_turn * (1 + 1e-9)))
         if not np.any(more > 1):
             return pieces
-        wanted = np.where(more > 1, np.maximum(np.ceil(wanted * np.minimum(more, 16)), wanted + 1), wanted)
+        count = np.where(more > 1, np.maximum(np.ceil(count * np.minimum(more, 16)), count + 1), count)
     raise TooHardError("no division keeps the chord error")
 
 
-def _needed(spans: Spans, at: Floats, chord_error: Floats, largest_turn: float) -> Floats:
+def _needed(spans: Spans, shares: Floats, chord_error: Floats, largest_turn: float) -> Floats:
     """The number of pieces needed from the start of a span up to each share, float64[spans, shares], rising."""
-    point, direction = spans.points(at), spans.directions(at)
+    point, direction = spans.points(shares), spans.directions(shares)
     r = np.abs(point)
     sine = cross(point, direction) / np.maximum(r, 1e-12) ** 2 * r
     turn = np.abs(np.where(r > 0, sine / r, 0.0))
@@ -97,30 +97,30 @@ def _needed(spans: Spans, at: Floats, chord_error: Floats, largest_turn: float) 
     near, far = r.min(axis=1), r.max(axis=1)
     most_turn = np.where(far > near * (1 + _EVEN), min(_TURN, largest_turn), largest_turn)
     density = np.maximum(np.sqrt(chord / (8 * chord_error[:, None] * _AIM)), turn / most_turn[:, None])
-    step = np.diff(at, axis=1) * spans.length[:, None]
+    step = np.diff(shares, axis=1) * spans.length[:, None]
     # At the center itself the turn of an arc is finite, and that of a line nothing.
     density = np.where(np.isfinite(density), density, 0.0)
     need = np.cumsum((density[:, 1:] + density[:, :-1]) / 2 * step, axis=1)
     return np.concatenate((np.zeros((len(spans), 1)), need), axis=1)
 
 
-def _placed(spans: Spans, at: Floats, need: Floats, count: Rows) -> Pieces:
+def _placed(spans: Spans, shares: Floats, need: Floats, count: Rows) -> Pieces:
     """Each span divided into `count` pieces of equal need."""
     number = np.arange(len(spans), dtype=np.float64)
     # A span without need is divided by length; a little of its length makes the need rise everywhere.
     total = need[:, -1:]
-    share = np.where(total > 0, need / np.where(total > 0, total, 1.0), at) * (1 - 1e-6) + at * 1e-6
+    share = np.where(total > 0, need / np.where(total > 0, total, 1.0), shares) * (1 - 1e-6) + shares * 1e-6
     span = np.repeat(np.arange(len(spans)), count)
     index = np.arange(len(span)) - np.repeat(np.cumsum(count) - count, count)
     of = count[span]
-    cuts = np.interp(number[span] + index / of, (number[:, None] + share).ravel(), at.ravel())
+    cuts = np.interp(number[span] + index / of, (number[:, None] + share).ravel(), shares.ravel())
     first = np.where(index == 0, 0.0, cuts)
     last = np.where(index == of - 1, 1.0, np.append(first[1:], 1.0))
     of_piece = spans[span]
     ends = of_piece.points(np.stack((first, (first + last) / 2, last), axis=1))
-    ways = of_piece.directions(np.stack((first, last), axis=1))
-    begins = np.where(ends[:, 0] == 0, ways[:, 0], ends[:, 0])
-    arrives = np.where(ends[:, 2] == 0, -ways[:, 1], ends[:, 2])
+    directions = of_piece.directions(np.stack((first, last), axis=1))
+    begins = np.where(ends[:, 0] == 0, directions[:, 0], ends[:, 0])
+    arrives = np.where(ends[:, 2] == 0, -directions[:, 1], ends[:, 2])
     turn = angle_between(begins, ends[:, 1]) + angle_between(ends[:, 1], arrives)
     return Pieces(span, first, last, ends[:, 0], ends[:, 2], turn)
 
@@ -129,8 +129,8 @@ def deviations(spans: Spans, pieces: Pieces) -> Floats:
     """The distance of each piece from its span [mm], float64[pieces, points between its ends]."""
     of_piece = spans[pieces.span]
     r = np.abs(pieces.start)[:, None] + (np.abs(pieces.end) - np.abs(pieces.start))[:, None] * SHARES
-    ways = of_piece.directions(pieces.first[:, None])[:, 0]
-    first = np.angle(np.where(pieces.start == 0, ways, pieces.start))[:, None]
+    directions = of_piece.directions(pieces.first[:, None])[:, 0]
+    first = np.angle(np.where(pieces.start == 0, directions, pieces.start))[:, None]
     return distances(
         r * np.exp(1j * (first + pieces.turn[:, None] * SHARES)),
         of_piece.start,

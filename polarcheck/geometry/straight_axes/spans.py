@@ -43,11 +43,11 @@ class Spans(Table, frozen=True, dict=True):
             self.is_arc, np.abs(self.start - self.center) * np.abs(self.sweep), np.abs(self.end - self.start)
         )
 
-    def share(self, span: Rows, at: Floats) -> Floats:
+    def share(self, span: Rows, shares: Floats) -> Floats:
         """Shares of the length of the move, from shares of the length of these spans."""
-        return np.asarray(self.first[span] + (self.last - self.first)[span] * at)
+        return np.asarray(self.first[span] + (self.last - self.first)[span] * shares)
 
-    def points(self, at: Floats) -> Points:
+    def points(self, shares: Floats) -> Points:
         """
         Plane points at these shares of the length of each span, float64[spans, n].
 
@@ -55,23 +55,23 @@ class Spans(Table, frozen=True, dict=True):
         """
         start, end = self.start[:, None], self.end[:, None]
         center = self.center[:, None]
-        points = start + (end - start) * at
+        points = start + (end - start) * shares
         arcs = self.is_arc
         if arcs.any():
-            grown = (1 + (self._growth[:, None] - 1) * at)[arcs]
+            grown = (1 + (self._growth[:, None] - 1) * shares)[arcs]
             points[arcs] = center[arcs] + (start - center)[arcs] * grown * np.exp(
-                1j * self.sweep[arcs, None] * at[arcs]
+                1j * self.sweep[arcs, None] * shares[arcs]
             )
-        return np.where(at == 0, start, np.where(at == 1, end, points))
+        return np.where(shares == 0, start, np.where(shares == 1, end, points))
 
-    def directions(self, at: Floats) -> Points:
+    def directions(self, shares: Floats) -> Points:
         """Directions of travel, of length 1."""
-        way = np.broadcast_to((self.end - self.start)[:, None], at.shape).copy()
+        direction = np.broadcast_to((self.end - self.start)[:, None], shares.shape).copy()
         arcs = self.is_arc
         if arcs.any():
-            spoke = (self.start - self.center)[arcs, None] * np.exp(1j * self.sweep[arcs, None] * at[arcs])
-            way[arcs] = spoke * np.where(self.sweep[arcs, None] > 0, 1j, -1j)
-        return np.asarray(way / np.abs(way))
+            spoke = (self.start - self.center)[arcs, None] * np.exp(1j * self.sweep[arcs, None] * shares[arcs])
+            direction[arcs] = spoke * np.where(self.sweep[arcs, None] > 0, 1j, -1j)
+        return np.asarray(direction / np.abs(direction))
 
     @cached_property
     def _growth(self) -> Floats:
@@ -96,12 +96,12 @@ def spans_of(start: Points, end: Points, center: Points, kind: States, at_center
     sweep = arc_sweep(start, end, center, kind)
     is_arc = sweep != 0
     center = np.where(is_arc, center, complex("nan+nanj"))
-    way = end - start
-    foot = -dot(start, way) / np.abs(way) ** 2
+    vector = end - start
+    foot = -dot(start, vector) / np.abs(vector) ** 2
     near, far = (_share(start - center, sweep, side * center) for side in (-1, 1))
     around = np.abs(center) <= at_center
     radius = np.abs(start - center)
-    nearest = np.where(is_arc, np.abs(np.abs(center) - radius), np.abs(cross(start, way)) / np.abs(way))
+    nearest = np.where(is_arc, np.abs(np.abs(center) - radius), np.abs(cross(start, vector)) / np.abs(vector))
     dips = (np.minimum(np.abs(start), np.abs(end)) - nearest > level) | (nearest <= at_center)
     rises = np.abs(center) + radius - np.maximum(np.abs(start), np.abs(end)) > level
     shares = np.stack(
@@ -114,9 +114,9 @@ def spans_of(start: Points, end: Points, center: Points, kind: States, at_center
         axis=1,
     )
     shares = np.sort(np.where((shares >= 0) & (shares <= 1), shares, np.nan), axis=1)  # NaN stands last
-    move, place = np.nonzero(~np.isnan(shares[:, 1:]))
-    first, last = shares[move, place], shares[move, place + 1]
-    reach = np.abs(way) + np.abs(sweep) * np.where(is_arc, np.abs(start - center), 0)
+    move, index = np.nonzero(~np.isnan(shares[:, 1:]))
+    first, last = shares[move, index], shares[move, index + 1]
+    reach = np.abs(vector) + np.abs(sweep) * np.where(is_arc, np.abs(start - center), 0)
     has_way = (last - first) * reach[move] > 1e-9
     move, first, last = move[has_way], first[has_way], last[has_way]
     whole = Spans(move, start[move], end[move], first, last, center[move], sweep[move])

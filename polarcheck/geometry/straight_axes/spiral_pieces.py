@@ -33,10 +33,10 @@ def distances(points: Points, start: Points, end: Points, center: Points, sweep:
     points: complex128[moves, n]. start, end, center: complex128[moves]; center NaN for lines. sweep: of arcs about
     their centers [rad]. The radius of an arc goes evenly from that of its start to that of its end.
     """
-    way = (end - start)[:, None]
+    vector = (end - start)[:, None]
     offset = points - start[:, None]
-    unit = way / np.abs(way)
-    beyond = np.maximum(np.maximum(-dot(offset, unit), dot(offset, unit) - np.abs(way)), 0)
+    unit = vector / np.abs(vector)
+    beyond = np.maximum(np.maximum(-dot(offset, unit), dot(offset, unit) - np.abs(vector)), 0)
     from_line = np.hypot(cross(offset, unit), beyond)
     spoke, first, last = points - center[:, None], (start - center)[:, None], (end - center)[:, None]
     sign = np.sign(sweep)[:, None]

@@ -20,7 +20,7 @@ from polarcheck.program.execution.listing import Listing
 from polarcheck.program.execution.programs import ProgramName, Programs, find_programs, read_text
 from polarcheck.program.execution.run import Beside
 from polarcheck.program.machines.machine import Machine
-from polarcheck.program.reading.files import shown
+from polarcheck.program.reading.files import display_path
 from polarcheck.program.reading.source import Source, read_source
 from polarcheck.program.reading.words import Text
 
@@ -59,7 +59,7 @@ class MovedFolder(str):
         return folder
 
 
-class Place(NamedTuple):
+class LibraryFile(NamedTuple):
     """
     A file that can hold a called program.
 
@@ -90,13 +90,13 @@ class Library:
     @cached_property
     def _paths(self) -> list[tuple[Path, str, list[Path]]]:
         """Each folder that can be listed, its title, and what lies in it, by name; backups come last."""
-        found = []
+        paths_of_folders = []
         for folder, title in self._folders:
             record.note(folder)
             with contextlib.suppress(OSError):
                 paths = {*folder.iterdir(), *bounded.opened_in(folder)}
-                found.append((folder, title, sorted(paths, key=lambda path: (_is_backup(path), path))))
-        return found
+                paths_of_folders.append((folder, title, sorted(paths, key=lambda path: (_is_backup(path), path))))
+        return paths_of_folders
 
     @cached_property
     def _programs(self) -> list[Programs]:
@@ -125,30 +125,30 @@ class Library:
         if not places:
             return None
         if len(places) > 1:
-            self.rivals[called] = [place.title for place in places]
+            self.rivals[called] = [file.title for file in places]
         return _with_head(places[0].data, places[0].path.name, called)
 
-    def places(self, called: ProgramName) -> list[Place]:
+    def places(self, called: ProgramName) -> list[LibraryFile]:
         """
         The files that can hold a program, in the order in which they are looked for.
 
         Copies of the first one, and backups beside it, are left out.
         """
-        wanted = names_of(called)
-        if wanted is None:
+        pattern = names_of(called)
+        if pattern is None:
             return []
-        places: list[Place] = []
+        places: list[LibraryFile] = []
         named: list[tuple[str, bytes]] = []
-        left = _MOST_READ
+        remaining = _MOST_READ
         for folder, title, paths in self._paths:
             for path in paths:
-                if not left or not wanted.fullmatch(path.name) or (places and _is_backup(path)):
+                if not remaining or not pattern.fullmatch(path.name) or (places and _is_backup(path)):
                     continue
                 data = _read_inside(folder, path)
-                left -= data is not None
+                remaining -= data is not None
                 if data is not None and (not places or _content(data) != _content(places[0].data)):
                     named.append((os.path.join(title, path.name), data))  # noqa: PTH118
-                    places.append(Place(path, shown(named[-1][0]), data))
+                    places.append(LibraryFile(path, display_path(named[-1][0]), data))
         record.note_look_up(called, named)
         return places
 
@@ -181,12 +181,12 @@ def names_of(called: ProgramName) -> re.Pattern[str] | None:
 def contents(folder: str) -> dict[str, bytes]:
     """All that could be called in a folder of a job, by name: for a machine that does not have the folder."""
     real = Path(os.path.realpath(folder))
-    found = {}
+    files = {}
     with contextlib.suppress(OSError):
         for path in sorted(real.iterdir()):
             if _NAME.fullmatch(path.name) and (data := _read_inside(real, path)) is not None:
-                found[path.name] = data
-    return found
+                files[path.name] = data
+    return files
 
 
 def _read_inside(folder: Path, path: Path) -> bytes | None:
@@ -213,8 +213,8 @@ def _with_head(data: bytes, file: str, called: ProgramName) -> Source:
         return source
     head = f"O{number:04d}" if number is not None else f"O<{name}>"
     mark = _TAPE_MARK.match(text)
-    at = mark.end() if mark else 0
-    headed = source.encode(f"{text[:at]}{head}\n{text[at:]}")
+    end = mark.end() if mark else 0
+    headed = source.encode(f"{text[:end]}{head}\n{text[end:]}")
     return msgspec.structs.replace(read_source(headed, file), added_lines=1)
 
 
@@ -225,8 +225,8 @@ class Shelf:
     From the start it holds the files of all programs that are named literally, and that those name in turn.
     """
 
-    def __init__(self, text: Text, machine: Machine, folders: Sequence[str], beside: Beside | None = None) -> None:
-        self.beside = beside or Beside()
+    def __init__(self, text: Text, machine: Machine, folders: Sequence[str], channels: Beside | None = None) -> None:
+        self.beside = channels or Beside()
         self._library = Library(folders, machine, self.beside.texts)
         #: Titles of the files that can hold a program, where there are several that differ.
         self.rivals: dict[ProgramName, list[str]] = self._library.rivals
@@ -239,13 +239,13 @@ class Shelf:
         self._add([called])
         return self.listing is not before
 
-    def _add(self, wanted: Sequence[ProgramName]) -> None:
+    def _add(self, names: Sequence[ProgramName]) -> None:
         while True:
-            missing = [called for called in dict.fromkeys(wanted) if called not in self.listing.found]
+            missing = [called for called in dict.fromkeys(names) if called not in self.listing.found]
             files = {called: text for called in missing if (text := self._library.text(called)) is not None}
             if not files:
                 return
-            known = len(self.listing.files)
+            count = len(self.listing.files)
             self.listing = self.listing.with_files(files)
-            added = [called for file in range(known, len(self.listing.files)) for called in self.listing.calls(file)]
-            wanted = [called for called in added if not self.listing.programs.named(called)]
+            added = [called for file in range(count, len(self.listing.files)) for called in self.listing.calls(file)]
+            names = [called for called in added if not self.listing.programs.named(called)]

@@ -39,8 +39,8 @@ def execute_call(state: State, statement: Statement, block: int) -> int:
         return block + 1
     rivals = state.rivals.get(called.program)
     if rivals and state.listing.found.get(called.program) == program.file:
-        first, *others = rivals
-        listed = f"{first} and {', '.join(others)}"
+        first, *further = rivals
+        listed = f"{first} and {', '.join(further)}"
         state.add_remark("program-in-several-files", block, program=str(called.program), files=listed, first=first)
     if called.begin is not None:
         program = part_from(state, statement, program, called.begin, block)
@@ -61,8 +61,8 @@ def parameters_of(state: State, statement: Statement, program: Program, block: i
     """The parameters of a program called by name: the argument of the call, else the default of the program, else 0."""
     procedure, arguments = state.listing.procedure(program), statement.parameters or ()
     values: dict[int, float | None] = {}
-    for place, parameter in enumerate(procedure.parameters or () if procedure else ()):
-        expression = (arguments[place].value if place < len(arguments) else None) or parameter.value
+    for index, parameter in enumerate(procedure.parameters or () if procedure else ()):
+        expression = (arguments[index].value if index < len(arguments) else None) or parameter.value
         value, fault = (0.0, None) if expression is None else evaluate(expression, state.variables)
         state.add(fault, block)
         values[parameter.variable] = value
@@ -124,8 +124,8 @@ def part_from(state: State, statement: Statement, program: Program, begin: float
         macro = state.listing.macro
         address = "P" if statement.call in macro.local_calls else macro.sequence_word
         word = next(word for word in statement.words if word.address == address)
-        own = state.listing.programs.around(block)
-        name = "this program" if program == own else str(ProgramName(program.number, program.name))
+        this_program = state.listing.programs.around(block)
+        name = "this program" if program == this_program else str(ProgramName(program.number, program.name))
         state.add_fault("call-target-not-found", block, word, number=round(begin), called=name)
         state.rows.mark_unknown()
         return None

@@ -112,15 +112,15 @@ class _Reader:
         """Block skip, O and N, then the statement."""
         sequence_number: Number | None = None
         head: list[Word] = []
-        while (found := _HEAD.match(self.text, self.at)) and len(self.skips) < self.size:
-            start, self.at = self.at, found.end()
-            if found[1] is not None:
-                self.skips.append(self.number(found[1] or "1", start))
-            elif found[2] and sequence_number is None:
-                sequence_number = self.number(found[2], start)
+        while (match := _HEAD.match(self.text, self.at)) and len(self.skips) < self.size:
+            start, self.at = self.at, match.end()
+            if match[1] is not None:
+                self.skips.append(self.number(match[1] or "1", start))
+            elif match[2] and sequence_number is None:
+                sequence_number = self.number(match[2], start)
             else:
                 self.at = start
-                if found[2] or head:
+                if match[2] or head:
                     break
                 head = self.word()
         statement = self.statement()
@@ -134,24 +134,24 @@ class _Reader:
         )
 
     def statement(self) -> Statement:
-        start, place = self.at, self.characters.span(self.at, len(self.text))
+        start, span = self.at, self.characters.span(self.at, len(self.text))
         if self.text.startswith(("#", "[#_"), start):
-            return self.assignment(place)
+            return self.assignment(span)
         match self.take_keyword():
             case "IF":
-                return self.after_if(place, self.condition("if-format"))
+                return self.after_if(span, self.condition("if-format"))
             case "WHILE":
-                return self.after_while(place, self.condition("while-format"))
+                return self.after_while(span, self.condition("while-format"))
             case "DO" | "END" as name:
-                return Statement(Kind[name], *place, loop=self.loop(start))
+                return Statement(Kind[name], *span, loop=self.loop(start))
             case "GOTO":
-                return Statement(Kind.GOTO, *place, jump=self.jump())
+                return Statement(Kind.GOTO, *span, jump=self.jump())
             case "THEN":
                 self.wrong_rest("if-format", start)
-                return Statement(Kind.NC, *place)
+                return Statement(Kind.NC, *span)
             case "":
-                return self.nc_words(place)
-        return Statement(Kind.OUTPUT, *place)
+                return self.nc_words(span)
+        return Statement(Kind.OUTPUT, *span)
 
     def nothing_more(self) -> None:
         """The block must end here: no NC words nor a second statement can follow."""
@@ -161,19 +161,19 @@ class _Reader:
         elif rest:
             self.wrong("missing-open-bracket" if rest == "]" else "statement-format", self.at, len(self.text))
 
-    def assignment(self, place: Place) -> Statement:
+    def assignment(self, span: Place) -> Statement:
         start = self.at
         target = self.expression(whole=False)
         if target is None:
-            return Statement(Kind.ASSIGN, *place)
+            return Statement(Kind.ASSIGN, *span)
         target = replace(target, steps=target.steps[:-1]) if target.steps[-1].name == "#" else None
         if not self.text.startswith("=", self.at):
             self.wrong_rest("missing-equal", start)
-            return Statement(Kind.ASSIGN, *place, target=target)
+            return Statement(Kind.ASSIGN, *span, target=target)
         self.at += 1
         value = self.expression(whole=True)
         self.nothing_more()
-        return Statement(Kind.ASSIGN, *place, target=target, value=value)
+        return Statement(Kind.ASSIGN, *span, target=target, value=value)
 
     def condition(self, kind: FaultKind) -> Expression | None:
         """The condition of IF or WHILE. `[..] AND [..]` lacks the bracket around both, but what is meant is clear."""
@@ -206,14 +206,14 @@ class _Reader:
         self.nothing_more()
         return loop
 
-    def after_while(self, place: Place, condition: Expression | None) -> Statement:
+    def after_while(self, span: Place, condition: Expression | None) -> Statement:
         start = self.at
         if self.take_keyword() == "DO":
-            return Statement(Kind.WHILE_DO, *place, condition=condition, loop=self.loop(start))
+            return Statement(Kind.WHILE_DO, *span, condition=condition, loop=self.loop(start))
         self.wrong_rest("while-format", start)
-        return Statement(Kind.WHILE_DO, *place, condition=condition)
+        return Statement(Kind.WHILE_DO, *span, condition=condition)
 
-    def after_if(self, place: Place, condition: Expression | None) -> Statement:
+    def after_if(self, span: Place, condition: Expression | None) -> Statement:
         start = self.at
         if self.keyword() == "THEN":
             self.take_keyword()
@@ -221,17 +221,17 @@ class _Reader:
             self.wrong("if-format", start, len(self.text))
         if self.keyword() == "GOTO":
             self.take_keyword()
-            return Statement(Kind.IF_GOTO, *place, condition=condition, jump=self.jump())
+            return Statement(Kind.IF_GOTO, *span, condition=condition, jump=self.jump())
         if self.at >= len(self.text) or self.keyword() not in ("", *_OUTPUTS):
             self.wrong_rest("if-format", start)
-            return Statement(Kind.IF_THEN, *place, condition=condition)
+            return Statement(Kind.IF_THEN, *span, condition=condition)
         start = self.at
         then = self.statement()
         if then.kind is Kind.NC or then.call.startswith("M"):
             self.wrong("nc-and-macro", start, len(self.text))
-        return Statement(Kind.IF_THEN, *place, condition=condition, then=replace(then, fault=self.fault))
+        return Statement(Kind.IF_THEN, *span, condition=condition, then=replace(then, fault=self.fault))
 
-    def nc_words(self, place: Place) -> Statement:
+    def nc_words(self, span: Place) -> Statement:
         words: list[Word] = []
         while self.at < len(self.text):
             start, sign = self.at, self.text[self.at]
@@ -250,7 +250,7 @@ class _Reader:
                 self.wrong(_ALONE.get(sign, "stray-character"), start)
                 self.at += 1
         call = next((word.code for word in words if word.code in self.calls), "")
-        return Statement(Kind.CALL if call else Kind.NC, *place, words=tuple(words), call=call)
+        return Statement(Kind.CALL if call else Kind.NC, *span, words=tuple(words), call=call)
 
     def name(self) -> list[Word]:
         """A program's name in < >, which keeps its letters as written."""
@@ -259,9 +259,9 @@ class _Reader:
             self.wrong_rest("stray-character", start)
             return []
         self.at = end + 1
-        place = self.characters.span(start, self.at)
-        written = self.block[place[0] + 1 : place[1] - 1].strip() if self.block else self.text[start + 1 : end]
-        return [Word("<", Expression((), *place), written, *place)]
+        span = self.characters.span(start, self.at)
+        written = self.block[span[0] + 1 : span[1] - 1].strip() if self.block else self.text[start + 1 : end]
+        return [Word("<", Expression((), *span), written, *span)]
 
     def word(self) -> list[Word]:
         """One word, or none where its value cannot be read; then what may be its number is passed over."""
@@ -270,11 +270,11 @@ class _Reader:
             return self.named(name)
         address = "," * (self.text[start] == ",") + self.text[start + (self.text[start] == ",")]
         self.at = begin = start + len(address)
-        if found := _WRITTEN.match(self.text, begin):
-            self.at = found.end()
-            place = self.characters.span(begin, self.at)
-            value = constant(float(found[0]), *place)
-            return [Word(address.replace(":", "O"), value, found[0], *self.characters.span(start, self.at))]
+        if number := _WRITTEN.match(self.text, begin):
+            self.at = number.end()
+            span = self.characters.span(begin, self.at)
+            value = constant(float(number[0]), *span)
+            return [Word(address.replace(":", "O"), value, number[0], *self.characters.span(start, self.at))]
         if address in "O:" and self.text.startswith("<", begin):
             return []
         if _CALCULATED.match(self.text, begin):
@@ -282,21 +282,21 @@ class _Reader:
             if address in "NO:":
                 self.wrong("format", start, self.at)
             return [Word(address, calculated, None, *self.characters.span(start, self.at))] if calculated else []
-        found = _NO_VALUE.match(self.text, begin)
-        self.at = found.end() if found else begin
+        number = _NO_VALUE.match(self.text, begin)
+        self.at = number.end() if number else begin
         self.wrong("word-format", start, self.at)
         self.lose(start, address)
         return []
 
     def lose(self, start: int, address: str) -> None:
         """Keep the name of a word that gives no number: what the control makes of it is not known."""
-        place = self.characters.span(start, self.at)
-        if self.lost and place[0] < self.lost[-1].end:
+        span = self.characters.span(start, self.at)
+        if self.lost and span[0] < self.lost[-1].end:
             return
         match = _LOST.match(self.text, start)
-        shown = match[0] if match else address
-        end = self.characters.span(start, start + len(shown))[1]
-        self.lost.append(Unread(shortened(shown, _SHOWN), place[0], end, address in AXIS_LETTERS))
+        text = match[0] if match else address
+        end = self.characters.span(start, start + len(text))[1]
+        self.lost.append(Unread(shortened(text, _SHOWN), span[0], end, address in AXIS_LETTERS))
 
     def axis_name(self) -> str:
         """The name of an axis with its = that stands here; "" where there is none, or where it is the end of a word."""
@@ -315,9 +315,9 @@ class _Reader:
             return []
         if name[0] not in AXIS_LETTERS and not _VALUE.match(self.text, begin):
             # A word of another language, as R1=R2*2: it is told by its name, and nothing here is wrong.
-            place = self.characters.span(begin, len(self.text))
+            span = self.characters.span(begin, len(self.text))
             self.at = len(self.text)
-            unknown = constant(UNKNOWN, *place)
+            unknown = constant(UNKNOWN, *span)
             return [Word(name, unknown, None, *self.characters.span(start, self.at))]
         match = _WRITTEN.match(self.text, begin)
         value = self.expression(whole=True)

@@ -21,7 +21,7 @@ def calls_one_of(source: Source, machine: Machine, folders: Sequence[str], names
     if not names:
         return False
     control = machine.control
-    texts = [read_text(one, machine) for one in channels(source, control.channel_mark, control.line_comments)]
+    texts = [read_text(channel, machine) for channel in channels(source, control.channel_mark, control.line_comments)]
     for text in texts:
         if not needs_flow(text, machine.macro.flow_codes):
             continue

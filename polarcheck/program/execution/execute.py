@@ -60,10 +60,10 @@ def _run_all(state: State) -> None:
     ran = False
     for program in sorted(programs, key=lambda program: not named.isdisjoint(program.keys)):
         if not _was_run(state, program) and called.isdisjoint(program.keys):
-            known = len(state.used_files)
+            used = len(state.used_files)
             _run_program(state, program)
             ran = True
-            if len(state.used_files) > known:
+            if len(state.used_files) > used:
                 called = _called(state)
     if not ran:
         _run_program(state, programs[0])
@@ -103,14 +103,14 @@ def _is_subprogram(listing: Listing, program: Program) -> bool:
     if not program.has_head or np.any(ends[codes]):
         return False
     statements = listing.macro_statements(program)
-    return bool(np.any(returns[codes])) or any(_returns(one, listing.macro) for _, one in statements)
+    return bool(np.any(returns[codes])) or any(_returns(statement, listing.macro) for _, statement in statements)
 
 
 def _step(state: State, block: int) -> int:
     """Execute up to the next block at which the flow can turn, and that block; return the next block."""
     program, stops = state.stack[-1].program, state.listing.stops
-    at = bisect.bisect_left(stops, block)
-    stop = min(stops[at] if at < len(stops) else program.end, program.end)
+    index = bisect.bisect_left(stops, block)
+    stop = min(stops[index] if index < len(stops) else program.end, program.end)
     if stop > block:
         modal = modal_call(state)
         if modal is not None:

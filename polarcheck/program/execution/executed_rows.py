@@ -100,8 +100,8 @@ class ExecutedRows:
 
     def first_moving(self, first: int, end: int) -> int | None:
         """The first block of a range with words of an axis."""
-        at, _ = stretch(self.moving, first, end)
-        return int(self.moving[at]) if at < len(self.moving) and self.moving[at] < end else None
+        index, _ = stretch(self.moving, first, end)
+        return int(self.moving[index]) if index < len(self.moving) and self.moving[index] < end else None
 
     def _add(self, words: Rows, row: Rows, block: Rows, depth: int) -> None:
         self.words.append(words)
@@ -118,9 +118,9 @@ class ExecutedRows:
             index = np.arange(low, high)[self.kept[low:high]]
             block, row = np.unique(self.text.words.block[index], return_inverse=True)
             self.ranges[key] = _Range(index, row, block)
-        found = self.ranges[key]
-        self._add(found.words, found.row, found.block, depth)
-        self._set_units(found.words)
+        plain = self.ranges[key]
+        self._add(plain.words, plain.row, plain.block, depth)
+        self._set_units(plain.words)
 
     def _set_units(self, words: Rows) -> None:
         """The last code of units among words of the text is in force from here on."""
@@ -210,8 +210,8 @@ class ExecutedRows:
         """Per executed word what it says of itself; index: among the words of the text and the computed ones."""
         if all(word.distance is None for _, word, _ in self.computed):
             return None
-        own = [word.distance or 0 for _, word, _ in self.computed]
-        return np.concatenate((np.zeros(len(self.text.words), np.int16), np.array(own, np.int16)))[index]
+        computed = [word.distance or 0 for _, word, _ in self.computed]
+        return np.concatenate((np.zeros(len(self.text.words), np.int16), np.array(computed, np.int16)))[index]
 
 
 def _kept(words: Words) -> Mask:

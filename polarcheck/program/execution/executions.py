@@ -42,12 +42,12 @@ def add_static_faults(state: State) -> None:
             _mixed_logic(state, block, statement)
             _target_twice(state, program, block, statement)
         for loop in listing.loops(program).faults:
-            place = listing.statement(loop.block)
-            state.add_fault(loop.kind, loop.block, place, number=loop.number, other=loop.other, levels=loop.levels)
+            at_fault = listing.statement(loop.block)
+            state.add_fault(loop.kind, loop.block, at_fault, number=loop.number, other=loop.other, levels=loop.levels)
         for structure in listing.structures(program.first).faults:
-            place = listing.statement(structure.block)
+            at_fault = listing.statement(structure.block)
             names = {"keyword": structure.keyword, "missing": structure.missing}
-            state.add_fault(structure.kind, structure.block, place, **names)
+            state.add_fault(structure.kind, structure.block, at_fault, **names)
     if not state.remarks and not state.stopped:
         _never_run(state)
 
@@ -56,10 +56,10 @@ def _mixed_logic(state: State, block: int, statement: Statement) -> None:
     expressions = [statement.value, statement.condition, statement.target, statement.jump]
     expressions += [word.value for word in statement.words]
     for expression in expressions:
-        place = expression.mixed if expression is not None else None
-        if expression is not None and place is not None:
+        mixed = expression.mixed if expression is not None else None
+        if expression is not None and mixed is not None:
             written = " ".join(block_text(state.listing.text, block)[expression.start : expression.end].split())
-            state.add_fault("mixed-logic", block, Fault("mixed-logic", *place), expression=written[:_SHOWN])
+            state.add_fault("mixed-logic", block, Fault("mixed-logic", *mixed), expression=written[:_SHOWN])
 
 
 def _target_twice(state: State, program: Program, block: int, statement: Statement) -> None:
@@ -84,8 +84,8 @@ def _never_run(state: State) -> None:
             if is_new and _ends_flow(listing, state, previous):
                 written = block_text(listing.text, block)
                 lead = len(written) - len(written.lstrip())
-                place = Fault("never-run", lead, max(len(written.rstrip()), lead + 1))
-                state.add_fault("never-run", block, place)
+                fault = Fault("never-run", lead, max(len(written.rstrip()), lead + 1))
+                state.add_fault("never-run", block, fault)
             was_visited = bool(visited[block])
             previous = block
 
@@ -101,14 +101,16 @@ def _ends_flow(listing: Listing, state: State, block: int) -> bool:
     return any(part.kind is Kind.GOTO or part.call in returns for part in (statement, *statement.more))
 
 
-def executed(text: Text, machine: Machine, job: Job, states: Sequence[str], beside: Beside | None = None) -> list[Run]:
+def executed(
+    text: Text, machine: Machine, job: Job, states: Sequence[str], channels: Beside | None = None
+) -> list[Run]:
     """
     The run of a file in each state of block skip ("off", "on").
 
-    beside: the other channels of the file. Called files that no call came to are no part of its text.
+    channels: the other channels of the file. Called files that no call came to are no part of its text.
     """
     inch = (job.program_units or machine.control.units) == "inch"
-    shelf = Shelf(text, machine, job.run.subprograms, beside)
+    shelf = Shelf(text, machine, job.run.subprograms, channels)
     texts: dict[frozenset[int], Text] = {}
     runs = []
     for skip in states:
@@ -144,13 +146,15 @@ def _with_text(state: State, text: Text) -> Run:
         end=run.words.end - characters[of_words],
     )
 
-    def fault(found: FlowFault) -> FlowFault:
-        file = int(file_of(np.array(found.block)))
-        start, end = found.start - int(characters[file]), found.end - int(characters[file])
-        return msgspec.structs.replace(found, block=found.block - int(blocks[file]), start=start, end=end)
+    def fault(flow_fault: FlowFault) -> FlowFault:
+        file = int(file_of(np.array(flow_fault.block)))
+        start, end = flow_fault.start - int(characters[file]), flow_fault.end - int(characters[file])
+        return msgspec.structs.replace(flow_fault, block=flow_fault.block - int(blocks[file]), start=start, end=end)
 
-    def remark(found: Remark) -> Remark:
-        return msgspec.structs.replace(found, block=found.block - int(blocks[int(file_of(np.array(found.block)))]))
+    def remark(original: Remark) -> Remark:
+        return msgspec.structs.replace(
+            original, block=original.block - int(blocks[int(file_of(np.array(original.block)))])
+        )
 
     return msgspec.structs.replace(
         run,

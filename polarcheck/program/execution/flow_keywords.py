@@ -102,8 +102,8 @@ def _for(block: SpokenBlock, first: Token) -> None:
     if start is None or last is None:
         block.wrong("format", first, block.token)
         return
-    place = first.start, last.end
-    condition = Expression((*variable.steps, *last.steps, Step("LE", 0.0, *place)), *place)
+    span = first.start, last.end
+    condition = Expression((*variable.steps, *last.steps, Step("LE", 0.0, *span)), *span)
     target = replace(variable, steps=variable.steps[:-1])
     _structure(block, first, condition, target=target, value=start)
 
@@ -131,8 +131,8 @@ def _repeat(block: SpokenBlock, first: Token) -> None:
 
 def _case(block: SpokenBlock, first: Token) -> None:
     """CASE R1 OF 1 GOTOF A 2 GOTOF B DEFAULT GOTOF C: one jump behind the other."""
-    asked = block.expression()
-    if asked is None or block.token.text != "OF":
+    selector = block.expression()
+    if selector is None or block.token.text != "OF":
         block.leave_rest(first)
         return
     block.at += 1
@@ -142,11 +142,11 @@ def _case(block: SpokenBlock, first: Token) -> None:
             block.at += 1
             condition = None
         else:
-            one = block.expression()
-            if one is None:
+            label = block.expression()
+            if label is None:
                 return
-            steps = (*asked.steps, *one.steps, Step("EQ", 0.0, begin.start, one.end))
-            condition = Expression(steps, begin.start, one.end)
+            steps = (*selector.steps, *label.steps, Step("EQ", 0.0, begin.start, label.end))
+            condition = Expression(steps, begin.start, label.end)
         if block.token.text not in _SEARCHES:
             block.leave_rest(first)
             return
@@ -219,8 +219,8 @@ def call_by_name(block: SpokenBlock, name: str, first: Token) -> None:
                 break
         if not block.take_sign(")"):
             block.wrong("missing-close-bracket", first, block.token)
-    place = first.start, end_of(block)
-    words = [Word("<", Expression((), *place), name, *place)]
+    span = first.start, end_of(block)
+    words = [Word("<", Expression((), *span), name, *span)]
     if block.token.text == "P":
         token = block.token
         block.at += 1
@@ -232,7 +232,7 @@ def call_by_name(block: SpokenBlock, name: str, first: Token) -> None:
         block.leave_rest(first)
         return
     code = block.machine.macro.subprogram_calls[0]
-    block.add(Statement(Kind.CALL, *place, words=tuple(words), call=code, parameters=tuple(parameters)))
+    block.add(Statement(Kind.CALL, *span, words=tuple(words), call=code, parameters=tuple(parameters)))
 
 
 def _call(block: SpokenBlock, first: Token) -> None:
@@ -274,24 +274,24 @@ _AXIS_MOVES: Final = ("POS", "POSA", "MOV", "OS", "FXS", "MEAWA", "MEAC")
 def _synchronized(block: SpokenBlock, first: Token) -> None:
     """WHENEVER condition DO actions: it runs beside the blocks, and no condition of it is evaluated here."""
     tokens = block.tokens[block.at - 1 :]
-    do = next((at for at, token in enumerate(tokens) if token.text == "DO"), -1)
+    do = next((index for index, token in enumerate(tokens) if token.text == "DO"), -1)
     block.at = len(block.tokens) - 1
-    effects = {_action(block, tokens, at): tokens[at].text for at in range(len(tokens) - 2, do, -1)}
+    effects = {_action(block, tokens, index): tokens[index].text for index in range(len(tokens) - 2, do, -1)}
     for effect in ("moves", "path"):
         if effect in effects:
             block.leave_unread(f"synchronized action with {effects[effect]}", first, effect, tokens[-1])
             return
 
 
-def _action(block: SpokenBlock, tokens: list[Token], at: int) -> str:
+def _action(block: SpokenBlock, tokens: list[Token], index: int) -> str:
     """The effect of what begins with a token of the actions."""
-    token, following = tokens[at], tokens[at + 1]
+    token, following = tokens[index], tokens[index + 1]
     is_set = following.text in ("=", "[") or following.kind == "number"
     if token.text in _FEEDS and is_set:
         return "path"
     if token.kind == "letter":
         axes = ("X", "Y", "Z", block.machine.polar.rotary_address)
-        inside = tokens[max(at - 2, 0)].text in _AXIS_MOVES and tokens[at - 1].text == "["
+        inside = tokens[max(index - 2, 0)].text in _AXIS_MOVES and tokens[index - 1].text == "["
         return "moves" if (token.text in axes and is_set) or (inside and token.text in axes) else "none"
     if token.kind != "name" or token.text in _AXIS_MOVES:
         return "none"
@@ -299,7 +299,7 @@ def _action(block: SpokenBlock, tokens: list[Token], at: int) -> str:
     names = (f"{name}=", name, f"{name}[0]=")
     if name.startswith("$"):
         return "none"
-    return next((effect for one in names if (effect := block.effect(one)) is not None), "none")
+    return next((effect for listed in names if (effect := block.effect(listed)) is not None), "none")
 
 
 def _pass_over(block: SpokenBlock, first: Token) -> None:

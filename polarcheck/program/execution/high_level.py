@@ -188,11 +188,11 @@ class _Reader(SpokenBlock):
         """Return True if = follows, or [ ] and then =."""
         if not self.is_sign("["):
             return self.is_sign("=")
-        at = self.at
+        start = self.at
         self.arguments()
-        found = self.is_sign("=")
-        self.at = at
-        return found
+        is_taken = self.is_sign("=")
+        self.at = start
+        return is_taken
 
     def assignment(self, first: Token) -> None:
         """NAME=5: a word of several letters, an axis, a variable, or what the profile says of it."""

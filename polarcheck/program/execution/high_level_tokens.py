@@ -138,8 +138,8 @@ class Tokens:
 
     def is_sign(self, sign: str, ahead: int = 0) -> bool:
         """True where the next token, or the one at this distance behind it, is this sign."""
-        at = min(self.at + ahead, len(self.tokens) - 1)
-        return self.tokens[at].kind == "sign" and self.tokens[at].text == sign
+        index = min(self.at + ahead, len(self.tokens) - 1)
+        return self.tokens[index].kind == "sign" and self.tokens[index].text == sign
 
     def take_sign(self, sign: str) -> bool:
         """Pass over a sign if it is the next token."""

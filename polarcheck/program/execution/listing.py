@@ -33,9 +33,11 @@ class Listing:
     found: the calls for which a file was found, and its index in files. stops: the blocks at which the flow can turn.
     """
 
-    def __init__(self, files: Sequence[Text], machine: Machine, found: dict[ProgramName, int] | None = None) -> None:
+    def __init__(
+        self, files: Sequence[Text], machine: Machine, found_files: dict[ProgramName, int] | None = None
+    ) -> None:
         self.files = list(files)
-        self.found = found or {}
+        self.found = found_files or {}
         self.machine = machine
         self.macro = machine.macro
         self.ends = frozenset(machine.m_codes.program_end)
@@ -56,13 +58,13 @@ class Listing:
     def with_files(self, files: dict[ProgramName, Text]) -> Listing:
         """The listing with more called files behind it, each once; what was read of the others is kept."""
         texts = [*self.files]
-        place = {id(text): number for number, text in enumerate(texts)}
+        index = {id(text): number for number, text in enumerate(texts)}
         indices = {}
         for called, text in files.items():
-            if id(text) not in place:
-                place[id(text)] = len(texts)
+            if id(text) not in index:
+                index[id(text)] = len(texts)
                 texts.append(text)
-            indices[called] = place[id(text)]
+            indices[called] = index[id(text)]
         grown = Listing(texts, self.machine, self.found | indices)
         grown._statements, grown._loops, grown._calls = self._statements, self._loops, self._calls
         grown.names = self.names
@@ -96,8 +98,8 @@ class Listing:
 
     def turns_at(self, block: int) -> bool:
         """Return True if the flow can turn at a block."""
-        at = bisect.bisect_left(self.stops, block)
-        return at < len(self.stops) and self.stops[at] == block
+        index = bisect.bisect_left(self.stops, block)
+        return index < len(self.stops) and self.stops[index] == block
 
     def macro_statements(self, program: Program) -> list[tuple[int, Statement]]:
         """The macro statements of a program with their blocks, in order."""
@@ -120,8 +122,8 @@ class Listing:
 
     def procedure(self, program: Program) -> Statement | None:
         """The statement with which a program of a name begins, None where it has none."""
-        at = bisect.bisect_left(self.stops, program.first)
-        block = self.stops[at] if at < len(self.stops) else program.end
+        index = bisect.bisect_left(self.stops, program.first)
+        block = self.stops[index] if index < len(self.stops) else program.end
         if block >= program.end or not self.text.blocks.is_macro[block]:
             return None
         statement = self.statement(block)
@@ -144,12 +146,12 @@ class Listing:
     def _calls_of(self, file: int) -> dict[ProgramName, bool]:
         """The same calls, and whether a block without macro has each."""
         if file not in self._calls:
-            found = self._calls[file] = {}
+            calls = self._calls[file] = {}
             blocks = np.flatnonzero(turns(self.files[file], self._call_codes)) + self.first_blocks[file]
             for block in blocks.tolist():
                 called = self.called_in(block)
                 if called is not None:
-                    found[called] = found.get(called, False) or not self.text.blocks.is_macro[block]
+                    calls[called] = calls.get(called, False) or not self.text.blocks.is_macro[block]
         return self._calls[file]
 
     def computes_calls(self, file: int) -> bool:

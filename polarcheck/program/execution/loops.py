@@ -48,29 +48,29 @@ def find_loops(statements: Sequence[tuple[int, Statement]], levels: int) -> Loop
     loops = Loops()
     open_loops: list[tuple[int, int]] = []
 
-    def wrong(kind: FaultKind, block: int, number: int, other: int = 0) -> None:
-        loops.faults.append(LoopFault(kind, block, number, other, levels))
+    def wrong(kind: FaultKind, block: int, number: int, rival: int = 0) -> None:
+        loops.faults.append(LoopFault(kind, block, number, rival, levels))
 
     for block, statement in statements:
         if statement.loop is None:
             continue
         number = statement.loop.value
         if statement.kind in (Kind.WHILE_DO, Kind.DO):
-            if any(number == other for other, _ in open_loops):
+            if any(number == open_number for open_number, _ in open_loops):
                 wrong("loop-inside-itself", block, number, number)
             elif len(open_loops) >= levels:
                 wrong("loop-levels", block, number)
             open_loops.append((number, block))
         elif statement.kind is Kind.END:
-            if not any(number == other for other, _ in open_loops):
+            if not any(number == open_number for open_number, _ in open_loops):
                 wrong("end-without-loop", block, number)
                 continue
             while open_loops[-1][0] != number:
-                other, at = open_loops.pop()
-                wrong("loops-crossed", at, other, number)
-            _, at = open_loops.pop()
-            loops.end[at] = block
-            loops.head[block] = at
-    for number, at in open_loops:
-        wrong("loop-without-end", at, number)
+                open_number, head = open_loops.pop()
+                wrong("loops-crossed", head, open_number, number)
+            _, head = open_loops.pop()
+            loops.end[head] = block
+            loops.head[block] = head
+    for number, head in open_loops:
+        wrong("loop-without-end", head, number)
     return loops

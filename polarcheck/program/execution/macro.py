@@ -141,8 +141,8 @@ def _kind(number: int, macro: Macro) -> VariableKind:
         (VariableKind.RETAINED, macro.retained_variables),
         (VariableKind.SYSTEM, macro.system_variables),
     )
-    found = (kind for kind, spans in ranges if any(first <= number <= last for first, last in spans))
-    return next(found, VariableKind.NONE) if number else VariableKind.VACANT
+    kinds = (kind for kind, spans in ranges if any(first <= number <= last for first, last in spans))
+    return next(kinds, VariableKind.NONE) if number else VariableKind.VACANT
 
 
 def assign(statement: Statement, variables: Variables, arithmetic: Arithmetic = DEFAULT) -> Fault | None:
@@ -273,8 +273,8 @@ def assign_arguments(
 
 def _after_call(statement: Statement) -> tuple[Word, ...]:
     """The words after the code that makes the call."""
-    at = next((i for i, word in enumerate(statement.words) if word.code == statement.call), -1)
-    return statement.words[at + 1 :]
+    index = next((i for i, word in enumerate(statement.words) if word.code == statement.call), -1)
+    return statement.words[index + 1 :]
 
 
 class ProgramCall(msgspec.Struct, frozen=True):

@@ -76,7 +76,7 @@ class Characters:
     def of_block(cls, block: str) -> Characters:
         """The characters of a block as it is written."""
         places = [match.start() for match in re.finditer(r"[^\s\0]", block)]
-        return cls(in_capitals("".join([block[place] for place in places])), places)
+        return cls(in_capitals("".join([block[index] for index in places])), places)
 
     def span(self, start: int, end: int) -> tuple[int, int]:
         """Where the characters from start to end stand in the block; the last character where start is past the end."""
@@ -98,8 +98,8 @@ class MacroLexer:
     at: the index within the characters of the next one; positions are such indices.
     """
 
-    def __init__(self, characters: Characters, at: int) -> None:
-        self.characters, self.text, self.at = characters, characters.text, at
+    def __init__(self, characters: Characters, start: int) -> None:
+        self.characters, self.text, self.at = characters, characters.text, start
 
     @property
     def start(self) -> int:
@@ -155,7 +155,7 @@ class MacroLexer:
         return self.at
 
     def unclosed(self, start: int, token: Following) -> Fault:
-        at = token.start
-        if not token.text and (at >= len(self.text) or self.text[at].isalpha()):
-            return self.characters.fault("missing-close-bracket", start, at)
-        return self.characters.fault("format", at, token.end)
+        end = token.start
+        if not token.text and (end >= len(self.text) or self.text[end].isalpha()):
+            return self.characters.fault("missing-close-bracket", start, end)
+        return self.characters.fault("format", end, token.end)

@@ -59,9 +59,9 @@ class ProgramName(NamedTuple):
         """The names and numbers that it can mean, in capitals: <O0012> names O12, too."""
         if self.number is not None:
             return (self.number,)
-        wanted = (self.name or "").upper()
-        numbered = re.fullmatch(r"O0*(\d{1,15})", wanted)
-        return (wanted, int(numbered[1])) if numbered else (wanted,)
+        name = (self.name or "").upper()
+        numbered = re.fullmatch(r"O0*(\d{1,15})", name)
+        return (name, int(numbered[1])) if numbered else (name,)
 
 
 class Program(msgspec.Struct, frozen=True):
@@ -108,11 +108,11 @@ class Programs:
 
         Source: B-62754EN/01, chapter 16 (the search runs forward, then from the head).
         """
-        return _found(self.targets(program).get(number, []), block, search)
+        return _target(self.targets(program).get(number, []), block, search)
 
     def labelled(self, program: Program, label: str, block: int, search: Search) -> int | None:
         """The block of a label of a program, in capitals, from another block on; None where there is none."""
-        return _found(self.labels(program).get(label, []), block, search)
+        return _target(self.labels(program).get(label, []), block, search)
 
     def labels(self, program: Program) -> dict[str, list[int]]:
         """The blocks of each label of a program, in capitals."""
@@ -122,7 +122,7 @@ class Programs:
     def with_labels(self) -> frozenset[int]:
         """The blocks with a label: jumps that are not taken may lead there."""
         return frozenset(
-            block for of_program in self._labels.values() for found in of_program.values() for block in found
+            block for of_program in self._labels.values() for blocks in of_program.values() for block in blocks
         )
 
     @cached_property
@@ -130,7 +130,7 @@ class Programs:
         """The blocks of each label, by the first block of its program."""
         names = self.text.labels
         columns = (names.block.tolist(), names.start.tolist(), names.end.tolist())
-        places = [(block, self.text.source.excerpt(*place).upper()) for block, *place in zip(*columns, strict=True)]
+        places = [(block, self.text.source.excerpt(*span).upper()) for block, *span in zip(*columns, strict=True)]
         pattern = re.compile(_LABEL, re.IGNORECASE)
         for block in np.flatnonzero(self.text.blocks.is_macro).tolist():
             match = pattern.match(block_text(self.text, block))
@@ -184,23 +184,23 @@ def label_in(written: str) -> re.Match[str] | None:
     return re.compile(_LABEL, re.IGNORECASE).match(written)
 
 
-def _found(targets: Sequence[int], block: int, search: Search) -> int | None:
+def _target(targets: Sequence[int], block: int, search: Search) -> int | None:
     """Which of some blocks, in order, a search from a block on comes to first; None where it comes to none."""
-    behind = bisect.bisect_right(targets, block)
-    ahead = targets[behind] if behind < len(targets) else None
+    index = bisect.bisect_right(targets, block)
+    ahead = targets[index] if index < len(targets) else None
     if search is Search.FORWARD:
         return ahead
     if search is Search.BACKWARD:
-        return targets[behind - 1] if behind else None
+        return targets[index - 1] if index else None
     return targets[0] if ahead is None and targets else ahead
 
 
 def read_text(source: Source, machine: Machine) -> Text:
     """The words of a source as this control reads them."""
     control = machine.control
-    found = translated(source, control.native_words, machine.macro.language)
+    translation = translated(source, control.native_words, machine.macro.language)
     marks = control.channel_mark, control.wait_mark
-    return read_words(found, control.line_comments, *marks, machine.macro.language)
+    return read_words(translation, control.line_comments, *marks, machine.macro.language)
 
 
 def find_programs(text: Text) -> Programs:
@@ -265,14 +265,14 @@ def block_text(text: Text, block: int) -> str:
         spans += zip(table.start[chosen].tolist(), table.end[chosen].tolist(), strict=True)
     if not (strays or letters or spans):
         return written
-    found = list(written)  # a text would be copied for each of them
-    for at in strays:
-        if written[at - start] == "," and _DECIMAL_COMMA.match(written, at - start):
-            found[at - start] = "."
-        elif written[at - start] != "%":  # ends what is read
-            found[at - start] = " "
-    for at in letters:
-        found[at - start] = "0" if written[at - start] in "oO" else "1"
+    characters = list(written)  # a text would be copied for each of them
+    for index in strays:
+        if written[index - start] == "," and _DECIMAL_COMMA.match(written, index - start):
+            characters[index - start] = "."
+        elif written[index - start] != "%":  # ends what is read
+            characters[index - start] = " "
+    for index in letters:
+        characters[index - start] = "0" if written[index - start] in "oO" else "1"
     for first, last in spans:
-        found[first - start : last - start] = " " * (last - first)
-    return "".join(found)
+        characters[first - start : last - start] = " " * (last - first)
+    return "".join(characters)

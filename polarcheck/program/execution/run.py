@@ -157,12 +157,12 @@ def begins_program(words: Words) -> Mask:
 
     But behind the M code that ends a program: what a control puts out may lack the line end there, as in M99O0810.
     """
-    found = words.address == ord("O")
-    at = np.flatnonzero(found)
-    first = np.searchsorted(words.block, words.block[at])
-    inside = at > first
+    begins = words.address == ord("O")
+    index = np.flatnonzero(begins)
+    first = np.searchsorted(words.block, words.block[index])
+    inside = index > first
     if np.any(inside):
         before = np.append(0, np.cumsum(is_among(words.address, list(b"N/"))))
-        is_end = (words.address[at - 1] == ord("M")) & is_among(words.value[at - 1], _ENDS)
-        found[at] = (before[at] - before[first] == at - first) | (inside & is_end)
-    return np.asarray(found)
+        is_end = (words.address[index - 1] == ord("M")) & is_among(words.value[index - 1], _ENDS)
+        begins[index] = (before[index] - before[first] == index - first) | (inside & is_end)
+    return np.asarray(begins)

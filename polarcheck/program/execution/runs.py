@@ -38,19 +38,21 @@ def runs(source: Source, machine: Machine, job: Job) -> list[tuple[str, Run]]:
     """
     texts = texts_of(source, machine)
     called = [_called(text, machine) for text in texts] if len(texts) > 1 else [frozenset[int | str]()]
-    found = []
+    results = []
     for number, text in enumerate(texts):
-        others = range(len(texts))[:number], range(len(texts))[number + 1 :]
-        at = list(chain(*others))
-        beside = Beside([texts[one] for one in at], frozenset[int | str]().union(*(called[one] for one in at)))
-        found += _runs(text, machine, job, beside)
-    return found
+        remaining = range(len(texts))[:number], range(len(texts))[number + 1 :]
+        indices = list(chain(*remaining))
+        channels = Beside(
+            [texts[index] for index in indices], frozenset[int | str]().union(*(called[index] for index in indices))
+        )
+        results += _runs(text, machine, job, channels)
+    return results
 
 
 def texts_of(source: Source, machine: Machine) -> list[Text]:
     """Return the text of each channel of a file; nothing is executed."""
     control = machine.control
-    texts = [read_text(one, machine) for one in channels(source, control.channel_mark, control.line_comments)]
+    texts = [read_text(channel, machine) for channel in channels(source, control.channel_mark, control.line_comments)]
     return _with_programs(texts) if len(texts) > 1 else texts
 
 
@@ -58,16 +60,16 @@ def _with_programs(channels: Sequence[Text]) -> list[Text]:
     """The channels that have more than what stands before the first mark of one; a single one is the file itself."""
 
     def has_own(text: Text) -> bool:
-        other = next(one for one in channels if one is not text).source.code
-        own = np.flatnonzero(text.source.code != other)
-        own = own[text.source.code[own] != _BLANK]
-        blocks = np.searchsorted(text.blocks.start, own, side="right") - 1
-        return bool(np.isin(text.words.start, own).any() or text.blocks.is_macro[blocks].any())
+        reference = next(channel for channel in channels if channel is not text).source.code
+        differing = np.flatnonzero(text.source.code != reference)
+        differing = differing[text.source.code[differing] != _BLANK]
+        blocks = np.searchsorted(text.blocks.start, differing, side="right") - 1
+        return bool(np.isin(text.words.start, differing).any() or text.blocks.is_macro[blocks].any())
 
-    found = [text for text in channels if has_own(text)] or [channels[0]]
-    if len(found) > 1:
-        return found
-    (only,) = found
+    texts = [text for text in channels if has_own(text)] or [channels[0]]
+    if len(texts) > 1:
+        return texts
+    (only,) = texts
     return [msgspec.structs.replace(only, source=msgspec.structs.replace(only.source, channel=""))]
 
 
@@ -80,7 +82,7 @@ def _called(text: Text, machine: Machine) -> frozenset[int | str]:
     return frozenset(Listing([text], machine).named_by([0], by_number_only=True))
 
 
-def _runs(text: Text, machine: Machine, job: Job, beside: Beside) -> list[tuple[str, Run]]:
+def _runs(text: Text, machine: Machine, job: Job, channels: Beside) -> list[tuple[str, Run]]:
     """The runs of one channel; beside: the others."""
     if not needs_flow(text, machine.macro.flow_codes):
         return [("", straight(text, machine.m_codes.program_end))]
@@ -89,16 +91,16 @@ def _runs(text: Text, machine: Machine, job: Job, beside: Beside) -> list[tuple[
     states: tuple[str, ...] = ("off", "on") if job.run.block_skip == "both" else (job.run.block_skip,)
     if not (np.any(text.words.address == ord("/")) or _skips_macro(text)):
         states = ("off",)
-    found = executed(text, machine, _without_values(job, machine, beside.texts), states, beside)
-    return list(zip(states, found, strict=True)) if len(found) > 1 else [("", found[0])]
+    executed_runs = executed(text, machine, _without_values(job, machine, channels.texts), states, channels)
+    return list(zip(states, executed_runs, strict=True)) if len(executed_runs) > 1 else [("", executed_runs[0])]
 
 
-def _without_values(job: Job, machine: Machine, others: Iterable[Text]) -> Job:
+def _without_values(job: Job, machine: Machine, texts: Iterable[Text]) -> Job:
     """The job of a channel: common variables that another channel assigns may hold anything, unless the job says it."""
     common = (*machine.macro.common_variables, *machine.macro.retained_variables)
     assigned = {
         number: UNKNOWN
-        for text in others
+        for text in texts
         for number in (int(digits) for digits in set(_ASSIGNED.findall(text.source.code.tobytes())))
         if any(first <= number <= last for first, last in common)
     }

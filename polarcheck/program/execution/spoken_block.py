@@ -55,16 +55,16 @@ class SpokenBlock(Tokens):
 
     def statement(self) -> Statement:
         """All that was found, as one statement with others behind it."""
-        place = self.first.start, max(self.tokens[-1].end, self.first.start + 1)
+        span = self.first.start, max(self.tokens[-1].end, self.first.start + 1)
         self.note_unknown()
         parts = list(self.before)
         is_faulty_move = self.fault is not None and not (self.before or self.after)
         if self.words or is_faulty_move or any(unread.moves for unread in self.unread):
             calls = self.machine.macro.flow_codes
             call = next((word.code for word in self.words if word.code in calls), "")
-            parts.append(Statement(Kind.CALL if call else Kind.NC, *place, words=tuple(self.words), call=call))
+            parts.append(Statement(Kind.CALL if call else Kind.NC, *span, words=tuple(self.words), call=call))
         parts += self.after
-        main, *more = parts or [Statement(Kind.OUTPUT, *place)]
+        main, *more = parts or [Statement(Kind.OUTPUT, *span)]
         return replace(
             main,
             sequence_number=self.sequence_number,
@@ -83,9 +83,9 @@ class SpokenBlock(Tokens):
     ) -> None:
         """Name what is not simulated, by its effect (macro.statements); nothing is said of what has none."""
         if effect != "none":
-            shown = shortened(name, _SHOWN)
+            text = shortened(name, _SHOWN)
             moves, is_cycle = effect in ("words", "moves", "cycle"), effect == "cycle"
-            self.unread.append(Unread(shown, first.start, (last or first).end, moves, matters, is_cycle))
+            self.unread.append(Unread(text, first.start, (last or first).end, moves, matters, is_cycle))
 
     def leave_rest(self, first: Token) -> None:
         """Name all from a token on as not simulated."""
@@ -103,11 +103,11 @@ class SpokenBlock(Tokens):
 
     def effect(self, name: str) -> str | None:
         """Return the effect of a statement on the tool path, by macro.statements; None if it is not listed."""
-        found = self.names.effects
-        if name not in found:
+        effects = self.names.effects
+        if name not in effects:
             listed: Mapping[str, str] = self.machine.macro.statements
-            found[name] = listed[name] if name in listed else _by_pattern(_patterns(tuple(listed.items())), name)
-        return found[name]
+            effects[name] = listed[name] if name in listed else _by_pattern(_patterns(tuple(listed.items())), name)
+        return effects[name]
 
     def arguments(self) -> str:
         """Pass over ( ) and [ ], where they follow; what stands in the last of them."""
@@ -131,12 +131,12 @@ class SpokenBlock(Tokens):
 
     def pass_over_value(self) -> None:
         """The value behind the = of what is not simulated, be it a list: OSCTRL[Z]=(1+2,4)."""
-        depth, at = 0, self.at
-        while is_list := self.tokens[at].kind != "end":
-            depth += (self.tokens[at].text in "([") - (self.tokens[at].text in ")]")
-            if depth <= 0 or (depth == 1 and self.tokens[at].text == ","):
+        depth, index = 0, self.at
+        while is_list := self.tokens[index].kind != "end":
+            depth += (self.tokens[index].text in "([") - (self.tokens[index].text in ")]")
+            if depth <= 0 or (depth == 1 and self.tokens[index].text == ","):
                 break
-            at += 1
+            index += 1
         if is_list and depth == 1 and self.is_sign("("):
             self.skip_brackets()
         else:

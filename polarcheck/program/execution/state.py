@@ -193,13 +193,13 @@ class State:
 
     # ---- faults and remarks ----
 
-    def add_fault(self, kind: FaultKind, block: int, place: HasPlace, **values: str | int | float) -> None:
+    def add_fault(self, kind: FaultKind, block: int, span: HasPlace, **values: str | int | float) -> None:
         """Record a fault, each kind once at each place."""
-        key = (kind, block, place.start)
+        key = (kind, block, span.start)
         if key not in self._faults:
             start = int(self.listing.text.blocks.start[block])
-            end = max(place.end, place.start + 1)
-            self._faults[key] = FlowFault(kind, block, start + place.start, start + end, values, len(self.rows))
+            end = max(span.end, span.start + 1)
+            self._faults[key] = FlowFault(kind, block, start + span.start, start + end, values, len(self.rows))
 
     def add(self, fault: Fault | None, block: int) -> None:
         """Record the fault of reading or calculating, if there is one."""

@@ -64,18 +64,18 @@ def find_structures(statements: Sequence[tuple[int, Statement]]) -> Structures:
                 structures.faults.append(StructureFault("end-without-structure", block, keyword, opening))
                 continue
             while open_heads[-1][0] != opening:
-                head, at = open_heads.pop()
+                head, opened = open_heads.pop()
                 open_of[head] -= 1
-                structures.faults.append(StructureFault("structure-without-end", at, head, _ENDS[head]))
-            _, at = open_heads[-1]
+                structures.faults.append(StructureFault("structure-without-end", opened, head, _ENDS[head]))
+            _, opened = open_heads[-1]
             if keyword == "ELSE":
-                structures.other[at] = block
+                structures.other[opened] = block
                 continue
             open_heads.pop()
             open_of[opening] -= 1
-            structures.end[at], structures.head[block] = block, at
-            if at in structures.other:
-                structures.end[structures.other[at]] = block
-    for head, at in open_heads:
-        structures.faults.append(StructureFault("structure-without-end", at, head, _ENDS[head]))
+            structures.end[opened], structures.head[block] = block, opened
+            if opened in structures.other:
+                structures.end[structures.other[opened]] = block
+    for head, opened in open_heads:
+        structures.faults.append(StructureFault("structure-without-end", opened, head, _ENDS[head]))
     return structures

@@ -117,8 +117,8 @@ def _named(merged: Mapping[str, Any]) -> Mapping[str, Any]:
 
 def _followed(name: str, named_axes: Mapping[str, Any]) -> str:
     """The address that a named axis is, as C1 is C; else the name itself."""
-    meant = named_axes.get(name)
-    return meant if isinstance(meant, str) and meant else name
+    followed = named_axes.get(name)
+    return followed if isinstance(followed, str) and followed else name
 
 
 def _rename(merged: dict[str, Any], inherited: AxisNames, put: Callable[[str, Any, str], None]) -> None:
@@ -127,23 +127,23 @@ def _rename(merged: dict[str, Any], inherited: AxisNames, put: Callable[[str, An
     old, new = inherited.rotary, (polar["rotary_address"], polar["rotary_incremental"])
     if inherited.virtual[0] == old[0]:
         put("polar.virtual_axis", new[0], cause)
-    by_word, beside = polar.get("virtual_axis_by_word"), polar.get("words_beside_switch")
+    by_word, words = polar.get("virtual_axis_by_word"), polar.get("words_beside_switch")
     if isinstance(by_word, Mapping):
         renamed = {word: list(new) if list(pair) == list(old) else pair for word, pair in by_word.items()}
         put("polar.virtual_axis_by_word", renamed, cause)
-    if _is_texts(beside):
-        put("polar.words_beside_switch", [new[0] if word == old[0] else word for word in beside], cause)
+    if _is_texts(words):
+        put("polar.words_beside_switch", [new[0] if word == old[0] else word for word in words], cause)
     pairs = [new if pair == old else pair for pair in _pairs(inherited.elsewhere)]
     put("polar.virtual_axis_of_other_controls", [address for pair in pairs for address in pair], cause)
 
 
 def _by_parameter(polar: dict[str, Any], table: Mapping[str, Any], origins: Mapping[str, Origin]) -> None:
     """A parameter that lets the axes stand beside G12.1 names the rotary axis as most lathes do."""
-    beside, written = polar.get("words_beside_switch"), table.get("polar")
+    words, written = polar.get("words_beside_switch"), table.get("polar")
     is_written = isinstance(written, Mapping) and "words_beside_switch" in written
     origin = origins.get("polar.words_beside_switch")
-    if _is_texts(beside) and origin is not None and origin.parameter and not is_written:
-        polar["words_beside_switch"] = [polar["rotary_address"] if word == _USUAL else word for word in beside]
+    if _is_texts(words) and origin is not None and origin.parameter and not is_written:
+        polar["words_beside_switch"] = [polar["rotary_address"] if word == _USUAL else word for word in words]
 
 
 def _of_virtual(
@@ -158,8 +158,8 @@ def _of_virtual(
     former = names.rotary if is_rotary_no_more else inherited.virtual
     # The address of another axis of the lathe moves that axis.
     pairs = [*_pairs(names.elsewhere), former][: None if former[0] not in axes or is_rotary_no_more else -1]
-    others = [pair for pair in dict.fromkeys(pairs) if pair[0] != virtual]
-    put("polar.virtual_axis_of_other_controls", [address for pair in others for address in pair], cause)
+    pairs_left = [pair for pair in dict.fromkeys(pairs) if pair[0] != virtual]
+    put("polar.virtual_axis_of_other_controls", [address for pair in pairs_left for address in pair], cause)
     put("polar.other_controls", "", cause)
 
 

@@ -15,10 +15,10 @@ def joined(curves: Iterable[Sequence[complex]], gap: float) -> tuple[Curve, ...]
 
     Where more than two ends meet, the chain goes on as straight as it can. What is drawn twice counts once.
     """
-    left = _each_once([tuple(curve) for curve in curves if len(curve) > 1], gap)
-    ends = _Ends(left, gap)
+    curves_left = _each_once([tuple(curve) for curve in curves if len(curve) > 1], gap)
+    ends = _Ends(curves_left, gap)
     chains = []
-    for number, curve in enumerate(left):
+    for number, curve in enumerate(curves_left):
         if number in ends.used:
             continue
         ends.used.add(number)
@@ -43,13 +43,13 @@ def _is_closed(chain: Sequence[complex], gap: float) -> bool:
 
 
 def _each_once(curves: Sequence[Curve], gap: float) -> list[Curve]:
-    known: dict[tuple[complex, ...], Curve] = {}
+    by_ends: dict[tuple[complex, ...], Curve] = {}
     for curve in curves:
         middle = curve[len(curve) // 2] if len(curve) % 2 else (curve[len(curve) // 2 - 1] + curve[len(curve) // 2]) / 2
         cells = [_cell(point, gap) for point in (curve[0], curve[-1], middle)]
         first, last = sorted(cells[:2], key=lambda cell: (cell.real, cell.imag))
-        known.setdefault((first, last, cells[2], complex(len(curve))), curve)
-    return list(known.values())
+        by_ends.setdefault((first, last, cells[2], complex(len(curve))), curve)
+    return list(by_ends.values())
 
 
 def _cell(point: complex, gap: float) -> complex:
@@ -70,24 +70,24 @@ class _Ends:
     def following(self, chain: Sequence[complex]) -> Sequence[complex]:
         """The curve that goes on where a chain ends, from there on; empty where none does."""
         here, cell = chain[-1], _cell(chain[-1], self._gap)
-        found: tuple[float, int, bool] | None = None
+        best: tuple[float, int, bool] | None = None
         for step in _AROUND:
-            beside = [end for end in self._at.get(cell + step, ()) if end[0] not in self.used]
-            if len(beside) < len(self._at.get(cell + step, ())):
-                self._at[cell + step] = beside
-            for number, is_end in beside:
+            near = [end for end in self._at.get(cell + step, ()) if end[0] not in self.used]
+            if len(near) < len(self._at.get(cell + step, ())):
+                self._at[cell + step] = near
+            for number, is_end in near:
                 curve = self._curves[number]
                 if abs(curve[-is_end] - here) > self._gap:
                     continue
-                way = curve[-2] - curve[-1] if is_end else curve[1] - curve[0]
-                turn = abs(_turn(here - chain[-2], way))
-                if found is None or turn < found[0]:
-                    found = turn, number, is_end
-        if found is None:
+                direction = curve[-2] - curve[-1] if is_end else curve[1] - curve[0]
+                turn = abs(_turn(here - chain[-2], direction))
+                if best is None or turn < best[0]:
+                    best = turn, number, is_end
+        if best is None:
             return ()
-        self.used.add(found[1])
-        curve = self._curves[found[1]]
-        return curve[::-1] if found[2] else curve
+        self.used.add(best[1])
+        curve = self._curves[best[1]]
+        return curve[::-1] if best[2] else curve
 
 
 _AROUND = [complex(x, c) for x in (-1, 0, 1) for c in (-1, 0, 1)]

@@ -22,9 +22,9 @@ def check_codes(machine: Machine, origins: Mapping[str, Origin], chain: Sequence
     is the first one and has the others of its kind.
     """
     for kind in (_no_codes, _wrong_at_power_on, _wrong_in_alarm_codes, _of_two_states):
-        first, *others = [*kind(machine, origins, chain), ""]
+        first, *further = [*kind(machine, origins, chain), ""]
         if first:
-            raise MachineError(first, filter(None, others))
+            raise MachineError(first, filter(None, further))
 
 
 def _no_codes(machine: Machine, origins: Mapping[str, Origin], chain: Sequence[str]) -> Iterator[str]:
@@ -56,17 +56,17 @@ def _of_two_states(machine: Machine, origins: Mapping[str, Origin], chain: Seque
     for on, off in SWITCHED:
         both = [word for word in getattr(machine.m_codes, on) if word in getattr(machine.m_codes, off)]
         if both:
-            nearer, other = sorted((f"m_codes.{on}", f"m_codes.{off}"), key=distance)
-            yield f"{origins[nearer].profile}: {nearer}: {both[0]} is in {other}, too"
+            nearer, farther = sorted((f"m_codes.{on}", f"m_codes.{off}"), key=distance)
+            yield f"{origins[nearer].profile}: {nearer}: {both[0]} is in {farther}, too"
     list_of: dict[int, str] = {}
     for states in STATES.values():
         for key in states:
             full = f"{machine.table_of(key)}.{key}"
             for number in numbers(machine.codes(key)):
                 if list_of.setdefault(number, full) != full:
-                    nearer, other = sorted((full, list_of[number]), key=distance)
+                    nearer, farther = sorted((full, list_of[number]), key=distance)
                     code = f"G{number / 10:g}"
-                    yield f"{origins[nearer].profile}: {nearer}: {code} is in {other}, too"
+                    yield f"{origins[nearer].profile}: {nearer}: {code} is in {farther}, too"
 
 
 def _wrong_at_power_on(machine: Machine, origins: Mapping[str, Origin], _: Sequence[str]) -> Iterator[str]:

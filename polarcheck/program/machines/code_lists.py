@@ -177,17 +177,17 @@ def _is_one(text: str, letters: str) -> bool:
 
 def numbers(words: Iterable[str]) -> list[int]:
     """Codes and ranges of codes as the whole numbers that columns hold: ten times their values."""
-    found: list[int] = []
+    numbered: list[int] = []
     for word in words:
         first, _, last = word.partition("-")
         start = round(float(first[1:]) * 10)
-        found += range(start, round(float(last[1:]) * 10) + 1, 10) if last else (start,)
-    return found
+        numbered += range(start, round(float(last[1:]) * 10) + 1, 10) if last else (start,)
+    return numbered
 
 
 def expanded(words: Iterable[str]) -> list[str]:
     """The codes one by one, those of a range too."""
-    found: list[str] = []
+    results: list[str] = []
     for word in words:
-        found += [f"{word[0]}{number // 10}" for number in numbers([word])] if "-" in word else [word]
-    return found
+        results += [f"{word[0]}{number // 10}" for number in numbers([word])] if "-" in word else [word]
+    return results

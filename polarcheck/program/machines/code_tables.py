@@ -36,13 +36,13 @@ def code_numbers(value: Floats) -> NDArray[np.int32]:
     return np.where(good, whole, NO_CODE).astype(np.int32)
 
 
-def renumbered(value: NDArray[np.int32], meant: Mapping[str, str]) -> NDArray[np.int32]:
+def renumbered(value: NDArray[np.int32], meanings: Mapping[str, str]) -> NDArray[np.int32]:
     """The codes, those that this control numbers otherwise (G101 for G1) as what they mean."""
-    if not meant:
+    if not meanings:
         return value
     table = np.append(np.arange(CODE_LIMIT, dtype=np.int32), np.int32(NO_CODE))
-    for word, other in meant.items():
-        table[code(word)] = code(other)
+    for word, equivalent in meanings.items():
+        table[code(word)] = code(equivalent)
     return table[value]
 
 
@@ -79,7 +79,7 @@ def _modal_tables(lists: Lists) -> tuple[tuple[str, ...], NDArray[np.uint8], Sta
     state_of = np.zeros(CODE_LIMIT + 1, np.int16)
     for number, (states, of_group) in enumerate(zip(STATES.values(), lists, strict=True), 1):
         for state, words in zip(states.values(), of_group, strict=True):
-            found = np.flatnonzero(code_set(words))
-            group_of[found] = number
-            state_of[found] = found // 10 if state == OF_CODE else state
+            listed = np.flatnonzero(code_set(words))
+            group_of[listed] = number
+            state_of[listed] = listed // 10 if state == OF_CODE else state
     return tuple(STATES), group_of, state_of

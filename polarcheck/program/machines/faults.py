@@ -81,11 +81,11 @@ def _wrong_line(lines: list[str], message: str) -> int | None:
     match = _AT_LINE.search(message)
     if match is None:
         return None
-    at = min(int(match[1]), len(lines)) - 1
+    index = min(int(match[1]), len(lines)) - 1
     if message.startswith(_TWICE):
-        return at
-    before = next((line for line in range(at - 1, -1, -1) if lines[line].strip()), at)
-    for line in (at, before):
+        return index
+    before = next((line for line in range(index - 1, -1, -1) if lines[line].strip()), index)
+    for line in (index, before):
         if not lines[line].lstrip().startswith("[") and "=" in lines[line] and not _is_toml(lines[line]):
             return line
     return None

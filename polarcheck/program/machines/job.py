@@ -280,13 +280,13 @@ def with_tool(job: Job, option: str) -> Job:
             last, before = list(values.items())[-1]
             raise UsageError(f"--tool {option}: {last}: write {before}.{key}, with a decimal point")
         if key not in Tool.__struct_fields__ or not equals:
-            meant = suggestion(key, Tool.__struct_fields__).removeprefix("; ")
-            raise UsageError(f"--tool {option}: {key or 'no key'}: {meant or f'keys are {_KEYS_OF_TOOL}'}")
+            hint = suggestion(key, Tool.__struct_fields__).removeprefix("; ")
+            raise UsageError(f"--tool {option}: {key or 'no key'}: {hint or f'keys are {_KEYS_OF_TOOL}'}")
         values[key] = _number(value)
-    known = job.tools.get(canonical(name), Tool())
-    kind = AskedTool if "radius" in values else type(known)
+    known_tool = job.tools.get(canonical(name), Tool())
+    kind = AskedTool if "radius" in values else type(known_tool)
     try:
-        table = {**_given(msgspec.to_builtins(known)), **values}
+        table = {**_given(msgspec.to_builtins(known_tool)), **values}
         (given,) = fitted({"tools": {name: table}}, Job).tools.values()
     except MisfitError as misfit:
         text = re.sub(rf"^tools\.{re.escape(name)}(\.|: )", "", str(misfit))
@@ -346,7 +346,7 @@ _DIGITS_OF_T = 8
 _DIGITS_OF_OFFSET = 2
 
 
-def check_tools(job: Job, options: Iterable[str], machine: Machine, at: Callable[[str], str]) -> None:
+def check_tools(job: Job, options: Iterable[str], machine: Machine, where: Callable[[str], str]) -> None:
     """
     Raises UsageError or JobError, which names the option, or the key and where it stands (at), for a tool by its name
     or edge on a machine that has offset numbers alone.
@@ -359,21 +359,21 @@ def check_tools(job: Job, options: Iterable[str], machine: Machine, at: Callable
     for key in job.tools:
         if not is_plain_number(key):
             raise JobError(
-                f"{at(f'tools.{key}')}: tools.{key}: expected the number of a tool offset, 8 for T0808, found {key}"
+                f"{where(f'tools.{key}')}: tools.{key}: expected the number of a tool offset, 8 for T0808, found {key}"
             )
 
 
-def check_work_offsets(job: Job, machine: Machine, at: Callable[[str], str]) -> None:
+def check_work_offsets(job: Job, machine: Machine, where: Callable[[str], str]) -> None:
     """Raises JobError, which names the key and where it stands (at), for a work offset that the machine has not."""
-    known = machine.codes("work_offset")
+    of_machine = machine.codes("work_offset")
     extended = machine.codes("work_offset_extended")
     for name in job.work_offsets:
         code, _, number = name.upper().partition(" P")
-        if code in known if not number else code in extended and number.isdecimal():
+        if code in of_machine if not number else code in extended and number.isdecimal():
             continue
         listed = [code.replace("-", " to ") for code in machine.g_codes.work_offset]
         expected = " or ".join([*listed, *(f'"{code} P1"' for code in extended)]) or "none on this machine"
-        raise JobError(f"{at(f'work_offsets.{name}')}: work_offsets.{name}: expected {expected}, found {name}")
+        raise JobError(f"{where(f'work_offsets.{name}')}: work_offsets.{name}: expected {expected}, found {name}")
 
 
 def _number(text: str) -> float | str:

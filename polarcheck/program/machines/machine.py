@@ -175,9 +175,9 @@ class Control(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
             raise ValueError(f"channel_mark and wait_mark are both {self.channel_mark}; expected two characters")
         if len(self.named_axes) + len(self.spindle_words) > MOST_NAMED:
             raise ValueError(f"named_axes, spindle_words: expected {MOST_NAMED} names at most")
-        for name, meant in self.motion_codes.items():
-            if not is_code(name) or "-" in name or meant not in ("G0", "G1", "G2", "G3"):
-                raise ValueError(f"motion_codes: {name} = {meant!r}: expected a G code and one of G0, G1, G2, G3")
+        for name, equivalent in self.motion_codes.items():
+            if not is_code(name) or "-" in name or equivalent not in ("G0", "G1", "G2", "G3"):
+                raise ValueError(f"motion_codes: {name} = {equivalent!r}: expected a G code and one of G0, G1, G2, G3")
 
 
 class CircularInterpolation(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -445,10 +445,10 @@ class Machine(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
 
     def cached(self, name: str, make: Callable[[], Value]) -> Value:
         """Return what is computed from the keys, once for each machine: nobody changes these."""
-        known: dict[str, Any] = self.__dict__
-        if name not in known:
-            known[name] = make()
-        value: Value = known[name]
+        cache: dict[str, Any] = self.__dict__
+        if name not in cache:
+            cache[name] = make()
+        value: Value = cache[name]
         return value
 
 

@@ -54,20 +54,20 @@ def read_offset_table(path: Path, title: str, *, pipes: bool = False, units: Uni
     except ValueError as error:
         raise JobError(f"{title}: {error}") from None
     plain = _COMMENT.sub(_blank, text)
-    found: list[Entry] = []
+    entries: list[Entry] = []
     problem: NotUnderstoodError | None = None
     try:
         for entry in _punched(plain, units) if _IS_PUNCHED.search(plain) else offset_page.entries(text):
-            found.append(entry)
+            entries.append(entry)
     except NotUnderstoodError as error:
         problem = error
-    if problem is not None and (found or problem.is_certain):
+    if problem is not None and (entries or problem.is_certain):
         raise JobError(f"{title}:{problem.line}: {problem}")
-    if not found:
+    if not entries:
         raise JobError(
             f"{title}: no offsets found; expected blocks such as G10 P10008 R0.375 Q0, or columns NO. X Z R T"
         )
-    return _tools(found, title)
+    return _tools(entries, title)
 
 
 def _blank(match: re.Match[str]) -> str:
@@ -86,11 +86,11 @@ def _punched(text: str, units: Units | None) -> Iterator[Entry]:
                 words.append((line, block, _words(line, block)))
         except NotUnderstoodError as error:
             problem = problem or error
-    has_radii = any(_number(found.get("L")) in _OF_RADII for _, _, found in words)
-    for line, block, found in words:
+    has_radii = any(_number(letters.get("L")) in _OF_RADII for _, _, letters in words)
+    for line, block, letters in words:
         if problem is not None and problem.line < line:
             break
-        yield from _of_block(line, block, found, has_radii)
+        yield from _of_block(line, block, letters, has_radii)
     if problem is not None:
         raise problem
 
@@ -113,10 +113,10 @@ def _check_other(line: int, block: str, units: Units | None) -> None:
     """Raises NotUnderstoodError for what is neither the frame of a program nor units that are said elsewhere."""
     said = _UNITS.fullmatch(block)
     if said:
-        own = "inch" if said[1] == "20" else "mm"
-        if units != own:
+        declared = "inch" if said[1] == "20" else "mm"
+        if units != declared:
             raise NotUnderstoodError(
-                line, f'G{said[1]}: the table is in {own}; give units = "{own}" beside offsets', True
+                line, f'G{said[1]}: the table is in {declared}; give units = "{declared}" beside offsets', True
             )
     elif _FRAME.fullmatch(block.strip("\x1a")) is None:
         raise NotUnderstoodError(line, f"{_EXPECTED}, found {_short(block)}")
@@ -128,18 +128,18 @@ def _words(line: int, block: str) -> dict[str, str]:
 
     Raises NotUnderstoodError where something else is there.
     """
-    found: dict[str, str] = {}
-    at = 0
-    while match := _WORD.match(block, at):
+    words: dict[str, str] = {}
+    end = 0
+    while match := _WORD.match(block, end):
         if match[1] == "G" and float(match[2]) not in (10, 90):
             break
         if match[1] != "G":
-            found[match[1]] = match[2]
-        at = match.end()
-    found.pop("N", None)
-    if block[at:].strip("\x1a \t/"):
+            words[match[1]] = match[2]
+        end = match.end()
+    words.pop("N", None)
+    if block[end:].strip("\x1a \t/"):
         raise NotUnderstoodError(line, f"{_EXPECTED}, found {_short(block)}")
-    return found
+    return words
 
 
 def _of_block(line: int, block: str, words: dict[str, str], has_radii: bool) -> Iterator[Entry]:

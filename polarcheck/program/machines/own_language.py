@@ -28,14 +28,14 @@ def numbered(machine: Machine) -> Machine:
     singles = [*of_control.values(), *(of_frames[key] for key in _FRAMES)]
     groups = [*([word] for listed in singles for word in listed), of_frames[_NOT_SIMULATED]]
     native = [[word for word in group if _needs_code(word, control.native_words)] for group in groups]
-    wanted = list(dict.fromkeys(tuple(group) for group in native if group))
-    if not wanted:
+    word_groups = list(dict.fromkeys(tuple(group) for group in native if group))
+    if not word_groups:
         return machine
     taken = control.native_words.values()
     unused = [code for code in _FREE if code not in taken and _short(code) not in taken]
-    if len(wanted) > len(unused):
+    if len(word_groups) > len(unused):
         raise ValueError(f"no more than {len(unused)} words of its own can stand in x_radius_words and lists like it")
-    code = {word: free for group, free in zip(wanted, unused, strict=False) for word in group}
+    code = {word: free for group, free in zip(word_groups, unused, strict=False) for word in group}
 
     def coded(listed: list[str]) -> list[str]:
         return [code.get(word, word) for word in listed]

@@ -46,15 +46,15 @@ def apply(merged: dict[str, Any], table: Mapping[str, Any], profile: str, origin
 
     Raises MachineError, naming profile and parameter, for an unknown parameter or setting.
     """
-    known = _known(merged, profile)
+    meanings = _meanings(merged, profile)
     given = merged["parameters"]
     named = set(table["parameters"]) - {"source", "doubtful"}
     for name in sorted(named):
-        if name not in known:
-            raise MachineError(f"{profile}: parameters: {_unknown(name, known)}")
+        if name not in meanings:
+            raise MachineError(f"{profile}: parameters: {_unknown(name, meanings)}")
     # In the order of the known parameters, so that the order in which the user lists them makes no difference.
     copies = []
-    for name, meaning in known.items():
+    for name, meaning in meanings.items():
         if name not in named:
             continue
         for key, value in _values(name, meaning, given[name], profile).items():
@@ -66,13 +66,13 @@ def apply(merged: dict[str, Any], table: Mapping[str, Any], profile: str, origin
                 copies.append((key, value[2:]))
             else:
                 _set(merged, key, value)
-    for key, other in copies:
-        group, _, last = other.partition(".")
+    for key, target in copies:
+        group, _, last = target.partition(".")
         values = merged.get(group)
         _set(merged, key, values.get(last) if isinstance(values, Mapping) else None)
 
 
-def _known(merged: Mapping[str, Any], profile: str) -> dict[str, Meaning]:
+def _meanings(merged: Mapping[str, Any], profile: str) -> dict[str, Meaning]:
     try:
         return fitted(merged.get("known_parameters", {}), dict[str, Meaning], "known_parameters")
     except MisfitError as misfit:
@@ -83,17 +83,17 @@ def _values(name: str, meaning: Meaning, given: Any, profile: str) -> Mapping[st
     is_number = isinstance(given, int | float)
     spelled = f"{given:g}" if is_number else str(given)
     # A number in quotes is shown with them: it looks like what is expected.
-    told = given if (spelled and spelled.isprintable() and not spelled.isdecimal()) or is_number else repr(given)
+    written = given if (spelled and spelled.isprintable() and not spelled.isdecimal()) or is_number else repr(given)
     for setting, values in meaning.values.items():
         if setting.upper() == spelled.upper():
             return values
     if meaning.is_letter:
         if len(spelled) == 1 and "A" <= spelled.upper() <= "Z":
             return {meaning.key: spelled.upper()}
-        raise MachineError(f"{profile}: parameters.{name}: expected a letter from A to Z, not {told}")
+        raise MachineError(f"{profile}: parameters.{name}: expected a letter from A to Z, not {written}")
     if not meaning.key or not is_number:
-        known = " or ".join(meaning.values) or "a number"
-        raise MachineError(f"{profile}: parameters.{name}: expected {known}, not {told}")
+        expected = " or ".join(meaning.values) or "a number"
+        raise MachineError(f"{profile}: parameters.{name}: expected {expected}, not {written}")
     return {meaning.key: given if meaning.factor == 1 else given * meaning.factor}
 
 
@@ -110,6 +110,6 @@ def _set(merged: dict[str, Any], key: str, value: Any) -> None:
         values[last] = value
 
 
-def _unknown(name: str, known: Mapping[str, Meaning]) -> str:
-    hint = suggestion(name, known) or f"; known are {', '.join(known) or 'none'}"
+def _unknown(name: str, meanings: Mapping[str, Meaning]) -> str:
+    hint = suggestion(name, meanings) or f"; known are {', '.join(meanings) or 'none'}"
     return f"no meaning is known for {name}{hint}"

@@ -131,11 +131,11 @@ class Part(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
             if key not in _KEYS[self.shape]:
                 raise KeyedError(key, f"no key of the shape {self.shape}, which has {listed(_KEYS[self.shape])}")
         for alternatives in _NEEDED[self.shape]:
-            found = [key for key in alternatives if key in given]
-            if not found:
+            stated = [key for key in alternatives if key in given]
+            if not stated:
                 raise KeyedError("", f"the shape {self.shape} needs {listed(alternatives)}")
-            if len(found) > 1:
-                raise KeyedError(found[1], f"the shape {self.shape} has {listed(found)}, not both")
+            if len(stated) > 1:
+                raise KeyedError(stated[1], f"the shape {self.shape} has {listed(stated)}, not both")
         if "corner_radius" in given and "chamfer" in given:
             raise KeyedError("chamfer", "a corner has corner_radius or chamfer, not both")
         self._check_room()

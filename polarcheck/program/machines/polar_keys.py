@@ -121,8 +121,8 @@ class Polar(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     @property
     def axis_addresses(self) -> tuple[str, ...]:
         """The addresses of the rotary axis, and of the virtual one in all its forms; absolute and incremental."""
-        own = self.virtual_axis, self.virtual_axis_incremental
-        pairs = (self.rotary_words, own, *self.virtual_axis_by_word.values())
+        virtual = self.virtual_axis, self.virtual_axis_incremental
+        pairs = (self.rotary_words, virtual, *self.virtual_axis_by_word.values())
         return tuple(dict.fromkeys(address for pair in pairs for address in pair if address))
 
     def __post_init__(self) -> None:

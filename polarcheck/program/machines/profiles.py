@@ -87,14 +87,14 @@ def load(
     over = [("the command line or job", changes)] if isinstance(changes, Mapping) else changes or []
     over = [(title, table) for title, table in over if table]
     tables: list[tuple[str, dict[str, Any]]] = []
-    asked: str | None = name
+    requested: str | None = name
     folder = Path()
     seen: set[str] = set()
     ours: set[str] = set()
     checks_codes = any(group != "limits" for _, table in over for group in table)
-    while asked is not None:
+    while requested is not None:
         try:
-            path, title = _find(asked, folder)
+            path, title = _find(requested, folder)
         except UnknownMachineError as error:
             raise MachineError(f"{tables[-1][0]}: inherits: {error}") if tables else error from None
         # By the file itself: links and `..` give one file names without end.
@@ -116,8 +116,8 @@ def load(
         tables.append((title, table))
         folder = path.parent
         checks_codes |= folder != FOLDER
-        asked = table.pop("inherits", None)
-        if asked is not None and not isinstance(asked, str):
+        requested = table.pop("inherits", None)
+        if requested is not None and not isinstance(requested, str):
             raise MachineError(f"{title}: inherits: expected the name of a machine")
     merged: dict[str, Any] = {}
     origins: dict[str, Origin] = {}
@@ -276,10 +276,10 @@ def _value(merged: Mapping[str, Any], key: str) -> Any:
 
 def _keep(merged: dict[str, Any], key: str, inherited: Any) -> None:
     """Have what a nearer profile gives of a table beside what is inherited of it: it names what differs or is new."""
-    own = _value(merged, key)
-    if isinstance(own, Mapping) and isinstance(inherited, Mapping):
+    value = _value(merged, key)
+    if isinstance(value, Mapping) and isinstance(inherited, Mapping):
         group, _, last = key.partition(".")
-        merged[group][last] = {**inherited, **own}
+        merged[group][last] = {**inherited, **value}
 
 
 def _unwrapped(value: Any, key: str, origin: Origin, origins: dict[str, Origin]) -> Any:
@@ -357,7 +357,7 @@ def _unknown_key(written: str, origins: Mapping[str, Origin]) -> str:
     key = written.rpartition(".")[2]
     if f"known_parameters.{key}" in origins:
         return f"unknown key {written}; it is a parameter of the control: write it under [parameters]"
-    elsewhere = [f"{other}.{key}" for other in Machine.__struct_fields__ if key in _names(other)]
+    elsewhere = [f"{group}.{key}" for group in Machine.__struct_fields__ if key in _names(group)]
     if elsewhere:
         return f"unknown key {written}; did you mean {elsewhere[0]}?"
     if key != written:

@@ -32,16 +32,16 @@ def of_keys(text: str) -> dict[str, int]:
     Empty where anything in it is not understood; a key is left out that two may have.
     """
     try:
-        found = list(_Scanner(text).keys())
+        keys = list(_Scanner(text).keys())
     except (_UnclearError, RecursionError, IndexError):
         return {}
     lines: dict[str, int] = {}
     whole: dict[str, tuple[str, ...]] = {}
     doubtful: set[str] = set()
     line, seen = 1, 0
-    for place, key in found:
-        line += text.count("\n", seen, place)
-        seen = place
+    for position, key in keys:
+        line += text.count("\n", seen, position)
+        seen = position
         for length in range(1, len(key) + 1):
             name = ".".join(key[:length])
             if whole.setdefault(name, key[:length]) != key[:length]:
@@ -77,15 +77,15 @@ def located(said: str, lines: Mapping[str, int] | None = None) -> str:
     if match is None:
         return said
     try:
-        known = of_keys(toml_text.text_of(match[1], "machine file")) if lines is None else lines
+        lines_of_keys = of_keys(toml_text.text_of(match[1], "machine file")) if lines is None else lines
     except ValueError:
         return said
     key = match[2].strip("\"'")
     if "no meaning is known for" in said:
         key = f"parameters.{key}"
-    elif (first := re.match(r": (\w+) ", said[match.end() :])) and f"{key}.{first[1]}" in known:
+    elif (first := re.match(r": (\w+) ", said[match.end() :])) and f"{key}.{first[1]}" in lines_of_keys:
         key = f"{key}.{first[1]}"  # of keys that do not go together
-    line = line_of(key, known)
+    line = line_of(key, lines_of_keys)
     return f"{match[1]}:{line}{said[match.end(1) :]}" if line else said
 
 
@@ -141,12 +141,12 @@ class _Scanner:
 
     def _numbered(self, key: list[str] | tuple[str, ...]) -> tuple[str, ...]:
         """A key of which the parts that are lists of tables have the number of the last one behind them."""
-        found: tuple[str, ...] = ()
+        path: tuple[str, ...] = ()
         for part in key:
-            found = (*found, part)
-            if found in self.count:
-                found = (*found, str(self.count[found]))
-        return found
+            path = (*path, part)
+            if path in self.count:
+                path = (*path, str(self.count[path]))
+        return path
 
     def _key(self, end: str = "=") -> tuple[str, ...]:
         parts = []

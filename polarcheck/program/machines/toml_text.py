@@ -113,21 +113,21 @@ def _too_deep(key: str) -> str:
 
 
 def _long_number(text: str) -> str:
-    found = _LONG_NUMBER.search(text)
-    if found is None:
+    match = _LONG_NUMBER.search(text)
+    if match is None:
         return ""
-    line = text.count("\n", 0, found.start()) + 1
-    before = text[: found.start()].rpartition("\n")[2].strip()
-    return f"line {line}: {_TOO_LONG}: {before[:_SHOWN]} {found[0][:_SHOWN]}..."
+    line = text.count("\n", 0, match.start()) + 1
+    before = text[: match.start()].rpartition("\n")[2].strip()
+    return f"line {line}: {_TOO_LONG}: {before[:_SHOWN]} {match[0][:_SHOWN]}..."
 
 
 def _values(table: dict[str, Any]) -> Iterator[tuple[str, Any, int]]:
     """All values with their keys and levels, those on the deepest level that is allowed without what is in them."""
-    left: list[tuple[str, Any, int]] = [(key, value, 1) for key, value in reversed(table.items())]
-    while left:
-        key, value, level = left.pop()
+    todo: list[tuple[str, Any, int]] = [(key, value, 1) for key, value in reversed(table.items())]
+    while todo:
+        key, value, level = todo.pop()
         yield key, value, level
         if isinstance(value, dict):
-            left += [(f"{key}.{name}", inner, level + 1) for name, inner in reversed(value.items())]
+            todo += [(f"{key}.{name}", inner, level + 1) for name, inner in reversed(value.items())]
         elif isinstance(value, list):
-            left += [(key, inner, level + 1) for inner in reversed(value)]
+            todo += [(key, inner, level + 1) for inner in reversed(value)]

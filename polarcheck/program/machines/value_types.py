@@ -147,7 +147,7 @@ def _misfit(part: _Part, error: Exception | None = None) -> MisfitError:
         if isinstance(error.__cause__, KeyedError) and error.__cause__.key:
             part = msgspec.structs.replace(part, key=_below(part.key, error.__cause__.key))
     else:
-        text = f"expected {_expected(part.kind)}{_beyond(part)}, found {shown(part.value)}{_with_point(part)}"
+        text = f"expected {_expected(part.kind)}{_beyond(part)}, found {display(part.value)}{_with_point(part)}"
     return MisfitError(part.key, f"{part.key}: {text}" if part.key else text)
 
 
@@ -165,8 +165,8 @@ def _bare(kind: Any) -> Any:
     while get_origin(kind) is Annotated:
         kind = get_args(kind)[0]
     if get_origin(kind) in (Union, types.UnionType):
-        left = [member for member in get_args(kind) if member is not type(None)]
-        return _bare(left[0]) if len(left) == 1 else kind
+        members = [member for member in get_args(kind) if member is not type(None)]
+        return _bare(members[0]) if len(members) == 1 else kind
     return kind
 
 
@@ -230,11 +230,11 @@ def _named(limit: float) -> str:
 
 def listed(names: Iterable[str]) -> str:
     """`a, b or c`."""
-    *others, last = names
-    return f"{', '.join(others)} or {last}" if others else last
+    *first, last = names
+    return f"{', '.join(first)} or {last}" if first else last
 
 
-def shown(value: Any) -> str:
+def display(value: Any) -> str:
     """A value as TOML writes it, shortened."""
     if isinstance(value, Mapping):
         return "a table"

@@ -49,10 +49,10 @@ def plain(text: str) -> str:
     match = _CODE.fullmatch(text.strip(" "))
     if match is None:
         return text.upper() if _ADDRESS.fullmatch(text) else text
-    letter, number, tenth, other, last, address, value = match.groups()
+    letter, number, tenth, second, last, address, value = match.groups()
     first = f"{letter.upper()}{number}" + (f".{tenth}" if tenth and tenth != "0" else "")
-    if other:
-        return f"{first}-{other.upper()}{last}"
+    if second:
+        return f"{first}-{second.upper()}{last}"
     return f"{first} {address.upper()}{_number(value)}" if address else first
 
 
@@ -74,15 +74,18 @@ def taken(key: str, value: Any, inherited: Any) -> Any:
     if key in _ADDRESSES:
         return _in_capitals(value)
     if key in _PAIRS and isinstance(value, Mapping):
-        return {plain(name): plain(meant) if isinstance(meant, str) else meant for name, meant in value.items()}
+        return {
+            plain(name): plain(replacement) if isinstance(replacement, str) else replacement
+            for name, replacement in value.items()
+        }
     if not isinstance(value, list) or not is_list(key):
         return value
     signed = [text for text in value if is_change(text)]
     if not signed:
         return [plain(text) if isinstance(text, str) else text for text in value]
     if len(signed) < len(value):
-        other = next(text for text in value if not is_change(text))
-        raise ListError(f"{other!r} beside {signed[0]!r}: write + or - before each of them, or the whole list")
+        unsigned = next(text for text in value if not is_change(text))
+        raise ListError(f"{unsigned!r} beside {signed[0]!r}: write + or - before each of them, or the whole list")
     result = list(inherited) if isinstance(inherited, list) else []
     for change in signed:
         code = plain(change[1:].strip(" "))
@@ -99,9 +102,11 @@ def _in_capitals(value: Any) -> Any:
     if isinstance(value, str):
         return value.strip(" ").upper() if value.isascii() else value
     if isinstance(value, list):
-        return [_in_capitals(each) for each in value]
+        return [_in_capitals(element) for element in value]
     return (
-        {_in_capitals(name): _in_capitals(each) for name, each in value.items()} if isinstance(value, dict) else value
+        {_in_capitals(name): _in_capitals(element) for name, element in value.items()}
+        if isinstance(value, dict)
+        else value
     )
 
 
@@ -123,19 +128,19 @@ def without(codes: Sequence[Any], code: str) -> list[Any]:
     if not is_code(code):
         return [text for text in codes if text != code]
     gone = set(numbers([code]))
-    left: list[Any] = []
+    remaining: list[Any] = []
     for text in codes:
-        own = numbers([text]) if isinstance(text, str) and is_code(text) else []
-        if gone.isdisjoint(own):
-            left.append(text)
+        members = numbers([text]) if isinstance(text, str) and is_code(text) else []
+        if gone.isdisjoint(members):
+            remaining.append(text)
             continue
-        kept = [number // 10 for number in own if number not in gone] if "-" in text else []
+        kept = [number // 10 for number in members if number not in gone] if "-" in text else []
         for number in kept:
-            if left and number - 1 in kept:
-                left[-1] = f"{left[-1].partition('-')[0]}-{text[0]}{number}"
+            if remaining and number - 1 in kept:
+                remaining[-1] = f"{remaining[-1].partition('-')[0]}-{text[0]}{number}"
             else:
-                left.append(f"{text[0]}{number}")
-    return left
+                remaining.append(f"{text[0]}{number}")
+    return remaining
 
 
 def without_effect(changes: Any, inherited: Any) -> list[str]:
@@ -143,9 +148,9 @@ def without_effect(changes: Any, inherited: Any) -> list[str]:
     if not isinstance(changes, list) or not all(map(is_change, changes)):
         return []
     listed = list(inherited) if isinstance(inherited, list) else []
-    found = []
+    useless = []
     for change in changes:
         code = plain(change[1:].strip(" "))
         if holds(listed, code) if change[0] == "+" else without(listed, code) == listed:
-            found.append(change)
-    return found
+            useless.append(change)
+    return useless

@@ -41,10 +41,10 @@ def channels(source: Source, mark: str, line_comments: str = "") -> list[Source]
     return [replace(source, code=_only(source.code, every | (owner == n)), channel=f"{mark}{n}") for n in numbers]
 
 
-def channel_like(source: Source, other: Source, mark: str, line_comments: str) -> Source:
-    """The channel of a new reading of a file that corresponds to `other`; the file itself where there is none."""
-    every = channels(source, mark, line_comments) if other.channel else []
-    return next((channel for channel in every if channel.channel == other.channel), source)
+def channel_like(source: Source, example: Source, mark: str, line_comments: str) -> Source:
+    """The channel of a new reading of a file that corresponds to `example`; the file itself where there is none."""
+    every = channels(source, mark, line_comments) if example.channel else []
+    return next((channel for channel in every if channel.channel == example.channel), source)
 
 
 def stands_in(channel: Source, line: int) -> bool:

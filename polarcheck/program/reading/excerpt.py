@@ -33,7 +33,7 @@ class Excerpt(msgspec.Struct, frozen=True):
 
 def visible(text: str) -> str:
     """Spell out every control, invisible or direction-changing character, as in `\\x1b`."""
-    return text if text.isprintable() else "".join(map(_shown, with_characters(text)))
+    return text if text.isprintable() else "".join(map(_visible, with_characters(text)))
 
 
 def without_commands(text: str) -> str:
@@ -90,14 +90,14 @@ def _expanded(character: str, width: int) -> str:
     """Expand a tab to the next stop, and drop CR, which is part of the line end."""
     if character == "\t":
         return " " * (_TAB - width % _TAB)
-    return "" if character == "\r" else _shown(character)
+    return "" if character == "\r" else _visible(character)
 
 
 def _spelled_command(match: re.Match[str]) -> str:
     return f"##{match[2]}\\x5b" if match[1] is None else f"{match[1]}\\x3a"
 
 
-def _shown(character: str) -> str:
+def _visible(character: str) -> str:
     return character if character.isprintable() else code(character)
 
 

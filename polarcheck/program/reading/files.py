@@ -40,7 +40,7 @@ def read_program(path: str, most: int = LARGEST) -> bytes:
             raise OSError(errno.EBADF, "standard input is closed")
         return bounded.read_stream(sys.stdin.buffer, most, remark)
     except OSError as error:
-        raise SourceError(f"{shown(path) or repr(path)}: {error.strerror or error}") from None
+        raise SourceError(f"{display_path(path) or repr(path)}: {error.strerror or error}") from None
 
 
 def size(path: str) -> int:
@@ -56,7 +56,7 @@ def is_standard_input(path: str) -> bool:
     return path in _STANDARD_INPUTS
 
 
-def shown(path: str) -> str:
+def display_path(path: str) -> str:
     """
     A path as reports hold it: with slashes, and with the bytes spelled out that are no characters.
 
@@ -111,16 +111,16 @@ def trail(path: str) -> list[str]:
     links: list[str] = []
     try:
         here = os.path.realpath(os.curdir)
-        left = [*reversed(Path(path).parts)]
-        while left:
-            part = left.pop()
+        parts = [*reversed(Path(path).parts)]
+        while parts:
+            part = parts.pop()
             if part == os.pardir:
                 here = os.path.dirname(here)  # noqa: PTH120
                 continue
             here = os.path.join(here, part)  # noqa: PTH118  an absolute path begins with its root
             if os.path.islink(here) and len(links) < _MOST_LINKS:  # noqa: PTH114
                 links.append(here)
-                left += reversed(Path(os.readlink(here)).parts)  # noqa: PTH115
+                parts += reversed(Path(os.readlink(here)).parts)  # noqa: PTH115
                 here = os.path.dirname(here)  # noqa: PTH120
     except (OSError, ValueError):  # the working folder is gone, or no file can have this name
         return [*links, path]
@@ -134,12 +134,12 @@ State = tuple[int, int, int] | None
 def state(path: str | Path, of_folder: Callable[[str, int], State] | None = None) -> State:
     """How a file is now. of_folder: tells it of a folder, by its path and number; else a folder is as any file."""
     try:
-        found = os.stat(path)  # noqa: PTH116  thousands of them
-        if of_folder is not None and stat.S_ISDIR(found.st_mode):
-            return of_folder(os.fspath(path), found.st_ino)
+        status = os.stat(path)  # noqa: PTH116  thousands of them
+        if of_folder is not None and stat.S_ISDIR(status.st_mode):
+            return of_folder(os.fspath(path), status.st_ino)
     except (OSError, ValueError):
         return None
-    return found.st_mtime_ns, found.st_size, found.st_ino
+    return status.st_mtime_ns, status.st_size, status.st_ino
 
 
 def write(
@@ -159,7 +159,7 @@ def write(
     written.
     """
     if not rewrites and (reason := read_by_this_run(path)):
-        raise OutputError(f"{shown(str(path))}: {reason}")
+        raise OutputError(f"{display_path(str(path))}: {reason}")
     data = [text] if isinstance(text, bytes) else _encoded([text] if isinstance(text, str) else text)
     try:
         descriptor = _descriptor(path)
@@ -176,7 +176,7 @@ def write(
             _replace(Path(os.path.realpath(path)), data, last)
     except (OSError, ValueError) as error:
         said = getattr(error, "strerror", None) or error
-        raise OutputError(f"{shown(str(path))}: {said}") from None
+        raise OutputError(f"{display_path(str(path))}: {said}") from None
 
 
 def read_by_this_run(path: Path) -> str:
@@ -185,7 +185,7 @@ def read_by_this_run(path: Path) -> str:
     if source is None:
         return ""
     is_same = os.path.abspath(source) == os.path.abspath(path)  # noqa: PTH100
-    named = "it" if is_same else f"it is {shown(source)}, which"
+    named = "it" if is_same else f"it is {display_path(source)}, which"
     return f"{named} is read by this run; name another file"
 
 
@@ -206,14 +206,14 @@ def _descriptor(path: Path) -> int | None:
     if sys.platform == "win32":
         return None
     folders = {os.path.realpath(folder) for folder in ("/dev/fd", "/proc/self/fd")}
-    place = os.fspath(path)
+    target = os.fspath(path)
     for _ in range(_MOST_LINKS):
-        folder, name = os.path.split(place)
+        folder, name = os.path.split(target)
         if re.fullmatch("[0-9]{1,9}", name) and os.path.realpath(folder) in folders:
             return int(name)
-        if not os.path.islink(place):  # noqa: PTH114
+        if not os.path.islink(target):  # noqa: PTH114
             return None
-        place = os.path.join(folder, os.readlink(place))  # noqa: PTH115, PTH118
+        target = os.path.join(folder, os.readlink(target))  # noqa: PTH115, PTH118
     return None
 
 
@@ -229,21 +229,21 @@ def _replace(target: Path, data: Iterable[bytes], last: Callable[[Path], None] |
     import tempfile
 
     handle, name = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}.", suffix=".new")
-    beside = Path(name)
+    temporary = Path(name)
     try:
         with os.fdopen(handle, "wb") as file:
             file.writelines(data)
             file.flush()
             # Else a machine that goes down could leave an empty file in the place of the old one.
             os.fsync(file.fileno())
-        beside.chmod(_mode(target))
+        temporary.chmod(_mode(target))
         if last is not None:
-            last(beside)
-        beside.replace(target)
+            last(temporary)
+        temporary.replace(target)
     except BaseException:
         with contextlib.suppress(OSError):
-            beside.chmod(0o600)  # else Windows keeps it where it has the mode of a file that is read only
-            beside.unlink()
+            temporary.chmod(0o600)  # else Windows keeps it where it has the mode of a file that is read only
+            temporary.unlink()
         raise
 
 

@@ -58,25 +58,25 @@ class Globs:
                 break
             passed.append((outer, name, inner))
             inner = outer
-        found = self._of_folder[inner]
+        numbers = self._of_folder[inner]
         for outer, name, inner in reversed(passed):
-            found = found | self.itself(outer, name, is_folder=True)
-            self._of_folder[inner] = found
-        return found
+            numbers = numbers | self.itself(outer, name, is_folder=True)
+            self._of_folder[inner] = numbers
+        return numbers
 
     def itself(self, folder: str, name: str, *, is_folder: bool) -> frozenset[int]:
         """Return the numbers of patterns that match an entry of a folder, whether or not the folder itself matches."""
-        own = folded(name)
-        found: set[int] = set()
-        found |= self._names.get(own, found)
-        found |= {number for pattern, number in self._wild_names if pattern.fullmatch(own)}
+        name_folded = folded(name)
+        numbers: set[int] = set()
+        numbers |= self._names.get(name_folded, numbers)
+        numbers |= {number for pattern, number in self._wild_names if pattern.fullmatch(name_folded)}
         if self._paths or self._wild_paths:
-            path = f"{folded(folder).rstrip('/')}/{own}"
-            found |= self._paths.get(path, found)
-            found |= {number for pattern, number in self._wild_paths if pattern.fullmatch(path)}
-        if found and not is_folder:
-            found -= self._folders_only
-        return frozenset(found)
+            path = f"{folded(folder).rstrip('/')}/{name_folded}"
+            numbers |= self._paths.get(path, numbers)
+            numbers |= {number for pattern, number in self._wild_paths if pattern.fullmatch(path)}
+        if numbers and not is_folder:
+            numbers -= self._folders_only
+        return frozenset(numbers)
 
     def _is_around_base(self, folder: str) -> bool:
         return f"{self._base.rstrip('/')}/".startswith(f"{folded(folder).rstrip('/')}/")
@@ -101,7 +101,7 @@ class Globs:
     def _from_root(self, text: str) -> list[str]:
         """The parts of a pattern from the root on, what is said of the base as it stands and not as a pattern."""
         is_absolute = text.startswith("/") or re.match("[a-z]:/", text) is not None
-        parts = [] if is_absolute else [_WILD.sub(lambda found: f"[{found[0]}]", part) for part in _split(self._base)]
+        parts = [] if is_absolute else [_WILD.sub(lambda match: f"[{match[0]}]", part) for part in _split(self._base)]
         for part in _split(text):
             if part == ".." and parts:
                 parts.pop()
@@ -133,8 +133,8 @@ def folded(path: str) -> str:
 
 def _split(path: str) -> list[str]:
     """The parts of a path; the first is empty where it begins at the root."""
-    first, *others = path.split("/")
-    return [first, *(part for part in others if part)]
+    first, *remaining = path.split("/")
+    return [first, *(part for part in remaining if part)]
 
 
 def _compiled(parts: Sequence[str]) -> re.Pattern[str]:
@@ -150,7 +150,7 @@ def _compiled(parts: Sequence[str]) -> re.Pattern[str]:
             runs.append([])
     first, *between, last = ["/".join(run) for run in runs] if len(runs) > 1 else ["", "/".join(runs[0])]
     text = f"{first}/" if first or (len(runs) > 1 and runs[0]) else ""
-    text += "".join(f"(?>{_FOLDERS}?{one}/)" for one in between)
+    text += "".join(f"(?>{_FOLDERS}?{inner}/)" for inner in between)
     if len(runs) > 1:
         text += f"{_FOLDERS}{last}" if last else ".+"
     else:
@@ -168,10 +168,10 @@ def _of_name(part: str) -> str:
             chunks.append("")
         else:
             chunks[-1] += _translated(piece)
-    first, *others = chunks
-    if not others:
+    first, *following = chunks
+    if not following:
         return first
-    *between, last = others
+    *between, last = following
     return first + "".join(f"(?>[^/]*?{chunk})" for chunk in between) + f"[^/]*{last}"
 
 

@@ -115,9 +115,9 @@ def extract_statements(code: Bytes, language: str) -> Extracted:
     suspects = np.isin(code, list(alone))
     suspects[1:] |= is_name[1:] & is_name[:-1]
     marks = [match.end() - 1 for match in re.finditer(signs.lines, code.tobytes(), _FLAGS)] if signs.lines else []
-    at = np.union1d(np.flatnonzero(suspects), np.array(marks, np.int64))
+    suspected = np.union1d(np.flatnonzero(suspects), np.array(marks, np.int64))
     breaks = np.append(np.flatnonzero(code == LF), len(code))
-    index = np.unique(np.searchsorted(breaks, at))
+    index = np.unique(np.searchsorted(breaks, suspected))
     starts = np.append(0, breaks + 1)[index]
     pattern = _pattern(signs)
     statements: list[int] = []
@@ -157,7 +157,7 @@ def extract_statements(code: Bytes, language: str) -> Extracted:
                 continue
         statements.append(start + first)
         if _COMMA.search(line):
-            commas += [start + at for at in _decimal_commas(_without(line, comments))]
+            commas += [start + suspected for suspected in _decimal_commas(_without(line, comments))]
         begin = 0
         for comment, after in [*comments, (len(line), len(line))]:
             code[start + begin : start + comment] = _BLANK[0]
@@ -177,18 +177,18 @@ def _decimal_commas(line: bytes) -> list[int]:
     The commas between two digits of a line without comments that are decimal points: in brackets and parentheses commas
     separate arguments, but behind AC and its like one value stands.
     """
-    found, depth = [], 0
+    commas, depth = [], 0
     for match in _OF_COMMAS.finditer(line):
         if match[0] == b"," and depth == 0:
-            found.append(match.start())
+            commas.append(match.start())
         elif match[0] in (b"(", b"["):
             depth += 1
         elif match[0] in (b")", b"]"):
             depth = max(depth - 1, 0)
         elif match[1] is not None:
-            found.append(match.start(1))
+            commas.append(match.start(1))
             depth += 1
-    return found
+    return commas
 
 
 def _ranges(places: list[tuple[int, int]]) -> Ranges:
@@ -216,10 +216,10 @@ def _without(line: bytes, places: list[tuple[int, int]]) -> bytes:
 def _first_outside(line: bytes, start: int, marks: list[int], comments: list[tuple[int, int]]) -> int:
     """The first mark in a line outside its comments, as an index of the line; -1 for none. start: of the line."""
     begins = [begin for begin, _ in comments]
-    for place in marks[bisect.bisect_left(marks, start) : bisect.bisect_left(marks, start + len(line))]:
-        before = bisect.bisect_right(begins, place - start) - 1
-        if before < 0 or place - start >= comments[before][1]:
-            return place - start
+    for mark in marks[bisect.bisect_left(marks, start) : bisect.bisect_left(marks, start + len(line))]:
+        before = bisect.bisect_right(begins, mark - start) - 1
+        if before < 0 or mark - start >= comments[before][1]:
+            return mark - start
     return -1
 
 
@@ -233,19 +233,21 @@ def _pattern(signs: _Signs) -> re.Pattern[bytes]:
 def _parts(line: bytes, pattern: re.Pattern[bytes], signs: _Signs) -> tuple[list[tuple[int, int]], int]:
     """The comments of a line, and the index of its first mark of the language; -1 for none."""
     comments: list[tuple[int, int]] = []
-    first, depth, at = -1, 0, 0
-    while match := pattern.search(line, at):
-        at = match.end()
+    first, depth, searched = -1, 0, 0
+    while match := pattern.search(line, searched):
+        searched = match.end()
         comment, opens, closes, sign = match.groups()
         if comment is not None:
             comments.append(match.span())
         elif opens:
-            if signs.has_arguments and (depth > 0 or _BEFORE_ARGUMENTS.search(line[max(at - _NEAR, 0) : at])):
+            if signs.has_arguments and (
+                depth > 0 or _BEFORE_ARGUMENTS.search(line[max(searched - _NEAR, 0) : searched])
+            ):
                 depth += 1
             else:
-                end = line.find(b")", at)
-                at = end + 1 if end >= 0 else len(line)
-                comments.append((match.start(), at))
+                end = line.find(b")", searched)
+                searched = end + 1 if end >= 0 else len(line)
+                comments.append((match.start(), searched))
         elif closes:
             depth = max(depth - 1, 0)
         elif first < 0 and (sign is not None or match[0][:1] == b'"') and (signs.has_arguments or sign is not None):

@@ -63,49 +63,49 @@ def read_as_digits(code: Bytes) -> Positions:
     index = different(np.searchsorted(breaks, suspects))
     starts = np.append(0, breaks + 1)[index]
     places = [
-        start + place
+        start + offset
         for start, end in zip(starts.tolist(), breaks[index].tolist(), strict=True)
-        for place in _in_block(code[start:end].tobytes())
+        for offset in _in_block(code[start:end].tobytes())
     ]
-    at = np.array(places, np.int64)
-    code[at] = np.where(code[at] | _SMALL == _O, ord("0"), ord("1"))
-    return at
+    positions = np.array(places, np.int64)
+    code[positions] = np.where(code[positions] | _SMALL == _O, ord("0"), ord("1"))
+    return positions
 
 
 def _suspects(code: Bytes) -> Positions:
     """Letters O inside a word or number, and letters I behind an address, or without a number."""
     small = code | np.uint8(_SMALL)
-    at = np.flatnonzero((small == _O) | (small == _I))
-    at = at[at > 0]
-    before = code[at - 1]
+    index = np.flatnonzero((small == _O) | (small == _I))
+    index = index[index > 0]
+    before = code[index - 1]
     longer = np.append(code, _TWO_BREAKS)
-    behind = longer[at + 1]
-    behind = np.where(behind == _POINT, longer[at + 2], behind)
-    is_o = small[at] == _O
-    return np.asarray(at[_JOINS[before] & (is_o | _BEGINS_WORD[before] | ~_BEGINS_NUMBER[behind])])
+    follower = longer[index + 1]
+    follower = np.where(follower == _POINT, longer[index + 2], follower)
+    is_o = small[index] == _O
+    return np.asarray(index[_JOINS[before] & (is_o | _BEGINS_WORD[before] | ~_BEGINS_NUMBER[follower])])
 
 
 def _in_block(block: bytes) -> list[int]:
     """The indices of such letters in a block; none if the block would be faulty with the digits, too."""
     if len(block) > _LONGEST or _OTHER.match(block) or _PROGRAM_AFTER_NUMBER.fullmatch(block):
         return []
-    meant = bytearray(block)
+    digits = bytearray(block)
     places: list[int] = []
     numbered = _NUMBERED_WORD.search(block)
     first_numbered = numbered.start() if numbered else len(block)
     end_before = 0
     for word in _WORD.finditer(block):
-        letters = [at for at in range(word.start(2), word.end(2)) if block[at] | _SMALL in (_O, _I)]
+        letters = [index for index in range(word.start(2), word.end(2)) if block[index] | _SMALL in (_O, _I)]
         if not letters:
             continue
         stands_alone = word.start() in (0, end_before) or not _IS_LETTER[block[word.start() - 1]]
         if not (stands_alone and _may_be_number(block, word, first_numbered)):
             return []
         end_before = word.end()
-        for at in letters:
-            meant[at] = ord("0") if block[at] | _SMALL == _O else ord("1")
+        for index in letters:
+            digits[index] = ord("0") if block[index] | _SMALL == _O else ord("1")
         places += letters
-    return places if _BLOCK.fullmatch(meant) else []
+    return places if _BLOCK.fullmatch(digits) else []
 
 
 def _may_be_number(block: bytes, word: re.Match[bytes], first_numbered: int) -> bool:

@@ -89,13 +89,13 @@ def read_numbers(code: Bytes, start: Positions, end: Positions) -> Numbers:
     # Digits have 3 in their upper half, points 2.
     upper = (last & _in_each(0x30)) - (point << np.uint64(4))
     odd = (length > _EIGHT) | (points & (points - np.uint64(1)) != 0) | (eight & _in_each(0xF0) != upper)
-    place = ((point * _TO_PLACE) >> np.uint64(60)).astype(np.intp)
-    has_point = place > 0
-    value = _eight_digits((eight & below_point) | ((eight & above_point) >> np.uint64(8))) / _DIVISOR[place]
+    decimal_place = ((point * _TO_PLACE) >> np.uint64(60)).astype(np.intp)
+    has_point = decimal_place > 0
+    value = _eight_digits((eight & below_point) | ((eight & above_point) >> np.uint64(8))) / _DIVISOR[decimal_place]
 
     value[(first == _MINUS) | (first == DASH)] *= -1
     fault = np.where(first == DASH, np.uint8(NumberFault.WRONG_DASH), np.uint8(NumberFault.NONE))
-    decimals = _DECIMALS[place]
+    decimals = _DECIMALS[decimal_place]
     numbers = Numbers(value, decimals, (length - has_point).astype(np.int32), has_point, fault)
     if odd.any():
         _read_odd(numbers, code, start, end, np.flatnonzero(odd))
@@ -131,8 +131,8 @@ def _read_odd(numbers: Numbers, code: Bytes, start: Positions, end: Positions, i
     digit_word = word[is_digit]
     digits = np.bincount(digit_word, minlength=count)
     last_digit = np.cumsum(digits)
-    place = np.minimum(last_digit[digit_word] - 1 - np.arange(len(digit_word)), len(_POWERS) - 1)
-    mantissa = np.bincount(digit_word, (characters[is_digit] - float(_ZERO)) * _POWERS[place], minlength=count)
+    exponent = np.minimum(last_digit[digit_word] - 1 - np.arange(len(digit_word)), len(_POWERS) - 1)
+    mantissa = np.bincount(digit_word, (characters[is_digit] - float(_ZERO)) * _POWERS[exponent], minlength=count)
     digits_before = np.cumsum(is_digit)
     points = np.bincount(word[is_point], minlength=count)
     signs = np.bincount(word[is_sign], minlength=count)

@@ -124,8 +124,8 @@ def prose_in_blocks(source: Source, code: Bytes, is_suspect: Mask) -> Ranges:
         block = data[begin : min(end, begin + _EXAMINED)]
         for prose in _in_block(block, source.code[begin : begin + len(block)]):
             if _has_letters(source, block[prose.start : prose.end], begin + prose.start):
-                behind = end if prose.end == len(block) else begin + prose.end
-                stop = begin + _end_of(source.code[begin:behind])
+                stop_of_prose = end if prose.end == len(block) else begin + prose.end
+                stop = begin + _end_of(source.code[begin:stop_of_prose])
                 rows.extend((begin, begin + prose.start, stop, begin + prose.code_end, prose.is_certain))
     ranges = _of_the_file(data, np.frombuffer(rows, np.int64).reshape(-1, 5))
     blank(code, ranges)
@@ -137,13 +137,13 @@ def _end_of(written: Bytes) -> int:
     return len(written.tobytes().rstrip(_BLANKS))
 
 
-def _has_letters(source: Source, text: bytes, at: int) -> bool:
+def _has_letters(source: Source, text: bytes, start: int) -> bool:
     """True for text with letters of ASCII or of another script; full-width letters and stray bytes do not count."""
     if _ASCII.search(text) or text[:1] == b"|":
         return True
-    others = sum(character >= 0x80 for character in text)
-    written = source.excerpt(at, at + len(text))
-    return _OTHER_SCRIPT.search(written) is not None and (source.encoding != "latin-1" or others >= _FEW_BYTES)
+    high = sum(character >= 0x80 for character in text)
+    written = source.excerpt(start, start + len(text))
+    return _OTHER_SCRIPT.search(written) is not None and (source.encoding != "latin-1" or high >= _FEW_BYTES)
 
 
 def _of_the_file(data: bytes, rows: Rows) -> Ranges:
@@ -160,7 +160,9 @@ def _of_the_file(data: bytes, rows: Rows) -> Ranges:
         return Ranges(rows[certain, 1], rows[certain, 2])
     block, start, end, code_end, _ = rows.T
     with_code = np.flatnonzero(code_end > block)
-    tabbed = np.array([_TAB in data[at:first] for at, first in rows[with_code][:, [3, 1]].tolist()], bool)
+    tabbed = np.array(
+        [_TAB in data[line_start:first] for line_start, first in rows[with_code][:, [3, 1]].tolist()], bool
+    )
     if np.count_nonzero(tabbed) >= max(_MANY, len(tabbed) / 2):
         start = start.copy()
         for row in with_code[~tabbed].tolist():
@@ -226,9 +228,9 @@ def _single(block: bytes, written: Bytes, runs: Sequence[Match], words: Sequence
     if is_alone and _is_known(runs[0]) and (not words or runs[0][0].upper() in _CALLS):
         return []
     word = words[0] if words else runs[0]
-    behind = block[word.end() : word.end() + 1]
+    following = block[word.end() : word.end() + 1]
     is_call = word.end() < len(written) and written[word.end()] == _OPEN
-    is_name = behind.isdigit() or behind == b":" or (is_alone and word[0][:1] in b"Oo")
+    is_name = following.isdigit() or following == b":" or (is_alone and word[0][:1] in b"Oo")
     if (is_alone and (is_call or is_name)) or (is_name and word[0][:1] in b"Nn"):
         return []
     is_certain = bool(words) and _is_long(word) and not (is_alone and _is_known(runs[0]))
@@ -245,13 +247,18 @@ def _beside_macro(block: bytes, runs: Sequence[Match], words: Sequence[Match], b
     needed = _SENTENCE if _is_statement(runs[0]) else 3 if _is_known(runs[0]) else 2
     if len(before) >= needed and any(map(_is_long, before)):
         return begin
-    behind = [word for word in words if word.start() >= signs[-1][1]]
+    following = [word for word in words if word.start() >= signs[-1][1]]
     needed = _SENTENCE if _is_statement(runs[0]) else 2
-    if len(behind) == 1 and runs[-1] is behind[0] and b"#" in block and block[behind[0].start()] not in b"NOno":
+    if (
+        len(following) == 1
+        and runs[-1] is following[0]
+        and b"#" in block
+        and block[following[0].start()] not in b"NOno"
+    ):
         needed = 1
-    if len(behind) < needed or not any(map(_is_long, behind)):
+    if len(following) < needed or not any(map(_is_long, following)):
         return None
-    first = runs.index(behind[0])
+    first = runs.index(following[0])
     while first and runs[first - 1].start() >= signs[-1][1] and runs[first - 1][0].upper() not in _OF_MACRO:
         first -= 1
     start = runs[first].start()

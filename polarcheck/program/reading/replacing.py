@@ -23,7 +23,7 @@ def rewrite(path: str, old: bytes, new: bytes, *, keep: bool = False) -> None:
     with a second name that would have the old program, changed since it was read, of another owner), or where FILE.orig
     contains something else.
     """
-    name = files.shown(path)
+    name = files.display_path(path)
     try:
         target = Path(os.path.realpath(path))
         _refuse(target, name, old)
@@ -62,7 +62,9 @@ def _keep(path: Path, name: str, old: bytes, status: os.stat_result) -> None:
     if copy.exists() and copy.is_file() and copy.read_bytes() == old:
         return
     if os.path.lexists(copy):
-        raise OutputError(f"{name}: not written: {files.shown(str(copy))} is there already, and differs; move it away")
+        raise OutputError(
+            f"{name}: not written: {files.display_path(str(copy))} is there already, and differs; move it away"
+        )
     files.write(copy, old, lambda written: _hand_over(written, status, name))
 
 

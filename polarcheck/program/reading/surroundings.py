@@ -183,9 +183,9 @@ def _characters(ranges: Ranges, size: int) -> tuple[Positions, Positions]:
     length = (ranges.end - ranges.start).astype(narrow(size))
     before = np.cumsum(length, dtype=length.dtype) - length
     owner = np.repeat(np.arange(len(length), dtype=length.dtype), length)
-    at = np.arange(len(owner), dtype=length.dtype)
-    at += (ranges.start - before).astype(length.dtype)[owner]
-    return at, owner
+    positions = np.arange(len(owner), dtype=length.dtype)
+    positions += (ranges.start - before).astype(length.dtype)[owner]
+    return positions, owner
 
 
 def blank(code: Bytes, ranges: Ranges) -> None:
@@ -195,9 +195,9 @@ def blank(code: Bytes, ranges: Ranges) -> None:
 
 def _has_text(code: Bytes, start: Positions, end: Positions) -> Mask:
     """True where there is anything but blanks between the positions."""
-    at, owner = _characters(Ranges(start, end), len(code))
+    positions, owner = _characters(Ranges(start, end), len(code))
     has_text = np.zeros(len(start), bool)
-    has_text[owner[~_IS_BLANK[code[at]]]] = True
+    has_text[owner[~_IS_BLANK[code[positions]]]] = True
     return has_text
 
 
@@ -209,22 +209,22 @@ def _within(inner: Ranges, outer: Ranges) -> Mask:
     return np.asarray((owner >= 0) & (inner.start < outer.end[owner]))
 
 
-def _first_of_line(at: Positions, lines: Positions) -> Ranges:
+def _first_of_line(positions: Positions, lines: Positions) -> Ranges:
     """From the first position on each line to the end of the line."""
-    line = np.searchsorted(lines, at)
-    first = np.ones(len(at), bool)
+    line = np.searchsorted(lines, positions)
+    first = np.ones(len(positions), bool)
     first[1:] = line[1:] != line[:-1]
-    return Ranges(at[first], lines[line[first]])
+    return Ranges(positions[first], lines[line[first]])
 
 
 def _line_comments(code: Bytes, lines: Positions, characters: str) -> list[Ranges]:
     """Find and blank comments from a character to the end of its line; not inside parentheses."""
     if not characters:
         return []
-    at = np.flatnonzero(is_among(code, list(characters.encode("latin-1"))))
+    marks = np.flatnonzero(is_among(code, list(characters.encode("latin-1"))))
     brackets = np.flatnonzero((code == _OPEN) | (code == _CLOSE) | (code == LF))
-    inside = np.append(LF, code[brackets])[np.searchsorted(brackets, at)] == _OPEN
-    remarks = _first_of_line(at[~inside], lines)
+    inside = np.append(LF, code[brackets])[np.searchsorted(brackets, marks)] == _OPEN
+    remarks = _first_of_line(marks[~inside], lines)
     blank(code, remarks)
     return [remarks]
 
@@ -235,16 +235,16 @@ def _comments(code: Bytes) -> tuple[Ranges, Mask, Mask]:
     if not is_open.any():
         none = np.zeros(0, np.int64)
         return Ranges(none, none), np.zeros(0, bool), np.zeros(0, bool)
-    at = np.flatnonzero(is_open | (code == _CLOSE) | (code == LF))
-    opens = np.append(is_open[at], False)
-    at = np.append(at, len(code))
+    marks = np.flatnonzero(is_open | (code == _CLOSE) | (code == LF))
+    opens = np.append(is_open[marks], False)
+    marks = np.append(marks, len(code))
     inside = np.append(False, opens[:-1])
     first = opens & ~inside
     last = inside & ~opens
-    end = at[last]
+    end = marks[last]
     closed = end < len(code)
     closed[closed] = code[end[closed]] == _CLOSE
-    comments = Ranges(at[first], end + closed)
+    comments = Ranges(marks[first], end + closed)
     blank(code, comments)
     return comments, ~closed, opens[np.flatnonzero(first) + 1]
 
@@ -256,16 +256,16 @@ def _percents(code: Bytes, lines: Positions) -> tuple[Positions, Positions]:
     Source: B-63524EN/01 p. 649 (text from % to the first LF is skipped); alarm 5010 for a % inside a block.
     """
     tails = _first_of_line(np.flatnonzero(code == _PERCENT), lines)
-    at = tails.start
-    if not len(at):
-        return at, at
-    line_start = np.append(0, lines + 1)[np.searchsorted(lines, at)]
-    is_mark = ~_has_text(code, line_start, at) | ~_has_text(code, at + 1, tails.end)
-    for index in np.flatnonzero(is_mark & np.isin(code[at - 1], list(b"0123456789"))).tolist():
-        begin = max(int(line_start[index]), int(at[index]) - _SHARE_LENGTH)
-        is_mark[index] = re.search(_SHARE, code[begin : at[index]].tobytes()) is None
+    percents = tails.start
+    if not len(percents):
+        return percents, percents
+    line_start = np.append(0, lines + 1)[np.searchsorted(lines, percents)]
+    is_mark = ~_has_text(code, line_start, percents) | ~_has_text(code, percents + 1, tails.end)
+    for index in np.flatnonzero(is_mark & np.isin(code[percents - 1], list(b"0123456789"))).tolist():
+        begin = max(int(line_start[index]), int(percents[index]) - _SHARE_LENGTH)
+        is_mark[index] = re.search(_SHARE, code[begin : percents[index]].tobytes()) is None
     blank(code, tails)
-    return at[is_mark], at[~is_mark]
+    return percents[is_mark], percents[~is_mark]
 
 
 def _outside(code: Bytes, marks: Positions) -> Ranges:
@@ -313,10 +313,10 @@ def _tags(code: Bytes) -> Ranges:
 
 def _names(code: Bytes) -> Ranges:
     """Find and blank program names <...> of the 30i family, as in O<HEX> or M98 <HEX>."""
-    at = np.flatnonzero(code == _LESS)
-    if len(at):
-        at = np.flatnonzero((code == _LESS) | (code == _GREATER) | (code == LF))
-    start, end = at[:-1], at[1:]
+    signs = np.flatnonzero(code == _LESS)
+    if len(signs):
+        signs = np.flatnonzero((code == _LESS) | (code == _GREATER) | (code == LF))
+    start, end = signs[:-1], signs[1:]
     length = end - start - 1
     named = (code[start] == _LESS) & (code[end] == _GREATER) & (length > 0) & (length <= _NAME_LENGTH)
     names = Ranges(start[named], end[named] + 1)

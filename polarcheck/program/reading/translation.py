@@ -35,22 +35,22 @@ def _translation(
 ) -> tuple[re.Pattern[bytes], Callable[[re.Match[bytes]], bytes]]:
     """The pattern and its replacement. Longer words match first; a word ends where no further letter follows."""
     native = {word.upper().encode("latin-1"): text.encode("latin-1") for word, text in words}
-    meant = {_BLANKS.sub(b"", word): text for word, text in native.items()}
+    texts = {_BLANKS.sub(b"", word): text for word, text in native.items()}
     patterns = [_pattern(word) + _end(word) * has_more for word in sorted(native, key=len, reverse=True)]
 
     def put(match: re.Match[bytes]) -> bytes:
-        return _filled(meant[_BLANKS.sub(b"", match[0].upper())], len(match[0]))
+        return _filled(texts[_BLANKS.sub(b"", match[0].upper())], len(match[0]))
 
     return re.compile(_beginning(native) + b"(?:" + b"|".join(patterns) + b")", re.IGNORECASE), put
 
 
 def _beginning(words: Collection[bytes]) -> bytes:
     """A pattern of the first two characters, which alone rules out nearly every place of a program."""
-    meant = [_BLANKS.sub(b"", word) for word in words]
-    first, second = (b"".join({re.escape(word[at : at + 1]) for word in meant}) for at in (0, 1))
+    spelled = [_BLANKS.sub(b"", word) for word in words]
+    first, second = (b"".join({re.escape(word[index : index + 1]) for word in spelled}) for index in (0, 1))
     if any(word[1:2] in (b" ", b"\t") for word in words):
         second += rb" \t"
-    return b"(?=[" + first + b"][" + second + b"])" if all(len(word) > 1 for word in meant) else b""
+    return b"(?=[" + first + b"][" + second + b"])" if all(len(word) > 1 for word in spelled) else b""
 
 
 def spans(source: Source, word: str) -> tuple[Positions, Positions]:

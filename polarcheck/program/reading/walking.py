@@ -10,7 +10,7 @@ from collections.abc import Callable, Collection, Iterable, Iterator
 from pathlib import Path
 from typing import Literal, NamedTuple
 
-from polarcheck.program.reading.files import STANDARD_INPUT, shown
+from polarcheck.program.reading.files import STANDARD_INPUT, display_path
 
 EXTENSIONS = (
     *(".nc", ".ncc", ".cnc", ".tap", ".eia", ".min", ".mpf", ".spf", ".ngc", ".prg"),
@@ -88,7 +88,7 @@ def extensions(names: Iterable[str]) -> list[str]:
 
 def walk(
     folder: str,
-    wanted: Collection[str] | Callable[[str], Collection[str]],
+    endings_of: Collection[str] | Callable[[str], Collection[str]],
     failed: Callable[[str], None],
     excluded_in: ExcludedIn | None = None,
     skipped: Callable[[Skipped], None] | None = None,
@@ -98,7 +98,7 @@ def walk(
 
     Hidden files and folders are passed over; a folder that links lead to twice is entered once.
 
-    wanted: the extensions, or a function for those of a folder.
+    endings_of: the extensions, or a function for those of a folder.
     failed: is told, in one line, of folders that cannot be read.
     excluded_in: says of a folder what of it is passed over.
     skipped: is told of each file that may be a program by its look and is not read, and of each folder not entered.
@@ -106,12 +106,12 @@ def walk(
     entered = _Entered()
     excluded = _Excluded()
     # Folders can be nested deeper than functions: the innermost one stands at the end.
-    left = [_entries(folder, entered, failed, excluded_in)]
-    endings = [wanted(folder) if callable(wanted) else wanted]
-    while left:
-        entry, by = next(left[-1], _END)
+    stack = [_entries(folder, entered, failed, excluded_in)]
+    endings = [endings_of(folder) if callable(endings_of) else endings_of]
+    while stack:
+        entry, by = next(stack[-1], _END)
         if entry is None:
-            left.pop()
+            stack.pop()
             endings.pop()
             continue
         path = entry.path if folder != "." else entry.path.removeprefix(f".{os.sep}")
@@ -123,8 +123,8 @@ def walk(
             if skipped is not None:
                 excluded.tell(path, by, endings[-1], skipped, is_folder=is_folder)
         elif is_folder:
-            left.append(_entries(path, entered, failed, excluded_in))
-            endings.append(wanted(path) if callable(wanted) else wanted)
+            stack.append(_entries(path, entered, failed, excluded_in))
+            endings.append(endings_of(path) if callable(endings_of) else endings_of)
         elif is_program(path, endings[-1]):
             yield path if path != STANDARD_INPUT else entry.path
         elif skipped is not None and may_be_program(path, endings[-1]):
@@ -161,7 +161,7 @@ def _entries(folder: str, entered: _Entered, failed: Callable[[str], None], excl
     try:
         entries = _by_name(folder) if entered.is_new(folder) else []
     except OSError as error:
-        failed(f"{shown(folder)}: {error.strerror}")
+        failed(f"{display_path(folder)}: {error.strerror}")
         return iter(())
     excluded_by = excluded_in(folder) if excluded_in is not None and entries else None
     if excluded_by is None:
@@ -181,19 +181,19 @@ class _Excluded:
         self._entered, self._left = _Entered(), _MOST_EXCLUDED
 
     def tell(
-        self, path: str, by: str, wanted: Collection[str], skipped: Callable[[Skipped], None], *, is_folder: bool
+        self, path: str, by: str, endings: Collection[str], skipped: Callable[[Skipped], None], *, is_folder: bool
     ) -> None:
         """Tell of a file that may be a program, or of a folder with the number of its programs."""
         if is_folder:
-            skipped(Skipped(path, "excluded", by, self._count(path, wanted), is_least=self._left <= 0))
-        elif may_be_program(path, wanted):
+            skipped(Skipped(path, "excluded", by, self._count(path, endings), is_least=self._left <= 0))
+        elif may_be_program(path, endings):
             skipped(Skipped(path, "excluded", by))
 
-    def _count(self, folder: str, wanted: Collection[str]) -> int:
+    def _count(self, folder: str, endings: Collection[str]) -> int:
         """Return the number of programs in an excluded folder; what is hidden and what cannot be read has none."""
-        count, left = 0, [folder]
-        while left and self._left > 0:
-            inner = left.pop()
+        count, folders = 0, [folder]
+        while folders and self._left > 0:
+            inner = folders.pop()
             try:
                 entries = _by_name(inner) if self._entered.is_new(inner) else []
             except OSError:
@@ -203,9 +203,9 @@ class _Excluded:
                 if entry.name.startswith(".") or entry.name in _SKIPPED_FOLDERS:
                     continue
                 if _is_folder(entry):
-                    left.append(entry.path)
+                    folders.append(entry.path)
                 else:
-                    count += is_program(entry.path, wanted)
+                    count += is_program(entry.path, endings)
         return count
 
 
@@ -216,16 +216,16 @@ def _is_folder(entry: os.DirEntry[str]) -> bool:
         return False
 
 
-def is_program(path: str, wanted: Collection[str]) -> bool:
+def is_program(path: str, endings: Collection[str]) -> bool:
     """Return True if a file of a folder is an NC program, by its extension, its name, or its first lines."""
-    if has_name_of_program(path, wanted):
+    if has_name_of_program(path, endings):
         return not _is_special(path)
     return _suffix(path) in _SNIFFED and not _is_special(path) and _looks_like_program(path)
 
 
-def has_name_of_program(path: str, wanted: Collection[str]) -> bool:
+def has_name_of_program(path: str, endings: Collection[str]) -> bool:
     """Return True for the name of an NC program: one of these extensions, or an O-number."""
-    return _suffix(path) in wanted or re.fullmatch(_O_NAME, Path(path).name) is not None
+    return _suffix(path) in endings or re.fullmatch(_O_NAME, Path(path).name) is not None
 
 
 def is_by_look(path: str) -> bool:
@@ -233,9 +233,9 @@ def is_by_look(path: str) -> bool:
     return _suffix(path) in _SNIFFED and not has_name_of_program(path, ())
 
 
-def may_be_program(path: str, wanted: Collection[str]) -> bool:
+def may_be_program(path: str, endings: Collection[str]) -> bool:
     """Return True for a program, and for a file that may be one by its name and first lines, whatever its ending."""
-    if has_name_of_program(path, wanted):
+    if has_name_of_program(path, endings):
         return True
     suffix, name = _suffix(path), Path(path).name
     if suffix in _NO_PROGRAMS or name.endswith("~") or _is_special(path):

@@ -200,9 +200,9 @@ def read_words(
     )
 
 
-def _block_of(at: Positions, starts: Positions) -> Positions:
+def _block_of(positions: Positions, starts: Positions) -> Positions:
     """The block in which each position lies."""
-    return np.searchsorted(starts, at, side="right") - 1
+    return np.searchsorted(starts, positions, side="right") - 1
 
 
 def _outside_prose(strays: Positions, prose: Ranges, starts: Positions) -> Positions:
@@ -219,10 +219,12 @@ def _is_reported(table: _Piece, code: Bytes, is_macro: Mask, starts: Positions) 
     in_statement, is_star = is_macro[block], code[table.strays] == _STAR
     reported = ~in_statement | (table.is_last_stray & (~is_star | np.any(is_star & ~in_statement)))
     for index in np.flatnonzero(in_statement & (code[table.strays] == _COMMA)).tolist():
-        at = int(table.strays[index])
-        before = code[int(starts[block[index]]) : at].tobytes()
+        stray = int(table.strays[index])
+        before = code[int(starts[block[index]]) : stray].tobytes()
         is_argument = before.count(b"[") > before.count(b"]")
-        reported[index] |= not is_argument and _DECIMAL_COMMA.match(code[at - 1 : at + 2].tobytes(), 1) is not None
+        reported[index] |= (
+            not is_argument and _DECIMAL_COMMA.match(code[stray - 1 : stray + 2].tobytes(), 1) is not None
+        )
     return np.asarray(reported)
 
 
@@ -281,11 +283,17 @@ def _read_pieces(text: bytes) -> _Piece:
 def _read_piece(text: bytes, offset: np.signedinteger[Any], blocks: np.signedinteger[Any]) -> _Piece:
     """Read one piece. Blanks are removed first; an additional break at its head saves many special cases."""
     text = b"\n" + text + b"\n"
-    at = np.flatnonzero(np.frombuffer(text.translate(KINDS), np.uint8) != Character.BLANK).astype(type(offset))
-    at += offset - type(offset)(1)
+    positions = np.flatnonzero(np.frombuffer(text.translate(KINDS), np.uint8) != Character.BLANK).astype(type(offset))
+    positions += offset - type(offset)(1)
     text = text.translate(None, BLANKS)
-    marks = _Marks(np.frombuffer(text, np.uint8), np.frombuffer(text.translate(KINDS), np.uint8), at, at, at[:0])
-    strays = macro = at[:0]
+    marks = _Marks(
+        np.frombuffer(text, np.uint8),
+        np.frombuffer(text.translate(KINDS), np.uint8),
+        positions,
+        positions,
+        positions[:0],
+    )
+    strays = macro = positions[:0]
     is_last_stray = np.zeros(0, bool)
     if marks.kind.max() > Character.COMMA:
         marks, strays, is_last_stray, macro = _without_others(marks)
@@ -319,16 +327,16 @@ def _without_others(marks: _Marks) -> tuple[_Marks, Positions, Mask, Positions]:
     A comma between two digits is a stray that is read as the decimal point for which it stands.
     """
     code, kind, start = marks.code, marks.kind.copy(), marks.start.copy()
-    others = np.flatnonzero(kind > Character.COMMA)
-    before, follower = kind[others - 1], code[others + 1]
-    kind[others[(code[others] == _COLON) & (before == Character.BREAK)]] = Character.LETTER  # stands for O
-    kind[others[(code[others] == _STAR) & (kind[others + 1] == Character.BREAK)]] = Character.STRAY
-    commas = others[(code[others] == _COMMA) & is_among(follower, list(b"CRAcra"))]
+    index = np.flatnonzero(kind > Character.COMMA)
+    before, follower = kind[index - 1], code[index + 1]
+    kind[index[(code[index] == _COLON) & (before == Character.BREAK)]] = Character.LETTER  # stands for O
+    kind[index[(code[index] == _STAR) & (kind[index + 1] == Character.BREAK)]] = Character.STRAY
+    commas = index[(code[index] == _COMMA) & is_among(follower, list(b"CRAcra"))]
     kind[commas] = Character.COMMA
     start[commas + 1] = marks.at[commas]
     strays = np.flatnonzero(kind == Character.STRAY)
     is_last = kind[strays + 1] == Character.BREAK
-    points = others[(code[others] == _COMMA) & (before == Character.DIGIT) & (kind[others + 1] == Character.DIGIT)]
+    points = index[(code[index] == _COMMA) & (before == Character.DIGIT) & (kind[index + 1] == Character.DIGIT)]
     if len(points):
         code = code.copy()
         code[points], kind[points] = _POINT, Character.POINT
@@ -350,14 +358,14 @@ def _words(marks: _Marks, breaks: Positions) -> tuple[Words, Ranges]:
     begins, ends = edges[::2], edges[1::2]
     letters = np.flatnonzero(kind == Character.LETTER)
     after_letter = kind[begins - 1] == Character.LETTER
-    behind = letters + 1
-    end = behind.copy()
-    end[in_number[behind]] = ends[after_letter]
-    numbers = read_numbers(marks.code, behind, end)
+    after = letters + 1
+    end = after.copy()
+    end[in_number[after]] = ends[after_letter]
+    numbers = read_numbers(marks.code, after, end)
 
     address = _UPPER[marks.code[letters]]
     bare = np.flatnonzero(numbers.digits == 0)
-    numbers.fault[bare[(address[bare] == _SLASH) & (end[bare] == behind[bare])]] = NumberFault.NONE
+    numbers.fault[bare[(address[bare] == _SLASH) & (end[bare] == after[bare])]] = NumberFault.NONE
     address[np.searchsorted(letters, marks.corners)] += 32
     counts = np.diff(np.searchsorted(letters, breaks))
     block = np.repeat(np.arange(len(counts), dtype=marks.at.dtype), counts)
@@ -392,9 +400,9 @@ def _with_loose(
     )
     block = (np.searchsorted(breaks, begins[loose]) - 1).astype(marks.at.dtype)
     extra = Words(*(np.zeros(count, np.uint8), *msgspec.structs.astuple(numbers), block, start[loose], end[loose]))
-    at = np.searchsorted(words.start, extra.start)
+    index = np.searchsorted(words.start, extra.start)
     columns = zip(msgspec.structs.astuple(words), msgspec.structs.astuple(extra), strict=True)
-    return Words(*(np.insert(column, at, more) for column, more in columns)), dots
+    return Words(*(np.insert(column, index, more) for column, more in columns)), dots
 
 
 def _only(words: Words, chosen: Mask) -> Words:
@@ -417,9 +425,9 @@ def _begins_statement(words: Words) -> Mask:
         last = bare + len(letters) - 1
         first, last = bare[last < len(words)], last[last < len(words)]
         spelled = (words.block[first] == words.block[last]) & ((words.digits[last] > 0) | (not has_number))
-        for place, letter in enumerate(letters):
-            at = first + place
-            spelled &= (words.address[at] == letter) & (has_no_digits[at] | (at == last))
+        for offset, letter in enumerate(letters):
+            index = first + offset
+            spelled &= (words.address[index] == letter) & (has_no_digits[index] | (index == last))
         begins[first[spelled]] = True
     return begins
 

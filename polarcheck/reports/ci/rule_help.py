@@ -41,12 +41,12 @@ def _is_of_example(paragraph: str) -> bool:
 def _in_markdown(page: str) -> Iterator[str]:
     title, *rest = _paragraphs(page)
     yield f"**{prose(title)}**"
-    shown: set[str] = set()
+    headings: set[str] = set()
     is_shown = True
     for part in rest:
         heading = _EXAMPLE.fullmatch(part)
         if heading:
-            is_shown = heading[1] not in shown
-            shown.add(heading[1])
+            is_shown = heading[1] not in headings
+            headings.add(heading[1])
         if is_shown:
             yield part if part.startswith(_INDENT) else prose(" ".join(part.split()))

@@ -29,11 +29,11 @@ _MARKS = {ord(mark): f"\\{mark}" for mark in "\\`*_~<>&[]|#$!@:."}
 def step_summary(report: Report, background: Background, room: int = LARGEST) -> str:
     """Return the page, cut between two findings to fit into `room` [bytes]; empty if there is no room."""
     pieces: list[str] = []
-    left = room - _FOR_THE_REST
+    remaining = room - _FOR_THE_REST
     lines = list(_lines(report, background))
     for number, piece in enumerate(lines):
-        left -= len(piece.encode())
-        if left < 0:
+        remaining -= len(piece.encode())
+        if remaining < 0:
             if pieces:
                 pieces.append(f"\n{counted(len(lines) - number, 'line')} more: this page takes no more than 1 MiB.\n")
             break

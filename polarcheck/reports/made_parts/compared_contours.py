@@ -21,11 +21,11 @@ from polarcheck.rules.wording.drawing import told
 
 def compared_in(report: FileReport, runs: Sequence[tuple[str, Tables]]) -> FileReport:
     """The report with the contours that are compared, in its first run and in each channel."""
-    found: list[PartComparison] = []
+    comparisons: list[PartComparison] = []
     for _, tables in first_runs(runs):
         with contextlib.suppress(TooHardError):  # the rule says so
-            found += compared(tables)
-    return msgspec.structs.replace(report, compared=found)
+            comparisons += compared(tables)
+    return msgspec.structs.replace(report, compared=comparisons)
 
 
 def compared(tables: Tables) -> list[PartComparison]:
@@ -37,25 +37,25 @@ def compared(tables: Tables) -> list[PartComparison]:
     deviations: Deviations = tables["deviations"]
     return [
         PartComparison(
-            title=one.title,
-            section_line=int(trace.blocks.line[trace.mode.sections.enter[one.section]]),
-            z=rounded(one.z),
-            agrees=one.agrees,
-            largest=rounded(one.difference.largest),
-            tolerance=rounded(one.tolerance),
-            too_much=rounded(one.difference.proud),
-            cut_away=rounded(one.difference.deep),
-            at=_at(one),
-            line=int(trace.blocks.line[one.row]),
-            turned=rounded(math.degrees(one.turned)),
-            angle_not_compared=one.angle_not_compared or None,
-            text=told(trace, one),
+            title=comparison.title,
+            section_line=int(trace.blocks.line[trace.mode.sections.enter[comparison.section]]),
+            z=rounded(comparison.z),
+            agrees=comparison.agrees,
+            largest=rounded(comparison.difference.largest),
+            tolerance=rounded(comparison.tolerance),
+            too_much=rounded(comparison.difference.proud),
+            cut_away=rounded(comparison.difference.deep),
+            at=_point(comparison),
+            line=int(trace.blocks.line[comparison.row]),
+            turned=rounded(math.degrees(comparison.turned)),
+            angle_not_compared=comparison.angle_not_compared or None,
+            text=told(trace, comparison),
         )
-        for one in deviations.comparisons
-        if not one.is_superseded
+        for comparison in deviations.comparisons
+        if not comparison.is_superseded
     ]
 
 
-def _at(one: Comparison) -> tuple[float | None, float | None]:
-    place = one.written(one.difference.at)
-    return rounded(place.real), rounded(place.imag)
+def _point(comparison: Comparison) -> tuple[float | None, float | None]:
+    point = comparison.written(comparison.difference.at)
+    return rounded(point.real), rounded(point.imag)

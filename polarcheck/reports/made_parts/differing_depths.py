@@ -41,22 +41,22 @@ def with_differences(entries: Sequence[MadeShape], areas: Sequence[Area], sizes:
         text = ""
         if depths in groups and depths not in seen:
             seen.add(depths)
-            one, other = by_z[min(depths)], by_z[min(usual)]
-            is_pass = names[depths] == names[usual] or in_common(one.polygon, other.polygon) >= _IN_COMMON
-            if one.is_cleared == other.is_cleared and is_pass:
-                text = _in_words(one, other, sizes)
+            compared, usual_area = by_z[min(depths)], by_z[min(usual)]
+            is_pass = names[depths] == names[usual] or in_common(compared.polygon, usual_area.polygon) >= _IN_COMMON
+            if compared.is_cleared == usual_area.is_cleared and is_pass:
+                text = _in_words(compared, usual_area, sizes)
         yield msgspec.structs.replace(entry, text=f"{entry.text}; {text}") if text else entry
 
 
-def _in_words(one: Area, other: Area, sizes: Sizes) -> str:
+def _in_words(area: Area, usual: Area, sizes: Sizes) -> str:
     """`cuts up to 8.660 deeper than at Z-6.000, at x 0.000 c -17.321`."""
     text = []
-    more, less = (one, other) if one.is_cleared else (other, one)
-    for said, (size, place) in (
+    more, less = (area, usual) if area.is_cleared else (usual, area)
+    for said, (size, point) in (
         ("cuts up to {} deeper", farthest(more.polygon, less.polygon)),
         ("leaves up to {} more", farthest(less.polygon, more.polygon)),
     ):
         if size > 2 * SAME:
-            where = f"at x {sizes(place.real)} c {sizes(place.imag)}"
-            text.append(f"{said.format(sizes(size))} than at Z{sizes(other.z)}, {where}")
+            where = f"at x {sizes(point.real)} c {sizes(point.imag)}"
+            text.append(f"{said.format(sizes(size))} than at Z{sizes(usual.z)}, {where}")
     return " and ".join(text)

@@ -40,11 +40,11 @@ if TYPE_CHECKING:
 
 def part_of(report: FileReport, runs: Sequence[tuple[str, Tables]]) -> FileReport:
     """The report with what the program makes, in its first run and in each channel."""
-    made: list[MadeShape] = []
+    shapes: list[MadeShape] = []
     for _, tables in first_runs(runs):
         channel = tables["text"].source.channel
-        made += [msgspec.structs.replace(one, channel=channel) if channel else one for one in made_by(tables)]
-    return msgspec.structs.replace(report, part=made)
+        shapes += [msgspec.structs.replace(shape, channel=channel) if channel else shape for shape in made_by(tables)]
+    return msgspec.structs.replace(report, part=shapes)
 
 
 #: More shapes than these are no line.
@@ -89,19 +89,19 @@ def in_one_line(tables: Tables) -> str:
 
 
 def _deepest(group: Sequence[Depth], sizes: Sizes) -> str:
-    known = [depth.z for depth in group if not np.isnan(depth.z)]
-    return f"to Z{sizes(min(known))}" if known else "to Z not known"
+    depths = [depth.z for depth in group if not np.isnan(depth.z)]
+    return f"to Z{sizes(min(depths))}" if depths else "to Z not known"
 
 
 def depths_of(tables: Tables) -> list[Depth]:
     """All depths of all sections, computed once for a run; raises TooHardError where that takes too long."""
     from polarcheck.reports.made_parts.tool_paths import depths_of_paths
 
-    known: list[Depth] | None = tables.get("depths")
-    if known is None:
-        known = [*_of_contours(tables), *depths_of_paths(tables)]
-        tables.give("depths", known)
-    return known
+    depths: list[Depth] | None = tables.get("depths")
+    if depths is None:
+        depths = [*_of_contours(tables), *depths_of_paths(tables)]
+        tables.give("depths", depths)
+    return depths
 
 
 def _by_section(trace: Trace, tables: Tables) -> list[MadeShape]:
@@ -113,7 +113,7 @@ def _by_section(trace: Trace, tables: Tables) -> list[MadeShape]:
     for depth in depths:
         by_first.setdefault(depth.sections[0], []).append(depth)
     makers = {section for depth in depths if depth.shapes or depth.needs for section in depth.sections}
-    made: list[MadeShape] = []
+    report: list[MadeShape] = []
     for section in range(len(trace.mode.sections)):
         of_section = by_first.get(section, [])
         entries = [*_entries(trace, of_section)]
@@ -121,9 +121,9 @@ def _by_section(trace: Trace, tables: Tables) -> list[MadeShape]:
         if len(entries) > 1 and len(areas) > 1:
             sizes = _sizes(trace, int(trace.mode.sections.enter[section]))
             entries = [*with_differences(entries, areas, sizes)]
-        left = [one for number, one in standing if any(number in depth.sections for depth in of_section)]
-        if left and entries:
-            entries[0] = msgspec.structs.replace(entries[0], left_standing=[*entries[0].left_standing, *left])
+        standing_here = [one for number, one in standing if any(number in depth.sections for depth in of_section)]
+        if standing_here and entries:
+            entries[0] = msgspec.structs.replace(entries[0], left_standing=[*entries[0].left_standing, *standing_here])
         if missing := _missing(trace, section):
             entries = [entry if entry.shape is None else _replaced_needs(entry, missing) for entry in entries]
         if section not in makers:
@@ -135,8 +135,8 @@ def _by_section(trace: Trace, tables: Tables) -> list[MadeShape]:
         if job.part:
             is_compared = any(part.section in (None, number + 1) for part in job.part for number in sections)
             entries = [msgspec.structs.replace(entry, is_compared=is_compared) for entry in entries]
-        made += entries
-    return made
+        report += entries
+    return report
 
 
 def _missing(trace: Trace, section: int) -> str:
@@ -217,7 +217,7 @@ def _of_levels(
     trace: Trace, levels: Sequence[Level], single: Sequence[Level], depth_of: Callable[[Trace, Level], Depth]
 ) -> Iterator[Depth]:
     """single: the levels of single sections that levels of several sections are put together of."""
-    first = [int(one.walls.row[0]) for one in single]
+    first = [int(single_level.walls.row[0]) for single_level in single]
     for level in levels:
         depth = depth_of(trace, level)
         if len(level.sections) == 1:
@@ -225,7 +225,8 @@ def _of_levels(
         else:
             own = np.isin(first, level.walls.row)
             yield from put_together(
-                depth, [depth_of(trace, one) for one, is_own in zip(single, own, strict=True) if is_own]
+                depth,
+                [depth_of(trace, single_level) for single_level, is_own in zip(single, own, strict=True) if is_own],
             )
 
 
@@ -248,20 +249,20 @@ def _ribs_and_strips(tables: Tables) -> list[tuple[int, LeftStanding]]:
     if not overcuts.compensates:
         return []
     coverage = tables["coverage"]
-    found = []
-    for kind, left in (("rib", coverage.ribs), ("strip", coverage.strips)):
-        for row in np.flatnonzero(left.height > 0).tolist():
+    entries = []
+    for kind, columns in (("rib", coverage.ribs), ("strip", coverage.strips)):
+        for row in np.flatnonzero(columns.height > 0).tolist():
             sizes, section = _sizes(trace, row), int(trace.mode.section[row])
-            place = complex(left.place[row]) * _turn(trace, section)
+            point = complex(columns.place[row]) * _turn(trace, section)
             line = int(trace.blocks.line_in_file[row])
-            size = float(left.height[row])
+            size = float(columns.height[row])
             how = "high" if kind == "rib" else "thick"
-            text = f"a {kind} {sizes(size)} {how} behind line {line}, at x {sizes(place.real)} c {sizes(place.imag)}"
+            text = f"a {kind} {sizes(size)} {how} behind line {line}, at x {sizes(point.real)} c {sizes(point.imag)}"
             told = LeftStanding(
-                kind=kind, text=text, line=line, size=round(size, 6), place=(round(place.real, 6), round(place.imag, 6))
+                kind=kind, text=text, line=line, size=round(size, 6), place=(round(point.real, 6), round(point.imag, 6))
             )
-            found.append((section, told))
-    return found
+            entries.append((section, told))
+    return entries
 
 
 # ---- entries ----
@@ -280,16 +281,20 @@ def _entries(trace: Trace, depths: Sequence[Depth]) -> Iterator[MadeShape]:
 def _entry(trace: Trace, group: Sequence[Depth], shape: Shape) -> MadeShape:
     first = group[0]
     sizes = _sizes(trace, _row_of(trace, first, shape))
-    known = [depth.z for depth in group if not np.isnan(depth.z)]
+    depths_known = [depth.z for depth in group if not np.isnan(depth.z)]
     sections = _sections(trace, first.sections)
     odd = [OddSide(line=int(trace.blocks.line_in_file[side.row]), size=round(side.size, 6)) for side in shape.odd]
-    told = [_words(trace, shape, first), _depths_in_words(known, sizes), *_sections_in_words(trace, first, sections)]
+    told = [
+        _words(trace, shape, first),
+        _depths_in_words(depths_known, sizes),
+        *_sections_in_words(trace, first, sections),
+    ]
     return MadeShape(
         line=sections[0].line,
         end_line=sections[0].end_line,
         sections=sections,
-        z=rounded(min(known)) if known else None,
-        depths=[round(z, 6) for z in known],
+        z=rounded(min(depths_known)) if depths_known else None,
+        depths=[round(z, 6) for z in depths_known],
         shape=shape.name,
         inside=shape.inside,
         is_regular=shape.is_regular,
@@ -303,13 +308,13 @@ def _entry(trace: Trace, group: Sequence[Depth], shape: Shape) -> MadeShape:
 
 def _sections_in_words(trace: Trace, depth: Depth, sections: Sequence[MadeInSection]) -> Iterator[str]:
     """`C10 at G12.1`, or `by the sections of lines 9, 20, 31 at C0, C120, C240`; nothing for one at C0."""
-    angles = [one.angle for one in sections if one.angle is not None]
+    angles = [section.angle for section in sections if section.angle is not None]
     if len(sections) == 1:
         if any(angles):
             yield f"{angle_in_words(angles[0])} at {_switch(trace, depth.sections[0])}"
         return
     # A loop or a called program begins its sections in one line.
-    lines = list(dict.fromkeys(str(one.line) for one in sections))
+    lines = list(dict.fromkeys(str(section.line) for section in sections))
     where = f"sections of lines {', '.join(lines)}" if len(lines) > 1 else f"section of line {lines[0]}"
     yield f"by the {where}{f' at {_angles_in_words(angles)}' if any(angles) else ''}"
 
@@ -392,9 +397,9 @@ def _why_nothing(tables: Tables, section: int) -> str:
     trace: Trace = tables["trace"]
     from polarcheck.reports.made_parts.tool_paths import above_the_face
 
-    own = trace.mode.section == section
-    if not (own & trace.path.cuts & trace.path.on_plane & ~above_the_face(trace)).any():
+    of_section = trace.mode.section == section
+    if not (of_section & trace.path.cuts & trace.path.on_plane & ~above_the_face(trace)).any():
         return "it cuts nothing in the plane"
-    if not (own & trace.compensation.compensates).any():
+    if not (of_section & trace.compensation.compensates).any():
         return "its path is nowhere as long as the cutter is wide at one Z"
     return "its contour leaves nothing standing that could be told: a position is not known, or it does not close"

@@ -46,29 +46,34 @@ def depths_of_paths(tables: Tables) -> Iterator[Depth]:
     is_known, frame = ~np.isnan(z), milled.frame_of_section[section]
     # Where Z is not known, depths of different sections cannot be compared.
     level = np.where(is_known, np.round(z, 6), level_of_rows(trace, moves.row))
-    for own in _levels(np.where(is_known, frame, -1), level, radius, chosen):
+    for of_level in _levels(np.where(is_known, frame, -1), level, radius, chosen):
         keep_time()
         # Sections without much more than a step aside, or what is left of a ramp, make nothing.
-        parts = [own[section[own] == number] for number in dict.fromkeys(section[own].tolist())]
+        parts = [of_level[section[of_level] == number] for number in dict.fromkeys(section[of_level].tolist())]
         parts = [part for part in parts if not float(moves.length[part].sum()) < 2 * float(radius[part[0]])]
         if not parts:
             continue
-        single = [_depth(trace, moves, part, float(radius[own[0]])) for part in parts]
+        single = [_depth(trace, moves, part, float(radius[of_level[0]])) for part in parts]
         if len(parts) == 1 or single[0].needs:
             yield from single
         else:
-            yield from put_together(_depth(trace, moves, np.concatenate(parts), float(radius[own[0]])), single)
+            yield from put_together(_depth(trace, moves, np.concatenate(parts), float(radius[of_level[0]])), single)
 
 
-def _depth(trace: Trace, moves: Moves, own: Rows, cutter: float) -> Depth:
+def _depth(trace: Trace, moves: Moves, chosen: Rows, cutter: float) -> Depth:
     """What these moves of a cutter at one Z make."""
-    row = int(moves.row[own[0]])
-    sections = tuple(dict.fromkeys(trace.mode.section[moves.row[own]].tolist()))
+    row = int(moves.row[chosen[0]])
+    sections = tuple(dict.fromkeys(trace.mode.section[moves.row[chosen]].tolist()))
     z = float(trace.path.z[row])
     if np.isnan(cutter) or not cutter:
         return Depth(sections, z, np.nan, [], _needs_radius(trace, row))
     path = Curves(
-        moves.start[own], moves.end[own], moves.center[own], moves.kind[own], np.zeros(len(own), int), moves.row[own]
+        moves.start[chosen],
+        moves.end[chosen],
+        moves.center[chosen],
+        moves.kind[chosen],
+        np.zeros(len(chosen), int),
+        moves.row[chosen],
     )
     entry = np.where(trace.path.knows_section_entry, trace.path.section_entry, 0.0)
     parts = [
@@ -76,7 +81,7 @@ def _depth(trace: Trace, moves: Moves, own: Rows, cutter: float) -> Depth:
         for number in sections
     ]
     bar = float(trace.lengths.stock_diameter[row])
-    shapes, polygon, is_cleared, swept = _left(Curves.concatenated(parts), cutter, bar)
+    shapes, polygon, is_cleared, swept = _shapes_and_areas(Curves.concatenated(parts), cutter, bar)
     return Depth(sections, z, cutter, shapes, polygon=polygon, is_cleared=is_cleared, swept=swept)
 
 
@@ -107,12 +112,12 @@ def _levels(frame: Rows, level: Floats, radius: Floats, chosen: Rows) -> Iterato
     """The moves of one cutter at one level in one frame, in the order in which the program comes to them."""
     columns = np.stack([frame[chosen], level[chosen], np.nan_to_num(radius[chosen], nan=-1)])
     _, first, number = np.unique(columns, axis=1, return_index=True, return_inverse=True)
-    place = np.argsort(np.argsort(first))[number.ravel()]
-    order = np.argsort(place, kind="stable")
-    yield from np.split(chosen[order], np.flatnonzero(np.diff(place[order])) + 1)
+    rank = np.argsort(np.argsort(first))[number.ravel()]
+    order = np.argsort(rank, kind="stable")
+    yield from np.split(chosen[order], np.flatnonzero(np.diff(rank[order])) + 1)
 
 
-def _left(path: Curves, radius: float, bar: float) -> tuple[list[Shape], Any, bool, Any]:
+def _shapes_and_areas(path: Curves, radius: float, bar: float) -> tuple[list[Shape], Any, bool, Any]:
     """
     The shapes that a path makes, and an area by which depths are compared: what stands within the path; else what it
     clears, True; None for a groove alone, whose ends are those of the ways in and out. At last what it clears.

@@ -58,10 +58,10 @@ def table(columns: Sequence[Column], text: Callable[[int], str], room: int | Non
     if not count:
         return
     aligned = _fitting([_Aligned(column) for column in columns if _is_informative(column)], room)
-    left = _WIDEST if room is None else room - sum(column.width + len(_GAP) for column in aligned)
+    remaining = _WIDEST if room is None else room - sum(column.width + len(_GAP) for column in aligned)
     head = "".join(
-        _GAP.join(getattr(each, part).rjust(each.width) if each.is_number else getattr(each, part).ljust(each.width)
-                  for each in aligned).rstrip() + "\n"
+        _GAP.join(getattr(cell, part).rjust(cell.width) if cell.is_number else getattr(cell, part).ljust(cell.width)
+                  for cell in aligned).rstrip() + "\n"
         for part in ("name", "unit")
     )  # fmt: skip
     rows = min(max(height - head.count("\n") - 1, 1), _AT_ONCE) if height else count
@@ -71,15 +71,15 @@ def table(columns: Sequence[Column], text: Callable[[int], str], room: int | Non
         shown = [column.cells(chosen) for column in aligned]
         lines = [head] if first % rows == 0 else []
         for number, line in enumerate(zip(*shown, strict=True), first):
-            behind = excerpt(text(number), 0, 0, min(left, _WIDEST)).text if left >= _NARROWEST else ""
+            behind = excerpt(text(number), 0, 0, min(remaining, _WIDEST)).text if remaining >= _NARROWEST else ""
             lines.append((_GAP.join(line) + _GAP + behind).rstrip() + "\n")
         yield "".join(lines)
 
 
 def _is_informative(column: Column) -> bool:
     values = column.values if column.is_blank is None else column.values[~column.is_blank]
-    known = values if column.words is not None else values[~np.isnan(values)]
-    return bool(len(known)) and not bool((known == column.usual).all())
+    values_known = values if column.words is not None else values[~np.isnan(values)]
+    return bool(len(values_known)) and not bool((values_known == column.usual).all())
 
 
 class _Aligned:
@@ -103,15 +103,15 @@ class _Aligned:
         """Return the aligned cells of these rows."""
         column, width = self._column, self.width
         if column.words is None:
-            shown = [_number(value, column.decimals).rjust(width) for value in column.values[rows].tolist()]
+            texts = [_number(value, column.decimals).rjust(width) for value in column.values[rows].tolist()]
         else:
             words = {key: word + " " * (width - cells(word)) for key, word in column.words.items()}
-            shown = [words[key] for key in column.values[rows].tolist()]
+            texts = [words[key] for key in column.values[rows].tolist()]
         if column.is_blank is None:
-            return shown
+            return texts
         blank = " " * width
         is_blank = column.is_blank[rows].tolist()
-        return [blank if empty else cell for cell, empty in zip(shown, is_blank, strict=True)]
+        return [blank if empty else cell for cell, empty in zip(texts, is_blank, strict=True)]
 
 
 def _extremes(values: Floats) -> list[float]:

@@ -87,9 +87,9 @@ def _trace() -> Schema:
 
 
 def _as_pair(value: Schema) -> None:
-    for one in (value, *value.get("anyOf", ())):
-        if one.get("type") == "array":
-            one |= {"minItems": 2, "maxItems": 2}
+    for schema in (value, *value.get("anyOf", ())):
+        if schema.get("type") == "array":
+            schema |= {"minItems": 2, "maxItems": 2}
 
 
 def _job() -> Schema:

@@ -35,12 +35,12 @@ def pages(rules: Iterable[Rule], machine: Machine) -> str:
 def alarm_pages(rules: Sequence[Rule], count: int, machine: Machine) -> str:
     """Return the manual pages of the first rules of an alarm, and a list of the others that give it."""
     text = pages(rules[:count], machine)
-    others = rules[count:]
-    if not others:
+    remaining = rules[count:]
+    if not remaining:
         return text
-    width = max(len(rule.name) for rule in others)
-    alarm = visible(machine.alarms[others[0].name])
-    listed = "".join(f"  {rule.name:<{width}}  {rule.title}\n" for rule in others)
+    width = max(len(rule.name) for rule in remaining)
+    alarm = visible(machine.alarms[remaining[0].name])
+    listed = "".join(f"  {rule.name:<{width}}  {rule.title}\n" for rule in remaining)
     return f"{text}\n{alarm} also stands for, each with a page of its own (polarcheck explain NAME):\n\n{listed}"
 
 
@@ -127,7 +127,7 @@ def profile_text(profile: Profile) -> str:
         "",
     ]
     table = {name: getattr(profile.written, name) for name in profile.written.__struct_fields__}
-    known, notes = table.pop("known_parameters", {}), table.pop("notes", [])
+    parameters, notes = table.pop("known_parameters", {}), table.pop("notes", [])
     for note in notes:
         lines += textwrap.wrap(visible(note), _COLUMNS, initial_indent="# - ", subsequent_indent="#   ")
     lines += [""] if notes else []
@@ -140,9 +140,9 @@ def profile_text(profile: Profile) -> str:
         lines += ["", f"[{group}]"] if values else []
         for key, value in values.items():
             lines += _entry(key, value, profile.origins.get(f"{group}.{key}"))
-    if known:
+    if parameters:
         lines += ["", "# Parameters of the control that the table [parameters] of a profile of your own may give:"]
-        lines += [visible(f"#   {number:<8}{meaning.title}") for number, meaning in known.items()]
+        lines += [visible(f"#   {number:<8}{meaning.title}") for number, meaning in parameters.items()]
     return "\n".join(lines) + "\n"
 
 

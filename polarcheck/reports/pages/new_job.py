@@ -119,14 +119,14 @@ def _outer(outer: str | None) -> Iterator[str]:
 
 def _machine(survey: Survey, machine: str | None) -> Iterator[str]:
     certain = machine or _certain(survey)
-    others = [name for name in survey.fitting if name != certain]
+    rivals = [name for name in survey.fitting if name != certain]
     if machine is None and not survey.polar:
         yield from _prose("No program here uses the polar mode, so none tells which lathe it is for.")
     elif machine is None and not survey.fitting:
         yield from _prose("No one machine reads all of these programs: give each lathe its own, under [[programs]].")
-    elif machine is None and others:
+    elif machine is None and rivals:
         which = "These read the programs" if certain is None else "These read them as well"
-        yield from _prose(f"{which}: {', '.join(others)}.")
+        yield from _prose(f"{which}: {', '.join(rivals)}.")
     yield from _prose(
         "The lathe: one of `polarcheck machines`, or a file of your own, which `polarcheck machines new` writes."
     )
@@ -164,7 +164,7 @@ def _tools(survey: Survey) -> Iterator[str]:
         if len(by_radius) > 1:
             yield "# the comments of the programs differ: see [[programs]] below"
         for radius, of_radius in by_radius.items():
-            path, comment = files.shown(of_radius[0].path), shortened(of_radius[0].comment, _LONGEST)
+            path, comment = files.display_path(of_radius[0].path), shortened(of_radius[0].comment, _LONGEST)
             yield f"#radius = {_length(radius, survey)}  # {path} says {comment}"
         if not by_radius:
             yield f"#radius =  # R on the offset page of the control, in {_unit_of_lengths(survey)}"
@@ -195,7 +195,7 @@ def _differing(survey: Survey) -> Iterator[tuple[list[str], str, float, str]]:
     for key in sorted(survey.offsets, key=_order):
         by_radius = _radii(survey.offsets[key])
         for radius, calls in by_radius.items() if len(by_radius) > 1 else ():
-            yield [files.shown(call.path) for call in calls], key, radius, calls[0].comment
+            yield [files.display_path(call.path) for call in calls], key, radius, calls[0].comment
 
 
 def _radii(calls: Sequence[Told]) -> dict[float, list[Told]]:
@@ -213,7 +213,7 @@ def _length(millimeters: float, survey: Survey) -> str:
 
 
 def _paths(paths: Sequence[str]) -> str:
-    named = ", ".join(files.shown(path) for path in paths[:_NAMED])
+    named = ", ".join(files.display_path(path) for path in paths[:_NAMED])
     more = len(paths) - _NAMED
     return f"called by {named}{f' and {more} more' if more > 0 else ''}"
 

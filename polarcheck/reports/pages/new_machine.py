@@ -267,9 +267,9 @@ def _in_doubt(profile: Profile, group: str, listed: set[str]) -> Iterator[str]:
 
 def _answer(key: str, value: Any, meaning: str) -> Iterator[str]:
     """Yield a key and its value, commented out, with its meaning behind it or, if that is too long, above it."""
-    first, *others = _lines(f"#{_toml_key(key)} = {_toml(value)}")
-    if others:
-        yield from (f"# {meaning}", first, *others)
+    first, *further = _lines(f"#{_toml_key(key)} = {_toml(value)}")
+    if further:
+        yield from (f"# {meaning}", first, *further)
         return
     line = first
     is_short = len(line) + len(meaning) + 4 <= _COLUMNS

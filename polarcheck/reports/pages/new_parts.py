@@ -30,13 +30,13 @@ def _of_file(file: FileReport, units: str | None) -> Iterator[str]:
     yield from _prose(f"What {file.path} makes now, as `polarcheck part` tells it: compare it with the drawing.")
     for finding in file.findings:
         yield from _prose(f"{file.path}, line {finding.line}: {finding.severity}: {finding.full_message}")
-    made = [] if isinstance(file.part, msgspec.UnsetType) else file.part
-    if not made:
+    shapes = [] if isinstance(file.part, msgspec.UnsetType) else file.part
+    if not shapes:
         yield from _prose(f"{file.path} has no polar section.")
-    entries = [_entry(file, shape, units) for shape in made]
-    places = [(shape.channel, shape.line, shape.z) for shape in made]
-    without = {place for place, entry in zip(places, entries, strict=True) if isinstance(entry, str)}
-    for shape, place, entry in zip(made, places, entries, strict=True):
+    entries = [_entry(file, shape, units) for shape in shapes]
+    places = [(shape.channel, shape.line, shape.z) for shape in shapes]
+    without = {label for label, entry in zip(places, entries, strict=True) if isinstance(entry, str)}
+    for shape, label, entry in zip(shapes, places, entries, strict=True):
         yield ""
         channel = f"{shape.channel} " if shape.channel else ""
         yield from _prose(f"{channel}line {shape.line}: {shape.text}")
@@ -45,28 +45,28 @@ def _of_file(file: FileReport, units: str | None) -> Iterator[str]:
             continue
         if shape.needs:
             yield from _prose(f"but {shape.needs}")
-        if place in without:
+        if label in without:
             yield from _prose("What else lies there has no [[part]], and would differ from this one:")
-        mark = "#" if place in without else ""
+        mark = "#" if label in without else ""
         yield f"{mark}[[part]]"
         yield from (f"{mark}{key} = {_value(value)}" for key, value in entry.items())
     yield ""
 
 
-def _entry(file: FileReport, made: MadeShape, units: str | None) -> dict[str, Any] | str:
+def _entry(file: FileReport, shape: MadeShape, units: str | None) -> dict[str, Any] | str:
     """Return the keys of an entry, or why there is none."""
-    sections = [section for section in file.polar_sections if section.channel == made.channel]
+    sections = [section for section in file.polar_sections if section.channel == shape.channel]
     lines = [section.line for section in sections]
     if units is None:
-        units = sections[lines.index(made.line)].units if made.line in lines else "mm"
+        units = sections[lines.index(shape.line)].units if shape.line in lines else "mm"
     stock = file.stock
     bar = stock.diameter if stock is not None and stock.diameter == stock.largest else None
     try:
-        entry = job_entry(made, bar, inch=units == "inch")
+        entry = job_entry(shape, bar, inch=units == "inch")
     except NoEntryError as error:
         return str(error)
-    if len(lines) > 1 and len(made.sections) == 1 and lines.count(made.line) == 1:
-        entry["section"] = lines.index(made.line) + 1
+    if len(lines) > 1 and len(shape.sections) == 1 and lines.count(shape.line) == 1:
+        entry["section"] = lines.index(shape.line) + 1
     return {**entry, "files": [_pattern(file.path.rpartition("/")[2])]}
 
 

@@ -46,9 +46,9 @@ def part_lines(file: FileReport) -> Iterator[tuple[str, str]]:
 
 def text(files: Sequence[FileReport], columns: int) -> str:
     """Return for each file its path, the part, where it differs from the drawing, and what could not be judged."""
-    shown = []
+    lines = []
     for file in files:
-        shown.append(head(file.path))
+        lines.append(head(file.path))
         labelled = [*part_lines(file)]
         labelled += [(finding.severity, f"line {finding.line}: {finding.full_message}") for finding in file.findings]
         reasons = dict.fromkeys(gap.reason for gap in file.not_evaluated if gap.matters)
@@ -56,10 +56,10 @@ def text(files: Sequence[FileReport], columns: int) -> str:
         for label, said in labelled:
             room = columns - _GUTTER - 3
             first, *more = textwrap.wrap(visible(said), room, break_long_words=False, break_on_hyphens=False) or [""]
-            shown.append(f"{label:>{_GUTTER}}   {first}")
-            shown += [" " * (_GUTTER + 3) + line for line in more]
-        shown.append("")
-    return "".join(line + "\n" for line in shown)
+            lines.append(f"{label:>{_GUTTER}}   {first}")
+            lines += [" " * (_GUTTER + 3) + line for line in more]
+        lines.append("")
+    return "".join(line + "\n" for line in lines)
 
 
 def json(files: Sequence[FileReport]) -> str:

@@ -44,7 +44,9 @@ def counts(report: Report) -> list[Count]:
 
     A rule whose findings are all silenced is counted, too.
     """
-    keys = {(each.rule, each.severity) for file in report.files for each in (*file.findings, *file.silenced)}
+    keys = {
+        (reported.rule, reported.severity) for file in report.files for reported in (*file.findings, *file.silenced)
+    }
     numbers = {key: [0, 0, 0, 0] for key in keys}
     for file in report.files:
         seen = set()

@@ -56,7 +56,7 @@ def run(path: str, settings: Settings, most: int, paths: Collection[str], loaded
     with record.recorded() as read:
         of_case = _checked(path, data, settings, most, paths)
     outside = loaded.outside([path, *settings.read, *read.paths])
-    return _without_text(of_case, files.shown(path), outside) if outside else of_case
+    return _without_text(of_case, files.display_path(path), outside) if outside else of_case
 
 
 def _without_text(of_case: CaseRun, title: str, outside: Sequence[str]) -> CaseRun:
@@ -74,13 +74,13 @@ def _without_text(of_case: CaseRun, title: str, outside: Sequence[str]) -> CaseR
 def _checked(path: str, data: bytes, settings: Settings, most: int, paths: Collection[str]) -> CaseRun:
     checked = outcome(Task(path, settings), most, data)
     if checked.report is None or checked.report.verdict == UNREADABLE:
-        return CaseRun(failure=checked.failure or f"{files.shown(path)}: an internal error", bug=checked.bug)
+        return CaseRun(failure=checked.failure or f"{files.display_path(path)}: an internal error", bug=checked.bug)
     if not paths:
         return CaseRun(checked.report)
     try:
         return _executed(checked.report, path, settings, data, paths)
     except PolarcheckError as error:
-        return CaseRun(failure=f"{files.shown(path)}: {error}")
+        return CaseRun(failure=f"{files.display_path(path)}: {error}")
 
 
 def _executed(report: FileReport, path: str, settings: Settings, data: bytes, paths: Collection[str]) -> CaseRun:
@@ -91,7 +91,7 @@ def _executed(report: FileReport, path: str, settings: Settings, data: bytes, pa
     unknown: list[str] = []
     sense = 1
     with time_limit(seconds_for(len(data), job.run.max_seconds)):
-        for _, tables in check.read(data, settings.machine, job, files.shown(path), settings.encoding):
+        for _, tables in check.read(data, settings.machine, job, files.display_path(path), settings.encoding):
             trace, tool_center = tables["trace"], tables["tool_center"]
             for name in paths:
                 moves[name] += executed.moves(trace, tool_center, name)

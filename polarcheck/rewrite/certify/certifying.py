@@ -46,7 +46,7 @@ def chosen(loaded: Loaded, names: Iterable[str], option: str = "--case") -> list
         if name not in loaded.cases:
             raise UsageError(f"{option} {name}: the manifest has no case of this name{suggestion(name, loaded.cases)}")
     if not loaded.cases:
-        title = files.shown(str(loaded.path))
+        title = files.display_path(str(loaded.path))
         raise CertificateError(
             f"{title}: no cases: give a [[case]], or a file for a feature in `programs` of a control"
         )
@@ -71,7 +71,7 @@ def conditions(loaded: Loaded, names: Collection[str]) -> dict[str, Settings]:
                 if not outside:
                     raise
             # Behind the clause: an error raised in it would hold the one that quotes.
-            title = files.shown(str(loaded.path))
+            title = files.display_path(str(loaded.path))
             raise CertificateError(f"{title}: {name}: cannot be checked; {quoting.remark(outside)}")
     return settings
 
@@ -171,7 +171,7 @@ def _result(
         name=case.title,
         feature=case.feature,
         control=case.control,
-        program=files.shown(str(loaded.beside(case.program))),
+        program=files.display_path(str(loaded.beside(case.program))),
         machine=settings.machine_id,
         state=NOT_RUN if report is None else FAIL if reasons else PASS,
         expected=case.expected,
@@ -192,7 +192,7 @@ def _golden(loaded: Loaded, case: Case, of_case: CaseRun) -> _Compared:
     if case.golden is None:
         return None, _NOTHING
     file, tolerance = loaded.beside(case.golden), loaded.tolerance(case)
-    title = files.shown(case.golden)
+    title = files.display_path(case.golden)
     if not file.exists():
         compared = near_path.Comparison(None, [f"there is no golden trace {title} yet; --update writes it"], [])
     else:
@@ -223,9 +223,7 @@ def _other(loaded: Loaded, case: Case, case_runs: Mapping[str, CaseRun]) -> _Com
     if other.report is None:
         compared = _not_compared(f"{title} was not run")
     elif not of_case.moves[which] and not other.moves[which]:
-        compared = near_path.Comparison(
-            None, [f"the path is not compared: neither this program nor {title} has any"], []
-        )
+        compared = _not_compared(f"neither this program nor {title} has any")
     else:
         ours, theirs = path_of_run(of_case, which), path_of_run(other, which)
         compared = near_path.with_other(ours, theirs, tolerance, title)
@@ -275,7 +273,7 @@ def certificate(loaded: Loaded, certified: Mapping[str, Certified]) -> Certifica
         schema=results.SCHEMA,
         tool=Producer("polarcheck", __version__),
         title=manifest.title,
-        manifest=files.shown(str(loaded.path)),
+        manifest=files.display_path(str(loaded.path)),
         features=features,
         controls=controls,
         cells=cells,

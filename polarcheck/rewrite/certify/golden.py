@@ -42,7 +42,7 @@ def lines(moves: Iterable[Move]) -> Iterator[str]:
 
 def read(path: Path) -> list[GoldenMove]:
     """Read a golden trace. Raises CertificateError, which names file and line."""
-    title = files.shown(str(path))
+    title = files.display_path(str(path))
     try:
         data = bounded.read_file(path, _LARGEST, "no golden trace is")
     except OSError as error:

@@ -11,7 +11,7 @@ import msgspec
 
 from polarcheck.foundation.errors import CertificateError, suggestion
 from polarcheck.program.machines import toml_lines, toml_text
-from polarcheck.program.machines.value_types import MisfitError, fitted, listed, shown
+from polarcheck.program.machines.value_types import MisfitError, display, fitted, listed
 from polarcheck.program.reading import files
 from polarcheck.rewrite.certify import quoting
 from polarcheck.rewrite.certify.manifest import PLACE, Case, Conditions, Manifest
@@ -94,7 +94,7 @@ def load(path: Path) -> Loaded:
         text = toml_text.text_of(path, "manifest", pipes=True)
         table = toml_text.parsed(text)
     except ValueError as error:
-        raise CertificateError(toml_lines.placed(files.shown(str(path)), str(error))) from None
+        raise CertificateError(toml_lines.placed(files.display_path(str(path)), str(error))) from None
     try:
         manifest = fitted(table, Manifest)
         cases, numbers = _written(manifest)
@@ -111,7 +111,7 @@ def load(path: Path) -> Loaded:
 def _place(path: Path, text: str, key: str) -> str:
     """Return the file and the line of a key: post.toml:12."""
     line = toml_lines.line_of(key, toml_lines.of_keys(text))
-    return f"{files.shown(str(path))}:{line}" if line else files.shown(str(path))
+    return f"{files.display_path(str(path))}:{line}" if line else files.display_path(str(path))
 
 
 def _beside(path: Path, written: str) -> Path:
@@ -126,7 +126,7 @@ def _written(manifest: Manifest) -> tuple[dict[str, Case], dict[str, int]]:
         if case.title in cases:
             raise MisfitError(
                 f"case.{number}",
-                f"case.{number}: a case {shown(case.title)} is there already; give name = a name of its own",
+                f"case.{number}: a case {display(case.title)} is there already; give name = a name of its own",
             )
         cases[case.title] = case
     return cases, {title: number for number, title in enumerate(cases, 1)}
@@ -136,7 +136,7 @@ def _known(key: str, name: str, names: Collection[str], what: str) -> None:
     """Raise MisfitError for a name that is not among those of a kind."""
     if name not in names:
         near = suggestion(name, names) or (f"; there are {listed(names)}" if names else "; there is none")
-        raise MisfitError(key, f"{key}: no {what} {shown(name)}{near}")
+        raise MisfitError(key, f"{key}: no {what} {display(name)}{near}")
 
 
 def _check(manifest: Manifest) -> None:
@@ -144,7 +144,7 @@ def _check(manifest: Manifest) -> None:
     features, controls, rules = manifest.features, manifest.controls, load_all()
     twice = next((name for number, name in enumerate(features) if name in features[:number]), None)
     if twice is not None:
-        raise MisfitError("features", f"features: {shown(twice)} is there twice")
+        raise MisfitError("features", f"features: {display(twice)} is there twice")
     if not controls:
         raise MisfitError("controls", "controls: expected at least one, as in [controls.lathe-7]")
     for name in manifest.feature:
@@ -155,7 +155,7 @@ def _check(manifest: Manifest) -> None:
             written = getattr(control, pattern)
             if written is not None and PLACE not in written:
                 raise MisfitError(
-                    f"{key}.{pattern}", f"{key}.{pattern}: expected {PLACE} in the name, found {shown(written)}"
+                    f"{key}.{pattern}", f"{key}.{pattern}: expected {PLACE} in the name, found {display(written)}"
                 )
         if control.golden is not None and control.programs is None:
             raise MisfitError(f"{key}.golden", f"{key}.golden: is for the programs of {key}.programs, which is missing")

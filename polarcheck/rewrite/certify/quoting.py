@@ -22,7 +22,7 @@ def outside(folders: Iterable[Path], paths: Iterable[str | os.PathLike[str]]) ->
         if any(Path(target).is_relative_to(folder) for folder in real) or os.path.isdir(target):  # noqa: PTH112
             continue
         if os.path.exists(target):  # noqa: PTH110  Path.exists raises for some names
-            elsewhere.setdefault(target, files.shown(os.fspath(path)))
+            elsewhere.setdefault(target, files.display_path(os.fspath(path)))
     return list(elsewhere.values())
 
 

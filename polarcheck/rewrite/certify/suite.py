@@ -61,15 +61,15 @@ def write(folder: Path, machines: Sequence[str]) -> list[str]:
     for path in contents:
         if os.path.lexists(path):
             raise CertificateError(
-                f"{files.shown(str(path))}: is there already, and stays as it is; name another folder"
+                f"{files.display_path(str(path))}: is there already, and stays as it is; name another folder"
             )
     try:
         (folder / DRAWINGS).mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise OutputError(f"{files.shown(str(folder))}: {error.strerror or error}") from None
+        raise OutputError(f"{files.display_path(str(folder))}: {error.strerror or error}") from None
     for path, text in contents.items():
         files.write(path, text)
-    return [files.shown(str(path)) for path in contents]
+    return [files.display_path(str(path)) for path in contents]
 
 
 def _contents(folder: Path, machines: Sequence[str]) -> Iterator[tuple[Path, str]]:

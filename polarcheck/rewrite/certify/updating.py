@@ -30,7 +30,7 @@ def _refuse(loaded: Loaded, wanted: list[Certified]) -> None:
     owners: dict[str, str] = {}
     for entry in wanted:
         path = loaded.beside(entry.case.golden or "")
-        title = files.shown(str(path))
+        title = files.display_path(str(path))
         owner = owners.setdefault(str(path.resolve()), entry.case.title)
         if owner != entry.case.title:
             raise CertificateError(
@@ -49,7 +49,7 @@ def _refuse(loaded: Loaded, wanted: list[Certified]) -> None:
 def _updated(loaded: Loaded, entry: Certified) -> tuple[str, bool]:
     """Write the golden trace of a case; return a line on it, and whether it could be written."""
     path = loaded.beside(entry.case.golden or "")
-    title = files.shown(str(path))
+    title = files.display_path(str(path))
     report = entry.run.report
     if report is None:
         return f"{title}: not written, {entry.case.title} was not run: {entry.run.failure}", False
@@ -66,7 +66,7 @@ def _updated(loaded: Loaded, entry: Certified) -> tuple[str, bool]:
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise OutputError(f"{files.shown(str(path.parent))}: {error.strerror or error}") from None
+        raise OutputError(f"{files.display_path(str(path.parent))}: {error.strerror or error}") from None
     files.write(path, text, rewrites=True)
     return f"{title}: {change}", True
 
