@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any, Literal, TypeAlias, TypedDict, TypeVar
 
 from polarcheck.api.values import flag, length, names, plain, short
+from polarcheck.files.settings.declarations import SETTINGS
 from polarcheck.files.settings.keyword_layers import keywords
 from polarcheck.files.settings.of_programs import Options
 from polarcheck.foundation.errors import UsageError, suggestion
@@ -107,22 +108,20 @@ class CheckKeywords(PartKeywords, total=False):
     use_baseline: bool
 
 
-#: Keywords that are no keys of a job file.
+#: Keywords that Options holds; the others are keys of a job file.
 _OF_OPTIONS = (
     *("changes", "config", "drawing_layers", "drawings", "ignore", "select", "subprograms", "tolerance"),
     *("baseline", "use_baseline", "use_config"),
 )
 #: Keywords that a single value may be given to.
-_LISTS = ("drawing_layers", "drawings", "ignore", "select", "subprograms")
+_LISTS = [name for name in _OF_OPTIONS if name in SETTINGS and SETTINGS[name].is_list and name != "changes"]
 #: Those whose names may stand beside a reason, {"rules": [...], "reason": "..."}.
 _WITH_REASON = ("ignore", "select")
 _LARGEST_TOLERANCE = 100.0
 _A_LENGTH = f"a length above 0 and up to {_LARGEST_TOLERANCE:g}"
 #: The keys that name files or folders; "" for the keyword itself.
-_FILES = {
-    **dict.fromkeys(("baseline", "config", "drawings", "machine", "offsets", "subprograms"), ("",)),
-    "part": ("drawing", "files"),
-}
+_FILES = {setting.name: setting.files for setting in SETTINGS.values()}
+_FILES |= {"baseline": ("",), "part": ("drawing", "files")}
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 

@@ -11,6 +11,8 @@ from typing import Any
 
 import click
 
+from polarcheck.files.settings.declarations import SETTINGS
+
 Decorator = Callable[[Any], Any]
 
 #: The key of --debug in the meta of the context, which a group shares with its commands.
@@ -76,11 +78,6 @@ def _outputs(
             raise click.BadParameter(f"{value!r}: --format chooses the report on standard output")
         reports.append((form, Path(path)))
     return reports
-
-
-def encoding(what: str) -> Decorator:
-    """Return the option --encoding of the files that a command reads."""
-    return option("--encoding", callback=_known_encoding, metavar="NAME", help=f"Of the {what}: cp1252, shift_jis, ...")
 
 
 def _known_encoding(ctx: click.Context, parameter: click.Parameter, value: str | None) -> str | None:
@@ -158,80 +155,12 @@ def _set_debug(ctx: click.Context, parameter: click.Parameter, value: bool) -> N
 debug = option(
     "--debug", is_flag=True, expose_value=False, is_eager=True, callback=_set_debug, help="Show tracebacks of bugs."
 )
-machine = option(
-    "--machine", metavar="NAME|FILE", help="The lathe: one of `polarcheck machines`, or a TOML file of your own."
-)
-machine_from = option(
-    "--from", "machine", metavar="NAME|FILE",
-    help="The lathe that the program is for: one of `polarcheck machines`, or a TOML file of your own.",
-)  # fmt: skip
-changes = option(
-    "--set", "changes", multiple=True, metavar="KEY=VALUE", help="A value of the machine: limits.c_feed=3600."
-)
-tools = option(
-    "--tool",
-    "tools",
-    multiple=True,
-    metavar="N:KEY=VALUE",
-    help="Tool offset N: 8:radius=0.375,nose=0; or an edge: MILL_8/1:radius=4.",
-)
-offsets = option(
-    "--offsets", type=click.Path(exists=True, dir_okay=False, path_type=Path), help="Offset table from the control."
-)
 
 
 def _tolerance(ctx: click.Context, parameter: click.Parameter, value: float | None) -> float | None:
     if value is not None and not 0 < value <= _LARGEST_TOLERANCE:
         raise click.BadParameter(f"{value:g}: expected a length above 0 and up to {_LARGEST_TOLERANCE:g}, such as 0.05")
     return value
-
-
-_LARGEST_TOLERANCE = 100.0
-_drawings = option(
-    "--drawing", "drawings", type=click.Path(exists=True, dir_okay=False, path_type=Path), multiple=True,
-    metavar="FILE.dxf", help="What the programs should make, in place of [[part]] in polarcheck.toml.",
-)  # fmt: skip
-_layers = option(
-    "--drawing-layer",
-    "drawing_layers",
-    multiple=True,
-    metavar="LAYER",
-    help="Of each --drawing only what lies on this layer.",
-)
-_tolerances = option(
-    "--tolerance", type=float, callback=_tolerance, metavar="LENGTH",
-    help="How far a part may differ from a drawing or [[part]] that says nothing else, in the units of the programs, "
-    "or of polarcheck.toml where that names them; else 0.02 mm.",
-)  # fmt: skip
-subprograms = option(
-    "--subprograms", type=click.Path(exists=True, file_okay=False), multiple=True, metavar="FOLDER",
-    help="Where programs that are called lie.",
-)  # fmt: skip
-units = option("--units", type=click.Choice(["mm", "inch"]), help="Of programs with neither G20 nor G21.")
-radius_from_comments = option(
-    "--radius-from-comments/--no-radius-from-comments",
-    default=None,
-    help="Take unknown radii from comments such as 3/4 DIA. CUTTER.",
-)
-config = option(
-    "--config",
-    type=click.Path(exists=True, dir_okay=False, path_type=Path),
-    help="Instead of the nearest polarcheck.toml.",
-)
-no_config = option("--no-config", is_flag=True, help="Read no polarcheck.toml or pyproject.toml.")
-force_exclude = option(
-    "--force-exclude", is_flag=True, help="Pass over what polarcheck.toml excludes where it is named, too."
-)
-extensions = many(
-    "--extensions", metavar="EXT", help="Of the programs in a folder, instead of .nc, .tap, .eia and others."
-)
-exclude = option(
-    "--exclude",
-    multiple=True,
-    metavar="PATTERN",
-    help="Files or folders that a walk passes over, beside those of the job.",
-)
-inline = option("--inline/--no-inline", default=None, help="Whether the allow comments of programs are heeded.")
 
 
 class _Seconds(click.FloatRange):
@@ -247,23 +176,49 @@ class _Seconds(click.FloatRange):
         return seconds
 
 
-_block_skip = option(
-    "--block-skip", type=click.Choice(["off", "on", "both"]), help="Of blocks with /; both is the default."
+_LARGEST_TOLERANCE = 100.0
+_FILE = {"type": click.Path(exists=True, dir_okay=False, path_type=Path)}
+#: What click is told of each kind of setting.
+_KINDS: dict[str, dict[str, Any]] = {
+    "text": {},
+    "texts": {"multiple": True},
+    "names": {"multiple": True, "callback": _listed},
+    "file": _FILE,
+    "files": {**_FILE, "multiple": True},
+    "folders": {"type": click.Path(exists=True, file_okay=False), "multiple": True},
+    "number": {"type": click.IntRange(0)},
+    "count": {"type": click.IntRange(1, 10**12)},
+    "seconds": {"type": _Seconds(0, min_open=True)},
+    "length": {"type": float, "callback": _tolerance},
+    "encoding": {"callback": _known_encoding},
+    "switch": {"default": None},
+}
+
+
+def setting(name: str, what: str = "", **attributes: Any) -> Decorator:
+    """Return the option of a declared setting. what: what it is said of, where its help leaves that open."""
+    declared = SETTINGS[name]
+    flag = declared.flag if declared.kind != "switch" else f"--{_dashed(name)}/--no-{_dashed(name)}"
+    kind = _KINDS[declared.kind] if isinstance(declared.kind, str) else {"type": click.Choice(declared.kind)}
+    return option(flag, name, metavar=declared.metavar, help=declared.help.format(what), **kind, **attributes)
+
+
+def _dashed(name: str) -> str:
+    return name.replace("_", "-")
+
+
+machine, extensions, exclude = map(setting, ("machine", "extensions", "exclude"))
+machine_from = option(
+    "--from", "machine", metavar="NAME|FILE",
+    help="The lathe that the program is for: one of `polarcheck machines`, or a TOML file of your own.",
+)  # fmt: skip
+no_config = option("--no-config", is_flag=True, help="Read no polarcheck.toml or pyproject.toml.")
+force_exclude = option(
+    "--force-exclude", is_flag=True, help="Pass over what polarcheck.toml excludes where it is named, too."
 )
 _single_block_skip = narrower(
     "--block-skip", type=click.Choice(["off", "on"]), default="off", show_default=True, help="Of blocks with /."
 )
-_max_blocks = option(
-    "--max-blocks", type=click.IntRange(1, 10**12),
-    help="Executed blocks, beyond those of the file, after which a run is given up.",
-)  # fmt: skip
-_max_statements = option(
-    "--max-statements", type=click.IntRange(1, 10**12), help="The same for macro statements and calls."
-)
-_max_seconds = option(
-    "--max-seconds", type=_Seconds(0, min_open=True),
-    help="The same for seconds of processor time, and for the whole check; a file has so long for each MB.",
-)  # fmt: skip
 
 
 def _all(*decorators: Decorator) -> Decorator:
@@ -285,27 +240,18 @@ def executing(what: str, *, both: bool = True, machine: Decorator = machine) -> 
     both: a program may be run with block skip both on and off.
     machine: the option --machine.
     """
-    shared = (machine, changes, tools, offsets, units, config, no_config, _block_skip if both else _single_block_skip)
-    more = (subprograms, _max_blocks, _max_statements, _max_seconds, radius_from_comments, encoding(what))
-    return _all(*shared, *more)
+    first = map(setting, ("changes", "tools", "offsets", "units", "config"))
+    block_skip = setting("block_skip") if both else _single_block_skip
+    second = map(setting, ("subprograms", "max_blocks", "max_statements", "max_seconds", "radius_from_comments"))
+    return _all(machine, *first, no_config, block_skip, *second, setting("encoding", what))
 
 
 #: The options that say what programs should make.
-comparing = _all(_drawings, _layers, _tolerances)
+comparing = _all(*map(setting, ("drawings", "drawing_layers", "tolerance")))
 
 #: The options that decide which rules run, and which findings fail.
 judging = _all(
-    many("--select", metavar="RULE", help="Only these rules, groups or alarms (PS0146)."),
-    many("--ignore", metavar="RULE", help="All but these."),
-    many("--severity", "severities", metavar="RULE=LEVEL", help="error, warning, note or off."),
-    option(
-        "--fail-on", type=click.Choice(["error", "warning", "note", "never"]), show_default="warning",
-        help="The least severity that fails.",
-    ),
-    option(
-        "--max-warnings", type=click.IntRange(0), metavar="N",
-        help="More warnings than N, over all programs, fail; up to N do not.",
-    ),
-    option("--strict/--no-strict", default=None, help="Fail where a file is unverified, too."),
-    inline,
-)  # fmt: skip
+    *map(setting, ("select", "ignore", "severities")),
+    setting("fail_on", show_default="warning"),
+    *map(setting, ("max_warnings", "strict", "inline")),
+)

@@ -8,18 +8,14 @@ from typing import Any
 
 import msgspec
 
+from polarcheck.files.settings.declarations import SETTINGS
 from polarcheck.files.settings.job_layers import Layer, PartLayer, Written
 from polarcheck.foundation.errors import UsageError
 from polarcheck.program.machines.job import Job
 from polarcheck.program.machines.value_types import MisfitError, fitted
 
-#: Options whose keyword has another name.
-_KEYWORDS = {
-    "--set": "changes",
-    "--severity": "severities",
-    "--drawing": "drawings",
-    "--drawing-layer": "drawing_layers",
-}
+#: The keyword of each option.
+_KEYWORDS = {setting.flag: setting.name for setting in SETTINGS.values()}
 
 
 class Keywords(msgspec.Struct, frozen=True):

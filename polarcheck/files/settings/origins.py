@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 
 import msgspec
 
+from polarcheck.files.settings.declarations import SETTINGS
 from polarcheck.files.settings.job_layers import Layer, Merged, PartLayer
 from polarcheck.files.settings.of_programs import Applied
 from polarcheck.program.machines import profiles, toml_lines
@@ -34,25 +35,8 @@ class Value(NamedTuple):
 #: Keys of a job that are not shown as settings.
 _OF_FILES = ("programs", "extend", "root", "exclude", "extensions", "limits")
 _DEFAULT = ("default", "built-in default")
-#: The option that sets each key of a job; other options set several keys, or have the name of their key.
-_OPTIONS = {
-    "program_units": ("units", "--units"),
-    "run.block_skip": ("block_skip", "--block-skip"),
-    "run.subprograms": ("subprograms", "--subprograms"),
-    "run.max_blocks": ("max_blocks", "--max-blocks"),
-    "run.max_statements": ("max_statements", "--max-statements"),
-    "run.max_seconds": ("max_seconds", "--max-seconds"),
-    "select": ("select", "--select"),
-    "ignore": ("ignore", "--ignore"),
-    "fail_on": ("fail_on", "--fail-on"),
-    "strict": ("strict", "--strict"),
-    "max_warnings": ("max_warnings", "--max-warnings"),
-    "machine": ("machine", "--machine"),
-    "encoding": ("encoding", "--encoding"),
-    "inline": ("inline", "--no-inline"),
-    "extensions": ("extensions", "--extensions"),
-    "radius_from_comments": ("radius_from_comments", "--radius-from-comments"),
-}
+#: The setting that each key of a job has the value of; other settings have a part of several keys, or of none.
+_OF_KEY = {setting.key: setting for setting in SETTINGS.values() if setting.key}
 
 #: `command line` or `environment` by the name of an option; options that were not set are left out.
 Sources = Mapping[str, str]
@@ -70,7 +54,7 @@ def values(applied: Applied, sources: Sources, severities: Mapping[str, str]) ->
     for key, value in table.items():
         yield Value(key, value, *_origin(key, job, merged, sources))
     for name, level in severities.items():
-        yield Value(f"severities.{name}", level, *_of_option("severities", "--severity", sources))
+        yield Value(f"severities.{name}", level, *_of_option("severities", sources))
     yield from _of_machine(applied, sources)
     yield Value("extensions", job.extensions, *_origin("extensions", job, merged, sources))
     excluding = applied.file.excluding
@@ -115,9 +99,9 @@ def _differing(key: str, table: msgspec.Struct) -> dict[str, Any]:
 
 
 def _origin(key: str, job: Job, merged: Merged, sources: Sources) -> tuple[str, str]:
-    name, option = _OPTIONS.get(key, ("", ""))
-    if name in sources:
-        return _of_option(name, option, sources)
+    setting = _OF_KEY.get(key)
+    if setting is not None and setting.name in sources:
+        return _of_option(setting.name, sources)
     if key.startswith("tools."):
         return _of_tool(key, job, merged, sources)
     if key.startswith("part."):
@@ -129,11 +113,9 @@ def _origin(key: str, job: Job, merged: Merged, sources: Sources) -> tuple[str, 
 def _of_part(key: str, merged: Merged, sources: Sources) -> tuple[str, str]:
     _, number, last = key.split(".")
     if last == "tolerance" and "tolerance" in sources and not _says_tolerance(merged, int(number), sources):
-        return _of_option("tolerance", "--tolerance", sources)
+        return _of_option("tolerance", sources)
     if "drawings" in sources:
-        return _of_option(
-            *(("drawing_layers", "--drawing-layer") if last == "layers" else ("drawings", "--drawing")), sources
-        )
+        return _of_option("drawing_layers" if last == "layers" else "drawings", sources)
     layer = [layer for layer in merged.layers if isinstance(layer, PartLayer)][int(number) - 1]
     return "file", layer.at(f"part.{last}")
 
@@ -147,8 +129,8 @@ def _of_tool(key: str, job: Job, merged: Merged, sources: Sources) -> tuple[str,
     tool, written = job.tools[name], merged.job.tools.get(name)
     if written is None or getattr(written, last) != getattr(tool, last):
         if isinstance(tool, PunchedTool):
-            return _of_option("offsets", "--offsets", sources)
-        return _of_option("tools", "--tool", sources)
+            return _of_option("offsets", sources)
+        return _of_option("tools", sources)
     if isinstance(written, PunchedTool) and key not in merged.origins:
         layer = merged.origin("offsets")
         kind, origin = _of_layer(layer, "offsets") if layer else _DEFAULT
@@ -157,8 +139,8 @@ def _of_tool(key: str, job: Job, merged: Merged, sources: Sources) -> tuple[str,
     return _of_layer(layer, key) if layer else _DEFAULT
 
 
-def _of_option(name: str, option: str, sources: Sources) -> tuple[str, str]:
-    kind = sources.get(name, "command line")
+def _of_option(name: str, sources: Sources) -> tuple[str, str]:
+    kind, option = sources.get(name, "command line"), SETTINGS[name].flag
     return kind, f"{kind} {_of_environment(option) if kind == 'environment' else option}"
 
 
@@ -192,7 +174,7 @@ def _of_profile(
     if origin is None:
         return _DEFAULT
     if origin.profile == "--set":
-        return _of_option("changes", "--set", sources)
+        return _of_option("changes", sources)
     layer = merged.origins.get(key)
     if layer is not None and layer.title == origin.profile:
         return _of_layer(layer, key)
