@@ -86,33 +86,21 @@ def picture(
     if analysis.report is None or analysis.settings is None:
         raise RequestFailed(visible(f"This program is not checked. {analysis.error}"))
     from polarcheck.reports import Background
-    from polarcheck.view import page_data
-    from polarcheck.view.page import page
-    from polarcheck.view.run_drawing import drawn, split
+    from polarcheck.view.program_page import program_page
 
     try:
         with time_limit(seconds_for(len(analysis.text.data), analysis.settings.job.run.max_seconds), is_stopped):
             named = msgspec.structs.replace(
                 analysis.report, path=_title(analysis.path, folders), machine=visible(analysis.settings.machine_id)
             )
-            report, drawing = split(drawn(named, analysis.runs))
+            background = Background(rules=_rules(), settings={named.path: analysis.settings})
+            return program_page(named, analysis.runs, background, address, sources)
     except StoppedError:
         raise Changed("the text has changed") from None
     except PolarcheckError as error:
         raise RequestFailed(visible(str(error))) from None
     except MemoryError:
         raise RequestFailed("there is not enough memory to draw this program") from None
-    background = Background(
-        rules=_rules(),
-        settings={report.path: analysis.settings},
-        drawn={} if drawing is None else {report.path: drawing},
-    )
-    plot = page_data.picture(report, background)
-    if address:
-        return page([plot], beside=address, sources=sources)
-    from polarcheck.view.plotly_script import library as javascript
-
-    return page([plot], javascript())
 
 
 def _title(path: Path, folders: Sequence[Path]) -> str:

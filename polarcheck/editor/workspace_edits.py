@@ -9,6 +9,8 @@ from lsprotocol import types
 
 if TYPE_CHECKING:
     from polarcheck.editor.server_session import Server
+    from polarcheck.editor.structure.document import Document
+    from polarcheck.editor.structure.workspace import Workspace
 
 
 def workspace_edit(server: Server, edits: Mapping[str, list[types.TextEdit]]) -> types.WorkspaceEdit:
@@ -27,3 +29,12 @@ def workspace_edit(server: Server, edits: Mapping[str, list[types.TextEdit]]) ->
             for uri, text_edits in edits.items()
         ]
     )
+
+
+def renamed(
+    document: Document, position: types.Position, new_name: str, workspace: Workspace, server: Server
+) -> types.WorkspaceEdit:
+    """Return the edits that give the name at a position a new one. Raises RenameError where that is not possible."""
+    from polarcheck.editor.structure.renaming import rename
+
+    return workspace_edit(server, rename(document, position, new_name, workspace))

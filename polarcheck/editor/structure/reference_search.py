@@ -16,7 +16,7 @@ _MOST = 5_000
 
 
 def references(
-    document: Document, position: types.Position, workspace: Workspace, *, with_declaration: bool
+    document: Document, position: types.Position, workspace: Workspace, with_declaration: bool
 ) -> list[types.Location]:
     """Return all places that name what stands at a position, in this document and the files around it."""
     uses = Uses(document, workspace)
