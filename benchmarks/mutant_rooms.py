@@ -119,7 +119,7 @@ def promising(file: str) -> list[str]:
     for stem in upward(file):
         names += [f"test_{stem}.py", f"test_table_{stem}"]
     for stem in upward(file):
-        names += [f"findings[{rule}-" for rule in rules_of(stem)]
+        names += [f"findings[{rule}]" for rule in rules_of(stem)]
     nearest = next((rules for stem in upward(file) if (rules := rules_of(stem))), [])
     names += naming(*nearest)
     if room_of(file) == "metal":
@@ -127,7 +127,7 @@ def promising(file: str) -> list[str]:
     if room_of(file) == "rules":
         stem = Path(file).stem.removesuffix("_repair")
         rule = stem.replace("_", "-")
-        names = [f"findings[{rule}-", "test_repairs.py", "test_limits.py", "test_severities", rule, stem]
+        names = [f"findings[{rule}]", "test_repairs.py", "test_limits.py", "test_severities", rule, stem]
     return names
 
 

@@ -32,7 +32,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     place = [next((at for at, name in enumerate(_NAMES) if name in item.nodeid), len(_NAMES)) for item in items]
     chosen = [number for number, at in enumerate(place) if (at == len(_NAMES)) == bool(_BATCH)]
     config.hook.pytest_deselected(items=[item for number, item in enumerate(items) if number not in set(chosen)])
-    is_late = [any(map(item.get_closest_marker, ("slow", "left_out"))) for item in items]
+    is_late = [any(map(item.get_closest_marker, ("ci", "nightly"))) for item in items]
     items[:] = [items[number] for number in sorted(chosen, key=lambda number: (is_late[number], place[number]))]
 
 

@@ -8,16 +8,16 @@ from __future__ import annotations
 
 import gc
 import importlib
-import math
 import os
 import pkgutil
+import re
 from collections import Counter
-from collections.abc import Generator, Mapping, Set
-from enum import Enum
+from collections.abc import Generator
 from pathlib import Path
 from typing import Any
 
 import pytest
+from cases import name_of, run
 from hypothesis import HealthCheck, settings
 
 # Hypothesis' own profile for CI draws the same examples in every run: whether the tests pass does not depend on luck.
@@ -45,11 +45,11 @@ os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 NO_CACHE = ("POLARCHECK_NO_CACHE", "1")
 os.environ.update([NO_CACHE])
 
-#: Characters of one value in the name of a test.
-LONGEST = 50
-
 #: Of a test of more cases than these, one in SHARE runs by default.
 MANY_CASES, SHARE = 8, 12
+
+#: What `pytest` alone collects at most: beyond it, tests take their cases in loops (cases.looped) or wait for .ci/run.
+MOST_CASES = 3000
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -59,14 +59,39 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--installs", action="store_true", help="run the tests that install packages, too")
 
 
+#: How `pytest` runs alone, and how it does where files are named.
+ALONE, OF_FILES = "not ci and not nightly", "not nightly"
+
+
+def runs_all_files(config: pytest.Config) -> bool:
+    return [Path(argument).name for argument in config.args] == config.getini("testpaths")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    if config.option.markexpr == ALONE and not runs_all_files(config):
+        config.option.markexpr = OF_FILES
+    run.is_nightly = "not nightly" not in config.option.markexpr
+    run.stops_at_failure = config.option.maxfail == 1
+
+
+def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
+    """A module of which all tests are `ci` or `nightly` is not even loaded where these do not run."""
+    if config.option.markexpr != ALONE or collection_path.suffix != ".py":
+        return None
+    return (
+        bool(re.search(r"^pytestmark = \[?\s*pytest\.mark\.(ci|nightly)\b", collection_path.read_text("utf-8"), re.M))
+        or None
+    )
+
+
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """
-    Before pytest deselects by markers: where all files run, all cases but a share are slow of a test of many.
+    Before pytest deselects by markers: where all files run, all cases but a share are `ci` of a test of many.
 
-    `one_in(5)` says which share of a test runs by default, `one_in(1)` that all cases do; the others are left out.
+    `one_in(5)` says which share of a test runs before the nightly run; `one_in(1)` that all cases do.
     """
-    everything = [Path(argument).name for argument in config.args] == config.getini("testpaths")
+    everything = runs_all_files(config)
     count = Counter(item.nodeid.partition("[")[0] for item in items)
     cases: Counter[str] = Counter()
     for item in items:
@@ -76,10 +101,13 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         share = item.get_closest_marker("one_in")
         is_many = everything and count[test] > MANY_CASES
         if share and cases[test] % share.args[0]:
-            item.add_marker("left_out")
+            item.add_marker("nightly")
         elif not share and is_many and cases[test] % SHARE:
-            item.add_marker("slow")
+            item.add_marker("ci")
         cases[test] += 1
+    quick = sum(not any(map(item.get_closest_marker, ("ci", "nightly"))) for item in items)
+    if quick > MOST_CASES:
+        raise pytest.UsageError(f"{quick} cases are neither ci nor nightly; at most {MOST_CASES} may be")
 
 
 @pytest.hookimpl(wrapper=True)
@@ -111,21 +139,4 @@ def own_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def pytest_make_parametrize_id(val: Any) -> str:
-    """Programs in one line, tables and numbers as their values: `X1. Z2. X3.-9`, not `X1. Z2. X3.-expected0`."""
-    text = _spelled(val).replace("\n", " ").strip().encode("unicode_escape").decode("ascii") or "nothing"
-    return text if len(text) <= LONGEST else f"{text[: LONGEST - 3]}..."
-
-
-def _spelled(value: Any) -> str:
-    if isinstance(value, Enum):
-        return value.name
-    if isinstance(value, Mapping):
-        return " ".join(f"{_spelled(key)}={_spelled(one)}" for key, one in value.items())
-    if isinstance(value, list | tuple | Set):
-        parts = [_spelled(one) for one in value]
-        return " ".join(sorted(parts) if isinstance(value, Set) else parts)
-    if isinstance(value, bytes):
-        return value.decode("latin-1")
-    if isinstance(value, complex):
-        return "unknown" if math.isnan(abs(value)) else f"{value:g}"
-    return str(getattr(value, "__name__", value))
+    return name_of(val)

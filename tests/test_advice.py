@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from cases import looped
 from programs import report_of
 from remedy_slips import GRADES, KINDS, judged_slip
 
@@ -27,7 +28,8 @@ def only(program: str, machine: str = "fanuc-30i", tool: str = "1:radius=4", **m
     return message
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("old", "new", "says"),
     [
         # A closed contour: its start may be wrong as well as its end.
@@ -53,7 +55,7 @@ def test_one_slip(old: str, new: str, says: str) -> None:
     assert says in only(program, machine)
 
 
-@pytest.mark.parametrize(
+@looped(
     ("head", "says"),
     [
         ("G99", "G99 of line 2 is in force: write G98 in its place, or behind it before the polar mode"),
@@ -72,7 +74,8 @@ POCKET = (
 )
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("retract", "home", "says"),
     [
         ("Z-2.", "G0 X130. Z80.", "up from Z-2 of line 13"),
@@ -84,7 +87,8 @@ def test_the_last_z_of_a_way_through_the_part(retract: str, home: str, says: str
     assert says in messages(POCKET.format("", retract, home))["rapid-through-part"]
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("comment", "job", "says"),
     [
         (" (D16)", {}, "R 4 mm is given for offset 1, the comment tells 8 mm: D16; measure the cutter, and"),
@@ -107,7 +111,7 @@ def test_the_offset_of_the_other_cutter() -> None:
     assert found.endswith("offset 1 has the R of the comment")
 
 
-@pytest.mark.parametrize("lead", ["X4. C-5.", "X-6. C-4.", "X.8 C-6."])
+@looped("lead", ["X4. C-5.", "X-6. C-4.", "X.8 C-6."])
 def test_a_way_that_strays_to_the_center_is_no_matter_of_f(lead: str) -> None:
     program = HEAD.replace("X60. F1500", "C-1. F300") + f"{lead} F90. / G42 X40. C-2. / " + SQUARE + END
     report = report_of(
@@ -122,7 +126,8 @@ def test_a_way_that_strays_to_the_center_is_no_matter_of_f(lead: str) -> None:
     assert found.fix is None
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("behind", "says"),
     [
         ("M39", "write M35 or M5 on the retract, in place of M39 of line 18 if that is meant for it"),
@@ -135,14 +140,15 @@ def test_what_stops_the_live_tool(behind: str, says: str) -> None:
     assert messages(program, "turning-center")["live-tool-never-stopped"].endswith(says)
 
 
-@pytest.mark.parametrize("late", ["T0202 / M35", "T0202 M35", "T0202 / G0 X99. / M35"])
+@pytest.mark.ci
+@looped("late", ["T0202 / M35", "T0202 M35", "T0202 / G0 X99. / M35"])
 def test_the_live_tool_is_stopped_too_late(late: str) -> None:
     program = SOUND.replace("G98 G0", "G97 S1000 M33 / G98 G0").replace("M30", f"G0 Z50. / {late} / M30")
     found = messages(program, "turning-center").get("live-tool-never-stopped", "write it before the tool change")
     assert found.endswith("write it before the tool change")
 
 
-@pytest.mark.parametrize("block", ["G0 X-40.", "G0 C-20.", "G00 C20."])
+@looped("block", ["G0 X-40.", "G0 C-20.", "G00 C20."])
 def test_g0_in_a_contour_is_g1_with_its_f(block: str) -> None:
     word = block.split()[1]
     program = (HEAD + RAMP + SQUARE).replace(f"{word} / ", f"{block} / G1 ", 1) + END
@@ -153,7 +159,8 @@ def test_g0_in_a_contour_is_g1_with_its_f(block: str) -> None:
     assert [edit.text for edit in found.fix.edits] == ["G01" if "G00" in block else "G1"]
 
 
-@pytest.mark.parametrize(("machine", "axis"), [("fanuc-30i", "C"), ("haas-lathe", "Y"), ("okuma-osp", "Y")])
+@pytest.mark.ci
+@looped(("machine", "axis"), [("fanuc-30i", "C"), ("haas-lathe", "Y"), ("okuma-osp", "Y")])
 def test_an_angle_among_the_points_of_a_hexagon(machine: str, axis: str) -> None:
     on, off = {"fanuc-30i": ("G12.1", "G13.1"), "haas-lathe": ("G112", "G113"), "okuma-osp": ("G137 C0", "G136")}[
         machine
@@ -176,7 +183,7 @@ def test_an_angle_among_the_points_of_a_hexagon(machine: str, axis: str) -> None
     )
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 def test_most_advice_leads_back_to_the_slip() -> None:
     kinds = tuple(KINDS)
     judged = [judged_slip(seed, kinds) for seed in range(5, 83, 10)]
@@ -186,12 +193,14 @@ def test_most_advice_leads_back_to_the_slip() -> None:
     assert sum(grade == GRADES[-1] for grade in grades) <= 2
 
 
-@pytest.mark.parametrize(("tool", "line"), [("T0105", 2), ("T0105 (EM)", 2), ("M8 / T0105", 3)])
+@pytest.mark.ci
+@looped(("tool", "line"), [("T0105", 2), ("T0105 (EM)", 2), ("M8 / T0105", 3)])
 def test_a_ramp_that_is_too_short_names_the_offset_of_another_tool(tool: str, line: int) -> None:
     found = messages(SOUND.replace("T0101", tool).replace("G1 X60.", "G1 X52."), tool="5:radius=8")
     assert f"with R 8 mm of T0105 in line {line} it needs" in found["start-up-shorter-than-radius"]
 
 
+@pytest.mark.ci
 def test_a_ramp_that_would_be_long_enough_in_inch() -> None:
     program = SOUND.replace("X60.", "X2.").replace("X40.", "X1.5").replace("X-40.", "X-1.5").replace("20.", ".75")
     found = messages(program, tool="1:radius=3.175")["start-up-shorter-than-radius"]

@@ -6,6 +6,7 @@ import re
 from pathlib import Path
 
 import pytest
+from cases import looped
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from programs import job_of, machine_of, report_of, said
@@ -43,8 +44,8 @@ def messages(program: str, rule: str) -> list[str]:
 # ---- where ----
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     "block",
     [
         f"G0 C5. {COMMENT}\n",
@@ -66,7 +67,7 @@ def test_in_the_block(block: str) -> None:
     assert (said(report(program)), report(program).verdict) == ([], "pass")
 
 
-@pytest.mark.parametrize(
+@looped(
     "block", [f"G1 X30 X35 ; POLARCHECK ALLOW WORD-REPEATED {REASON}", f"; POLARCHECK ALLOW TEXT {REASON}\nG1 X30 X35"]
 )
 def test_behind_a_semicolon_where_the_control_has_these_comments(block: str) -> None:
@@ -76,7 +77,8 @@ def test_behind_a_semicolon_where_the_control_has_these_comments(block: str) -> 
     assert found == [(line, "word-repeated", REASON)]
 
 
-@pytest.mark.parametrize("between", ["", "\n", "\n(ANOTHER COMMENT)\n\n", "N10\n", f"{COMMENT}\n", "N20 (X)\n"])
+@pytest.mark.ci
+@looped("between", ["", "\n", "\n(ANOTHER COMMENT)\n\n", "N10\n", f"{COMMENT}\n", "N20 (X)\n"])
 def test_alone_before_the_block(between: str) -> None:
     program = f"{HEAD}N9 {COMMENT}\n{between}G0 C5.\nG0 C6.\n{TAIL}"
     line = 5 + between.count("\n")
@@ -94,7 +96,8 @@ def test_blocks_that_share_a_line_are_told_apart() -> None:
     assert len(said(report(blocks))) == 1
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     "head",
     [
         "%\nO0001\n(POLARCHECK ALLOW-FILE {})\n",
@@ -123,7 +126,8 @@ def test_the_head_of_a_later_program_is_for_that_one() -> None:
     assert said(report(program)) == [(5, "rapid-in-polar"), (22, "rapid-in-polar")]
 
 
-@pytest.mark.parametrize("at", [1, 3, 4])
+@pytest.mark.ci
+@looped("at", [1, 3, 4])
 def test_behind_the_head_it_is_not_heeded_and_told(at: int) -> None:
     lines = RAPID.splitlines()
     lines.insert(at, "(POLARCHECK ALLOW-FILE RAPID-IN-POLAR PROVEN)")
@@ -148,7 +152,7 @@ def test_a_range_takes_the_blocks_of_both_comments() -> None:
     assert said(report(program)) == [(4, "rapid-in-polar"), (8, "rapid-in-polar")]
 
 
-@pytest.mark.parametrize(
+@looped(
     ("on", "off", "quiet"),
     [
         ("POLAR", "POLAR", [5]),
@@ -172,7 +176,7 @@ def test_a_range_without_an_end_reaches_to_the_end_of_the_file_and_is_told() -> 
     assert messages(program, "allow-range-unpaired")[0].startswith("no ALLOW-OFF RAPID-IN-POLAR closes this range")
 
 
-@pytest.mark.parametrize("names", ["RAPID-IN-POLAR", "", "POLAR, OVERCUT"])
+@looped("names", ["RAPID-IN-POLAR", "", "POLAR, OVERCUT"])
 def test_an_end_without_a_range_is_told(names: str) -> None:
     assert said(report(f"{HEAD}(POLARCHECK ALLOW-OFF {names})\n{TAIL}")) == [(4, "allow-range-unpaired")]
 
@@ -180,7 +184,7 @@ def test_an_end_without_a_range_is_told(names: str) -> None:
 # ---- names ----
 
 
-@pytest.mark.parametrize(
+@looped(
     ("words", "names", "reason"),
     [
         ("RAPID-IN-POLAR", ["rapid-in-polar"], ""),
@@ -201,7 +205,8 @@ def test_names_and_reason(words: str, names: list[str], reason: str) -> None:
     assert (found.kind, list(found.names), found.reason, found.fault) == ("ALLOW", names, reason, "")
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("comment", "names", "told"),
     [
         ("POLARCHECK ALLOW", [], "no rule is named"),
@@ -230,7 +235,7 @@ def test_what_is_not_understood_is_told_and_not_heeded(comment: str, names: list
     assert told in messages(program, "allow-not-understood")[0]
 
 
-@pytest.mark.parametrize(
+@looped(
     "comment",
     ["POLARCHECK ALL OK", "POLARCHECK 0.1 PASS", "SEE POLARCHECK ALLOW", "POLARCHECKED ALLOW X", "POLARCHECK"],
 )
@@ -238,6 +243,7 @@ def test_comments_that_only_speak_of_it_are_left_alone(comment: str) -> None:
     assert said(report(f"{HEAD}G1 C5. ({comment})\n{TAIL}")) == []
 
 
+@pytest.mark.ci
 def test_a_name_that_a_post_has_cut_is_told() -> None:
     """Some posts end comments behind so many characters."""
     comment = "(POLARCHECK ALLOW CANCEL-SHORTER-THAN-RADIUS PROVEN)"
@@ -262,6 +268,7 @@ def test_a_group_allows_its_rules_only() -> None:
 MIRRORED = "T0101\nG98 G0 X100. C0\nG12.1\nG1 G41 X40. F200{}\nC20.\nX-40.\nC-20.\nX40.\nC0\nG40 X100.\nG13.1\nM30\n"
 
 
+@pytest.mark.ci
 def test_what_follows_from_a_finding_that_is_allowed_stands_alone() -> None:
     plain = report_of(MIRRORED.format(""), "fanuc", "1:radius=4")
     (cause,) = (one for one in plain.findings if one.rule == "side-of-compensation-mirrored")
@@ -291,7 +298,7 @@ def test_a_finding_for_many_blocks_is_silenced_where_it_is_reported() -> None:
     assert [bool(one) for one in lines] == [found.line == 3, found.line == 4]
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 def test_silenced_findings_take_no_place_of_others_in_a_list_that_is_cut() -> None:
     on, off = "(POLARCHECK ALLOW-ON RAPID-IN-POLAR X)\n", "(POLARCHECK ALLOW-OFF RAPID-IN-POLAR)\n"
     program = HEAD + on + "G0 C5.\n" * 1100 + off + "G0 C6.\n" + TAIL
@@ -331,7 +338,8 @@ def test_at_the_head_of_all_channels_one_that_needs_it_is_enough() -> None:
     assert said(report(nothing, machine="citizen")) == [(1, "allow-without-effect")]
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("call", "called", "is_silent"),
     [
         ("M98 P100", "G0 C5.", False),
@@ -380,7 +388,8 @@ def test_each_name_without_effect_is_told() -> None:
     assert told.message.startswith("OVERCUT: ")
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("rules", "severities"),
     [(rules_of("rapid-in-polar"), {}), (rules_of(), {"rapid-in-polar": "off"})],
 )
@@ -393,7 +402,7 @@ def test_a_rule_that_is_not_asked_gives_no_such_note(rules: list[str], severitie
     assert "allow-without-effect" in [rule for _, rule in said(found)]
 
 
-@pytest.mark.parametrize(
+@looped(
     ("program", "what"),
     [
         (MIRRORED.format(f" (POLARCHECK ALLOW OVERCUT {REASON})"), "not evaluated without a radius"),
@@ -436,7 +445,8 @@ def punched(program: str) -> str:
     return "\n\r\r".join([*lines, ""])
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     "program",
     [
         RAPID.replace("G0 C5.", f"G0 C5. {COMMENT}"),
@@ -463,7 +473,7 @@ def test_what_a_punch_destroys_is_told_by_the_finding_itself() -> None:
     assert said(report(punched(on_mark))) == [(6, "rapid-in-polar")]
 
 
-@pytest.mark.parametrize("encoding", ["utf-16", "utf-8-sig", "cp1252"])
+@looped("encoding", ["utf-16", "utf-8-sig", "cp1252"])
 def test_any_encoding(encoding: str) -> None:
     program = RAPID.replace("G0 C5.", "G0 C5. (POLARCHECK ALLOW RAPID-IN-POLAR geprüft)")
     (found,) = report_of(program.encode(encoding), only=ONLY).silenced
@@ -476,7 +486,7 @@ WORDS = st.sampled_from(
 KINDS = st.sampled_from(["", "-FILE", "-ON", "-OFF"])
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 @settings(max_examples=60, deadline=None)
 @given(
     st.lists(

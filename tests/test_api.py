@@ -17,6 +17,7 @@ from typing import Any
 import msgspec
 import numpy as np
 import pytest
+from cases import looped
 from click.testing import CliRunner
 from polarcheck.errors import (
     BaselineError,
@@ -54,13 +55,13 @@ def by_command(*arguments: str) -> Any:
 # ---- the command and the function agree ----
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 @pytest.mark.filterwarnings("ignore::polarcheck.errors.PolarcheckWarning")
 def test_check_gives_the_report_of_the_command(samples: None) -> None:
     assert json.loads(polarcheck.render(polarcheck.check("."), "json")) == by_command("check", ".", "--format", "json")
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 def test_formats_are_those_of_the_command(samples: None) -> None:
     names = ["degrees.nc", "hexagon.nc", "../sample_programs/spiral.nc"]
     report = polarcheck.check(names)
@@ -69,18 +70,19 @@ def test_formats_are_those_of_the_command(samples: None) -> None:
         assert polarcheck.render(report, form) == result.stdout, form
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 def test_check_of_several_processes_is_the_same(samples: None) -> None:
     paths = [Path(name) for name in SAMPLES[:6]]
     assert polarcheck.check(paths, processes=2) == polarcheck.check(paths)
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 def test_part_gives_what_the_command_gives(samples: None) -> None:
     files = by_command("part", *SAMPLES, "--format", "json")["files"]
     assert [json.loads(msgspec.json.encode(polarcheck.part(name))) for name in SAMPLES] == files
 
 
+@pytest.mark.ci
 @pytest.mark.one_in(2)
 @pytest.mark.parametrize("which", ["tool", "programmed"])
 def test_trace_gives_the_moves_of_the_command(samples: None, which: Any) -> None:
@@ -107,12 +109,14 @@ def same(column: np.ndarray[Any, Any], values: list[Any]) -> None:
         assert column.tolist() == values
 
 
+@pytest.mark.ci
 def test_feeds_gives_the_tables_of_the_command(samples: None) -> None:
     for name in SAMPLES[:8]:
         tables = by_command("feeds", name, "--format", "json")["tables"]
         assert json.loads(msgspec.json.encode(polarcheck.feeds(name).tables)) == tables
 
 
+@pytest.mark.ci
 def test_passed_is_what_all_verdicts_say() -> None:
     good, bad = ROOT / "sample_programs" / "hexagon.nc", ROOT / "sample_programs" / "degrees.nc"
     reports = [polarcheck.check(paths) for paths in ([good], [good, bad], [bad], [good, ROOT / "none.nc"], [])]
@@ -123,6 +127,7 @@ def test_passed_is_what_all_verdicts_say() -> None:
 # ---- a text ----
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize("text", [HEXAGON, HEXAGON.decode()], ids=["bytes", "str"])
 def test_a_text_is_checked_as_its_file(samples: None, text: str | bytes) -> None:
     name, config = "hexagon.nc", "polarcheck.toml"
@@ -142,14 +147,14 @@ def test_no_job_file_applies_to_a_text_by_itself(tmp_path: Path, monkeypatch: py
     assert polarcheck.check_text("M30\n", use_config=True).machine == "haas-lathe"
 
 
-@pytest.mark.parametrize("text", ["", "\ufeffM30\n", "(\udc80 \ud800)\nM30\n", b"\xff\xfe\x00", "\0" * 9])
+@looped("text", ["", "\ufeffM30\n", "(\udc80 \ud800)\nM30\n", b"\xff\xfe\x00", "\0" * 9])
 def test_any_text_has_a_report(text: str | bytes) -> None:
     report = polarcheck.check_text(text)
     assert report.path == "text"
     assert polarcheck.render(report, "json")
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 def test_texts_are_checked_in_threads() -> None:
     texts = [RAPID.replace("C5.", f"C{number}.") for number in range(5, 13)]
     with ThreadPoolExecutor(4) as pool:
@@ -159,7 +164,7 @@ def test_texts_are_checked_in_threads() -> None:
 # ---- what a job can say ----
 
 
-@pytest.mark.parametrize(
+@looped(
     "tools",
     [
         {8: 4.0},
@@ -203,6 +208,7 @@ JOBS = {
 }
 
 
+@pytest.mark.ci
 @pytest.mark.one_in(12)
 @pytest.mark.parametrize(("given", "written"), JOBS.values(), ids=JOBS)
 def test_a_keyword_says_what_a_job_file_says(
@@ -238,7 +244,8 @@ SELECTIONS: dict[str, tuple[dict[str, Any], str, str]] = {
 }
 
 
-@pytest.mark.parametrize(("given", "verdict", "why"), SELECTIONS.values(), ids=SELECTIONS)
+@pytest.mark.ci
+@looped(("given", "verdict", "why"), SELECTIONS.values(), ids=SELECTIONS)
 def test_rules_that_are_left_out_need_a_reason(given: dict[str, Any], verdict: str, why: str) -> None:
     report = polarcheck.check_text(HEXAGON, tools={1: 4.0}, limits={"c_feed": 10800}, machine="fanuc-30i", **given)
     assert report.verdict == verdict
@@ -265,6 +272,7 @@ def test_a_keyword_lies_over_the_job_file(tmp_path: Path, monkeypatch: pytest.Mo
     assert section.radius == 1.0
 
 
+@pytest.mark.ci
 def test_parts_stand_in_place_of_those_of_the_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     (tmp_path / "a.nc").write_bytes(HEXAGON)
@@ -320,7 +328,7 @@ WRONG: dict[str, tuple[type[PolarcheckError], dict[str, Any], str]] = {
 }
 
 
-@pytest.mark.parametrize(("kind", "given", "text"), WRONG.values(), ids=WRONG)
+@looped(("kind", "given", "text"), WRONG.values(), ids=WRONG)
 def test_a_wrong_keyword_is_named_in_one_line(kind: type[PolarcheckError], given: dict[str, Any], text: str) -> None:
     with pytest.raises(kind) as caught:
         polarcheck.check_text("M30\n", **given)
@@ -328,7 +336,7 @@ def test_a_wrong_keyword_is_named_in_one_line(kind: type[PolarcheckError], given
     assert "\n" not in str(caught.value)
 
 
-@pytest.mark.parametrize(
+@looped(
     ("call", "text"),
     [
         (lambda: polarcheck.check(5), "polarcheck.check(): expected the path of a program or folder, found 5"),
@@ -391,6 +399,7 @@ def test_a_walk_says_what_it_leaves_out(tmp_path: Path) -> None:
         polarcheck.check(tmp_path, exclude="")
 
 
+@pytest.mark.ci
 def test_known_findings_are_silenced_as_the_command_does(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     (tmp_path / "a.nc").write_text(RAPID, "utf-8")
@@ -447,6 +456,7 @@ def test_a_trace_of_several_channels() -> None:
 # ---- what is public ----
 
 
+@pytest.mark.ci
 def test_import_loads_nothing() -> None:
     code = (
         "import sys; before = set(sys.modules); import polarcheck; dir(polarcheck)\n"
@@ -502,7 +512,7 @@ def test_what_is_not_public_is_not_there() -> None:
 PUBLIC = [getattr(polarcheck, name) for name in polarcheck.__all__ if inspect.isfunction(getattr(polarcheck, name))]
 
 
-@pytest.mark.parametrize("function", PUBLIC, ids=lambda function: function.__name__)
+@looped("function", PUBLIC, ids=lambda function: function.__name__)
 def test_help_names_every_keyword(function: Any) -> None:
     document, signature = inspect.getdoc(function) or "", inspect.signature(function)
     for name in signature.parameters:
@@ -531,6 +541,7 @@ def test_warnings_are_no_errors_of_a_clean_folder(samples: None) -> None:
 # ---- the page and the notebook ----
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize(("page", "least"), [("docs/api.md", 20), ("README.md", 4)])
 def test_examples_of_the_pages_are_right(page: str, least: int, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(ROOT)
@@ -547,6 +558,7 @@ def test_the_page_names_all_that_is_public() -> None:
         assert re.search(rf"\b{name}\b", page) or name in ("__version__", "file"), name
 
 
+@pytest.mark.ci
 def test_the_notebook_runs(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     monkeypatch.chdir(ROOT)
     notebook = json.loads((ROOT / "docs" / "plot_a_section.ipynb").read_text("utf-8"))

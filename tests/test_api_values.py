@@ -18,6 +18,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from cases import looped
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from polarcheck.errors import PolarcheckError, PolarcheckWarning, UsageError
@@ -207,7 +208,7 @@ def files(own_folder: None) -> None:
     Path("post.toml").write_text(MANIFEST, "utf-8")
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 @pytest.mark.one_in(16)
 @pytest.mark.parametrize("name", FUNCTIONS)
 def test_any_value_of_any_argument_is_taken_or_refused_in_one_line(name: str, files: None) -> None:
@@ -231,6 +232,7 @@ def values() -> st.SearchStrategy[Any]:
     return st.recursive(leaves, lambda inner: st.lists(inner, max_size=3) | st.dictionaries(keys, inner, max_size=3))
 
 
+@pytest.mark.ci
 @pytest.mark.usefixtures("files")
 @settings(max_examples=150, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(place=st.sampled_from(FUNCTIONS), number=st.integers(0, 40), value=values())
@@ -241,7 +243,7 @@ def test_drawn_values_are_taken_or_refused_in_one_line(place: str, number: int, 
         assert fault(function, {**right, arguments[number % len(arguments)]: value}) == ""
 
 
-@pytest.mark.parametrize("name", CLASSES)
+@looped("name", CLASSES)
 def test_values_of_any_kind_can_be_made_and_a_contradiction_is_an_error_of_usage(name: str) -> None:
     """Whether a value has the right type is for the function to say that takes it."""
     kind = getattr(polarcheck, name)

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import pytest
+from cases import looped
 from programs import report_of
 
 
-@pytest.mark.parametrize(
+@looped(
     ("moves", "is_forgotten"),
     [
         ("Y20. R4.\nX-20.", False),  # a corner that is rounded with R4

@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from cases import looped
 
 from polarcheck.rules.rule import rule_files
 
@@ -46,15 +47,15 @@ def modules(folder: Path) -> dict[str, Path]:
     return found
 
 
-def name_of(path: Path) -> str:
-    """A module in the name of a test."""
-    return path.relative_to(PACKAGE).with_suffix("").as_posix()
+def nodes_of(path: Path) -> list[ast.AST]:
+    """The nodes of a module, itself first."""
+    return nodes_in(path.read_text("utf-8"))
 
 
 @functools.cache
-def tree_of(text: str) -> ast.Module:
-    """The syntax of a module; several tests walk each."""
-    return ast.parse(text)
+def nodes_in(text: str) -> list[ast.AST]:
+    """The nodes of a module with this text; several tests walk each."""
+    return list(ast.walk(ast.parse(text)))
 
 
 @functools.cache
@@ -71,12 +72,12 @@ def imports(folder: Path) -> Imports:
     found: Imports = {}
     for name, path in known.items():
         here = name if path.name == "__init__.py" else name.rpartition(".")[0]
-        found[name] = set(_targets(tree_of(path.read_text("utf-8")), here, known)) - {name, ""}
+        found[name] = set(_targets(nodes_of(path), here, known)) - {name, ""}
     return found
 
 
-def _targets(tree: ast.Module, here: str, known: dict[str, Path]) -> Iterator[str]:
-    for node in ast.walk(tree):
+def _targets(nodes: list[ast.AST], here: str, known: dict[str, Path]) -> Iterator[str]:
+    for node in nodes:
         if isinstance(node, ast.Import):
             names = [alias.name for alias in node.names]
         elif isinstance(node, ast.ImportFrom):
@@ -123,6 +124,7 @@ def test_every_package_has_its_floor() -> None:
     assert {name.partition(".")[0] for name in modules(PACKAGE)} - {""} == set(FLOOR)
 
 
+@pytest.mark.ci
 def test_the_editor_imports_one_wing_alone() -> None:
     of_editor = {name: found for name, found in imports_of_package().items() if name.startswith("editor")}
     assert of_editor
@@ -145,7 +147,8 @@ def test_the_top_shows_the_rooms_alone() -> None:
 
 
 def test_each_room_says_what_it_is_for() -> None:
-    assert all(ast.get_docstring(tree_of(path.read_text("utf-8"))) for path in PACKAGE.rglob("__init__.py"))
+    modules_of_rooms = [nodes_of(path)[0] for path in PACKAGE.rglob("__init__.py")]
+    assert all(ast.get_docstring(module) for module in modules_of_rooms if isinstance(module, ast.Module))
 
 
 def test_imports_have_no_circles() -> None:
@@ -166,7 +169,7 @@ def house(tmp_path: Path) -> Path:
     return tmp_path
 
 
-@pytest.mark.parametrize(
+@looped(
     "planted",
     [
         "from polarcheck.checking.engine import Engine",
@@ -185,7 +188,7 @@ def test_a_planted_upward_import_is_seen(house: Path, planted: str) -> None:
     assert circles(imports(house)) == ["checking.engine", "columns.trace"]
 
 
-@pytest.mark.parametrize("planted", ["from polarcheck.columns import trace", "from . import trace"])
+@looped("planted", ["from polarcheck.columns import trace", "from . import trace"])
 def test_a_planted_circle_inside_a_package_is_seen(house: Path, planted: str) -> None:
     (house / "columns" / "trace.py").write_text(
         "if TYPE_CHECKING:\n    from polarcheck.columns.moves import Moves\n", "utf-8"
@@ -198,32 +201,35 @@ def test_a_planted_circle_inside_a_package_is_seen(house: Path, planted: str) ->
 ARRAY_TYPES = ("Mask", "Floats", "Points", "Rows", "States")
 
 
-@pytest.mark.parametrize("path", sorted(PACKAGE.rglob("*.py")), ids=name_of)
-def test_array_types_are_defined_once(path: Path) -> None:
-    assigned = [
-        target.id
-        for node in ast.walk(tree_of(path.read_text("utf-8")))
+@pytest.mark.ci
+def test_array_types_are_defined_once() -> None:
+    assigned = {
+        path.name
+        for path in PACKAGE.rglob("*.py")
+        for node in nodes_of(path)
         if isinstance(node, ast.Assign | ast.AnnAssign)
         for target in (node.targets if isinstance(node, ast.Assign) else [node.target])
         if isinstance(target, ast.Name) and target.id in ARRAY_TYPES
-    ]
-    assert not assigned or path.name == "arrays.py"
+    }
+    assert assigned == {"arrays.py"}
 
 
-@pytest.mark.parametrize("path", [*map(Path, rule_files())], ids=name_of)
-def test_rules_neither_loop_nor_load_numpy(path: Path) -> None:
+def test_rules_neither_loop_nor_load_numpy() -> None:
     """The function of the rule; its details are made for a finding, and import what they need."""
-    tree = tree_of(path.read_text("utf-8"))
     allowed = {"rules.rule", "rules.causes", "foundation.states", "geometry.tolerances"}
-    name = ".".join(path.relative_to(PACKAGE).with_suffix("").parts)
-    (function,) = (node for node in tree.body if isinstance(node, ast.FunctionDef) and node.name == path.stem)
-    run = [function, *(node for node in tree.body if isinstance(node, ast.Import | ast.ImportFrom))]
-    assert set(_targets(ast.Module(run, []), name.rpartition(".")[0], modules(PACKAGE))) - {""} <= allowed
-    assert not any(isinstance(node, ast.For | ast.While) for node in ast.walk(function))
+    for path in map(Path, rule_files()):
+        name = ".".join(path.relative_to(PACKAGE).with_suffix("").parts)
+        tree = ast.parse(path.read_text("utf-8"))
+        (function,) = (node for node in tree.body if isinstance(node, ast.FunctionDef) and node.name == path.stem)
+        run = [node for node in tree.body if node is function or isinstance(node, ast.Import | ast.ImportFrom)]
+        nodes = [inner for node in run for inner in ast.walk(node)]
+        targets = set(_targets(nodes, name.rpartition(".")[0], modules(PACKAGE))) - {""}
+        assert not targets - allowed, name
+        assert not any(isinstance(node, ast.For | ast.While) for node in ast.walk(function)), name
 
 
-@pytest.mark.one_in(2)
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     "arguments", [["--help"], ["explain", "rapid-in-polar"], ["rules"], ["machines"], ["machines", "fanuc"], ["schema"]]
 )
 def test_what_reads_no_program_loads_no_numpy(arguments: list[str]) -> None:
@@ -255,6 +261,7 @@ LATE = (
 MODULES_OF_A_SMALL_CHECK = 234
 
 
+@pytest.mark.ci
 def test_a_clean_check_of_a_small_program_loads_little() -> None:
     code = (
         "import sys, polarcheck.commands\n"
@@ -276,20 +283,20 @@ def test_a_clean_check_of_a_small_program_loads_little() -> None:
     assert len(own) <= MODULES_OF_A_SMALL_CHECK
 
 
+@pytest.mark.ci
 def test_no_control_is_named_in_code() -> None:
     """A difference between controls is data; only comments and docstrings name a control, as their source."""
     controls = ("fanuc", "haas", "gsk", "mitsubishi", "okuma", "mazak", "siemens", "citizen", "doosan", "lsis", "hurco")
     controls += ("fagor", "takisawa", "colchester")
     for path in PACKAGE.rglob("*.py"):
-        tree = tree_of(path.read_text("utf-8"))
         documents = {
             id(node.body[0].value)
-            for node in ast.walk(tree)
+            for node in nodes_of(path)
             if isinstance(node, ast.Module | ast.FunctionDef | ast.ClassDef)
             and node.body
             and isinstance(node.body[0], ast.Expr)
         }
-        for node in ast.walk(tree):
+        for node in nodes_of(path):
             if isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in documents:
                 named = [name for name in controls if name in node.value.lower()]
                 is_default = path.name == "profiles.py" and node.value == "fanuc"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
@@ -11,11 +12,13 @@ from polarcheck.foundation.arrays import computed, different, is_among, is_unifo
 NUMBERS = st.lists(st.one_of(st.integers(-5, 5).map(float), st.floats(allow_nan=False)), max_size=9)
 
 
+@pytest.mark.ci
 @given(NUMBERS)
 def test_different_values_are_those_of_numpy(values: list[float]) -> None:
     assert different(np.array(values)).tolist() == np.unique(values).tolist()
 
 
+@pytest.mark.ci
 @given(st.one_of(NUMBERS, st.lists(st.just(float("nan")), max_size=2)), NUMBERS)
 def test_values_among_others_are_those_of_numpy(values: list[float], wanted: list[float]) -> None:
     assert is_among(np.array(values), wanted).tolist() == np.isin(values, wanted).tolist()
@@ -35,6 +38,7 @@ def test_a_column_of_one_value_takes_the_memory_of_one_and_cannot_be_written_to(
     assert repeated(np.int64(3), 0).tolist() == []
 
 
+@pytest.mark.ci
 @given(NUMBERS, st.floats(allow_nan=False))
 @example([1.0], 8.99e307)
 @example([float("-inf")], float("inf"))
@@ -48,6 +52,7 @@ def test_what_is_computed_once_is_what_is_computed_row_by_row(values: list[float
     assert once.tolist() == [one + one] * 4
 
 
+@pytest.mark.ci
 @given(st.lists(st.sampled_from((1.0, 2.0, float("nan"))), min_size=1, max_size=5))
 def test_values_are_one_where_all_are_the_same_or_unknown(values: list[float]) -> None:
     assert is_uniform(np.array(values)) == (len({str(value) for value in values}) == 1)

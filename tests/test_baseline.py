@@ -64,6 +64,7 @@ def silenced(result: Result) -> dict[str, int]:
 # ---- create, check ----
 
 
+@pytest.mark.ci
 def test_what_is_known_is_silent_and_what_is_new_is_told() -> None:
     make(a__nc=RAPID, sub_of_b__nc=OTHER)
     result = baseline("create", ".", "--reason", "PROVEN SINCE 2019")
@@ -87,6 +88,7 @@ def test_what_is_known_is_silent_and_what_is_new_is_told() -> None:
     assert file["verdict"] == "fail"
 
 
+@pytest.mark.ci
 def test_the_file_is_for_people_and_for_tools_that_compare_lines() -> None:
     make(b__nc=TWICE, a__nc=RAPID)
     assert baseline("create", "b.nc", "a.nc").exit_code == 0
@@ -220,6 +222,7 @@ def test_one_more_of_the_same_is_new() -> None:
     assert result.stdout.count("\n") == 1
 
 
+@pytest.mark.ci
 def test_one_less_is_said_and_can_be_dropped() -> None:
     make(a__nc=TWICE, b__nc=RAPID)
     baseline("create", ".", "--reason", "OLD")
@@ -249,6 +252,7 @@ def test_an_update_takes_what_is_new_and_keeps_reasons() -> None:
     ]
 
 
+@pytest.mark.ci
 def test_files_and_rules_that_are_not_asked_keep_what_is_known_of_them() -> None:
     make(a__nc=RAPID, b__nc=RAPID)
     baseline("create", ".")
@@ -290,6 +294,7 @@ def test_a_finding_that_is_more_severe_now_is_told() -> None:
 MIRRORED = "T0101\nG98 G0 X100. C0\nG12.1\nG1 G41 X40. F200\nC20.\nX-40.\nC-20.\nX40.\nC0\nG40 X100.\nG13.1\nM30\n"
 
 
+@pytest.mark.ci
 def test_what_follows_goes_with_its_cause_and_what_follows_newly_is_told() -> None:
     make(a__nc=MIRRORED)
     tool = ("--tool", "1:radius=4")
@@ -308,6 +313,7 @@ def test_what_follows_goes_with_its_cause_and_what_follows_newly_is_told() -> No
 # ---- files that move ----
 
 
+@pytest.mark.ci
 def test_a_file_that_has_moved_is_known_by_what_is_found_in_it() -> None:
     make(a__nc=RAPID, b__nc=OTHER)
     baseline("create", ".", "--reason", "OLD")
@@ -328,6 +334,7 @@ def test_a_file_that_has_moved_is_known_by_what_is_found_in_it() -> None:
     assert check(".").stderr == ""
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize("command", ["prune", "update"])
 def test_a_file_that_has_moved_where_the_run_was_not_keeps_what_is_known_of_it(command: str) -> None:
     make(a__nc=RAPID, sub_of_b__nc=OTHER)
@@ -379,6 +386,7 @@ def first_schema() -> None:
     Path(FILE).write_text(text_of(Contents(old, schema=1)), "utf-8")
 
 
+@pytest.mark.ci
 def test_a_baseline_of_the_first_schema_is_read_and_upgraded() -> None:
     make(a__nc=RAPID, b__nc=TWICE)
     baseline("create", ".", "--reason", "OLD")
@@ -441,7 +449,7 @@ def test_what_an_editor_holds_is_known_as_its_file() -> None:
     assert (silenced(result), result.exit_code, result.stderr) == ({"sub/a.nc": 1}, 1, "")
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 def test_many_files_by_several_processes() -> None:
     for number in range(30):
         make(**{f"{number:02}__nc": RAPID if number % 2 else TWICE})
@@ -575,6 +583,7 @@ def test_nothing_acts_on_a_terminal() -> None:
 # ---- reports ----
 
 
+@pytest.mark.ci
 def test_what_is_silenced_is_listed_on_demand() -> None:
     make(a__nc=RAPID)
     baseline("create", "a.nc")
@@ -619,7 +628,7 @@ def test_it_takes_all_options_that_decide_what_is_found() -> None:
         assert {*baseline_command.DECIDING, "output"} <= parameters
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 def test_the_process() -> None:
     """As a shell starts it, with its output to pipes."""
     make(a__nc=RAPID)

@@ -106,6 +106,7 @@ Numbers = tuple[str, str]
 CENTER, NARROW = "path-through-center", "interference"
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize(
     ("program", "old", "new", "expected", "options"),
     [
@@ -140,6 +141,7 @@ def test_deeper_or_faster_is_worse(
     assert [line for line in told(*options) if not line.startswith("feed-")] == ([expected] if expected else [])
 
 
+@pytest.mark.ci
 def test_lines_that_shift_and_an_update_keep_what_is_known() -> None:
     create(narrow("-.5", "150"))
     write(a=narrow("-.5", "150").replace("G12.1", "(NEW)\nG4 U1.\n\nG12.1"))
@@ -150,6 +152,7 @@ def test_lines_that_shift_and_an_update_keep_what_is_known() -> None:
     assert told() == []
 
 
+@pytest.mark.ci
 def test_a_baseline_without_these_numbers_compares_the_others() -> None:
     create(narrow("-.5", "150"))
     text = Path(FILE).read_text()
@@ -253,7 +256,7 @@ def told_again(rule: Rule, change: Callable[[str], str]) -> list[bool]:
     "rule",
     [
         # The examples with a drawing take a minute.
-        pytest.param(rule, marks=pytest.mark.slow if "drawing" in rule.name else ())
+        pytest.param(rule, marks=pytest.mark.ci if "drawing" in rule.name else ())
         for rule in GOUGING
     ],
     ids=lambda rule: str(rule.name),

@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from cases import looped
 from programs import ROOT, report_of, said
 
 sys.path.insert(0, str(ROOT / "benchmarks"))
@@ -20,14 +21,15 @@ from measuring import exponent, measured, table
 from one_fault import FAULTS, GOOD, TOOL
 from xy_twin import tool_table, twin
 
+pytestmark = pytest.mark.ci
+
 
 def test_the_program_without_a_fault_passes() -> None:
     report = report_of(GOOD, "fanuc", TOOL)
     assert (report.verdict, said(report)) == ("pass", [])
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize("name", FAULTS)
+@looped("name", FAULTS, one_in=12)
 def test_one_fault_is_found_for_the_right_reason(name: str) -> None:
     fault = FAULTS[name]
     assert GOOD.count(fault.meant) >= 1
@@ -52,7 +54,6 @@ def test_the_twin_has_the_same_blocks_on_a_mill() -> None:
     assert tool_table(2.0).splitlines()[3] == "T4 P4 D0.157480"
 
 
-@pytest.mark.slow
 def test_a_long_step_is_milled_in_several_sections(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(generate, "LONGEST_SECTION", 3000)
     text = generate.program(20_000).decode()
@@ -88,7 +89,7 @@ def test_a_table_is_one_of_markdown() -> None:
     assert table(["reader", "s"], [["one", "2"]]) == "| reader | s |\n| --- | ---: |\n| one | 2 |\n"
 
 
-@pytest.mark.parametrize(("power", "expected"), [(1, 1.0), (2, 2.0), (0, 0.0)])
+@looped(("power", "expected"), [(1, 1.0), (2, 2.0), (0, 0.0)])
 def test_the_exponent_is_that_of_the_growth(power: int, expected: float) -> None:
     assert exponent([1e3, 1e4, 1e6], [5 * size**power for size in (1e3, 1e4, 1e6)]) == pytest.approx(expected)
 
@@ -100,7 +101,6 @@ def test_what_a_reader_repeats_is_no_message(tmp_path: Path) -> None:
     assert peers._messages(said, path) == {"executing", "warning no G13.1 in"}
 
 
-@pytest.mark.slow
 def test_the_page_is_written_without_any_peer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for name in ("RS274", "PEERS_PYTHON", "NCTAB", "NCPLOT7PY"):
         monkeypatch.delenv(name, raising=False)
@@ -148,7 +148,6 @@ def test_each_package_and_table_has_a_stage() -> None:
     assert {*stages.OF_ROOM.values(), *stages.OF_TABLE.values()} <= {*stages.STAGES}
 
 
-@pytest.mark.slow
 def test_a_check_is_profiled(tmp_path: Path) -> None:
     path = tmp_path / "sound.nc"
     path.write_text(GOOD)

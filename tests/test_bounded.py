@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from cases import looped
 
 from polarcheck.foundation import bounded
 
@@ -71,7 +72,7 @@ def test_a_folder_is_no_file(tmp_path: Path) -> None:
     assert objection(tmp_path) == "is a folder, not a file"
 
 
-@pytest.mark.parametrize("name", ["a\0b.toml", "\0", "a\ud800.toml" if sys.platform != "win32" else "\0"])
+@looped("name", ["a\0b.toml", "\0", "a\ud800.toml" if sys.platform != "win32" else "\0"])
 def test_names_that_no_file_can_have(name: str) -> None:
     assert objection(name) == "no file can have this name"
 
@@ -82,8 +83,8 @@ def test_missing_and_endless_names(tmp_path: Path) -> None:
 
 
 @needs_pipes
-@pytest.mark.parametrize("pipes", [False, True])
-@pytest.mark.parametrize("device", ["/dev/zero", "/dev/null", "/dev/random", "/dev/tty"])
+@looped("pipes", [False, True])
+@looped("device", ["/dev/zero", "/dev/null", "/dev/random", "/dev/tty"])
 def test_devices_are_refused(device: str, pipes: bool) -> None:
     if Path(device).exists():
         assert objection(device, pipes=pipes) == "is a device, not a file"
@@ -95,7 +96,7 @@ def test_pipes_are_refused_unless_they_are_asked_for(tmp_path: Path) -> None:
     assert objection(tmp_path / "pipe") == "is a pipe, not a file"
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 @needs_pipes
 def test_a_pipe_that_nobody_writes_to(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "pipe")
@@ -228,7 +229,7 @@ def test_a_file_that_is_written_to_while_it_is_read(tmp_path: Path, monkeypatch:
     assert objection(path) == "was changed while it was read"
 
 
-@pytest.mark.parametrize(
+@looped(
     ("size", "name"),
     [(999, "999 bytes"), (1500, "1.5 kB"), (512_000_000, "512 MB"), (2 * 10**9, "2 GB")],
 )

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import msgspec
 import pytest
+from cases import looped
 from click.testing import CliRunner
 from programs import report_of, report_of_example, tables_of
 
@@ -124,9 +125,9 @@ def of_bound(report: FileReport) -> list[tuple[str, str]]:
     return [one for one in rules_and_severities(report) if one[0] in ("endless-loop", "polar-never-left")]
 
 
-@pytest.mark.one_in(16)
-@pytest.mark.parametrize("in_mode", [True, False], ids=["in the mode", "before the mode"])
-@pytest.mark.parametrize("loop", LOOPS)
+@pytest.mark.ci
+@looped("in_mode", [True, False], ids=["in the mode", "before the mode"], one_in=16)
+@looped("loop", LOOPS)
 def test_a_bound_within_the_mode_is_one_warning_and_leaves_the_file_unverified(loop: str, in_mode: bool) -> None:
     machine, program = program_of(loop, in_mode)
     whole = report_of(program, machine, CUTTER, job={"run": {"max_blocks": 10**6, "max_statements": 10**6}})
@@ -146,7 +147,7 @@ ENDLESS = {
 }
 
 
-@pytest.mark.parametrize("loop", ENDLESS)
+@looped("loop", ENDLESS)
 def test_a_loop_in_which_nothing_changes_is_an_error_with_all_that_follows(loop: str) -> None:
     machine, head, on, turns, off, _ = ENDLESS[loop]
     report = report_of(f"O1\n{head}{on}\n{turns}\nG1 X60.\n{off}\nM30\n", machine, CUTTER, job=BOUNDED)
@@ -190,8 +191,8 @@ def cut_examples(rule: str) -> Iterator[tuple[Example, Example]]:
             yield whole, msgspec.structs.replace(whole, settings=(*whole.settings, "job.run.max_statements=9"))
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize("rule", LOOKING_AHEAD)
+@pytest.mark.ci
+@looped("rule", LOOKING_AHEAD, one_in=12)
 def test_nothing_is_reported_that_rests_on_what_a_bound_has_cut_off(rule: str) -> None:
     broken_off = 0
     for whole, cut in cut_examples(rule):
@@ -222,7 +223,7 @@ def test_the_mode_that_a_tool_change_ends_is_reported_before_a_bound_too() -> No
     assert ("polar-never-left", "error") in rules_and_severities(report)
 
 
-@pytest.mark.parametrize("own", ["#500=#500+1\n", ""], ids=["changes a variable", "changes none"])
+@looped("own", ["#500=#500+1\n", ""], ids=["changes a variable", "changes none"])
 def test_behind_calls_that_run_once_positions_and_variables_are_not_known(own: str) -> None:
     program = f"O1\n#500=1\nG0 X60. Z5.\nM98 P100 L5000\nX[50.+#500]\nZ3.\nM30\nO100\nU1.\n{own}M99\n"
     trace = tables_of(program, "fanuc", job=BOUNDED)["trace"]
@@ -232,7 +233,7 @@ def test_behind_calls_that_run_once_positions_and_variables_are_not_known(own: s
     assert trace.path.z[trace.blocks.line == 6].tolist() == [3.0]
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 def test_programs_before_one_that_is_broken_off_keep_all_their_rows() -> None:
     head = "O1\nG0 X60.\n" + "X61.\n" * 40 + "M98 P3 L1500\nM30\n"
     endless = "O2\n#1=0\nWHILE[#1LT90000]DO1\n#1=#1+1\nX1.\nEND1\nM30\nO3\n" + "X7.\n" * 10 + "M99\n"

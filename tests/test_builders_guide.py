@@ -6,6 +6,7 @@ import re
 from collections.abc import Callable
 
 import pytest
+from cases import looped
 from guide_programs import METHOD_A, METHOD_B, PROGRAMS, SAMPLE, in_mm, without
 from programs import Changes, machine_of, report_of, said
 
@@ -30,8 +31,9 @@ def message(program: str, rule: str, *tools: str, job: Changes | None = None) ->
     return finding.message
 
 
-@pytest.mark.parametrize("name", PROGRAMS)
-@pytest.mark.parametrize("unit", ["inch", "mm"])
+@pytest.mark.ci
+@looped("name", PROGRAMS)
+@looped("unit", ["inch", "mm"])
 def test_the_programs_of_the_guide_are_right(name: str, unit: str) -> None:
     program, *tools = PROGRAMS[name]
     if unit == "mm":
@@ -43,10 +45,10 @@ def test_the_programs_of_the_guide_are_right(name: str, unit: str) -> None:
 # ---- a section begins with G12.1 ----
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize("name", PROGRAMS)
-@pytest.mark.parametrize("compensated", [True, False])
-@pytest.mark.parametrize("machine", [MACHINE, "fanuc"])
+@pytest.mark.ci
+@looped("name", PROGRAMS)
+@looped("compensated", [True, False])
+@looped("machine", [MACHINE, "fanuc"])
 def test_a_section_without_its_g12_1_is_one_finding(name: str, compensated: bool, machine: str) -> None:
     program, *tools = PROGRAMS[name]
     written = re.sub(r"G4[12] ", "", re.sub(r"^G40 X", "X", program, flags=re.MULTILINE).replace("G1 G40 X", "G1 X"))
@@ -63,7 +65,7 @@ def test_both_sections_without_g12_1_are_two() -> None:
 ARC = "O1\nG20 G98 G97 T0101\nG0 X2. Z.1 C0\n{}G2 X-2. C.2 R1.01 F5.\n{}\nG13.1\nM30\n"
 
 
-@pytest.mark.parametrize("between", ["M9", "G0 Z1."])
+@looped("between", ["M9", "G0 Z1."])
 def test_an_arc_of_c_belongs_into_the_mode(between: str) -> None:
     """Wherever it was left: no lathe turns C on an arc outside."""
     program = ARC.format("", between)
@@ -71,7 +73,8 @@ def test_an_arc_of_c_belongs_into_the_mode(between: str) -> None:
     assert "C moves on an arc" in report_of(program, "fanuc").findings[-1].message
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     "program",
     [
         ARC.format("G7.1 C1.\n", "G7.1 C0"),  # on a cylinder
@@ -97,7 +100,8 @@ def test_what_is_no_contour_needs_no_g12_1(program: str) -> None:
     assert "polar-never-entered" not in [rule for _, rule in said(report_of(program, "fanuc"))]
 
 
-@pytest.mark.parametrize(("x", "c"), [("100.", "45."), ("80.", "55."), ("40.", "30.")])
+@pytest.mark.ci
+@looped(("x", "c"), [("100.", "45."), ("80.", "55."), ("40.", "30.")])
 def test_a_rectangle_longer_than_its_approach_is_a_contour(x: str, c: str) -> None:
     """C of a narrow one may pass X; no angle does so where X goes below 0."""
     contour = f"G1 C{c} F500.\nX20. F200.\nC-{c}\nX-20.\nC{c}\nX{x} F500.\nG13.1\nM30\n"
@@ -113,7 +117,8 @@ TURNED = "T0101\nG50 S3000\n{}\nG99 G0 X1. Z.1\nG1 Z-1. F.01\nG0 X5. Z5.\nM5\nM3
 AGAIN = SAMPLE.replace("%\nO0001\n", "M34\n{}").replace("S2000 ", "")
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("wrong", "block"),
     [
         (SAMPLE.replace("S2000 ", ""), "G97 M33"),
@@ -131,7 +136,8 @@ def test_a_live_tool_wants_its_speed(wrong: str, block: str) -> None:
     assert errors_and_warnings(wrong, "8:radius=0", "1:radius=.25") == [(block, "live-tool-without-speed")]
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     "right",
     [
         SAMPLE.replace("G97 S2000 M33", "G97 S2000\nM33"),
@@ -150,7 +156,7 @@ def test_a_speed_that_may_be_meant_for_the_live_tool_is_enough(right: str) -> No
     assert "live-tool-without-speed" not in [rule for _, rule, _ in found(right, "8:radius=0", "1:radius=.25")]
 
 
-@pytest.mark.parametrize(
+@looped(
     ("old", "new", "follows"),
     [("S2000", "S#100", "live-tool-without-speed"), ("C.5339 F60.", "C.5339 F#100", "feed-missing-in-polar")],
 )
@@ -164,7 +170,8 @@ def test_a_variable_that_was_never_set_is_one_finding(old: str, new: str, follow
 NEXT_TOOL = "M1\nT0202\nM35\nG0 X5. Z5.\nM30\n"
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("wrong", "block", "severity"),
     [
         (SAMPLE.replace("Z.1 M35", "Z.1"), "M30", "note"),
@@ -181,7 +188,8 @@ def test_a_live_tool_is_stopped_after_its_section(wrong: str, block: str, severi
     assert f"M33 of line {line} was not stopped" in message(wrong, "live-tool-never-stopped", *tools)
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     "right",
     [
         SAMPLE.replace("Z.1 M35", "Z.1").replace("M1\n", "M35\nM1\n"),
@@ -205,8 +213,8 @@ CARRIED = SAMPLE.replace("G99 G0 X2.5", "G0 X2.5")
 TURNING = "T0101\nM34\nG97 S800 M3\nG0 X1. Z.1\n{}\nG0 X5. Z5.\nM30\n"
 
 
-@pytest.mark.one_in(2)
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("work", "block"),
     [
         ("G1 Z-.5 F.008", "G1 Z-.5 F.008"),
@@ -216,6 +224,7 @@ TURNING = "T0101\nM34\nG97 S800 M3\nG0 X1. Z.1\n{}\nG0 X5. Z5.\nM30\n"
         ("G83 Z-1. F.004", "G83 Z-1. F.004"),
         ("G71 U.1 R.05\nG71 P10 Q20 U.02 W.01 F.012\nN10 G0 X.5\nG1 Z-1.\nN20 X1.", "G71 P10 Q20 U.02 W.01 F.012"),
     ],
+    one_in=2,
 )
 def test_the_feed_of_a_mill_is_not_carried_into_turning(work: str, block: str) -> None:
     wrong = CARRIED.replace("M30\n", TURNING.format(work))
@@ -254,7 +263,8 @@ def test_each_g98_is_carried_once() -> None:
     assert errors_and_warnings(program, "8:radius=0") == [("G1 Z-.5 F.008", "turning-feed-not-restored")] * 2
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     "work",
     [
         TURNING.format("G92 X.9 Z-1. F.05\nX.88"),
@@ -270,7 +280,8 @@ def test_a_feed_per_minute_that_is_meant_is_right(work: str) -> None:
     assert errors_and_warnings(CARRIED.replace("M30\n", work), "8:radius=0") == []
 
 
-@pytest.mark.parametrize("machine", ["fanuc", "haas-lathe", "mazak-eia", "siemens-iso", "okuma-osp", "gsk-988"])
+@pytest.mark.ci
+@looped("machine", ["fanuc", "haas-lathe", "mazak-eia", "siemens-iso", "okuma-osp", "gsk-988"])
 def test_the_procedure_is_that_of_one_builder(machine: str) -> None:
     program = CARRIED.replace("S2000 ", "").replace("Z.1 M35", "Z.1").replace("M30\n", TURNING.format("G1 Z-.5 F.008"))
     rules = {"live-tool-without-speed", "live-tool-never-stopped", "turning-feed-not-restored"}
@@ -281,8 +292,9 @@ def test_the_procedure_is_that_of_one_builder(machine: str) -> None:
 # ---- R, the feed mode, the plane ----
 
 
-@pytest.mark.parametrize("radius", ["-.005", ".005", "0", "-.0098", ".0098"])
-@pytest.mark.parametrize("unit", ["inch", "mm"])
+@pytest.mark.ci
+@looped("radius", ["-.005", ".005", "0", "-.0098", ".0098"])
+@looped("unit", ["inch", "mm"])
 def test_r_is_adjusted_either_plus_or_minus(radius: str, unit: str) -> None:
     """Beside a comment that tells the cutter, too."""
     given = f"{float(radius) * (25.4 if unit == 'mm' else 1)}"
@@ -290,8 +302,9 @@ def test_r_is_adjusted_either_plus_or_minus(radius: str, unit: str) -> None:
     assert found(program, f"8:radius={given}") == []
 
 
-@pytest.mark.parametrize("radius", [".245", ".255"])
-@pytest.mark.parametrize("program", [METHOD_A, METHOD_B])
+@pytest.mark.ci
+@looped("radius", [".245", ".255"])
+@looped("program", [METHOD_A, METHOD_B])
 def test_so_is_the_r_of_a_program_of_the_part(program: str, radius: str) -> None:
     assert errors_and_warnings(program.replace("T0101", "T0101 (1/2 INCH END MILL)"), f"1:radius={radius}") == []
 
@@ -299,7 +312,8 @@ def test_so_is_the_r_of_a_program_of_the_part(program: str, radius: str) -> None
 BY_REVOLUTION = re.sub(r"F60\.", "F.03", SAMPLE).replace("F7.", "F.0035")
 
 
-@pytest.mark.parametrize("before", ["", "G99\n"])
+@pytest.mark.ci
+@looped("before", ["", "G99\n"])
 def test_feed_is_per_minute_or_per_revolution(before: str) -> None:
     """G99 in the mode is allowed, and a note at most: F hangs on a spindle that is the C axis."""
     program = BY_REVOLUTION.replace("G98", "G99" if not before else "").replace("X2.15\n", f"X2.15\n{before}", 1)
@@ -309,7 +323,8 @@ def test_feed_is_per_minute_or_per_revolution(before: str) -> None:
     assert found(SAMPLE.replace("G1 G98", "G1").replace("G40\n", "G40 G98\n", 1), "8:radius=0") == []
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("old", "new"),
     [
         ("G40\n", "G18 G40\n"),
@@ -327,7 +342,8 @@ def test_g18_in_the_mode_or_before_it_satisfies_the_guide(old: str, new: str | N
     assert found(SAMPLE.replace(old, new, 1), "8:radius=0") == []
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("old", "new", "block", "rule"),
     [
         ("G12.1\n", "G12.1\nG17\n", "G17", "plane-selected-in-polar"),
@@ -343,7 +359,8 @@ def test_only_g17_and_g19_are_wrong(old: str, new: str, block: str, rule: str) -
 # ---- the offset of the cutter ----
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("old", "new"),
     [
         ('T0808 (3/4" DIA. CUTTER)\n', 'T0808 (3/4" DIA. CUTTER)\nD08\n'),
@@ -360,7 +377,8 @@ def test_d_calls_nothing_on_a_lathe(old: str, new: str) -> None:
     assert (rule, severity) == ("d-word-on-lathe", "error")
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     "before",
     [
         "G71 U.1 R.05\nG71 P10 Q20 U.02 W.01 D1000 F.01",
@@ -384,7 +402,8 @@ def test_a_nose_that_is_not_given_has_no_weight() -> None:
     assert report_of(SAMPLE, MACHINE, "8:radius=0", "8:nose=0").not_evaluated == []
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("machine", "nose", "allowed"), [(MACHINE, 3, "0"), (MACHINE, 9, "0"), ("fanuc", 3, "0 or 9"), ("fanuc", 9, "")]
 )
 def test_the_nose_type_is_that_of_the_machine(machine: str, nose: int, allowed: str) -> None:
@@ -398,7 +417,8 @@ def test_the_page_of_the_nose_type_speaks_of_no_other_machine() -> None:
     assert "9" not in load_all()["nose-type-not-zero"].page.partition("Source:")[0]
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("program", "old", "new"),
     [
         (SAMPLE, "G1 G41 X1.75F7. (1)\n", "G41\nG1 X1.75F7.\n"),
@@ -418,7 +438,8 @@ def test_g41_belongs_beside_the_move_that_begins_the_offset(program: str, old: s
     }
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("old", "new", "reason"),
     [
         ("X2.15\n", "X2.15\nG10 P8 U-.005\n", "G10 P8 U-.005 in line 12 leaves open where X stands"),
@@ -456,16 +477,17 @@ def of_feed(program: str, *tools: str, job: Changes | None = None) -> list[str]:
     return [block for block, rule, _ in found(program, *(tools or TOOLS), job=job) if rule == RULE]
 
 
-@pytest.mark.parametrize("program", [SAMPLE, METHOD_A, METHOD_B])
-@pytest.mark.parametrize("convert", [str, in_mm])
+@pytest.mark.ci
+@looped("program", [SAMPLE, METHOD_A, METHOD_B])
+@looped("convert", [str, in_mm])
 def test_the_feeds_of_the_guide_are_its_recommendation(program: str, convert: Callable[[str], str]) -> None:
     """F20. for positioning and F60. on the way round the part included."""
     assert of_feed(convert(program)) == []
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize("feed", ["10.5", "20.", "30.", "45.", "60."])
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped("feed", ["10.5", "20.", "30.", "45.", "60."], one_in=12)
+@looped(
     ("program", "old", "block", "why"),
     [
         (SAMPLE, "X1.75F7.", "G1 C-.5339 (2)", "it is as near to the center as that of line 19"),
@@ -486,9 +508,9 @@ def test_a_cut_at_more_than_the_feed_for_cutting_is_told(
     assert text.endswith("1 to 10 inch/min for cutting, 30 to 60 inch/min for positioning")
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize("feed", ["1.", "10.", "12.", "20.", "30.", "60."])
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped("feed", ["1.", "10.", "12.", "20.", "30.", "60."], one_in=12)
+@looped(
     ("program", "old"),
     [
         (SAMPLE, "G1 G98 C.5339 F60."),
@@ -503,8 +525,9 @@ def test_positioning_goes_at_any_feed_of_the_ranges_and_between(feed: str, progr
     assert of_feed(program.replace(old, re.sub(r"F\d+\.", f"F{feed}", old), 1)) == []
 
 
-@pytest.mark.parametrize(("feed", "where"), [(".9", "below"), ("60.5", "above")])
-@pytest.mark.parametrize("old", ["G98 C.5339 F60.", "X1.75F7.", "R1.025 F60.", "G40 X-2.15 F60."])
+@pytest.mark.ci
+@looped(("feed", "where"), [(".9", "below"), ("60.5", "above")])
+@looped("old", ["G98 C.5339 F60.", "X1.75F7.", "R1.025 F60.", "G40 X-2.15 F60."])
 def test_beyond_both_ranges_any_move_is_told(feed: str, where: str, old: str) -> None:
     wrong = SAMPLE.replace(old, re.sub(r"F\d+\.", f"F{feed}", old), 1)
     assert len(of_feed(wrong)) == 1
@@ -518,9 +541,9 @@ def test_each_f_of_a_section_is_told_once() -> None:
     assert of_feed(more) == ["G1 C.2 F40.", "C0 F50."]
 
 
-@pytest.mark.one_in(3)
-@pytest.mark.parametrize(("diameter", "cuts"), [(1.25, False), (1.29, False), (1.31, True), (1.4, True)])
-@pytest.mark.parametrize("convert", [str, in_mm])
+@pytest.mark.ci
+@looped(("diameter", "cuts"), [(1.25, False), (1.29, False), (1.31, True), (1.4, True)], one_in=3)
+@looped("convert", [str, in_mm])
 def test_given_stock_decides_whether_the_way_round_cuts(
     diameter: float, cuts: bool, convert: Callable[[str], str]
 ) -> None:
@@ -543,7 +566,8 @@ def test_a_cut_outside_the_stock_is_none() -> None:
     assert of_feed(program, job={"stock": {"diameter": 0.9}}) == []
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("blocks", "told"),
     [
         # A lead in and a lead out on arcs, whose ends lie on the contour; then the contour itself.
@@ -572,7 +596,8 @@ def test_an_unknown_radius_takes_nothing_from_it() -> None:
     assert of_feed(METHOD_B, "8:radius=0") == []
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("feed", "shown"),
     [("25.", "25 mm"), ("25.4", ""), ("250.", ""), ("254.", ""), ("254.0001", "254.0001 mm"), ("254.5", "254.5 mm")],
 )
@@ -585,6 +610,7 @@ def test_limits_in_mm_are_true_as_they_are_shown(feed: str, shown: str) -> None:
         assert text.endswith("25.4 to 254 mm/min for cutting, 762 to 1524 mm/min for positioning")
 
 
+@pytest.mark.ci
 def test_limits_of_a_lathe_of_ones_own_are_rounded_to_what_lies_within() -> None:
     """250 mm is 9.84252 inch: 9.8425 is within, 9.8426 is not."""
     changes = {"feed": {"cutting_maximum": 250.0, "cutting_minimum": 33.333}}
@@ -595,7 +621,7 @@ def test_limits_of_a_lathe_of_ones_own_are_rounded_to_what_lies_within() -> None
         assert all("recommended in the polar mode: 1.3124 to 9.8425 inch/min for cutting" in text for text in told)
 
 
-@pytest.mark.parametrize(
+@looped(
     ("feed", "where", "recommended"),
     [
         ({"cutting_minimum": 25.4, "cutting_maximum": 254.0}, "above the range", "1 to 10 inch/min for cutting"),
@@ -613,7 +639,8 @@ def test_one_range_alone(feed: dict[str, float], where: str, recommended: str) -
 # ---- the approach ----
 
 
-@pytest.mark.parametrize("convert", [str, in_mm])
+@pytest.mark.ci
+@looped("convert", [str, in_mm])
 def test_the_approach_is_od_and_cutter_and_clearance(convert: Callable[[str], str]) -> None:
     """X2.15 of the sample is 1.3 + .75 + .1, X1.8 of the methods 1.25 + .5 + .05."""
     unit, name = (1, "inch") if convert is str else (25.4, "mm")

@@ -89,6 +89,7 @@ def shown(result: Result) -> tuple[int, str, str]:
     return result.exit_code, result.stdout, result.stderr
 
 
+@pytest.mark.ci
 @pytest.mark.one_in(11)
 @pytest.mark.parametrize("form", formats())
 def test_reports_from_the_cache_are_those_of_a_fresh_run(form: str, checked: list[str]) -> None:
@@ -102,6 +103,7 @@ def test_reports_from_the_cache_are_those_of_a_fresh_run(form: str, checked: lis
     assert checked == (["tool.nc"] if form == "html" else [])
 
 
+@pytest.mark.ci
 @pytest.mark.one_in(3)
 @pytest.mark.parametrize("options", [("--part", "--show-silenced"), ("--baseline", "known.json"), ("--statistics",)])
 def test_what_is_added_to_reports_or_taken_from_them(options: tuple[str, ...], checked: list[str]) -> None:
@@ -114,6 +116,7 @@ def test_what_is_added_to_reports_or_taken_from_them(options: tuple[str, ...], c
     assert sorted(checked) == sorted(2 * ["a.nc", "tool.nc", "calls.nc"])
 
 
+@pytest.mark.ci
 def test_a_fixed_program_is_another_one() -> None:
     Path("a.nc").write_text("O0001\n" + GOOD.replace("C-5.", "C\u20135.") + "M30\n")
     before = shown(check("a.nc"))
@@ -156,6 +159,7 @@ CHANGES: dict[str, Callable[[], None]] = {
 }
 
 
+@pytest.mark.ci
 @pytest.mark.one_in(15)
 @pytest.mark.parametrize("name", CHANGES)
 def test_what_has_changed_is_checked_again(name: str) -> None:
@@ -166,7 +170,7 @@ def test_what_has_changed_is_checked_again(name: str) -> None:
     assert after != before
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 @settings(max_examples=12, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.lists(st.sampled_from(list(CHANGES)), min_size=1, max_size=4))
 def test_changes_in_any_order(names: list[str]) -> None:
@@ -183,6 +187,7 @@ def test_changes_in_any_order(names: list[str]) -> None:
         assert shown(check(".", "--format", "json")) == shown(check(".", "--format", "json", "--no-cache"))
 
 
+@pytest.mark.ci
 @pytest.mark.one_in(11)
 @pytest.mark.parametrize(
     ("arguments", "environment"),
@@ -200,6 +205,7 @@ def test_options_and_the_environment_count(arguments: tuple[str, ...], environme
     assert shown(check(".", *arguments, "--format", "json", **environment)) == fresh
 
 
+@pytest.mark.ci
 def test_programs_are_known_by_their_path(checked: list[str], monkeypatch: pytest.MonkeyPatch) -> None:
     """Two files of one content are two programs, and a report names a file as the command line does."""
     shutil.copy("a.nc", "copy.nc")
@@ -216,6 +222,7 @@ def test_programs_are_known_by_their_path(checked: list[str], monkeypatch: pytes
     assert checked == ["../a.nc"]
 
 
+@pytest.mark.ci
 def test_where_it_lies(tmp_path: Path) -> None:
     check("--no-config", "a.nc")
     assert Path(NAME, ".gitignore").read_text() == "*\n"
@@ -229,6 +236,7 @@ def test_where_it_lies(tmp_path: Path) -> None:
     assert (tmp_path / "environment").is_dir()
 
 
+@pytest.mark.ci
 def test_what_is_never_kept(checked: list[str], monkeypatch: pytest.MonkeyPatch) -> None:
     """What has ended by its time, what could not be read, a bug, standard input."""
     for _ in range(2):
@@ -245,7 +253,7 @@ def entries() -> list[Path]:
     return sorted(Path(NAME).rglob("*.cache"))
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 def test_a_broken_cache_is_ignored(checked: list[str]) -> None:
     fresh = shown(check())
     assert entries()
@@ -261,6 +269,7 @@ def test_a_broken_cache_is_ignored(checked: list[str]) -> None:
     assert shown(check()) == fresh
 
 
+@pytest.mark.ci
 def test_a_cache_of_somebody_else_makes_nothing_pass(checked: list[str], tmp_path: Path) -> None:
     """A cache can come with an archive; a verdict of it would be that of whoever wrote it."""
     check()
@@ -275,7 +284,7 @@ def test_a_cache_of_somebody_else_makes_nothing_pass(checked: list[str], tmp_pat
     assert checked
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 @pytest.mark.skipif(sys.platform == "win32", reason="links need more than files there")
 def test_a_link_is_never_followed(tmp_path: Path) -> None:
     (tmp_path / "other").mkdir()
@@ -319,6 +328,7 @@ def git_takes() -> list[str]:
     return subprocess.run(words, capture_output=True, text=True, check=True).stdout.split()
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize("after", range(5))
 def test_a_full_disk_leaves_no_cache_that_git_takes_in(
     after: int, checked: list[str], monkeypatch: pytest.MonkeyPatch
@@ -338,6 +348,7 @@ def test_a_full_disk_leaves_no_cache_that_git_takes_in(
     assert checked == []
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize("content", ["", "*", "!*\n", "* \n!a\n", "*\n" * 500])
 @pytest.mark.parametrize("name", [".gitignore", "CACHEDIR.TAG"])
 def test_a_file_that_says_what_the_folder_is_is_written_anew(name: str, content: str) -> None:
@@ -348,6 +359,7 @@ def test_a_file_that_says_what_the_folder_is_is_written_anew(name: str, content:
     assert Path(NAME, name).read_text() == before
 
 
+@pytest.mark.ci
 def test_the_folder_that_the_user_names_keeps_what_it_says() -> None:
     Path("mine").mkdir()
     for content, left in (("out\n", "out\n"), ("", "*\n")):
@@ -378,6 +390,7 @@ def test_without_a_place_for_the_key_nothing_is_kept(tmp_path: Path, monkeypatch
     assert store.user_key() is None
 
 
+@pytest.mark.ci
 def test_an_older_version_is_removed(checked: list[str]) -> None:
     old = Path(NAME, "0123456789abcdef")
     old.mkdir(parents=True)
@@ -424,6 +437,7 @@ def test_two_processes_at_once(tmp_path: Path) -> None:
     assert not list(Path(folder).rglob("*.new"))
 
 
+@pytest.mark.ci
 def test_an_interrupted_run_keeps_what_it_has_finished(checked: list[str], monkeypatch: pytest.MonkeyPatch) -> None:
     fresh = tasks._check
 

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from cases import looped
 from programs import ROOT, report_of, said, tables_of, trace_of
 
 from polarcheck.program.execution import called_programs, execute, programs
@@ -116,7 +117,8 @@ G0 X1.
 """
 
 
-@pytest.mark.parametrize("skips", [False, True])
+@pytest.mark.ci
+@looped("skips", [False, True])
 def test_a_program_that_is_never_called_changes_nothing(folder: Path, skips: bool) -> None:
     """Named behind a jump, its file is read; nothing of it is reported, executed, or decides what is."""
     program = "O1\nT0101\nG98 G0 X60. C0\n{}G4 X1.\nGOTO 10\nM98 P1234\nN10 M98 P5\nG12.1\nG1 X40. F200\nG13.1\nM30\n"
@@ -138,7 +140,8 @@ def test_what_one_state_of_block_skip_calls_is_no_part_of_the_other(folder: Path
     assert [len(text.source.parts) for text in (off, on)] == [1, 0]
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("block", "rule"), [("(A (B)", ""), ("g0 x5.", "lower-case-word"), ("G0 X1. X2.", "word-repeated"), ("(AB", "")]
 )
 def test_what_is_wrong_in_a_text_that_one_state_of_block_skip_calls(folder: Path, block: str, rule: str) -> None:
@@ -212,6 +215,7 @@ def test_nothing_outside_the_folders_is_read(folder: Path, counts: Counter[str])
     assert counts["files"] == 0
 
 
+@pytest.mark.ci
 def test_not_more_than_a_hundred_files_are_looked_for(folder: Path, counts: Counter[str]) -> None:
     write(folder, **{f"O{number}": SUB.format(1) for number in range(1000, 1150)})
     calls = "".join(f"M98 P{number}\n" for number in range(1000, 1150))
@@ -220,7 +224,7 @@ def test_not_more_than_a_hundred_files_are_looked_for(folder: Path, counts: Coun
     assert {finding.rule for finding in report.findings} == {"subprogram-missing"}
 
 
-@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "latin-1", "utf-16"])
+@looped("encoding", ["utf-8", "utf-8-sig", "latin-1", "utf-16"])
 def test_joined_texts_are_those_that_were_read(encoding: str) -> None:
     sample = (ROOT / "sample_programs" / "macro_polygon.nc").read_bytes()
     files = [
@@ -272,8 +276,8 @@ RAMP = "G12.1\nG1 G42 X40. F200\nC10.\nX-40.\nC-10.\nX40.\nC0\nG40 X60.\nG13.1\n
 """Its start-up needs 4 mm in X: too short where X is 41 before it."""
 
 
-@pytest.mark.one_in(4)
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("starts", "ends"),
     [
         ([60, 41], " (in the call of line 7)"),
@@ -281,6 +285,7 @@ RAMP = "G12.1\nG1 G42 X40. F200\nC10.\nX-40.\nC-10.\nX40.\nC0\nG40 X60.\nG13.1\n
         ([41, 60, 41], " (in the call of line 5 and 1 more)"),
         ([41, 41], "on the diameter"),
     ],
+    one_in=4,
 )
 def test_a_finding_of_one_call_says_of_which(folder: Path, starts: list[int], ends: str) -> None:
     calls = "".join(f"G0 X{x}. C0\n{{}}\n" for x in starts)

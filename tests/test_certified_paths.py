@@ -9,6 +9,7 @@ from typing import Any
 
 import msgspec
 import pytest
+from cases import looped
 
 from polarcheck.geometry.comparison import polyline
 from polarcheck.rewrite.certify.golden import GoldenMove
@@ -74,7 +75,7 @@ def test_the_same_moves_and_their_halves_are_the_same() -> None:
     assert golden([], []) == []
 
 
-@pytest.mark.parametrize(
+@looped(
     ("ours", "said"),
     [
         (square()[:-1], "line 0: 20.000 mm from a.jsonl"),
@@ -102,7 +103,7 @@ def test_c_that_the_golden_trace_alone_lacks() -> None:
     ]
 
 
-@pytest.mark.parametrize(
+@looped(
     ("ours", "theirs"),
     [
         (square(entry=30.0), square()),
@@ -118,7 +119,7 @@ def test_the_same_path_up_to_one_turn(ours: list[Move], theirs: list[Move]) -> N
     assert other(ours, theirs) == ([], [])
 
 
-@pytest.mark.parametrize(
+@looped(
     ("ours", "theirs", "said"),
     [
         (

@@ -11,6 +11,7 @@ from typing import Any
 import jsonschema
 import msgspec
 import pytest
+from cases import looped
 from click.testing import CliRunner, Result
 from polarcheck.errors import TooHardError
 from programs import ROOT
@@ -63,7 +64,7 @@ def edit(path: str, before: str, after: str, count: int = -1) -> None:
 # ---- the page ----
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 def test_the_example_prints_what_its_page_shows(example: Path) -> None:
     result = certify(example)
     assert result.exit_code == 0
@@ -72,7 +73,7 @@ def test_the_example_prints_what_its_page_shows(example: Path) -> None:
     assert result.stdout.split("\n") == [line.removeprefix("    ") for line in shown[1].rstrip().split("\n")] + [""]
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 def test_the_manifest_of_the_page_is_one(example: Path) -> None:
     """The page shows the example without two of its features."""
     block = re.search(r"((?:    .*\n|\n)+)", PAGE[PAGE.index('    title = "Example') :])
@@ -87,8 +88,8 @@ def test_the_manifest_of_the_page_is_one(example: Path) -> None:
 CONTOUR, ROUND, INDEXED = "fanuc/contour.nc", "fanuc/arc-above-180.nc", "fanuc/indexing.nc"
 
 
-@pytest.mark.one_in(2)
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("file", "before", "after"),
     [
         (CONTOUR, "\nG", "\nN10 G"),
@@ -98,14 +99,15 @@ CONTOUR, ROUND, INDEXED = "fanuc/contour.nc", "fanuc/arc-above-180.nc", "fanuc/i
         (ROUND, "G3 C-9.798 I-10.000 J-9.798", "G3 C-9.798 R-14."),
         (INDEXED, "C240.0", "C-120."),
     ],
+    one_in=2,
 )
 def test_other_words_for_the_same_path_pass(example: Path, file: str, before: str, after: str) -> None:
     edit(file, before, after)
     assert reasons(f"{Path(file).stem}/lathe-7") == []
 
 
-@pytest.mark.one_in(5)
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("file", "before", "after", "said"),
     [
         (
@@ -128,6 +130,7 @@ def test_other_words_for_the_same_path_pass(example: Path, file: str, before: st
         (INDEXED, "C120.0", "C125.0", "error: "),
         (INDEXED, "G1 C20.000 F200.000", "G1 C20.000 F60000.", "line 13: warning: C axis would turn"),
     ],
+    one_in=5,
 )
 def test_another_path_fails(example: Path, file: str, before: str, after: str, said: str) -> None:
     edit(file, before, after)
@@ -135,6 +138,7 @@ def test_another_path_fails(example: Path, file: str, before: str, after: str, s
     assert any(said in reason for reason in found), found
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize(
     ("turned", "said"),
     [("C235.0", "section 2: it is turned by 5.000 deg against indexing/lathe-7"), ("C240.0", "line 25: 2.793 mm from")],
@@ -149,7 +153,7 @@ def test_an_index_of_the_other_control_that_is_another(example: Path, turned: st
     assert reason.startswith(said)
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 def test_a_fault_of_one_control_is_none_of_the_other_that_runs_its_golden_trace(example: Path) -> None:
     edit("post.toml", 'same_path_as = "lathe-7"', 'same_path_as = "lathe-7"\ngolden = "golden/8-{feature}.jsonl"')
     assert certify(example, "--update", "--case", "contour/lathe-8").exit_code == 0
@@ -161,7 +165,7 @@ def test_a_fault_of_one_control_is_none_of_the_other_that_runs_its_golden_trace(
     assert re.match(r"line \d+: 0\.100 mm from contour/lathe-7", reasons("contour/lathe-8")[0])
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 def test_the_start_angle_of_the_whole_part_is_free(example: Path) -> None:
     manifest = example.read_text("utf-8").replace("turned = 0.0\n", "")
     example.write_text(manifest, "utf-8")
@@ -172,7 +176,7 @@ def test_the_start_angle_of_the_whole_part_is_free(example: Path) -> None:
     ]
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 def test_corners_that_controls_go_round_in_another_way_are_named(example: Path) -> None:
     edit("post.toml", 'path = "programmed"', "")
     found = {entry["name"]: entry["reasons"] for entry in certificate(example)["cases"] if entry["reasons"]}
@@ -188,6 +192,7 @@ NEGATIVE = 'findings = [{ rule = "rapid-in-polar", block = "G0 G40 X50.000" }]'
 
 
 @pytest.mark.one_in(2)
+@pytest.mark.ci
 @pytest.mark.parametrize(
     ("findings", "said"),
     [
@@ -213,6 +218,7 @@ def test_a_program_that_must_fail(example: Path, findings: str, said: str | None
     assert len(found) <= 1
 
 
+@pytest.mark.ci
 def test_a_radius_that_is_not_known_is_no_pass(example: Path) -> None:
     edit("post.toml", "[tools.1]\nradius = 4.0\n", "")
     first, second = reasons("contour/lathe-7")
@@ -226,7 +232,7 @@ def test_a_radius_that_is_not_known_is_no_pass(example: Path) -> None:
 # ---- exit codes ----
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 def test_a_program_that_is_not_there(example: Path) -> None:
     Path(CONTOUR).unlink()
     result = certify(example)
@@ -235,15 +241,17 @@ def test_a_program_that_is_not_there(example: Path) -> None:
     assert "the path is not compared: contour/lathe-7 was not run" in " ".join(result.stdout.split())
 
 
-@pytest.mark.one_in(4)
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("arguments", "status"),
     [((), 0), (("--strict",), 1), (("--case", "contour/lathe-8"), 0), (("--case", "contour/lathe"), 2)],
+    one_in=4,
 )
 def test_what_is_missing_fails_where_it_is_asked_for(example: Path, arguments: tuple[str, ...], status: int) -> None:
     assert certify(example, *arguments).exit_code == status
 
 
+@pytest.mark.ci
 def test_a_certificate_of_nothing_is_none(example: Path) -> None:
     edit("post.toml", "{feature}.nc", "{feature}.tap")
     edit("post.toml", "golden = ", "# golden = ")
@@ -255,7 +263,7 @@ def test_a_certificate_of_nothing_is_none(example: Path) -> None:
     assert "post.toml: no cases" in result.stderr
 
 
-@pytest.mark.parametrize(
+@looped(
     ("manifest", "said"),
     [
         ("title = \n", 'post.toml:1: Invalid value at column 9; "title" has no value behind the =: write one'),
@@ -279,6 +287,10 @@ def test_a_certificate_of_nothing_is_none(example: Path) -> None:
     ],
 )  # fmt: skip
 def test_a_fault_of_the_manifest_is_one_line(manifest: str, said: str) -> None:
+    assert_is_refused(manifest, said)
+
+
+def assert_is_refused(manifest: str, said: str) -> None:
     Path("post.toml").write_text(manifest, "utf-8")
     result = certify("post.toml")
     assert result.exit_code == 2
@@ -306,9 +318,10 @@ CASE = "[controls.a]\n[[case]]\nfeature = 'contour'\ncontrol = 'a'\nprogram = 'a
     ],
 )  # fmt: skip
 def test_a_fault_of_a_case_is_one_line(more: str, said: str) -> None:
-    test_a_fault_of_the_manifest_is_one_line(CASE + more, said)
+    assert_is_refused(CASE + more, said)
 
 
+@pytest.mark.ci
 def test_a_job_file_applies_where_the_manifest_names_it(example: Path) -> None:
     edit("post.toml", "[tools.1]\nradius = 4.0\n", 'config = "lathes/jobs.toml"\n')
     Path("lathes").mkdir()
@@ -329,7 +342,7 @@ def test_a_job_file_applies_where_the_manifest_names_it(example: Path) -> None:
 # ---- golden traces ----
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 def test_an_update_says_what_changes_and_keeps_what_fails(example: Path) -> None:
     before = Path("golden/indexing.jsonl").read_bytes()
     edit(CONTOUR, "X50.000 C0. F1000.000\nG1 Z-3", "X52.000 C0. F1000.000\nG1 Z-3")
@@ -350,7 +363,7 @@ def test_an_update_says_what_changes_and_keeps_what_fails(example: Path) -> None
     assert certify(example, "--update", "--case", "contour/lathe-7").stderr == "golden/contour.jsonl: unchanged\n"
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 @pytest.mark.parametrize(
     ("golden", "said"),
     [
@@ -369,6 +382,7 @@ def test_an_update_overwrites_no_other_file(example: Path, golden: str, said: st
     assert example.read_text("utf-8").startswith(text)
 
 
+@pytest.mark.ci
 def test_a_golden_trace_that_is_none(example: Path) -> None:
     Path("golden/contour.jsonl").write_text('{"section": 0}\n', "utf-8")
     (reason,) = reasons("contour/lathe-7")
@@ -380,7 +394,7 @@ def test_a_golden_trace_that_is_none(example: Path) -> None:
 # ---- reports ----
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 def test_the_page_escapes_what_others_have_written(example: Path) -> None:
     edit("post.toml", "Example post 1.0", "<script>alert(1)</script>\\u001b[31m")
     edit("post.toml", "the control takes no Z", "<b>no Z</b>")
@@ -401,7 +415,7 @@ def test_a_report_overwrites_no_file_of_the_run(example: Path, output: str) -> N
     assert certify(example, "-o", output).exit_code == 2
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 def test_many_controls_stand_below_each_other(example: Path) -> None:
     controls = "".join(f"[controls.a-lathe-with-a-long-name-{number}]\n" for number in range(9))
     edit("post.toml", "[feature.contour]\n", f"{controls}\n[feature.contour]\n")
@@ -414,7 +428,7 @@ def test_many_controls_stand_below_each_other(example: Path) -> None:
     assert all(len(line) <= 100 for part in shown for line in part.splitlines())
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 def test_the_certificate_and_the_manifest_fit_their_schemas(example: Path) -> None:
     import tomllib
 
@@ -426,11 +440,13 @@ def test_the_certificate_and_the_manifest_fit_their_schemas(example: Path) -> No
         jsonschema.validate(value, schema)
 
 
+@pytest.mark.ci
 def test_the_matrix_of_some_cases_has_no_others(example: Path) -> None:
     shown = certify(example, "--case", "contour/lathe-8").stdout
     assert shown == "Example post 1.0\n\n         lathe-8\ncontour  pass\n\n1 case: 1 pass, 0 fail\n"
 
 
+@pytest.mark.ci
 def test_python_gives_the_certificate_of_the_command(example: Path) -> None:
     found = polarcheck.certify("post.toml", cases=["contour/lathe-7"])
     assert json.loads(msgspec.json.encode(found)) == certificate(example, "--case", "contour/lathe-7")
@@ -441,7 +457,7 @@ def test_python_gives_the_certificate_of_the_command(example: Path) -> None:
 # ---- certify init ----
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 def test_the_suite_is_a_manifest_with_drawings(tmp_path: Path) -> None:
     from polarcheck.program.machines import drawing_file
     from polarcheck.rewrite.certify.jobs import JOBS
@@ -468,7 +484,7 @@ def test_the_suite_is_a_manifest_with_drawings(tmp_path: Path) -> None:
     }
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 def test_files_are_relative_to_the_manifest(example: Path) -> None:
     certify("init", "suite")
     part = 'shape = "hexagon"\nacross_flats = 24.0\nturned = 0.0\nz = -3.0\n'
@@ -483,7 +499,8 @@ def test_files_are_relative_to_the_manifest(example: Path) -> None:
     assert found["state"] == "fail"
 
 
-@pytest.mark.parametrize("name", ["contour", "arc-above-180"])
+@pytest.mark.ci
+@looped("name", ["contour", "arc-above-180"])
 def test_drawing_and_part_of_a_job_are_one(example: Path, name: str) -> None:
     certify("init", "suite")
     arguments = [
@@ -500,7 +517,7 @@ def test_drawing_and_part_of_a_job_are_one(example: Path, name: str) -> None:
     assert "agrees with" in result.stdout
 
 
-@pytest.mark.parametrize(
+@looped(
     ("arguments", "said"),
     [
         (("post.toml", "x"), "x: expected one manifest"),
@@ -520,6 +537,7 @@ def test_arguments_that_do_not_fit(arguments: tuple[str, ...], said: str) -> Non
 # ---- the time of a case ----
 
 
+@pytest.mark.ci
 def test_paths_are_compared_within_the_time_of_their_case(example: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Two paths that cross each other by the thousand took minutes, in which nothing ended the run."""
     limits: list[float] = []

@@ -9,6 +9,7 @@ from pathlib import Path
 import msgspec
 import numpy as np
 import pytest
+from cases import looped
 from click.testing import CliRunner
 from programs import job_of, machine_of, moves_of, report_of, said
 
@@ -87,7 +88,8 @@ def places(report: FileReport) -> list[tuple[int, str, object]]:
 # ---- each channel is its twin ----
 
 
-@pytest.mark.parametrize("order", list(itertools.permutations(PROGRAMS)))
+@pytest.mark.ci
+@looped("order", list(itertools.permutations(PROGRAMS)))
 def test_each_channel_gives_the_tool_center_path_of_a_file_of_its_own(order: tuple[int, ...]) -> None:
     file = "%\nO1000(PART)\n" + "".join(f"${number}\n{PROGRAMS[number]}" for number in order) + "%\n"
     found = ends_of(file, *TOOLS)
@@ -98,6 +100,7 @@ def test_each_channel_gives_the_tool_center_path_of_a_file_of_its_own(order: tup
         assert np.array_equal(found[f"${number}"], twin.end)
 
 
+@pytest.mark.ci
 def test_the_order_of_the_channels_makes_no_difference() -> None:
     reports = []
     for order in ((1, 2), (2, 1)):
@@ -107,8 +110,8 @@ def test_the_order_of_the_channels_makes_no_difference() -> None:
     assert reports[0] == reports[1] == [("$1", "rapid-in-polar", "G0 C10."), ("$2", "bad-number", "C-.5 F.")]
 
 
-@pytest.mark.one_in(11)
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     "file",
     [
         "O1\n$1\n{0}$2\n{1}",
@@ -126,8 +129,9 @@ def test_the_order_of_the_channels_makes_no_difference() -> None:
         "O1\n$1 !2L1\n{0}$2!1L1\n{1}",
         "O1\n$3\n{1}$1\n{0}",
     ],
+    one_in=11,
 )
-@pytest.mark.parametrize("ending", ["\n", "\r\n", "\r"])
+@looped("ending", ["\n", "\r\n", "\r"])
 def test_marks_of_channels_as_they_are_written(file: str, ending: str) -> None:
     program = file.format(FIRST, SECOND).replace("\r\n", "\n").replace("\n", ending)
     found = ends_of(program, *TOOLS)
@@ -167,7 +171,8 @@ def test_a_channel_without_a_program_is_none() -> None:
     assert report.polar_sections[0].channel is msgspec.UNSET
 
 
-@pytest.mark.parametrize("rest", ["", "\n", "(NOT USED)\n", "!1L1\n", "%\n"])
+@pytest.mark.ci
+@looped("rest", ["", "\n", "(NOT USED)\n", "!1L1\n", "%\n"])
 def test_nor_is_one_with_what_stands_before_all_of_them_alone(rest: str) -> None:
     report = report_of(f"%\nO1\n#500=1\n$1\n{FIRST}$2\n{rest}", "fanuc", *TOOLS)
     assert said(report) == []
@@ -175,6 +180,7 @@ def test_nor_is_one_with_what_stands_before_all_of_them_alone(rest: str) -> None
     assert list(traces_of(f"O1\n$1\n{FIRST}$2\n{rest}$3\n")) == [""]
 
 
+@pytest.mark.ci
 def test_what_stands_before_the_first_channel_is_in_all_of_them() -> None:
     head = "O1\nG98 G40\nT0101\nG0 X60. C0\n"
     body = "G12.1\nG1 X40. F200\nC10.\nX60.\nG13.1\nM30\n"
@@ -194,7 +200,8 @@ SUBPROGRAM = "G12.1\nG1 X40. F200\nC10.\nX60.\nG13.1\nM99\n"
 CALLS = "G98 G40\nT0{0}0{0}\nG0 X60. C0\nM98 P2000\nM30\n"
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     "file",
     [
         f"O1\n$1\n{CALLS.format(1)}O2000\n{SUBPROGRAM}$2\n{CALLS.format(2)}",
@@ -219,7 +226,8 @@ def test_a_fault_in_a_program_that_two_channels_call_is_told_once() -> None:
     assert lines == {"$1": [19], "$2": [19]}
 
 
-@pytest.mark.parametrize("channel", [1, 2])
+@pytest.mark.ci
+@looped("channel", [1, 2])
 def test_a_program_that_another_channel_calls_runs_there_alone(channel: int) -> None:
     # By itself it would lack the F and the tool of its caller.
     program = f"O2000\n{SUBPROGRAM.replace(' F200', '')}"
@@ -233,6 +241,7 @@ def test_a_program_that_another_channel_calls_runs_there_alone(channel: int) -> 
     assert places(report_of(wrong, "fanuc", *TOOLS))[0][1:] == ("rapid-in-polar", f"${channel}")
 
 
+@pytest.mark.ci
 def test_many_calls_of_another_channel_read_it_once() -> None:
     calls = "".join(f"M98 P{number}\n" for number in range(1000, 1400))
     programs = "".join(f"O{number}\nG0 X{number}.\nM99\n" for number in range(1000, 1400))
@@ -246,7 +255,8 @@ def test_a_program_ends_with_m99() -> None:
     assert said(report_of(file, "fanuc", *TOOLS)) == []
 
 
-@pytest.mark.parametrize("channel", [1, 2])
+@pytest.mark.ci
+@looped("channel", [1, 2])
 def test_block_skip_of_one_channel(channel: int) -> None:
     skipped = {number: PROGRAMS[number] for number in (1, 2)}
     skipped[channel] = (
@@ -258,7 +268,7 @@ def test_block_skip_of_one_channel(channel: int) -> None:
     assert found.message.endswith("(with block skip off)")
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 def test_common_variables_of_another_channel_are_not_vacant() -> None:
     reads = "G98 G40\nT0202\nG0 X60. C0\nG12.1\nG1 X40. F200\nC#{0}\nX60.\nG13.1\nM30\n"
     for number in (101, 501):
@@ -279,9 +289,9 @@ def test_common_variables_of_another_channel_are_not_vacant() -> None:
 # ---- waits ----
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize("wait", ["!2L1", "!1L10", "!L3", "!1", "!12L2", "! 2 L 1", "!2l1", "!2L1!3L1", "!9L99999"])
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped("wait", ["!2L1", "!1L10", "!L3", "!1", "!12L2", "! 2 L 1", "!2l1", "!2L1!3L1", "!9L99999"], one_in=12)
+@looped(
     "block",
     ["{}", "/{}", "N10{}", "{}G1 X39.", "G1 X39.{}", "G1{}X39.", "#101=5 {}", "IF[#101GT0]GOTO5 {}", "{}(WAIT)"],
 )
@@ -294,7 +304,8 @@ def test_a_wait_is_a_comment(wait: str, block: str) -> None:
     assert np.array_equal(moves_of(waits).end, moves_of(plain).end)
 
 
-@pytest.mark.parametrize("wait", ["M200", "M200 P12", "M100P123", "M82"])
+@pytest.mark.ci
+@looped("wait", ["M200", "M200 P12", "M100P123", "M82"])
 def test_a_wait_by_an_m_code_is_no_fault(wait: str) -> None:
     file = f"O1\n$1\n{FIRST.replace('G13.1', f'G13.1{chr(10)}{wait}')}$2\n{wait}\n{SECOND}"
     assert said(report_of(file, "fanuc", *TOOLS)) == []
@@ -331,7 +342,7 @@ def test_what_is_no_mark_is_a_stray_character(machine: str, block: str, rule: st
     assert report.findings[0].channel is msgspec.UNSET
 
 
-@pytest.mark.parametrize("comment", ["($2)", "(WAIT !2L1)", "(A\n", "G0 X60. ($1 AND $2)", "($1\n$)"])
+@looped("comment", ["($2)", "(WAIT !2L1)", "(A\n", "G0 X60. ($1 AND $2)", "($1\n$)"])
 def test_what_stands_in_a_comment_is_no_mark(comment: str) -> None:
     source = read_source(f"O1\n{comment}\nG0 X60.\nM30\n".encode())
     assert channels(source, "$") == [source]
@@ -342,7 +353,7 @@ def test_marks_behind_the_end_of_the_file_are_none() -> None:
     assert channels(source, "$") == [source]
 
 
-@pytest.mark.parametrize("machine", ["haas-lathe", "gsk-988", "lsis"])
+@looped("machine", ["haas-lathe", "gsk-988", "lsis"])
 def test_a_control_without_channels_reads_them_as_before(machine: str) -> None:
     report = report_of("O1\n$1\nG0 X60.\nM30\n$2\nG0 X60.\nM30\n", machine)
     assert report.findings
@@ -350,7 +361,7 @@ def test_a_control_without_channels_reads_them_as_before(machine: str) -> None:
     assert {line for line, rule in said(report) if rule in ("stray-character", "bad-number")} >= {2}
 
 
-@pytest.mark.parametrize("machine", ["okuma-osp", "siemens-iso", "siemens-transmit"])
+@looped("machine", ["okuma-osp", "siemens-iso", "siemens-transmit"])
 def test_where_the_language_has_the_mark_it_parts_no_channels(machine: str) -> None:
     report = report_of("O1\nG0 X60.\nX=$1\nM30\n", machine)
     assert report.findings or report.not_evaluated
@@ -366,16 +377,15 @@ def test_remarks_and_comments_stand_in_the_order_of_the_file() -> None:
 # ---- hostile ----
 
 
-@pytest.mark.one_in(7)
-@pytest.mark.parametrize(
-    "line", ["$1\n", "$1\n$2\n", "O1$1\n!2L1\n", "$9 !1\n", "$1!1L1!2L2(A)\n", "N1 $3;$4;\n", "!1L1;"]
-)
+@pytest.mark.ci
+@looped("line", ["$1\n", "$1\n$2\n", "O1$1\n!2L1\n", "$9 !1\n", "$1!1L1!2L2(A)\n", "N1 $3;$4;\n", "!1L1;"], one_in=7)
 def test_very_many_marks(line: str) -> None:
     report = report_of("O1\n" + line * 100_000, "fanuc", job={"run": {"max_seconds": 60}})
     assert not {"stray-character", "bad-number"} & {rule for _, rule in said(report)}
     assert len(report.findings) < 20
 
 
+@pytest.mark.ci
 def test_nine_channels() -> None:
     file = "O1\n" + "".join(f"${number}\n{FIRST}" for number in range(9, 0, -1))
     report = report_of(file, "fanuc", *TOOLS)
@@ -383,6 +393,7 @@ def test_nine_channels() -> None:
     assert [section.channel for section in report.polar_sections] == [f"${number}" for number in range(9, 0, -1)]
 
 
+@pytest.mark.ci
 def test_other_bytes_than_of_ascii_keep_their_places() -> None:
     file = f"O1(H\u00dcLSE \u2013 1)\n$1\n(\u00c4)\n{FIRST}$2\n{SECOND.replace('C-.5', 'G0 C-.5')}"
     for encoding in ("utf-8", "latin-1", "utf-16"):
@@ -407,6 +418,7 @@ def said_by(command: str, *options: str) -> str:
     return CliRunner().invoke(main, [command, "a.nc", "--tool", "1:radius=2", *options]).stdout
 
 
+@pytest.mark.ci
 def test_reports_name_the_channel() -> None:
     assert "at   a.nc:8:1, channel $1\n" in said_by("check")
     assert said_by("check", "--format", "concise").startswith("a.nc:8:1: error: $1: G0 cannot")
@@ -417,7 +429,8 @@ def test_reports_name_the_channel() -> None:
     assert {missing["channel"] for missing in report["not_evaluated"]} == {"$1", "$2"}
 
 
-@pytest.mark.parametrize("path", [(), ("--path", "tool"), ("--path", "programmed")])
+@pytest.mark.ci
+@looped("path", [(), ("--path", "tool"), ("--path", "programmed")])
 def test_the_trace_names_the_channel(path: tuple[str, ...]) -> None:
     items = [json.loads(line) for line in said_by("trace", "--format", "jsonl", *path).splitlines()]
     assert [name for name, _ in itertools.groupby(item["channel"] for item in items)] == ["$1", "$2"]
@@ -426,6 +439,7 @@ def test_the_trace_names_the_channel(path: tuple[str, ...]) -> None:
     assert [row.split(",")[at] for row in rows] == [item["channel"] for item in items]
 
 
+@pytest.mark.ci
 def test_a_finding_and_what_follows_from_it_are_of_one_channel() -> None:
     file = f"O1\n$1\n{FIRST}$2\n{FIRST.replace('T0101', 'T0202').replace('C10.', 'Y10.')}"
     report = report_of(file, "fanuc", *TOOLS)
@@ -437,7 +451,8 @@ def test_a_finding_and_what_follows_from_it_are_of_one_channel() -> None:
     assert all(channels_of(found) == {"$2"} for found in report.findings)
 
 
-@pytest.mark.parametrize("ends", ["M99", "M30"])
+@pytest.mark.ci
+@looped("ends", ["M99", "M30"])
 def test_the_mode_is_open_where_the_main_program_of_a_channel_ends(ends: str) -> None:
     """M99 begins the program of a channel again; of a file of its own it may return to a caller that has the G13.1."""
     section = "G98 G0 X60. C0\nG12.1\nG1 X10. F200\nC5.\nX60. C0\n"

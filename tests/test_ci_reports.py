@@ -16,6 +16,7 @@ import markdown_it
 import msgspec
 import pytest
 import xmlschema
+from cases import looped
 from hypothesis import given
 from hypothesis import strategies as st
 from test_cli import COMPENSATED, GOOD, RAPID, RAPID_ONLY, call, check, make
@@ -116,7 +117,7 @@ def outcomes(root: ElementTree.Element) -> dict[tuple[str, str], str]:
 # ---- all of them ----
 
 
-@pytest.mark.parametrize("form", CI_FORMATS)
+@looped("form", CI_FORMATS)
 def test_nasty_text_is_no_fault_and_all_is_the_same_twice(form: str) -> None:
     text = shown(form, nasty(), file(path="b.nc"), unread(NASTY, path="n.nc"))
     assert text == shown(form, nasty(), file(path="b.nc"), unread(NASTY, path="n.nc"))
@@ -124,8 +125,8 @@ def test_nasty_text_is_no_fault_and_all_is_the_same_twice(form: str) -> None:
     assert text.endswith("\n")
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize("form", OF_MANY)
+@pytest.mark.ci
+@looped("form", OF_MANY, one_in=12)
 def test_the_exit_code_is_that_of_the_text(form: str) -> None:
     make(a__nc=RAPID, b__nc=GOOD, c__nc=COMPENSATED)
     assert check("a.nc", "b.nc", *RAPID_ONLY, "--format", form).exit_code == 1
@@ -154,12 +155,13 @@ def test_formats_for_people_stand_first() -> None:
 # ---- paths ----
 
 
+@pytest.mark.ci
 @given(st.text(st.characters(codec=None) | st.sampled_from("\\xuU0af"), max_size=20))
 def test_what_is_spelled_out_of_a_name_can_be_read_back(name: str) -> None:
     assert unspelled(spelled(name)) == name
 
 
-@pytest.mark.parametrize(
+@looped(
     ("path", "expected"),
     [
         ("a.nc", "nc/lathe 3/a.nc"),
@@ -238,6 +240,7 @@ def test_no_text_of_a_program_is_a_link_in_sarif() -> None:
     assert "](" not in result["message"]["text"]
 
 
+@pytest.mark.ci
 def test_sarif_has_the_page_of_each_rule() -> None:
     found = [finding(rule=name, line=line) for line, name in enumerate(load_all(), 1)]
     run = sarif(file(*found))
@@ -251,6 +254,7 @@ def test_sarif_has_the_page_of_each_rule() -> None:
         assert "(expect:" not in rule["help"]["text"]
 
 
+@pytest.mark.ci
 def test_pages_mean_in_markdown_what_they_say() -> None:
     reader = markdown_it.MarkdownIt()
     for rule in load_all().values():
@@ -280,6 +284,7 @@ def test_sarif_keeps_what_is_silenced() -> None:
     assert new["baselineState"] == "new"
 
 
+@pytest.mark.ci
 def test_a_baseline_of_the_command_makes_the_others_new() -> None:
     make(a__nc=RAPID)
     assert call("baseline", "create", "a.nc", "-o", "known.json").exit_code == 0
@@ -295,8 +300,8 @@ def test_a_baseline_of_the_command_makes_the_others_new() -> None:
     assert fresh["runs"][0]["results"][0]["baselineState"] == "new"
 
 
-@pytest.mark.one_in(10)
-@pytest.mark.parametrize("form", OF_MANY)
+@pytest.mark.ci
+@looped("form", OF_MANY, one_in=10)
 def test_many_files_are_written_as_few_are(form: str) -> None:
     """Piece by piece, and where the format can file by file, as they are finished."""
     for number in range(12):
@@ -476,6 +481,7 @@ def test_gitlab_fingerprints_differ_and_stay() -> None:
 # ---- junit ----
 
 
+@pytest.mark.ci
 def test_junit_fits_its_schema_and_the_schema_can_refuse() -> None:
     root = junit(nasty(), file(path="b.nc"), file(path="c.nc", sections=0), unread(NASTY, path="n.nc"))
     failure = next(root.iter("failure"))
@@ -579,6 +585,7 @@ def test_json_lines_say_what_json_says() -> None:
 # ---- statistics ----
 
 
+@pytest.mark.ci
 def test_statistics_stand_in_place_of_the_findings() -> None:
     make(a__nc=RAPID + RAPID, b__nc=RAPID, c__nc=GOOD)
     result = check("a.nc", "b.nc", "c.nc", *RAPID_ONLY, "--statistics")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from cases import looped
 from programs import Changes, report_of, said, trace_of
 
 from polarcheck.columns.modes import live_tool
@@ -28,8 +29,8 @@ def citizen(text: str, changes: Changes | None = None) -> FileReport:
     return report_of(text, "citizen", "11:radius=1,nose=0", changes=changes)
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     "spindle",
     [
         "M83 S3=3000",
@@ -48,15 +49,14 @@ def test_a_sound_program_passes(spindle: str) -> None:
     assert (report.verdict, said(report), report.not_evaluated) == ("pass", [], [])
 
 
-@pytest.mark.parametrize(
-    "switch", ["G12.1 E = C D0", "G12.1D0E=C", "G12.1 E= C D0", "G 12.1 D 0 E =C", "G12.1\tE\t=\tC D0"]
-)
+@pytest.mark.ci
+@looped("switch", ["G12.1 E = C D0", "G12.1D0E=C", "G12.1 E= C D0", "G 12.1 D 0 E =C", "G12.1\tE\t=\tC D0"])
 def test_blanks_stand_anywhere(switch: str) -> None:
     report = citizen(program(switch=switch))
     assert (report.verdict, said(report), report.not_evaluated) == ("pass", [], [])
 
 
-@pytest.mark.parametrize(
+@looped(
     ("spindle", "speed"),
     [
         ("M83 S3=3000", 3000),
@@ -87,7 +87,7 @@ def test_the_head_of_a_post() -> None:
     assert (said(report), report.not_evaluated) == ([], [])
 
 
-@pytest.mark.parametrize("plane", ["G16 C9.0", "G19", "G16C9."])
+@looped("plane", ["G16 C9.0", "G19", "G16C9."])
 def test_another_plane_of_the_mode_is_not_looked_at(plane: str) -> None:
     section = f"G12.1 E=C D0\n{plane}\nG1 Z-5. F200\nY5.\nG2 Y8. Z-8. R3.\nY0\nG13.1\n"
     report = citizen(f"O1\nM83 S3=3000\nM18\nG28 H0\nG98 G0 X20. Z5. T1111\n{section}M85\nM30\n")

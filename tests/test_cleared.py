@@ -8,6 +8,7 @@ import math
 import numpy as np
 import pytest
 import shapely  # type: ignore[import-untyped]
+from cases import looped
 from polarcheck.errors import TooHardError
 from programs import tables_of
 
@@ -75,7 +76,8 @@ CASES = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.ci
+@looped("name", CASES)
 def test_what_is_told_of_paths(name: str) -> None:
     paths, expected = CASES[name]
     found = texts(*paths)
@@ -111,7 +113,7 @@ def test_without_an_offset_it_is_said_how_one_is_called() -> None:
 
 
 @pytest.mark.one_in(2)
-@pytest.mark.slow
+@pytest.mark.ci
 @pytest.mark.parametrize("seed", range(6))
 def test_the_outline_lies_at_r_from_the_path(seed: int) -> None:
     """Random ways of lines and arcs: each point of each element, and the area, against a finer buffer of shapely."""

@@ -17,6 +17,7 @@ import click
 import jsonschema
 import msgspec
 import pytest
+from cases import looped
 from click.testing import CliRunner, Result
 from programs import ROOT
 
@@ -36,7 +37,6 @@ GOOD = RAPID.replace("G0 C5.", "C5.")
 COMPENSATED = "T0101\nG98 G0 X60. C0\nG12.1\nG1 G41 X40. F200\nC-10.\nG40 X60.\nG13.1\n"
 RAPID_ONLY = ("--select", "rapid-in-polar")
 RAMP_ONLY = ("--select", "start-up-shorter-than-radius")
-
 
 pytestmark = pytest.mark.usefixtures("own_folder")
 
@@ -88,7 +88,8 @@ def test_a_good_program_passes() -> None:
     assert result.stdout.startswith("pass  a.nc: no findings, 1 polar section, 6 blocks\n")
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("severity", "fail_on", "code"),
     [
         ("error", "error", 1),
@@ -122,7 +123,7 @@ def test_what_is_not_evaluated_fails_only_where_that_is_asked_for() -> None:
     ]
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 def test_the_offset_table_of_a_job_is_no_program_of_its_folder() -> None:
     table = "%\nG10 P1 R4.\n%\n"
     make(a__nc=GOOD, TOOLOFST__TXT=table, other__txt=table, O0002__nc=table)
@@ -182,6 +183,7 @@ def test_an_interrupt_has_its_own_code(monkeypatch: pytest.MonkeyPatch) -> None:
     assert "internal" not in result.stderr
 
 
+@pytest.mark.ci
 @pytest.mark.skipif(os.name == "nt", reason="other signals there")
 def test_an_interrupted_process_says_so_in_a_word() -> None:
     # A shell that starts something in the background has it ignore the interrupt, which is inherited.
@@ -197,7 +199,7 @@ def test_an_interrupted_process_says_so_in_a_word() -> None:
     assert "Traceback" not in told
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 def test_a_reader_who_goes_away_changes_no_exit_code() -> None:
     make(a__nc=RAPID, b__nc=GOOD)
     for name, code in (("a.nc", 1), ("b.nc", 0)):
@@ -213,7 +215,8 @@ def test_a_reader_who_goes_away_changes_no_exit_code() -> None:
 # ---- what cannot be understood ----
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("arguments", "told"),
     [
         (["--slect", "x"], "No such option"),
@@ -280,7 +283,8 @@ def test_what_means_nothing_is_named_in_one_line(arguments: list[str], told: str
     assert told in result.stderr
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("text", "told"),
     [
         ("machin = 'x'\n", "polarcheck.toml:1: unknown key machin; did you mean machine?"),
@@ -349,13 +353,14 @@ def test_a_work_offset_is_one_of_the_machine() -> None:
     assert result.stderr == "polarcheck: polarcheck.toml:2: work_offsets.G59: expected G54 to G58, found G59\n"
 
 
-@pytest.mark.parametrize("number", ["1", "T1", "t01"])
+@looped("number", ["1", "T1", "t01"])
 def test_a_tool_is_given_by_its_offset_number(number: str) -> None:
     make(a__nc=COMPENSATED)
     assert findings("a.nc", *RAMP_ONLY, "--tool", f"{number}:radius=15") == [("start-up-shorter-than-radius", "error")]
 
 
-@pytest.mark.parametrize("radius", ["-.005", "0", "+.0001", "-4."])
+@pytest.mark.ci
+@looped("radius", ["-.005", "0", "+.0001", "-4."])
 def test_tiny_and_negative_radii_are_sound(radius: str) -> None:
     make(a__nc=COMPENSATED, polarcheck__toml=f"[tools.1]\nradius = {float(radius)}\n")
     assert check("a.nc", *RAMP_ONLY).exit_code == 0
@@ -371,7 +376,7 @@ def test_a_job_that_is_no_table_is_told() -> None:
     )
 
 
-@pytest.mark.parametrize("arguments", [["a.nc"], ["gone.nc", "--machine", "fanuc"], ["."], ["-"], ["O1234"]])
+@looped("arguments", [["a.nc"], ["gone.nc", "--machine", "fanuc"], ["."], ["-"], ["O1234"]])
 def test_a_program_in_the_place_of_a_command_means_check(arguments: list[str]) -> None:
     make(a__nc=GOOD, O1234=GOOD)
     result = call(*arguments)
@@ -434,6 +439,7 @@ def test_extensions_are_those_asked_for() -> None:
 # ---- the job and the machine ----
 
 
+@pytest.mark.ci
 def test_the_nearest_job_applies_and_the_command_line_beats_it() -> None:
     make(a__nc=COMPENSATED, polarcheck__toml="tools.1.radius = 15\n")
     Path("sub").mkdir()
@@ -454,6 +460,7 @@ def test_an_offset_table_of_the_control_gives_radii() -> None:
     assert findings("a.nc", *RAMP_ONLY, "--offsets", "offsets.txt", "--tool", "1:radius=4") == []
 
 
+@pytest.mark.ci
 def test_rules_and_severities_come_from_the_job_unless_the_command_line_names_others() -> None:
     make(a__nc=RAPID, polarcheck__toml="select = ['rapid-in-polar']\nseverities = { polar = 'note' }\n")
     assert findings("a.nc") == [("rapid-in-polar", "note")]
@@ -464,7 +471,8 @@ def test_rules_and_severities_come_from_the_job_unless_the_command_line_names_ot
     assert findings("a.nc", *RAPID_ONLY) == [("rapid-in-polar", "error")]
 
 
-@pytest.mark.parametrize("names", ["rapid-in-polar", "RAPID_IN_POLAR", "PS0146", "146"])
+@pytest.mark.ci
+@looped("names", ["rapid-in-polar", "RAPID_IN_POLAR", "PS0146", "146"])
 def test_rules_are_selected_by_name_group_and_alarm(names: str) -> None:
     make(a__nc=RAPID)
     assert ("rapid-in-polar", "error") in findings("a.nc", "--select", names)
@@ -509,6 +517,7 @@ def test_the_machine_of_a_job_lies_beside_it_and_the_report_names_it() -> None:
     assert json.loads(asked.stdout)["machine"] == "fanuc-16i"
 
 
+@pytest.mark.ci
 def test_each_file_has_its_machine_where_the_jobs_name_several() -> None:
     machines = {"one": "fanuc-16i", "two": "fanuc-30i"}
     for folder, machine in machines.items():
@@ -560,7 +569,8 @@ def test_a_report_that_cannot_be_written_is_told_and_the_other_one_printed() -> 
     assert "unverified  a.nc" in result.stdout
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("arguments", "environment", "colored"),
     [
         ([], {}, False),
@@ -598,6 +608,7 @@ def test_options_come_from_the_environment_too() -> None:
                 assert option.envvar == f"POLARCHECK_{written}"
 
 
+@pytest.mark.ci
 def test_the_report_is_long_for_up_to_three_files_and_short_beyond() -> None:
     make(a__nc=RAPID, b__nc=GOOD, c__nc=GOOD)
     long = check(".", *RAPID_ONLY).stdout
@@ -660,7 +671,7 @@ def test_quiet_says_nothing_of_what_is_good() -> None:
 # ---- the other commands ----
 
 
-@pytest.mark.parametrize("name", ["rapid-in-polar", "Rapid_In_Polar"])
+@looped("name", ["rapid-in-polar", "Rapid_In_Polar"])
 def test_explain_shows_the_manual_page(name: str) -> None:
     result = call("explain", name)
     assert result.exit_code == 0
@@ -690,9 +701,7 @@ def test_explain_of_an_alarm_shows_one_page_and_the_names_of_the_others() -> Non
     assert "also stands for" not in call("explain", "OT0512").stdout
 
 
-@pytest.mark.parametrize(
-    ("block", "first"), [("G17", "plane-selected-in-polar"), ("G28 U0", "code-not-allowed-in-polar")]
-)
+@looped(("block", "first"), [("G17", "plane-selected-in-polar"), ("G28 U0", "code-not-allowed-in-polar")])
 def test_explain_of_an_alarm_begins_with_what_a_program_does(block: str, first: str) -> None:
     Path("O1.NC").write_text(f"G98 G0 X60. C0\nG12.1\nG1 X40. F200\n{block}\nC5.\nG13.1\n", "utf-8")
     page = call("explain", "PS0146", "O1.NC").stdout
@@ -706,7 +715,7 @@ def test_explain_suggests_the_nearest_name() -> None:
     assert result.stderr == "polarcheck: unknown rule 'rapid-in-poler'; did you mean rapid-in-polar?\n"
 
 
-@pytest.mark.parametrize("word", ["pass", "unverified", "fail"])
+@looped("word", ["pass", "unverified", "fail"])
 def test_explain_has_a_page_for_each_word_of_a_verdict(word: str) -> None:
     title, line, empty, *text = call("explain", word).stdout.splitlines()
     assert title.startswith(f"{word}: ")
@@ -734,6 +743,7 @@ def test_explain_unverified_names_the_remedy_of_each_reason() -> None:
     assert "nose type" in page
 
 
+@pytest.mark.ci
 def test_the_examples_of_the_page_end_as_it_says(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(ROOT)
     page = call("explain", "unverified").stdout
@@ -746,7 +756,7 @@ def test_the_examples_of_the_page_end_as_it_says(monkeypatch: pytest.MonkeyPatch
         assert call(*arguments.split(), "--strict").exit_code == (verdict != "pass")
 
 
-@pytest.mark.parametrize(
+@looped(
     ("machine", "words"),
     [
         ("fanuc-30i", ""),
@@ -800,8 +810,8 @@ def test_machines_lists_all_of_them() -> None:
 _LEFT_OUT = ("known_parameters", "notes")
 
 
-@pytest.mark.one_in(20)
-@pytest.mark.parametrize("name", names())
+@pytest.mark.ci
+@looped("name", names(), one_in=20)
 def test_a_profile_is_shown_as_a_profile_that_says_the_same(name: str) -> None:
     shown = call("machines", name).stdout
     Path("copy.toml").write_text(shown, "utf-8")
@@ -828,8 +838,8 @@ def test_the_version_is_shown() -> None:
 # ---- schemas ----
 
 
-@pytest.mark.one_in(4)
-@pytest.mark.parametrize("name", ["report", "job", "machine", "feeds", "trace", "comparison", "rewriting"])
+@pytest.mark.ci
+@looped("name", ["report", "job", "machine", "feeds", "trace", "comparison", "rewriting"], one_in=4)
 def test_schemas_are_valid_and_say_what_they_are(name: str) -> None:
     shown = json.loads(call("schema", name).stdout, parse_constant=pytest.fail)
     jsonschema.Draft202012Validator.check_schema(shown)
@@ -837,6 +847,7 @@ def test_schemas_are_valid_and_say_what_they_are(name: str) -> None:
     assert shown["$id"] == f"urn:polarcheck:{name}:{2 if name == 'report' else 1}"
 
 
+@pytest.mark.ci
 def test_built_in_machines_fit_their_schema_and_wrong_ones_do_not() -> None:
     import tomllib
 
@@ -871,8 +882,7 @@ def test_a_report_fits_its_schema() -> None:
 # ---- what is imported ----
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize(
+@looped(
     ("arguments", "unwanted"),
     [
         (["--help"], {"numpy", "shapely", "rich", "msgspec", "tomllib"}),
@@ -895,6 +905,7 @@ def test_a_report_fits_its_schema() -> None:
             },
         ),
     ],
+    one_in=12,
 )
 def test_commands_import_what_they_need_and_no_more(arguments: list[str], unwanted: set[str]) -> None:
     make(a__nc=GOOD)
@@ -911,6 +922,7 @@ def test_commands_import_what_they_need_and_no_more(arguments: list[str], unwant
     assert result.stderr.split() == ["0"]
 
 
+@pytest.mark.ci
 def test_standard_output_of_any_encoding_takes_any_program() -> None:
     make(a__nc=RAPID.replace("C5.", "C5. (\u89d2\u5ea6)"))
     running = subprocess.run(

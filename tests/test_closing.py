@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
+from cases import looped
 
 from polarcheck.foundation.states import Motion
 from polarcheck.geometry.contour_ends import Loops, crossings, gaps_of, may_be_open, may_leave_strips, middles
@@ -15,7 +15,7 @@ def square(half: float, middle: complex = 0j) -> np.ndarray:
     return middle + half * np.array([1 - 1j, 1 + 1j, -1 + 1j, -1 - 1j])
 
 
-@pytest.mark.parametrize("first", [0, 1, 3])
+@looped("first", [0, 1, 3])
 def test_the_middle_of_the_box_of_each(first: int) -> None:
     points = np.append(square(5, 10 + 2j), [0j, 4 + 0j, 4 + 6j])
     of = first + np.repeat([0, 2], [4, 3])
@@ -36,7 +36,7 @@ def test_a_line_crosses_where_it_does() -> None:
     assert sorted(zip(axis.tolist(), of.tolist(), apart.tolist(), strict=True)) == [(0, 0, 3.0), (1, 1, 2.5)]
 
 
-@pytest.mark.parametrize(
+@looped(
     ("inner", "may"),
     [
         (8.0, False),  # R 1 from either side covers 2 mm
@@ -56,7 +56,7 @@ def box(right: float, top: float, left: float, bottom: float) -> np.ndarray:
     return np.array([right - 1j * bottom, right + 1j * top, -left + 1j * top, -left - 1j * bottom])
 
 
-@pytest.mark.parametrize(
+@looped(
     ("levels", "expected"),
     [
         # One pass that is longer than it is wide has nothing beside it.
@@ -107,8 +107,8 @@ def backwards(moves: list[Move]) -> list[Move]:
     return [(end, start, center, other[kind]) for start, end, center, kind in reversed(moves)]
 
 
-@pytest.mark.parametrize("turn", [1, 3j, 0.4 * np.exp(2.5j)])
-@pytest.mark.parametrize(
+@looped("turn", [1, 3j, 0.4 * np.exp(2.5j)])
+@looped(
     ("moves", "expected"),
     [
         (BEGINS_AHEAD, True),

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from cases import looped
 from programs import report_of, said, trace_of
 
 from polarcheck.program.machines.code_tables import NO_CODE, code, code_numbers, code_set, renumbered, spelled
 
 
-@pytest.mark.parametrize(("word", "number"), [("G0", 0), ("G12.1", 121), ("G112", 1120), ("M35", 350), ("G54.1", 541)])
+@looped(("word", "number"), [("G0", 0), ("G12.1", 121), ("G112", 1120), ("M35", 350), ("G54.1", 541)])
 def test_a_code_is_ten_times_its_number(word: str, number: int) -> None:
     assert code(word) == number
     assert spelled(word[0], number) == word
@@ -32,7 +33,8 @@ def test_codes_of_other_numbers_are_read_as_what_they_mean() -> None:
     assert renumbered(written, {}) is written
 
 
-@pytest.mark.parametrize("cycle", ["G81", "G127", "G128", "G256", "G283", "G999"])
+@pytest.mark.ci
+@looped("cycle", ["G81", "G127", "G128", "G256", "G283", "G999"])
 def test_a_code_of_any_number_is_a_state(cycle: str) -> None:
     """A builder's cycle by a number above G127, which a column of bytes would hold as another number, or as none."""
     changes = {"g_codes": {"drilling_cycle": ["G83", cycle]}}

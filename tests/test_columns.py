@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from cases import looped
 from programs import report_of, said, tables_of, trace_of
 
 from polarcheck.foundation.states import FeedMode, Motion, Side, Units
@@ -37,7 +38,7 @@ def test_what_is_in_force_ends_with_its_program() -> None:
     assert trace.lengths.length_of("X")[[3, 9]].tolist() == [25.4, 9.0]
 
 
-@pytest.mark.parametrize(
+@looped(
     ("word", "digits", "tool", "offset"),
     [("T0808", 2, 8, 8), ("T1208", 2, 12, 8), ("T8", 2, 0, 8), ("T010203", 3, 10, 203), ("T800", 2, 8, 0)],
 )
@@ -46,7 +47,7 @@ def test_a_tool_word_names_a_tool_and_an_offset(word: str, digits: int, tool: in
     assert (trace.tools.tool[1], trace.tools.offset_number[1]) == (tool, offset)
 
 
-@pytest.mark.parametrize("digits", [16, 19, 20, 40, 300, 400])
+@looped("digits", [16, 19, 20, 40, 300, 400])
 def test_a_tool_number_of_any_length_calls_nothing(digits: int) -> None:
     """Numbers beyond 64 bits were cast to whole numbers, with a warning on the terminal."""
     program = f"O1\nG21 G98\nT{'1' * digits}\nG0 X60. C0\nM30\n"

@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 
 import pytest
+from cases import looped
 from programs import report_of, said, trace_of
 
 from polarcheck.columns.words.radius_comments import radius_in
 from polarcheck.foundation.finding import FileReport
 
 
-@pytest.mark.parametrize(
+@looped(
     ("comment", "inch", "radius"),
     [
         ('3/4" DIA. CUTTER', False, 0.375 * 25.4),
@@ -82,7 +83,8 @@ def test_radius_of_a_comment(comment: str, inch: bool, radius: float | None) -> 
     assert found == (None if radius is None else pytest.approx(radius))
 
 
-@pytest.mark.parametrize("tool", ["1", "01", "T1", "0" * 5000 + "1", "9" * 5000, "1" * 8, "1" * 9])
+@pytest.mark.ci
+@looped("tool", ["1", "01", "T1", "0" * 5000 + "1", "9" * 5000, "1" * 8, "1" * 9])
 def test_a_list_of_tools_takes_numbers_of_any_length(tool: str) -> None:
     program = f"O1\n(T{tool} D=20.)\nG21 G98 G18\nT0101\n{FLAT_MM.format(80, 80)}{END}"
     report = report_of(program, "fanuc", job=ASKED)
@@ -112,9 +114,9 @@ HOSTILE = (
 )
 
 
-@pytest.mark.one_in(14)
-@pytest.mark.parametrize("machine", ["fanuc", "okuma-osp", "siemens-transmit"])
-@pytest.mark.parametrize("repeated", HOSTILE)
+@pytest.mark.ci
+@looped("machine", ["fanuc", "okuma-osp", "siemens-transmit"], one_in=14)
+@looped("repeated", HOSTILE)
 def test_hostile_comments_of_any_kind_are_checked_by_their_length(repeated: str, machine: str) -> None:
     """A check whose work grew with the square of these would not end while anybody waits."""
     comment = f"1{repeated * (100_000 // len(repeated))} X"
@@ -143,7 +145,8 @@ def untaken(report: FileReport) -> list[tuple[str, int]]:
     return [(one.reason, one.blocks) for one in report.not_evaluated if one.rule == "start-up-shorter-than-radius"]
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("program", "taken", "offset"),
     [
         (INCH + FLAT_INCH.format("2.6", "2.6"), "0.375 inch", 8),
@@ -173,7 +176,8 @@ def test_ramps_all_shorter_than_the_cutter_are_those_of_its_center(program: str,
     assert untaken(told) == []
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("program", "radius", "expected"),
     [
         # One ramp that is long enough for the cutter, and one that is not.

@@ -14,6 +14,7 @@ from typing import Any
 
 import jsonschema
 import pytest
+from cases import looped
 from click.testing import CliRunner, Result
 from polarcheck.errors import UsageError
 from programs import ROOT, job_of, machine_of
@@ -77,7 +78,8 @@ IN_INCH = changed(
 )  # fmt: skip
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("new", "verdict"),
     [
         pytest.param(HEXAGON, SAME_WORDS, id="itself"),
@@ -112,7 +114,7 @@ def test_macro_and_its_blocks_are_the_same_metal() -> None:
     assert comparison(head + MACRO.format(radius="20.1") + tail, head + blocks + tail).deviation == pytest.approx(0.1)
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 def test_arcs_by_radius_by_center_and_in_parts_are_the_same_metal() -> None:
     program = "O1\nG21 G98 G40\nT0101\nG0 X70. Z2. C0\nG12.1\nG1 X40. C0 F200\n{}G13.1\nM30\n"
     whole = program.format("G3 X-40. C0 R20.\nG3 X40. C0 R20.\n")
@@ -124,9 +126,8 @@ def test_arcs_by_radius_by_center_and_in_parts_are_the_same_metal() -> None:
     assert comparison(whole, program.format("G3 X-40. C0 R20.1\nG3 X40. C0 R20.\n")).verdict == DIFFERS
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize("name", CONTROLS)
-@pytest.mark.parametrize("incremental", [False, True])
+@looped("name", CONTROLS, one_in=12)
+@looped("incremental", [False, True])
 def test_a_section_for_another_control_is_the_same_metal(name: str, incremental: bool) -> None:
     """Those whose plane lies on the part likewise: C stands for another direction elsewhere."""
     control = Control.of(name)
@@ -145,8 +146,8 @@ def test_a_section_for_another_control_is_the_same_metal(name: str, incremental:
 # ---- what differs ----
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("new", "expected", "words"),
     [
         (changed(("Z-5.", "Z-5.5")), {"path", "depth"}, "the depth was Z-5 mm and is Z-5.5 mm"),
@@ -165,6 +166,7 @@ def test_a_section_for_another_control_is_the_same_metal(name: str, incremental:
         (changed(("G0 X100.", "G4 P500\nG0 X100.")), {"order"}, "G4 P500 is added"),
         (changed(("G0 X100. Z50.", "G0 X100. Z50.\nG1 Z40. F0.2")), {"path", "feed"}, "outside of sections"),
     ],
+    one_in=12,
 )  # fmt: skip
 def test_changes_are_found(new: str, expected: set[str], words: str) -> None:
     for pair, shown in (((HEXAGON, new), words), ((new, HEXAGON), "")):
@@ -199,7 +201,8 @@ def of_sections(*sections: tuple[int, int]) -> str:
     return f"O1\nG21 G98 G40\nT0101\n{body}G0 X100. Z50.\nM30\n"
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("new", "changes"),
     [
         (((0, 5), (90, 6), (180, 7)), ["same"] * 3),
@@ -216,8 +219,8 @@ def test_sections_are_paired_by_what_they_do(new: Sequence[tuple[int, int]], cha
     assert result.verdict == (SAME_WORDS if set(changes) == {"same"} else DIFFERS)
 
 
-@pytest.mark.one_in(2)
-@pytest.mark.parametrize("seed", range(2))
+@pytest.mark.ci
+@looped("seed", range(2), one_in=2)
 def test_slips_of_setters_are_found(seed: int) -> None:
     """Each slip that writes another word; comments are none for the metal, and a line run twice is run once."""
     program = program_of_setter(seed)
@@ -253,6 +256,7 @@ M99
 """
 
 
+@pytest.mark.ci
 def test_programs_without_sections_are_compared() -> None:
     assert comparison(TURNING, changed(("X50.", "X50.000"), program=TURNING)).verdict == SAME_WORDS
     unrolled = changed(("M98 P2 L2", "G0 W1.\nW1."), ("O2\nG0 W1.\nM99\n", ""), program=TURNING)
@@ -261,6 +265,7 @@ def test_programs_without_sections_are_compared() -> None:
         assert comparison(TURNING, changed(slip, program=TURNING)).verdict == DIFFERS, slip
 
 
+@pytest.mark.ci
 def test_arcs_outside_of_sections() -> None:
     program = "O1\nG21 G99\nT0101\nG0 X50. Z2.\n{}\nM30\n"
     by_radius, by_center = program.format("G3 X60. Z-3. R5. F0.1"), program.format("G3 X60. Z-3. I0 K-5. F0.1")
@@ -273,6 +278,7 @@ def test_arcs_outside_of_sections() -> None:
 # ---- what is not known ----
 
 
+@pytest.mark.ci
 def test_unknown_radius_is_no_verdict() -> None:
     unknown = revision(HEXAGON, tools=())
     assert comparison(revision(HEXAGON), unknown).verdict == NOT_COMPARED
@@ -285,6 +291,7 @@ def test_unknown_radius_is_no_verdict() -> None:
     assert comparison(unknown, revision(changed(("G42", "G41")), tools=())).verdict == DIFFERS
 
 
+@pytest.mark.ci
 def test_blocks_that_are_not_executed_are_no_verdict() -> None:
     unknown = changed(("X100. Z50.", "X100. Z#5003"))
     result = comparison(unknown, changed(("X100. Z#5003", "X100.0 Z#5003"), program=unknown))
@@ -315,6 +322,7 @@ def test_block_skip_is_compared_in_both_states() -> None:
     assert sum(section.change == "changed" for section in result.sections) == 1
 
 
+@pytest.mark.ci
 def test_lists_are_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(differences, "_LISTED", 2)
     orders = "".join(f"M{code}\n" for code in (60, 61, 62))
@@ -330,6 +338,7 @@ def test_lists_are_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
 # ---- in Python ----
 
 
+@pytest.mark.ci
 def test_in_python(tmp_path: Path) -> None:
     new = changed(("Z-5.", "Z-5.5"))
     paths = [tmp_path / "old.nc", tmp_path / "new.nc"]
@@ -361,6 +370,7 @@ def pair(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
+@pytest.mark.ci
 def test_exit_codes(pair: Path) -> None:
     assert run("old.nc", "old.nc").exit_code == 0
     differing = run("old.nc", "new.nc")
@@ -428,6 +438,7 @@ def test_json_is_as_its_schema_says(pair: Path) -> None:
     assert (feed["what"], feed["old"], feed["new"], feed["old_line"]) == ("feed", "F200 mm/min", "F250 mm/min", 12)
 
 
+@pytest.mark.ci
 def test_folders_are_compared_file_by_file(pair: Path) -> None:
     for folder, names in (("a", ("1.nc", "2.nc", "3.nc")), ("b", ("2.nc", "3.nc", "4.nc"))):
         Path(folder).mkdir()
@@ -446,6 +457,7 @@ def test_folders_are_compared_file_by_file(pair: Path) -> None:
     assert (shown["only_old"], shown["only_new"]) == (["1.nc"], ["4.nc"])
 
 
+@pytest.mark.ci
 def test_a_revision_from_elsewhere_has_the_settings_of_the_other(
     pair: Path, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
@@ -456,6 +468,7 @@ def test_a_revision_from_elsewhere_has_the_settings_of_the_other(
     assert run(elsewhere, elsewhere, "--settings-of", "old.nc").exit_code == 0
 
 
+@pytest.mark.ci
 def test_names_and_words_of_strangers_are_shown_without_escapes(pair: Path) -> None:
     Path("a\x1b[2J.nc").write_text(changed(("T0101", "T0101 (\x1b[2J)")))
     for form in ("text", "json"):
@@ -466,7 +479,7 @@ def test_names_and_words_of_strangers_are_shown_without_escapes(pair: Path) -> N
 GIT = ("git", "-c", "user.name=a", "-c", "user.email=a@b.c", "-c", "commit.gpgsign=false")
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 def test_git_shows_metal(pair: Path) -> None:
     """As a diff driver, as a difftool and as a textconv, as docs/compare.md says."""
     command = f'"{sys.executable}" -m polarcheck'

@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import pytest
+from cases import looped
 from center_paths import Line, beside, cleared, left_standing, polygon, read_section, thickest_difference, words
 from click.testing import CliRunner, Result
 from programs import job_of, machine_of, report_of
@@ -114,7 +115,7 @@ def text_of(outcome: Outcome) -> str:
 @pytest.mark.parametrize(
     ("name", "round_corners"),
     [
-        pytest.param(name, is_round, marks=() if (name, is_round) in QUICK else pytest.mark.slow)
+        pytest.param(name, is_round, marks=() if (name, is_round) in QUICK else pytest.mark.ci)
         for name in PARTS
         for is_round in (True, False)
     ],
@@ -149,6 +150,7 @@ def test_the_new_words_are_those_of_the_part(name: str, round_corners: bool) -> 
         assert thickest_difference(cleared(old_moves, R), cleared(new_moves, R)) < 0.005
 
 
+@pytest.mark.ci
 def test_leads_by_arcs_are_compensated_as_well() -> None:
     """Quarter circles lead to a square and away from it; the ramps are the lines before and behind them."""
     path = beside(rounded_square(15, 3), -R, True)
@@ -167,6 +169,7 @@ def square(half: float, feed: int) -> list[str]:
     return [f"G1 X{2 * half} C0. F{feed}", *(f"X{x} C{c}" for x, c in corners), f"X{2 * half} C0."]
 
 
+@pytest.mark.ci
 def test_rough_and_finish_have_their_part_on_one_side() -> None:
     """The finishing pass takes away what the roughing pass leaves, and so says where the part is."""
     blocks = "\n".join([*square(15.0, 250), *square(14.0, 120)])
@@ -176,6 +179,7 @@ def test_rough_and_finish_have_their_part_on_one_side() -> None:
     assert "G42 G1 X20. F120" in new or "G42 G1 X20. C0. F120" in new or "G42 X20." in new
 
 
+@pytest.mark.ci
 def test_a_subprogram_at_three_depths() -> None:
     blocks = "X60. F300\nM98 P2 L3"
     sub = "\n".join(["O2", "G1 W-2. F100", *square(19.0, 200), "X60.", "M99", ""])
@@ -200,6 +204,7 @@ def test_flats_that_do_not_close() -> None:
 # ---- the program stays as it is written ----
 
 
+@pytest.mark.ci
 def test_what_else_stands_in_the_program_stays() -> None:
     """N words, CR LF, no blanks, comments, lower case, latin-1 bytes, M codes beside moves."""
     lines = [
@@ -234,7 +239,7 @@ def test_inch_and_incremental_words() -> None:
     assert [move.end for move in moves] == pytest.approx(corners, abs=1e-4)
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 @pytest.mark.parametrize("seed", [2, 4, 20, 22, 49, 84, 104, 190, 194])
 def test_programs_of_setters_there_and_back(seed: int) -> None:
     """Sound programs in the words of several controls; the new program is read back."""
@@ -256,6 +261,7 @@ def with_square(before: str = "", after: str = "") -> str:
     return PROGRAM.format(x="90.", blocks=SQUARE).replace(before, after)
 
 
+@pytest.mark.ci
 def test_moves_behind_the_contour_keep_their_code_and_feed() -> None:
     """G0 Z2. X90.: the modal code of the last move is said again; F alone in a block stays alone."""
     blocks = "\n".join(["G0 Z-4.", *("G1 " + block for block in SQUARE.splitlines()), "G0 Z2.", "X90."])
@@ -265,7 +271,8 @@ def test_moves_behind_the_contour_keep_their_code_and_feed() -> None:
     assert "X38. C19.\nF150\nX-38. C19.\n" in text_of(rewrite(alone, centered))
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("text", "tool", "line", "reason"),
     [
         (with_square(), "9:radius=4", 10, "R of T0808 is not known: give --tool 8:radius=..."),
@@ -287,6 +294,7 @@ def test_refused_with_line_and_reason(text: str, tool: str, line: int, reason: s
     assert (first.line, reason in first.text) == (line, True), refused.value.refusals
 
 
+@pytest.mark.ci
 def test_side_is_chosen_where_the_program_does_not_say_it() -> None:
     """Down onto the path: nothing is cleared beside it. Where arcs are too small there is no contour."""
     blocks = SQUARE.replace("G1 X38.0 C0. F200", "X38. F1500\nZ-9. F100\nC0. F200").replace("C0. F200\nX", "F200\nX")
@@ -328,6 +336,7 @@ def call(*arguments: str) -> Result:
     return CliRunner().invoke(main, ["compensate", "--no-config", *arguments], prog_name="polarcheck")
 
 
+@pytest.mark.ci
 @pytest.mark.usefixtures("own_folder")
 def test_the_command() -> None:
     text = PROGRAM.format(x="90.", blocks=SQUARE)
@@ -348,7 +357,7 @@ def test_the_command() -> None:
     assert Path("a.nc").read_text() == text
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 def test_long_paths() -> None:
     """25 depths of 100 chords each, as a post writes a shaft."""
     sides = polygon([cmath.rect(25, math.tau * (k + 0.5) / 99) for k in range(99)])

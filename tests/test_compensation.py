@@ -9,6 +9,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from cases import looped
 from compensation_oracle import Block, Rules, simulate
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
@@ -367,7 +368,7 @@ EXAMPLES = {
 }
 
 
-@pytest.mark.parametrize("name", EXAMPLES)
+@looped("name", EXAMPLES)
 def test_examples(name):
     program, expected, *rest = EXAMPLES[name]
     tool = tool_center_path(path_of(read_section(program)), *rest)
@@ -494,7 +495,7 @@ RULES = st.builds(
 )
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 @settings(max_examples=150, deadline=None)
 @given(st.lists(contours(), min_size=1, max_size=3), RULES)
 def test_agrees_with_the_plain_way(programs, rules):
@@ -558,7 +559,7 @@ def distance_to_block(points: np.ndarray, path: Path, row: int) -> np.ndarray:
     return np.where(at <= abs(sweep), abs(abs(points - center) - abs(start - center)), ends)
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 @settings(max_examples=60, deadline=None)
 @given(contours(), RULES, st.floats(-3, 3))
 def test_turning_the_contour_turns_the_path(program, rules, angle):
@@ -569,6 +570,7 @@ def test_turning_the_contour_turns_the_path(program, rules, angle):
     assert_same(turned, replace(tool, start=tool.start * turn, end=tool.end * turn, center=tool.center * turn))
 
 
+@pytest.mark.ci
 @settings(max_examples=60, deadline=None)
 @given(contours(), RULES)
 def test_mirroring_swaps_g41_and_g42(program, rules):
@@ -580,7 +582,7 @@ def test_mirroring_swaps_g41_and_g42(program, rules):
     assert_same(mirrored, replace(tool, kind=swapped, **points))
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 @settings(max_examples=60, deadline=None)
 @given(contours(), RULES)
 def test_negative_radius_swaps_sides(program, rules):
@@ -593,6 +595,7 @@ def test_negative_radius_swaps_sides(program, rules):
     assert_same(swapped, tool)
 
 
+@pytest.mark.ci
 @settings(max_examples=60, deadline=None)
 @given(contours(), RULES)
 def test_radius_zero_gives_the_programmed_path(program, rules):
@@ -607,7 +610,7 @@ def test_radius_zero_gives_the_programmed_path(program, rules):
     assert flagged(tool).keys() <= {"arc_center_on_path"}
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 @settings(max_examples=60, deadline=None)
 @given(st.lists(contours(), min_size=1, max_size=3), RULES)
 def test_path_is_continuous_within_a_section(programs, rules):
@@ -620,7 +623,7 @@ def test_path_is_continuous_within_a_section(programs, rules):
     assert (np.diff(tool.row) >= 0).all()
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 @settings(max_examples=60, deadline=None)
 @given(contours(), RULES, st.data())
 def test_unknown_values_stay_where_they_are(program, rules, data):
@@ -649,7 +652,7 @@ def assert_same(one: ToolPath, two: ToolPath) -> None:
         assert all(near(a, b) for a, b in zip(ours[2:5], theirs[2:5], strict=True))
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 @settings(max_examples=60, deadline=None)
 @given(rings(), st.sampled_from("AB"))
 def test_tool_keeps_its_distance(program, start_up):
@@ -668,7 +671,7 @@ def test_tool_keeps_its_distance(program, start_up):
             assert distance_to_block(points, path, row).min() >= path.radius[0] - 1e-6
 
 
-@pytest.mark.parametrize("turned", [1e-6, -1e-6, 0.0])
+@looped("turned", [1e-6, -1e-6, 0.0])
 def test_a_full_circle_between_arcs_that_nearly_touch_it_is_run_whole(turned):
     """Rounded centers move the ends of its offset circle by less than a micrometre: past each other, or not."""
     spoke = cmath.exp(1j * turned)

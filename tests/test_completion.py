@@ -12,6 +12,7 @@ from pathlib import Path
 
 import click
 import pytest
+from cases import looped
 from click.testing import CliRunner, Result
 from shells import COMMANDS, Typed, is_there, put_command, put_told
 from test_cli import call, process
@@ -21,7 +22,7 @@ from polarcheck.program.machines import profiles
 from polarcheck.reports import formats
 from polarcheck.rules.rule import load_all
 
-pytestmark = pytest.mark.usefixtures("own_folder")
+pytestmark = [pytest.mark.ci, pytest.mark.usefixtures("own_folder")]
 
 BREAKS = " \t\n\"'><=;|&(:"
 
@@ -114,7 +115,7 @@ def test_a_report_is_a_format_and_then_a_file() -> None:
     assert values("check --format", "") == formats()
 
 
-@pytest.mark.parametrize(
+@looped(
     ("words", "word", "expected"),
     [
         ("check", "O12", ("files", "O12", "")),
@@ -148,7 +149,7 @@ def test_nonsense_is_answered_by_nothing() -> None:
     assert ask("zsh", {"COMP_WORDS": "polarcheck\n./O1.NC", "POLARCHECK_WORD": "x"}).stdout == ""
 
 
-@pytest.mark.parametrize(
+@looped(
     ("line", "expected"),
     [
         ("polarcheck check --machine=haas-l", ("word", "haas-lathe")),
@@ -191,10 +192,7 @@ def test_every_value_says_what_it_is() -> None:
                 assert completing.metavar(parameter) in known, (command.name, parameter.name)
 
 
-@pytest.mark.one_in(2)
-@pytest.mark.parametrize(
-    "words", ["", "check --select", "check --machine", "explain", "check", "check --set", "check -o"]
-)
+@looped("words", ["", "check --select", "check --machine", "explain", "check", "check --set", "check -o"], one_in=2)
 def test_a_completion_loads_neither_the_rules_nor_numpy(words: str) -> None:
     code = (
         "import sys, polarcheck.commands\n"
@@ -210,7 +208,7 @@ def test_a_completion_loads_neither_the_rules_nor_numpy(words: str) -> None:
 # ---- the scripts ----
 
 
-@pytest.mark.parametrize("shell", completion.SHELLS)
+@looped("shell", completion.SHELLS)
 def test_the_script_of_each_shell_is_shown_as_it_is(shell: str) -> None:
     done = process("completion", shell)
     told, errors = done.communicate(timeout=60)
@@ -256,7 +254,6 @@ WITH_BLANKS = {
 }
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("shell", COMMANDS)
 def test_a_real_shell_completes(shell: str, tmp_path: Path) -> None:
     if not is_there(shell):

@@ -15,6 +15,7 @@ import click
 import jsonschema
 import msgspec
 import pytest
+from cases import looped
 from click.testing import CliRunner, Result
 from hypothesis import assume, given
 from hypothesis import strategies as st
@@ -78,6 +79,7 @@ def refused(*arguments: str) -> str:
 # ---- entries for some of the programs ----
 
 
+@pytest.mark.ci
 def test_entries_are_merged_in_their_order_over_what_the_file_says_of_all() -> None:
     make("O1234.nc", "O1299.NC", "O2000.nc", "lathe7/O1234.nc")
     job(
@@ -115,6 +117,7 @@ def test_which_severity_fails_is_asked_of_each_file() -> None:
     assert call("check", "b.nc", "--fail-on", "error").exit_code == 1
 
 
+@pytest.mark.ci
 def test_strict_is_asked_of_each_file_and_can_be_taken_back() -> None:
     make("a.nc", "b.nc")
     job("[[programs]]\nfiles = ['b.nc']\nstrict = true\n")
@@ -135,7 +138,7 @@ def test_the_encoding_of_some_programs() -> None:
     )
 
 
-@pytest.mark.parametrize("name", ["rot13", "base64", "undefined", "utf-8\0"])
+@looped("name", ["rot13", "base64", "undefined", "utf-8\0"])
 def test_a_codec_of_no_text_is_no_encoding(name: str) -> None:
     make("a.nc")
     assert f"unknown encoding {name!r}; for example utf-8" in refused("check", "a.nc", "--encoding", name)
@@ -168,6 +171,7 @@ def test_offset_tables_of_two_lathes_are_not_mixed() -> None:
     assert values["tools.8.radius"] == (5, "programs", "two.txt, named in polarcheck.toml:6, [[programs]] 1")
 
 
+@pytest.mark.ci
 def test_a_pattern_that_matches_nothing_in_a_folder_that_was_walked_is_a_warning() -> None:
     make("sub/O1234.nc", "sub/deep/O1.nc")
     job("[[programs]]\nfiles = ['O12*.nc', 'O13*.nc']\n", "sub/polarcheck.toml")
@@ -191,7 +195,7 @@ def test_what_applies_to_thousands_is_made_once_for_each_set_of_entries() -> Non
     assert len({id(task.settings.machine) for task in tasks}) == 1
 
 
-@pytest.mark.parametrize(
+@looped(
     ("pattern", "path", "matches"),
     [
         ("O12*.nc", "O1234.NC", True),
@@ -226,6 +230,7 @@ def test_patterns_mean_files_as_shops_name_them(pattern: str, path: str, matches
     assert bool(found.of_file(str(program.parent), program.name)) is matches
 
 
+@pytest.mark.ci
 @given(st.text("ab*?[]!-/.\\ ", min_size=1, max_size=12), st.text("ab/.", min_size=1, max_size=12))
 def test_any_pattern_is_compared_with_any_path(pattern: str, path: str) -> None:
     folder, name = os.path.split("/base/" + path)
@@ -238,7 +243,7 @@ def test_a_pattern_that_could_take_for_ever_does_not() -> None:
     assert not found.of_file("/base" + "/a" * 200, "a" * 250)
 
 
-@pytest.mark.parametrize("pattern", ["", "!O1.nc", " ", "/", "[z-a].nc", "old/[9-0]/*"])
+@looped("pattern", ["", "!O1.nc", " ", "/", "[z-a].nc", "old/[9-0]/*"])
 def test_a_pattern_that_means_nothing_is_told(pattern: str) -> None:
     make("a.nc")
     job(f"[[programs]]\nstrict = true\nfiles = [{pattern!r}]\n")
@@ -251,6 +256,7 @@ def test_a_pattern_that_means_nothing_is_told(pattern: str) -> None:
 # ---- what walks pass over ----
 
 
+@pytest.mark.ci
 def test_what_is_excluded_is_found_by_no_walk_and_checked_where_it_is_named() -> None:
     make("a.nc", "old/b.nc", "x/old/c.nc", "d.bak.nc", "y/e.nc", "y/z/f.nc")
     job("exclude = ['old', '*.bak.nc', 'y/z']\n")
@@ -262,7 +268,7 @@ def test_what_is_excluded_is_found_by_no_walk_and_checked_where_it_is_named() ->
     assert (result.exit_code, result.stdout) == (2, "")
 
 
-@pytest.mark.parametrize(
+@looped(
     ("text", "key"),
     [
         ("[[programs]]\nstrict = true\nfiles = []\n", "programs.1.files"),
@@ -275,7 +281,7 @@ def test_an_entry_for_no_file_at_all_is_told(text: str, key: str) -> None:
     assert refused("check", "a.nc") == f"polarcheck.toml:3: {key}: expected a list of texts, at least one, found []"
 
 
-@pytest.mark.parametrize("path", ["old/b.nc", "old", "old/"])
+@looped("path", ["old/b.nc", "old", "old/"])
 def test_where_all_is_excluded_nothing_is_checked_and_that_is_said(path: str) -> None:
     make("old/b.nc")
     job("exclude = ['old']\n")
@@ -284,7 +290,8 @@ def test_where_all_is_excluded_nothing_is_checked_and_that_is_said(path: str) ->
     assert result.stderr == "polarcheck: warning: all that is named is excluded: nothing is checked\n"
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("text", "options", "read", "count"),
     [
         ("", ["--exclude", "old"], ["a.nc", "sub/b.nc", "sub/c.nc"], 2),
@@ -315,7 +322,8 @@ def test_an_option_that_is_no_pattern_is_told() -> None:
     assert refused("check", ".", "--exclude", "!a") == told
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("text", "options", "told"),
     [
         ("exclude = ['sub', 'gone', '*.bak']\n", [], "polarcheck.toml:1: exclude: {} excludes nothing|'gone'|'*.bak'"),
@@ -431,7 +439,7 @@ def test_a_subprogram_that_a_program_calls_was_read_there() -> None:
     assert show_files(".")["subs/OTHER.SUB"] == reason
 
 
-@pytest.mark.parametrize(
+@looped(
     ("option", "told"),
     [
         (["--format", "sarif"], "--show-files: expected --format text, json, jsonl, found sarif"),
@@ -445,10 +453,7 @@ def test_a_list_of_files_is_no_check(option: list[str], told: str) -> None:
     assert not Path("x.json").exists()
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize(
-    "form", ["text", "short", "github", "json", "jsonl", "html", "concise", "sarif", "gitlab", "junit"]
-)
+@looped("form", ["text", "short", "github", "json", "jsonl", "html", "concise", "sarif", "gitlab", "junit"], one_in=12)
 def test_each_format_says_what_was_not_read_or_standard_error_does(form: str) -> None:
     archive()
     result = call("check", ".", "--format", form)
@@ -477,6 +482,7 @@ def test_pages_in_a_folder_say_what_was_not_read() -> None:
     assert all(f"<p>{line}</p>" in index for line in OF_ARCHIVE)
 
 
+@pytest.mark.ci
 def test_names_of_files_act_on_no_terminal_and_no_page() -> None:
     name = "O1-\x1b[31m<b>.B<i>"
     make(name, "a.nc")
@@ -531,7 +537,7 @@ def test_a_file_stands_over_the_one_that_it_extends() -> None:
     assert shown("shop/jobs/O2.nc")["tools.8.radius"][0] == 5
 
 
-@pytest.mark.parametrize(
+@looped(
     ("files", "told"),
     [
         (
@@ -563,6 +569,7 @@ def test_what_cannot_be_extended_is_told(files: dict[str, str], told: str) -> No
     assert refused("check", "a.nc") == told
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize("written", ["..", "../", "../..", "../polarcheck.toml"])
 def test_a_folder_can_be_extended_which_means_the_nearest_file_in_it_or_above(written: str) -> None:
     make("shop/lathe7/jobs/a.nc")
@@ -585,8 +592,7 @@ def test_a_folder_without_a_job_file_cannot_be_extended() -> None:
 # ---- a file below another ----
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize(
+@looped(
     ("outer", "inner", "left"),
     [
         ("machine = 'fanuc-30i'\nstrict = true\nexclude = ['old']\n", "units = 'mm'\n", "machine, strict, exclude"),
@@ -601,6 +607,7 @@ def test_a_folder_without_a_job_file_cannot_be_extended() -> None:
         ("units = 'mm'\n[[programs]]\nfiles = ['sub/**']\nstrict = true\n", "", ""),
         ("strict = maybe\n", "machine = 'fanuc'\n", ""),
     ],
+    one_in=12,
 )
 def test_what_a_nearer_file_leaves_behind_of_the_one_above_is_said_once(outer: str, inner: str, left: str) -> None:
     make("sub/a.nc", "sub/b.nc", "sub/deep/c.nc", text="O1\nM30\n")
@@ -646,8 +653,9 @@ def test_paths_with_backslashes_are_found_wherever_there_are_slashes() -> None:
 TEXT = "[tools.8]\nradius = 4.25\n"
 
 
-@pytest.mark.parametrize("encoding", ["utf-8-sig", "utf-16", "utf-16-le", "utf-16-be"])
-@pytest.mark.parametrize("name", ["polarcheck.toml", "pyproject.toml"])
+@pytest.mark.ci
+@looped("encoding", ["utf-8-sig", "utf-16", "utf-16-le", "utf-16-be"])
+@looped("name", ["polarcheck.toml", "pyproject.toml"])
 def test_files_are_read_as_windows_saves_them(encoding: str, name: str) -> None:
     make("a.nc")
     text = TEXT if name == "polarcheck.toml" else TEXT.replace("[tools", "[tool.polarcheck.tools")
@@ -668,7 +676,7 @@ def test_what_is_no_text_is_told_with_its_line() -> None:
     assert refused("check", "a.nc") == "polarcheck.toml: line 2 is not UTF-8; save the file as UTF-8"
 
 
-@pytest.mark.parametrize(
+@looped(
     ("text", "told"),
     [
         ("\n[tools.8]\nraduis = 3\n", "polarcheck.toml:3: unknown key tools.8.raduis; did you mean radius?"),
@@ -721,6 +729,7 @@ def test_the_line_of_each_key_of_a_file_is_known(path: Path) -> None:
         assert key in rows[lines[name] - 1], name
 
 
+@pytest.mark.ci
 @given(st.text("[]{}=.,#\"'\\\n ab1", max_size=60))
 def test_no_text_keeps_the_lines_from_being_looked_for(text: str) -> None:
     lines = toml_lines.of_keys(text)
@@ -781,7 +790,7 @@ def test_config_alone_shows_what_it_can() -> None:
     assert re.search(r"^  show +Show every value", result.stderr, re.MULTILINE)
 
 
-@pytest.mark.parametrize("line", ["radius =", "radius =  # R on the offset page of the control, in mm"])
+@looped("line", ["radius =", "radius =  # R on the offset page of the control, in mm"])
 def test_a_line_of_which_only_the_mark_was_taken_away_is_told_to_have_no_value(line: str) -> None:
     make("a.nc")
     job(f"[tools.8]\n{line}\n")
@@ -839,6 +848,7 @@ def uncommented(text: str) -> str:
     )
 
 
+@pytest.mark.ci
 def test_init_writes_what_the_programs_tell_and_says_what_is_left() -> None:
     make("O1.nc", "x/O2.nc", text=MILL.replace("T0808", "T0808 (D=8. END MILL)"))
     make("O3.nc", text="O3\nG0 X1.\nM30\n")
@@ -855,6 +865,7 @@ def test_init_writes_what_the_programs_tell_and_says_what_is_left() -> None:
     assert {file["verdict"] for path, file in checked(".").items() if path != "O3.nc"} == {"unverified"}
 
 
+@pytest.mark.ci
 def test_what_init_suggests_is_a_job_file_where_the_marks_are_taken_away() -> None:
     make("O1.nc", text=MILL.replace("T0808", "T0808 (D=8. END MILL)"))
     make("O2.nc", text=MILL.replace("T0808", 'T0808 (D=10. "END" MILL)'))
@@ -894,6 +905,7 @@ def test_init_without_a_schema_names_none() -> None:
     assert not Path("polarcheck.schema.json").exists()
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize(
     ("folder", "machine"),
     [("haas-lathe", "haas-lathe"), ("hurco", "hurco")],
@@ -906,6 +918,7 @@ def test_init_finds_out_the_machine_that_alone_reads_the_programs(folder: str, m
     assert written()["machine"] == machine
 
 
+@pytest.mark.ci
 def test_init_leaves_the_machine_open_where_several_read_the_programs() -> None:
     make("O1.nc")
     assert "  machine: which lathe it is" in call("init").stdout
@@ -923,6 +936,7 @@ def test_init_takes_the_machine_that_is_named_from_where_the_file_lies() -> None
     assert refused("init", "--machine", "fanuk").startswith("unknown machine 'fanuk'; did you mean fanuc?")
 
 
+@pytest.mark.ci
 def test_init_tells_of_the_job_file_that_has_applied_so_far() -> None:
     make("jobs/O1.nc")
     job("strict = true\n")
@@ -930,6 +944,7 @@ def test_init_tells_of_the_job_file_that_has_applied_so_far() -> None:
     assert '\n#extend = "../polarcheck.toml"\n' in Path("jobs/polarcheck.toml").read_text("utf-8")
 
 
+@pytest.mark.ci
 def test_what_programs_say_stays_a_comment_of_one_line() -> None:
     make("O1.nc", text=MILL.replace("T0808", "T0808 (D=8. END MILL \x1b[31m\u202e\x85 x)"))
     result = call("init")
@@ -947,12 +962,14 @@ def test_init_in_a_folder_without_programs_says_so() -> None:
     assert call("config", "show", "a.nc").exit_code == 0
 
 
+@pytest.mark.ci
 def test_the_endings_by_which_init_has_found_programs_are_those_of_the_next_check() -> None:
     make("a.job7")
     assert call("init", "--extensions", "job7").exit_code == 0
     assert "1 file checked" in call("check", ".").stdout
 
 
+@pytest.mark.ci
 def test_init_reads_each_program_and_stops_at_none_that_cannot_be_read() -> None:
     make("O1.nc")
     Path("O2.nc").write_bytes(b"\0" * 50 + MILL.encode().replace(b"T0808", b"T0909") + b"\x1a")
@@ -965,7 +982,8 @@ def test_init_reads_each_program_and_stops_at_none_that_cannot_be_read() -> None
 # ---- the schema, and the page ----
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("text", "is_valid"),
     [
         ("extend = 'x.toml'\nexclude = ['old']\n[[programs]]\nfiles = ['a']\ntools = { 8 = { radius = 4 } }\n", True),
@@ -1004,7 +1022,7 @@ def test_the_page_has_each_key() -> None:
     assert wanted <= rows, sorted(wanted - rows)
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 def test_each_job_file_of_the_page_is_one() -> None:
     blocks = re.findall(r"```toml\n(.*?)```", PAGE.read_text("utf-8"), re.DOTALL)
     assert len(blocks) > 2
@@ -1015,6 +1033,7 @@ def test_each_job_file_of_the_page_is_one() -> None:
 # ---- as a process ----
 
 
+@pytest.mark.ci
 def test_a_small_check_loads_nothing_for_it() -> None:
     make("a.nc")
     job(

@@ -10,6 +10,7 @@ import msgspec
 import numpy as np
 import pytest
 import shapely
+from cases import looped
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from plane_moves import path_of_rows, points_along, turn_of
@@ -183,7 +184,8 @@ LEGAL = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("name", LEGAL)
+@pytest.mark.ci
+@looped("name", LEGAL)
 def test_a_legal_program_is_never_found(name: str) -> None:
     legal = LEGAL[name]
     assert len(legal.path.row)
@@ -191,14 +193,15 @@ def test_a_legal_program_is_never_found(name: str) -> None:
     assert list(legal.sweeps().move) == []
 
 
-@pytest.mark.parametrize("name", sorted({*LEGAL} - {"exact reversal"}))
+@pytest.mark.ci
+@looped("name", sorted({*LEGAL} - {"exact reversal"}))
 def test_a_tool_too_large_by_a_hundredth_is_found(name: str) -> None:
     found = LEGAL[name].overcuts(LEGAL[name].radius + 0.01)
     assert len(found.row)
     assert found.depth.max() > 0.0089
 
 
-@pytest.mark.parametrize("name", ["square", "hexagon", "full circle", "manual sample", "two flats"])
+@looped("name", ["square", "hexagon", "full circle", "manual sample", "two flats"])
 def test_the_hundredth_is_measured_on_every_move(name: str) -> None:
     legal = LEGAL[name]
     assert list(legal.overcuts(legal.radius + 0.0005).row) == []
@@ -231,7 +234,7 @@ def test_slot_narrower_than_the_tool() -> None:
     assert found.depth == pytest.approx(5 - 2**0.5)
 
 
-@pytest.mark.parametrize("width", [9.99, 9.5, 7])
+@looped("width", [9.99, 9.5, 7])
 def test_pocket_narrower_than_the_tool(width: float) -> None:
     half = width / 2
     corners = [complex(20, -half), complex(20, half), complex(-20, half), complex(-20, -half)]
@@ -318,14 +321,14 @@ def numbered(of: Loop, number: int) -> Loop:
     return of._replace(contour=moves(of.contour), path=moves(of.path), ramps=moves(of.ramps))
 
 
-@pytest.mark.parametrize("numbers", [(0, 1, 2), (7, 3, 5)])
+@looped("numbers", [(0, 1, 2), (7, 3, 5)])
 def test_the_same_contour_at_three_depths(numbers: tuple[int, ...]) -> None:
     sizes = [polygon(15, 6), polygon(14.5, 6), polygon(14.5, 6)]
     depths = [numbered(loop(45, *size, 45), number) for size, number in zip(sizes, numbers, strict=True)]
     assert list(along(*together(*depths)).row) == []
 
 
-@pytest.mark.parametrize("numbers", [(0, 1, 2), (7, 3, 5)])
+@looped("numbers", [(0, 1, 2), (7, 3, 5)])
 def test_only_the_loop_at_fault_is_found(numbers: tuple[int, ...]) -> None:
     slot = loop(-20, 0, 20, 20 - 4j, 26 - 4j, 26, 46, 60 + 20j, side=LEFT)
     loops = [
@@ -356,7 +359,7 @@ def test_a_loop_behind_a_long_one_that_goes_round_twice_is_looked_at() -> None:
     assert found.depth == pytest.approx(alone.depth)
 
 
-@pytest.mark.parametrize("numbers", [(0, 1, 2), (7, 3, 5)])
+@looped("numbers", [(0, 1, 2), (7, 3, 5)])
 def test_loops_above_each_other_do_not_see_each_other(numbers: tuple[int, ...]) -> None:
     slots = [
         loop(-20, 0, 20, 20 - 4j, 26 - 4j, 26, 46, 60 + 20j, side=LEFT),
@@ -454,7 +457,7 @@ def test_a_start_up_over_the_corner_is_found_though_its_end_is_outside() -> None
     assert found.depth == pytest.approx([3], abs=0.01)
 
 
-@pytest.mark.parametrize(("begin", "depth"), [(-30 + 20j, 5), (-20 + 24j, 1)])
+@looped(("begin", "depth"), [(-30 + 20j, 5), (-20 + 24j, 1)])
 def test_a_start_up_along_the_last_side_cuts_it(begin: complex, depth: float) -> None:
     program = loop(begin, 20j, *BELOW_TOP, 60j, side=LEFT)
     found = program.sweeps()
@@ -553,7 +556,7 @@ def is_simple(of: Loop) -> bool:
     return bool(shapely.LinearRing(np.concatenate(points)).is_simple)
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 @settings(max_examples=120, deadline=None)
 @given(contours())
 def test_random_contours_of_one_turn(drawn: tuple[list[Block], Side, float]) -> None:
@@ -569,7 +572,7 @@ def test_random_contours_of_one_turn(drawn: tuple[list[Block], Side, float]) -> 
             assert move not in depth
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 @settings(max_examples=60, deadline=None)
 @given(contours(most=6), st.lists(st.floats(0.05, 0.9), min_size=1, max_size=4), st.booleans())
 def test_random_passes_one_in_the_other(

@@ -8,6 +8,7 @@ import math
 from collections.abc import Callable, Sequence
 
 import pytest
+from cases import looped
 
 from polarcheck.rewrite.compensate.parallel import NoContourError, contour_beside
 from polarcheck.rewrite.compensate.pieces import Piece
@@ -66,7 +67,7 @@ def square_corners(part: Sequence[complex]) -> list[Piece]:
     return lines([*points, points[0]])
 
 
-@pytest.mark.parametrize(
+@looped(
     "path",
     [miters, round_corners, square_corners, lambda part: round_corners(part, 7), lambda part: round_corners(part, 90)],
     ids=["miters", "arcs", "across", "chords", "many chords"],
@@ -84,7 +85,7 @@ def test_pocket_with_sharp_corners() -> None:
     assert [piece.end for piece in contour] == pytest.approx([14 + 14j, -14 + 14j, -14 - 14j, 14 - 14j, 14])
 
 
-@pytest.mark.parametrize("aside", [3.0, -3.0, -8.0])
+@looped("aside", [3.0, -3.0, -8.0])
 def test_arcs_change_their_radius(aside: float) -> None:
     """A slot: half circles and their tangents, counterclockwise; the part within, or around."""
     path = [Piece(10 - 6j, 10 + 6j, 10 + 0j, 1), Piece(10 + 6j, -10 + 6j)]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from cases import looped
 from programs import report_of, said
 
 HEAD = "O1\nG21 G98 T0101\nG0 X100. Z2. C0\nG12.1\nG1 Z1. F200\n"
@@ -25,8 +26,9 @@ def stepped(text: str) -> list[str]:
     return [lines[line - 1] for line, _ in said(report)]
 
 
-@pytest.mark.parametrize("at", [2, 3, 4])
-@pytest.mark.parametrize("before", ["", square("Z-1."), square("Z-1.") + square("Z-2.")], ids=["", "one", "two"])
+@pytest.mark.ci
+@looped("at", [2, 3, 4])
+@looped("before", ["", square("Z-1."), square("Z-1.") + square("Z-2.")], ids=["", "one", "two"])
 def test_a_step_is_found_behind_contours_that_have_none(before: str, at: int) -> None:
     assert stepped(before + square("Z-3.", "Z-5.", at) + square("Z-6.")) == ["Z-5."]
 
@@ -35,7 +37,7 @@ def test_each_contour_with_a_step_is_one_finding() -> None:
     assert stepped(square("Z-1.", "Z-3.") + square("Z-4.") + square("Z-5.", "Z-7.")) == ["Z-3.", "Z-7."]
 
 
-@pytest.mark.parametrize(
+@looped(
     "text",
     [
         square("Z-1.") + square("Z-3."),

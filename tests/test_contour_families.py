@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import shapely
+from cases import looped
 from compensation_oracle import Move, simulate
 from contour_families import FAMILIES, Program, Twin, program_of
 from contour_pieces import Piece, polygon_of
@@ -35,8 +36,8 @@ def disc(radius: float, center: complex = 0j) -> shapely.Polygon:
     return polygon_of([Piece("ccw", center + radius, center + radius, center)])
 
 
-@pytest.mark.one_in(13)
-@pytest.mark.parametrize("family", FAMILIES)
+@pytest.mark.ci
+@looped("family", FAMILIES, one_in=13)
 def test_polarcheck_agrees_with_the_reference(family: str) -> None:
     found = [comparison for seed in range(SHARE) for comparison in compare_seed(seed, family)]
     assert [(one.program.seed, one.disagreement, one.says) for one in found if one.disagreement in KINDS] == []
@@ -56,7 +57,7 @@ def test_a_line_through_the_part_is_as_deep_as_the_radius() -> None:
     assert cut_of(Move(0, "line", -50 + 1j, 50 + 1j, None, "OFFSET", False), 5, SQUARE)[0] == 5
 
 
-@pytest.mark.parametrize("kind", ["cw", "ccw"])
+@looped("kind", ["cw", "ccw"])
 def test_an_arc_about_a_round_part_is_too_near_allalong(kind: str) -> None:
     quarter = Move(0, kind, 12 + 0j, 12j, 0j, "OFFSET", False)
     assert cut_of(quarter, 5, disc(10))[0] == pytest.approx(3, abs=1e-3)
@@ -88,7 +89,7 @@ def test_a_slot_in_two_loops_is_cut_by_each_as_far_as_it_is_too_narrow() -> None
 ROUND_A_SQUARE = "C20./X-40./C-20./X40."
 
 
-@pytest.mark.parametrize(
+@looped(
     ("before", "first", "depth"),
     [("Z-3.", "Z-4.", 0.528), ("Z-4.", "", 0.528), ("Z2.", "Z-4.", 0.0), ("Z0.", "Z-4.", 0.0), ("", "", 0.528)],
 )
@@ -98,13 +99,13 @@ def test_a_ramp_cuts_where_it_is_below_the_face(before: str, first: str, depth: 
     assert (verdict.ramps, verdict.contour) == (pytest.approx(depth, abs=1e-3), pytest.approx(0))
 
 
-@pytest.mark.parametrize("overlap", ["", "/C7."])
+@looped("overlap", ["", "/C7."])
 def test_perpendicular_leads_cut_nothing(overlap: str) -> None:
     blocks = f"G1 X80. C-4. F200/G42 X60. C0./X40./C20./X-40./C-20./X40./C1.{overlap}/X60./G40 X80. C5."
     assert judge(program(blocks), 3, SQUARE).depth == pytest.approx(0)
 
 
-@pytest.mark.parametrize("radius", [1, 6, 7.9])
+@looped("radius", [1, 6, 7.9])
 def test_leads_on_an_arc_cut_nothing(radius: float) -> None:
     blocks = "G1 C-8. F300/G42 X40. F120/X36./G2 X20. C0. R8./G3 I-10. J0./G2 X36. C8. R8./G1 G40 X132."
     verdict = judge(program(blocks), radius, disc(10))
@@ -136,8 +137,8 @@ def test_a_block_through_the_part_and_the_wrong_side_are_told() -> None:
     assert judge(program(blocks.format("G42").replace("X-40./", "X-40./X0./")), 3, SQUARE).through
 
 
-@pytest.mark.one_in(3)
-@pytest.mark.parametrize("seed", range(0, 39, 4))
+@pytest.mark.ci
+@looped("seed", range(0, 39, 4), one_in=3)
 def test_samples_along_the_path_say_the_same(seed: int) -> None:
     one = program_of(seed)
     verdict = judge(one.text, one.radius, one.part)
@@ -154,8 +155,8 @@ def test_samples_along_the_path_say_the_same(seed: int) -> None:
     assert verdict.depth >= deepest - 1e-9
 
 
-@pytest.mark.one_in(3)
-@pytest.mark.parametrize("seed", range(26))
+@pytest.mark.ci
+@looped("seed", range(26), one_in=3)
 def test_every_wall_of_the_part_is_programmed(seed: int) -> None:
     """So that the part by construction is the one of the program; round the bar nothing is milled."""
     one = program_of(seed)
@@ -173,8 +174,8 @@ def test_every_wall_of_the_part_is_programmed(seed: int) -> None:
 # --- the generator ------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.one_in(4)
-@pytest.mark.parametrize("seed", range(26))
+@pytest.mark.ci
+@looped("seed", range(26), one_in=4)
 def test_twins_have_the_same_part_and_the_same_path(seed: int) -> None:
     one = program_of(seed)
     assert one == program_of(seed)
@@ -191,7 +192,7 @@ def test_twins_have_the_same_part_and_the_same_path(seed: int) -> None:
         assert program_of(seed, twin).part.area == pytest.approx(area, rel=2e-3)
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 def test_a_disagreement_is_seen() -> None:
     """Each kind, by a program that polarcheck judges well and a part that is not the one that it makes."""
     blocks = "G1 X80. C0. F200/G42 X40. C0./C20./X-40./C-20./X40./C0./G40 X80."
@@ -213,7 +214,7 @@ def test_a_disagreement_is_seen() -> None:
     assert (compare(alarm).judged, compare(alarm).disagreement) == ("alarm", "")
 
 
-@pytest.mark.parametrize(
+@looped(
     ("judged", "depths"),
     [("sound", (0.0, 0.0)), ("sound", (0.0, 0.004)), ("undecided", (0.0, 0.03)), ("unsound", (0.021, 0.5))],
 )
@@ -222,7 +223,7 @@ def test_what_hangs_on_a_bar_that_is_not_known_is_undecided(judged: str, depths:
     assert class_of(verdict, *depths) == judged
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 def test_the_command_prints_a_table_and_keeps_what_differs(tmp_path: Path) -> None:
     command = [sys.executable, GENERATOR, "--count", "3", "--seed", "0", "--family", "polygons", "--keep", tmp_path]
     done = subprocess.run(command, capture_output=True, text=True, check=False)

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from cases import looped
 
 from polarcheck.foundation.states import Motion
 from polarcheck.geometry.overcuts.cuts import Cuts
@@ -43,8 +44,8 @@ def beside(air: float, begin: complex) -> float:
     return RADIUS - abs(((point - begin).conjugate() * way).imag) / abs(way)
 
 
-@pytest.mark.parametrize("cancels", [False, True])
-@pytest.mark.parametrize("turn", [1, 1j, np.exp(2j)])
+@looped("cancels", [False, True])
+@looped("turn", [1, 1j, np.exp(2j)])
 def test_a_ramp_from_the_air_cuts_only_what_is_within_it(turn: complex, cancels: bool) -> None:
     """The way from (-40, 9) to (20, 15) runs through the flat at x = -30, 31.6 from the center."""
     begin, air = -40 + 9j, [15.0, 18.0, 25.0, 33.0, math.inf, 9.0]
@@ -56,8 +57,8 @@ def test_a_ramp_from_the_air_cuts_only_what_is_within_it(turn: complex, cancels:
     assert depth[0] == pytest.approx(5 - 1.882 * math.cos(math.atan(0.1)), abs=0.001)  # at (-11.18, 10)
 
 
-@pytest.mark.parametrize("cancels", [False, True])
-@pytest.mark.parametrize("turn", [1, 1j, np.exp(2j)])
+@looped("cancels", [False, True])
+@looped("turn", [1, 1j, np.exp(2j)])
 def test_a_slant_nicks_the_end_that_it_leads_to(turn: complex, cancels: bool) -> None:
     """Past the end of the flat 0.02 nearer than 5 is no cut; behind it only what is more than the slant takes is."""
     cuts = ramped([50 + 12j, 60 + 13j, 24.2 + 9.5j, 23 + 9j], [math.inf] * 4, turn, cancels)

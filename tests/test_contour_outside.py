@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from cases import looped
 from programs import report_of, said
 
 RULE = "contour-outside-polar-mode"
@@ -24,8 +25,9 @@ def found(machine: str, contour: str, *, ends: str = "") -> list[str]:
     return [one.message for one in report.findings if one.rule == RULE]
 
 
-@pytest.mark.parametrize("machine", CONTROLS)
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped("machine", CONTROLS)
+@looped(
     "contour",
     [
         SQUARE,
@@ -41,8 +43,9 @@ def test_it_is_one_finding_with_the_code_that_begins_the_mode(machine: str, cont
     assert message.endswith(f"write {CONTROLS[machine]} before it")
 
 
-@pytest.mark.parametrize("machine", CONTROLS)
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped("machine", CONTROLS)
+@looped(
     "contour",
     [
         # Grooves and holes in degrees, a helix, facing past the center, C in rapid traverse.

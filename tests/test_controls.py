@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from cases import looped
 from document_programs import GSK_1, M700V
 from programs import machine_of, moves_of, report_of, said, tables_of, trace_of
 
@@ -52,7 +53,7 @@ G113
 # ---- diameter or radius ----
 
 
-@pytest.mark.parametrize(
+@looped(
     ("program", "name", "right"),
     [
         (M700V.text, "mitsubishi-m700", "radius"),
@@ -90,7 +91,8 @@ def test_the_lsis_example_is_a_quarter_of_a_circle_with_x_as_a_radius() -> None:
     assert not report_of(LSIS, "lsis").findings
 
 
-@pytest.mark.parametrize("name", ["gsk-988", "fanuc-16i", "turning-center"])
+@pytest.mark.ci
+@looped("name", ["gsk-988", "fanuc-16i", "turning-center"])
 def test_the_m700v_example_is_wrong_where_x_is_a_diameter(name: str) -> None:
     rules = {finding.rule for finding in report_of(M700V.text, name).findings}
     assert rules & {"arc-end-off-circle", "diameter-radius-mixed"}
@@ -134,8 +136,9 @@ def feeds(mode: str, in_mode: str, system: str) -> tuple[float, float, FileRepor
     )
 
 
-@pytest.mark.parametrize("system", ["A", "B"])
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped("system", ["A", "B"])
+@looped(
     ("mode", "in_mode", "used", "after", "alarm"),
     [
         ("per minute", "", 100, 100, None),  # no F in the mode, G94(G98): previous F is used, and stays
@@ -154,8 +157,8 @@ def test_feed_in_the_mode_and_after_it(
     assert found == ([("feed-lost-from-per-revolution", "P62", 5)] if alarm else [])
 
 
-@pytest.mark.parametrize("system", ["A", "B"])
-@pytest.mark.parametrize(
+@looped("system", ["A", "B"])
+@looped(
     ("mode", "in_mode", "inside", "behind"),
     [
         ("per minute", "", ("per minute", 100), ("per minute", 100)),
@@ -174,7 +177,7 @@ def test_the_executed_table_shows_how_f_is_read(
     assert [row["feed"] for row in table[4:6]] == [inside[1]] * 2
 
 
-@pytest.mark.parametrize("system", ["A", "B"])
+@looped("system", ["A", "B"])
 def test_the_first_move_at_feed_of_z_alone_needs_an_f_in_each_list_of_codes(system: str) -> None:
     program = table_program("per revolution", "", system).replace("G1 X30. \n", "G1 Z-5.\nX30. F200\n", 1)
     assert "Z-5." in program
@@ -230,7 +233,7 @@ def test_infeed_cycle_with_a_cutter() -> None:
     assert not unknown.known.any()
 
 
-@pytest.mark.parametrize(
+@looped(
     ("infeed", "passes"),
     [("", 1), ("E0", 1), ("E8.", 3), ("E-8.", 3), ("E12.", 2), ("E24.", 1), ("E30.", 1), ("E5.", 5)],
 )
@@ -239,7 +242,7 @@ def test_how_many_passes(infeed: str, passes: int) -> None:
     assert len(moves) == 10 * passes
 
 
-@pytest.mark.parametrize(
+@looped(
     ("infeed", "passes"),
     [("E8.", [171, 163, 155]), ("E5.", [170, 165, 160, 155]), ("E7.", [169, 162, 155]), ("E23.9", [155])],
 )
@@ -366,14 +369,15 @@ def test_virtual_axis_as_a_diameter() -> None:
 # ---- alarms ----
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("code", "alarm"),
     [
         *((code, "PS0146") for code in ("G0", "G17", "G28 U0", "G31 X3.", "G32 Z-5.", "G52 X0", "G53 X0", "G68")),
         *((code, "PS0146") for code in ("G83 X40. C90. Z-1.", "G90 X20. Z-5.", "G92 X20. Z-1.", "G94 X20. Z-5.")),
         *((code, None) for code in ("G10 L2 P1 X0", "G20", "G43 H1", "G54", "G61", "G80", "G93", "G96 S100")),
     ],
+    one_in=12,
 )
 def test_an_alarm_is_shown_at_codes_that_its_text_names(code: str, alarm: str | None) -> None:
     """What the mode does not allow is an error whichever it is; its number is told where that is proved."""
@@ -390,7 +394,8 @@ def test_a_code_of_another_system_is_another_alarm() -> None:
     assert report_of(program, "fanuc-30i", changes={"control": {"g_code_system": "B"}}).findings == []
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("program", "name", "rule", "alarm"),
     [
         ("G98 G0 X60. C0\nG12.1\nG1 X40. F100\nG0 C5.\nG1 C0\nG13.1\n", "fanuc-16i", "rapid-in-polar", "146"),
@@ -412,7 +417,7 @@ def test_alarm_of_the_control(program: str, name: str, rule: str, alarm: str) ->
     assert [str(finding.alarm).startswith(alarm) for finding in found] == [True]
 
 
-@pytest.mark.parametrize("name", ["haas-lathe", "siemens-transmit"])
+@looped("name", ["haas-lathe", "siemens-transmit"])
 def test_rapid_traverse_is_silent_where_the_control_takes_it(name: str) -> None:
     on, off = machine_of(name).polar.on[0], machine_of(name).polar.off[0]
     program = f"G17 G98 G0 X60. C0\n{on}\nG0 X40. Y0\nG1 Y5. F100\n{off}\n"
@@ -429,6 +434,7 @@ def other(program: str, name: str) -> str:
     return said
 
 
+@pytest.mark.ci
 def test_a_program_for_another_machine_is_known() -> None:
     assert "--machine mitsubishi-m700" in other(M700V.text, "fanuc")
     assert "X is a radius" in other(M700V.text, "fanuc")
@@ -436,6 +442,7 @@ def test_a_program_for_another_machine_is_known() -> None:
     assert "Y is the second axis" in other(HAAS, "fanuc")
 
 
+@pytest.mark.ci
 def test_a_program_under_its_own_machine_is_left_alone() -> None:
     for program, name in (
         (M700V.text, "mitsubishi-m700"),
@@ -460,7 +467,8 @@ def test_messages_name_the_virtual_axis_of_the_control() -> None:
     assert "2 mm in Y" in next(f.message for f in found if f.rule == "start-up-shorter-than-radius")
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("name", "units", "axis", "severity", "said_of_z"),
     [
         ("fanuc", "", "C", "warning", "Z moves on its own there, not on the line in space"),
@@ -496,7 +504,8 @@ GUIDE = HEAD + "G12.1\n{}G1 {}X1.6 F40.\n{}C.3\nX2.4\nG13.1\nM30\n"
 PLANES = "plane-selected-in-polar", "plane-wrong-at-entry"
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("before", "behind", "beside", "later", "expected"),
     [
         ("G18", "", "", "", []),
@@ -516,7 +525,8 @@ def test_g18_may_stand_right_behind_g12_1_where_the_guide_wants_it(
     assert graded(GUIDE.format(before, behind, beside, later), "turning-center", *PLANES) == expected
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("name", "plane", "severity"),
     [
         ("fanuc", "G18", ["error"]),
@@ -556,13 +566,15 @@ def test_codes_that_a_haas_has() -> None:
     assert trace.path.end[[5, 6, 7]] == pytest.approx([20, 15 + 3j, 10 + 3j])
 
 
-@pytest.mark.parametrize("name", ["fanuc", "fanuc-16i", "gsk-988", "turning-center"])
+@pytest.mark.ci
+@looped("name", ["fanuc", "fanuc-16i", "gsk-988", "turning-center"])
 def test_feed_per_revolution_in_the_mode_is_a_note_where_the_documents_allow_it(name: str) -> None:
     told = graded("O1\nG99 G0 X50. Z2. C0\nG12.1\nG1 X40. F.1\nG13.1\nM30\n", name, "feed-per-revolution-in-polar")
     assert [(line, severity) for line, severity, _ in told] == [(4, "note")]
 
 
-@pytest.mark.parametrize("plane", ["G17 XC", "G17XC", "G17 UH", "G17 U H", "G17 X C", "G91 G17 XU\nG90"])
+@pytest.mark.ci
+@looped("plane", ["G17 XC", "G17XC", "G17 UH", "G17 U H", "G17 X C", "G91 G17 XU\nG90"])
 def test_a_mazak_selects_the_plane_with_its_axes(plane: str) -> None:
     program = f"O1\nG94 G0 X50. Z2. C0\n{plane}\nG12.1\nG1 X40. F200\nG13.1\nM30\n"
     assert not {"bad-number", "plane-wrong-at-entry"} & {
@@ -573,7 +585,7 @@ def test_a_mazak_selects_the_plane_with_its_axes(plane: str) -> None:
 # ---- the clamp of the feed, GSK parameters 5450#1 and 5462 ----
 
 
-@pytest.mark.parametrize(
+@looped(
     ("on", "severity", "text", "rate"),
     [
         (1, "warning", "F is 2000 mm/min, GSK 988T/TA/TB lathe control clamps it at 500 mm/min in the polar mode", 500),
@@ -595,7 +607,8 @@ def test_the_clamp_is_switched_by_a_parameter(on: int, severity: str, text: str,
     assert report.polar_sections[0].c_feed == pytest.approx(np.degrees(rate / 125))
 
 
-@pytest.mark.parametrize("on", [0, 1])
+@pytest.mark.ci
+@looped("on", [0, 1])
 def test_the_alarm_of_c_is_an_alarm_beside_the_clamp(on: int) -> None:
     """Note 1: beyond the limit of C the control stops; no parameter of this one slows C down."""
     changes = {"parameters": {"5450#1": on, "5462": 500}, "limits": {"c_feed": 200}}
@@ -610,7 +623,8 @@ def test_the_alarm_of_c_is_an_alarm_beside_the_clamp(on: int) -> None:
     assert ("c-feed-above-limit" in rules) == (not on)
 
 
-@pytest.mark.parametrize("limit", [0, 2000, 3000])
+@pytest.mark.ci
+@looped("limit", [0, 2000, 3000])
 def test_an_f_up_to_the_clamp_says_nothing(limit: int) -> None:
     """5462 of 0 is no limit of its own."""
     changes = {"parameters": {"5450#1": 1, "5462": limit}}
@@ -649,7 +663,8 @@ Y1.125
 """
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("absolute", "incremental"),
     [("G390", "G391"), ("g390", "g391"), ("G390.", "G391."), ("N5 G0390", "G0391"), ("G390 M9", "G40 G391")],
 )

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 import shapely
+from cases import looped
 from click.testing import CliRunner, Result
 from programs import CORPUS
 from setter_programs import FAMILIES, drawn
@@ -132,7 +133,8 @@ def section(*blocks: str, head: str = "G21 G98 G40", c: str = "C0") -> str:
 # ---- the words ----
 
 
-@pytest.mark.parametrize(("target", "expected"), [("okuma-osp", OKUMA), ("haas-lathe", HAAS)])
+@pytest.mark.ci
+@looped(("target", "expected"), [("okuma-osp", OKUMA), ("haas-lathe", HAAS)])
 def test_a_program_is_written_in_the_words_of_the_other_control(target: str, expected: str) -> None:
     """The words of the facts: G137, G101 and L, arcs up to 90 deg; G17 and G112, Y as a radius."""
     outcome = convert(HEXAGON, "takisawa", target, "3:radius=4")
@@ -177,6 +179,7 @@ def test_blanks_line_ends_letters_and_comments_stay() -> None:
     ).replace("c5.", "y5.").replace("g13.1", "g113\r\ng18")
 
 
+@pytest.mark.ci
 def test_there_and_back_gives_the_same_words() -> None:
     """But for those of the first move in the mode, which are all written, arcs that were divided, and G21 by itself."""
     program = HEXAGON.replace("N80 G1 X56. F1000", "N80 G1 X56. C0 F1000").replace("C0 F150", "F150")
@@ -191,9 +194,8 @@ def test_there_and_back_gives_the_same_words() -> None:
     ]
 
 
-@pytest.mark.parametrize(
-    ("target", "codes"), [("takisawa", ["G21"]), ("haas-lathe", ["G21", "G17", "G18"]), (SOURCE, ["G21"])]
-)
+@pytest.mark.ci
+@looped(("target", "codes"), [("takisawa", ["G21"]), ("haas-lathe", ["G21", "G17", "G18"]), (SOURCE, ["G21"])])
 def test_a_control_with_codes_for_units_is_told_those_of_one_without(target: str, codes: list[str]) -> None:
     """Whatever the last program on that machine has left in force."""
     there = convert(HEXAGON, "takisawa", "okuma-osp", "3:radius=4").data
@@ -286,6 +288,7 @@ def without_helices(plan: list[Section]) -> list[Section]:
     return result
 
 
+@pytest.mark.ci
 @pytest.mark.one_in(40)
 @pytest.mark.parametrize("source", ["haas-lathe", "fanuc", "hurco", "siemens-transmit"])
 @pytest.mark.parametrize("target", CONTROLS)
@@ -306,6 +309,7 @@ def test_the_path_on_the_part_is_that_of_the_plan(source: str, target: str) -> N
             assert distance.max() < 0.003
 
 
+@pytest.mark.ci
 def test_a_helix_needs_a_control_that_has_one() -> None:
     program = section("G1 X40. C0 F200", "G3 X-40. C0 I-20. J0 Z-1.").replace("G12.1", "G112").replace("G13.1", "G113")
     haas = (
@@ -322,9 +326,9 @@ def test_a_helix_needs_a_control_that_has_one() -> None:
 # ---- what is around the geometry ----
 
 
-@pytest.mark.one_in(5)
-@pytest.mark.parametrize("plane", ["G17", "G18", "G19"])
-@pytest.mark.parametrize(("target", "end"), [("fanuc-30i", "G13.1"), ("siemens-transmit", "TRAFOOF")])
+@pytest.mark.ci
+@looped("plane", ["G17", "G18", "G19"], one_in=5)
+@looped(("target", "end"), [("fanuc-30i", "G13.1"), ("siemens-transmit", "TRAFOOF")])
 def test_a_plane_that_ends_the_mode_is_a_plane_outside_of_it(plane: str, target: str, end: str) -> None:
     """Any other plane ends G16 XC: only the one that does becomes the word that ends the mode."""
     program = (
@@ -376,6 +380,7 @@ def test_a_plane_that_lies_otherwise_is_turned() -> None:
     )
 
 
+@pytest.mark.ci
 def test_outer_corners_need_a_code_and_acute_ones_the_path_of_the_center() -> None:
     square = section("G42 G1 X40. C0 F200", "C20.", "X-40.", "C-20.", "X40.", "C0", "G40 X60.")
     text = convert(square, SOURCE, "siemens-transmit", "1:radius=4").data.decode()
@@ -387,6 +392,7 @@ def test_outer_corners_need_a_code_and_acute_ones_the_path_of_the_center() -> No
     assert "`polarcheck compensate --center`" in reasons[-1][1]
 
 
+@pytest.mark.ci
 def test_macros_stay_where_their_words_count_alike() -> None:
     program = section(
         "G1 X50. C0 F200", "#1=0", "WHILE[#1 LT 3]DO1", "#1=#1+1", "G1 Z[-2.*#1] F100", "G1 X40. C5. F200",
@@ -400,6 +406,7 @@ def test_macros_stay_where_their_words_count_alike() -> None:
     assert "is a statement of a language that Okuma" in str(refused(program, SOURCE, "okuma-osp"))
 
 
+@pytest.mark.ci
 def test_a_subprogram_is_called_as_the_other_control_calls_it() -> None:
     program = section("G1 Z-2. F200", "M98 P7", "G1 Z-4.", "M98 P7", "G1 Z2.")[:-2]
     program += "O7\nG42 G1 X40. C0 F100\nC10.\nX-40.\nC-10.\nX40.\nC0\nG40 X60.\nM99\n%\n"
@@ -411,6 +418,7 @@ def test_a_subprogram_is_called_as_the_other_control_calls_it() -> None:
 # ---- what is to be decided, and what is refused ----
 
 
+@pytest.mark.ci
 def test_what_no_profile_knows_is_a_comment_to_decide() -> None:
     program = HEXAGON.replace("M70", "M70 M77").replace("N200 G0", "N195 G71 U1.5 R.5\nN200 G0")
     outcome = convert(program, "takisawa", "okuma-osp", "3:radius=4")
@@ -429,7 +437,7 @@ def test_the_contour_of_a_cycle_goes_with_it_and_so_do_its_further_blocks() -> N
     assert "(DECIDE: X44.: NOTHING SAYS THAT ITS WORDS MEAN THE SAME THERE)" in text
 
 
-@pytest.mark.parametrize(
+@looped(
     ("program", "target", "expected"),
     [
         (section("G1 X40. F200").replace("G13.1\n", ""), "okuma-osp", "polar mode is never left"),
@@ -447,6 +455,7 @@ def test_the_sub_spindle_is_refused() -> None:
     assert "the sub-spindle turns the plane" in str(refused(program, "doosan", "okuma-osp"))
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize(
     ("name", "broken"),
     [
@@ -466,6 +475,7 @@ def test_a_wrong_move_is_found_when_the_program_is_read_back(
     assert refused(haas, "haas-lathe", "siemens-transmit")
 
 
+@pytest.mark.ci
 @pytest.mark.one_in(2)
 @pytest.mark.parametrize("what", ["feed", "side", "code", "z"])
 def test_a_wrong_word_is_found_when_the_program_is_read_back(what: str, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -496,7 +506,7 @@ REASONS = (
 
 
 @pytest.mark.one_in(3)
-@pytest.mark.slow
+@pytest.mark.ci
 @pytest.mark.parametrize("target", [SOURCE, "okuma-osp", "siemens-transmit", "haas-lathe", "mitsubishi-m700", "hurco"])
 @pytest.mark.parametrize("source", ["doosan", "haas-lathe", "okuma-osp", "siemens-transmit"])
 def test_programs_of_setters_are_converted(source: str, target: str) -> None:
@@ -515,7 +525,7 @@ def test_programs_of_setters_are_converted(source: str, target: str) -> None:
 
 
 @pytest.mark.corpus
-@pytest.mark.slow
+@pytest.mark.ci
 @pytest.mark.skipif(not CORPUS.is_dir(), reason="the corpus is not there")
 @pytest.mark.parametrize("target", ["haas-lathe", "okuma-osp", "siemens-transmit"])
 def test_real_programs_are_converted_or_refused(target: str) -> None:
@@ -535,6 +545,7 @@ def call(*arguments: str) -> Result:
     return CliRunner().invoke(main, ["convert", *arguments])
 
 
+@pytest.mark.ci
 @pytest.mark.usefixtures("own_folder")
 def test_the_command_writes_says_what_is_to_be_decided_and_ends_with_its_code() -> None:
     Path("a.nc").write_text(HEXAGON)
@@ -599,7 +610,8 @@ OKUMA_TURNED = "O1\nG90 G94\nT0101\nG0 X60. Z2. C0\n"
 SURFACE = "%\nO1\nG20 G99\nT0101\nG96 S600 M3\nG0 X2. Z.1\nG1 Z-.5 F.01\nG97 S800\nM5\nM30\n%\n"
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("program", "source", "target", "expected"),
     [
         # S beside G96 is ft/min in inch.
@@ -641,13 +653,13 @@ SURFACE = "%\nO1\nG20 G99\nT0101\nG96 S600 M3\nG0 X2. Z.1\nG1 Z-.5 F.01\nG97 S80
         (HEAD + "G0 X50. Z2.\nG2 X52. Z1. I1. K0 F9\n" + END, "fanuc-30i", "siemens-transmit", "I1. K0 F9\n"),
         (HEAD + "G0 X[40+10] Z2.\n" + END, "fanuc-30i", "haas-lathe", "G0 X[40+10] Z2.\n"),
     ],
+    one_in=6,
 )  # fmt: skip
-@pytest.mark.one_in(6)
 def test_what_goes_on_around_sections_keeps_its_meaning(program: str, source: str, target: str, expected: str) -> None:
     assert expected in convert(program, source, target).data.decode()
 
 
-@pytest.mark.parametrize(
+@looped(
     ("program", "target", "expected"),
     [
         (HEAD + "G0 X50. Z2.\nG1 Z-500 F100\n" + MILLED + END, "siemens-transmit", "Z-500 has no point"),

@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 
 import msgspec
 import pytest
+from cases import looped
 from programs import CORPUS, report_of
 
 from polarcheck.foundation.finding import FileReport
@@ -15,6 +16,7 @@ FILES = sorted(path for path in CORPUS.rglob("*") if path.is_file() and path.nam
 POLAR = CORPUS / "polar"
 
 pytestmark = [
+    pytest.mark.ci,
     pytest.mark.corpus,
     pytest.mark.skipif(not CORPUS.is_dir(), reason="the real programs are not beside this checkout"),
 ]
@@ -79,8 +81,7 @@ JUDGED = [
 ]
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize("row", JUDGED, ids=lambda row: " ".join([row.name, row.machine, *row.tools]))
+@looped("row", JUDGED, ids=lambda row: " ".join([row.name, row.machine, *row.tools]))
 def test_judged_program(row: Judged) -> None:
     report = report_of_file(POLAR / row.name, row.machine, *row.tools, changes=row.changes)
     found = [(f.line, f.severity, f.rule) for f in report.findings if f.severity != "note"]
@@ -96,7 +97,7 @@ TOO_LARGE = [
 ]
 
 
-@pytest.mark.parametrize(("name", "lathe", "tool", "lines"), TOO_LARGE, ids=[row[0] for row in TOO_LARGE])
+@looped(("name", "lathe", "tool", "lines"), TOO_LARGE, ids=[row[0] for row in TOO_LARGE])
 def test_a_cutter_too_large_for_its_ramps_is_found(name: str, lathe: str, tool: str, lines: set[int]) -> None:
     found = report_of_file(POLAR / name, lathe, tool).findings
     ramps = {f.line for f in found if f.rule in ("start-up-shorter-than-radius", "cancel-shorter-than-radius")}
@@ -130,7 +131,7 @@ DEFECTS: dict[str, set[tuple[int, str]]] = {
 }
 
 
-@pytest.mark.parametrize("name", DEFECTS)
+@looped("name", DEFECTS)
 def test_known_defects_are_named(name: str) -> None:
     shown = report_of_file(POLAR / name).findings
     assert DEFECTS[name] <= {(one.line, one.rule) for found in shown for one in (found, *found.follows)}
@@ -153,8 +154,7 @@ JUDGED_SO = {row.name for row in JUDGED if (row.machine, row.tools, row.changes)
 OTHERS = [path for path in FILES if path.name not in {*JUDGED_SO, *DEFECTS} and path not in FANUC_LATHES]
 
 
-@pytest.mark.one_in(9)
-@pytest.mark.parametrize("path", OTHERS, ids=lambda path: f"{path.parent.name}/{path.name}")
+@looped("path", OTHERS, ids=lambda path: f"{path.parent.name}/{path.name}", one_in=9)
 def test_every_other_program_gives_a_report(path: Path) -> None:
     report_of_file(path)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from cases import looped
 
 from polarcheck.foundation.states import Motion
 from polarcheck.geometry.overcuts.cuts import Cuts, assign_walls, cuts_into, endless, shortened
@@ -42,7 +43,7 @@ FLAT = [30 + 10j, 10 + 10j, -30 + 10j]
 BOSS, POCKET = (SQUARE, False), (SQUARE, True)
 
 
-@pytest.mark.parametrize(
+@looped(
     ("loops", "expected"),
     [
         ([BOSS], [False]),
@@ -56,7 +57,7 @@ def test_what_surrounds_a_pocket_has_no_end(loops: list[tuple[list[complex], boo
     assert endless(parts_of(*loops)).tolist() == expected
 
 
-@pytest.mark.parametrize("turn", [1, 1j, -1, -1j, np.exp(0.4j)])
+@looped("turn", [1, 1j, -1, -1j, np.exp(0.4j)])
 def test_depth_and_place_of_ways_beside_a_boss(turn: complex) -> None:
     """R 2: at 21.5 from the center 0.5 deep, at 22.5 none; through the part its whole R."""
     part = parts_of(([turn * point for point in SQUARE], False), (SMALL, False))
@@ -91,7 +92,7 @@ def test_a_corner_is_cut_with_both_of_its_walls() -> None:
     assert cuts.depth == pytest.approx([3 - 1.5 * np.sqrt(2)] * 2)
 
 
-@pytest.mark.parametrize(("radius", "left"), [(2.0, [(28, 10), (10, -28)]), (25.0, [(5, -5)]), (30.0, []), (40.0, [])])
+@looped(("radius", "left"), [(2.0, [(28, 10), (10, -28)]), (25.0, [(5, -5)]), (30.0, []), (40.0, [])])
 def test_of_a_contour_in_the_open_nothing_is_known_near_its_ends(
     radius: float, left: list[tuple[float, float]]
 ) -> None:

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from cases import looped
 from programs import report_of, said, trace_of
+
+pytestmark = pytest.mark.ci
 
 MODES = {
     "okuma-osp": ("G137 C0", "Y", "G136", "M2"),
@@ -26,7 +29,7 @@ def strays(machine: str, block: str) -> list[str]:
     return [one.message for one in report_of(program(machine, block), machine, "1:radius=4").findings if one.line == 6]
 
 
-@pytest.mark.parametrize(
+@looped(
     ("machine", "block", "length"),
     [
         *((machine, f"{axis}12,5", 12.5) for machine, (_, axis, _, _) in MODES.items()),
@@ -47,7 +50,7 @@ def test_it_is_one_finding_and_is_read_as_a_point(machine: str, block: str, leng
     np.testing.assert_allclose(trace.path.end[trace.blocks.line == 6][-1].imag, length)
 
 
-@pytest.mark.parametrize(
+@looped(
     ("machine", "block"),
     [("mazak-integrex", "C=12,5"), ("fagor-8055t", "C=12,5"), ("fanuc", "#1=12,5"), ("fanuc", "X[20] C1,5")],
 )
@@ -55,8 +58,7 @@ def test_where_the_language_has_no_such_word_it_is_the_same_finding(machine: str
     assert ", is no decimal point: write" in strays(machine, block)[0]
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize(
+@looped(
     ("machine", "block"),
     [
         ("okuma-osp", "Y=ATAN2[1,2]"),

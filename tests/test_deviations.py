@@ -17,6 +17,7 @@ import msgspec
 import numpy as np
 import pytest
 import shapely
+from cases import looped
 from click.testing import CliRunner
 from compensation_oracle import simulate
 from contour_families import FAMILIES, Program, Twin, program_of
@@ -114,8 +115,8 @@ def sound_seeds(count: int) -> list[int]:
 # ---- parts known by construction ----
 
 
-@pytest.mark.one_in(13)
-@pytest.mark.parametrize("seed", sound_seeds(2))
+@pytest.mark.ci
+@looped("seed", sound_seeds(2), one_in=13)
 def test_programs_of_all_families_agree_with_their_parts(seed: int) -> None:
     one = program_of(seed)
     found = comparisons(one.text, one.radius, drawn(one.part))
@@ -125,8 +126,8 @@ def test_programs_of_all_families_agree_with_their_parts(seed: int) -> None:
         assert max(one.difference.largest for one in of_contours["contour_comparisons"].all) < 0.005
 
 
-@pytest.mark.one_in(13)
-@pytest.mark.parametrize("seed", sound_seeds(2))
+@pytest.mark.ci
+@looped("seed", sound_seeds(2), one_in=13)
 def test_metal_that_stays_or_is_missing_is_found_where_shapely_finds_it(seed: int) -> None:
     one = program_of(seed)
     if not is_sound(one) or one.radius <= ADJUSTMENT + 0.01:
@@ -142,11 +143,9 @@ def test_metal_that_stays_or_is_missing_is_found_where_shapely_finds_it(seed: in
     assert any(comparison.differs for comparison in found) == leaves_metal(one, min(certain, turned) - 0.02)
 
 
-@pytest.mark.one_in(13)
-@pytest.mark.parametrize("seed", sound_seeds(1))
-@pytest.mark.parametrize(
-    "twin", [Twin(turn=0.7), Twin(mirror=True), Twin(inch=True)], ids=["turned", "mirrored", "inch"]
-)
+@pytest.mark.ci
+@looped("seed", sound_seeds(1), one_in=13)
+@looped("twin", [Twin(turn=0.7), Twin(mirror=True), Twin(inch=True)], ids=["turned", "mirrored", "inch"])
 def test_so_do_their_twins_with_the_drawing_of_the_twin(seed: int, twin: Twin) -> None:
     one = program_of(seed, twin)
     if not is_sound(one):
@@ -157,12 +156,13 @@ def test_so_do_their_twins_with_the_drawing_of_the_twin(seed: int, twin: Twin) -
     assert max(found.difference.largest for found in tables["contour_comparisons"].all) < 0.005
 
 
-@pytest.mark.one_in(7)
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("family", "by"),
     # A cam has thousands of corners: one of the two ways is enough.
     [*((family, by) for family in ("polygons", "crosses") for by in (0.3, -0.2)), ("cams", 0.3)]
     + [("eccentrics", by) for by in (0.3, -0.2)],
+    one_in=7,
 )
 def test_a_larger_or_smaller_drawing_differs_by_what_shapely_says(family: str, by: float) -> None:
     made = (program_of(seed, family=family) for seed in range(100))
@@ -179,10 +179,11 @@ def test_a_larger_or_smaller_drawing_differs_by_what_shapely_says(family: str, b
 # ---- slips of a known size ----
 
 
-@pytest.mark.one_in(3)
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("side", "off", "turned"),
     [(0, 0.05, None), (1, -0.05, 10.0), (2, 0.05, 10.0), (3, -0.05, None), (4, 0.05, None), (5, -0.05, 10.0)],
+    one_in=3,
 )
 def test_a_side_that_is_off_is_told_with_its_block(side: int, off: float, turned: float | None) -> None:
     text = program(polygon(6, 13.5, {side: off}, math.radians(10)))
@@ -195,7 +196,7 @@ def test_a_side_that_is_off_is_told_with_its_block(side: int, off: float, turned
     assert ("too much stays" if off > 0 else "too much is cut away") in found.message
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 def test_a_part_agrees_within_the_tolerance_that_is_given() -> None:
     text = program(polygon(6, 13.5, {2: 0.05}))
     for tolerance, count in ((None, 1), (0.049, 1), (0.051, 0)):
@@ -204,6 +205,7 @@ def test_a_part_agrees_within_the_tolerance_that_is_given() -> None:
         assert len(findings) == count
 
 
+@pytest.mark.ci
 def test_lengths_are_in_the_units_of_the_program_unless_the_file_says_others() -> None:
     text = program(polygon(6, 12.7), scale=25.4)
     for job, agrees in (({}, True), ({"units": "mm"}, False)):
@@ -218,7 +220,8 @@ EGG = shapely.Polygon([(20, -9), (20, 12), (-12, 18), (-15, -11)])
 CORNERS = [complex(x, c) for x, c in EGG.exterior.coords[:-1]]
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("change", "said"),
     [
         # How the part would have to be changed, where the drawing is changed.
@@ -236,6 +239,7 @@ def test_a_part_that_would_fit_is_told_how(change: Any, said: str) -> None:
     assert said in found.message
 
 
+@pytest.mark.ci
 def test_a_shape_that_is_turned_is_told_by_how_much() -> None:
     text = program(polygon(6, 13.5, turn=math.radians(7)))
     part = {"shape": "hexagon", "across_flats": 27.0, "turned": 0.5}
@@ -246,6 +250,7 @@ def test_a_shape_that_is_turned_is_told_by_how_much() -> None:
 # ---- which contour, which depth ----
 
 
+@pytest.mark.ci
 def test_a_boss_is_no_pocket() -> None:
     part = {"shape": "square", "across_flats": 40.0, "inside": True}
     (found,) = report_of(
@@ -256,6 +261,7 @@ def test_a_boss_is_no_pocket() -> None:
     assert [one.agrees for one in comparisons(pocket, 3, {"part": [part]})] == [True]
 
 
+@pytest.mark.ci
 def test_roughing_is_no_difference_and_a_cut_too_deep_is() -> None:
     rough, final = program(polygon(4, 20.5), z=-3.0), program(polygon(4, 20.0), z=-3.0)
     part = {"shape": "square", "across_flats": 40.0}
@@ -267,7 +273,8 @@ def test_roughing_is_no_difference_and_a_cut_too_deep_is() -> None:
     assert [(one.section, one.differs) for one in comparisons(deep, 3, second)] == [(1, False)]
 
 
-@pytest.mark.parametrize(("apothem", "told"), [(14.0, []), (13.0, [True])])
+@pytest.mark.ci
+@looped(("apothem", "told"), [(14.0, []), (13.0, [True])])
 def test_what_a_contour_of_unknown_r_may_take_off_is_no_difference(apothem: float, told: list[bool]) -> None:
     # Of the tool that finishes nobody has said R; what is cut too deep by the first one stays so.
     first, last = program(polygon(6, apothem)), program(polygon(6, 13.5))
@@ -277,6 +284,7 @@ def test_what_a_contour_of_unknown_r_may_take_off_is_no_difference(apothem: floa
     assert [one.differs for one in comparisons(first, 2, job)] == [True]
 
 
+@pytest.mark.ci
 def test_each_contour_is_compared_with_the_curve_that_comes_nearest() -> None:
     text = program(polygon(6, 13.5)).replace(TAIL, "G13.1\n") + program(polygon(4, 20.0), z=-8.0).removeprefix("O1\n")
     both = drawn(shapely.MultiPolygon([shapely.Polygon([(p.real, p.imag) for p in polygon(6, 13.5)])]))
@@ -313,7 +321,7 @@ def shaped(part: dict[str, Any], text: str, radius: float = 2.0) -> list[float]:
     return [one.difference.largest for one in comparisons(text, radius, {"part": [part]})]
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 def test_flats_and_slots_are_compared_along_their_walls() -> None:
     flats = "G1 X60. C10. F300/Z-1./G42 X40./X-40./G40 X-60./G1 C-10./G42 X-40./X40./G40 X60."
     text = HEAD + flats.replace("/", "\n") + "\n" + TAIL
@@ -328,6 +336,7 @@ def test_flats_and_slots_are_compared_along_their_walls() -> None:
     assert shaped({"shape": "slot", "width": 6.1, "turned": 0.0}, text) == pytest.approx([0.05], abs=1e-3)
 
 
+@pytest.mark.ci
 def test_round_corners_and_chamfers() -> None:
     """A square of 20 with R3: written as arcs, by itself, and as a sharp one, which has sqrt(2) - 1 of R more."""
     ends = [(10, 7), (7, 10), (-7, 10), (-10, 7), (-10, -7), (-7, -10), (7, -10), (10, -7)]
@@ -345,6 +354,7 @@ def test_round_corners_and_chamfers() -> None:
     assert shaped(rectangle, text) == pytest.approx([0], abs=1e-3)
 
 
+@pytest.mark.ci
 def test_circles_off_the_center() -> None:
     text = HEAD + "G1 X80. C5. F300\nZ-1.\nG42 X30. C5.\nG3 X30. C5. I-12. J0\nG1 G40 X80.\n" + TAIL
     assert shaped({"shape": "circle", "diameter": 24.0, "center": [3.0, 5.0]}, text) == pytest.approx([0], abs=1e-3)
@@ -355,7 +365,8 @@ def test_circles_off_the_center() -> None:
 # ---- from the file to the report ----
 
 
-@pytest.mark.parametrize(("code", "across", "within"), [("G21", 40.0, "0.001 mm"), ("G20", 2.0, "0.0001 inch")])
+@pytest.mark.ci
+@looped(("code", "across", "within"), [("G21", 40.0, "0.001 mm"), ("G20", 2.0, "0.0001 inch")])
 def test_nothing_agrees_by_less_than_the_last_digit(code: str, across: float, within: str) -> None:
     words = [f"X{across}", f"C{across / 2}", f"X-{across}", f"C-{across / 2}", f"X{across}", "C0."]
     text = HEAD.replace("G21", code) + f"G1 X{2 * across} C0. F100.\nG42 " + "\n".join(words) + f"\nG40 X{2 * across}\n"
@@ -364,7 +375,7 @@ def test_nothing_agrees_by_less_than_the_last_digit(code: str, across: float, wi
     assert found.text.startswith(f"agrees with the square asked for within {within} (tolerance ")
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 def test_arcs_are_bulges_in_a_file_and_agreement_is_told_with_its_worst_place(tmp_path: Path) -> None:
     """A D shaft of 30 with its flat 9 from the center."""
     half = math.acos(9 / 15)
@@ -393,6 +404,7 @@ def test_arcs_are_bulges_in_a_file_and_agreement_is_told_with_its_worst_place(tm
 PAGE = Path(__file__).parent.parent / "docs" / "drawing.md"
 
 
+@pytest.mark.ci
 @pytest.mark.skipif(not PAGE.exists(), reason="the pages lie in a checkout")
 @pytest.mark.parametrize(("command", "slip"), [("check", "-8.610"), ("part", "-8.660")])
 def test_the_page_shows_what_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, command: str, slip: str) -> None:
@@ -413,6 +425,7 @@ def test_the_page_shows_what_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyP
     assert lines[at : at + len(said)] == said
 
 
+@pytest.mark.ci
 def test_a_job_file_names_drawings_of_some_programs(tmp_path: Path) -> None:
     """Those of other programs are not read; a drawing lies beside its job file, whose line is told for a broken one."""
     for name in ("O1.NC", "O2.NC"):
@@ -441,6 +454,7 @@ def test_a_job_file_names_drawings_of_some_programs(tmp_path: Path) -> None:
     assert checked("O2.NC").exit_code == 0
 
 
+@pytest.mark.ci
 def test_a_contour_that_does_not_close_leaves_metal() -> None:
     """It ends 0.05 mm beside where it began."""
     open_square = HEAD + "G1 X100. C-4. F500\nZ-1.\nG42 X40. C0\nC20.\nX-40.\nC-20.\nX40.1\nC0\nG40 X80. C5.\n" + TAIL
@@ -457,7 +471,8 @@ def test_a_depth_that_nothing_reaches_differs() -> None:
     assert "nothing mills its walls" in found.message or "too much stays" in found.message
 
 
-@pytest.mark.parametrize(("half", "by", "what"), [(10.05, 0.071, "stays"), (9.95, 0.05, "is cut away")])
+@pytest.mark.ci
+@looped(("half", "by", "what"), [(10.05, 0.071, "stays"), (9.95, 0.05, "is cut away")])
 def test_a_boss_that_the_path_of_the_tool_makes_is_compared_as_a_boss(half: float, by: float, what: str) -> None:
     """No contour in offset mode says on which side of the drawn square the part is: what is cleared does."""
     h = half + 3
@@ -494,7 +509,8 @@ def messages(text: str, part: Any) -> list[str]:
     return [one.message for one in report_of(text, "fanuc-30i", "1:radius=2", job=job, only=[RULE]).findings]
 
 
-@pytest.mark.parametrize("off", [0.1, 0.5])
+@pytest.mark.ci
+@looped("off", [0.1, 0.5])
 def test_of_two_pockets_alike_the_one_that_is_off_is_compared_with_its_own(off: float) -> None:
     """It is not off by 30 mm, where the other one lies; and it is no fault of the disc that it lies in."""
     part = shapely.Point(0, 0).buffer(30, quad_segs=128).difference(opening(15, 5) | opening(-15, 5))
@@ -519,8 +535,9 @@ WITH_ISLAND = {
 }
 
 
-@pytest.mark.parametrize("fault", WITH_ISLAND)
-@pytest.mark.parametrize("turn", [1, 1j], ids=["along X", "along C"])
+@pytest.mark.ci
+@looped("fault", WITH_ISLAND)
+@looped("turn", [1, 1j], ids=["along X", "along C"])
 def test_an_island_hides_no_fault_of_another_pocket(fault: str, turn: complex) -> None:
     (wide, around, other), more, expected = WITH_ISLAND[fault]
     island = shapely.box(12, -3, 18, 3)
@@ -542,8 +559,9 @@ POCKET = [complex(x, c) for x, c in ((4, 4), (-4, 4), (-4, -4), (4, -4))]
 BOSS = [complex(x, c) for x, c in ((15, -8), (15, 2), (3, 2), (3, 9), (-15, 9), (-15, -8))]
 
 
-@pytest.mark.parametrize("scale", [1.0, 25.4], ids=["mm", "inch"])
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped("scale", [1.0, 25.4], ids=["mm", "inch"])
+@looped(
     ("drawn_radius", "radius", "agrees"), [(2, 2, True), (2, 1.5, False), (3, 2, False), (0, 2, True), (1, 2, True)]
 )
 def test_a_sharp_corner_of_the_program_is_round_where_r_of_the_cutter_is_drawn(
@@ -586,14 +604,16 @@ def test_a_slot_is_placed_by_its_own_depth_not_by_a_deeper_groove() -> None:
     assert report_of(text.replace(slot(0, 2, -6.0), ""), "fanuc-30i", "1:radius=4", job=job, only=[RULE]).findings == []
 
 
-@pytest.mark.parametrize(("z", "is_compared"), [("-3.015625", True), ("-3.016", False), ("-2.984375", True)])
+@pytest.mark.ci
+@looped(("z", "is_compared"), [("-3.015625", True), ("-3.016", False), ("-2.984375", True)])
 def test_a_depth_belongs_to_a_part_up_to_its_tolerance(z: str, is_compared: bool) -> None:
     text = program(polygon(6, 13.5)).replace("Z-3.0000", f"Z{z}")
     part = {"shape": "hexagon", "across_flats": 27.0, "z": -3.0, "tolerance": 0.015625}
     assert [one.contour is not None for one in comparisons(text, 4, {"part": [part]})] == [is_compared]
 
 
-@pytest.mark.parametrize("seed", [1, 10])
+@pytest.mark.ci
+@looped("seed", [1, 10])
 def test_the_bar_of_the_job_bounds_what_is_compared(seed: int) -> None:
     """Flats, slots and keyways that end beyond it."""
     one = program_of(seed)

@@ -18,6 +18,8 @@ from polarcheck.files import git as git_of_polarcheck
 from polarcheck.program.execution.dependence import calls_one_of
 from polarcheck.program.reading import source
 
+pytestmark = pytest.mark.ci
+
 GOOD = "O0001\nG98 G0 X60. C0\nG12.1\nG1 X40. F200\nC5.\nG13.1\nM30\n"
 ONLY = ("--select", "rapid-in-polar")
 
@@ -665,7 +667,6 @@ def test_a_repository_of_somebody_else_is_refused_as_git_refuses_it(monkeypatch:
     assert checked() == []
 
 
-@pytest.mark.slow
 @posix
 def test_a_git_that_hangs_is_ended_with_what_it_has_started(monkeypatch: pytest.MonkeyPatch) -> None:
     Path("bin").mkdir()
@@ -678,7 +679,6 @@ def test_a_git_that_hangs_is_ended_with_what_it_has_started(monkeypatch: pytest.
         assert is_gone(int(number))
 
 
-@pytest.mark.slow
 @posix
 def test_a_configuration_that_never_ends_is_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
     os.mkfifo(".git/endless")

@@ -8,6 +8,7 @@ from itertools import groupby
 from operator import attrgetter
 
 import pytest
+from cases import looped
 from polarcheck.errors import RuleError
 from programs import ROOT, tables_of
 
@@ -25,6 +26,7 @@ STATEMENTS = [
 BEYOND = re.compile(r"beyond a static check: \S+")
 
 
+@pytest.mark.ci
 def test_every_fault_has_a_test() -> None:
     """Each row of the tables of faults names at least one, and each that is named is one."""
     faults, *_ = RELIABILITY.partition("<!-- mutation scores: begin -->")
@@ -37,7 +39,7 @@ def test_every_fault_has_a_test() -> None:
             assert re.search(rf"^def {name}\(", TESTS, re.MULTILINE), name
 
 
-@pytest.mark.parametrize(
+@looped(
     "name",
     ["README.md", "SECURITY.md", "CONTRIBUTING.md", "docs/reliability.md", "docs/architecture.md", "docs/documents.md"],
 )
@@ -60,7 +62,7 @@ def test_statements_of_the_five_documents_are_numbered_in_order() -> None:
         assert own == list(range(1, len(own) + 1))
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 def test_each_statement_is_covered_by_what_there_is() -> None:
     """A rule, a test, a column, a key of a machine, a field of the trace; or a reason why no check can cover it."""
     tables = tables_of("G98 G0 X40. C0\nG12.1\nG1 X30. F100\nC5.\nG13.1\n")
@@ -87,9 +89,7 @@ def is_there(name: str, tables: Tables) -> bool:
     return True
 
 
-@pytest.mark.parametrize(
-    "name", ["rapid-in-polars", "test_printed", "move.x", "trace.ends", "tracer.end", "machine.polar.planes"]
-)
+@looped("name", ["rapid-in-polars", "test_printed", "move.x", "trace.ends", "tracer.end", "machine.polar.planes"])
 def test_what_is_not_there_is_not_taken(name: str) -> None:
     assert not is_there(name, tables_of("G0 X1.\n"))
 

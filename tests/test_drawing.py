@@ -13,6 +13,7 @@ from typing import Any
 import ezdxf
 import numpy as np
 import pytest
+from cases import looped
 from click.testing import CliRunner
 from polarcheck.errors import JobError
 
@@ -55,7 +56,7 @@ def d_shaft(space: Any) -> None:
 D_SHAFT = math.pi * 225 - (225 * math.acos(0.6) - 9 * 12)
 
 
-@pytest.mark.parametrize(("version", "form"), [("R2000", "asc"), ("R2000", "bin"), ("R2018", "asc"), ("R2018", "bin")])
+@looped(("version", "form"), [("R2000", "asc"), ("R2000", "bin"), ("R2018", "asc"), ("R2018", "bin")])
 def test_polylines_with_bulges(tmp_path: Path, version: str, form: str) -> None:
     (curve,) = curves(written(tmp_path / "a.dxf", d_shaft, version, form=form))
     assert area(curve) == pytest.approx(D_SHAFT, abs=0.02)
@@ -139,7 +140,8 @@ def layered(space: Any) -> None:
     space.add_text("x", dxfattribs={"layer": "NOTES"})
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("layers", "diameters"),
     [
         ([], [10, 20, 40, 50]),
@@ -150,7 +152,7 @@ def layered(space: Any) -> None:
         (["notes", "0"], [40, 50]),
     ],
 )
-@pytest.mark.parametrize("version", ["R12", "R2010", "R2018"])
+@looped("version", ["R12", "R2010", "R2018"])
 def test_of_named_layers_only_what_lies_on_them_counts(
     tmp_path: Path, version: str, layers: list[str], diameters: list[float]
 ) -> None:
@@ -159,7 +161,7 @@ def test_of_named_layers_only_what_lies_on_them_counts(
     assert sorted(2 * abs(curve[0]) for curve in found) == pytest.approx(diameters)
 
 
-@pytest.mark.parametrize(
+@looped(
     ("layers", "message"),
     [
         (["Contur"], "part.dxf: has no layer Contur; its layers are 0, Contour, NOTES, Rough"),
@@ -211,6 +213,7 @@ def grid(space: Any) -> None:
     space.add_blockref("b", (0, 0), dxfattribs={"row_count": 30000, "column_count": 30000, "row_spacing": 1})
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize(
     ("draw", "said"),
     [
@@ -277,6 +280,7 @@ def test_what_is_drawn_twice_counts_once() -> None:
     assert chain[0] == chain[-1]
 
 
+@pytest.mark.ci
 def test_reading_a_drawing_leaves_nothing_behind(tmp_path: Path) -> None:
     """ezdxf would write a list of all fonts into the home folder."""
     path = written(tmp_path / "part.dxf", d_shaft)

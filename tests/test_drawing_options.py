@@ -45,6 +45,7 @@ VARIANTS = pytest.mark.parametrize(
 )
 
 
+@pytest.mark.ci
 @pytest.mark.one_in(8)
 @VARIANTS
 @pytest.mark.parametrize("command", ["check", "part"])
@@ -65,7 +66,7 @@ def test_several_drawings_are_several_parts(
     assert "differs from hexagon.dxf" not in result.stdout
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 @VARIANTS
 def test_the_tolerance_of_the_command_line(tmp_path: Path, scale: float, turn: float, machine: str) -> None:
     path = tmp_path / "O1.NC"
@@ -87,6 +88,7 @@ def test_the_tolerance_of_the_command_line(tmp_path: Path, scale: float, turn: f
         job.unlink()
 
 
+@pytest.mark.ci
 @pytest.mark.one_in(4)
 @VARIANTS
 def test_layers_by_name(tmp_path: Path, scale: float, turn: float, machine: str) -> None:
@@ -126,6 +128,7 @@ def test_what_makes_no_sense_is_refused_in_one_line(tmp_path: Path) -> None:
     assert result.stderr.endswith("polarcheck.toml:4: part.1.layers: a drawing has layers, a shape has none\n")
 
 
+@pytest.mark.ci
 def test_a_tolerance_that_nothing_takes_is_said(tmp_path: Path) -> None:
     path = tmp_path / "O1.NC"
     path.write_text(program(polygon(6, 13.5)))
@@ -138,6 +141,7 @@ def test_a_tolerance_that_nothing_takes_is_said(tmp_path: Path) -> None:
         assert run(command, path, "--tool", "1:radius=4", "--tolerance", "0.1", "--drawing", drawing).stderr == ""
 
 
+@pytest.mark.ci
 def test_one_file_with_two_layers_is_two_parts(tmp_path: Path) -> None:
     path = tmp_path / "O1.NC"
     path.write_text(two_contours())

@@ -7,6 +7,7 @@ import re
 from collections.abc import Callable
 
 import pytest
+from cases import looped
 
 from polarcheck.columns.words.bar_comments import bar_in
 from polarcheck.columns.words.part_comments import depth_in, shape_in
@@ -169,7 +170,8 @@ def draw(seed: int) -> tuple[random.Random, str, float]:
     return generator, generator.choice([written, f"{written}." if "." not in written else written]), float(value)
 
 
-@pytest.mark.parametrize("seed", range(COUNT))
+@pytest.mark.ci
+@looped("seed", range(COUNT))
 def test_cutters_are_read(seed: int) -> None:
     generator, written, value = draw(seed)
     for form in CUTTERS:
@@ -187,7 +189,8 @@ def not_read(read: Callable[[str, bool], object], forms: tuple[str, ...], writte
             assert read(comment, False) is None, comment
 
 
-@pytest.mark.parametrize("seed", range(COUNT))
+@pytest.mark.ci
+@looped("seed", range(COUNT))
 def test_look_alikes_are_not_read(seed: int) -> None:
     _, written, _ = draw(seed)
     not_read(radius_in, NO_CUTTERS, written)
@@ -196,7 +199,7 @@ def test_look_alikes_are_not_read(seed: int) -> None:
     not_read(depth_in, NO_DEPTHS, written)
 
 
-@pytest.mark.parametrize("seed", range(COUNT))
+@looped("seed", range(COUNT))
 def test_bars_are_read(seed: int) -> None:
     _, written, value = draw(seed)
     for forms, name in ((BARS, "diameter"), (HEX_BARS, "across_flats")):
@@ -206,7 +209,7 @@ def test_bars_are_read(seed: int) -> None:
             assert getattr(bar, name) == pytest.approx(value), form
 
 
-@pytest.mark.parametrize("seed", range(COUNT))
+@looped("seed", range(COUNT))
 def test_shapes_and_depths_are_read(seed: int) -> None:
     generator, written, value = draw(seed)
     for form, shape in SHAPES:
@@ -219,7 +222,7 @@ def test_shapes_and_depths_are_read(seed: int) -> None:
         assert depth_in(form.format(written), False) == pytest.approx(value), form
 
 
-@pytest.mark.parametrize("seed", range(COUNT))
+@looped("seed", range(COUNT))
 def test_sizes_in_inch(seed: int) -> None:
     generator = random.Random(seed)  # noqa: S311
     below = generator.choice((4, 8, 16, 32))
@@ -241,7 +244,7 @@ def test_sizes_in_inch(seed: int) -> None:
     assert bar_in(f"{size / 25.4:.4f} BAR", in_inch=True) is not None or size < 3
 
 
-@pytest.mark.parametrize("seed", range(COUNT))
+@looped("seed", range(COUNT))
 def test_random_text_costs_no_answer_twice(seed: int) -> None:
     """What is read of a text is the same in lower case, in parentheses, and behind blanks."""
     generator = random.Random(seed)  # noqa: S311

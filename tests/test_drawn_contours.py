@@ -6,9 +6,12 @@ import functools
 import random
 
 import pytest
+from cases import looped
 from drawn_contour_slips import SLIPS
 from drawn_contours import Drawn, contour
 from programs import report_of
+
+pytestmark = pytest.mark.ci
 
 SEEDS = range(36)
 #: What a drawn contour may come near by chance: the center of C.
@@ -33,19 +36,16 @@ def clear_of_center() -> list[Drawn]:
     return [drawn for drawn, rules in map(drawn_contour, SEEDS) if not _BY_CHANCE & set(rules)]
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize("seed", SEEDS)
+@looped("seed", SEEDS, one_in=12)
 def test_a_drawn_contour_is_sound(seed: int) -> None:
     _, rules = drawn_contour(seed)
     assert not rules or _BY_CHANCE & set(rules)
 
 
-@pytest.mark.slow
 def test_most_drawn_contours_are_clear_of_the_center() -> None:
     assert len(clear_of_center()) > len(SEEDS) / 2
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", SLIPS)
 def test_a_slip_in_a_contour_is_one_finding(name: str) -> None:
     slip, silent = SLIPS[name]

@@ -8,6 +8,7 @@ from typing import Any
 import msgspec
 import numpy as np
 import pytest
+from cases import looped
 from programs import report_of, tables_of
 
 from polarcheck.reports.pages import resting
@@ -38,8 +39,7 @@ def dwell_of(machine: str, words: str, **more: Any) -> tuple[Tables, float]:
     return tables, float(tables["dynamics"].time[rows[0]])
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize(
+@looped(
     ("machine", "words", "seconds"),
     [
         ("fanuc", "G4 X2.", 2),
@@ -66,6 +66,7 @@ def dwell_of(machine: str, words: str, **more: Any) -> tuple[Tables, float]:
         ("hurco", "G4 U2.", 2),
         ("fagor-8055t", "G04 K200", 2),
     ],
+    one_in=12,
 )
 def test_a_dwell_in_the_words_of_its_control(machine: str, words: str, seconds: float) -> None:
     tables, time = dwell_of(machine, words)
@@ -84,7 +85,8 @@ def test_a_dwell_in_the_words_of_its_control(machine: str, words: str, seconds: 
     assert not [one.rule for one in report.findings if words.splitlines()[-1] in one.block]
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("machine", "words", "reason"),
     [
         ("fanuc", "G4 F2.", "dwell in line 4"),

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from cases import looped
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from path_sampling import sampled
@@ -34,7 +35,7 @@ def row_of(dynamics: Dynamics, line: int) -> int:
     return int(np.flatnonzero(dynamics.trace.blocks.line == line)[0])
 
 
-@pytest.mark.parametrize("rolls_over", [False, True])
+@looped("rolls_over", [False, True])
 def test_an_angle_of_c_is_reached_the_shorter_way_where_c_rolls_over(rolls_over: bool) -> None:
     """The example of B-63534EN/02 p. 531: distances are turned as they are written."""
     blocks = {"C-150.": 150, "C540.": 30, "C-620.": 80, "H380.": 380, "H-840.": 840}
@@ -69,6 +70,7 @@ def contours(draw: st.DrawFn) -> str:
     return inside(*blocks, "G1 G40 X80.")
 
 
+@pytest.mark.ci
 @settings(max_examples=15, deadline=None)
 @given(contours(), st.integers(0, 5))
 def test_moves_agree_with_dense_sampling(program: str, radius: int) -> None:
@@ -87,6 +89,7 @@ def test_moves_agree_with_dense_sampling(program: str, radius: int) -> None:
 points = st.tuples(coordinates, coordinates).map(lambda pair: complex(*pair))
 
 
+@pytest.mark.ci
 @settings(max_examples=20, deadline=None)
 @given(points, points, st.floats(-2, 2), st.sampled_from([Motion.LINE, Motion.CW, Motion.CCW]), st.floats(0.1, 0.95))
 def test_override_agrees_with_dense_sampling(
@@ -156,7 +159,7 @@ def test_a_clamped_feed_is_the_one_that_runs() -> None:
 # ---- the rows ----
 
 
-@pytest.mark.parametrize(
+@looped(
     ("block", "seconds"),
     [
         ("G1 Z-5.", 60 * 7 / 200),
@@ -177,7 +180,7 @@ def test_the_time_of_a_block(block: str, seconds: float) -> None:
     assert dynamics.time[row_of(dynamics, 6)] == pytest.approx(seconds)
 
 
-@pytest.mark.parametrize(
+@looped(
     ("block", "reason"),
     [
         ("G4 P1.5", "dwell"),

@@ -8,6 +8,7 @@ from typing import Any
 
 import jsonschema
 import pytest
+from cases import looped
 from polarcheck.errors import JobError, UsageError
 from programs import job_of, report_of, said, tables_of, trace_of
 from test_cli import call, check, make
@@ -44,7 +45,8 @@ def section_of(program: str, *tools: str, **more: Any) -> tuple[int | str | None
     return found.offset, found.radius, found.radius_source
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("calls", "tool", "offset"),
     [
         (NAMED, "MILL_8/1", "MILL_8/1"),
@@ -74,7 +76,8 @@ def test_the_offset_in_force_is_tool_and_edge(calls: str, tool: str, offset: str
     assert section_of(face(calls), f"{tool}:radius=4") == (offset, 4.0, "command line")
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("calls", "tool"), [(NAMED, "MILL_8/2"), ("T8 D2", "8"), ("T9 D1", "8"), ("T0808 D1", "8"), ("T8 D1", "MILL_8")]
 )
 def test_another_edge_and_another_tool_are_other_offsets(calls: str, tool: str) -> None:
@@ -82,7 +85,8 @@ def test_another_edge_and_another_tool_are_other_offsets(calls: str, tool: str) 
     assert (radius, source) == (None, "none")
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("edge", "calls", "offset"),
     [(0, "T8", None), (0, "T8\nD1", "8/1"), (2, "T8", "8/2"), (-1, "T7 D3\nT8", "8/3"), (-1, "T8", None)],
 )
@@ -91,7 +95,8 @@ def test_the_machine_says_which_edge_a_tool_change_calls(edge: int, calls: str, 
     assert section_of(face(calls), changes=changes)[0] == offset
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("key", "calls"),
     [
         ("MILL_8/1", NAMED),
@@ -113,13 +118,13 @@ def test_the_command_line_changes_the_edge_of_the_job() -> None:
     assert {key: (tool.radius, tool.nose) for key, tool in job.tools.items()} == {"8": (4.0, 0), "8/2": (3.0, None)}
 
 
-@pytest.mark.parametrize(("first", "second"), [("8", "8/1"), ("8", "08"), ("MILL", "mill/1")])
+@looped(("first", "second"), [("8", "8/1"), ("8", "08"), ("MILL", "mill/1")])
 def test_one_offset_is_given_once(first: str, second: str) -> None:
     with pytest.raises(JobError, match=f"tools.{first} and tools.{second} are one tool offset"):
         job_of(job={"tools": {first: {"radius": 4.0}, second: {"radius": 3.0}}})
 
 
-@pytest.mark.parametrize(
+@looped(
     ("written", "key"),
     [("8", "8"), ("008", "8"), ("8/1", "8"), ("8/02", "8/2"), ("mill/1", "MILL"), ("a/b", "A/B"), ("A/1/1", "A/1/1")],
 )
@@ -136,6 +141,7 @@ def test_the_key_of_a_name_that_ends_as_an_edge_keeps_its_edge() -> None:
 # ---- what is said ----
 
 
+@pytest.mark.ci
 def test_what_is_missing_is_named_by_tool_and_edge() -> None:
     reasons = [entry.reason for entry in report_of(face(NAMED), "siemens-transmit").not_evaluated]
     asked = "no radius for T MILL_8 edge 1: give --tool MILL_8/1:radius=... or"
@@ -148,6 +154,7 @@ def test_what_is_missing_is_named_by_tool_and_edge() -> None:
     assert "no radius for the tool called before edge 1: call T8 D1 before it" in reasons
 
 
+@pytest.mark.ci
 def test_a_name_of_a_program_acts_nowhere() -> None:
     make(a__mpf=face('T="A\x1b[2J\x07<b>"'))
     for form in ("text", "json", "html"):
@@ -157,6 +164,7 @@ def test_a_name_of_a_program_acts_nowhere() -> None:
         assert form != "html" or "A\\x1b[2J\\x07<B>" not in shown
 
 
+@pytest.mark.ci
 def test_the_report_holds_name_and_edge() -> None:
     make(
         a__mpf=face(NAMED),
@@ -197,7 +205,7 @@ def test_r_is_taken_from_the_comment_of_the_edge() -> None:
     assert (2, "radius-from-comment") in said(found)
 
 
-@pytest.mark.parametrize(
+@looped(
     ("option", "told"),
     [
         ("MILL_8:radius=4", "--tool MILL_8:radius=4: expected NUMBER:KEY=VALUE as in 8:radius=0.375"),
@@ -216,9 +224,7 @@ def test_a_control_without_edges_has_numbers_alone(option: str, told: str) -> No
     assert check("a.nc").exit_code == 0
 
 
-@pytest.mark.parametrize(
-    "option", [":radius=4", '"":radius=4', " /2:radius", "MILL\x1b:radius=4", "MILL:radius", "8/0:radius=4"]
-)
+@looped("option", [":radius=4", '"":radius=4', " /2:radius", "MILL\x1b:radius=4", "MILL:radius", "8/0:radius=4"])
 def test_an_option_that_names_no_tool_is_one_clear_line(option: str) -> None:
     with pytest.raises(UsageError, match="--tool"):
         job_of(option)
@@ -238,14 +244,16 @@ def test_d_is_no_fault_where_it_calls_an_edge() -> None:
     ]
 
 
-@pytest.mark.parametrize("calls", ["T8 D0", "T8 D1\nD0", "T0", 'T="MILL_8" D0'])
+@pytest.mark.ci
+@looped("calls", ["T8 D0", "T8 D1\nD0", "T0", 'T="MILL_8" D0'])
 def test_without_an_edge_compensation_has_no_radius(calls: str) -> None:
     assert [rule for _, rule in said(report_of(face(calls), "siemens-transmit"))] == ["offset-number-missing"]
     plain = face(calls).replace("G41 ", "").replace("G40 ", "")
     assert [rule for _, rule in said(report_of(plain, "siemens-transmit"))] == ["no-tool-offset-at-entry"]
 
 
-@pytest.mark.parametrize(("word", "named"), [("D2", "T8 edge 2"), ("T9 D1", "T9 edge 1"), ("D0", "T8 edge 0")])
+@pytest.mark.ci
+@looped(("word", "named"), [("D2", "T8 edge 2"), ("T9 D1", "T9 edge 1"), ("D0", "T8 edge 0")])
 def test_another_edge_is_called_without_compensation_alone(word: str, named: str) -> None:
     tools = [f"{key}:radius=2" for key in ("8", "8/2", "9")]
     found = report_of(face("T8 D1", f"{word}\n"), "siemens-transmit", *tools).findings
@@ -272,6 +280,7 @@ def test_a_named_tool_has_edges_where_numbers_have_offset_digits() -> None:
     assert [(one.offset, one.radius) for one in plain.polar_sections] == [(8, 3.0)]
 
 
+@pytest.mark.ci
 def test_many_edges_take_no_time_that_grows_with_their_square() -> None:
     program = "".join(f"T{number} D{number % 9 + 1}\n" for number in range(1, 20_001))
     trace = trace_of(program + face("T7 D2"), "siemens-transmit", "7/2:radius=4")
@@ -279,7 +288,8 @@ def test_many_edges_take_no_time_that_grows_with_their_square() -> None:
     assert trace.offsets.radius_of_offset[-1] == 4.0
 
 
-@pytest.mark.parametrize("word", ["D123456", "D1.5.2", "D", "D-1", "T99999999999999999 D1", "D" + "9" * 400])
+@pytest.mark.ci
+@looped("word", ["D123456", "D1.5.2", "D", "D-1", "T99999999999999999 D1", "D" + "9" * 400])
 def test_strange_words_call_nothing_that_is_known(word: str) -> None:
     found = report_of(face(f"T8 {word}" if word[0] == "D" else word), "siemens-transmit", "8/3:radius=4")
     assert found.polar_sections[0].radius is None

@@ -7,6 +7,7 @@ import time
 from pathlib import Path
 
 import pytest
+from cases import looped
 from editor import Editor, place
 from test_cli import COMPENSATED, RAPID
 
@@ -20,6 +21,7 @@ pytestmark = pytest.mark.usefixtures("own_folder")
 ONLY_RAPID = ("--select", "rapid-in-polar,start-up-shorter-than-radius,wrong-dash")
 
 
+@pytest.mark.ci
 def test_all_that_an_editor_asks_is_answered() -> None:
     with Editor(*ONLY_RAPID, "--machine", "fanuc-30i") as editor:
         program = editor.open("O1.NC", RAPID + "GOTO10\nN10 M30\n")
@@ -59,6 +61,7 @@ def test_all_that_an_editor_asks_is_answered() -> None:
     assert editor.code == 0
 
 
+@pytest.mark.ci
 def test_a_buffer_without_a_file_and_one_outside_have_the_options_alone() -> None:
     Path("open").mkdir()
     Path("polarcheck.toml").write_text("machin = 1\n", "utf-8")
@@ -74,7 +77,8 @@ def test_a_buffer_without_a_file_and_one_outside_have_the_options_alone() -> Non
         editor.marks(outside, "not-checked")
 
 
-@pytest.mark.parametrize("uri", [True, False])
+@pytest.mark.ci
+@looped("uri", [True, False])
 def test_without_folders_that_of_the_session_or_of_the_file_counts(uri: bool) -> None:
     Path("polarcheck.toml").write_text("[tools.1]\nradius = 40.0\n", "utf-8")
     with Editor(*ONLY_RAPID, folders=[], uri=Path().resolve().as_uri() if uri else None) as editor:
@@ -83,7 +87,8 @@ def test_without_folders_that_of_the_session_or_of_the_file_counts(uri: bool) ->
         editor.marks(new, "start-up-shorter-than-radius" if uri else "not-evaluated")
 
 
-@pytest.mark.parametrize(("units", "before"), [("utf-8", 7), ("utf-16", 5), ("utf-32", 4)])
+@pytest.mark.ci
+@looped(("units", "before"), [("utf-8", 7), ("utf-16", 5), ("utf-32", 4)])
 def test_an_editor_chooses_how_characters_are_counted(units: str, before: int) -> None:
     with Editor(*ONLY_RAPID, capabilities={"general": {"positionEncodings": [units]}}) as editor:
         assert editor.capabilities["positionEncoding"] == units
@@ -97,7 +102,7 @@ def test_an_editor_chooses_how_characters_are_counted(units: str, before: int) -
         assert editor.marks(program) == []
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 def test_settings_are_read_anew_when_they_change() -> None:
     dynamic = {"didChangeWatchedFiles": {"dynamicRegistration": True}, "codeLens": {"refreshSupport": True}}
     with Editor(*ONLY_RAPID, capabilities={"workspace": dynamic}) as editor:
@@ -119,7 +124,7 @@ def test_settings_are_read_anew_when_they_change() -> None:
         assert editor.asks("hover", Path("polarcheck.toml").absolute().as_uri(), 1, 1) is None
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 def test_called_programs_are_watched_where_they_lie() -> None:
     Path("sub").mkdir()
     Path("polarcheck.toml").write_text('[run]\nsubprograms = ["sub"]\n', "utf-8")
@@ -132,6 +137,7 @@ def test_called_programs_are_watched_where_they_lie() -> None:
         assert editor.marks(program) == []
 
 
+@pytest.mark.ci
 def test_markdown_is_for_those_who_show_it() -> None:
     shows = {"textDocument": {"hover": {"contentFormat": ["markdown", "plaintext"]}, "publishDiagnostics": {}}}
     with Editor(
@@ -147,6 +153,7 @@ def test_markdown_is_for_those_who_show_it() -> None:
         assert change["textDocument"] == {"uri": program, "version": 7}
 
 
+@pytest.mark.ci
 def test_a_bug_in_a_check_or_an_answer_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     sound = check.check_runs
 

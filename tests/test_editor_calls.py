@@ -6,6 +6,7 @@ import re
 from pathlib import Path
 
 import pytest
+from cases import looped
 from editor import Editor, place
 from lsprotocol import types
 from test_cli import COMPENSATED
@@ -15,7 +16,7 @@ from test_editor_names import MAIN, files
 from polarcheck.editor import inlay_hints
 from polarcheck.editor.structure import call_tree
 
-pytestmark = pytest.mark.usefixtures("own_folder")
+pytestmark = [pytest.mark.ci, pytest.mark.usefixtures("own_folder")]
 
 
 # ---- calls ----
@@ -38,7 +39,7 @@ def test_calls_are_followed_both_ways() -> None:
     assert call_tree.incoming(made, ["", 999], workspace) == []
 
 
-@pytest.mark.parametrize(
+@looped(
     ("machine", "text", "names"),
     [
         ("siemens-transmit", '%_N_A_MPF\nSUB(1)\nCALL "SUB"\nM30\n%_N_SUB_SPF\nM17\n', [("SUB", 2)]),

@@ -10,6 +10,7 @@ from typing import Any
 
 import msgspec
 import pytest
+from cases import looped
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from lsprotocol import types
@@ -33,7 +34,7 @@ from polarcheck.editor.words.completions import completions
 from polarcheck.foundation.finding import Edit, FileReport, Fix
 from polarcheck.rules.rule import load_all
 
-pytestmark = pytest.mark.usefixtures("own_folder")
+pytestmark = [pytest.mark.ci, pytest.mark.usefixtures("own_folder")]
 
 URI = "file:///w/O1.NC"
 CALLS = """%
@@ -141,7 +142,7 @@ def test_what_follows_from_a_finding_is_told_beside_it() -> None:
     assert (follows.message, follows.location.range.start) == ("follows from it: cut into [overcut]", place(5))
 
 
-@pytest.mark.parametrize("end", ["\n", "\r\n", "\r", "\n\r\r"])
+@looped("end", ["\n", "\r\n", "\r", "\n\r\r"])
 def test_marks_are_those_of_any_line_end(end: str) -> None:
     judged = judged_of(("(\U0001f600)" + RAPID).replace("\n", end), select=["rapid-in-polar"])
     (found,) = diagnostics.diagnostics(judged, URI)
@@ -200,7 +201,7 @@ def test_a_block_that_runs_several_times_says_so() -> None:
     assert "runs: 6 times; this is the first" in shown(judged, 6)
 
 
-@pytest.mark.parametrize("line", [1, 2, 4])
+@looped("line", [1, 2, 4])
 def test_what_does_nothing_has_no_state(line: int) -> None:
     assert shown(judged_of("%\n(COMMENT)\nG0 X60.\n\nM30\n%\n"), line) == ""
 
@@ -242,7 +243,7 @@ def lines_led_to(judged: Analysis, line: int, character: int = 0) -> list[int]:
     return [one.range.start.line + 1 for one in found]
 
 
-@pytest.mark.parametrize(
+@looped(
     ("line", "character", "targets"),
     [
         (4, 5, [10]),
@@ -298,14 +299,14 @@ def test_allowing_writes_the_comment_at_the_end_of_the_block() -> None:
     assert "\nG0 C5. (SLOT) (POLARCHECK ALLOW RAPID-IN-POLAR )  \n" in edited(judged, action.edit)
 
 
-@pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
+@looped("end", ["\n", "\r\n", "\r"])
 def test_allowing_goes_before_a_comment_that_is_not_closed(end: str) -> None:
     judged = judged_of(RAPID.replace("G0 C5.", "G0 C5. (SLOT").replace("\n", end), select=["rapid-in-polar"])
     *_, action = actions.actions(judged, URI, 3, types.Range(place(4, 1), place(4, 1)), False)
     assert f"{end}(POLARCHECK ALLOW RAPID-IN-POLAR ){end}G0 C5. (SLOT{end}" in edited(judged, action.edit)
 
 
-@pytest.mark.parametrize(
+@looped(
     ("block", "written"),
     [
         ("G0 C5.", "\nG0 C5. ; POLARCHECK ALLOW RAPID-IN-POLAR \n"),
@@ -372,7 +373,7 @@ def labels(text: str, judged: Analysis | None = None) -> list[str]:
     return [item.label for item in sorted(items, key=lambda item: item.sort_text or "")]
 
 
-@pytest.mark.parametrize(
+@looped(
     "text",
     [
         "G0 X1. (POLARCHECK ALLOW |",
@@ -389,7 +390,7 @@ def test_names_are_completed_in_an_allow_comment(text: str) -> None:
     assert len(found) > len(load_all())
 
 
-@pytest.mark.parametrize(
+@looped(
     "text",
     [
         "G0 |",
@@ -430,7 +431,6 @@ def test_what_is_typed_is_replaced_and_the_page_comes_later() -> None:
 # ---- any text, and what nobody vouches for ----
 
 
-@pytest.mark.slow
 @settings(max_examples=25, deadline=None)
 @given(
     st.lists(

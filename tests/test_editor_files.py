@@ -7,13 +7,14 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from cases import looped
 from editor import Editor
 from test_cli import COMPENSATED, RAPID
 
 from polarcheck.editor import server_session
 from polarcheck.foundation import bounded, record
 
-pytestmark = pytest.mark.usefixtures("own_folder")
+pytestmark = [pytest.mark.ci, pytest.mark.usefixtures("own_folder")]
 
 ONLY = ("--select", "rapid-in-polar,start-up-shorter-than-radius,subprogram-missing")
 TABLE = "%\nG10 P1 R4.\n%\n"
@@ -126,7 +127,6 @@ def test_a_state_that_tells_nothing_is_compared_by_content(monkeypatch: pytest.M
 MAIN = RAPID.replace("G0 C5.", "M98 P77")
 
 
-@pytest.mark.slow
 def test_an_unsaved_subprogram_counts_for_its_callers() -> None:
     Path("sub").mkdir()
     Path("sub/O77.NC").write_text("O77\nG1 C5.\nM99\n", "utf-8")
@@ -161,7 +161,6 @@ def test_a_subprogram_that_was_never_saved_counts_too() -> None:
         editor.marks(program, "subprogram-missing")
 
 
-@pytest.mark.slow
 def test_settings_count_as_they_are_saved() -> None:
     """A tool table that is open as a text counts as it stands; a job file once it is saved."""
     shop()
@@ -180,7 +179,7 @@ def test_settings_count_as_they_are_saved() -> None:
 TWO = "O1\nN10 G0 X60.\nM98 P2\nGOTO10\nM30\nO2\nG12.1\nG0 C5.\nG13.1\nM99\n"
 
 
-@pytest.mark.parametrize("was_good", [True, False])
+@looped("was_good", [True, False])
 def test_with_broken_settings_what_needs_none_still_works(was_good: bool) -> None:
     job = Path("polarcheck.toml")
     broken = "[tools.1]\nradius = 4.0\nradios = 4.0\n"
@@ -206,7 +205,7 @@ def test_with_broken_settings_what_needs_none_still_works(was_good: bool) -> Non
         assert editor.marks(job.absolute().as_uri()) == []
 
 
-@pytest.mark.parametrize(
+@looped(
     ("job", "options"),
     [
         ('machine = "siemens-transmit"\n[tools.1]\nradios = 4.0\n', ()),

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from cases import looped
 from editor import Editor
 from test_cli import RAPID
 
@@ -19,7 +20,7 @@ from polarcheck.editor import features, process
 from polarcheck.editor.messages import NoEditorError, handle_all
 from polarcheck.editor.server_session import Server
 
-pytestmark = pytest.mark.usefixtures("own_folder")
+pytestmark = [pytest.mark.ci, pytest.mark.usefixtures("own_folder")]
 
 INITIALIZE = {"processId": None, "rootUri": None, "capabilities": {}}
 BEGIN = {"id": 1, "method": "initialize", "params": INITIALIZE}
@@ -79,7 +80,7 @@ def asked(number: Any, method: str, **params: Any) -> dict[str, Any]:
     return {"id": number, "method": method, "params": params}
 
 
-@pytest.mark.parametrize(
+@looped(
     "message",
     [
         asked(7, "textDocument/hover", textDocument=5),
@@ -102,8 +103,7 @@ def test_the_answer_names_the_place() -> None:
         assert len(error["message"]) < 300
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize(
+@looped(
     ("messages", "expected"),
     [
         ([HOVER], [(7, -32002)]),
@@ -121,6 +121,7 @@ def test_the_answer_names_the_place() -> None:
         ([BEGIN, {"method": "$/cancelRequest", "params": {"id": 99}}], [(1, 0)]),
         ([BEGIN, {"id": 99, "result": None}, {"id": 98, "error": {"code": 1, "message": ""}}], [(1, 0)]),
     ],
+    one_in=12,
 )
 def test_what_is_not_allowed_now_is_refused(
     messages: Iterable[dict[str, Any]], expected: list[tuple[Any, int]]
@@ -128,7 +129,7 @@ def test_what_is_not_allowed_now_is_refused(
     assert answers(wire(*messages)) == expected
 
 
-@pytest.mark.parametrize(
+@looped(
     ("message", "expected"),
     [
         ([], (None, -32600)),
@@ -144,8 +145,7 @@ def test_what_is_no_message_is_refused(message: Any, expected: tuple[Any, int]) 
     assert answers(wire(BEGIN, message, HOVER))[:2] == [(1, 0), expected]
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize(
+@looped(
     "broken",
     [
         b"Content-Length: 3\r\n\r\n{]}",
@@ -158,12 +158,13 @@ def test_what_is_no_message_is_refused(message: Any, expected: tuple[Any, int]) 
         b"G12.1\nG1 X40.\n\n",
         b"x" * 200_000 + b"\n",
     ],
+    one_in=12,
 )
 def test_after_a_broken_message_the_next_one_counts(broken: bytes) -> None:
     assert answers(wire(BEGIN, broken, SHUTDOWN)) == [(1, 0), (None, -32700), (2, 0)]
 
 
-@pytest.mark.parametrize(
+@looped(
     "head", [b"content-length:%d\r\n\r\n", b"Content-Length: %d\n\n", b"Content-Type: x\r\nContent-Length: %d\r\n\r\n"]
 )
 def test_headers_are_read_as_they_may_be_written(head: bytes) -> None:

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from cases import looped
 from editor import Editor, place
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
@@ -22,7 +23,7 @@ from polarcheck.editor.structure.document import Document
 from polarcheck.editor.structure.workspace import Opened, Workspace
 from polarcheck.program.machines import profiles
 
-pytestmark = pytest.mark.usefixtures("own_folder")
+pytestmark = [pytest.mark.ci, pytest.mark.usefixtures("own_folder")]
 
 MAIN = """%
 O0001(MAIN)
@@ -100,7 +101,7 @@ def at(pattern: str, text: str = MAIN) -> str:
 # ---- references ----
 
 
-@pytest.mark.parametrize(
+@looped(
     ("where", "lines"),
     [
         ("N10", ["3", "7", "10", "13"]),
@@ -119,7 +120,7 @@ def test_all_uses_of_a_name_are_found(where: str, lines: list[str]) -> None:
     assert used(at(where)) == lines
 
 
-@pytest.mark.parametrize(
+@looped(
     ("machine", "text", "lines"),
     [
         ("siemens-transmit", '^ANF: X1\nGOTOB ANF\nREPEAT ANF P=3\nMSG("ANF")\n;ANF\nM30\n', ["1", "2", "3"]),
@@ -156,7 +157,7 @@ _LINES = [
 ]
 
 
-@pytest.mark.parametrize(
+@looped(
     ("where", "new", "changes"),
     [
         ("N10", "N15", [("N10", "N15"), ("P10 Q", "P15 Q"), ("GOTO 10", "GOTO 15"), ("M99 P10", "M99 P15")]),
@@ -183,7 +184,7 @@ def test_a_rename_changes_other_files_and_keeps_their_line_ends() -> None:
     assert renamed(at("N10"), "10") == {}
 
 
-@pytest.mark.parametrize(
+@looped(
     ("text", "new", "reason"),
     [
         (at("N10"), "20", "N20 is there already, in line 5"),
@@ -215,7 +216,7 @@ def test_what_would_change_the_program_is_refused(text: str, new: str, reason: s
     assert str(refused.value).isprintable()
 
 
-@pytest.mark.parametrize(
+@looped(
     ("machine", "text", "new", "reason"),
     [
         ("siemens-transmit", "^ANF: X1\nGOTOB ANF\nEND1: M30\n", "END1", "END1 is there already, in line 3"),

@@ -22,7 +22,7 @@ from polarcheck.files.batch import tasks as batch
 from polarcheck.program.reading.walking import EXTENSIONS
 from polarcheck.reports import Background, render
 
-pytestmark = pytest.mark.usefixtures("own_folder")
+pytestmark = [pytest.mark.ci, pytest.mark.usefixtures("own_folder")]
 
 PAGES = ROOT / "docs" / "editors"
 TASKS: list[dict[str, Any]] = json.loads((PAGES / "tasks.json").read_text("utf-8"))["tasks"]
@@ -120,7 +120,6 @@ def test_the_configuration_of_helix_starts_the_server() -> None:
 
 
 @pytest.mark.skipif(shutil.which("nvim") is None, reason="there is no Neovim here")
-@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="the page names the executable as Unix does")
 def test_neovim_shows_findings_with_the_configuration_of_the_page() -> None:
     programs, new, old = re.findall(r"```lua\n(.*?)```", (PAGES / "neovim.md").read_text("utf-8"), re.DOTALL)

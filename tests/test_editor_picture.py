@@ -9,7 +9,7 @@ import pytest
 from editor import Editor, Json
 from test_cli import RAPID
 
-pytestmark = pytest.mark.usefixtures("own_folder")
+pytestmark = [pytest.mark.ci, pytest.mark.usefixtures("own_folder")]
 
 VERDICTS = {"experimental": {"polarcheck": {"verdict": True}}}
 ADDRESS, SOURCES = "https://file.example/plotly.min.js", "https://file.example"

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from cases import looped
 from editor import Editor, place
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -17,7 +18,7 @@ from test_editor_structure import document
 from polarcheck.editor.open_text import OpenText
 from polarcheck.editor.structure import renumbering, spacing
 
-pytestmark = pytest.mark.usefixtures("own_folder")
+pytestmark = [pytest.mark.ci, pytest.mark.usefixtures("own_folder")]
 
 
 def applied(text: OpenText, edits: list[types.TextEdit]) -> str:
@@ -60,7 +61,7 @@ T1;  M6
 """
 
 
-@pytest.mark.parametrize("end", ["\n", "\r\n", "\r", "\n\r\r"])
+@looped("end", ["\n", "\r\n", "\r", "\n\r\r"])
 def test_blanks_stand_between_words_and_nowhere_else(end: str) -> None:
     assert format_text(UNEVEN.replace("\n", end)) == EVEN.replace("\n", end)
     assert format_text(EVEN.replace("\n", end)) == EVEN.replace("\n", end)
@@ -72,7 +73,7 @@ def test_lines_alone_are_formatted() -> None:
     assert format_text(UNEVEN, shown=shown) == expected
 
 
-@pytest.mark.parametrize(
+@looped(
     ("machine", "text"),
     [
         ("fanuc", "DPRNT[X#1  Y]\nG1  X1..5\nMOVE THE  BAR\nG1\u20135X1.\n#3000=1(A  B)\n"),
@@ -85,7 +86,6 @@ def test_what_is_no_plain_word_is_left_alone(machine: str, text: str) -> None:
     assert format_text(text, machine) == text
 
 
-@pytest.mark.slow
 @settings(max_examples=60, deadline=None)
 @given(
     st.lists(
@@ -167,7 +167,7 @@ def test_numbers_and_all_that_leads_to_them_change() -> None:
     assert renumbered(many, 0)["O1.NC"].endswith("N7500\nN7505\n")
 
 
-@pytest.mark.parametrize(
+@looped(
     ("text", "others", "reason"),
     [
         ("N1 X1.\nGOTO#1\n", {}, "line 2 computes the number that it goes to"),

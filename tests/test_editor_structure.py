@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from cases import looped
 from editor import Editor, place
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -17,7 +18,7 @@ from polarcheck.editor.structure import folding, symbols, token_colors
 from polarcheck.editor.structure.document import Document
 from polarcheck.program.machines import profiles
 
-pytestmark = pytest.mark.usefixtures("own_folder")
+pytestmark = [pytest.mark.ci, pytest.mark.usefixtures("own_folder")]
 
 MILLED = """%
 O0001(PLATE)
@@ -75,7 +76,7 @@ def test_programs_tools_sections_and_blocks_are_the_outline() -> None:
     ]
 
 
-@pytest.mark.parametrize(
+@looped(
     ("machine", "text", "expected"),
     [
         pytest.param(
@@ -157,7 +158,7 @@ def colors_of(made: Document, data: list[int] | None = None) -> list[tuple[int, 
     return found
 
 
-@pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
+@looped("end", ["\n", "\r\n", "\r"])
 def test_each_word_has_the_color_of_what_it_is(end: str) -> None:
     text = "O1 (\U0001f600)\nN10 G1 X-6.5 ,C2 M8\n/T0101 S500\n#100=SIN[#_UOFST]\nIF[#1EQ2]GOTO10\nG65 P#3\n"
     found = colors_of(document(text.replace("\n", end)))
@@ -174,7 +175,7 @@ def test_each_word_has_the_color_of_what_it_is(end: str) -> None:
     ]
 
 
-@pytest.mark.parametrize(
+@looped(
     ("machine", "text", "expected"),
     [
         (

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from cases import looped
 from editor import Editor, place
 from lsprotocol import types
 
@@ -18,7 +19,7 @@ from polarcheck.editor.structure.document import Document
 from polarcheck.editor.words.completions import completions
 from polarcheck.program.machines import profiles
 
-pytestmark = pytest.mark.usefixtures("own_folder")
+pytestmark = [pytest.mark.ci, pytest.mark.usefixtures("own_folder")]
 
 
 def at_mark(text: str) -> tuple[str, types.Position]:
@@ -46,7 +47,7 @@ HEAD = "O1\nG21 G98 G0 X60. C0 T0101\n"
 FANUC = {"machine": "fanuc-30i", "tools": ["1:radius=4"]}
 
 
-@pytest.mark.parametrize(
+@looped(
     ("text", "first", "others"),
     [
         (
@@ -105,12 +106,12 @@ def test_a_word_shows_what_it_means_here(text: str, first: str, others: list[str
     assert all(other in found for other in others)
 
 
-@pytest.mark.parametrize("text", ["(G1 |X5.)\n", "O1 (G|0)\n", "%|\n", HEAD + "\n|\n"])
+@looped("text", ["(G1 |X5.)\n", "O1 (G|0)\n", "%|\n", HEAD + "\n|\n"])
 def test_where_there_is_no_word_none_is_shown(text: str) -> None:
     assert ": " not in shown(text, **FANUC).partition("\n")[0]
 
 
-@pytest.mark.parametrize(
+@looped(
     ("text", "facts"),
     [
         ("O1\n|#101=2.5\nG0 X#101\nM30\n", ["common variable", "2.5, set here"]),
@@ -199,7 +200,7 @@ def test_codes_of_this_control_are_offered_with_their_meaning() -> None:
     assert offered("TRAN|\n", "siemens-transmit")["TRANSMIT"] == "polar coordinate interpolation on"
 
 
-@pytest.mark.parametrize(
+@looped(
     "text", ["(G|)\n", "G0 (T|\n", "G0 X|\n", "N1|\n", "G1 X1. F|\n", "|\n", "G0 |\n", "O1 (GOTO |\n", "SELECTG|\n"]
 )
 def test_elsewhere_nothing_is_offered(text: str) -> None:
@@ -256,7 +257,7 @@ def test_variables_of_the_program_and_of_the_settings_are_offered() -> None:
     assert list(offered("R1=5\nR12=R1\nG0 X=R1|\n", "siemens-transmit")) == ["R1", "R12"]
 
 
-@pytest.mark.parametrize(
+@looped(
     ("program", "line", "title", "block"),
     [
         ("G98 G0 X60. C0\nG12.1\nG1 X40. F200\nC8,660\nX60. C0\nG13.1\nM30\n", 3, "Write a decimal point", "C8.660"),

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from cases import looped
 
 import polarcheck
 
@@ -19,7 +20,7 @@ SIGNALS = [(signal.SIGINT, 130, "interrupted"), (signal.SIGTERM, 143, "terminate
 NO_MEMORY = "polarcheck: there is not enough memory\n"
 
 pytestmark = [
-    pytest.mark.slow,
+    pytest.mark.ci,
     pytest.mark.skipif(sys.platform == "win32", reason="there are no such signals, limits and devices"),
     pytest.mark.usefixtures("own_folder"),
 ]
@@ -90,7 +91,7 @@ def test_a_signal_during_any_import_ends_the_process_in_a_line(module: str, numb
     assert check(code, preexec_fn=heeding) == (status, "", f"polarcheck: {how}\n")
 
 
-@pytest.mark.parametrize(("number", "status", "how"), SIGNALS)
+@looped(("number", "status", "how"), SIGNALS)
 def test_a_signal_after_the_report_ends_the_process_in_a_line(number: int, status: int, how: str) -> None:
     code = f"import atexit, signal; atexit.register(signal.raise_signal, {int(number)}); {RUN}"
     ended, report, said = check(code, preexec_fn=heeding)
@@ -113,8 +114,8 @@ PLACES = {
 }
 
 
-@pytest.mark.parametrize("place", PLACES)
-@pytest.mark.parametrize(("number", "status", "how"), SIGNALS)
+@looped("place", PLACES)
+@looped(("number", "status", "how"), SIGNALS)
 def test_a_signal_is_not_lost_where_python_drops_its_exception(place: str, number: int, status: int, how: str) -> None:
     happens = f"{PLACES[place].format(number=int(number))}; import time; time.sleep(600)"
     code = AT_IMPORT.format(module="numpy", happens=happens)
@@ -160,8 +161,8 @@ def test_too_little_data_is_one_line_and_help_needs_little() -> None:
     assert run(RUN, "check", "--help", preexec_fn=most)[::2] == (0, "")
 
 
-@pytest.mark.parametrize("module", ["click", "polarcheck.commands.part", "polarcheck.program.reading.excerpt", "numpy"])
-@pytest.mark.parametrize(
+@looped("module", ["click", "polarcheck.commands.part", "polarcheck.program.reading.excerpt", "numpy"])
+@looped(
     "error",
     ["MemoryError", "ImportError('x.so: failed to map segment from shared object')", "OSError(12, 'Cannot allocate')"],
 )
@@ -202,7 +203,7 @@ def test_help_into_a_full_disk_is_one_line(command: tuple[str, ...], unbuffered:
     assert ended == (2, "", "polarcheck: standard output: No space left on device\n")
 
 
-@pytest.mark.parametrize("command", [(), ("check",), ("machines", "new")])
+@looped("command", [(), ("check",), ("machines", "new")])
 def test_help_that_nobody_reads_is_no_fault(command: tuple[str, ...]) -> None:
     reading, writing = os.pipe()
     os.close(reading)

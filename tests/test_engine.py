@@ -14,6 +14,7 @@ from typing import Any
 import msgspec
 import numpy as np
 import pytest
+from cases import looped
 from polarcheck.errors import RuleError, TooHardError
 from programs import machine_of, report_of, said, tables_of, tables_of_example
 
@@ -160,7 +161,7 @@ def compares(function: ast.FunctionDef) -> bool:
     )
 
 
-@pytest.mark.parametrize("path", [*map(Path, rule_files())], ids=lambda path: path.stem)
+@looped("path", [*map(Path, rule_files())], ids=lambda path: path.stem)
 def test_each_rule_compares_or_says_why_not(path: Path) -> None:
     text = path.read_text("utf-8")
     functions = (node for node in ast.parse(text).body if isinstance(node, ast.FunctionDef))
@@ -229,7 +230,7 @@ def test_words_at_fault_by_mask_and_by_name() -> None:
 # ---- messages ----
 
 
-@pytest.mark.parametrize(
+@looped(
     ("text", "expected", "values", "data"),
     [
         ("F {feed:feed}", ["F 4 inch/min", "F 100 mm/min"], ("feed",), [101.6, 100.0]),
@@ -525,6 +526,7 @@ def test_time_is_kept_only_inside_a_limit() -> None:
     keep_time()
 
 
+@pytest.mark.ci
 def test_findings_beyond_the_limit_are_counted() -> None:
     """Nobody reads more than a thousand of one rule, and a report of hostile text stays small."""
     many = tables_of("O1\n" + "".join(f"G0 X{number}.\n" for number in range(1100)) + "M30\n")
@@ -561,7 +563,8 @@ def without(what: str, example: Example) -> Example:
     return msgspec.structs.replace(example, program=re.sub(*TAKEN_AWAY[what], example.program))
 
 
-@pytest.mark.parametrize("what", [SECTION, ARC, COMMENT, PART])
+@pytest.mark.ci
+@looped("what", [SECTION, ARC, COMMENT, PART])
 def test_rules_that_are_not_run_would_find_nothing(what: str) -> None:
     """Each example of each rule that is not run without a section, arc, comment or part, with that taken away."""
     tried = set()

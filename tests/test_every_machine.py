@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from cases import looped
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from programs import job_of, machine_of, tables_of
@@ -224,6 +225,7 @@ def respelled(program: str, hand: Hand) -> str:
     return "\r\n".join(lines)
 
 
+@pytest.mark.ci
 @pytest.mark.one_in(20)
 @every_machine
 @given(part=parts, radius=st.integers(1, 9))
@@ -236,6 +238,7 @@ def test_spelling_changes_nothing(name: str, part: Part, radius: int) -> None:
     assert (findings, verdict) == (same, other)
 
 
+@pytest.mark.ci
 @pytest.mark.one_in(20)
 @every_machine
 @given(part=parts, radius=st.integers(1, 9))
@@ -257,6 +260,7 @@ def test_twins_have_the_same_path(name: str, part: Part, radius: int) -> None:
         assert (findings, verdict) == (same, result), options
 
 
+@pytest.mark.ci
 @pytest.mark.one_in(5)
 @pytest.mark.parametrize("name", sorted(name for name, hand in HANDS.items() if hand.turns))
 @given(part=parts, radius=st.integers(1, 9), angle=st.integers(-179, 180))
@@ -272,6 +276,7 @@ def test_turning_shifts_only_c(name: str, part: Part, radius: int, angle: int) -
     assert (findings, verdict) == (same, other)
 
 
+@pytest.mark.ci
 @pytest.mark.one_in(5)
 @pytest.mark.parametrize("name", sorted(name for name, hand in HANDS.items() if not hand.turns))
 @given(part=parts, radius=st.integers(1, 9), angle=st.integers(-179, 180))
@@ -291,6 +296,7 @@ def test_where_the_plane_stays_with_the_part_only_the_way_to_it_changes(
     np.testing.assert_allclose(turns, np.round(turns), atol=1e-9)
 
 
+@pytest.mark.ci
 @pytest.mark.one_in(10)
 @every_machine
 @given(part=parts, radius=st.integers(1, 9))
@@ -314,6 +320,7 @@ def test_radius_zero_gives_the_programmed_path(name: str, part: Part) -> None:
     np.testing.assert_allclose(tables["moves"].end, programmed.end[programmed.length > 1e-9], atol=1e-9)
 
 
+@pytest.mark.ci
 @pytest.mark.one_in(20)
 @every_machine
 @given(part=parts, radius=st.integers(1, 9), limit=st.floats(100, 5000), more=st.floats(1, 9))
@@ -328,6 +335,7 @@ def test_raising_a_limit_adds_no_finding(name: str, part: Part, radius: int, lim
     assert high <= low
 
 
+@pytest.mark.ci
 @pytest.mark.one_in(10)
 @every_machine
 @given(part=parts, radius=st.integers(1, 9))
@@ -341,9 +349,9 @@ def test_splitting_a_move_changes_no_finding(name: str, part: Part, radius: int)
     np.testing.assert_allclose(np.nansum(theirs.time), np.nansum(ours.time), rtol=1e-9)
 
 
-@pytest.mark.one_in(20)
+@pytest.mark.ci
 @every_machine
-@pytest.mark.parametrize("radius", [9.5, 12.0, 20.0])
+@looped("radius", [9.5, 12.0, 20.0], one_in=20)
 def test_a_cutter_too_large_for_a_pocket_is_found(name: str, radius: float) -> None:
     """Inside the square, where its corners are smaller than R."""
     hand = HANDS[name]
@@ -352,9 +360,9 @@ def test_a_cutter_too_large_for_a_pocket_is_found(name: str, radius: float) -> N
     assert {rule for rule, severity in findings if severity == "error"}
 
 
-@pytest.mark.one_in(14)
+@pytest.mark.ci
 @every_machine
-@pytest.mark.parametrize("radius", [30.5, 45.0])
+@looped("radius", [30.5, 45.0], one_in=14)
 def test_a_ramp_shorter_than_r_is_found(name: str, radius: float) -> None:
     """The start-up is 30 mm long."""
     _, findings, verdict = read(name, written(Part(9.0, 300.0), HANDS[name]), radius, bar=1)

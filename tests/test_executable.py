@@ -18,7 +18,7 @@ from polarcheck.rules.rule import load_all
 
 SPEC = ROOT / ".ci" / "executable.spec"
 
-pytestmark = pytest.mark.skipif(not SPEC.exists(), reason="builds from a checkout")
+pytestmark = [pytest.mark.ci, pytest.mark.skipif(not SPEC.exists(), reason="builds from a checkout")]
 
 
 @pytest.fixture(scope="module")

@@ -6,6 +6,7 @@ import math
 from typing import Any
 
 import pytest
+from cases import looped
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from macro_values import Variables, expression, same, value, variables
@@ -16,7 +17,7 @@ from polarcheck.program.execution.expression import decide, evaluate
 WIDE = Arithmetic(largest=1e308)
 
 
-@pytest.mark.parametrize(
+@looped(
     ("text", "expected"),
     [
         ("1+2*3", 7),
@@ -89,7 +90,7 @@ def test_value(text: str, expected: float) -> None:
     assert value(text, variables(v1=5.0, v2=8.0)) == pytest.approx(expected, abs=1e-12)
 
 
-@pytest.mark.parametrize(("text", "expected"), [("ATAN[-1]/[-1]", -135), ("ASIN[-1]", -90), ("ATAN[1]/[-1]", 135)])
+@looped(("text", "expected"), [("ATAN[-1]/[-1]", -135), ("ASIN[-1]", -90), ("ATAN[1]/[-1]", 135)])
 def test_signed_angles(text: str, expected: float) -> None:
     assert value(text, arithmetic=Arithmetic(signed_angles=True)) == pytest.approx(expected)
 
@@ -194,6 +195,7 @@ def sparse(tree: Any, around: int = 0) -> str:
     return f"[{text}]" if RANK[name] < around else text
 
 
+@pytest.mark.ci
 @pytest.mark.one_in(2)
 @pytest.mark.parametrize("trees_", [REAL_TREES, WHOLE_TREES], ids=["real", "whole"])
 @given(data=st.data())
@@ -212,7 +214,7 @@ def test_value_is_that_of_plain_arithmetic(trees_: st.SearchStrategy[Any], data:
             assert (fault is not None) == math.isnan(expected), spelling
 
 
-@pytest.mark.parametrize(
+@looped(
     ("text", "when_vacant", "when_zero"),
     [
         ("#1", None, 0),
@@ -231,7 +233,7 @@ def test_vacant_in_an_expression(text: str, when_vacant: float | None, when_zero
     assert same(value(text, variables(v1=0.0)), when_zero)
 
 
-@pytest.mark.parametrize(
+@looped(
     ("condition", "when_vacant", "when_zero"),
     [
         ("#1 EQ #0", True, False),
@@ -253,14 +255,12 @@ def test_vacant_in_a_condition(condition: str, *, when_vacant: bool, when_zero: 
     assert decide(expression(condition), variables(v1=0.0)) == (when_zero, None)
 
 
-@pytest.mark.parametrize(
-    "text", ["#500", "#5021", "#[#500]", "#500*0", "SIN[#500]", "#_TIME", "[#_TIME]+1", "#_A[2]", "ADP[1]"]
-)
+@looped("text", ["#500", "#5021", "#[#500]", "#500*0", "SIN[#500]", "#_TIME", "[#_TIME]+1", "#_A[2]", "ADP[1]"])
 def test_unknown_stays_unknown(text: str) -> None:
     assert same(value(text), UNKNOWN)
 
 
-@pytest.mark.parametrize(
+@looped(
     ("condition", "expected"),
     [
         ("#500 EQ 1", None),
@@ -316,7 +316,7 @@ FAULTS_OF_CALCULATING = [
 ]
 
 
-@pytest.mark.parametrize(("text", "kind", "at_fault"), FAULTS_OF_CALCULATING)
+@looped(("text", "kind", "at_fault"), FAULTS_OF_CALCULATING)
 def test_fault_of_calculating(text: str, kind: str, at_fault: str) -> None:
     result, fault = evaluate(expression(text), Variables())
     assert fault is not None
@@ -330,7 +330,7 @@ def test_rounding_errors_are_no_faults() -> None:
     assert value("SQRT[.1+.2-.3000000000000001]") == 0
 
 
-@pytest.mark.parametrize(
+@looped(
     ("text", "at"),
     [
         ("#1 * #2 AND 15", "AND"),

@@ -12,10 +12,13 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from cases import looped
 from programs import ROOT
 
 from polarcheck import __version__
 from polarcheck.program.reading.walking import EXTENSIONS
+
+pytestmark = pytest.mark.ci
 
 EXTENSION = ROOT / "editors" / "vscode"
 DECLARED: dict[str, Any] = json.loads((EXTENSION / "package.json").read_text("utf-8"))
@@ -38,7 +41,6 @@ def node(*command: str, **options: Any) -> str:
     return result.stdout
 
 
-@pytest.mark.slow
 @needs_node
 def test_grammar_and_client_in_node() -> None:
     assert "# fail 0" in node("npm", "--silent", "test")
@@ -57,7 +59,6 @@ def test_the_extension_starts_one_program_whose_path_it_has_searched() -> None:
     assert 'new Connection("polarcheck", "polarcheck", () => this.spawned(line, left)' in SOURCES
 
 
-@pytest.mark.slow
 @needs_node
 def test_the_package_is_built_from_checked_types(tmp_path: Path) -> None:
     node("npm", "--silent", "run", "types")
@@ -83,7 +84,7 @@ def test_programs_of_check_are_programs_of_the_editor() -> None:
     assert not declared & {".txt", ".m", ".s", ".p", ".lib", ".out", ".dat", ".bak", ".py"}
 
 
-@pytest.mark.parametrize(
+@looped(
     ("first", "language"),
     [
         ("%", "gcode"),
@@ -105,7 +106,7 @@ def test_first_lines_say_the_language(first: str, language: str | None) -> None:
     assert matching == ([] if language is None else [language])
 
 
-@pytest.mark.parametrize(
+@looped(
     ("language", "block", "words"),
     [
         ("gcode", "N10G1X-10.5C#101F[#2*3]", ["N10", "G1", "X-10.5", "C", "#101", "F", "#2", "3"]),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import shapely
+from cases import looped
 
 from polarcheck.geometry.polygons.faces import Standing, Walls, standing
 from polarcheck.geometry.polygons.noding import noded
@@ -31,8 +32,9 @@ def left_standing(*walls: Walls) -> Standing:
     return standing(joined, len(walls), 0.005)
 
 
-@pytest.mark.parametrize("turn", [1, np.exp(0.3j), 1j, np.exp(2j)])
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped("turn", [1, np.exp(0.3j), 1j, np.exp(2j)])
+@looped(
     ("name", "points", "left", "area"),
     [
         ("boss", SQUARE, False, 1600),

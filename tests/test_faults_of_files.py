@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from cases import looped
 from click.testing import CliRunner, Result
 from polarcheck.errors import SourceError
 
@@ -35,7 +36,6 @@ PATIENCE = 120
 
 of_posix = pytest.mark.skipif(sys.platform == "win32", reason="pipes, devices and links are files of POSIX")
 of_linux = pytest.mark.skipif(sys.platform != "linux", reason="names of any bytes, folders of any depth")
-
 
 pytestmark = pytest.mark.usefixtures("own_folder")
 
@@ -115,7 +115,7 @@ def test_sizes_are_written_as_one_writes_them(asked: tuple[str, ...], named: str
     assert check("a.nc", *asked)[2] == [f"polarcheck: a.nc: larger than {named}; --max-size SIZE raises the limit"]
 
 
-@pytest.mark.parametrize("size", ["0", "", "-1", "x", "5X", "1e3", "0.1", "nan", "1,5M", "9" * 5000])
+@looped("size", ["0", "", "-1", "x", "5X", "1e3", "0.1", "nan", "1,5M", "9" * 5000])
 def test_what_is_no_size_is_told(size: str) -> None:
     make("a.nc")
     result = call("check", "a.nc", "--max-size", size)
@@ -124,7 +124,7 @@ def test_what_is_no_size_is_told(size: str) -> None:
     assert "expected a size above 0, such as 512MB" in result.stderr
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 @of_posix
 @pytest.mark.parametrize(
     ("redirected", "names"),
@@ -168,7 +168,7 @@ def test_devices_sockets_and_pipes_without_a_writer_are_refused(monkeypatch: pyt
         assert call("trace", path).exit_code == 2
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 @of_posix
 @pytest.mark.parametrize(
     ("redirected", "names"),
@@ -184,7 +184,7 @@ def test_what_the_shell_hands_over_is_read_to_its_end(redirected: str, names: li
     assert (ended.returncode, ended.stderr, checked(ended.stdout)) == (1, b"", names)
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 @pytest.mark.skipif(shutil.which("bash") is None or sys.platform == "win32", reason="needs bash")
 def test_process_substitution_is_read_to_its_end() -> None:
     make("a.nc")
@@ -193,6 +193,7 @@ def test_process_substitution_is_read_to_its_end() -> None:
     assert (ended.returncode, ended.stderr, len(paths), paths[-1]) == (1, b"", 3, "a.nc")
 
 
+@pytest.mark.ci
 @of_posix
 def test_standard_input_may_be_closed() -> None:
     make("a.nc")
@@ -315,6 +316,7 @@ def test_what_may_not_be_read_is_told_in_a_line() -> None:
     assert found == (2, ["f/a.nc"], denied)
 
 
+@pytest.mark.ci
 @of_posix
 def test_links_that_lead_nowhere_are_told_in_a_line() -> None:
     make("f/a.nc")
@@ -352,7 +354,7 @@ def nested(folder: str, depth: int) -> Iterator[None]:
             Path(folder).rmdir()
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 @of_linux
 def test_folders_may_be_nested_deeper_than_functions() -> None:
     with nested("d", 1500):
@@ -381,6 +383,7 @@ def test_a_job_file_is_looked_for_once_in_each_folder(monkeypatch: pytest.Monkey
     assert len(looked) == len(set(looked)) == depth + len(Path.cwd().parts)
 
 
+@pytest.mark.ci
 def test_a_folder_of_many_files_is_walked_in_order() -> None:
     Path("f").mkdir()
     names = [f"O{number:04d}" for number in range(1500)]
@@ -417,7 +420,7 @@ SHOWN = [r"a\xff.nc", r"a\\xff.nc", r"a\\\\xff.nc", r"ü\xff.nc", "nl\n.nc", "ta
 SHOWN += ["\u202e.nc", "   .nc", "n" * 252 + ".nc", r"a\xed\xa0\x80.nc", r"b\.nc", "*.nc", "$(x);'\".nc", " "]
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 @of_linux
 @pytest.mark.parametrize("locale", ["C.UTF-8", "C"])
 def test_names_of_any_bytes_are_checked_and_shown_apart(locale: str) -> None:
@@ -429,6 +432,7 @@ def test_names_of_any_bytes_are_checked_and_shown_apart(locale: str) -> None:
     assert checked(ended.stdout) == [shown for _, shown in sorted(zip(NAMES, SHOWN, strict=True))]
 
 
+@pytest.mark.ci
 @of_linux
 def test_names_of_any_bytes_are_checked_where_they_are_given() -> None:
     for name in NAMES:
@@ -450,7 +454,8 @@ def test_no_two_paths_are_shown_as_one() -> None:
     assert all(text.isprintable() for text in seen.values())
 
 
-@pytest.mark.parametrize("name", ["a\0b.nc", "f\0/b.nc", "\0", "a\ud800.nc" if sys.platform != "win32" else "\0"])
+@pytest.mark.ci
+@looped("name", ["a\0b.nc", "f\0/b.nc", "\0", "a\ud800.nc" if sys.platform != "win32" else "\0"])
 def test_names_that_no_file_can_have(name: str) -> None:
     with pytest.raises(SourceError, match="no file can have this name"):
         files.read_program(name)
@@ -464,7 +469,8 @@ def test_names_that_no_file_can_have(name: str) -> None:
     assert len(told) == 1
 
 
-@pytest.mark.parametrize("name", ["*.nc", "?.nc", "[a].nc", "~/a.nc", "$HOME/a.nc", "%TEMP%", "n" * 300])
+@pytest.mark.ci
+@looped("name", ["*.nc", "?.nc", "[a].nc", "~/a.nc", "$HOME/a.nc", "%TEMP%", "n" * 300])
 def test_a_name_is_taken_as_it_is_written(name: str) -> None:
     make("a.nc")
     status, paths, (told,) = check("a.nc", name)
@@ -527,7 +533,7 @@ def test_a_program_that_two_lathes_share_is_checked_for_each() -> None:
 # ---- surroundings ----
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 @of_posix
 @pytest.mark.parametrize(
     ("environment", "encoding"),
@@ -551,6 +557,7 @@ def test_text_is_of_the_terminal_and_json_is_utf_8(environment: dict[str, str], 
     assert ended.stderr.decode(encoding) == "polarcheck: gön.nc: No such file or directory\n"
 
 
+@pytest.mark.ci
 @of_posix
 def test_what_is_told_of_other_files_can_be_read_where_the_locale_knows_ascii_alone() -> None:
     make("Maß/b.nc")
@@ -559,6 +566,7 @@ def test_what_is_told_of_other_files_can_be_read_where_the_locale_knows_ascii_al
     assert ended.stderr.decode().startswith("polarcheck: Maß/polarcheck.toml:1: ")
 
 
+@pytest.mark.ci
 @of_posix
 def test_no_folder_for_temporary_files_and_no_home_are_needed() -> None:
     make("a.nc")
@@ -567,6 +575,7 @@ def test_no_folder_for_temporary_files_and_no_home_are_needed() -> None:
     assert Path("o.txt").read_text("utf-8").startswith("a.nc:4:1: error: ")
 
 
+@pytest.mark.ci
 @of_linux
 def test_the_working_folder_may_be_gone(tmp_path: Path) -> None:
     make("f/a.nc", "gone/b.nc")
@@ -580,7 +589,7 @@ def test_the_working_folder_may_be_gone(tmp_path: Path) -> None:
     ]
 
 
-@pytest.mark.parametrize("encoding", ["punycode", "ascii", "utf-8", "idna"])
+@looped("encoding", ["punycode", "ascii", "utf-8", "idna"])
 def test_an_encoding_that_reads_nothing_is_told(encoding: str) -> None:
     Path("a.nc").write_bytes(b"G0 X1.-\xffy\n")
     status, paths, (told,) = check("a.nc", "--encoding", encoding)

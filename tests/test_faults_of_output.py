@@ -24,6 +24,8 @@ from polarcheck.files.batch import tasks as batch
 from polarcheck.files.settings.of_programs import OfPrograms, Options
 from polarcheck.rules.rule import load_all
 
+pytestmark = pytest.mark.ci
+
 GOOD = "G98 G0 X60. C0\nG12.1\nG1 X40. F200\nC5.\nC-5.\nG13.1\n"
 RAPID = GOOD.replace("\nC5.", "\nG0 C5.")
 ONLY = ("--select", "rapid-in-polar")
@@ -62,7 +64,6 @@ def bounded(name: str, most: int) -> Callable[[], None]:
 # ---- the user's files ----
 
 
-@pytest.mark.slow
 def test_a_report_never_takes_the_place_of_what_is_checked() -> None:
     Path("link.json").symlink_to("a.nc")
     os.link("a.nc", "twin.json")
@@ -77,7 +78,6 @@ def test_a_report_never_takes_the_place_of_what_is_checked() -> None:
         assert Path("a.nc").read_text() == RAPID
 
 
-@pytest.mark.slow
 def test_nor_of_what_settles_how_it_is_checked() -> None:
     Path("own").mkdir()
     texts = {
@@ -98,7 +98,6 @@ def test_nor_of_what_settles_how_it_is_checked() -> None:
     assert {name: Path(name).read_text() for name in texts} == texts
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", ["new.nc", "O1234", "O1234.bak", "pyproject.toml", "x.MPF"])
 def test_nor_has_it_the_name_of_a_program(name: str) -> None:
     status, _, told = run("check", "b.nc", "-o", f"json:{name}")
@@ -107,7 +106,6 @@ def test_nor_has_it_the_name_of_a_program(name: str) -> None:
     assert not Path(name).exists()
 
 
-@pytest.mark.slow
 def test_two_reports_have_two_files() -> None:
     status, _, told = run("check", "b.nc", *ONLY, "-o", "json:r.json", "-o", "concise:./r.json")
     assert (status, told) == (2, "polarcheck: -o r.json: two reports would be written to this file\n")
@@ -121,7 +119,6 @@ def test_two_reports_have_two_files() -> None:
 # ---- what cannot be written ----
 
 
-@pytest.mark.slow
 @posix
 @pytest.mark.parametrize(
     "arguments",
@@ -133,7 +130,6 @@ def test_a_full_disk_behind_standard_output_is_one_line(arguments: tuple[str, ..
     assert (status, told) == (2, "polarcheck: standard output: No space left on device\n")
 
 
-@pytest.mark.slow
 @posix
 def test_standard_output_may_be_closed() -> None:
     status, _, told = run("check", "b.nc", *ONLY, "-o", "json:r.json", preexec_fn=partial(os.close, 1))
@@ -142,7 +138,6 @@ def test_standard_output_may_be_closed() -> None:
     assert run("check", "b.nc", *ONLY, preexec_fn=partial(os.close, 2))[0] == 0
 
 
-@pytest.mark.slow
 @posix
 def test_a_full_disk_keeps_the_report_of_last_time_and_shows_this_one() -> None:
     Path("r.json").write_text("the last one")
@@ -157,7 +152,6 @@ def test_a_full_disk_keeps_the_report_of_last_time_and_shows_this_one() -> None:
     assert {path.name for path in Path().iterdir()} == {"a.nc", "b.nc", "many.nc", "r.json", "s.txt"}
 
 
-@pytest.mark.slow
 @posix
 def test_where_nothing_can_be_written_is_said_and_the_report_is_shown() -> None:
     os.mkfifo("pipe")
@@ -188,7 +182,6 @@ def own_descriptors(number: int) -> list[str]:
     return [f"/dev/fd/{number}", "link", *by_process]
 
 
-@pytest.mark.slow
 @posix
 def test_a_pipe_that_the_shell_has_opened_gets_the_report() -> None:
     """`-o json:>(cat)` is /dev/fd/63, which leads to a pipe without a name."""
@@ -204,7 +197,6 @@ def test_a_pipe_that_the_shell_has_opened_gets_the_report() -> None:
     assert Path("link").is_symlink()
 
 
-@pytest.mark.slow
 @posix
 @pytest.mark.parametrize("by_pipe", [True, False])
 @pytest.mark.parametrize(("output", "number"), [("/dev/stdout", 1), ("/dev/stderr", 2)])
@@ -225,7 +217,6 @@ def test_a_report_goes_behind_what_a_standard_stream_holds(output: str, number: 
     assert ("error: G0 cannot be used" in text) == (number == 1)
 
 
-@pytest.mark.slow
 @posix
 def test_a_descriptor_that_cannot_be_written_is_one_line() -> None:
     for output, said in (
@@ -265,7 +256,6 @@ while True:
 """
 
 
-@pytest.mark.slow
 @posix
 def test_a_kill_leaves_the_old_report_or_the_new_one() -> None:
     whole = {"z", "x" * 3_000_000, "y" * 3_000_000}
@@ -281,7 +271,6 @@ def test_a_kill_leaves_the_old_report_or_the_new_one() -> None:
         assert Path("r.json").read_text() in whole
 
 
-@pytest.mark.slow
 def test_two_runs_may_write_one_report() -> None:
     Path("more.nc").write_text(RAPID * 200)
     running = [start("check", name, *ONLY, "-o", "json:r.json") for name in ("a.nc", "b.nc", "more.nc", "a.nc")]
@@ -295,7 +284,6 @@ def test_two_runs_may_write_one_report() -> None:
 # ---- interrupts ----
 
 
-@pytest.mark.slow
 @posix
 @pytest.mark.parametrize(
     ("number", "status", "how"), [(signal.SIGINT, 130, "interrupted"), (signal.SIGTERM, 143, "terminated")]
@@ -363,7 +351,6 @@ def test_too_little_memory_costs_its_file_only(monkeypatch: pytest.MonkeyPatch) 
     assert bugs == []
 
 
-@pytest.mark.slow
 @posix
 def test_a_file_that_needs_more_memory_than_there_is_costs_itself_only() -> None:
     Path("huge.nc").write_text(GOOD + "G0 X1.5 Z2.5\n" * 3_000_000)
@@ -383,7 +370,6 @@ def test_a_file_that_needs_more_memory_than_there_is_costs_itself_only() -> None
     ]
 
 
-@pytest.mark.slow
 def test_no_table_of_a_file_outlives_the_next() -> None:
     told: list[str] = []
     (task,) = batch.plan(["a.nc"], OfPrograms(Options()), (), told.append, told.append)

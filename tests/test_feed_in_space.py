@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from cases import looped
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from path_sampling import point_at, sampled
@@ -51,8 +52,9 @@ def section(machine: str, *blocks: str) -> str:
     return "\n".join([before, *written, after, "M30", ""])
 
 
-@pytest.mark.parametrize("machine", SECTIONS)
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped("machine", SECTIONS)
+@looped(
     ("blocks", "way", "rise"),
     [
         (("LINE X20. V10. Z-5. F200.",), 10, 10),
@@ -92,6 +94,7 @@ def helices(draw: st.DrawFn) -> str:
     return inside(*blocks, "G1 G40 X80.")
 
 
+@pytest.mark.ci
 @settings(max_examples=15, deadline=None)
 @given(helices(), st.integers(0, 5))
 def test_helices_agree_with_dense_sampling(program: str, radius: int) -> None:
@@ -140,7 +143,7 @@ def test_the_highest_feed_is_that_in_space() -> None:
     assert row.allowed == pytest.approx(math.radians(600) * 15, rel=1e-6)
 
 
-@pytest.mark.parametrize("limits", [{"c_acceleration": 50.0}, {"x_feed": 100.0}])
+@looped("limits", [{"c_acceleration": 50.0}, {"x_feed": 100.0}])
 def test_other_limits_leave_more_feed_by_the_same_share(limits: dict[str, float]) -> None:
     allowed = [
         tables_of(HELIX, "fanuc", "1:radius=0", changes={**changes, "limits": limits})["highest_feeds"].allowed
@@ -174,7 +177,8 @@ def test_trace_and_curve_show_f_and_what_it_leaves() -> None:
     assert curve.c_feed[on_helix].max() == pytest.approx(helix.c_feed, rel=1e-3)
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("before", "between", "in_space"),
     [
         ("", "", (True, True)),
@@ -223,7 +227,8 @@ M30
 """
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("before", "between", "share"),
     [
         ("", "", 1),

@@ -10,6 +10,7 @@ from typing import Any
 import jsonschema
 import numpy as np
 import pytest
+from cases import looped
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from programs import report_of, tables_of
@@ -73,7 +74,7 @@ def test_the_limit_of_x_in_closed_form() -> None:
     assert (row.highest, row.limited_by) == (101, "X")
 
 
-@pytest.mark.parametrize(
+@looped(
     ("changes", "highest", "limited_by"),
     [
         ({"c_feed": 3600}, 188, "C"),
@@ -97,6 +98,7 @@ def test_at_the_limit_itself_f_is_lowered() -> None:
     assert row_of(program, 6, changes={"limits": override}).highest == 100
 
 
+@pytest.mark.ci
 def test_f_is_rounded_as_messages_do() -> None:
     for feed, points in ((500, ""), (500, "."), (40, ""), (7.5, ""), (0.3, "")):
         for c_feed in (3600, 777, 91, 7.3):
@@ -116,7 +118,7 @@ def test_through_the_center_no_f_is_low_enough() -> None:
     assert (row.highest, row.limited_by, row.allowed, row.highest_time) == (None, "center", 0, None)
 
 
-@pytest.mark.parametrize("block", ["G1 G41 X6. C20. F500\nC-20.", "G99 G1 X6. C20. F.2\nC-20."])
+@looped("block", ["G1 G41 X6. C20. F500\nC-20.", "G99 G1 X6. C20. F.2\nC-20."])
 def test_what_is_not_known_has_no_highest_f(block: str) -> None:
     row = row_of(inside(block, "G40 X60."), 6)
     assert (row.highest, row.limited_by) == (None, "not known")
@@ -171,7 +173,7 @@ def test_inch_and_mm_have_the_same_table() -> None:
 # ---- the program with it ----
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 @settings(max_examples=15, deadline=None)
 @given(st.one_of(contours(), helices()), st.integers(0, 5), st.randoms(use_true_random=False))
 def test_the_table_in_its_program_leaves_no_finding_and_no_block_slower_than_it_must_be(

@@ -7,6 +7,7 @@ import re
 from pathlib import Path
 
 import pytest
+from cases import looped
 from polarcheck.errors import PolarcheckError, SourceError
 
 from polarcheck.program.reading import files, walking
@@ -58,7 +59,7 @@ def test_other_extensions_replace_the_usual_ones(tmp_path: Path) -> None:
     assert walked(tmp_path, tuple(walking.extensions(["lst", ".p-3 ", ""]))) == ["O1234", "b.LST", "c.P-3"]
 
 
-@pytest.mark.parametrize(
+@looped(
     "text",
     [
         "%\nO1\n",
@@ -76,9 +77,7 @@ def test_texts_that_read_as_programs_are_programs(tmp_path: Path, text: str) -> 
     assert walked(tmp_path) == ["flats", "flats.txt"]
 
 
-@pytest.mark.parametrize(
-    "text", ["", "%PDF-1.7\n", "%!PS\n", "Setup of lathe 7\nG12.1 needs M35\n", "A\nB\n", "G0\n", "O\n"]
-)
+@looped("text", ["", "%PDF-1.7\n", "%!PS\n", "Setup of lathe 7\nG12.1 needs M35\n", "A\nB\n", "G0\n", "O\n"])
 def test_other_texts_are_not(tmp_path: Path, text: str) -> None:
     make(tmp_path, {"LICENSE": text, "setup.txt": text})
     assert walked(tmp_path) == []
@@ -87,7 +86,7 @@ def test_other_texts_are_not(tmp_path: Path, text: str) -> None:
 COMMENTS = "".join(f"(COMMENT {number})\n" for number in range(12))
 
 
-@pytest.mark.parametrize(
+@looped(
     "text",
     [
         COMMENTS + BLOCKS,
@@ -105,9 +104,7 @@ def test_comments_do_not_hide_a_program_without_ending(tmp_path: Path, text: str
 README = "Programs of lathe 7\n\n(see the binder)\n(G12.1 needs M35)\nG12.1 is on.\n"
 
 
-@pytest.mark.parametrize(
-    "text", [README, f"({README})", COMMENTS, "; key = 1\n" * 20 + "a = 2\nb = 3\n", "(a)\n" * 20000]
-)
+@looped("text", [README, f"({README})", COMMENTS, "; key = 1\n" * 20 + "a = 2\nb = 3\n", "(a)\n" * 20000])
 def test_comments_alone_make_no_program(tmp_path: Path, text: str) -> None:
     make(tmp_path, {"README": text, "LICENSE.txt": text})
     assert passed_over(tmp_path) == []
@@ -129,7 +126,7 @@ def test_a_program_with_another_ending_is_named(tmp_path: Path, name: str) -> No
     assert passed_over(tmp_path) == sorted([(name, "ending"), (f"sub/{name}", "ending")])
 
 
-@pytest.mark.parametrize(
+@looped(
     ("name", "text"),
     [
         ("a.md", BLOCKS),

@@ -8,6 +8,7 @@ import re
 import numpy as np
 import pytest
 import shapely
+from cases import looped
 from programs import report_of
 
 from polarcheck.foundation.states import Motion
@@ -80,9 +81,9 @@ def errors(program: str, radius: float, **job: object) -> list[tuple[int, str]]:
     return [(found.line, found.rule) for found in report.findings if found.severity == "error"]
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize("name", SOUND)
-@pytest.mark.parametrize("form", ["as it is", "inch", "mirrored"])
+@pytest.mark.ci
+@looped("name", SOUND, one_in=12)
+@looped("form", ["as it is", "inch", "mirrored"])
 def test_sound_programs_cut_nothing(name: str, form: str) -> None:
     blocks, radius = SOUND[name]
     scale = 1 / 25.4 if form == "inch" else 1
@@ -90,15 +91,16 @@ def test_sound_programs_cut_nothing(name: str, form: str) -> None:
     assert errors(program, radius * scale) == []
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize("turn", [30, 137, 200])
-@pytest.mark.parametrize("name", [name for name in SOUND if " arcs" not in name])
+@pytest.mark.ci
+@looped("turn", [30, 137, 200], one_in=12)
+@looped("name", [name for name in SOUND if " arcs" not in name])
 def test_nor_do_they_when_they_are_turned(name: str, turn: float) -> None:
     blocks, radius = SOUND[name]
     assert errors(whole(blocks, turn=turn), radius) == []
 
 
-@pytest.mark.parametrize("name", [name for name in SOUND if "flats" not in name])
+@pytest.mark.ci
+@looped("name", [name for name in SOUND if "flats" not in name])
 def test_a_ramp_from_the_other_side_cuts_the_part(name: str) -> None:
     blocks, radius = SOUND[name]
     first, rest = blocks.split("/", 1)
@@ -110,7 +112,8 @@ def test_a_ramp_from_the_other_side_cuts_the_part(name: str) -> None:
 BESIDE = "G1 X20. C-50. F300/G1 Z-3./G42 X40. C-20./G1 Z{}/C20./X-40./C-20./X40./G1 Z{}/G40 X20. C-50."
 
 
-@pytest.mark.parametrize(("depth", "height"), [("-4.", "-3."), ("-10.", "-3."), ("-3.", "2.")])
+@pytest.mark.ci
+@looped(("depth", "height"), [("-4.", "-3."), ("-10.", "-3."), ("-3.", "2.")])
 def test_a_ramp_below_the_face_cuts_what_stands_above_the_contour(depth: str, height: str) -> None:
     """From (10, -50) to (25, -20): 0.528 mm of the corner (20, -20), which is 5 less its distance from that line."""
     way, corner = complex(15, 30), complex(20, -20) - complex(10, -50)
@@ -133,7 +136,8 @@ def test_a_ramp_above_the_face_cuts_nothing() -> None:
 FLAT = "G1 X60. C8. F300/Z-1./G42 X32. C10./X-32./G40 X-60. C16."
 
 
-@pytest.mark.parametrize(("bar", "found"), [(None, False), (30, False), (37.7, True), (60, True)])
+@pytest.mark.ci
+@looped(("bar", "found"), [(None, False), (30, False), (37.7, True), (60, True)])
 def test_the_bar_says_where_a_flat_ends(bar: float | None, found: bool) -> None:
     """Its end (16, 10) is 18.868 from the center: a bar of 37.7 has its corner just there."""
     job = {"job": {"stock": {"diameter": bar}}} if bar else {}
@@ -197,9 +201,10 @@ ONE_INWARDS = [26 + 1j, 20 + 1j, *ROUND, 20 - 1j, 14 - 1j]
 OTHER_INWARDS = [14 + 1j, 20 + 1j, *ROUND, 20 - 1j, 26 - 1j]
 
 
-@pytest.mark.parametrize("mirrored", [False, True])
-@pytest.mark.parametrize("turn", [1, -1j, np.exp(0.7j)])
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped("mirrored", [False, True])
+@looped("turn", [1, -1j, np.exp(0.7j)])
+@looped(
     ("points", "radius", "gap", "area"),
     [
         (STEP[0.0], 3.0, 2.0, 1600.0),

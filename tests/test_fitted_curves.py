@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from cases import looped
 from numpy.typing import NDArray
 from unrolled_contours import Piece, as_x_and_c, hexagon, oval, places, slot
 
@@ -23,7 +24,7 @@ def fit(x: NDArray[np.float64], c: NDArray[np.float64], z: NDArray[np.float64] |
     return fitted(samples, TOLERANCE - RESERVE, NOISE)
 
 
-@pytest.mark.parametrize(("turn", "pieces"), [(0.07, 2), (0.2, 9)])
+@looped(("turn", "pieces"), [(0.07, 2), (0.2, 9)])
 def test_a_block_that_bows_little_is_looked_at_in_its_middle_alone(turn: float, pieces: int) -> None:
     """Up to MOST_BOW tolerances it stands for a contour through its ends; another one is followed as it is."""
     around = np.array([20.0, 20.0]), np.array([0.0, turn])
@@ -73,9 +74,9 @@ def farthest(x: NDArray[np.float64], c: NDArray[np.float64], curves: Curves) -> 
 CONTOURS = {"hexagon": (hexagon(), 13), "slot": (slot(), 5), "oval": (oval(), 5)}
 
 
-@pytest.mark.one_in(3)
-@pytest.mark.parametrize("chord_error", [0.005, 0.0005])
-@pytest.mark.parametrize("name", CONTOURS)
+@pytest.mark.ci
+@looped("chord_error", [0.005, 0.0005], one_in=3)
+@looped("name", CONTOURS)
 def test_a_clean_contour_comes_back_with_its_lines_and_arcs(name: str, chord_error: float) -> None:
     (start, pieces), count = CONTOURS[name]
     x, c = as_x_and_c(places(start, pieces, chord_error))
@@ -89,9 +90,7 @@ def test_a_clean_contour_comes_back_with_its_lines_and_arcs(name: str, chord_err
     assert way <= (1 + MOST_BOW) * TOLERANCE
 
 
-@pytest.mark.parametrize(
-    ("start", "center", "ccw"), [(20 + 0j, 0j, True), (20 + 0j, 12 + 3j, False), (14 - 3j, 14 + 4j, True)]
-)
+@looped(("start", "center", "ccw"), [(20 + 0j, 0j, True), (20 + 0j, 12 + 3j, False), (14 - 3j, 14 + 4j, True)])
 def test_a_full_circle_is_one_arc_whose_ends_are_one_point(start: complex, center: complex, ccw: bool) -> None:
     x, c = as_x_and_c(places(start, [(start, center, ccw)], 0.002))
     curves = fit(x, c)
@@ -113,7 +112,7 @@ def test_an_archimedean_spiral_of_one_block_is_followed_along_its_way() -> None:
     assert farthest(x, c, curves)[1] <= TOLERANCE
 
 
-@pytest.mark.parametrize("negative", [False, True])
+@looped("negative", [False, True])
 def test_x_below_zero_is_the_other_side_and_corners_stay(negative: bool) -> None:
     corners: list[Piece] = [(10 + 10j,), (-10 + 10j,), (-10 - 10j,), (10 - 10j,)]
     x, c = as_x_and_c(places(10 - 10j, corners, 0.005))
@@ -135,7 +134,8 @@ def test_z_is_held_along_a_helix_and_a_change_of_its_slope_ends_an_element() -> 
     assert len(curves) == 2
 
 
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.ci
+@looped("seed", range(3))
 def test_random_contours_are_passed_within_the_tolerance(seed: int) -> None:
     random = np.random.default_rng(seed)
     angle = np.linspace(0, 4, 300)
@@ -148,6 +148,7 @@ def test_random_contours_are_passed_within_the_tolerance(seed: int) -> None:
     assert way <= TOLERANCE + bows(x, np.radians(c)).max() + RESERVE
 
 
+@pytest.mark.ci
 def test_twenty_thousand_points_of_an_ellipse_are_few_arcs() -> None:
     angle = np.linspace(0, math.tau, 20_001)
     x, c = as_x_and_c(20 * np.cos(angle) + 12j * np.sin(angle))

@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
+from cases import looped
 from document_programs import FANUC, GSK_1, GSK_2, M700V, METHOD_A, METHOD_B, RECTANGLE, SAMPLE, Printed
 from programs import ROOT, expected, report_of, tables_of, without_expectations
 
@@ -967,7 +968,8 @@ def name(case: Case) -> str:
     return case.number
 
 
-@pytest.mark.parametrize("printed", PRINTED.values(), ids=PRINTED)
+@pytest.mark.ci
+@looped("printed", PRINTED.values(), ids=PRINTED)
 def test_printed_program(printed: Printed) -> None:
     """No error and no warning, and all that matters is known, but for the limit of C where the document has none."""
     report = report_of(printed.text, printed.machine, *printed.tools)
@@ -985,8 +987,8 @@ def test_a_forgotten_radius_is_a_note() -> None:
     assert [(found.rule, found.severity) for found in report.findings] == [("radius-from-comment", "note")]
 
 
-@pytest.mark.one_in(16)
-@pytest.mark.parametrize("case", BROKEN, ids=name)
+@pytest.mark.ci
+@looped("case", BROKEN, ids=name, one_in=16)
 def test_broken_statement(case: Case) -> None:
     """The finding that the document speaks of, and no other."""
     found = beyond_its_notes(case)
@@ -997,8 +999,8 @@ def test_broken_statement(case: Case) -> None:
     assert (severities == {"note"}) == (case.number in NOTES)
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize("case", KEPT, ids=name)
+@pytest.mark.ci
+@looped("case", KEPT, ids=name, one_in=12)
 def test_kept_statement(case: Case) -> None:
     assert [(one.line, one.rule) for one in beyond_its_notes(case)] == []
 
@@ -1025,7 +1027,7 @@ def row_of(number: str) -> str:
     return row
 
 
-@pytest.mark.parametrize(
+@looped(
     ("test", "numbers"),
     [
         ("test_broken_statement", {case.number for case in BROKEN}),

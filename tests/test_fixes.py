@@ -18,6 +18,7 @@ from pathlib import Path
 
 import msgspec
 import pytest
+from cases import looped
 from click.testing import CliRunner, Result
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -71,6 +72,7 @@ def text_of(name: str) -> str:
 # ---- the command ----
 
 
+@pytest.mark.ci
 def test_nothing_is_written_unless_it_is_asked_for() -> None:
     make(a__nc=BOTH)
     for asked in ((), ("--diff",), ("--diff", "--unsafe-fixes"), ("--unsafe-fixes",), ("--backup",)):
@@ -100,7 +102,8 @@ def test_a_diff_shows_the_unsafe_fixes_where_they_are_asked_for() -> None:
     assert result.stderr == "polarcheck: --fix would write 2 fixes into 1 file\n"
 
 
-@pytest.mark.parametrize(("text", "code"), [(MINUS, 0), (OPEN, 0), (DASH, 1)])
+@pytest.mark.ci
+@looped(("text", "code"), [(MINUS, 0), (OPEN, 0), (DASH, 1)])
 def test_a_diff_ends_with_one_where_it_would_change_something(text: str, code: int) -> None:
     make(a__nc=text)
     result = check("a.nc", "--diff")
@@ -116,6 +119,7 @@ def test_a_diff_of_a_file_that_cannot_be_read_could_not_run() -> None:
     assert "polarcheck: b.nc: No such file or directory\n" in result.stderr
 
 
+@pytest.mark.ci
 def test_a_diff_is_painted_where_color_is_asked_for() -> None:
     make(a__nc=DASH)
     assert "\x1b[31m-C–10.\x1b[0m\n\x1b[32m+C-10.\x1b[0m\n" in check("a.nc", "--diff", "--color", "always").stdout
@@ -128,6 +132,7 @@ def test_nothing_in_a_diff_acts() -> None:
     assert " X60. (\\x1b[31m\\u202e)\n" in shown
 
 
+@pytest.mark.ci
 def test_fixes_are_written_and_the_result_is_checked() -> None:
     make(a__nc=DASH)
     result = check("a.nc", "--fix")
@@ -138,6 +143,7 @@ def test_fixes_are_written_and_the_result_is_checked() -> None:
     assert check("a.nc", "--fix").stdout.endswith("; no findings\n")
 
 
+@pytest.mark.ci
 def test_the_exit_code_is_that_of_the_result() -> None:
     make(a__nc=BOTH)
     result = check("a.nc", "--fix")
@@ -149,6 +155,7 @@ def test_the_exit_code_is_that_of_the_result() -> None:
     assert text_of("a.nc") == CLOSED.replace("C10", "C-10")
 
 
+@pytest.mark.ci
 def test_rules_are_chosen_as_for_the_check() -> None:
     make(a__nc=BOTH, b__nc=BOTH)
     check("a.nc", "--fix", "--unsafe-fixes", "--select", "polar-never-left")
@@ -165,6 +172,7 @@ def test_quiet_tells_only_what_is_left() -> None:
     assert text_of("a.nc") == BOTH.replace("–", "-")
 
 
+@pytest.mark.ci
 def test_of_many_fixes_some_are_told_one_by_one() -> None:
     lines = "".join(f"(A{number})\nG12.1 M8\nG1 X40. F200\nX60.\nG13.1\nG0 Z50.\n" for number in range(25))
     make(a__nc="G98 G0 X60. C0\n" + lines)
@@ -174,6 +182,7 @@ def test_of_many_fixes_some_are_told_one_by_one() -> None:
     assert "polarcheck: a.nc:9: fixed: " in result.stderr, "the lines of the file as it was"
 
 
+@pytest.mark.ci
 def test_several_files_are_fixed_each_for_itself() -> None:
     make(a__nc=DASH, b__nc=MINUS, c__nc=DASH)
     result = check(".", "--diff")
@@ -182,12 +191,13 @@ def test_several_files_are_fixed_each_for_itself() -> None:
     assert check(".", "--fix").stdout.endswith(", 2 fixed\n")
 
 
+@pytest.mark.ci
 def test_the_command_that_a_report_names_fixes_nothing() -> None:
     make(**{f"{name}__nc": OPEN for name in "abcd"})
     assert "in full: polarcheck check a.nc\n" in check(".", "--fix", "--backup").stdout
 
 
-@pytest.mark.parametrize(
+@looped(
     ("options", "said"),
     [
         (("--diff", "--fix"), "leave out one of the two"),
@@ -202,7 +212,7 @@ def test_options_that_exclude_each_other(options: tuple[str, ...], said: str) ->
     assert text_of("a.nc") == DASH
 
 
-@pytest.mark.parametrize("option", ["--unsafe-fixes", "--backup"])
+@looped("option", ["--unsafe-fixes", "--backup"])
 def test_options_that_do_nothing_alone_say_so(option: str) -> None:
     make(a__nc=MINUS)
     result = check("a.nc", option)
@@ -210,6 +220,7 @@ def test_options_that_do_nothing_alone_say_so(option: str) -> None:
     assert result.stderr == f"polarcheck: warning: {option} does nothing without --fix\n"
 
 
+@pytest.mark.ci
 @of_posix
 @pytest.mark.skipif(shutil.which("patch") is None, reason="patch is not here")
 def test_a_diff_of_plain_lines_can_be_applied() -> None:
@@ -250,6 +261,7 @@ def test_a_diff_of_standard_input() -> None:
 # ---- what is not fixed ----
 
 
+@pytest.mark.ci
 def test_a_fix_that_brings_another_finding_is_not_made() -> None:
     make(a__nc=REFUSED)
     result = check("a.nc", "--fix", "--unsafe-fixes", *NO_NEWS)
@@ -289,6 +301,7 @@ def test_what_somebody_has_answered_for_is_not_fixed() -> None:
     assert (found.data, found.fixed, found.refused) == (DASH.encode(), [], [])
 
 
+@pytest.mark.ci
 def test_what_a_baseline_knows_is_not_fixed() -> None:
     make(a__nc=DASH, b__nc=DASH)
     assert CliRunner().invoke(main, ["baseline", "create", "a.nc", "-o", "known.json"]).exit_code == 0
@@ -338,6 +351,7 @@ def test_a_fix_that_does_more_than_it_says_is_not_made(wrong: str, said: str, mo
     assert refused.reason.startswith(said)
 
 
+@pytest.mark.ci
 def test_one_fix_that_is_refused_does_not_stop_the_others() -> None:
     two = "O1\n" + REFUSED + "O2\n" + BOTH
     found = outcome(two)
@@ -354,6 +368,7 @@ def test_fixes_that_touch_each_other_come_one_after_the_other() -> None:
     assert len(found.fixed) == 2
 
 
+@pytest.mark.ci
 def test_the_fixes_of_one_round_after_another_end() -> None:
     program = HEAD + "".join(f"G17 C–{number}0.\n" for number in range(1, 4)) + "X60.\nG13.1\n"
     found = outcome(program)
@@ -361,6 +376,7 @@ def test_the_fixes_of_one_round_after_another_end() -> None:
     assert outcome(found.data.decode()).fixed == []
 
 
+@pytest.mark.ci
 def test_what_is_refused_stands_in_the_way_of_nothing() -> None:
     """Beside a G13.1 that is refused a G40 that changes the way of the tool, and is looked at by itself."""
     last = "T0101\nG98 G0 X60. C0\nG12.1\nG1 G41 X40. F200\nC-10.\nX60.\nG13.1\nG0 Z50.\nM30\n"
@@ -369,7 +385,7 @@ def test_what_is_refused_stands_in_the_way_of_nothing() -> None:
     assert len(found.fixed) == len(found.refused) == 1
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 def test_of_many_that_are_refused_only_some_are_tried() -> None:
     program = "".join(f"O{number}\n{REFUSED}" for number in range(1, 24))
     job = job_of("1:radius=4", job={"run": {"max_seconds": 1e6}})
@@ -379,6 +395,7 @@ def test_of_many_that_are_refused_only_some_are_tried() -> None:
     assert found.is_whole
 
 
+@pytest.mark.ci
 def test_where_there_are_too_many_some_are_left(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(fix_rounds, "MOST_CHECKS", 1)
     make(a__nc=HEAD + "G17 C–10.\nX60.\nG13.1\n")
@@ -423,9 +440,9 @@ ENCODINGS = {
 }
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize("end", ENDS)
-@pytest.mark.parametrize("encoding", ENCODINGS)
+@pytest.mark.ci
+@looped("end", ENDS, one_in=12)
+@looped("encoding", ENCODINGS)
 def test_encodings_and_line_ends_stay(encoding: str, end: str) -> None:
     text = "(\N{LATIN CAPITAL LETTER C}AF\u00c9)\n" if encoding not in ("shift_jis",) else "(\u30ab\u30bf)\n"
     program = "%\n" + text + OPEN.replace("G12.1", "G12.1 M8") + "%"
@@ -468,6 +485,7 @@ def texts_with_edits(draw: st.DrawFn) -> tuple[str, list[tuple[int, int, str]]]:
     return text, [(start, end, draw(st.text("AB-.\n", max_size=4))) for start, end in pieces]
 
 
+@pytest.mark.ci
 @given(texts_with_edits(), st.sampled_from(["utf-8", "utf-16-le", "utf-8-sig"]))
 def test_only_the_named_characters_change(case: tuple[str, list[tuple[int, int, str]]], encoding: str) -> None:
     text, spans = case
@@ -481,6 +499,7 @@ def test_only_the_named_characters_change(case: tuple[str, list[tuple[int, int, 
     assert found.decode(encoding) == source.read_source(wanted.encode(encoding), encoding=encoding).text
 
 
+@pytest.mark.ci
 @given(texts_with_edits())
 def test_lines_lead_back_to_where_they_come_from(case: tuple[str, list[tuple[int, int, str]]]) -> None:
     text, spans = case
@@ -501,6 +520,7 @@ def test_lines_lead_back_to_where_they_come_from(case: tuple[str, list[tuple[int
 # ---- the file ----
 
 
+@pytest.mark.ci
 def test_the_old_program_is_kept_where_that_is_asked_for() -> None:
     make(a__nc=BOTH)
     check("a.nc", "--fix", "--backup")
@@ -514,6 +534,7 @@ def test_the_old_program_is_kept_where_that_is_asked_for() -> None:
     assert check("a.nc", "--fix", "--backup").exit_code == 1, "the same is kept already"
 
 
+@pytest.mark.ci
 def test_a_program_that_was_kept_is_no_program_of_its_folder() -> None:
     make(O0001=DASH)
     check(".", "--fix", "--backup")
@@ -545,8 +566,8 @@ def test_a_program_of_somebody_else_stays_theirs() -> None:
 
 
 @of_root
-@pytest.mark.parametrize("keep", [True, False])
-@pytest.mark.parametrize(
+@looped("keep", [True, False])
+@looped(
     ("owner", "group", "groups", "is_fixed"),
     [(1234, 1235, [1235], False), (1234, 2000, [], False), (2000, 1235, [], False), (2000, 1235, [1235], True)],
 )
@@ -660,7 +681,7 @@ def test_a_file_that_is_changed_while_the_new_one_is_written_stays(monkeypatch: 
     assert [path.name for path in Path().iterdir()] == ["a.nc"]
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 @of_posix
 def test_a_kill_leaves_the_old_program_or_the_new_one() -> None:
     """Whenever it comes: SIGKILL at another moment each time, until the new one is there."""
@@ -712,7 +733,7 @@ FAULTS: dict[str, Callable[[str], str]] = {
 PROGRAMS = [path for path in SAMPLES if path.stat().st_size < 3000]
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 @settings(max_examples=15, deadline=None)
 @given(
     st.sampled_from(PROGRAMS), st.lists(st.sampled_from(sorted(FAULTS)), min_size=1, max_size=4), st.sampled_from(ENDS)
@@ -739,7 +760,7 @@ def never_worse(data: bytes, own: Settings) -> None:
         assert len(after.findings) <= sum(1 + len(one.follows) for one in before.findings)
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 @pytest.mark.skipif(not CORPUS.is_dir(), reason="the real programs are not here")
 def test_no_real_program_gets_worse() -> None:
     polar, others = (sorted((CORPUS / name).rglob("*")) for name in ("polar", "general"))

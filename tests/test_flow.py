@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from cases import looped
 from clocks import Clock
 from programs import report_of, said, tables_of, trace_of
 
@@ -70,8 +71,8 @@ def polygon_plain(sides: int) -> str:
     return "\n".join([*lines, "G1 C0", "G40 X90.", "G13.1", "G0 Z50.", "M30"]) + "\n"
 
 
-@pytest.mark.one_in(4)
-@pytest.mark.parametrize("sides", range(3, 13))
+@pytest.mark.ci
+@looped("sides", range(3, 13), one_in=4)
 def test_polygon_runs_as_its_written_out_twin(sides: int) -> None:
     macro, plain = (tables_of(program(sides), "fanuc", CUTTER) for program in (polygon_macro, polygon_plain))
     ours, theirs = macro["moves"], plain["moves"]
@@ -108,7 +109,8 @@ ENDLESS = {
 }
 
 
-@pytest.mark.parametrize("program", ENDLESS.values(), ids=list(ENDLESS))
+@pytest.mark.ci
+@looped("program", ENDLESS.values(), ids=list(ENDLESS))
 def test_what_never_ends_is_one_finding(program: str) -> None:
     report = report_of(program, job={"run": {"max_statements": 5000}})
     assert [finding.rule for finding in report.findings if finding.rule != "unreachable-block"] == ["endless-loop"]
@@ -124,7 +126,8 @@ def test_a_program_that_calls_itself_and_brackets_without_end_are_one_finding() 
 UNBOUNDED = {"max_blocks": 10**9, "max_statements": 10**9, "max_seconds": 1e9}
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("bound", "text", "blocks"),
     [
         ({"max_blocks": 1000}, "1000 blocks more than the file has", 1008),
@@ -151,7 +154,8 @@ def test_time_is_a_bound(monkeypatch: pytest.MonkeyPatch) -> None:
     assert report.blocks < 1000
 
 
-@pytest.mark.parametrize("lines", ["#100=#100+1.5", "G0 X50.\nM98 P2", "/G0 X50."])
+@pytest.mark.ci
+@looped("lines", ["#100=#100+1.5", "G0 X50.\nM98 P2", "/G0 X50."])
 def test_no_file_is_too_long_by_what_is_written_in_it(lines: str) -> None:
     program = "O1\n" + f"{lines}\n" * 400 + "M30\nO2\nG1 X40. F100\nM99\n"
     report = report_of(program, job={"run": {"max_blocks": 1200, "max_statements": 200}}, only=["macro", "polar"])
@@ -159,6 +163,7 @@ def test_no_file_is_too_long_by_what_is_written_in_it(lines: str) -> None:
     assert report.verdict == "pass"
 
 
+@pytest.mark.ci
 def test_who_comes_to_a_bound_is_not_said_to_be_wrong() -> None:
     """It may end a turn later: the file is unverified, and only what comes back with nothing changed never ends."""
     counts = "O1\n#1=0\nWHILE[#1LT900]DO1\n#1=#1+1\nG0 X50.\nEND1\nM30\n"
@@ -171,6 +176,7 @@ def test_who_comes_to_a_bound_is_not_said_to_be_wrong() -> None:
     assert report.verdict == "fail"
 
 
+@pytest.mark.ci
 def test_block_skip_is_judged_both_ways() -> None:
     program = HEAD + "G12.1\nG1 X60. F1500\n/G0 X50.\nG1 C5.\nG13.1\nM30\n"
     messages = {f.rule: f.message for f in report_of(program).findings}
@@ -197,6 +203,7 @@ def test_a_called_program_is_found_in_the_folders_only(tmp_path: Path) -> None:
     assert found.message.startswith("in 1234.NC, line 4, G0 C5.")
 
 
+@pytest.mark.ci
 def test_a_loop_counts_a_finding_and_shows_its_worst_run() -> None:
     loop = "WHILE[#1 LT 5]DO1\n#1=#1+1\nX[20.-4*#1] F2000\nC[#1]\nC0\nEND1\n"
     program = HEAD + f"#1=0\nG12.1\nG1 X60. F1500\n{loop}X60.\nG13.1\nM30\n"
@@ -218,7 +225,7 @@ def test_return_with_p_goes_to_the_caller() -> None:
     np.testing.assert_array_equal(trace.blocks.word("X")[trace.blocks.has("X")], [5.0, 2.0])
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 def test_an_endless_program_is_no_fault_of_those_behind_it() -> None:
     """The statements of the whole file were counted: every program behind a run-in cycle was endless, too."""
     endless = "O{0}\nN10 G0 X50.\nX60.\n#1=#1+1\nGOTO10\nM30\n"
@@ -244,7 +251,7 @@ def test_a_loop_that_waits_for_what_is_not_known_is_not_evaluated() -> None:
     assert [found.rule for found in other.findings if found.severity == "error"] == ["endless-loop"]
 
 
-@pytest.mark.parametrize(
+@looped(
     ("machine", "program", "line"),
     [
         ("fanuc", "O1\nIF[#500 EQ 1]GOTO 99\nG0 X5.\nN9 M30\n", 2),
@@ -256,6 +263,6 @@ def test_a_target_is_looked_for_where_nobody_knows_the_condition(machine: str, p
     assert said(report_of(program, machine)) == [(line, "jump-target-missing")]
 
 
-@pytest.mark.parametrize("jump", ["GOTO #1", "GOTO #501", "GOTO 9"])
+@looped("jump", ["GOTO #1", "GOTO #501", "GOTO 9"])
 def test_a_target_that_may_be_there_is_none(jump: str) -> None:
     assert said(report_of(f"O1\nIF[#500 EQ 1]{jump}\nG0 X5.\nN9 M30\n")) == []

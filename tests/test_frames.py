@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from cases import looped
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from programs import moves_of, report_of, said, trace_of
@@ -38,7 +39,8 @@ def near(found: list[complex], expected: list[complex]) -> bool:
 # ---- where the moves end ----
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("body", "expected"),
     [
         ("ATRANS X5 Y-3\nG1 X10 Y10 F200\n", [15 + 7j]),
@@ -77,6 +79,7 @@ def test_the_center_of_an_arc_turns_with_the_frame() -> None:
     assert np.allclose(abs(trace.path.end[trace.path.is_arc] - centers), 10)
 
 
+@pytest.mark.ci
 @settings(max_examples=25, deadline=None)
 @given(
     st.lists(st.tuples(st.integers(-30, 30), st.integers(-30, 30)), min_size=1, max_size=8),
@@ -103,7 +106,7 @@ def path(program: str, machine: str) -> tuple[Points, Points]:
     return moves.start, moves.end
 
 
-@pytest.mark.parametrize("angle", [0, 30, -77.5, 180])
+@looped("angle", [0, 30, -77.5, 180])
 def test_a_section_with_frames_has_the_tool_center_path_of_its_twin_without(angle: float) -> None:
     contour = [30 - 20j, 30 + 20j, -30 + 20j, -30 - 20j, 30 - 20j]
     turn, shift = np.exp(1j * math.radians(angle)), 3 - 5j
@@ -122,7 +125,7 @@ def test_a_section_with_frames_has_the_tool_center_path_of_its_twin_without(angl
 # ---- the example of the manual ----
 
 
-@pytest.mark.parametrize("allowance", [1, 2.5])
+@looped("allowance", [1, 2.5])
 def test_the_example_of_the_manual_runs_round_its_square(allowance: float) -> None:
     program = MANUAL.format(allowance)
     report = report_of(program, MACHINE, "8:radius=2", changes={"limits": {"c_feed": 100_000}})
@@ -162,7 +165,8 @@ def test_each_section_begins_at_the_angle_that_c_has_there() -> None:
 # ---- what is not simulated ----
 
 
-@pytest.mark.parametrize("word", ["MIRROR X0", "AMIRROR Y0", "SCALE X2 Y2", "ASCALE X.5", "ROT X30", "AROT Y10"])
+@pytest.mark.ci
+@looped("word", ["MIRROR X0", "AMIRROR Y0", "SCALE X2 Y2", "ASCALE X.5", "ROT X30", "AROT Y10"])
 def test_other_frames_are_not_evaluated_by_name(word: str) -> None:
     report = report_of(face(f"{word}\nG1 X20 Y10 F200\n"), MACHINE)
     assert report.verdict == "unverified"
@@ -176,6 +180,7 @@ def test_other_frames_are_not_evaluated_by_name(word: str) -> None:
     ]
 
 
+@pytest.mark.ci
 def test_a_frame_that_ends_before_the_mode_is_none_of_its_own() -> None:
     for word in ("MIRROR Z0\n", "ROT RPL=30\n", "TRANS X10 Z5\n", "SCALE X2\n"):
         report = report_of(face("G1 X20 Y10 F200\n", before=word), MACHINE, changes={"limits": {"c_feed": 1e6}})
@@ -200,6 +205,7 @@ def test_an_allowance_counts_with_compensation_alone() -> None:
 # ---- the origin ----
 
 
+@pytest.mark.ci
 def test_a_frame_that_outlives_the_switch_puts_the_origin_off_center() -> None:
     kept = {"frames": {"ended_by_switch": False}, "limits": {"c_feed": 1e6}}
     report = report_of(face("G1 X20 Y10 F200\n", before="TRANS X10 Z5\n"), MACHINE, changes=kept)
@@ -212,6 +218,7 @@ def test_a_frame_that_outlives_the_switch_puts_the_origin_off_center() -> None:
     assert trace.path.end[trace.path.on_plane][0] in (25 + 10j, 30 + 10j)
 
 
+@pytest.mark.ci
 def test_a_work_offset_in_the_mode_is_said_where_it_is_another() -> None:
     assert said(report_of(face("G54\nG1 X20 Y10 F200\n"), MACHINE)) == []
     assert said(report_of(face("G54\nG1 X20 Y10 F200\n", before="G54\n"), MACHINE)) == []
@@ -237,6 +244,7 @@ def test_z_is_shifted_too() -> None:
     assert trace.path.z.tolist() == [10, 10, 6, 6, 7, 7, 7, 3]
 
 
+@pytest.mark.ci
 def test_many_frames_are_followed_one_after_the_other() -> None:
     body = "".join(f"AROT RPL=90\nG91 X{number % 7} Y1\n" for number in range(20_000))
     trace = trace_of(face("G1 X20 Y10 F200\n" + body + "G90\n"), MACHINE)
@@ -282,7 +290,8 @@ N230 M30
 """
 
 
-@pytest.mark.parametrize("offsets", [(), ("1:radius=2", "2:radius=2"), ("1:radius=1.5", "2:radius=1")])
+@pytest.mark.ci
+@looped("offsets", [(), ("1:radius=2", "2:radius=2"), ("1:radius=1.5", "2:radius=1")])
 def test_the_example_of_a_shop_has_no_fault(offsets: tuple[str, ...]) -> None:
     """Without DIAMON and DIAMOF its X20 is what the machine data say: here 20 from the center, as in the mode."""
     report = report_of(JOB_PLANNING, MACHINE, *offsets)

@@ -21,6 +21,7 @@ import msgspec
 import odd_programs
 import pytest
 import strategies
+from cases import looped
 from fuzz_loop import Loop, smallest, told_of
 from fuzz_mutations import mutated
 from fuzz_setups import SETUPS, BrokenError
@@ -32,6 +33,9 @@ from test_every_machine import HANDS
 
 from polarcheck.rewrite.writing.outcome import Decision, Figure, Outcome
 
+pytestmark = pytest.mark.ci
+
+
 not_on_windows = pytest.mark.skipif(sys.platform == "win32", reason="no bound on the time or memory of a process")
 
 #: About a minute in all, on two cores. Of programs that look sound each costs a second.
@@ -40,7 +44,6 @@ few = settings(max_examples=25, deadline=None, suppress_health_check=list(Health
 more = settings(max_examples=100, deadline=None, suppress_health_check=list(HealthCheck))
 
 
-@pytest.mark.slow
 @given(strategies.sound_programs(), strategies.setups)
 @fewest
 def test_programs_that_look_sound(data: bytes, setup: int) -> None:
@@ -48,7 +51,6 @@ def test_programs_that_look_sound(data: bytes, setup: int) -> None:
     fuzz_targets.trace(data, setup)
 
 
-@pytest.mark.slow
 @given(strategies.wild_programs(), strategies.setups)
 @few
 def test_wild_programs(data: bytes, setup: int) -> None:
@@ -56,14 +58,12 @@ def test_wild_programs(data: bytes, setup: int) -> None:
     fuzz_targets.trace(data, setup)
 
 
-@pytest.mark.slow
 @given(strategies.worse_programs(), strategies.setups)
 @few
 def test_mutated_programs(data: bytes, setup: int) -> None:
     fuzz_targets.whole(data, setup)
 
 
-@pytest.mark.slow
 @given(strategies.programs(), strategies.setups)
 @few
 def test_the_command(data: bytes, setup: int) -> None:
@@ -76,35 +76,30 @@ def test_reports_fit_their_schema(data: bytes, setup: int) -> None:
     fits_schema(data, setup)
 
 
-@pytest.mark.slow
 @given(strategies.programs(), strategies.setups)
 @more
 def test_the_reader(data: bytes, setup: int) -> None:
     fuzz_targets.reader(data, setup)
 
 
-@pytest.mark.slow
 @given(strategies.statements(), strategies.setups)
 @more
 def test_macro_statements(data: bytes, setup: int) -> None:
     fuzz_targets.statement(data, setup)
 
 
-@pytest.mark.slow
 @given(strategies.statements(), strategies.setups)
 @few
 def test_programs_of_macro_statements(data: bytes, setup: int) -> None:
     fuzz_targets.whole(data, setup)
 
 
-@pytest.mark.slow
 @given(strategies.offset_tables(), strategies.setups)
 @more
 def test_offset_tables(data: bytes, setup: int) -> None:
     fuzz_targets.offsets(data, setup)
 
 
-@pytest.mark.slow
 @given(strategies.setting_files)
 @few
 def test_machine_files_and_jobs(data: bytes) -> None:
@@ -122,7 +117,6 @@ def endings(target: str, count: int) -> Iterator[str]:
         yield from TARGETS[target](fuzz_rewriting.program(rng, setup), setup)
 
 
-@pytest.mark.slow
 @pytest.mark.one_in(1)
 @pytest.mark.parametrize(
     ("target", "done"),
@@ -132,13 +126,12 @@ def test_programs_by_grammar_are_rewritten_not_only_refused(target: str, done: s
     assert any(text.startswith(done) for text in endings(target, 60))
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(("target", "done"), [("compare", "differs"), ("certify", "['--update'] 1")])
 def test_programs_by_grammar_are_compared(target: str, done: str) -> None:
     assert done in endings(target, 6)
 
 
-@pytest.mark.parametrize("machine", sorted(HANDS))
+@looped("machine", sorted(HANDS))
 def test_a_program_by_grammar_is_the_same_every_time(machine: str) -> None:
     ours, theirs = ([odd_programs.drawn(Random(seed), machine) for seed in range(8)] for _ in range(2))  # noqa: S311
     assert ours == theirs
@@ -251,8 +244,7 @@ def test_mutation_of_a_seed_is_the_same_every_time() -> None:
     assert len(set(ours)) > 40
 
 
-@pytest.mark.one_in(4)
-@pytest.mark.parametrize("target", TARGETS)
+@looped("target", TARGETS, one_in=4)
 def test_seeds_hold(target: str) -> None:
     """A few of the inputs that the loop begins with, so that a failure later is one of a mutation."""
     rng = Random(2)  # noqa: S311
@@ -277,7 +269,6 @@ def script(*arguments: str) -> tuple[int, str]:
     return run.returncode, run.stdout + run.stderr
 
 
-@pytest.mark.slow
 @not_on_windows
 def test_the_script_fuzzes_for_as_long_as_it_is_told() -> None:
     status, told = script("--minutes", "0.05", "--jobs", "1", "--target", "reader", "--target", "statement")
@@ -285,7 +276,6 @@ def test_the_script_fuzzes_for_as_long_as_it_is_told() -> None:
     assert " inputs in " in told
 
 
-@pytest.mark.slow
 @not_on_windows
 def test_the_script_bears_the_death_of_its_process(tmp_path: Path) -> None:
     """So little memory is not enough to begin with."""

@@ -15,6 +15,7 @@ from typing import Any
 
 import msgspec
 import pytest
+from cases import looped
 from polarcheck.errors import MachineError
 from programs import job_of
 from test_cli import call
@@ -29,6 +30,8 @@ from polarcheck.reports.pages import executed, machine_check, manual, new_machin
 from polarcheck.rewrite.feeds import feed_page as feeds
 from polarcheck.rewrite.feeds.table import FeedReport, feed_table
 from polarcheck.rules.rule import load_all
+
+pytestmark = pytest.mark.ci
 
 #: Of each type of TOML, what people write and what nobody means.
 VALUES = (
@@ -249,7 +252,6 @@ def run_commands(machine: Machine, program: str) -> None:
     assert feeds.text(FeedReport(schema=1, path="-", machine="", tables=[feed_table(one) for one in tables]))
 
 
-@pytest.mark.slow
 @pytest.mark.usefixtures("own_folder")
 def test_any_value_of_any_key_is_taken_or_refused_in_one_line() -> None:
     drawn = random.Random(1).sample(list(itertools.product(KEYS, VALUES)), SHARE)  # noqa: S311
@@ -312,7 +314,6 @@ def in_toml(value: Any) -> str:
     return json.dumps(value) if isinstance(value, str) else str(value)
 
 
-@pytest.mark.slow
 @pytest.mark.usefixtures("own_folder")
 @pytest.mark.parametrize("seed", range(4))
 def test_what_is_nearly_a_value_in_use_is_taken_without_harm_or_refused(seed: int) -> None:
@@ -326,9 +327,8 @@ def test_what_is_nearly_a_value_in_use_is_taken_without_harm_or_refused(seed: in
     assert taken > NEARLY / 4
 
 
-@pytest.mark.one_in(12)
 @pytest.mark.usefixtures("own_folder")
-@pytest.mark.parametrize(
+@looped(
     ("value", "is_sound"),
     [
         ('[""]', False),
@@ -344,6 +344,7 @@ def test_what_is_nearly_a_value_in_use_is_taken_without_harm_or_refused(seed: in
         ('["C2", "H", "Y"]', True),
         ("[]", True),
     ],
+    one_in=12,
 )
 def test_addresses_of_other_controls_are_pairs_that_begin_with_one(value: str, is_sound: bool) -> None:
     def load(base: str) -> Machine:
@@ -362,8 +363,8 @@ def test_addresses_of_other_controls_are_pairs_that_begin_with_one(value: str, i
     assert is_sound or found.stderr.count("\n") == 1
 
 
-@pytest.mark.one_in(12)
 @pytest.mark.usefixtures("own_folder")
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize(
     "values",
     [

@@ -13,6 +13,8 @@ from pathlib import Path
 
 import pytest
 
+pytestmark = pytest.mark.ci
+
 GENERATOR = Path(__file__).parent.parent / "benchmarks" / "generate.py"
 CUTTER_RADIUS = 2.0
 C_FEED_LIMIT = 20_000.0

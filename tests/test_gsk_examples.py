@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from cases import looped
 from document_programs import GSK_1, GSK_2
 from programs import moves_of, report_of, said, trace_of
 
@@ -33,8 +34,9 @@ def judged(program: str, *tools: str, **changes: Any) -> list[tuple[int, str]]:
     return [one for one in said(report) if one not in [(note.line, note.rule) for note in notes]]
 
 
-@pytest.mark.parametrize("program", [SINGLE, CYCLE], ids=["single", "cycle"])
-@pytest.mark.parametrize("tools", [(TOOL,), ()], ids=["with R", "without R"])
+@pytest.mark.ci
+@looped("program", [SINGLE, CYCLE], ids=["single", "cycle"])
+@looped("tools", [(TOOL,), ()], ids=["with R", "without R"])
 def test_the_example_as_printed_is_clean(program: str, tools: tuple[str, ...]) -> None:
     report = report_of(program, "gsk-988", *tools)
     assert [(found.rule, found.severity) for found in report.findings] == [(rule, "note") for rule in NOTES[program]]
@@ -86,9 +88,9 @@ BOTH = [
 ]
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize("program", [SINGLE, CYCLE], ids=["single", "cycle"])
-@pytest.mark.parametrize(("right", "wrong", "number", "rule"), BOTH)
+@pytest.mark.ci
+@looped("program", [SINGLE, CYCLE], ids=["single", "cycle"], one_in=12)
+@looped(("right", "wrong", "number", "rule"), BOTH)
 def test_a_wrong_twin_gives_the_one_finding(program: str, right: str, wrong: str, number: str, rule: str) -> None:
     assert program.count(right) == 1
     twin = program.replace(right, wrong)
@@ -104,16 +106,17 @@ def test_the_alarm_text_of_a_switch_in_offset_mode_is_that_of_the_control() -> N
     assert found.alarm == "polar interpolation command in tool nose radius compensation"
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("right", "wrong"),
     [
         ("N210 G01 C0;", "N210 G01 C-10.;"),
         ("N210 G01 C0;", ""),
         ("N200 G03 X300.0 C-80.0 R40.0;\nN210 G01 C0;", ""),
     ],
+    one_in=12,
 )
-@pytest.mark.parametrize("infeed", ["E8", "E-8", "E30"])
+@looped("infeed", ["E8", "E-8", "E30"])
 def test_with_an_infeed_the_contour_must_be_closed(right: str, wrong: str, infeed: str) -> None:
     """Without one the same contour may be open."""
     twin = CYCLE.replace(right, wrong).replace("E8", infeed)
@@ -123,7 +126,8 @@ def test_with_an_infeed_the_contour_must_be_closed(right: str, wrong: str, infee
         assert "contour-open-with-infeed" not in rules
 
 
-@pytest.mark.parametrize(("program", "limit", "line"), [(SINGLE, 100, "N130"), (CYCLE, 500, "N150")])
+@pytest.mark.ci
+@looped(("program", "limit", "line"), [(SINGLE, 100, "N130"), (CYCLE, 500, "N150")])
 def test_near_the_center_the_rate_of_c_is_an_alarm(program: str, limit: float, line: str) -> None:
     """Note 1: F200 at 45 mm turns C with 255 deg/min, F2000 at 125 mm with 917."""
     rate = {SINGLE: 200 / 45, CYCLE: 2000 / 125}[program]
@@ -131,7 +135,8 @@ def test_near_the_center_the_rate_of_c_is_an_alarm(program: str, limit: float, l
     assert judged(program, limits={"c_feed": float(np.degrees(rate)) + 0.01}) == []
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("words", "rule"),
     [
         ("I0 J-20.0", None),
@@ -146,13 +151,15 @@ def test_centers_are_i_and_j_where_x_is_the_linear_axis(words: str, rule: str | 
     assert judged(twin) == ([] if rule is None else [(block(twin, "N160"), rule)])
 
 
-@pytest.mark.parametrize("program", [SINGLE, CYCLE], ids=["single", "cycle"])
+@pytest.mark.ci
+@looped("program", [SINGLE, CYCLE], ids=["single", "cycle"])
 def test_diameter_or_radius_is_a_parameter(program: str) -> None:
     assert judged(program, parameters={"5450#6": 0}) == []
     assert judged(program, parameters={"5450#6": 1}) == [(block(program, "N110"), "diameter-radius-mixed")]
 
 
-@pytest.mark.parametrize("code", ["G04 X1.", "G65 P9000", "G66 P9000\nG67", "G98", "G40", "G99 F.2\nG98 F200"])
+@pytest.mark.ci
+@looped("code", ["G04 X1.", "G65 P9000", "G66 P9000\nG67", "G98", "G40", "G99 F.2\nG98 F200"])
 def test_the_codes_of_the_list_can_be_used(code: str) -> None:
     """Each at its place: G40 where no offset is in force."""
     at = "N120" if code == "G40" else "N150"
@@ -160,7 +167,7 @@ def test_the_codes_of_the_list_can_be_used(code: str) -> None:
     assert judged(twin) == []
 
 
-@pytest.mark.parametrize(
+@looped(
     ("code", "mode", "f_is_known"),
     [("G98", FeedMode.PER_MINUTE, True), ("G99", FeedMode.PER_REVOLUTION, False)],
 )
@@ -190,7 +197,8 @@ def test_the_place_of_g12_1_is_angle_0() -> None:
     assert turned.c_feed == pytest.approx(moves.c_feed)
 
 
-@pytest.mark.parametrize("plane", ["G17", "G18", "G19", ""])
+@pytest.mark.ci
+@looped("plane", ["G17", "G18", "G19", ""])
 def test_the_plane_of_before_is_dropped_and_comes_back(plane: str) -> None:
     """Arcs of the mode lie on the polar plane whatever was selected, and one of Z and X after it in that of before."""
     twin = SINGLE.replace("N100 G00", f"N100 {plane} G00").replace("N240 Z100.0;", "N240 G01 Z5. F100;")
@@ -214,7 +222,7 @@ def test_axes_by_number_hold_for_one_section() -> None:
     assert (block(twice, "N270"), "polar-axis-number-wrong") in judged(twice)
 
 
-@pytest.mark.parametrize(("word", "passes"), [("E8", 3), ("E-8", 3), ("E0", 1), ("", 1), ("E.0009", 1)])
+@looped(("word", "passes"), [("E8", 3), ("E-8", 3), ("E0", 1), ("", 1), ("E.0009", 1)])
 def test_e_is_a_radius_value_without_its_sign(word: str, passes: int) -> None:
     moves = moves_of(CYCLE.replace("E8", word), "gsk-988", TOOL)
     assert len(moves) == 10 * passes

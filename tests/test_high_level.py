@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from cases import looped
 from programs import moves_of, report_of, said, trace_of
 
 from polarcheck.program.machines import profiles
@@ -194,8 +195,8 @@ HARMLESS = [
 ]
 
 
-@pytest.mark.one_in(4)
-@pytest.mark.parametrize("blocks", SIMULATED)
+@pytest.mark.ci
+@looped("blocks", SIMULATED, one_in=4)
 def test_a_construct_is_simulated(blocks: str) -> None:
     report = report_of(program(f"{blocks} / M30"), OWN)
     assert executed(f"{blocks} / M30") == [*SIMULATED[blocks], "M30"]
@@ -215,14 +216,15 @@ FRAMES = {
 }
 
 
-@pytest.mark.parametrize("blocks", FRAMES)
+@pytest.mark.ci
+@looped("blocks", FRAMES)
 def test_frames_are_told_by_their_names_where_the_profile_has_no_words_for_them(blocks: str) -> None:
     assert any(entry.startswith(FRAMES[blocks]) for entry in told(f"{blocks} / M30", ISO))
     assert not told(f"{blocks} / M30", OWN)
 
 
-@pytest.mark.one_in(3)
-@pytest.mark.parametrize("blocks", NAMED)
+@pytest.mark.ci
+@looped("blocks", NAMED, one_in=3)
 def test_what_is_not_simulated_is_told_by_its_name(blocks: str) -> None:
     report = report_of(program(f"{blocks} / M30"), OWN)
     assert any(entry.reason.startswith(NAMED[blocks]) for entry in report.not_evaluated), report.not_evaluated
@@ -230,9 +232,9 @@ def test_what_is_not_simulated_is_told_by_its_name(blocks: str) -> None:
     assert executed(f"{blocks} / M30")[-1] == "M30"
 
 
-@pytest.mark.one_in(5)
-@pytest.mark.parametrize("blocks", HARMLESS)
-@pytest.mark.parametrize("machine", [OWN, ISO])
+@pytest.mark.ci
+@looped("blocks", HARMLESS, one_in=5)
+@looped("machine", [OWN, ISO])
 def test_what_has_no_bearing_is_silent(blocks: str, machine: str) -> None:
     if blocks == "G290" and machine == ISO:
         assert told("G290 / M30", ISO)
@@ -243,7 +245,7 @@ def test_what_has_no_bearing_is_silent(blocks: str, machine: str) -> None:
     assert executed(f"{blocks} / M30", machine)[-1] == "M30"
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 @pytest.mark.parametrize("name", [OWN, ISO])
 def test_every_statement_of_a_profile_is_told_or_harmless(name: str) -> None:
     """By what the profile says of it, whatever stands behind it."""
@@ -275,14 +277,15 @@ CALLS = {
 }
 
 
-@pytest.mark.parametrize("call", CALLS)
+@pytest.mark.ci
+@looped("call", CALLS)
 def test_programs_are_called_by_name(call: str) -> None:
     whole = f"%_N_MAIN_MPF / {call} / M30 / {CALLED}"
     assert executed(whole) == [*CALLS[call], "M30"]
     assert said(report_of(program(whole), OWN)) == []
 
 
-@pytest.mark.parametrize("head", ["%_N_TASCHE_SPF", "%TASCHE_SPF", "% _N_TASCHE_SPF"])
+@looped("head", ["%_N_TASCHE_SPF", "%TASCHE_SPF", "% _N_TASCHE_SPF"])
 def test_a_program_has_the_name_at_its_head(head: str) -> None:
     report = report_of(program(f"%_N_MAIN_MPF / TASCHE / M30 / {head} / G0 X=1/0 / M17"), OWN)
     assert [(finding.rule, finding.program) for finding in report.findings] == [("arithmetic-error", "TASCHE")]
@@ -310,7 +313,8 @@ def test_a_called_program_may_lie_in_a_folder(tmp_path: Path) -> None:
 # ---- faults ----
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("blocks", "expected"),
     [
         ("GOTOF NOWHERE / M30", [(1, "jump-target-missing")]),
@@ -335,7 +339,8 @@ def test_a_fault_of_a_statement_is_one_finding(blocks: str, expected: list[tuple
     assert found == [one for one in expected if one[1] != "unreachable-block"]
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("machine", "tool", "section"),
     [
         (OWN, "8/1:radius=4", "T8 D1 / G0 X60 Z5 / DIAMOF / TRANSMIT / G94 G1 X40 Y-20 F200 / G41 X12 Y-12 / X-12"
@@ -344,7 +349,7 @@ def test_a_fault_of_a_statement_is_one_finding(blocks: str, expected: list[tuple
          " / X-24. / {fault} / X24. / C-25. / G40 X80. / G13.1 / M30"),
     ],
 )  # fmt: skip
-@pytest.mark.parametrize("value", ["", "12+", "[12"])
+@looped("value", ["", "12+", "[12"])
 def test_where_a_word_cannot_be_read_nobody_knows_the_contour(
     machine: str, tool: str, section: str, value: str
 ) -> None:
@@ -354,7 +359,7 @@ def test_where_a_word_cannot_be_read_nobody_knows_the_contour(
     assert [finding.rule for finding in report_of(whole, machine, tool).findings] == ["macro-syntax"]
 
 
-@pytest.mark.parametrize(
+@looped(
     ("machine", "section"),
     [
         (OWN, "T1 D1 / G0 X60 Z5 / DIAMOF / TRANSMIT / G94 G1 X40 Y-20 F200 / X12 / Y=R99 / X20 / TRAFOOF / M30"),
@@ -370,7 +375,7 @@ def test_the_block_that_leaves_the_position_open_is_named(machine: str, section:
     assert not any("was not programmed before" in reason for reason in reasons)
 
 
-@pytest.mark.parametrize(("block", "closing"), [("X=(R1+2", ")"), ("X=AC(5", ")"), ("X=SIN(5", ")"), ("R[1+2=5", "]")])
+@looped(("block", "closing"), [("X=(R1+2", ")"), ("X=AC(5", ")"), ("X=SIN(5", ")"), ("R[1+2=5", "]")])
 def test_the_bracket_that_is_missing_is_the_one_to_write(block: str, closing: str) -> None:
     (finding,) = report_of(program(f"{block} / M30"), OWN).findings
     assert f"lacks a closing bracket {closing};" in finding.message
@@ -519,8 +524,9 @@ M30
 """
 
 
-@pytest.mark.parametrize(("machine", "text"), [(OWN, TWIN_OWN), (ISO, TWIN_ISO)])
-@pytest.mark.parametrize("radius", [0, 4])
+@pytest.mark.ci
+@looped(("machine", "text"), [(OWN, TWIN_OWN), (ISO, TWIN_ISO)])
+@looped("radius", [0, 4])
 def test_a_program_and_its_twin_have_one_path(machine: str, text: str, radius: int) -> None:
     tool = f"1:radius={radius}"
     ours, twin = moves_of(text, machine, tool), moves_of(FANUC, "fanuc", tool)
@@ -560,8 +566,8 @@ def test_a_diameter_of_coordinates_alone() -> None:
 # ---- hostile ----
 
 
-@pytest.mark.one_in(5)
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     "text",
     [
         "X=(" * 20000 + "\nM30\n",
@@ -581,6 +587,7 @@ def test_a_diameter_of_coordinates_alone() -> None:
         "G1 X5 " + "(G290)" * 30000 + "\nM30\n",
         "DEF REAL " + ",".join(f"AA{number}" for number in range(20000)) + "\nM30\n",
     ],
+    one_in=5,
 )
 def test_hostile_blocks_end_and_give_a_report(text: str) -> None:
     job = {"run": {"max_blocks": 2000, "max_statements": 20000}}

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from cases import looped
 from programs import ROOT
 from test_cli import GOOD, IMPORTED_FROM, RAPID
 from test_diff_base import git
@@ -21,7 +22,7 @@ yaml = pytest.importorskip("yaml")
 pytest.importorskip("pre_commit")
 
 pytestmark = [
-    pytest.mark.slow,
+    pytest.mark.ci,
     pytest.mark.usefixtures("own_folder"),
     pytest.mark.skipif(sys.platform == "win32", reason="the steps are for a shell"),
 ]
@@ -182,7 +183,7 @@ def test_with_diff_base_only_programs_that_it_concerns(tmp_path: Path, monkeypat
     assert commit(tmp_path) == (False, {"polarcheck": "Failed", "polarcheck-config": "Failed"})
 
 
-@pytest.mark.parametrize("name", ["polarcheck.toml", "a/polarcheck.toml", "lathe 3.toml", "pyproject.toml"])
+@looped("name", ["polarcheck.toml", "a/polarcheck.toml", "lathe 3.toml", "pyproject.toml"])
 def test_the_hook_of_settings_takes_all_that_settles_a_verdict(name: str) -> None:
     assert re.search(hooks()["polarcheck-config"]["files"], name)
 

@@ -10,6 +10,7 @@ import deep_contours
 import fuzz_targets
 import msgspec
 import pytest
+from cases import looped
 from fuzz_setups import SETUPS
 from programs import report_of, said
 from test_cli import process
@@ -31,9 +32,9 @@ def every(report: FileReport) -> Iterator[Finding]:
 LARGEST = ["POW[10,307]*9", "0-POW[10,308]", "POW[10,155]", "POW[10,18]", "1/POW[10,300]"]
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize("value", LARGEST)
-@pytest.mark.parametrize("letters", ["XU", "CH", "ZW", "IJ", "R", "FS", "GM", "T", "PQ", "EK"])
+@pytest.mark.ci
+@looped("value", LARGEST, one_in=12)
+@looped("letters", ["XU", "CH", "ZW", "IJ", "R", "FS", "GM", "T", "PQ", "EK"])
 def test_computed_numbers_without_measure_are_unknown(value: str, letters: str) -> None:
     """On a control that calculates up to 1e308, nothing overflows (a warning of NumPy is an error in tests)."""
     for letter in letters:
@@ -43,11 +44,9 @@ def test_computed_numbers_without_measure_are_unknown(value: str, letters: str) 
         assert not any("inf" in found.message.split() for found in every(report))
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize("digits", [10, 16, 23, 150, 400])
-@pytest.mark.parametrize(
-    "word", ["X", "C-", "U", "H", "Z", "I", "R", "G3 X40. C30. R", "G3 C30. I", "F", "G", "T", "N"]
-)
+@pytest.mark.ci
+@looped("digits", [10, 16, 23, 150, 400], one_in=12)
+@looped("word", ["X", "C-", "U", "H", "Z", "I", "R", "G3 X40. C30. R", "G3 C30. I", "F", "G", "T", "N"])
 def test_written_numbers_without_measure_have_one_cause(word: str, digits: int) -> None:
     program = f"{HEAD}G12.1\n{word}{'9' * digits}\n{CONTOUR}{word}{'9' * digits}\nG13.1\nM30\n"
     report = report_of(program, "fanuc", "1:radius=5")
@@ -55,7 +54,8 @@ def test_written_numbers_without_measure_have_one_cause(word: str, digits: int) 
     assert not any("inf" in found.message.split() for found in every(report))
 
 
-@pytest.mark.parametrize("word", ["X-#1", "X#1", "U-#1"])
+@pytest.mark.ci
+@looped("word", ["X-#1", "X#1", "U-#1"])
 def test_a_position_without_measure_is_not_told_as_a_number(word: str) -> None:
     program = f"O1\nG20 G98 G18\nT0101\n#1=POW[10,308]\nG0 {word} C0 Z2.\nG12.1\nG1 X1. C1. F100\nC-1.\nG13.1\nM30\n"
     report = report_of(program, "fanuc-30i", "1:radius=0", changes={"limits": {"c_feed": 3600}})
@@ -63,7 +63,7 @@ def test_a_position_without_measure_is_not_told_as_a_number(word: str) -> None:
     assert any("position" in missing.reason for missing in report.not_evaluated)
 
 
-@pytest.mark.parametrize("word", ["F#1", "F"])
+@looped("word", ["F#1", "F"])
 def test_a_feed_per_revolution_without_measure_is_not_told_as_a_number(word: str) -> None:
     program = f"O1\n#1=POW[10,308]\nG20 G99 G0 X6. C0\nG1 Z-5. F.1\nZ-6. {word}\nG12.1\nG98 X4.\nC1.\nG13.1\nM30\n"
     report = report_of(program, "fanuc-30i")
@@ -77,10 +77,9 @@ def test_a_feed_without_measure_is_not_told_as_a_number() -> None:
     assert not any("inf" in found.message.split() for found in every(report))
 
 
-@pytest.mark.parametrize("digits", [9, 150, 400, 5000])
-@pytest.mark.parametrize(
-    "statement", ["GOTO{}", "#1={}", "M98 P{}", "M98 P2 L{}", "IF[#1EQ{}]GOTO1", "N{}", "#{}=1", "O{}"]
-)
+@pytest.mark.ci
+@looped("digits", [9, 150, 400, 5000])
+@looped("statement", ["GOTO{}", "#1={}", "M98 P{}", "M98 P2 L{}", "IF[#1EQ{}]GOTO1", "N{}", "#{}=1", "O{}"])
 def test_statements_take_numbers_of_any_length(statement: str, digits: int) -> None:
     report = report_of(f"O1\n{statement.format('9' * digits)}\nM30\nO2\nM99\n", "fanuc-30i")
     assert len(msgspec.json.encode(report)) < 20_000
@@ -106,9 +105,9 @@ LONG_PROGRAMS = {
 }
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize("name", LONG_PROGRAMS)
-@pytest.mark.parametrize("machine", ["fanuc", "haas-lathe", "mitsubishi-m700"])
+@pytest.mark.ci
+@looped("name", LONG_PROGRAMS, one_in=12)
+@looped("machine", ["fanuc", "haas-lathe", "mitsubishi-m700"])
 def test_a_report_quotes_only_the_beginning_of_what_is_long(name: str, machine: str) -> None:
     report = report_of(LONG_PROGRAMS[name], machine, "1:radius=5", job={"radius_from_comments": True})
     assert report.findings
@@ -130,7 +129,7 @@ def test_what_is_cut_off_ends_in_dots() -> None:
 # ---- each finding once, and somewhere ----
 
 
-@pytest.mark.parametrize("program", ["", "%\n%\n", "\n\n", "(ONLY A COMMENT)\n", "%"])
+@looped("program", ["", "%\n%\n", "\n\n", "(ONLY A COMMENT)\n", "%"])
 def test_an_empty_file_has_a_place(program: str) -> None:
     (found,) = report_of(program).findings
     assert (found.rule, found.line, found.column, found.end_line) == ("empty-program", 1, 1, 1)
@@ -142,7 +141,8 @@ def test_a_file_in_another_language_has_a_place() -> None:
     assert (found.rule, found.line, found.column, found.end_column) == ("other-dialect", 1, 1, 7)
 
 
-@pytest.mark.parametrize("slash", ["/C0. F200", "C0. F200", "/C0", "/2 C0"])
+@pytest.mark.ci
+@looped("slash", ["/C0. F200", "C0. F200", "/C0", "/2 C0"])
 def test_block_skip_tells_nothing_twice(slash: str) -> None:
     """What stands alone with block skip off may follow from something else with it on."""
     program = (
@@ -156,8 +156,8 @@ def test_block_skip_tells_nothing_twice(slash: str) -> None:
 # ---- what could take time ----
 
 
-@pytest.mark.one_in(6)
-@pytest.mark.parametrize("blank", ["\n", " \n", "%\n", "\r\n", " ", "\n%"])
+@pytest.mark.ci
+@looped("blank", ["\n", " \n", "%\n", "\r\n", " ", "\n%"], one_in=6)
 def test_blank_lines_before_a_called_program_are_read_once(tmp_path: Path, blank: str) -> None:
     """In a process of its own, which is ended if it hangs: read again from each line, this would take hours."""
     (tmp_path / "a.nc").write_text("O1\nG21\nM98 P77\nM30\n", newline="")
@@ -198,8 +198,9 @@ CALLED = {
 }
 
 
-@pytest.mark.parametrize("name", CALLED)
-@pytest.mark.parametrize("machine", ["fanuc", "fanuc-30i"])
+@pytest.mark.ci
+@looped("name", CALLED)
+@looped("machine", ["fanuc", "fanuc-30i"])
 def test_a_section_that_is_begun_in_a_called_program(name: str, machine: str) -> None:
     program, expected = CALLED[name]
     report = report_of(HEAD + program, machine, "1:radius=0")
@@ -235,8 +236,8 @@ G1 G40 X129. C0."""
 FANUC = next(n for n, setup in enumerate(SETUPS) if (setup.machine, setup.tools[:1]) == ("fanuc", ("1:radius=5",)))
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize("seed", [None, 368, *range(10)])
+@pytest.mark.ci
+@looped("seed", [None, 368, *range(10)], one_in=12)
 def test_contours_at_several_depths_end_in_a_report(seed: int | None) -> None:
     data = DEPTHS.encode() if seed is None else deep_contours.program(Random(seed))  # noqa: S311
     fuzz_targets.commands(data, FANUC)

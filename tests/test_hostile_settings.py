@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from cases import looped
 from programs import machine_of, report_of
 from test_cli import COMPENSATED, GOOD, call, findings, make, process
 
@@ -67,6 +68,7 @@ NESTED = "tables or lists are nested more than 12 deep"
 LONG_KEY = "a key has more than 12 parts: a."
 
 
+@pytest.mark.ci
 @pytest.mark.one_in(16)
 @pytest.mark.parametrize(
     ("text", "told"),
@@ -109,7 +111,7 @@ def test_toml_larger_than_the_limit(name: str, text: str) -> None:
     assert error == f"polarcheck: {name}: larger than 1 MB; no {'machine' if name == 'own.toml' else 'job'} file is\n"
 
 
-@pytest.mark.parametrize(
+@looped(
     "text",
     [
         "# " + "1." * 5000,
@@ -136,7 +138,7 @@ def test_the_largest_file_is_read() -> None:
     assert call("check", "a.nc", "--machine", "own.toml").exit_code == 0
 
 
-@pytest.mark.parametrize(
+@looped(
     ("text", "told"),
     [
         ("[tool]\npolarcheck = 3\n", "tool.polarcheck: expected a table, found 3"),
@@ -153,15 +155,14 @@ def test_a_job_in_pyproject_is_found_however_it_is_written(text: str, told: str)
     assert re.match(rf"polarcheck: pyproject\.toml(:\d)?: {re.escape(told)}", refusal("check", "a.nc"))
 
 
-@pytest.mark.parametrize(
-    "text", ["tool = 3\n# polarcheck", "[tool]\nx = 'polarcheck'", "dependencies = [polarcheck", ""]
-)
+@pytest.mark.ci
+@looped("text", ["tool = 3\n# polarcheck", "[tool]\nx = 'polarcheck'", "dependencies = [polarcheck", ""])
 def test_what_others_write_into_pyproject_is_none_of_ours(text: str) -> None:
     make(pyproject__toml=text)
     assert call("check", "a.nc").exit_code == 0
 
 
-@pytest.mark.parametrize(
+@looped(
     ("text", "told"),
     [
         ("[tools.1]\nradius = inf\n", "tools.1.radius: expected a number from -1000 to 1000, found inf"),
@@ -226,10 +227,10 @@ def test_what_is_no_file_is_said_to_be_none(kind: str, place: str) -> None:
     assert any(words in error for words in told[kind])
 
 
-@pytest.mark.one_in(12)
+@pytest.mark.ci
 @needs_pipes
-@pytest.mark.parametrize("device", ["/dev/zero", "/dev/random"])
-@pytest.mark.parametrize("place", ["--config", "--machine", "--offsets", "machine", "offsets", "inherits"])
+@looped("device", ["/dev/zero", "/dev/random"], one_in=12)
+@looped("place", ["--config", "--machine", "--offsets", "machine", "offsets", "inherits"])
 def test_a_device_has_no_end(device: str, place: str) -> None:
     make(own__toml=f"inherits = '{device}'\n")
     if place in ("machine", "offsets"):
@@ -278,7 +279,7 @@ def test_inheritance_without_end() -> None:
     assert call("machines", "m992.toml").exit_code == 0
 
 
-@pytest.mark.parametrize(
+@looped(
     ("text", "told"),
     [
         ("inherits = 'gone'", "own.toml: inherits: unknown machine 'gone'"),
@@ -295,8 +296,7 @@ def test_inheritance_from_nothing(text: str, told: str) -> None:
 # ---- values of machines ----
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize(
+@looped(
     ("text", "told"),
     [
         ("[control]\nknown_codes = ['G0-G999999999']", "control.known_codes: 'G0-G999999999' is no code"),
@@ -336,6 +336,7 @@ def test_inheritance_from_nothing(text: str, told: str) -> None:
             "parameters.x: limits.c_feed: expected a number above 0",
         ),
     ],
+    one_in=12,
 )  # fmt: skip
 def test_a_machine_with_values_that_nobody_means(text: str, told: str) -> None:
     make(own__toml=f"inherits = 'fanuc-30i'\n{text}\n")
@@ -344,7 +345,8 @@ def test_a_machine_with_values_that_nobody_means(text: str, told: str) -> None:
     assert told in error
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     "changes",
     [
         {"macro": {"bracket_levels": 10**9, "macro_levels": 10**9, "loop_levels": 10**9, "loop_numbers": 10**9}},
@@ -377,7 +379,7 @@ def table(text: str) -> dict[str, float]:
     }
 
 
-@pytest.mark.parametrize(
+@looped(
     "text",
     [
         "%\nG10 P10001 X0 Z0 R1. Q0\nG10 P10002 X0 Z0 R2. Q3\n%\n",
@@ -393,8 +395,7 @@ def test_each_block_is_an_offset_of_its_own(text: str) -> None:
     assert table(text) == {"1": 1, "2": 2}
 
 
-@pytest.mark.one_in(11)
-@pytest.mark.parametrize(
+@looped(
     ("text", "told"),
     [
         (f"G10 P10001 R{NINES}", "offset 1: radius: expected a number from -1000 to 1000, found inf"),
@@ -409,6 +410,7 @@ def test_each_block_is_an_offset_of_its_own(text: str) -> None:
         ("x" * 16_000_001, "larger than 16 MB; no offset table is"),
         ("G10 P10001 R1." + " " * 50_000_000, "larger than 16 MB; no offset table is"),
     ],
+    one_in=11,
 )
 def test_an_offset_table_that_nobody_means(text: str, told: str) -> None:
     make(offsets__txt=text)
@@ -418,7 +420,7 @@ def test_an_offset_table_that_nobody_means(text: str, told: str) -> None:
 # ---- the command line ----
 
 
-@pytest.mark.parametrize(
+@looped(
     "arguments",
     [
         ["check", "a.nc", "--tool", f"1:radius={NINES}"],
@@ -442,7 +444,8 @@ def test_numbers_without_end_on_the_command_line(arguments: list[str]) -> None:
     assert option in refusal(*arguments)
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     "option",
     [
         *(
@@ -461,7 +464,7 @@ def test_numbers_without_end_on_the_command_line(arguments: list[str]) -> None:
         *("--color", "command", "path", "explain", "machines", "new", "trace", "schema", "option"),
     ],
 )
-@pytest.mark.parametrize("word", ["9" * 100_000, "json:limits.c_feed=" + "x" * 100_000])
+@looped("word", ["9" * 100_000, "json:limits.c_feed=" + "x" * 100_000])
 def test_arguments_without_end(option: str, word: str) -> None:
     """What is wrong with them is said in a line that one can read."""
     others = {"command": [word], "path": ["check", word], "explain": ["explain", word], "machines": ["machines", word],

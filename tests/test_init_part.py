@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from cases import looped
 from click.testing import CliRunner, Result
 from contour_families import Twin, program_of
 from programs import ROOT, tables_of
@@ -71,9 +72,9 @@ CASES: dict[str, tuple[str, dict[str, Any]]] = {
 }
 
 
-@pytest.mark.one_in(15)
-@pytest.mark.parametrize("machine", ["fanuc-30i", "siemens-iso", "haas-lathe"])
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.ci
+@looped("machine", ["fanuc-30i", "siemens-iso", "haas-lathe"], one_in=15)
+@looped("name", CASES)
 def test_the_entry_of_a_shape_and_its_program_agree(tmp_path: Path, name: str, machine: str) -> None:
     text, expected = CASES[name]
     path = tmp_path / "O1.NC"
@@ -95,6 +96,7 @@ def agrees(path: Path, *options: object) -> None:
     assert max(one["largest"] for one in file["compared"]) <= 0.01
 
 
+@pytest.mark.ci
 def test_lengths_are_in_the_units_of_the_job_file_or_of_the_program(tmp_path: Path) -> None:
     path = tmp_path / "O1.NC"
     path.write_text(program(polygon(6, 12.7), scale=25.4))
@@ -108,7 +110,7 @@ def test_lengths_are_in_the_units_of_the_job_file_or_of_the_program(tmp_path: Pa
         agrees(path, "--tool", f"1:radius={radius}")
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 def test_the_bar_bounds_flats_and_cuts_corners_off(tmp_path: Path) -> None:
     path = tmp_path / "O1.NC"
     job = tmp_path / "polarcheck.toml"
@@ -128,6 +130,7 @@ def test_the_bar_bounds_flats_and_cuts_corners_off(tmp_path: Path) -> None:
         agrees(path, "--tool", "1:radius=10")
 
 
+@pytest.mark.ci
 def test_each_section_has_its_entry_and_each_file_its_name(tmp_path: Path) -> None:
     first, second = program(polygon(6, 13.5)), program(polygon(4, 20.0), z=-8.0)
     both = first.replace(TAIL, "G13.1\n") + second.removeprefix("O1\n")
@@ -155,6 +158,7 @@ def indexed(angles: list[float]) -> str:
     return head + "".join(f"G0 X160. C{angle:g}\nG12.1\n{blocks}\nG13.1\n" for angle in angles) + end
 
 
+@pytest.mark.ci
 @pytest.mark.one_in(12)
 @pytest.mark.parametrize(
     ("angles", "expected"),
@@ -183,6 +187,7 @@ def test_sections_that_make_one_shape_have_one_entry(
         assert run("check", path, *options, "--select", "part-differs-from-drawing").exit_code == (1 if other else 0)
 
 
+@pytest.mark.ci
 def test_where_c_is_not_known_the_angle_is_left_out(tmp_path: Path) -> None:
     path = tmp_path / "O1.NC"
     path.write_text(program(polygon(6, 13.5)).replace("Z2. C0", "Z2. C#500"))
@@ -226,6 +231,7 @@ def test_beside_what_no_part_says_an_entry_is_a_comment(tmp_path: Path) -> None:
 # ---- the command ----
 
 
+@pytest.mark.ci
 def test_it_writes_no_file_and_is_appended(tmp_path: Path) -> None:
     path = tmp_path / "O1.NC"
     path.write_text(program(polygon(6, 13.5)))
@@ -277,9 +283,9 @@ def again(text: str, radius: float, machine: str = "fanuc-30i") -> None:
     assert max(one.difference.largest for one in results if not one.is_superseded) <= 0.01
 
 
-@pytest.mark.one_in(13)
-@pytest.mark.parametrize("seed", sound_seeds(2))
-@pytest.mark.parametrize("twin", [Twin(), Twin(turn=0.7), Twin(inch=True)], ids=["plain", "turned", "inch"])
+@pytest.mark.ci
+@looped("seed", sound_seeds(2), one_in=13)
+@looped("twin", [Twin(), Twin(turn=0.7), Twin(inch=True)], ids=["plain", "turned", "inch"])
 def test_programs_of_all_families_agree_with_what_they_make(seed: int, twin: Twin) -> None:
     one = program_of(seed, twin)
     if is_sound(one):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from cases import looped
 
 from polarcheck.foundation.states import Motion
 from polarcheck.geometry.polygons.depth_inside import depth_inside
@@ -27,7 +28,7 @@ def depth(width: float, start: complex, end: complex) -> float:
     return float(depth_inside(contour, np.zeros(len(contour), bool), ways, np.zeros(1, np.int64), 0.001, 0.002)[0])
 
 
-@pytest.mark.parametrize(
+@looped(
     ("width", "start", "end", "expected"),
     [
         (8, 15 + 0j, -15 + 0j, 4.0),

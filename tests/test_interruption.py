@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 import pytest
 import shapely  # type: ignore[import-untyped]
+from cases import looped
 from clocks import Clock
 from polarcheck.errors import NoAnswerError, StoppedError, TooHardError
 from test_cli import IMPORTED_FROM
@@ -23,7 +24,7 @@ from polarcheck.foundation.time_limit import time_limit
 from polarcheck.geometry.polygons import areas
 from polarcheck.geometry.polygons.interruption import _Watch, interruptible
 
-pytestmark = pytest.mark.slow
+pytestmark = pytest.mark.ci
 
 not_on_windows = pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
 
@@ -169,7 +170,7 @@ def test_without_a_step_no_thread_is_started() -> None:
 
 
 @not_on_windows
-@pytest.mark.parametrize(("number", "word"), [(signal.SIGINT, "interrupt"), (signal.SIGTERM, "terminated")])
+@looped(("number", "word"), [(signal.SIGINT, "interrupt"), (signal.SIGTERM, "terminated")])
 def test_a_signal_ends_a_step(number: signal.Signals, word: str) -> None:
     """The process would go on for many minutes; the limit here only tells an end from a hang."""
     script = (

@@ -20,6 +20,7 @@ from typing import Any
 
 import msgspec
 import pytest
+from cases import looped
 from polarcheck.errors import ClusterError
 from programs import ROOT
 
@@ -48,7 +49,7 @@ UNVERIFIED = "polarcheck: warning: some files are unverified; --format text says
 posix = pytest.mark.skipif(sys.platform == "win32", reason="signals and /proc of POSIX")
 linux = pytest.mark.skipif(sys.platform != "linux", reason="forks, and looks into /proc")
 
-pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("own_folder")]
+pytestmark = [pytest.mark.ci, pytest.mark.usefixtures("own_folder")]
 
 
 def start(*arguments: str, **options: Any) -> subprocess.Popen[str]:
@@ -562,7 +563,7 @@ def test_large_files_do_not_wait_for_each_other(monkeypatch: pytest.MonkeyPatch)
     assert forms_of(planned("f"), 0.001, monkeypatch) == (0, 3)
 
 
-@pytest.mark.parametrize("value", ["-1", "two", "1.5", "", "1025", "\u0663"])
+@looped("value", ["-1", "two", "1.5", "", "1025", "\u0663"])
 def test_a_number_of_jobs_that_is_none_is_refused(value: str) -> None:
     Path("a.nc").write_text(GOOD)
     status, shown, told = run("check", "a.nc", f"--jobs={value}")
@@ -570,7 +571,7 @@ def test_a_number_of_jobs_that_is_none_is_refused(value: str) -> None:
     assert "expected a number of processes up to 1024, or auto" in told
 
 
-@pytest.mark.parametrize("value", ["0", "auto", "AUTO", "1", "7"])
+@looped("value", ["0", "auto", "AUTO", "1", "7"])
 def test_a_number_of_jobs_is_taken(value: str) -> None:
     Path("a.nc").write_text(GOOD)
     assert run("check", "a.nc", *ONLY, "-q", f"-j{value}") == (0, "", "")

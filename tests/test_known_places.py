@@ -8,6 +8,7 @@ from typing import Any
 
 import drawn_baselines
 import pytest
+from cases import looped
 from click.testing import CliRunner, Result
 
 from polarcheck.checking.block_outline import outline
@@ -75,6 +76,7 @@ SOUND = "G40 X110.\n"
 # ---- what grows ----
 
 
+@pytest.mark.ci
 def test_a_feed_that_grows_is_told_again_with_what_is_known_of_it() -> None:
     create(a=near_center("400."))
     assert told() == []
@@ -108,6 +110,7 @@ def test_a_rounding_difference_is_no_growth(old: str, new: str, said: str) -> No
     assert all(f"worse than in the baseline: {said} [" in line for line in lines)
 
 
+@pytest.mark.ci
 def test_more_blocks_of_a_fault_are_told() -> None:
     create(a=near_center("400."))
     write(a=near_center("400.", "C5.\nC-5.\n"))
@@ -126,6 +129,7 @@ def test_one_fault_that_a_file_has_once_and_then_four_times_is_told() -> None:
     assert line.endswith("[stray-character]")
 
 
+@pytest.mark.ci
 def test_what_is_worse_is_neither_new_nor_gone_and_an_update_takes_it() -> None:
     create(a=arc("40.2"))
     write(a=arc("96."))
@@ -180,6 +184,7 @@ def test_a_program_does_not_inherit_the_silence_of_another(name: str) -> None:
     assert [line[-31:] for line in told("--tool", "3:radius=3")] == ["[polar-switched-in-offset-mode]"]
 
 
+@pytest.mark.ci
 @pytest.mark.one_in(12)
 @pytest.mark.parametrize("name", ["O1005", "new_of_O1005", "O9999"], ids=["here", "other folder", "renamed"])
 @pytest.mark.parametrize(
@@ -203,6 +208,7 @@ def test_what_is_edited_elsewhere_keeps_what_is_known(edit: Any, name: str) -> N
     assert told() == []
 
 
+@pytest.mark.ci
 def test_where_the_first_block_of_a_section_is_mended_the_others_stay_known() -> None:
     blocks = "G0 C5.\n"
     create(a=f"O1\nG98 G0 X60. C0\nG12.1\nG1 X40. F200\n{blocks}G1 X30.\n{blocks}G1 X20.\n{blocks}G13.1\nM30\n")
@@ -211,6 +217,7 @@ def test_where_the_first_block_of_a_section_is_mended_the_others_stay_known() ->
     assert told() == []
 
 
+@pytest.mark.ci
 def test_a_long_program_is_known_by_a_part_of_its_blocks() -> None:
     passes = [open_ended(60 + number % 7, SOUND, f"Z-{number / 8:g}") for number in range(260)]
     create(a=program(*passes[:100], open_ended(50), *passes[100:]))
@@ -223,7 +230,7 @@ def test_a_long_program_is_known_by_a_part_of_its_blocks() -> None:
     assert len(told()) == 1
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 def test_pairs_that_are_drawn() -> None:
     """`python tests/drawn_baselines.py 5000` takes more of them."""
     assert list(drawn_baselines.faults(0, 25)) == []
@@ -232,7 +239,7 @@ def test_pairs_that_are_drawn() -> None:
 # ---- the parts ----
 
 
-@pytest.mark.parametrize(
+@looped(
     ("old", "new", "pairs"),
     [
         ([1, 2, 3], [1, 2, 3], {0: 0, 1: 1, 2: 2}),
@@ -260,6 +267,7 @@ def test_an_outline_leaves_out_what_says_nothing() -> None:
 # ---- the command ----
 
 
+@pytest.mark.ci
 def test_a_job_file_names_the_baseline() -> None:
     write(sub_of_a=arc("40.2"))
     Path("sub/polarcheck.toml").write_text('baseline = "known.json"\n')
@@ -288,6 +296,7 @@ def test_a_job_file_names_the_baseline() -> None:
     assert "these programs have several baselines, more/../other.json, sub/known.json" in result.stderr
 
 
+@pytest.mark.ci
 def test_what_is_gone_fails_only_on_demand() -> None:
     create(a=arc("40.2"))
     options = ("check", ".", "--baseline", FILE)
@@ -299,6 +308,7 @@ def test_what_is_gone_fails_only_on_demand() -> None:
     assert call(*options, "--fail-on-stale").exit_code == 0
 
 
+@pytest.mark.ci
 def test_an_entry_of_an_unknown_rule_is_told_with_its_line() -> None:
     create(a=arc("40.2"))
     Path(FILE).write_text(Path(FILE).read_text().replace("arc-end-off-circle", "arc-end-of-circle"))
@@ -322,6 +332,7 @@ def test_an_entry_of_an_unknown_rule_is_told_with_its_line() -> None:
     assert call("baseline prune", "a.nc", "-o", FILE).stdout == f"{FILE}: 0 findings of 0 files known; 15 gone\n"
 
 
+@pytest.mark.ci
 def test_what_could_not_be_evaluated_is_brought_to_its_new_place() -> None:
     create(a=program(open_ended(60, SOUND), open_ended(66)))
     (before,) = (place.at for entry in read(Path(FILE)).entries for place in entry.places)
@@ -337,6 +348,7 @@ def test_what_could_not_be_evaluated_is_brought_to_its_new_place() -> None:
     assert told() == []
 
 
+@pytest.mark.ci
 def test_an_editor_and_what_watches_files_know_the_baseline() -> None:
     text = program(open_ended(60))
     create(a=text)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from cases import looped
 from programs import machine_of, report_of, said
 
 from polarcheck.columns.words.dialect import Dialect
@@ -52,8 +53,9 @@ OWN = [
 ]
 
 
-@pytest.mark.parametrize(("title", "file"), PAIRS)
-@pytest.mark.parametrize("ends", ["\n", "\r\n", "\r"])
+@pytest.mark.ci
+@looped(("title", "file"), PAIRS)
+@looped("ends", ["\n", "\r\n", "\r"])
 def test_a_file_of_another_world_is_named_once(title: str, file: str, ends: str) -> None:
     for machine in ("fanuc", "haas-lathe", "okuma-osp", "siemens-transmit"):
         report = report_of(file.replace("\n", ends).encode(), machine)
@@ -65,7 +67,8 @@ def test_a_file_of_another_world_is_named_once(title: str, file: str, ends: str)
         assert report.verdict == "unverified"
 
 
-@pytest.mark.parametrize("file", OWN)
+@pytest.mark.ci
+@looped("file", OWN)
 def test_a_program_is_none(file: str) -> None:
     assert recognised(file.encode()) is None
     assert "other-dialect" not in {rule for _, rule in said(report_of(file))}
@@ -82,14 +85,13 @@ def test_a_sound_program_is_not_searched() -> None:
     assert Dialect(read_words(read_source(b"")), machine_of()).recognised is None
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize("part", [b"#<a", b"O<", b"N1 ", b"L X1", b"G1 E ", b"0", b";", b"X", b"J2,", b"(", b"(\n"])
+@looped("part", [b"#<a", b"O<", b"N1 ", b"L X1", b"G1 E ", b"0", b";", b"X", b"J2,", b"(", b"(\n"], one_in=12)
 def test_hostile_files_take_no_time(part: bytes) -> None:
     assert recognised(part * (200_000 // len(part))) is None
 
 
-@pytest.mark.parametrize("machine", ["fanuc", "haas-lathe", "gsk-988"])
-@pytest.mark.parametrize(
+@looped("machine", ["fanuc", "haas-lathe", "gsk-988"])
+@looped(
     ("program", "reason", "blocks"),
     [
         ("G28\nG1 X10 Y10 E1.5 F1200\nG1 X20 Y10 E2.5\nX20 Y20 E3.5\n", "E1.5 in line 2", 3),
@@ -104,9 +106,7 @@ def test_a_move_with_e_is_of_no_lathe(program: str, reason: str, blocks: int, ma
     assert report.verdict != "pass"
 
 
-@pytest.mark.parametrize(
-    "block", ["G32 Z-10. E.05", "G92 X20. Z-10. E.05", "G4 E5.", "(E1.5) G1 X10. F.1", "G1 X#1 F.1"]
-)
+@looped("block", ["G32 Z-10. E.05", "G92 X20. Z-10. E.05", "G4 E5.", "(E1.5) G1 X10. F.1", "G1 X#1 F.1"])
 def test_e_elsewhere_says_nothing(block: str) -> None:
     report = report_of(f"O1\nG21 G28 U0 W0\nT0101\nG0 X50. Z2.\n{block}\nM30\n")
     assert not [entry for entry in report.not_evaluated if entry.reason.startswith("E")]

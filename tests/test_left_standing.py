@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import pytest
 import shapely  # type: ignore[import-untyped]
+from cases import looped
 from contour_families import program_of
 from programs import tables_of
 
@@ -38,8 +38,7 @@ def not_reached(tables: Any) -> list[Any]:
     return [area for area in shapely.get_parts(left) if area.area > worth and area.distance(walls) < 3 * NEAR]
 
 
-@pytest.mark.one_in(7)
-@pytest.mark.parametrize(
+@looped(
     ("family", "seed", "ribs", "corners"),
     [
         ("polygons", 0, 0, 0),
@@ -50,6 +49,7 @@ def not_reached(tables: Any) -> list[Any]:
         ("cams", 1, 0, 0),
         ("eccentrics", 2, 0, 0),
     ],
+    one_in=7,
 )
 def test_what_is_left_is_what_no_cutter_reaches(family: str, seed: int, ribs: int, corners: int) -> None:
     program = program_of(seed, family=family)

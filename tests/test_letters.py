@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from cases import looped
 from programs import report_of, said, tables_of
 
 from polarcheck.program.reading.letters import read_as_digits
@@ -75,14 +76,14 @@ def as_read(text: str) -> str:
     return code.tobytes().decode("latin-1").replace("\x96", "–")
 
 
-@pytest.mark.parametrize(("written", "meant"), READ)
+@looped(("written", "meant"), READ)
 def test_letters_are_read_as_digits(written: str, meant: str) -> None:
     assert as_read(written) == meant
     assert as_read(f"G0 X1.\n{written}\r\nM30") == f"G0 X1.\n{meant}\r\nM30"
     assert as_read(meant) == meant
 
 
-@pytest.mark.parametrize("written", LEFT)
+@looped("written", LEFT)
 def test_letters_are_left(written: str) -> None:
     assert as_read(written) == written
     assert as_read(f"G0 X1.\n{written}\n") == f"G0 X1.\n{written}\n"
@@ -100,10 +101,10 @@ def messages(program: str, machine: str = "fanuc") -> list[tuple[int, str, str]]
     return [(found.line, found.rule, found.message) for found in report_of(program, machine).findings]
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize("head", [HEAD, INCH])
-@pytest.mark.parametrize("machine", ["fanuc", "fanuc-30i", "mitsubishi-m700"])
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped("head", [HEAD, INCH], one_in=12)
+@looped("machine", ["fanuc", "fanuc-30i", "mitsubishi-m700"])
+@looped(
     ("written", "meant"),
     [
         ("GO", "G0"),
@@ -134,7 +135,7 @@ def test_a_call_reads_digits_for_letters() -> None:
     assert tables_of(program)["trace"].blocks.line.tolist() == [1, 2, 3, 5, 6, 7, 4]
 
 
-@pytest.mark.parametrize(
+@looped(
     ("program", "programs"),
     [
         ("O1\nG0 X5. O2\nM30", ["O1"]),

@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from cases import looped
 from programs import report_of, said
 
 from polarcheck.foundation import bounded
@@ -36,7 +37,7 @@ def of(folder: Path, program: str = MAIN) -> list[tuple[int, str]]:
     return said(report_of(program, job={"run": {"subprograms": [str(folder)]}}))
 
 
-@pytest.mark.parametrize("name", ["O1234", "1234", "o1234.nc", "O01234.NC", "1234.eia"])
+@looped("name", ["O1234", "1234", "o1234.nc", "O01234.NC", "1234.eia"])
 def test_a_program_in_the_folder_is_found(folder: Path, name: str) -> None:
     (folder / name).write_text(SUB, "utf-8")
     assert of(folder) == []

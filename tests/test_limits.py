@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from cases import looped
 from programs import report_of, tables_of
 
 
@@ -102,7 +103,8 @@ LIMITS = [
 ]
 
 
-@pytest.mark.parametrize("limit", LIMITS, ids=lambda limit: f"{limit.rule} {limit.at}")
+@pytest.mark.ci
+@looped("limit", LIMITS, ids=lambda limit: f"{limit.rule} {limit.at}")
 def test_at_the_limit_nothing_is_said(limit: Limit) -> None:
     tools = [limit.tool] if limit.tool else []
     for word, is_beyond in ((limit.at, False), (limit.beyond, True)):
@@ -117,21 +119,21 @@ RAMPS = [
 ]
 
 
-@pytest.mark.parametrize(("rule", "program"), RAMPS)
-@pytest.mark.parametrize(("radius", "is_said"), [("0", False), ("0.001", True), ("1", True)])
+@looped(("rule", "program"), RAMPS)
+@looped(("radius", "is_said"), [("0", False), ("0.001", True), ("1", True)])
 def test_without_a_radius_no_ramp_is_missing(rule: str, program: str, radius: str, is_said: bool) -> None:
     report = report_of(program, "fanuc", f"1:radius={radius}", only=[rule])
     assert [finding.rule for finding in report.findings] == [rule] * is_said
 
 
-@pytest.mark.parametrize(("diameter", "is_said"), [(120.0, False), (119.9, True)])
+@looped(("diameter", "is_said"), [(120.0, False), (119.9, True)])
 def test_what_lies_within_the_stock_is_no_angle(diameter: float, is_said: bool) -> None:
     program = "G98 G0 X40. C0\nG12.1\nG1 X25. F100\nC-60.\nX40.\nG13.1\n"
     report = report_of(program, job={"stock": {"diameter": diameter}}, only=["degrees-in-polar"])
     assert bool(report.findings) == is_said
 
 
-@pytest.mark.parametrize(("code", "severity"), [("G26", "error"), ("G100", "warning"), ("G100.1", "error")])
+@looped(("code", "severity"), [("G26", "error"), ("G100", "warning"), ("G100.1", "error")])
 def test_from_g100_on_an_unknown_code_may_be_a_macro(code: str, severity: str) -> None:
     changes = {"control": {"known_codes": ["G0"]}}
     report = report_of(f"G0 X60.\n{code}\n", changes=changes, only=["unknown-code"])
@@ -141,7 +143,8 @@ def test_from_g100_on_an_unknown_code_may_be_a_macro(code: str, severity: str) -
 ON_A_CIRCLE = "G98 G0 X60. C0\nG12.1\nG1 X40. F100\nG3 X-40. C0 R20. F{}\nX40. C0 R20.\nG1 X60.\nG13.1\n"
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("share", "severity", "told"),
     [
         (1.0, "warning", "at 352 deg/min with F123., the limit of FANUC lathe control, below which it must stay"),
@@ -185,7 +188,8 @@ def test_the_acceleration_of_c_at_its_limit_is_allowed() -> None:
 STATES = ["G51 X0 Z0 P500", "G68 X0 Z0 R30.", "G51.1 X0", "G83 X40. C90. Z-10. F100"]
 
 
-@pytest.mark.parametrize(("state", "severity"), [*((state, "error") for state in STATES), ("G96 S120", "warning")])
+@pytest.mark.ci
+@looped(("state", "severity"), [*((state, "error") for state in STATES), ("G96 S120", "warning")])
 def test_each_state_by_itself_is_wrong_at_entry(state: str, severity: str) -> None:
     program = f"G98 G0 X60. C0\n{state}\nG12.1\nG1 X40. F200\nC10.\nX60.\nG13.1\n"
     found = report_of(program, only=["modal-state-wrong-at-entry"]).findings
@@ -194,9 +198,7 @@ def test_each_state_by_itself_is_wrong_at_entry(state: str, severity: str) -> No
     assert not report_of(without, only=["modal-state-wrong-at-entry"]).findings
 
 
-@pytest.mark.parametrize(
-    ("x", "severities"), [("78.", []), ("77.9", ["warning"]), ("76.", ["warning"]), ("75.9", ["error"])]
-)
+@looped(("x", "severities"), [("78.", []), ("77.9", ["warning"]), ("76.", ["warning"]), ("75.9", ["error"])])
 def test_an_approach_within_the_clearance_alone_is_a_warning(x: str, severities: list[str]) -> None:
     """A bar of 60 and a cutter of 16 touch at X 76; 2 more are to be left free."""
     program = f"T0808\nG98 G0 X{x} C0\nG12.1\nG1 X40. F200\nC10.\nX{x}\nG13.1\n"
@@ -212,7 +214,8 @@ GROOVE = (
 )
 
 
-@pytest.mark.parametrize(("radius", "is_cut"), [(3.0, False), (3.05, True), (3.4, True)])
+@pytest.mark.ci
+@looped(("radius", "is_cut"), [(3.0, False), (3.05, True), (3.4, True)])
 def test_a_cut_of_less_than_a_millimeter_is_an_overcut(radius: float, is_cut: bool) -> None:
     report = report_of(GROOVE, "fanuc", f"1:radius={radius}", only=["overcut"])
     assert bool(report.findings) == is_cut

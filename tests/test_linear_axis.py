@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from cases import looped
 from polarcheck.errors import MachineError
 from programs import machine_of, moves_of, report_of, said, trace_of
 
@@ -66,8 +67,7 @@ def changed(*tables: Mapping[str, Mapping[str, Any]]) -> dict[str, dict[str, Any
     return changes
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize(
+@looped(
     ("program", "machine", "changes"),
     [
         (SQUARE.replace("G12.1", "G12.1 P1"), "gsk-988", {}),
@@ -83,6 +83,7 @@ def changed(*tables: Mapping[str, Mapping[str, Any]]) -> dict[str, dict[str, Any
         (shifted(-7, 0.25), "gsk-988", {}),
         (shifted(20, 5), "fanuc-30i", {"parameters": {"5450#2": 1}}),
     ],
+    one_in=12,
 )
 def test_twins_are_one_path(program: str, machine: str, changes: dict[str, Any]) -> None:
     """Whichever axis is the linear one, wherever the program has the center: the machine makes the same part."""
@@ -102,7 +103,8 @@ def test_mitsubishi_names_the_linear_axis() -> None:
         assert trace.path.end[3] == pytest.approx(10 + 20j)
 
 
-@pytest.mark.parametrize(("axis", "own", "other"), [("X", "IJ", "K"), ("Y", "JK", "I"), ("Z", "KI", "J")])
+@pytest.mark.ci
+@looped(("axis", "own", "other"), [("X", "IJ", "K"), ("Y", "JK", "I"), ("Z", "KI", "J")])
 def test_center_words_follow_the_linear_axis(axis: str, own: str, other: str) -> None:
     """I and J, J and K, K and I (B-62764EN/01 p. 51)."""
     number = {"X": 1, "Y": 2, "Z": 3}[axis]
@@ -114,7 +116,8 @@ def test_center_words_follow_the_linear_axis(axis: str, own: str, other: str) ->
     assert f"{own[0]} along {axis} and {own[1]} along C" in finding.message
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("program", "changes", "told"),
     [
         (SQUARE.replace("G12.1", "G12.1 P2"), {}, "P beside G12.1 is a linear axis that is not known"),
@@ -130,8 +133,7 @@ def test_a_linear_axis_that_is_not_known(program: str, changes: dict[str, Any], 
     assert report.verdict == "unverified"
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize("word", ["P7", "P1.5", "P0", "P4", "Q9", "Q1", "P4 Q1", "P2 Q3", "P4 Q4", "P2 Q2", "P9 Q1"])
+@looped("word", ["P7", "P1.5", "P0", "P4", "Q9", "Q1", "P4 Q1", "P2 Q3", "P4 Q4", "P2 Q2", "P9 Q1"], one_in=12)
 def test_a_number_of_no_axis_is_one_finding(word: str) -> None:
     """After it the axes of the parameters are taken, and the section is judged."""
     report = report_of(
@@ -144,7 +146,8 @@ def test_a_number_of_no_axis_is_one_finding(word: str) -> None:
     assert not [entry for entry in report.not_evaluated if entry.matters]
 
 
-@pytest.mark.parametrize("words", ["P4 Q1", "P2 Q3", "P4", "Q1"])
+@pytest.mark.ci
+@looped("words", ["P4 Q1", "P2 Q3", "P4", "Q1"])
 def test_an_axis_of_the_other_kind_is_none(words: str) -> None:
     """5460 and 5461: the first must be a linear axis, the second a rotary one; what names them must be, too."""
     report = report_of(SQUARE.replace("G12.1", f"G12.1 {words}"), "gsk-988", TOOL, changes=FOUR)
@@ -185,10 +188,9 @@ def test_x_beside_another_linear_axis_moves_by_itself() -> None:
     )
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize("entry", ["C0 Z2.", "C0 Y75. Z2.", "C0 Z75."])
-@pytest.mark.parametrize("axis", ["Y", "Z"])
-@pytest.mark.parametrize("control", ["gsk-988", "mitsubishi-m700", "fanuc-30i"])
+@looped("entry", ["C0 Z2.", "C0 Y75. Z2.", "C0 Z75."], one_in=12)
+@looped("axis", ["Y", "Z"])
+@looped("control", ["gsk-988", "mitsubishi-m700", "fanuc-30i"])
 def test_a_section_in_x_beside_another_linear_axis_is_one_mistake(control: str, axis: str, entry: str) -> None:
     """P2, 5460 = 2 or 1533 = Y, and every word of the contour is one of X."""
     program = SQUARE.replace("C0 Z0", entry)
@@ -221,7 +223,7 @@ def test_after_the_shift_x_stands_where_the_program_has_it() -> None:
     assert trace.path.x[5] == pytest.approx(abs(-5 + 20j - center) + 6)
 
 
-@pytest.mark.parametrize(
+@looped(
     ("axes", "changes", "told"),
     [
         (["X", "Z", "C"], {"linear_axis": 4}, "polar.linear_axis is 4, but control.axes names no more than 1 X, 2 Z"),
@@ -242,7 +244,8 @@ def test_axes_of_a_lathe_are_taken() -> None:
     assert machine.linear_address_of(1) == "Y"
 
 
-@pytest.mark.parametrize(("beside", "told"), [("", ["2 mm"]), (" X-2.", []), (" X2.", ["4 mm"])])
+@pytest.mark.ci
+@looped(("beside", "told"), [("", ["2 mm"]), (" X-2.", []), (" X2.", ["4 mm"])])
 def test_a_shift_beside_the_switch_may_take_back_another(beside: str, told: list[str]) -> None:
     """G52 X2. puts X0 off the axis: the center is at X-2 then, and nowhere else."""
     report = report_of(SQUARE.replace("G12.1", f"G52 X2.\nG12.1{beside}"), "gsk-988", TOOL)
@@ -251,7 +254,7 @@ def test_a_shift_beside_the_switch_may_take_back_another(beside: str, told: list
     assert all(length in message for message, length in zip(found, told, strict=True))
 
 
-@pytest.mark.parametrize(
+@looped(
     ("blocks", "x"),
     [
         ("G52 X2.", 58),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from cases import looped
 from programs import Changes, report_of, said, trace_of
 
 HEAD = "O1\nT0101\nG98 G0 X60. C0\n"
@@ -25,7 +26,8 @@ CALLS = {
 }
 
 
-@pytest.mark.parametrize(("machine", "program", "moves"), CALLS.values(), ids=list(CALLS))
+@pytest.mark.ci
+@looped(("machine", "program", "moves"), CALLS.values(), ids=list(CALLS))
 def test_the_part_runs_and_returns(machine: str, program: str, moves: list[float]) -> None:
     trace = trace_of(HEAD + program, machine)
     x = trace.blocks.word("X")
@@ -34,7 +36,8 @@ def test_the_part_runs_and_returns(machine: str, program: str, moves: list[float
     assert not rules & {"unreachable-block", "subprogram-missing", "number-without-point"}
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("machine", "program", "finding"),
     [
         ("doosan", "M98 Q100\nM30\n", (4, "jump-target-missing")),
@@ -64,7 +67,7 @@ def test_an_unknown_number_is_not_evaluated() -> None:
     assert any("which program is called" in missing.reason for missing in report.not_evaluated)
 
 
-@pytest.mark.parametrize("changes", [{"macro": {"sequence_word": ""}}, {"parameters": {"6005#0": 0}}])
+@looped("changes", [{"macro": {"sequence_word": ""}}, {"parameters": {"6005#0": 0}}])
 def test_a_lathe_may_not_have_it(changes: Changes) -> None:
     report = report_of(HEAD + "M98 Q100\nM30\n" + PART, "doosan", changes=changes)
     assert (4, "subprogram-missing") in said(report)

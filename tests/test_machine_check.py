@@ -6,6 +6,7 @@ import re
 from pathlib import Path
 
 import pytest
+from cases import looped
 from test_cli import call
 
 from polarcheck.program.machines.profiles import names
@@ -52,7 +53,7 @@ def test_nothing_is_open_where_all_is_answered() -> None:
     assert len(lines) == 1
 
 
-@pytest.mark.parametrize(
+@looped(
     ("values", "told"),
     [
         ("[m_codes]\nlive_tool_on = ['M3']", "m_codes.live_tool_on: M3 is in m_codes.spindle_on, too; it is read as"),
@@ -82,7 +83,7 @@ def test_what_has_no_effect_is_named(values: str, told: str) -> None:
     assert found[0].startswith(told)
 
 
-@pytest.mark.parametrize(
+@looped(
     "values",
     [
         "[m_codes]\nlive_tool_on = ['M3 P12']\nlive_tool_off = ['M5']",
@@ -99,7 +100,8 @@ def test_what_has_an_effect_is_not(values: str) -> None:
     assert remarks(values) == []
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("values", "told"),
     [
         (
@@ -185,7 +187,7 @@ def test_all_faults_of_a_file_are_said_in_one_run_each_with_its_line() -> None:
             assert fault in said[number]
 
 
-@pytest.mark.parametrize(
+@looped(
     ("values", "lines"),
     [
         # Behind a table that cannot be read nobody knows where a key belongs; a line that is no key may be anything.
@@ -212,7 +214,8 @@ def test_a_fault_in_the_file_that_a_file_inherits_from_is_said_beside_its_own() 
     assert any("shop.toml:3: unknown key limits.c_fed" in line for line in lines)
 
 
-@pytest.mark.parametrize("name", names())
+@pytest.mark.ci
+@looped("name", names())
 def test_every_machine_of_ours_and_a_new_file_for_it_are_sound(name: str) -> None:
     assert call("machines", "check", name).stdout.startswith(f"{name}: sound, ")
     Path("own.toml").write_text(new_machine.text("own", name), "utf-8")
@@ -236,7 +239,7 @@ def test_the_short_file_has_ten_questions_whose_answers_count(name: str) -> None
     assert f"{len(re.findall('^[a-z_]+ = ', answered, re.MULTILINE)) - 2} values of its own" in result.stdout
 
 
-@pytest.mark.parametrize(
+@looped(
     ("arguments", "told"),
     [
         (("check",), "machines check: expected the FILE"),

@@ -13,6 +13,7 @@ from typing import Any
 
 import msgspec
 import pytest
+from cases import looped
 from programs import report_of, tables_of
 
 from polarcheck.program.machines.machine import Machine
@@ -430,8 +431,8 @@ def changed(key: str, use: Use) -> dict[str, Any]:
     return changes
 
 
-@pytest.mark.one_in(15)
-@pytest.mark.parametrize("key", USES)
+@pytest.mark.ci
+@looped("key", USES, one_in=15)
 def test_changing_a_key_changes_a_result(key: str) -> None:
     use = USES[key]
     assert outcome(use, use.also) != outcome(use, changed(key, use))
@@ -444,8 +445,8 @@ def test_no_key_is_forgotten() -> None:
     assert not set(USES) & set(NOT_CHECKED)
 
 
-@pytest.mark.one_in(23)
-@pytest.mark.parametrize("key", LISTS)
+@pytest.mark.ci
+@looped("key", LISTS, one_in=23)
 def test_a_list_may_be_empty_or_hold_codes_of_ones_own(key: str) -> None:
     """No rule counts on a code to be there; what is listed is no unknown code."""
     table, _, name = key.partition(".")

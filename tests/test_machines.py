@@ -9,6 +9,7 @@ from typing import Any
 
 import msgspec
 import pytest
+from cases import looped
 from click.testing import CliRunner, Result
 from polarcheck.errors import MachineError
 from programs import report_of
@@ -91,14 +92,14 @@ def complaint(text: str) -> str:
 # ---- the built-in profiles ----
 
 
-@pytest.mark.parametrize("name", profiles.names())
+@looped("name", profiles.names())
 def test_every_value_has_a_source(name: str) -> None:
     profile = profiles.load(name)
     without = [key for key, origin in profile.origins.items() if not origin.source and key not in ("title", "notes")]
     assert not without
 
 
-@pytest.mark.parametrize("name", profiles.names())
+@looped("name", profiles.names())
 def test_every_value_that_is_known_is_in_the_profile(name: str) -> None:
     """What has no origin is a default of the program, which only says that nothing is known."""
     profile = profiles.load(name)
@@ -124,7 +125,7 @@ def test_every_key_says_what_it_means_in_the_class_and_in_the_file(field: msgspe
         assert any(text in found[0] for text in at_its_line), key
 
 
-@pytest.mark.parametrize("name", profiles.names())
+@looped("name", profiles.names())
 def test_what_is_in_doubt_makes_no_error(name: str) -> None:
     profile = profiles.load(name)
     for key, origin in profile.origins.items():
@@ -150,7 +151,8 @@ def is_error_in_doubt(profile: profiles.Profile, rule: str) -> bool:
     return load_all()[rule].severity == ERROR
 
 
-@pytest.mark.parametrize("name", profiles.names())
+@pytest.mark.ci
+@looped("name", profiles.names())
 def test_what_is_known_without_a_page_is_in_doubt_and_shown_so(name: str) -> None:
     profile = profiles.load(name)
     shown = machines(name).output
@@ -160,7 +162,7 @@ def test_what_is_known_without_a_page_is_in_doubt_and_shown_so(name: str) -> Non
             assert key in shown or key.partition(".")[2] in shown
 
 
-@pytest.mark.parametrize(
+@looped(
     "name",
     [
         *("gsk-988", "mitsubishi-m700", "haas-lathe", "okuma-osp", "mazak-eia", "citizen", "lsis"),
@@ -172,8 +174,7 @@ def test_alarms_of_another_control_are_not_inherited(name: str) -> None:
     assert not {"fanuc", "fanuc-16i", "fanuc-30i"} & set(alarms.values()), alarms
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize("name", profiles.names())
+@looped("name", profiles.names(), one_in=12)
 def test_parameters_set_what_there_is(name: str) -> None:
     """Every setting of every parameter gives a machine that can be loaded."""
     for parameter, meaning in profiles.load(name).machine.known_parameters.items():
@@ -219,7 +220,8 @@ def test_tables_of_another_control_can_be_left_behind() -> None:
     assert "alarms.unknown-code" not in own.origins
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("text", "said"),
     [
         ("inherits = 'fanuk'", "own.toml: inherits: unknown machine 'fanuk'; did you mean fanuc?"),
@@ -270,7 +272,8 @@ def test_what_is_wrong_is_said_in_one_line(text: str, said: str) -> None:
     assert complaint(text).startswith(said)
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("values", "said"),
     [
         ("[limits]\nc_feed = -3", "limits.c_feed: expected a number above 0, found -3"),
@@ -331,7 +334,7 @@ def test_values_that_make_no_sense_are_refused(values: str, said: str) -> None:
     assert complaint(f"inherits = 'fanuc'\n{values}\n").startswith(f"{said_of_text}{said}")
 
 
-@pytest.mark.parametrize(
+@looped(
     "values",
     [
         "[limits]\nx_minimum = -50\nz_minimum = -400\nz_maximum = -5",
@@ -345,7 +348,7 @@ def test_values_that_make_sense_are_taken(values: str) -> None:
     load(f"inherits = 'fanuc'\n{values}\n")
 
 
-@pytest.mark.parametrize(
+@looped(
     ("base", "said"),
     [
         ("", 'base.toml: the file is empty; write inherits = "fanuc" or another machine; shop.toml inherits from it'),
@@ -372,7 +375,7 @@ def test_a_profile_can_say_that_it_does_not_know() -> None:
         profiles.load("own.toml", [("--set", {"limits": {"c_feed": math.nan}})])
 
 
-@pytest.mark.parametrize(
+@looped(
     ("name", "said"),
     [
         ("haas", "did you mean haas-lathe?"),
@@ -387,8 +390,8 @@ def test_a_machine_is_suggested_by_a_part_of_its_name(name: str, said: str) -> N
         profiles.load(name)
 
 
-@pytest.mark.parametrize("table", ["alarms", "severities"])
-@pytest.mark.parametrize(
+@looped("table", ["alarms", "severities"])
+@looped(
     ("rule", "said"),
     [("rapid_in_polar", "; did you mean rapid-in-polar?"), ("nope", "; `polarcheck rules` lists them")],
 )
@@ -400,7 +403,7 @@ def test_a_rule_that_there_is_not_is_refused(table: str, rule: str, said: str) -
     assert found.stderr == f"polarcheck: own.toml:3: {table}.{rule}: unknown rule {rule!r}{said}\n"
 
 
-@pytest.mark.parametrize(("old", "new"), RENAMED.items())
+@looped(("old", "new"), RENAMED.items())
 def test_an_old_name_is_told_the_new_one(old: str, new: str) -> None:
     group, _, key = old.partition(".")
     assert complaint(f"inherits = 'fanuc'\n[{group}]\n{key or 'x'} = 1") == f"own.toml: {old} is now {new}"
@@ -419,8 +422,9 @@ def test_old_names_are_told_wherever_they_stand(monkeypatch: pytest.MonkeyPatch)
     assert complaint("inherits = 'fanuc'\nreplaces = ['meanings']") == "own.toml: meanings is now known_parameters"
 
 
-@pytest.mark.parametrize("name", profiles.names())
-@pytest.mark.parametrize("system", "ABC")
+@pytest.mark.ci
+@looped("name", profiles.names())
+@looped("system", "ABC")
 def test_built_in_lists_hold_codes(name: str, system: str) -> None:
     profiles.load(name, {"control": {"g_code_system": system}})  # changes are checked, and what they are made to
 
@@ -428,7 +432,7 @@ def test_built_in_lists_hold_codes(name: str, system: str) -> None:
 # ---- control parameters ----
 
 
-@pytest.mark.parametrize(
+@looped(
     ("name", "parameters", "values"),
     [
         ("fanuc-16i", {"1422": 3600}, {"limits.c_feed": 3600}),
@@ -467,7 +471,7 @@ def test_a_parameter_sets_what_it_stands_for(name: str, parameters: dict[str, An
 _NO_ROTARY = "own.toml: parameters.1516: polar.rotary_address: expected A, B, C or H, or the name of an axis as C2"
 
 
-@pytest.mark.parametrize(
+@looped(
     ("given", "said"),
     [
         ("z", f"{_NO_ROTARY}, found 'Z'"),
@@ -492,8 +496,7 @@ def test_a_value_beside_a_parameter_counts() -> None:
 # ---- a file for a lathe of one's own ----
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize("name", profiles.names())
+@looped("name", profiles.names(), one_in=12)
 def test_a_new_profile_can_be_read_empty_and_filled_in(name: str) -> None:
     text = new_machine.text("NL2000", name)
     of_parent = profiles.load(name).machine
@@ -507,7 +510,7 @@ def test_a_new_profile_can_be_read_empty_and_filled_in(name: str) -> None:
     assert max(map(len, text.splitlines())) < 200
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 @pytest.mark.parametrize("name", ["fanuc-30i", "siemens-transmit", "okuma-osp"])
 def test_each_answer_of_a_new_profile_can_be_taken_alone(name: str) -> None:
     lines = new_machine.text("NL2000", name).splitlines()
@@ -518,7 +521,8 @@ def test_each_answer_of_a_new_profile_can_be_taken_alone(name: str) -> None:
         load("\n".join([*lines[:index], lines[index][1:], *lines[index + 1 :]]))
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     "answer",
     [
         *(
@@ -554,7 +558,7 @@ def test_machines_new_writes_the_file() -> None:
     assert machines("fanuc", "NL2000").exit_code == 2
 
 
-@pytest.mark.parametrize(
+@looped(
     ("arguments", "told"),
     [
         (["NL2000"], "NL2000.toml is there already"),
@@ -573,7 +577,7 @@ def test_a_new_profile_replaces_no_file(arguments: list[str], told: str) -> None
 # ---- G codes by what they do ----
 
 
-@pytest.mark.parametrize(
+@looped(
     ("system", "expected"),
     [
         ("A", {"G90": ("motion", 9), "G20": ("units", 20), "G98": ("feed_mode", 94), "G99": ("feed_mode", 95)}),
@@ -596,7 +600,7 @@ def test_the_profile_lists_the_modal_groups(system: str, expected: dict[str, tup
         assert (group_of[number], state_of[number]) == (names.index(group) + 1 if group else 0, state), word
 
 
-@pytest.mark.parametrize(("system", "setting"), [("A", "G50"), ("B", "G92"), ("C", "G92")])
+@looped(("system", "setting"), [("A", "G50"), ("B", "G92"), ("C", "G92")])
 def test_the_profile_lists_the_codes_whose_axis_words_are_no_move(system: str, setting: str) -> None:
     machine = profiles.load("fanuc", {"control": {"g_code_system": system}}).machine
     found = code_tables.code_set(code for key in modal.NO_MOVE for code in machine.codes(key))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import pytest
+from cases import looped
 from macro_values import Variables, assign_arguments, called_program, read_statement, same, value, variables
 
 from polarcheck.program.execution.arithmetic import UNKNOWN
@@ -117,7 +118,7 @@ FAULTS_OF_ASSIGNING = [
 ]
 
 
-@pytest.mark.parametrize(("block", "kind", "at_fault"), FAULTS_OF_ASSIGNING)
+@looped(("block", "kind", "at_fault"), FAULTS_OF_ASSIGNING)
 def test_fault_of_assigning(block: str, kind: str, at_fault: str) -> None:
     statement, given = read_statement(block), variables(v2=3.0)
     assert statement.fault is None
@@ -127,7 +128,7 @@ def test_fault_of_assigning(block: str, kind: str, at_fault: str) -> None:
     assert given.value(2) == 3
 
 
-@pytest.mark.parametrize(
+@looped(
     ("block", "expected"),
     [
         (
@@ -189,14 +190,14 @@ FAULTS_OF_CALLING = [
 ]
 
 
-@pytest.mark.parametrize(("block", "kind", "at_fault"), FAULTS_OF_CALLING)
+@looped(("block", "kind", "at_fault"), FAULTS_OF_CALLING)
 def test_fault_of_an_argument(block: str, kind: str, at_fault: str) -> None:
     fault = assign_arguments(read_statement(block), Variables()).fault
     assert fault is not None
     assert (fault.kind, block[fault.start : fault.end]) == (kind, at_fault)
 
 
-@pytest.mark.parametrize(
+@looped(
     ("block", "repeats_in_p", "program", "repeats"),
     [
         ("M98 P1000", True, 1000, 1),
@@ -227,7 +228,7 @@ def test_called_by_name() -> None:
     assert (call.program, call.repeats, call.fault) == (ProgramName(None, "sub-1"), 2, None)
 
 
-@pytest.mark.parametrize("block", ["M98", "G65 A1.", "M98 P0", "M98 P-5", "M98 P123456789", "M98 P10000", "M98 P#1"])
+@looped("block", ["M98", "G65 A1.", "M98 P0", "M98 P-5", "M98 P123456789", "M98 P10000", "M98 P#1"])
 def test_call_without_a_program_number(block: str) -> None:
     call = called_program(read_statement(block), Variables())
     assert call.program == ProgramName(None, None)

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from cases import looped
 from programs import report_of, said, tables_of
 
 from polarcheck.columns.words.macro_faults import RULES, Faults
@@ -85,7 +86,7 @@ def test_the_table_has_all_kinds_and_only_rules_that_there_are() -> None:
     assert set(RULES.values()) == macro | {""}
 
 
-@pytest.mark.parametrize("kind", UNREPORTED)
+@looped("kind", UNREPORTED)
 def test_what_other_dialects_write_is_found_and_is_no_fault(kind: str) -> None:
     program = f"O1\nG0 X50.\n{UNREPORTED[kind]}\nM30\n"
     assert not report_of(program, only=["macro"]).findings
@@ -94,7 +95,7 @@ def test_what_other_dialects_write_is_found_and_is_no_fault(kind: str) -> None:
     assert set(faults.rule) == {""}
 
 
-@pytest.mark.parametrize(
+@looped(
     ("machine", "block", "name"),
     [
         ("fanuc-30i", "G1 X=60.", "X=60."),
@@ -120,7 +121,8 @@ def test_nothing_is_judged_by_an_axis_whose_word_was_lost() -> None:
     assert np.isnan(path[4:6]).all()
 
 
-@pytest.mark.parametrize("kind", sorted(FAULTS))
+@pytest.mark.ci
+@looped("kind", sorted(FAULTS))
 def test_a_kind_is_reported_by_its_rule(kind: str) -> None:
     statements, behind, lines = FAULTS[kind]
     program = f"O1\nG0 X50.\n{statements}\nM30\n{behind}"
@@ -143,7 +145,7 @@ def test_a_rule_reports_a_place_once() -> None:
 GIVE = "; [run.variables] in polarcheck.toml gives variables, as in 500 = 1.5"
 
 
-@pytest.mark.parametrize(
+@looped(
     ("statement", "reason"),
     [
         ("#3000=1(RADIUS)", f"the program stops itself with #3000{GIVE}"),

@@ -6,6 +6,7 @@ from typing import Any
 
 import msgspec
 import pytest
+from cases import looped
 from polarcheck.errors import MachineError
 from programs import machine_of, report_of, said, trace_of
 
@@ -63,8 +64,8 @@ def test_no_key_is_forgotten() -> None:
     assert [field.name for field in msgspec.structs.fields(Macro)] == list(KEYS)
 
 
-@pytest.mark.one_in(15)
-@pytest.mark.parametrize("key", KEYS)
+@pytest.mark.ci
+@looped("key", KEYS, one_in=15)
 def test_changing_a_key_changes_a_result(key: str) -> None:
     value, program = KEYS[key]
     high_level = ("other_language", "statements", "master_spindle_word")
@@ -84,14 +85,15 @@ def test_program_ends_are_those_of_the_machine() -> None:
     assert report_of(unknown.format("M30"), changes=ends).not_evaluated
 
 
-@pytest.mark.parametrize("end", ["M2", "M02", "M30", "M99"])
+@pytest.mark.ci
+@looped("end", ["M2", "M02", "M30", "M99"])
 def test_an_end_in_a_block_with_macro_ends_the_program(end: str) -> None:
     program = f"%\nO1\nG0 Z5.\n#1=5.\nG0 X#1 {end}\n%\n"
     assert not report_of(program).findings
     assert [finding.rule for finding in report_of(program.replace(end, "M3")).findings] == ["program-end-missing"]
 
 
-@pytest.mark.parametrize(
+@looped(
     ("program", "expected"),
     [
         ("G21\nG0 X[1.23456]\nM30\n", 1.235),
@@ -114,7 +116,7 @@ def test_the_unit_is_that_of_the_job_where_the_program_says_none() -> None:
     assert trace_of(program, changes={"control": {"least_increment": 0.01}}).blocks.word("X")[1] == 1.23
 
 
-@pytest.mark.parametrize(
+@looped(
     ("key", "value", "said_of_it"),
     [
         ("macro_calls", ["CALL"], "expected a G or M code"),
@@ -157,9 +159,9 @@ _WITH_NUMBERS = (
 
 
 #: 20 digits, 309 (ten times that is no float), and 400 (which no float holds).
-@pytest.mark.one_in(5)
-@pytest.mark.parametrize("digits", ["1" + "0" * 19, "1" + "0" * 308, "9" * 400])
-@pytest.mark.parametrize("block", _WITH_NUMBERS)
+@pytest.mark.ci
+@looped("digits", ["1" + "0" * 19, "1" + "0" * 308, "9" * 400], one_in=5)
+@looped("block", _WITH_NUMBERS)
 def test_a_number_of_any_length_is_a_finding_and_no_warning(block: str, digits: str) -> None:
     report = report_of("O1\nG0 X50.\n" + block.replace("{}", digits) + "\nM30\nO2\nM99\n")
     assert report.findings or block in ("T[{}]", "G[{}]", "/{} G0 X1.", "<O{}>")

@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from cases import looped
 from indexed_programs import Section, flat, polygon, program, tool
 from test_cli import call
 
@@ -43,7 +44,8 @@ def test_a_turned_one_says_its_angle() -> None:
     )
 
 
-@pytest.mark.parametrize("control", ["haas-lathe", "okuma-osp", "siemens-iso"])
+@pytest.mark.ci
+@looped("control", ["haas-lathe", "okuma-osp", "siemens-iso"])
 def test_other_controls_say_the_same(control: str) -> None:
     assert line_of(program([Section(polygon(6, 30.0), depths=TWICE)], control), control) == f"{HEXAGON}, to Z-5.000"
 
@@ -64,6 +66,7 @@ def test_a_comment_that_contradicts_the_part_stands_beside_what_is_made() -> Non
     assert line_of(text) == f"{HEXAGON}, to Z-5.000"
 
 
+@pytest.mark.ci
 def test_the_part_that_is_asked_for_needs_areas_too() -> None:
     Path("polarcheck.toml").write_text('[[part]]\nshape = "hexagon"\nacross_flats = 32.0\n')
     Path("a.nc").write_text(program([Section(polygon(6, 30.0))]))
@@ -84,7 +87,8 @@ def test_several_sections_have_no_line() -> None:
     assert line_of(program(sections)) == ""
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("block", "written", "is_told"),
     [
         ("X30. C8.6603", "X30. C8.6603 F", False),  # a word without a number
@@ -104,6 +108,7 @@ def test_a_contour_that_is_not_known_as_a_whole_has_no_line() -> None:
     assert line_of(text.replace("X30. C8.6603", "X#5041 C8.6603")) == ""
 
 
+@pytest.mark.ci
 def test_json_has_the_part_where_it_is_asked_for_and_no_line() -> None:
     Path("a.nc").write_text(program([Section(polygon(6, 30.0), depths=TWICE)]))
     said = call("check", "a.nc", "--tool", tool(4), "-o", "json:a.json", "-o", "jsonl:a.jsonl")
@@ -119,7 +124,7 @@ def test_part_says_more_than_the_line() -> None:
     assert line_of(program([Section(polygon(6, 30.0), depths=TWICE)]), "fanuc", "--part") == ""
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 def test_it_depends_on_the_file_alone() -> None:
     """Neither on the files before it nor on the number of processes."""
     Path("a.nc").write_text(program([Section(polygon(6, 30.0))]))
@@ -132,6 +137,7 @@ def test_it_depends_on_the_file_alone() -> None:
             assert told == {"b.nc:"}
 
 
+@pytest.mark.ci
 def test_a_clean_file_with_two_passes_needs_no_more_than_that() -> None:
     """Where the line is left out, what would make it is not loaded."""
     Path("a.nc").write_text(program([Section(polygon(6, 30.0))]))

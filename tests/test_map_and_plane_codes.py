@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from cases import looped
 from programs import moves_of, report_of, said, tables_of, trace_of
 
 from polarcheck.program.reading import source
@@ -28,18 +29,17 @@ def path(program: str, machine: str) -> np.ndarray:
 TWIN = FANUC.format("80.", cuts(2, "C"))
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize("on", ["G101", "G105"])
-@pytest.mark.parametrize("off", ["G109", "G110", "G103", "G104", "G107", "G108"])
+@looped("on", ["G101", "G105"], one_in=12)
+@looped("off", ["G109", "G110", "G103", "G104", "G107", "G108"])
 def test_a_map_gives_the_path_of_its_twin_whichever_map_ends_it(on: str, off: str) -> None:
     program = HURCO.format("40.", "0", on, cuts(1, "Y"), off)
     np.testing.assert_allclose(path(program, "hurco"), path(TWIN, "fanuc"), atol=1e-9)
     assert not report_of(program, "hurco").findings
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize("on", ["G16 XC", "G16XC", "G16  XC", "N70 G16\tXC", "g16 xc"])
-@pytest.mark.parametrize("off", ["G18", "G17", "G19", "G16 ZC", "G18 G40", "G18 G0 X80."])
+@pytest.mark.ci
+@looped("on", ["G16 XC", "G16XC", "G16  XC", "N70 G16\tXC", "g16 xc"], one_in=12)
+@looped("off", ["G18", "G17", "G19", "G16 ZC", "G18 G40", "G18 G0 X80."])
 def test_a_plane_gives_the_path_of_its_twin_whichever_plane_ends_it(on: str, off: str) -> None:
     program = FAGOR.format(on, "40.", cuts(1, "C"), off)
     ours, twin = path(program, "fagor-8055t"), path(TWIN, "fanuc")
@@ -47,7 +47,7 @@ def test_a_plane_gives_the_path_of_its_twin_whichever_plane_ends_it(on: str, off
     assert {rule for _, rule in said(report_of(program, "fagor-8055t"))} <= {"lower-case-word"}
 
 
-@pytest.mark.parametrize("angle", [-150.0, -90.0, 0.0, 45.0, 90.0, 180.0, 270.0, 405.0])
+@looped("angle", [-150.0, -90.0, 0.0, 45.0, 90.0, 180.0, 270.0, 405.0])
 def test_the_plane_that_stays_with_the_part_begins_where_c_stands(angle: float) -> None:
     program = HURCO.format("40.", f"{angle}", "G101", cuts(1, "Y"), "G109")
     moves = moves_of(program, "hurco")

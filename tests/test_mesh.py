@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from cases import looped
 from programs import report_of, said, tables_of
 
 from polarcheck.foundation.finding import Finding
@@ -29,7 +30,8 @@ def interferences(text: str, tool: str, machine: str = "fanuc") -> list[Finding]
     return report.findings
 
 
-@pytest.mark.parametrize("machine", ["fanuc", "fanuc-30i", "gsk-988", "siemens-iso"])
+@pytest.mark.ci
+@looped("machine", ["fanuc", "fanuc-30i", "gsk-988", "siemens-iso"])
 def test_a_mesh_is_one_finding_with_its_count(machine: str) -> None:
     [finding] = interferences(program(circle(10, 4000), 60), "1:radius=5", machine)
     assert finding.count > 500
@@ -38,13 +40,15 @@ def test_a_mesh_is_one_finding_with_its_count(machine: str) -> None:
     assert "coarser chord tolerance" in finding.message
 
 
-@pytest.mark.parametrize(("radius", "blocks", "tool"), [(10, 4000, 1), (10, 4000, 16), (5, 1000, 5), (40, 4000, 16)])
+@pytest.mark.ci
+@looped(("radius", "blocks", "tool"), [(10, 4000, 1), (10, 4000, 16), (5, 1000, 5), (40, 4000, 16)])
 def test_of_any_size(radius: float, blocks: int, tool: float) -> None:
     [finding] = interferences(program(circle(radius, blocks), 140), f"1:radius={tool}")
     assert finding.count > 30
     assert finding.severity == "error"
 
 
+@pytest.mark.ci
 def test_a_mesh_in_inch_and_on_the_inner_side() -> None:
     inch = HEAD.replace("G21", "G20").replace("X150. Z2.", "X6. Z.1")
     [finding] = interferences(program(circle(0.4, 4000, 4), 2.4, head=inch), "1:radius=.2")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 
 import pytest
+from cases import looped
 from programs import Changes, report_of
 
 #: The coverage counts all of its cases: each is a way of its own through the package.
@@ -36,7 +37,8 @@ def polar(*blocks: str, head: str = HEAD) -> str:
 # ---- words as they are written ----
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("block", "said"),
     [
         ("X10. X20.", "X is written twice in this block: X10. and X20.;"),
@@ -51,6 +53,7 @@ def test_a_word_that_is_repeated_is_told_as_written(block: str, said: str) -> No
         assert message(f"O1\nG0 {block}\nM30\n", "word-repeated", machine).startswith(said)
 
 
+@pytest.mark.ci
 def test_what_is_long_is_cut_off() -> None:
     long = "1" + "0" * 200
     assert message(f"O1\nG0 X{long}.\nM30\n", "too-many-digits") == f"X{long[:39]} ... has more than 9 digits"
@@ -69,7 +72,7 @@ def test_what_is_long_is_cut_off() -> None:
 # ---- numbers ----
 
 
-@pytest.mark.parametrize(
+@looped(
     ("feed", "limit", "said"),
     [
         ("1525", 1500, "F is 1525 mm/min, FANUC lathe control clamps it at 1500 mm/min"),
@@ -88,7 +91,7 @@ def test_a_programmed_feed_of_an_inch_program_is_shown_as_it_is() -> None:
     assert said.startswith("F is 60.255 inch/min, FANUC lathe control clamps it at 59.0551 inch/min")
 
 
-@pytest.mark.parametrize(
+@looped(
     ("feed", "machine", "rate", "highest"),
     [
         ("125.67", "fanuc", "3600.2 deg/min with F125.67, FANUC lathe control allows 3600;", "125 mm/min"),
@@ -136,7 +139,8 @@ def test_a_ramp_and_its_radius_are_told_apart() -> None:
 # ---- since when, and what leads nowhere ----
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("blocks", "said"),
     [
         ("T0202\nG0 X60.\nT0404\nG0 Z2. C0", "X is not known since T0404 in line 5;"),
@@ -155,7 +159,7 @@ def test_since_when_x_is_not_known(blocks: str, said: str) -> None:
 # ---- where, and by which address ----
 
 
-@pytest.mark.parametrize(
+@looped(
     ("program", "places"),
     [
         ("HELLO\n%\nO1\nM30\n%\nAFTER\n", [(1, "HELLO"), (6, "AFTER")]),
@@ -170,7 +174,7 @@ def test_text_outside_a_program_is_shown_where_it_stands(program: str, places: l
     assert [(finding.line, finding.block) for finding in report.findings] == places
 
 
-@pytest.mark.parametrize(("machine", "on", "off", "axis"), [
+@looped(("machine", "on", "off", "axis"), [
     ("fanuc", "G12.1", "G13.1", "C"), ("haas-lathe", "G112", "G113", "Y"), ("okuma-osp", "G137", "G136", "Y"),
 ])  # fmt: skip
 def test_the_virtual_axis_has_the_address_of_the_machine(machine: str, on: str, off: str, axis: str) -> None:
@@ -187,7 +191,8 @@ def test_the_virtual_axis_has_the_address_of_the_machine(machine: str, on: str, 
     )
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("machine", "on", "off", "axis"),
     [
         ("fanuc", "G12.1", "G13.1", "C"),
@@ -211,9 +216,7 @@ def test_a_point_of_the_plane_has_the_words_of_the_machine(machine: str, on: str
     assert re.search(rf" at X[0-9.]+ {axis}[0-9.]+", said), said
 
 
-@pytest.mark.parametrize(
-    ("machine", "said"), [("fanuc", "arc without R, I or J"), ("okuma-osp", "arc without L, I or J")]
-)
+@looped(("machine", "said"), [("fanuc", "arc without R, I or J"), ("okuma-osp", "arc without L, I or J")])
 def test_an_arc_has_the_addresses_of_the_machine(machine: str, said: str) -> None:
     program = f"{HEAD}G12.1\nG1 X40. F200\nG2 X20.\n{TAIL}"
     if machine == "okuma-osp":

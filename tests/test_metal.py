@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from cases import looped
 from programs import report_of
 
 HEAD = "G21 G98 G40/T0101/G28 H0/G97 S3000 M13/G0 X60. Z2. C0/G12.1/G1 X60. F1500/Z-5."
@@ -29,7 +30,8 @@ def test_a_hexagon_is_sound() -> None:
     assert found(f"{HEAD}/{CONTOUR}/{END}", **bar(40)) == {}
 
 
-@pytest.mark.parametrize("job", [{}, bar(40), bar(60)])
+@pytest.mark.ci
+@looped("job", [{}, bar(40), bar(60)])
 def test_an_index_with_the_cutter_in_a_hole_goes_through_the_part(job: dict[str, object]) -> None:
     program = f"G21 G98 G40/T0101/G97 S3000 M13/{HOLE}/{{retract}}G13.1/G0 C120./Z50./X100./M30"
     assert found(program.format(retract="Z2./"), 2.5, **job) == {}
@@ -43,6 +45,7 @@ START = "G21 G98 G40/T0101/G97 S3000 M13"
 CENTER = "G0 X0 Z2. C0/G12.1/G1 X0 F500/Z-4. F40/G41 X8. F80/G3 I-4./G1 G40 X0/Z2./G13.1"
 
 
+@pytest.mark.ci
 def test_a_part_is_gone_through_far_from_its_center_too() -> None:
     """A hole on the center is milled before the one that the cutter stays in."""
     program = f"{START}/{CENTER}/{HOLE}/{{retract}}G13.1/G0 C120./Z50./X100./M30"
@@ -50,6 +53,7 @@ def test_a_part_is_gone_through_far_from_its_center_too() -> None:
     assert found(program.format(retract=""), 2.5)["rapid-through-part"] == "error"
 
 
+@pytest.mark.ci
 def test_where_the_face_is_not_known_the_part_stands_up_to_its_contours() -> None:
     """The origin lies at the back: one hole is milled down to Z25, the other down to Z10."""
     center = CENTER.replace("Z2.", "Z32.").replace("Z-4.", "Z25.")
@@ -65,6 +69,7 @@ def test_of_a_mill_along_z_all_is_evaluated() -> None:
     assert ([one.rule for one in report.findings], report.not_evaluated) == (["rapid-plunge-into-stock"], [])
 
 
+@pytest.mark.ci
 def test_a_rapid_plunge_needs_a_bar() -> None:
     slot = "G21 G98 G40/T0101/G97 S3000 M13/G0 X24. Z2. C0/{plunge}/G12.1/G1 X10. F200/X24./Z2. F1000/G13.1/G0 Z50./M30"
     assert found(slot.format(plunge="Z-3.")) == {}
@@ -89,7 +94,8 @@ def test_what_is_milled_off_is_no_longer_in_the_way() -> None:
 # ---- the bar ----
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("turning", "diameter", "face"),
     [
         ("G0 X42. Z2. G99/G1 Z0 F0.2/X-1.6/G0 X40. Z1./G1 Z-30./X44.", 40, 0),
@@ -122,14 +128,13 @@ def test_a_pass_names_its_bar() -> None:
     assert report_of("(BAR DIA 50)\nT0101\nG98 G0 X60. Z2. C0\nG12.1\nG13.1", "fanuc-30i", job=job).stock is None
 
 
-@pytest.mark.parametrize(
-    "stock", [{"diameter": 40, "hexagon": 30}, {"diameter": 40, "unknown": True}, {"diameter": 20, "bore": 20}]
-)
+@looped("stock", [{"diameter": 40, "hexagon": 30}, {"diameter": 40, "unknown": True}, {"diameter": 20, "bore": 20}])
 def test_what_a_bar_cannot_be(stock: dict[str, object]) -> None:
     with pytest.raises(Exception, match="stock"):
         found(CONTOUR, stock=stock)
 
 
+@pytest.mark.ci
 def test_a_pocket_is_entered_from_inside() -> None:
     """The wall of a pocket lies R farther out than the cutter center: that is not the rim of the bar."""
     pocket = "G21 G98 G40/T0101/G97 S3000 M13/G0 X24. Z2. C0/G12.1/G1 X24. F500/Z-4. F40/G41 X34. F80/G3 I-17./"
@@ -138,7 +143,8 @@ def test_a_pocket_is_entered_from_inside() -> None:
         assert found(pocket, **bar(diameter)) == {}
 
 
-@pytest.mark.parametrize("job", [{}, bar(40)])
+@pytest.mark.ci
+@looped("job", [{}, bar(40)])
 def test_a_cutter_on_the_far_side_of_a_wall_is_seen_whatever_the_bar(job: dict[str, object]) -> None:
     assert list(found(f"{HEAD}/G1 X60. C-25. F1500/G41 X16. F200/C25./{END}", **job)) == [
         "side-of-compensation-mirrored"
@@ -148,16 +154,16 @@ def test_a_cutter_on_the_far_side_of_a_wall_is_seen_whatever_the_bar(job: dict[s
 # ---- cuts in air ----
 
 
-@pytest.mark.parametrize("turning", ["", f"{TURNING}/G98/"])
-@pytest.mark.parametrize("depth", ["", "/Z5."])
+@pytest.mark.ci
+@looped("turning", ["", f"{TURNING}/G98/"])
+@looped("depth", ["", "/Z5."])
 def test_a_section_in_air(turning: str, depth: str) -> None:
     head = HEAD.replace("/Z-5.", depth).replace("T0101", f"{turning}T0101")
     assert found(f"{head}/{CONTOUR}/{END}") == {"cut-in-air": "warning"}
 
 
-@pytest.mark.parametrize(
-    ("across", "rules"), [(44, {}), (50, {"cut-in-air": "warning"}), (90, {"cut-in-air": "warning"})]
-)
+@pytest.mark.ci
+@looped(("across", "rules"), [(44, {}), (50, {"cut-in-air": "warning"}), (90, {"cut-in-air": "warning"})])
 def test_a_contour_around_the_bar_cuts_air(across: int, rules: dict[str, str]) -> None:
     """The sides of a square, R4 outside of them, and a bar of 40: of 50 across flats nothing is cut any more."""
     head, end = (blocks.replace("X60.", "X140.") for blocks in (HEAD, END))
@@ -170,6 +176,7 @@ def test_an_origin_at_the_back_is_no_air() -> None:
     assert found(f"{head}/{CONTOUR}/{END.replace('Z2.', 'Z32.')}") == {}
 
 
+@pytest.mark.ci
 def test_the_same_section_again() -> None:
     section = f"{HOLE.replace(' C0', '')}/Z2./G13.1"
     head = "G21 G98 G40/T0101/G97 S3000 M13"
@@ -189,6 +196,7 @@ def test_a_move_of_several_axes_is_said_and_not_judged() -> None:
     assert [finding.rule for finding in report.findings if finding.severity != "note"] == ["rapid-through-part"]
 
 
+@pytest.mark.ci
 def test_too_many_ways_are_said() -> None:
     """Each index goes down into the bar: more of them than are followed."""
     index = "G0 C{}/G1 Z-3. F60/G12.1/G1 X10. F200/X24./G13.1/G0 Z-2."

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from cases import looped
 from programs import report_of
 
 MM = "O1\nG21 G40 G97 G98 G18\nT0101\n"
@@ -22,7 +23,8 @@ def said(blocks: str, machine: str = "fanuc", *tools: str, head: str = MM) -> li
 TURN = "G0 X50. Z2. C0/G12.1/G1 X40. F200./{}/X50./G13.1"
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("steps", "head"),
     [
         ("C72./C144./C216./C288./C360.", MM),
@@ -39,7 +41,8 @@ def test_a_steady_way_to_360_is_an_angle(steps: str, head: str) -> None:
     assert [rule for _, rule in said(TURN.format(steps), head=head)] == ["degrees-in-polar"]
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     "steps",
     [
         # A flat, in steps.
@@ -69,7 +72,7 @@ def test_a_drilling_cycle_says_that_its_c_is_an_angle_again() -> None:
 NEVER = "G0 X50. Z2. C0/{}/G1 C-10. F500./G42 X40./C10./G40 X50./{}"
 
 
-@pytest.mark.parametrize(
+@looped(
     ("before", "after", "machine"),
     [
         ("M5", "G13.1", "fanuc"),
@@ -97,7 +100,7 @@ def test_the_virtual_axis_is_that_of_the_machine() -> None:
     assert report == [("G113", "polar-never-entered")]
 
 
-@pytest.mark.parametrize(
+@looped(
     ("blocks", "head"),
     [
         # For safety, at the head, after a contour of turning, and after C has moved without compensation.
@@ -122,7 +125,8 @@ def test_what_needs_no_entry(blocks: str, head: str) -> None:
 FLAT = "G0 X50. Z2. C0/G12.1/G1 X40. {}/C10./C-10./X50./G13.1"
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("feed", "head", "machine"),
     [
         ("F200", MM, "fanuc"),
@@ -140,8 +144,7 @@ def test_f_of_which_nobody_knows_what_it_means(feed: str, head: str, machine: st
     assert "feed-mode-unknown" not in [rule for _, rule in said(FLAT.format(feed), machine, head=per_minute)]
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize(
+@looped(
     ("feed", "head", "machine"),
     [
         ("F.2", MM, "fanuc"),
@@ -157,6 +160,7 @@ def test_f_of_which_nobody_knows_what_it_means(feed: str, head: str, machine: st
         ("F200", MM + "M98 P9000\n", "fanuc"),
         ("F200", MM + "G99\n", "fanuc"),
     ],
+    one_in=12,
 )
 def test_f_that_may_be_meant_as_it_is(feed: str, head: str, machine: str) -> None:
     rules = [rule for _, rule in said(FLAT.format(feed), machine, head=head.replace("G98 ", ""))]
@@ -166,8 +170,7 @@ def test_f_that_may_be_meant_as_it_is(feed: str, head: str, machine: str) -> Non
 # ---- no F in force ----
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize(
+@looped(
     ("head", "machine", "expected"),
     [
         ("G98", "fanuc", "feed-missing-in-polar"),
@@ -177,8 +180,9 @@ def test_f_that_may_be_meant_as_it_is(feed: str, head: str, machine: str) -> Non
         ("G98/G0 X50. Z2./G1 Z1. F100", "fanuc", ""),
         ("G94/G0 X50. Z2./G1 Z1. F100", "mitsubishi-m700", ""),
     ],
+    one_in=12,
 )
-@pytest.mark.parametrize("move", ["G1 Z-5.", "G1 Z-.2"])
+@looped("move", ["G1 Z-5.", "G1 Z-.2"])
 def test_the_first_move_at_feed_may_be_of_z_alone(head: str, machine: str, expected: str, move: str) -> None:
     blocks = f"{head}/G0 X50. Z2. C0/G12.1/{move}/X40. F200/C10./C-10./X50./G13.1"
     report = said(blocks, machine, head="O1\nG21 G40 G97 T0101\n")
@@ -190,7 +194,8 @@ def test_the_first_move_at_feed_may_be_of_z_alone(head: str, machine: str, expec
 AFTER = "G0 X50. Z2. C0/G12.1/G1 X40. F200./C10./C-10./X-50./G13.1/{}"
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("blocks", "at"),
     [
         ("G0 X-60.", "G0 X-60."),
@@ -199,12 +204,13 @@ AFTER = "G0 X50. Z2. C0/G12.1/G1 X40. F200./C10./C-10./X-50./G13.1/{}"
         ("G0 Z50./X60./T0101/X-5./X-60./X60.", "X-5."),
     ],
 )
-@pytest.mark.parametrize("head", [MM, INCH])
+@looped("head", [MM, INCH])
 def test_rapid_traverse_to_the_other_side(blocks: str, at: str, head: str) -> None:
     assert said(AFTER.format(blocks), head=head) == [(at, "rapid-through-center")]
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     "blocks",
     [
         "G0 X60.",
@@ -226,15 +232,16 @@ def test_rapid_traverse_below_0_before_the_mode_is_another_matter() -> None:
 # ---- D before the mode ----
 
 
-@pytest.mark.parametrize("block", ["D1", "N5 D8", "T0101 D1"])
-@pytest.mark.parametrize("machine", ["fanuc", "fanuc-30i"])
+@pytest.mark.ci
+@looped("block", ["D1", "N5 D8", "T0101 D1"])
+@looped("machine", ["fanuc", "fanuc-30i"])
 def test_d_before_the_mode(block: str, machine: str) -> None:
     blocks = f"{block}/G0 X60. Z2. C-15./G12.1/G1 C15. F500./G41 X40. F200./C-15./G40 X60./G13.1"
     assert said(blocks, machine, "1:radius=4") == [(block, "d-word-on-lathe")]
     assert said(blocks, machine, "1:radius=.1", head=INCH) == [(block, "d-word-on-lathe")]
 
 
-@pytest.mark.parametrize(
+@looped(
     "blocks",
     [
         "D1/G0 X60. Z2./G1 X40. F.2",
@@ -256,8 +263,8 @@ def test_d_above_the_first_tool_may_be_meant_for_it() -> None:
 ASSIGNED = "G0 X50. Z2. C0/G12.1/G1 X40. F200./{}/C10./C-10./X50./G13.1"
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("block", "rule"),
     [
         ("#2001=.5", "offset-changed-in-polar"),
@@ -273,8 +280,9 @@ ASSIGNED = "G0 X50. Z2. C0/G12.1/G1 X40. F200./{}/C10./C-10./X50./G13.1"
         ("#14001=.1", "offset-changed-in-polar"),
         ("#2301=0", "offset-changed-in-polar"),
     ],
+    one_in=12,
 )
-@pytest.mark.parametrize("machine", ["fanuc", "fanuc-16i", "haas-lathe"])
+@looped("machine", ["fanuc", "fanuc-16i", "haas-lathe"])
 def test_an_offset_assigned_in_the_mode(block: str, rule: str, machine: str) -> None:
     blocks = ASSIGNED.format(block)
     if machine == "haas-lathe":
@@ -291,7 +299,8 @@ def test_it_names_the_variable() -> None:
     assert message.startswith("#5241 changes the coordinate system in the polar mode")
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("blocks", "behind", "block", "rule"),
     [
         ("#100=1/WHILE[#100LT4]DO1/#[2000+#100]=.1/#100=#100+1/END1", "", "#[2000+#100]=.1", "offset-changed-in-polar"),
@@ -308,7 +317,8 @@ def test_an_offset_assigned_in_the_mode_by_a_loop_or_a_call(blocks: str, behind:
     assert (finding.block, finding.rule) == (block, rule)
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     "blocks",
     [
         # Outside the mode, other variables, and in the branch that does not run.
@@ -332,8 +342,8 @@ SHIFTED = "{}/G0 X50. Z2. C0/G12.1/G1 X40. F200./C10./C-10./X50./G13.1"
 G92 = "O1\nG21 G40 G97 G94 G18\nT0101\n"
 
 
-@pytest.mark.one_in(5)
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("blocks", "name", "shift"),
     [
         ("G10 L2 P1 X.5/G54", "G10 on G54", "0.5"),
@@ -371,8 +381,9 @@ G92 = "O1\nG21 G40 G97 G94 G18\nT0101\n"
         ("G52 X1./G50.3 X0/G52 X.5", "G52", "0.5"),
         ("G50 U.5/G50.3 X0/G52 X.5", "G52", "0.5"),
     ],
+    one_in=5,
 )
-@pytest.mark.parametrize(("head", "unit"), [(MM, "mm"), (INCH, "inch")])
+@looped(("head", "unit"), [(MM, "mm"), (INCH, "inch")])
 def test_an_origin_that_the_program_moves(blocks: str, name: str, shift: str, head: str, unit: str) -> None:
     *_, (block, rule, message) = found(SHIFTED.format(blocks), head=head)
     assert (block, rule) == ("G12.1", "origin-off-center")
@@ -380,17 +391,16 @@ def test_an_origin_that_the_program_moves(blocks: str, name: str, shift: str, he
     assert message == f"{name} puts X0 {distance} at G12.1"
 
 
-@pytest.mark.parametrize(
-    "blocks", ["G0 X30./G92 X29.8", "G91 G92 X.2/G90", "G10 L2 P1 X.5/G54", "G90 G10 L2 P1 X1./G54"]
-)
+@pytest.mark.ci
+@looped("blocks", ["G0 X30./G92 X29.8", "G91 G92 X.2/G90", "G10 L2 P1 X.5/G54", "G90 G10 L2 P1 X1./G54"])
 def test_an_origin_in_g_code_system_b(blocks: str) -> None:
     changes = ("siemens-iso", "mazak-eia") if "G10" in blocks else ("siemens-iso",)
     for machine in changes:
         assert ("G12.1", "origin-off-center") in said(SHIFTED.format(blocks), machine, head=G92)
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     "blocks",
     [
         "G10 L2 P1 X0/G54",
@@ -427,13 +437,14 @@ def test_an_origin_in_g_code_system_b(blocks: str) -> None:
         "G52 C5.",
         "G10 L2 P1 C30.",
     ],
+    one_in=12,
 )
 def test_an_origin_at_the_center_or_unknown(blocks: str) -> None:
     assert "origin-off-center" not in [rule for _, rule in said(SHIFTED.format(blocks))]
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("blocks", "cause"),
     [
         ("#5221=#500", "#5221"),
@@ -450,6 +461,7 @@ def test_an_origin_at_the_center_or_unknown(blocks: str) -> None:
         ("G0 X80./G50 X#500", "G50"),
         ("G52 X#500/#5221=#501", "#5221 and G52"),
     ],
+    one_in=12,
 )
 def test_an_origin_that_is_set_to_what_is_not_known(blocks: str, cause: str) -> None:
     program = f"{MM}{SHIFTED.format(blocks.replace('[#500/2]', '[#500*2]'))}/M30\n".replace("/", "\n")
@@ -462,7 +474,8 @@ def test_an_origin_that_is_set_to_what_is_not_known(blocks: str, cause: str) -> 
     assert not given.not_evaluated
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     "blocks", ["G10 L2 P1 X#500/G10 L2 P1 X0", "#5221=#500/G55", "G52 X#500/G52 X0", "G52 X#500/G50.3 X0", "G50 X#500"]
 )
 def test_an_unknown_value_that_does_not_count(blocks: str) -> None:
@@ -470,6 +483,7 @@ def test_an_unknown_value_that_does_not_count(blocks: str) -> None:
     assert not [entry for entry in report.not_evaluated if entry.rule == "origin-off-center"]
 
 
+@pytest.mark.ci
 def test_what_the_program_sets_takes_the_place_of_the_job() -> None:
     job = {"work_offsets": {"G54": {"x": 0.5}}}
 
@@ -482,9 +496,7 @@ def test_what_the_program_sets_takes_the_place_of_the_job() -> None:
     assert rules("G10 L2 P1 U-.5") == []
 
 
-@pytest.mark.parametrize(
-    ("block", "expected"), [("G53 G0 Z0.", []), ("G53 Z0", []), ("G53 G0 X0. Z0.", ["origin-shifted-in-polar"])]
-)
+@looped(("block", "expected"), [("G53 G0 Z0.", []), ("G53 Z0", []), ("G53 G0 X0. Z0.", ["origin-shifted-in-polar"])])
 def test_z_of_the_machine_alone_may_stand_in_the_mode_of_a_haas(block: str, expected: list[str]) -> None:
     head = "O1\nG20 G98 G97 T101\nM133 P1500\nM154\nG17\nG0 X3. Z.2 C0\nG112\nG1 X2.5 Y0. F20.\nZ-.1\nX2.\n"
     text = f"{head}{block}\nG113\nG18\nM155\nM135\nM30\n"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import textwrap
 
-import pytest
+from cases import looped
 from programs import report_of_example, said
 
 from polarcheck.rules.examples import examples
@@ -299,8 +299,7 @@ PROGRAMS = {
 }
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize("page", PROGRAMS.values(), ids=PROGRAMS)
+@looped("page", PROGRAMS.values(), ids=PROGRAMS, one_in=12)
 def test_one_mistake_is_one_finding(page: str) -> None:
     (example,) = examples(textwrap.dedent(page).strip("\n"))
     assert said(report_of_example(example, only=("compensation", "polar"))) == sorted(example.expected)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
+from cases import looped
 from programs import moves_of, report_of, said
 
 from polarcheck.foundation.finding import FileReport
@@ -50,7 +51,8 @@ ALONG_Z = "G1 X40. C16. F200\nZ-8.\n{}\nG1 X60.\n"
 INCH_ALONG_Z = "G20\nG1 X2. C.8 F8.\nZ-.3\n{}\nG1 X3.\n"
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("program", "arc"),
     [
         # 16 mm along C, which 5 mm do not reach: an arc of C and Z.
@@ -75,7 +77,7 @@ def test_an_arc_of_z_and_one_axis_is_an_arc_of_another_plane(program: str, arc: 
     assert found.findings[0].alarm == "PS0021"
 
 
-@pytest.mark.parametrize(
+@looped(
     "arc", ["G2 C0. Z-10. R8.", "G2 C0. Z-10. R20.", "G2 C0. Z-10. J-8.", "G3 X20. Z-10. R5.", "G2 C0. W-2. I0 J-8."]
 )
 def test_an_arc_whose_other_axis_stays_is_a_helix(arc: str) -> None:
@@ -93,7 +95,7 @@ def test_helical_arcs_are_errors_where_the_builder_forbids_them() -> None:
     assert severity == {"fanuc": "warning", "turning-center": "error"}
 
 
-@pytest.mark.parametrize(
+@looped(
     ("program", "texts"),
     [
         ("G20 G98 G0 X2.5 C0\nG12.1\nG1 C1\n", ["C1 has no decimal point: the control takes it as 0.0001 inch"]),
@@ -127,11 +129,11 @@ def places(program: str) -> list[tuple[complex, ...]]:
     return list(zip(moves.start.tolist(), moves.end.tolist(), strict=True))
 
 
-@pytest.mark.one_in(5)
-@pytest.mark.parametrize("base", [POINTED, WHOLE], ids=["with points", "without"])
-@pytest.mark.parametrize("units", ["", "G20 "], ids=["mm", "inch"])
-@pytest.mark.parametrize("place", ["before", "inside", "behind"])
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped("base", [POINTED, WHOLE], ids=["with points", "without"], one_in=5)
+@looped("units", ["", "G20 "], ids=["mm", "inch"])
+@looped("place", ["before", "inside", "behind"])
+@looped(
     "frame",
     ["{}", "O1\n{}M30\n", "O1\nM98 P2\nM30\nO2\n{}M99\n", "O1\nG0 X60000\nZ50000\nZ-2000\nM30\nO2\n{}M30\n"],
     ids=["excerpt", "program", "called", "second program"],
@@ -165,7 +167,8 @@ def test_the_highest_rate_is_told_where_there_is_nothing_to_compare_it_with() ->
     assert reasons(report(inch)) == [(LIMIT.format(5730, 5) + REMEDY, 2)]
 
 
-@pytest.mark.parametrize("name", ["fanuc", "gsk-988", "turning-center"])
+@pytest.mark.ci
+@looped("name", ["fanuc", "gsk-988", "turning-center"])
 def test_a_rate_that_every_c_axis_manages_needs_no_limit(name: str) -> None:
     """57.3 deg is a radian: with F628.3 at 10 mm from the center C turns at 3,600 deg/min."""
     program = "O1\nG21 G98 G0 X60. C0\nG12.1\nG1 C10. F{}\nX-60.\n"
@@ -211,7 +214,7 @@ def test_travel_in_the_mode_is_the_distance_of_the_tool_center() -> None:
     assert [blocks for _, blocks in reasons(report(program, limits=limits | {"c_feed": 9000}))] == [4, 4]
 
 
-@pytest.mark.parametrize("across", [1.6, 8])
+@looped("across", [1.6, 8])
 def test_degrees_are_seen_on_a_thin_pin_too(across: float) -> None:
     """Within 0.8 mm of the center, and within 4 mm."""
     program = f"G98 G0 X{across} C0\nG12.1\nG1 X{across} F200\nC45.\nC90.\nC135.\nX{across}\nG13.1\n"

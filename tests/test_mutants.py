@@ -8,12 +8,15 @@ from collections import Counter
 from pathlib import Path
 
 import pytest
+from cases import looped
 
 BENCHMARKS = Path(__file__).parent.parent / "benchmarks"
 sys.path.insert(0, str(BENCHMARKS))
 
 import mutants  # noqa: E402
 from mutations import Mutation, mutations  # noqa: E402
+
+pytestmark = pytest.mark.ci
 
 
 def planted(source: str) -> list[str]:
@@ -22,7 +25,7 @@ def planted(source: str) -> list[str]:
     return [one.applied(text).decode() for one in mutations(text, "x.py")]
 
 
-@pytest.mark.parametrize(
+@looped(
     ("source", "expected"),
     [
         ("a < b", ["a <= b", "a >= b"]),
@@ -58,7 +61,7 @@ def test_each_fault_is_one_change(source: str, expected: list[str]) -> None:
     assert found == expected
 
 
-@pytest.mark.parametrize(
+@looped(
     "source",
     [
         '"""Docstring of 1 < 2."""',
@@ -133,7 +136,6 @@ def test_what_counts_as_equivalent_is_still_there() -> None:
     assert set(known) <= there
 
 
-@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="runs are forks")
 @pytest.mark.skipif(not (mutants.ROOT / ".git").exists(), reason="what is copied is what git lists")
 def test_a_fault_is_killed_by_the_test_that_sees_it() -> None:

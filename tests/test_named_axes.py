@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from cases import looped
 from programs import machine_of, report_of, said, trace_of
 
 from polarcheck.program.execution.custom_macro import read_statement
@@ -48,7 +49,8 @@ def named(program: str, **names: str) -> str:
     return program
 
 
-@pytest.mark.parametrize("names", [{"C": "C1"}, {"X": "X1"}, {"X": "X1", "C": "C1", "Z": "Z1"}, {"C": "c1"}])
+@pytest.mark.ci
+@looped("names", [{"C": "C1"}, {"X": "X1"}, {"X": "X1", "C": "C1", "Z": "Z1"}, {"C": "c1"}])
 def test_a_named_axis_is_the_address_that_the_machine_gives_it(names: dict[str, str]) -> None:
     """The same positions, side by side with plain words or alone in a block; F and G codes behind them count."""
     program = named(PLAIN, **names)
@@ -63,7 +65,7 @@ def test_a_named_axis_is_the_address_that_the_machine_gives_it(names: dict[str, 
     assert reports[0].polar_sections == reports[1].polar_sections
 
 
-@pytest.mark.parametrize(
+@looped(
     ("word", "value"),
     [
         ("C2=#1+5.", 8.0),
@@ -123,6 +125,7 @@ def test_a_section_on_an_axis_that_is_not_followed_is_not_judged() -> None:
     assert said(report_of(SECOND, "fanuc", TOOL, changes=engaged)) == []
 
 
+@pytest.mark.ci
 def test_an_axis_that_is_not_followed_shifts_no_other() -> None:
     """C2 between the blocks of another section, outside and within it."""
     outside = PLAIN.replace("G28 U0", "G0 C2=90.\nG28 C2=0").replace("G0 X60. C0", "G0 C2=45.\nG0 X60. C2=10. C0")
@@ -135,6 +138,7 @@ def test_an_axis_that_is_not_followed_shifts_no_other() -> None:
     assert missing.reason.startswith("B2, from line 13 on, is not followed, its section is judged without it")
 
 
+@pytest.mark.ci
 def test_a_name_that_the_machine_does_not_have_is_told_with_its_remedy() -> None:
     """Each name once; a machine that names it says nothing."""
     program = PLAIN.replace("G0 X60. C0", "G0 C7=45.\nG0 X60. C0 V9=1. C7=0")
@@ -154,14 +158,15 @@ def test_of_many_names_some_are_told_one_by_one() -> None:
     assert missing[-1].reason.startswith("each of 110 more axes")
 
 
-@pytest.mark.parametrize("names", [{"c2": "C"}, {"C2": "C2"}, {"C": "X"}, {"C2": 1}, "C2", {"C-2": ""}])
+@looped("names", [{"c2": "C"}, {"C2": "C2"}, {"C": "X"}, {"C2": 1}, "C2", {"C-2": ""}])
 def test_names_that_cannot_be_are_one_line(names: object) -> None:
     """The key is named."""
     with pytest.raises(profiles.MachineError, match=r"control\.named_axes"):
         profiles.load("fanuc", {"control": {"named_axes": names}})
 
 
-@pytest.mark.parametrize("block", ["R1=5.", "R1=R2*2", "r1=R2*2 X5.", "M2=70", "S3=2000 F5.", "L1=AC(10)"])
+@pytest.mark.ci
+@looped("block", ["R1=5.", "R1=R2*2", "r1=R2*2 X5.", "M2=70", "S3=2000 F5.", "L1=AC(10)"])
 def test_a_word_of_another_language_is_told_and_is_no_mistake(block: str) -> None:
     """It is read as no code, and as no axis of the lathe."""
     report = report_of(PLAIN.replace("G50 S2000", block), "fanuc", TOOL)

@@ -14,11 +14,13 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from cases import looped
 from drawn_repositories import CHANGES, UNRELATED, Archive
 from test_cli import call
 from test_diff_base import git
 
 pytestmark = [
+    pytest.mark.ci,
     pytest.mark.usefixtures("own_folder"),
     pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such links"),
 ]
@@ -65,12 +67,11 @@ def verify(seed: int, kind: str, *options: str) -> None:
     assert differs_for_git <= in_hook
 
 
-@pytest.mark.parametrize("kind", ["pyproject without its table", "submodule behind a link edited in place"])
+@looped("kind", ["pyproject without its table", "submodule behind a link edited in place"])
 def test_no_program_that_says_something_else_is_left_out(kind: str) -> None:
     verify(2, kind, "--select", "rapid-in-polar")
 
 
-@pytest.mark.slow
 @pytest.mark.one_in(16)
 @pytest.mark.parametrize("seed", range(3))
 @pytest.mark.parametrize("kind", CHANGES)
@@ -78,14 +79,12 @@ def test_of_many_drawn_archives_none_is_left_out(kind: str, seed: int) -> None:
     verify(seed, kind)
 
 
-@pytest.mark.one_in(7)
-@pytest.mark.parametrize("kind", UNRELATED)
+@looped("kind", UNRELATED, one_in=7)
 def test_a_change_that_concerns_no_program_has_none_checked(kind: str) -> None:
     differs, since, _, in_hook = narrowed(1, UNRELATED[kind], "--select", "rapid-in-polar")
     assert (differs, since, in_hook) == (set(), set(), set())
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["link of a drawing", "machine edited", "offset table edited", "extended job edited"])
 def test_cells_that_a_change_is_none_of_are_left_out(kind: str) -> None:
     _, since, _, in_hook = narrowed(2, CHANGES[kind])

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from cases import looped
 from programs import CORPUS, machine_of, tables_of
 
 from polarcheck.checking.settings import Settings
@@ -34,7 +35,7 @@ def rewritten(program: bytes, line: int, new: str, target: str = "fanuc", machin
     return with_edits(program_read, [*edits, *edits_of_signs(program_read, profile)])[0]
 
 
-@pytest.mark.parametrize(
+@looped(
     ("program", "line", "new", "expected"),
     [
         # N words, in the step of the program where there is room
@@ -64,7 +65,7 @@ def test_new_blocks_stand_as_the_program_writes_its_own(program: bytes, line: in
     assert rewritten(program, line, new) == expected
 
 
-@pytest.mark.parametrize(
+@looped(
     ("program", "expected"),
     [
         (b"G0 X1. (A)\nX2. (B (C)\nX3.\n", b"G0 X1. (A)\nG1 X5. ; B (C\nY6. ; IN TWO\nX3.\n"),
@@ -96,7 +97,7 @@ def test_blocks_may_stand_beside_one_that_stays() -> None:
 HEAD = "O1\nG98 G0 X60. C0\nG12.1\n"
 
 
-@pytest.mark.parametrize(
+@looped(
     ("blocks", "style"),
     [
         ("G1 X40. F200\nC10.\nX20.5 C0.5\n", Style()),
@@ -124,7 +125,7 @@ def test_a_program_without_words_has_the_default_style() -> None:
     assert style_of(tables_of("%\n", "fanuc")["trace"]) == PLAIN
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 def test_styles_of_the_corpus_are_recognized() -> None:
     if not CORPUS.is_dir():
         pytest.skip("the corpus is not beside the checkout")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
+from cases import looped
 
 from polarcheck.geometry.polygons.noding import noded
 from polarcheck.geometry.tolerances import CROSSINGS, FREE_CROSSINGS
@@ -15,9 +15,9 @@ def way(*moves: tuple[float, float]) -> np.ndarray:
     return np.append(0, np.cumsum(lengths * np.exp(1j * np.radians(np.cumsum(turns)))))
 
 
-@pytest.mark.parametrize("turn", [1, 1j, np.exp(2.1j)])
-@pytest.mark.parametrize("mirrored", [False, True])
-@pytest.mark.parametrize(
+@looped("turn", [1, 1j, np.exp(2.1j)])
+@looped("mirrored", [False, True])
+@looped(
     ("moves", "crossing"),
     [
         # Bent by 40 degrees, then back by 150: over the first wall, or short of it.

@@ -9,6 +9,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from cases import looped
 from test_cli import call, process
 
 from polarcheck.reports import PER_FILE, formats
@@ -169,6 +170,7 @@ def test_nothing_acts_in_a_file_that_is_written(form: str) -> None:
     assert not acting(Path("out").read_bytes())
 
 
+@pytest.mark.ci
 def test_nothing_acts_in_the_bytes_of_a_process() -> None:
     """Whatever stands between click and the terminal, markup is no color even where color is asked for."""
     with process("check", *PATHS, *OF_MACHINE, "--color", "always") as running:
@@ -188,6 +190,7 @@ def test_a_new_machine_takes_over_nothing_that_acts() -> None:
     assert "title" in result.stdout
 
 
+@pytest.mark.ci
 def test_the_messages_hold_what_was_written() -> None:
     """Spelled out, not left out: else the user does not find it."""
     assert "\\x1b[31mE" in call("explain", *OF_MACHINE, "rapid-in-polar").stdout
@@ -214,6 +217,7 @@ OF_FILES = (
 without_such_names = pytest.mark.skipif(sys.platform == "win32", reason="no file of Windows has : in its name")
 
 
+@pytest.mark.ci
 @pytest.mark.one_in(13)
 @without_such_names
 @pytest.mark.parametrize("arguments", OF_FILES, ids=" ".join)
@@ -229,9 +233,9 @@ def test_no_line_of_a_report_is_a_command_of_a_ci_log(arguments: tuple[str, ...]
     assert not OLD_OF_RUNNER.search(result.stderr)
 
 
-@pytest.mark.one_in(12)
+@pytest.mark.ci
 @without_such_names
-@pytest.mark.parametrize("name", COMMANDS)
+@looped("name", COMMANDS, one_in=12)
 def test_no_line_on_one_file_is_a_command_of_a_ci_log(name: str) -> None:
     for arguments in (("check", name), ("check", f"{name}.gone"), ("feeds", name), ("trace", name), ("init", name)):
         Path(name).write_bytes(PROGRAM.encode())
@@ -241,7 +245,7 @@ def test_no_line_on_one_file_is_a_command_of_a_ci_log(name: str) -> None:
 
 
 @without_such_names
-@pytest.mark.parametrize("form", ["concise", "short"])
+@looped("form", ["concise", "short"])
 def test_a_path_that_would_be_a_command_still_leads_to_its_file(form: str) -> None:
     Path("::x.nc").write_bytes(PROGRAM.encode())
     first = call("check", "--format", form, "::x.nc").stdout.splitlines()[0]

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from cases import looped
 from click.testing import CliRunner
 from programs import machine_of, report_of, tables_of
 from rolled_programs import cam_contour
@@ -92,7 +93,7 @@ def assert_same_path(program: str, data: bytes, target: str) -> None:
         assert max(min(distance(point, *move) for move in moves) for point in path_of(first, 1e-9)) < 0.0021
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 @pytest.mark.one_in(1)
 @pytest.mark.parametrize("target", OTHER_WORDS)
 def test_odd_arcs_are_written_as_what_they_are(target: str) -> None:
@@ -100,24 +101,24 @@ def test_odd_arcs_are_written_as_what_they_are(target: str) -> None:
     assert_same_path(program, convert(program, "fanuc-30i", target).data, target)
 
 
-@pytest.mark.one_in(18)
-@pytest.mark.parametrize("target", ["haas-lathe", "okuma-osp", "siemens-transmit"])
-@pytest.mark.parametrize("name", WRITTEN)
+@pytest.mark.ci
+@looped("target", ["haas-lathe", "okuma-osp", "siemens-transmit"], one_in=18)
+@looped("name", WRITTEN)
 def test_each_odd_arc_is_written_alone(name: str, target: str) -> None:
     program = of_blocks(WRITTEN[name])
     assert_same_path(program, convert(program, "fanuc-30i", target).data, target)
 
 
-@pytest.mark.one_in(24)
-@pytest.mark.parametrize("target", OTHER_WORDS)
-@pytest.mark.parametrize("name", REFUSED)
+@looped("target", OTHER_WORDS, one_in=24)
+@looped("name", REFUSED)
 def test_an_arc_without_a_radius_is_refused_by_its_line(name: str, target: str) -> None:
     reasons = refused(of_blocks(REFUSED[name]), "fanuc-30i", target)
     assert (12, "the center of this arc is its start or its end") in reasons
 
 
-@pytest.mark.parametrize("code", ["G2", "G3"])
-@pytest.mark.parametrize("x", ["39.998", "40.002"])
+@pytest.mark.ci
+@looped("code", ["G2", "G3"])
+@looped("x", ["39.998", "40.002"])
 def test_an_arc_along_its_own_radius_is_a_line(code: str, x: str) -> None:
     """Its angle is 0: no control is told to go round a full circle."""
     lines = convert(of_blocks(f"{code} X{x} C0 I-10. J0"), "fanuc-30i", "haas-lathe").data.decode().split("\n")
@@ -133,8 +134,8 @@ def test_a_program_of_an_arc_below_half_its_chord_is_converted() -> None:
     assert "G3 X20.004 Y0 CR=0.002" in lines
 
 
-@pytest.mark.parametrize("ccw", [True, False])
-@pytest.mark.parametrize(
+@looped("ccw", [True, False])
+@looped(
     ("start", "end", "center", "expected"),
     [
         (20, 19.999, 10, 0),
@@ -151,7 +152,7 @@ def test_the_sweep_is_the_same_in_both_senses(
     assert swept(start, end, center, ccw) == pytest.approx(expected if ccw else -expected, abs=1e-12)
 
 
-@pytest.mark.parametrize(("end", "center"), [(19.999, 20), (20, 20), (19.999, 19.999), (20.001j, 20)])
+@looped(("end", "center"), [(19.999, 20), (20, 20), (19.999, 19.999), (20.001j, 20)])
 def test_the_pen_draws_no_arc_without_a_radius(end: complex, center: complex) -> None:
     pen = Pen(machine_of("haas-lathe"))
     pen.enter(20 + 0j)
@@ -159,7 +160,8 @@ def test_the_pen_draws_no_arc_without_a_radius(end: complex, center: complex) ->
         pen.arc(end, center, True)
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("machine", "moves"),
     [
         ("fanuc", "G12.1\nG1 X2.361 F100\nU-4.7\nG2 X-2.3 R4\nJ0\nG1 X60.\nG13.1"),
@@ -173,11 +175,9 @@ def test_an_arc_whose_neighbours_ask_for_an_r_of_0_is_checked(machine: str, move
     assert report_of(f"{moves}\nM30\n", machine, *tools, job={"program_units": "mm"}).verdict
 
 
-@pytest.mark.one_in(8)
-@pytest.mark.parametrize("side", SIDES)
-@pytest.mark.parametrize(
-    "blocks", ["G3 X2. I7.", "G2 X2. I7.", "G3 X2. Y.2 I7. J0", "G3 X4. Y.2 I0. J0", "G3 X3.999 Y.2 I-1. J0"]
-)
+@pytest.mark.ci
+@looped("side", SIDES, one_in=8)
+@looped("blocks", ["G3 X2. I7.", "G2 X2. I7.", "G3 X2. Y.2 I7. J0", "G3 X4. Y.2 I0. J0", "G3 X3.999 Y.2 I-1. J0"])
 def test_odd_arcs_are_compensated_or_refused(blocks: str, side: str) -> None:
     """An arc from X4. Y.2 without a sweep or a radius is no part of a contour: it stays, or all is refused."""
     program = f"T1 M6\nG98 G0 X60. C0\nG101\nG1 X4. F100\nY.2\n{blocks}\nG109\nM30\n"
@@ -199,6 +199,7 @@ def test_a_section_without_a_move_has_no_contour() -> None:
     assert error.value.refusals[0].line == 3
 
 
+@pytest.mark.ci
 def test_a_block_that_no_move_of_the_rolled_program_stands_for_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     """Nothing is inf mm away."""
     away = rolled_deviation._away
@@ -217,8 +218,9 @@ def test_an_arc_whose_ends_lie_on_no_circle_has_no_keyway() -> None:
     assert (result.exit_code, "internal error" in result.stderr) == (1, False)
 
 
+@pytest.mark.ci
 @pytest.mark.usefixtures("own_folder")
-@pytest.mark.parametrize("first", ["G0 X1 Z4\nG112 Z7", "G0 X50. Z4.\nG112\nG0 Z5.\nG0 C0"])
+@looped("first", ["G0 X1 Z4\nG112 Z7", "G0 X50. Z4.\nG112\nG0 Z5.\nG0 C0"])
 def test_a_section_whose_cuts_are_not_known_is_compared_by_its_rapids(first: str) -> None:
     for name, text in (("a.nc", f"{first}\n=\nG1 Z"), ("b.nc", f"G112\nG1 X5.\nG113\n{first}\nG1 X#500")):
         Path(name).write_text(text)
@@ -227,8 +229,9 @@ def test_a_section_whose_cuts_are_not_known_is_compared_by_its_rapids(first: str
         assert result.exit_code in (0, 1, 2), (pair, result.stderr)
 
 
-@pytest.mark.parametrize("count", [400, 5000])
-@pytest.mark.parametrize("word", ["Z", "X20. Z", "F"])
+@pytest.mark.ci
+@looped("count", [400, 5000])
+@looped("word", ["Z", "X20. Z", "F"])
 def test_a_number_of_any_length_is_written_or_refused(word: str, count: int) -> None:
     program = f"G21 G98\nG1 {word}{'9' * count}\nM30\n"
     try:

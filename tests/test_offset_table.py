@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from cases import looped
 from click.testing import CliRunner
 from polarcheck.errors import JobError
 
@@ -37,7 +38,7 @@ def refusal(text: str, **more: Any) -> str:
 LATHE = "G10 P10008 X-110.25 Z-55. R4. Q0\nG10 P8 X0. Z0. R-.05 Q0\nG10 P10012 X0 Z0 R.4 Q3\n"
 
 
-@pytest.mark.parametrize(
+@looped(
     "text",
     [
         LATHE,
@@ -74,7 +75,7 @@ def test_of_two_blocks_for_one_value_the_last_counts() -> None:
     assert table("G10 P10008 R4.\nG10 P10008 R5.\n") == {"8": (5.0, None)}
 
 
-@pytest.mark.parametrize(
+@looped(
     ("text", "told"),
     [
         (f"{LATHE}T0808\n", f"{NAME}:4: expected a block such as G10 P10008 R0.375 Q0, found T0808"),
@@ -122,7 +123,7 @@ def test_a_page_of_the_control_is_taken_as_it_stands() -> None:
     assert offset_table.read_offset_table(Path(NAME), NAME)["1"].x_wear == 0.1
 
 
-@pytest.mark.parametrize(
+@looped(
     "text",
     [
         "8 -95.1 -40.0 4.0 0\n12 0 0 0.4 3\n",
@@ -143,7 +144,7 @@ def test_columns_are_parted_and_named_in_many_ways(text: str) -> None:
     assert table(text) == {"8": (4.0, 0), "12": (0.4, 3)}
 
 
-@pytest.mark.parametrize(
+@looped(
     ("text", "told"),
     [
         (PAGE + "MILL 12 MM\n", f"{NAME}:6: expected an offset in columns (NO. X Z R T), found MILL 12 MM"),

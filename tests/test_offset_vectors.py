@@ -7,6 +7,7 @@ import math
 
 import numpy as np
 import pytest
+from cases import looped
 from plane_moves import path_of_rows
 
 from polarcheck.foundation.states import Motion, Side
@@ -29,8 +30,8 @@ def offset_ends(side: Side, radius: float, start_up: str) -> np.ndarray:
     return tool.end[tool.phase == Phase.OFFSET]
 
 
-@pytest.mark.parametrize("start_up", ["A", "B"])
-@pytest.mark.parametrize("radius", [0.01, 0.5, 0.999, 1.0, 1.001, 6.0])
+@looped("start_up", ["A", "B"])
+@looped("radius", [0.01, 0.5, 0.999, 1.0, 1.001, 6.0])
 def test_the_tool_goes_round_each_corner_at_its_radius(radius: float, start_up: str) -> None:
     corners = np.array(SQUARE[1:-1])
     for side, half in ((Side.RIGHT, 20 + radius), (Side.LEFT, 20 - radius)):

@@ -14,6 +14,7 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import pytest
+from cases import looped
 from programs import machine_of, report_of
 from test_cli import call, make
 
@@ -557,9 +558,9 @@ def title(value: object) -> str | None:
     return value.title if isinstance(value, Mistake) else None
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize("section", [SQUARE, ROUND, BY_RADIUS, HEXAGON, TWO_LOOPS])
-@pytest.mark.parametrize("machine", ["fanuc", *OTHERS])
+@pytest.mark.ci
+@looped("section", [SQUARE, ROUND, BY_RADIUS, HEXAGON, TWO_LOOPS], one_in=12)
+@looped("machine", ["fanuc", *OTHERS])
 def test_the_sections_are_sound(section: str, machine: str) -> None:
     program = "\n".join([*HEAD, *section.split("/"), *BETWEEN, *section.split("/"), *END])
     assert told(report_of(program, machine, "1:radius=4")) == []
@@ -585,8 +586,8 @@ CASES = [
 ]
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize(("mistake", "form"), CASES)
+@pytest.mark.ci
+@looped(("mistake", "form"), CASES, one_in=12)
 def test_one_mistake_is_one_finding(mistake: Mistake, form: Callable[[Mistake], tuple[list[str], int]]) -> None:
     program, before = form(mistake)
     report = report_of("\n".join(program) + "\n", "fanuc", "1:radius=4", changes=mistake.changes, job=mistake.job)
@@ -596,8 +597,8 @@ def test_one_mistake_is_one_finding(mistake: Mistake, form: Callable[[Mistake], 
     holds(report, mistake, line)
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize("mistake", [one for one in MISTAKES if one.inch], ids=title)
+@pytest.mark.ci
+@looped("mistake", [one for one in MISTAKES if one.inch], ids=title, one_in=12)
 def test_it_is_one_finding_in_inch(mistake: Mistake) -> None:
     program = [in_inch(block) for block in plain(mistake)[0]]
     program[1] = program[1].replace("G21", "G20")
@@ -608,14 +609,15 @@ def test_it_is_one_finding_in_inch(mistake: Mistake) -> None:
     assert rule == "c-feed-above-limit" or program[line - 1].endswith(in_inch(mistake.block))
 
 
-@pytest.mark.one_in(15)
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("mistake", "machine"),
     [
         pytest.param(one, name, id=f"{one.title}-{name}")
         for number, one in enumerate(MISTAKES)
         for name in one.others[number % 2 :: 2] or one.others
     ],
+    one_in=15,
 )
 def test_it_is_one_finding_on_other_controls(mistake: Mistake, machine: str) -> None:
     program, _ = plain(mistake)
@@ -624,9 +626,8 @@ def test_it_is_one_finding_on_other_controls(mistake: Mistake, machine: str) -> 
     assert serious(report)[0].rule == mistake.rule
 
 
-@pytest.mark.parametrize(
-    ("head", "section", "end", "block", "rule"), [one[1:] for one in WHOLE], ids=[one[0] for one in WHOLE]
-)
+@pytest.mark.ci
+@looped(("head", "section", "end", "block", "rule"), [one[1:] for one in WHOLE], ids=[one[0] for one in WHOLE])
 def test_one_mistake_of_a_whole_program_is_one_finding(
     head: list[str], section: str, end: list[str], block: str, rule: str
 ) -> None:
@@ -646,6 +647,7 @@ def called_three_times(section: str) -> str:
     return "/".join([*HEAD, "M98 P30002", "M30", "O2", section, "M99"])
 
 
+@pytest.mark.ci
 @pytest.mark.one_in(12)
 @pytest.mark.parametrize(
     ("program", "machine", "rule"),
@@ -808,6 +810,7 @@ def chains() -> dict[str, set[str]]:
     }
 
 
+@pytest.mark.ci
 def test_no_rule_follows_from_itself() -> None:
     follows = chains()
     reached = {name: set(causes) for name, causes in follows.items()}
@@ -821,6 +824,7 @@ ROOT_OF_NEAR, NEXT_OF_NEAR = "start-up-shorter-than-radius", "start-up-sweeps-co
 DEPTH = "\n".join([*HEAD, *SQUARE.replace("/C20./", "/C20./M3/Z-5./").split("/"), *END])
 
 
+@pytest.mark.ci
 def test_what_follows_stands_alone_where_its_cause_is_not_reported() -> None:
     both = report_of(NEAR, "fanuc", "1:radius=4")
     assert told(both) == [(7, ROOT_OF_NEAR)]
@@ -833,6 +837,7 @@ def test_what_follows_stands_alone_where_its_cause_is_not_reported() -> None:
     assert off.verdict == alone.verdict == "fail"
 
 
+@pytest.mark.ci
 def test_a_chain_hangs_on_what_is_reported_of_it() -> None:
     stock: dict[str, Any] = {"stock": {"diameter": 60.0}}
     report = report_of(NEAR, "fanuc", "1:radius=4", job=stock)
@@ -843,7 +848,8 @@ def test_a_chain_hangs_on_what_is_reported_of_it() -> None:
     assert told(without) == [(7, ROOT_OF_NEAR)]
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("severities", "expected"),
     [
         ({ROOT_OF_NEAR: "note"}, "error"),
@@ -890,6 +896,7 @@ def test_the_summary_counts_causes_alone(
     assert [found["rule"] for found in shown["files"][0]["findings"]] == rules
 
 
+@pytest.mark.ci
 def test_what_follows_is_shown_where_it_is_asked_for(near: str) -> None:
     asked = call("check", near, "--tool", "1:radius=4", "--show-following").stdout
     assert NEXT_OF_NEAR in asked
@@ -898,6 +905,7 @@ def test_what_follows_is_shown_where_it_is_asked_for(near: str) -> None:
     assert "2 errors" not in asked
 
 
+@pytest.mark.ci
 def test_angles_under_the_address_of_another_control_are_named_as_written() -> None:
     """No word was at fault where the virtual axis has another address, and the message could not be made."""
     steps = "\n".join(f"C{angle}." for angle in range(72, 361, 72))
@@ -908,7 +916,7 @@ def test_angles_under_the_address_of_another_control_are_named_as_written() -> N
     assert found
 
 
-@pytest.mark.parametrize("scale", [1, 25.4])
+@looped("scale", [1, 25.4])
 def test_a_wrong_word_in_an_arc_that_ends_right_explains_no_other_arc(scale: float) -> None:
     """The end of an arc with K is where it is meant: what is wrong behind it is wrong itself."""
     x40, x25, x20 = (f"{number / scale:.4f}" for number in (40, 25, 20))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 
 import pytest
+from cases import looped
 from programs import report_of
 
 from polarcheck.foundation.finding import Finding
@@ -59,8 +60,8 @@ def findings_of(section: str, radius: float = 4.0, units: str = "G21") -> list[F
     return [one for one in found.findings if one.severity != "note"]
 
 
-@pytest.mark.one_in(9)
-@pytest.mark.parametrize("name", SOUND)
+@pytest.mark.ci
+@looped("name", SOUND, one_in=9)
 def test_a_wrong_point_is_one_finding_of_what_is_cut(name: str) -> None:
     assert findings_of(SOUND[name]) == []
     programs = with_wrong_points(SOUND[name])
@@ -76,7 +77,8 @@ def test_a_wrong_point_is_one_finding_of_what_is_cut(name: str) -> None:
     assert cutting or name not in ("rooms", "three rooms", "groove")
 
 
-@pytest.mark.parametrize(("radius", "room"), [(7.0, 6.0), (6.1, 6.0)])
+@pytest.mark.ci
+@looped(("radius", "room"), [(7.0, 6.0), (6.1, 6.0)])
 def test_a_neck_says_for_which_r_it_has_room(radius: float, room: float) -> None:
     (found,) = findings_of(SOUND["rooms"], radius)
     assert (found.rule, found.line, found.count) == ("overcut", 11, 2)
@@ -97,6 +99,7 @@ def test_a_contour_through_its_own_part_fits_no_cutter() -> None:
     assert found.message.endswith("; a smaller one does, too: look for a wrong point of the contour")
 
 
+@pytest.mark.ci
 def test_walls_that_are_not_parallel_have_room_for_what_is_found_by_trying() -> None:
     """Two corners 12 mm apart; the tool center goes round each farther off than R."""
     waist = SOUND["rooms"].replace("X20./C6./X-20./C20./X-60.", "X0 C6./X-60. C20.")

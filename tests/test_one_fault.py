@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from cases import looped
 from programs import report_of, said
 
 OKUMA = """$COVER.MIN%
@@ -153,7 +154,7 @@ HAAS_FAULTS = {
 }
 
 
-@pytest.mark.parametrize(
+@looped(
     ("machine", "program", "tool"),
     [("okuma-osp", OKUMA, "1:radius=5,nose=0"), ("haas-lathe", HAAS, "1:radius=.25,nose=0")],
 )
@@ -162,8 +163,8 @@ def test_the_program_without_a_fault_has_no_finding(machine: str, program: str, 
     assert (report.verdict, said(report)) == ("pass", [])
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize("fault", OKUMA_FAULTS)
+@pytest.mark.ci
+@looped("fault", OKUMA_FAULTS, one_in=12)
 def test_one_fault_is_one_finding(fault: str) -> None:
     written, meant, line, rule = OKUMA_FAULTS[fault]
     assert written in OKUMA
@@ -171,8 +172,7 @@ def test_one_fault_is_one_finding(fault: str) -> None:
     assert said(report) == [(line, rule)]
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize("fault", HAAS_FAULTS)
+@looped("fault", HAAS_FAULTS, one_in=12)
 def test_one_fault_in_inches_is_one_finding(fault: str) -> None:
     written, meant, line, rule = HAAS_FAULTS[fault]
     assert written in HAAS

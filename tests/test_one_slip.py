@@ -10,6 +10,7 @@ import random
 
 import pytest
 import shapely  # type: ignore[import-untyped]
+from cases import looped
 from metal_simulation import C_LIMIT, differs, levels, metal_at, simulate
 from programs import report_of
 from setter_dialects import DIALECTS
@@ -32,8 +33,8 @@ def test_there_are_enough_families_and_kinds() -> None:
     assert len(SLIPS) >= 30
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize("machine", DIALECTS)
+@pytest.mark.ci
+@looped("machine", DIALECTS, one_in=12)
 def test_sound_programs_are_silent(machine: str) -> None:
     for seed in range(4):
         program = drawn(seed, machine, "hexagon, single" if seed == 0 else "")
@@ -42,9 +43,7 @@ def test_sound_programs_are_silent(machine: str) -> None:
         assert errors_of(program) == [], (machine, seed, program.family)
 
 
-@pytest.mark.parametrize(
-    "machine", ["fanuc-30i", "haas-lathe", "siemens-transmit", "okuma-osp", "siemens-iso", "citizen"]
-)
+@looped("machine", ["fanuc-30i", "haas-lathe", "siemens-transmit", "okuma-osp", "siemens-iso", "citizen"])
 def test_the_simulation_leaves_what_is_programmed(machine: str) -> None:
     program = drawn(5, machine, "hexagon, single")
     outcome = simulate(program)
@@ -52,8 +51,7 @@ def test_the_simulation_leaves_what_is_programmed(machine: str) -> None:
     assert 2 * ring.distance(shapely.Point(0, 0)) == pytest.approx(program.size, abs=0.01)
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize("seed", range(0, 150, 15))
+@looped("seed", range(0, 150, 15), one_in=12)
 def test_a_sound_program_has_no_event(seed: int) -> None:
     outcome = simulate(drawn(seed))
     assert outcome.sweeps
@@ -61,8 +59,8 @@ def test_a_sound_program_has_no_event(seed: int) -> None:
     assert not differs(outcome, outcome)
 
 
-@pytest.mark.one_in(3)
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("kind", "family"),
     [
         ("R wrong", "cam, depths"),
@@ -71,6 +69,7 @@ def test_a_sound_program_has_no_event(seed: int) -> None:
         ("index missing", "keyway, indexed"),
         ("G41 forgotten", "octagon, depths"),
     ],
+    one_in=3,
 )
 def test_slips_are_found_that_do_something(kind: str, family: str) -> None:
     draw = random.Random(kind)  # noqa: S311

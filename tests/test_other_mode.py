@@ -7,6 +7,7 @@ import itertools
 from collections.abc import Iterator
 
 import pytest
+from cases import looped
 from programs import ROOT, machine_of, report_of, said, tables_of
 
 from polarcheck.columns.modes import other_mode
@@ -77,8 +78,8 @@ def has_statements(path: str, own: str) -> bool:
     return machine_of(own).macro.language != "custom-macro" and bool(blocks.is_macro.any())
 
 
-@pytest.mark.one_in(20)
-@pytest.mark.parametrize("name", profiles.names())
+@pytest.mark.ci
+@looped("name", profiles.names(), one_in=20)
 def test_a_program_for_another_machine_is_read_or_fails_with_one_finding(name: str) -> None:
     for path, own, other in PAIRS:
         if other != name:
@@ -99,8 +100,9 @@ def test_a_program_for_another_machine_is_read_or_fails_with_one_finding(name: s
             assert RULE not in rules, (path, name)
 
 
-@pytest.mark.parametrize("name", WRONG)
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped("name", WRONG)
+@looped(
     ("program", "line"),
     [
         ("rapid_in_polar", 9),
@@ -122,7 +124,8 @@ def test_a_program_full_of_faults_does_not_pass_under_the_wrong_machine(program:
     assert f"{polar.off[0]} for G13.1" in the_one(report).message or program == "polar_never_left"
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("program", "name", "machines"),
     [
         ("O1\nG98 G0 X50. Z2. C0\nG112\nG1 X40. Y5. F200\nG113\nM30\n", "okuma-osp", "haas-lathe"),
@@ -161,7 +164,8 @@ def test_no_machine_is_named_for_a_code_that_its_own_files_do_not_have() -> None
 WRITTEN = "O1\nG0 X50. C0\n{}\nG1 X40. {}5. F200\n{}\nM30\n"
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("words", "name", "remedy"),
     [
         (("G12.1", "Y", "G13.1"), "haas-lathe", "G112 for G12.1 and G113 for G13.1"),
@@ -191,9 +195,7 @@ def test_a_default_machine_that_somebody_names_is_chosen_all_the_same() -> None:
     assert chosen.endswith("; write G12.1 for G137, G13.1 for G136, C for Y and X as a diameter")
 
 
-@pytest.mark.parametrize(
-    ("code", "name"), [("G137", "fanuc"), ("G112", "okuma-osp"), ("G12.1", "haas-lathe"), ("G112", "mazak-eia")]
-)
+@looped(("code", "name"), [("G137", "fanuc"), ("G112", "okuma-osp"), ("G12.1", "haas-lathe"), ("G112", "mazak-eia")])
 def test_a_code_that_stands_alone_may_be_a_macro(code: str, name: str) -> None:
     report = report_of(TURNING.format(f"{code}\n"), name)
     assert the_one(report).severity == "warning"
@@ -209,7 +211,7 @@ def test_where_statements_have_names_a_word_of_another_control_is_told_by_its_ow
     assert "TRANSMIT is not simulated" in [entry.reason for entry in report.not_evaluated]
 
 
-@pytest.mark.parametrize("name", ["fanuc", "haas-lathe", "mazak-eia"])
+@looped("name", ["fanuc", "haas-lathe", "mazak-eia"])
 def test_a_word_that_stands_alone_is_no_macro(name: str) -> None:
     report = report_of(TURNING.format("TRANSMIT\n"), name)
     assert report.verdict == "fail"
@@ -233,7 +235,7 @@ def test_one_finding_stands_for_the_program() -> None:
     assert the_one(report_of(TURNING.format(f"G137\n{section}"))).line == 5
 
 
-@pytest.mark.parametrize(
+@looped(
     ("program", "name"),
     [
         ("O1\nG0 X20. Z2.\nG112 X24. Z-8. L4. F1.5\nG113 X20. Z-12. L4. F1.5\nM30\n", "okuma-osp"),
@@ -245,7 +247,7 @@ def test_a_code_in_its_own_meaning_is_none_of_another_control(program: str, name
     assert RULE not in {found.rule for found in report_of(program, name).findings}
 
 
-@pytest.mark.parametrize("skipped", ["/G137 C0\n", "/G137 C0\n/G136\n"])
+@looped("skipped", ["/G137 C0\n", "/G137 C0\n/G136\n"])
 def test_a_skipped_code_is_said_once(skipped: str) -> None:
     report = report_of(TURNING.format(skipped))
     assert [(one.line, one.rule) for one in report.findings] == [(3, RULE)]
@@ -284,7 +286,7 @@ def test_every_code_that_begins_the_mode_is_known_everywhere() -> None:
 # ---- cylindrical interpolation ----
 
 
-@pytest.mark.parametrize(
+@looped(
     ("code", "blocks", "name"),
     [
         ("G7.1 C20.\nG1 G41 C30. F200\nZ-5.\nG7.1 C0\n", 3, "fanuc"),
@@ -300,7 +302,7 @@ def test_cylindrical_interpolation_is_not_simulated(code: str, blocks: int, name
     assert report.verdict != "pass"
 
 
-@pytest.mark.parametrize("code", ["G7.1 C0\n", "G107\n", ""])
+@looped("code", ["G7.1 C0\n", "G107\n", ""])
 def test_a_program_that_only_cancels_it_is_simulated(code: str) -> None:
     assert report_of(TURNING.format(code)).verdict == "pass"
 
@@ -308,8 +310,9 @@ def test_a_program_that_only_cancels_it_is_simulated(code: str) -> None:
 MAPPED = "O1\nG94 G0 X40. C0\n{}\nG17\nG1 X20. Y5. F300\nY-5.\n{}\nM30\n"
 
 
-@pytest.mark.parametrize("name", ["fanuc", "haas-lathe", "okuma-osp", "doosan", "siemens-transmit"])
-@pytest.mark.parametrize(("on", "off"), [("G101", "G109"), ("G105", "G110"), ("N9 G101", "N20 G109"), ("G101", "G103")])
+@pytest.mark.ci
+@looped("name", ["fanuc", "haas-lathe", "okuma-osp", "doosan", "siemens-transmit"])
+@looped(("on", "off"), [("G101", "G109"), ("G105", "G110"), ("N9 G101", "N20 G109"), ("G101", "G103")])
 def test_a_map_with_its_moves_and_its_end_is_the_mode_of_another_control(on: str, off: str, name: str) -> None:
     report = report_of(MAPPED.format(on, off), name)
     told = [found for found in report.findings if found.rule == RULE]
@@ -326,8 +329,9 @@ def test_a_map_in_one_program_makes_no_map_of_a_macro_in_another() -> None:
     assert [found.line for found in report.findings if found.rule == RULE] == [7]
 
 
-@pytest.mark.parametrize("name", ["fanuc", "haas-lathe", "doosan"])
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped("name", ["fanuc", "haas-lathe", "doosan"])
+@looped(
     ("on", "off"),
     [
         ("G101", "G80"),  # a macro of the builder, and a real Y axis

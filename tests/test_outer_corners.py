@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
+from cases import looped
 from plane_moves import points_along
 from programs import moves_of, report_of, tables_of
 
@@ -123,7 +124,7 @@ def sampled(moves: Moves) -> np.ndarray:
     return np.concatenate([points_along(*move, 60) for move in zip(*moves.shape, strict=True)])
 
 
-@pytest.mark.parametrize("shape", SHAPES.values(), ids=SHAPES)
+@looped("shape", SHAPES.values(), ids=SHAPES)
 def test_with_g450_the_tool_stays_r_beside_the_contour(shape: list[Element]) -> None:
     """Also at its corners: an arc of R about the programmed point."""
     moves = contour_moves(shape, "G450")
@@ -134,7 +135,7 @@ def test_with_g450_the_tool_stays_r_beside_the_contour(shape: list[Element]) -> 
     assert (corners.kind == Motion.CCW).all()
 
 
-@pytest.mark.parametrize("name", ["square", "triangle", "half disc", "lens", "hexagon"])
+@looped("name", ["square", "triangle", "half disc", "lens", "hexagon"])
 def test_round_a_convex_contour_the_way_is_longer_by_a_circle_of_r(name: str) -> None:
     """All turns together are 360 deg, of corners and arcs: its length is that of the contour and 2 pi R."""
     shape = SHAPES[name]
@@ -146,8 +147,9 @@ def test_round_a_convex_contour_the_way_is_longer_by_a_circle_of_r(name: str) ->
     assert moves.time.sum() == pytest.approx(60 * moves.length.sum() / FEED)
 
 
-@pytest.mark.parametrize("code", ["G450", "G451"])
-@pytest.mark.parametrize("name", ["square", "half disc", "lens", "hollow"])
+@pytest.mark.ci
+@looped("code", ["G450", "G451"])
+@looped("name", ["square", "half disc", "lens", "hollow"])
 def test_rates_of_c_are_those_of_the_way(name: str, code: str) -> None:
     moves = contour_moves(SHAPES[name], code)
     for move, rate in zip(zip(*moves.shape, strict=True), moves.c_feed, strict=True):
@@ -156,7 +158,7 @@ def test_rates_of_c_are_those_of_the_way(name: str, code: str) -> None:
         assert rate == pytest.approx(FEED * steps.max(), rel=1e-3)
 
 
-@pytest.mark.parametrize("shape", SHAPES.values(), ids=SHAPES)
+@looped("shape", SHAPES.values(), ids=SHAPES)
 def test_with_g451_both_ways_are_made_longer_up_to_where_they_meet(shape: list[Element]) -> None:
     """A line stays a line beside it, an arc an arc about its center; sharper turns than 100 deg become arcs of R."""
     moves = contour_moves(shape, "G451")
@@ -177,7 +179,8 @@ def test_with_g451_both_ways_are_made_longer_up_to_where_they_meet(shape: list[E
         np.testing.assert_allclose(distance(sampled(moves[moves.corner]), shape), RADIUS, atol=1e-6)
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("code", "changes", "arcs"),
     [
         ("", {}, 4),
@@ -203,8 +206,8 @@ def test_the_code_may_stand_before_the_mode_and_change_within() -> None:
     assert last.corner.sum() == 1
 
 
-@pytest.mark.one_in(3)
-@pytest.mark.parametrize("shape", SHAPES.values(), ids=SHAPES)
+@pytest.mark.ci
+@looped("shape", SHAPES.values(), ids=SHAPES, one_in=3)
 def test_the_part_is_the_same_whatever_the_corners(shape: list[Element]) -> None:
     """No overcut, no remnant, the same words for what is made: the arcs touch the corner and cut nothing else."""
     reports = [report_of(program(shape, code), MACHINE, TOOL) for code in ("G450", "G451")]

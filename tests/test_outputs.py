@@ -70,6 +70,7 @@ def post() -> None:
     Path("post.toml").write_text(f"{manifest}\n{case}")
 
 
+@pytest.mark.ci
 @pytest.mark.one_in(4)
 @pytest.mark.parametrize("case", [(), ("--case", "more"), ("--case", "contour/lathe-8")])
 @pytest.mark.parametrize("name", ["c2.dxf", "table.out", "job", "golden/indexing.jsonl"])
@@ -80,7 +81,7 @@ def test_a_certificate_takes_the_place_of_nothing_that_its_manifest_names(
         assert said in refused("certify", "post.toml", *case, "-o", f"json:{output}")
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 def test_a_golden_trace_that_is_not_there_yet_is_that_of_the_update(post: None) -> None:
     Path("golden/indexing.jsonl").unlink()
     said = "-o golden/indexing.jsonl: is a golden trace of the manifest; name another file"
@@ -129,6 +130,7 @@ INPUTS = ("extended/base.job", "jobs/lathe", "jobs/parent", "table", "known.json
 
 
 @pytest.mark.one_in(8)
+@pytest.mark.ci
 @pytest.mark.parametrize("name", INPUTS)
 @pytest.mark.parametrize("command", WRITING)
 def test_no_command_takes_the_place_of_what_settles_how_it_runs(command: str, name: str) -> None:
@@ -137,7 +139,7 @@ def test_no_command_takes_the_place_of_what_settles_how_it_runs(command: str, na
         assert said in refused(*(word.format(output) for word in WRITING[command]))
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 @pytest.mark.parametrize("options", [(), ("--jobs", "2"), ("--no-cache",)])
 def test_what_only_the_check_finds_stays_too(options: tuple[str, ...]) -> None:
     """A link leads from the folder of subprograms to the called file, which has no name of a program."""
@@ -150,6 +152,7 @@ def test_what_only_the_check_finds_stays_too(options: tuple[str, ...]) -> None:
     assert Path("new.json").exists()
 
 
+@pytest.mark.ci
 def test_a_report_of_last_time_is_written_anew() -> None:
     with_job()
     for _ in range(2):
@@ -157,7 +160,7 @@ def test_a_report_of_last_time_is_written_anew() -> None:
     assert Path("r.json").stat().st_size > 100
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 def test_standard_input_is_read_too() -> None:
     Path("given").write_text(CALLER)
     with Path("given").open() as given:
@@ -167,6 +170,7 @@ def test_standard_input_is_read_too() -> None:
     assert "which is read by this run" in result.stderr
 
 
+@pytest.mark.ci
 def test_the_summary_of_a_step_is_appended_to_no_file_of_the_run() -> None:
     with_job()
     before = contents()
@@ -176,6 +180,7 @@ def test_the_summary_of_a_step_is_appended_to_no_file_of_the_run() -> None:
     assert contents() == before
 
 
+@pytest.mark.ci
 def test_a_baseline_a_fix_and_a_new_program_in_place_are_written() -> None:
     with_job()
     assert call("baseline", "update", "jobs", "-q").exit_code == 0

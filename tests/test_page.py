@@ -9,6 +9,7 @@ from importlib import resources
 from typing import Any
 
 import pytest
+from cases import looped
 from pictures_by_hand import finding, hexagon, notch, picture
 
 from polarcheck.view.page import page
@@ -88,7 +89,8 @@ def test_lengths_are_told_in_the_units_of_the_program() -> None:
     assert f"X{2 * 14 / 25.4:.4f} C0.0000" in text
 
 
-@pytest.mark.parametrize("text", HOSTILE)
+@pytest.mark.ci
+@looped("text", HOSTILE)
 def test_text_of_a_program_is_never_markup(text: str) -> None:
     hostile = finding(text, rule=text, block=text, why=text, alarm=text, fix=text, silenced=text, severity="error")
     section = hexagon(title=text, radius_source=text, channel=text, needs_radius=text, blocks=[text] * 6)

@@ -27,7 +27,7 @@ ARGUMENTS = [
 ]
 #: One browser is enough for all of them.
 pytestmark = [
-    pytest.mark.slow,
+    pytest.mark.ci,
     pytest.mark.skipif(CHROMIUM is None, reason="there is no chromium here"),
     pytest.mark.xdist_group("browser"),
 ]

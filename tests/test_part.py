@@ -7,6 +7,7 @@ from pathlib import Path
 
 import msgspec
 import pytest
+from cases import looped
 from click.testing import CliRunner
 from programs import tables_of
 from test_cli import call
@@ -67,7 +68,8 @@ CASES = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.ci
+@looped("name", CASES)
 def test_what_is_told_of_a_contour(name: str) -> None:
     body, expected = CASES[name]
     head = HEAD.replace("X80.", "X0") if name == "pocket" else HEAD
@@ -113,7 +115,7 @@ OCTAGON = [
 ]
 
 
-@pytest.mark.parametrize(
+@looped(
     ("block", "written", "how"),
     [(4, "X-20. C8.284", "doubled"), (7, "X33.136 C-20.", "halved"), (6, "X-8.284 C-20.", "doubled")],
 )
@@ -132,7 +134,7 @@ def test_the_cutter_stays_in_the_corners_of_a_pocket() -> None:
     assert [left.text for left in found.left_standing] == ["R2.000 of the cutter in 4 inside corners"]
 
 
-@pytest.mark.parametrize(("block", "written"), [("X-30. C8.660", "X#5041 C8.660"), ("C8.660", "C#500")])
+@looped(("block", "written"), [("X-30. C8.660", "X#5041 C8.660"), ("C8.660", "C#500")])
 def test_a_place_that_is_not_known_is_told(block: str, written: str) -> None:
     shapes = made(HEXAGON.replace(block, written, 1), "8:radius=4")
     line = HEAD.count("\n") + HEXAGON.split("\n").index(next(one for one in HEXAGON.split("\n") if block in one)) + 1
@@ -148,7 +150,8 @@ def test_without_a_radius_a_contour_is_told_and_what_to_give() -> None:
     assert "--tool 8:radius=..." in found.needs
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("body", "expected"),
     [
         ("G1 X40. F100\nG3 X40. C0 I-20. J0", "circle 32.000; to Z-2.000"),
@@ -235,6 +238,7 @@ def test_the_command_tells_it_as_text_and_as_data(program: Path) -> None:
     assert (found.shape, found.z, found.line) == ("hexagon", -2, 3)
 
 
+@pytest.mark.ci
 def test_check_tells_it_where_it_is_asked_to(program: Path) -> None:
     asked = call("check", "--part", str(program), "--tool", "8:radius=4")
     assert "part: hexagon.nc\nline 3   hexagon, 30.000 across flats; to Z-2.000\n" in asked.stdout
@@ -244,6 +248,7 @@ def test_check_tells_it_where_it_is_asked_to(program: Path) -> None:
     assert "part" not in json.loads(call("check", "--format", "json", str(program)).stdout)["files"][0]
 
 
+@pytest.mark.ci
 def test_it_is_compared_with_what_was_asked_for(program: Path) -> None:
     Path("polarcheck.toml").write_text('[[part]]\nshape = "hexagon"\nacross_flats = 30.1\n', "utf-8")
     differs = call("part", str(program), "--tool", "8:radius=4")
@@ -283,7 +288,8 @@ OF_ANOTHER = (
 )
 
 
-@pytest.mark.parametrize("command", ["part", "feeds"])
+@pytest.mark.ci
+@looped("command", ["part", "feeds"])
 def test_of_a_program_for_another_control_it_is_said_that_nothing_can_be_believed(command: str) -> None:
     Path("haas.nc").write_bytes(OF_ANOTHER.encode())
     result = CliRunner().invoke(main, [command, "haas.nc", "--tool", "1:radius=4"])

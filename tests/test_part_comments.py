@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from cases import looped
 from programs import report_of
 
 RULE = "comment-contradicts-part"
@@ -24,7 +25,8 @@ def messages(call: str, *sections: str, units: str = "G21") -> list[str]:
     return [finding.message for finding in report.findings]
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("comment", "made"),
     [
         ("HEX 24 AF", "hexagon 22 mm across flats"),
@@ -37,14 +39,15 @@ def messages(call: str, *sections: str, units: str = "G21") -> list[str]:
         ("HEX 22 AF, 0.5 DEEP", "the cut is 5 mm deep"),
     ],
 )
-@pytest.mark.parametrize("form", ["T0101 ({})", "({})\nT0101", "T0101\n({})", "(T1 {})\nG97\nT0101"])
+@looped("form", ["T0101 ({})", "({})\nT0101", "T0101\n({})", "(T1 {})\nG97\nT0101"])
 def test_another_size_shape_or_depth(comment: str, made: str, form: str) -> None:
     (message,) = messages(form.format(comment), HEXAGON)
     assert made in message
     assert f"{comment})" in message
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     "comment",
     [
         "HEX 22 AF",

@@ -12,6 +12,7 @@ from typing import Any
 
 import pytest
 import shapely  # type: ignore[import-untyped]
+from cases import looped
 from drawn_parts import FAMILIES, NAMES, Feature, drawn_plan
 from part_judge import judged
 from part_slips import KINDS, drawn_defect, drawn_sound
@@ -44,9 +45,8 @@ def area_of(keys: dict[str, Any], features: Feature) -> Any:
     return area
 
 
-@pytest.mark.parametrize(
-    "family", ["triangle", "hexagon", "dodecagon", "polygon", "circle", "circle aside", "flat", "flats"]
-)
+@pytest.mark.ci
+@looped("family", ["triangle", "hexagon", "dodecagon", "polygon", "circle", "circle aside", "flat", "flats"])
 def test_the_keys_of_a_part_say_what_its_feature_is(family: str) -> None:
     for seed in range(12):
         (feature,) = drawn_plan(seed, family).features
@@ -59,30 +59,28 @@ def test_the_keys_of_a_part_say_what_its_feature_is(family: str) -> None:
             assert apart.buffer(-0.01).is_empty, (seed, feature.keys)
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize("family", FAMILIES[::4])
+@looped("family", FAMILIES[::4], one_in=12)
 def test_a_sound_program_makes_its_part(family: str) -> None:
     plan, program = drawn_sound(1, family)
     assert not judged(plan, program, plan.allowed).differs
 
 
-@pytest.mark.one_in(9)
-@pytest.mark.parametrize("kind", list(KINDS)[::3])
+@looped("kind", list(KINDS)[::3], one_in=9)
 def test_a_defect_of_each_kind_can_be_drawn(kind: str) -> None:
     defect = drawn_defect(3, (kind,))
     assert defect is not None
     assert not judged(defect.plan, defect.sound, defect.plan.allowed).differs
 
 
-@pytest.mark.one_in(6)
-@pytest.mark.parametrize("number", range(6))
+@pytest.mark.ci
+@looped("number", range(6), one_in=6)
 def test_nothing_is_said_of_a_sound_part(number: int) -> None:
     result = part_defects.sound_of(number, FAMILIES[number::6], None)
     assert (result.verdict, result.says) == ("pass", ())
 
 
-@pytest.mark.one_in(3)
-@pytest.mark.parametrize("number", [0, 3, 4])
+@pytest.mark.ci
+@looped("number", [0, 3, 4], one_in=3)
 def test_a_defect_is_said(number: int) -> None:
     result = part_defects.defect_of(number, tuple(KINDS)[number::6], None)
     assert result is not None

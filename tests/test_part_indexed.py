@@ -6,6 +6,7 @@ import json
 from pathlib import Path
 
 import pytest
+from cases import looped
 from indexed_programs import NAMES, Section, flat, polygon, program, tool
 from programs import tables_of
 from test_cli import call
@@ -33,10 +34,10 @@ def flats(count: int, distance: float = 12.0, half: float = 22.0, first: float =
     return [Section(flat(distance, half), (first + number * 360 / count) % 360) for number in range(count)]
 
 
-@pytest.mark.one_in(4)
-@pytest.mark.parametrize(("control", "inch"), VARIATIONS)
-@pytest.mark.parametrize("first", [0.0, 15.0])
-@pytest.mark.parametrize(("count", "name"), [(3, "triangle"), (4, "square"), (6, "hexagon"), (8, "octagon")])
+@pytest.mark.ci
+@looped(("control", "inch"), VARIATIONS, one_in=4)
+@looped("first", [0.0, 15.0])
+@looped(("count", "name"), [(3, "triangle"), (4, "square"), (6, "hexagon"), (8, "octagon")])
 def test_flats_with_c_between_them_are_one_shape(count: int, name: str, first: float, control: str, inch: bool) -> None:
     (shape,) = made(flats(count, first=first), control, inch)
     assert shape.shape == name
@@ -47,9 +48,9 @@ def test_flats_with_c_between_them_are_one_shape(count: int, name: str, first: f
     assert (shape.line, shape.end_line) == (shape.sections[0].line, shape.sections[0].end_line)
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize(("control", "inch"), VARIATIONS)
-@pytest.mark.parametrize("first", [0.0, 30.0])
+@pytest.mark.ci
+@looped(("control", "inch"), VARIATIONS, one_in=12)
+@looped("first", [0.0, 30.0])
 def test_two_flats_are_a_part_with_two_flats(first: float, control: str, inch: bool) -> None:
     (shape,) = made(flats(2, half=14.0, first=first), control, inch)
     assert (shape.shape, shape.values["flats"]) == ("flats", 2)
@@ -90,6 +91,7 @@ def test_incremental_indexing_is_the_same() -> None:
     assert (shape.shape, angles(shape)) == ("triangle", [0.0, 120.0, 240.0])
 
 
+@pytest.mark.ci
 def test_each_depth_is_put_together() -> None:
     depths = (-2.0, -4.0, -6.0)
     sections = [section._replace(depths=depths) for section in flats(3)]
@@ -102,8 +104,9 @@ def test_each_depth_is_put_together() -> None:
     assert [angle for shape in rest for angle in angles(shape)] == [0.0, 120.0]
 
 
-@pytest.mark.parametrize(("control", "inch"), VARIATIONS)
-@pytest.mark.parametrize(("entry", "written"), [(10.0, 0.0), (120.0, 0.0), (20.0, 15.0), (350.0, 0.0)])
+@pytest.mark.ci
+@looped(("control", "inch"), VARIATIONS)
+@looped(("entry", "written"), [(10.0, 0.0), (120.0, 0.0), (20.0, 15.0), (350.0, 0.0)])
 def test_c_at_the_switch_is_added_to_the_angle(entry: float, written: float, control: str, inch: bool) -> None:
     (shape,) = made([Section(polygon(6, 30.0, written), entry)], control, inch)
     assert shape.values["turned"] == pytest.approx((entry + written) % 60, abs=0.02)
@@ -111,8 +114,9 @@ def test_c_at_the_switch_is_added_to_the_angle(entry: float, written: float, con
     assert f"; C{entry:g} at " in shape.text
 
 
-@pytest.mark.parametrize(("control", "inch"), VARIATIONS)
-@pytest.mark.parametrize("entry", [90.0, 180.0])
+@pytest.mark.ci
+@looped(("control", "inch"), VARIATIONS)
+@looped("entry", [90.0, 180.0])
 def test_places_are_those_of_the_part(entry: float, control: str, inch: bool) -> None:
     square = [point + 14 for point in polygon(4, 8.0)]
     (shape,) = made([Section([*square[:-1], square[0]], entry, approach=40.0)], control, inch, radius=2.0)
@@ -123,8 +127,9 @@ def test_places_are_those_of_the_part(entry: float, control: str, inch: bool) ->
     )
 
 
-@pytest.mark.parametrize(("control", "inch"), [("siemens-iso", False), ("siemens-iso", True)])
-@pytest.mark.parametrize("written", [0.0, 10.0])
+@pytest.mark.ci
+@looped(("control", "inch"), [("siemens-iso", False), ("siemens-iso", True)])
+@looped("written", [0.0, 10.0])
 def test_c_that_nobody_knows_is_told_as_such(written: float, control: str, inch: bool) -> None:
     (shape,) = made([Section(polygon(6, 30.0, written), None)], control, inch)
     assert angles(shape) == [None]
@@ -149,9 +154,8 @@ def test_a_shape_in_a_shape_keeps_its_own_section() -> None:
     assert outside.line < inside.line
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize(("control", "inch"), VARIATIONS)
-@pytest.mark.parametrize("first", [0.0, 15.0])
+@looped(("control", "inch"), VARIATIONS, one_in=12)
+@looped("first", [0.0, 15.0])
 def test_flats_that_close_no_polygon_are_told_with_their_angles(first: float, control: str, inch: bool) -> None:
     entries = [first + angle for angle in (0.0, 60.0, 120.0, 180.0, 240.0)]
     (shape,) = made([Section(flat(12.0, 14.0), angle) for angle in entries], control, inch)
@@ -170,7 +174,8 @@ def test_what_has_no_name_together_is_told_one_by_one() -> None:
     assert [(shape.shape, angles(shape)) for shape in shapes] == [("hexagon", [0.0]), ("flats", [30.0])]
 
 
-@pytest.mark.parametrize(("control", "inch"), VARIATIONS)
+@pytest.mark.ci
+@looped(("control", "inch"), VARIATIONS)
 def test_a_flat_of_several_that_is_off_is_told_with_its_line(control: str, inch: bool) -> None:
     sections = flats(6, half=14.0)
     sections[4] = sections[4]._replace(points=flat(12.1, 14.0))
@@ -201,9 +206,9 @@ def path(distance: float, angle: float, radius: float = 8.0) -> Section:
     return Section([complex(distance + radius, -40), complex(distance + radius, 40)], angle, side=40, approach=60.0)
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize(("control", "inch"), VARIATIONS)
-@pytest.mark.parametrize("first", [0.0, 10.0])
+@pytest.mark.ci
+@looped(("control", "inch"), VARIATIONS, one_in=12)
+@looped("first", [0.0, 10.0])
 def test_paths_of_the_center_are_put_together_likewise(first: float, control: str, inch: bool) -> None:
     (shape,) = made([path(12.0, first + angle) for angle in (0.0, 120.0, 240.0)], control, inch, 8.0, stock=40.0)
     assert shape.shape == "triangle"
@@ -214,7 +219,7 @@ def test_paths_of_the_center_are_put_together_likewise(first: float, control: st
     assert shape.values["apart"] == pytest.approx(24.0, abs=0.004)
 
 
-@pytest.mark.parametrize("entry", [5.0, 10.0, 45.0])
+@looped("entry", [5.0, 10.0, 45.0])
 def test_a_closed_path_is_the_same_at_any_angle(entry: float) -> None:
     shape, *_ = made([Section(polygon(6, 46.0), entry, side=40, approach=60.0)], radius=8.0)
     assert (shape.shape, shape.is_regular) == ("hexagon", True)
@@ -244,10 +249,10 @@ def test_json_has_the_sections() -> None:
     ]
 
 
-@pytest.mark.one_in(8)
-@pytest.mark.parametrize("inch", [False, True])
-@pytest.mark.parametrize("control", ["fanuc", "haas-lathe"])
-@pytest.mark.parametrize("entry", [0.0, 20.0])
+@pytest.mark.ci
+@looped("inch", [False, True], one_in=8)
+@looped("control", ["fanuc", "haas-lathe"])
+@looped("entry", [0.0, 20.0])
 def test_a_section_that_no_part_is_for_is_told_as_what_it_makes(entry: float, control: str, inch: bool) -> None:
     sections = [Section(polygon(6, 25.4), entry), Section(polygon(4, 20.32), entry, depths=(-2.54,))]
     Path("a.nc").write_text(program(sections, control, inch))
@@ -272,9 +277,9 @@ def of_init(sections: list[Section], control: str = "fanuc", inch: bool = False)
     return call("init", "--part", "a.nc", "--machine", control, "--tool", tool(3, inch)).stdout
 
 
-@pytest.mark.one_in(3)
-@pytest.mark.parametrize(("control", "inch"), VARIATIONS)
-@pytest.mark.parametrize("first", [0.0, 15.0])
+@pytest.mark.ci
+@looped(("control", "inch"), VARIATIONS, one_in=3)
+@looped("first", [0.0, 15.0])
 def test_what_sections_make_together_agrees_with_the_part_that_is_written_of_it(
     first: float, control: str, inch: bool
 ) -> None:

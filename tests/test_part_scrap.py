@@ -7,10 +7,13 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import pytest
+from cases import looped
 from programs import report_of, tables_of
 
 from polarcheck.foundation.finding import FileReport
 from polarcheck.reports.made_parts.compared_contours import compared
+
+pytestmark = pytest.mark.ci
 
 RULE = "part-differs-from-drawing"
 HEAD = "G21 G40 G98 T0303\n"
@@ -149,18 +152,16 @@ def checked(case: Case, text: str, way: str) -> FileReport:
     return report_of(program, machine, f"3:radius={case.radius}", job=job, only=[RULE])
 
 
-@pytest.mark.one_in(3)
-@pytest.mark.parametrize("way", WAYS)
-@pytest.mark.parametrize("name", CASES)
+@looped("way", WAYS, one_in=3)
+@looped("name", CASES)
 def test_a_sound_program_agrees(name: str, way: str) -> None:
     report = checked(CASES[name], CASES[name].program, way)
     assert [finding.message for finding in report.findings] == []
     assert [missing.reason for missing in report.not_evaluated] == []
 
 
-@pytest.mark.one_in(38)
-@pytest.mark.parametrize("way", WAYS)
-@pytest.mark.parametrize(("name", "slip"), [(name, slip) for name in CASES for slip in CASES[name].slips])
+@looped("way", WAYS, one_in=38)
+@looped(("name", "slip"), [(name, slip) for name in CASES for slip in CASES[name].slips])
 def test_scrap_does_not(name: str, slip: tuple[str, str], way: str) -> None:
     case = CASES[name]
     assert slip[0] in case.program
@@ -171,7 +172,7 @@ def test_scrap_does_not(name: str, slip: tuple[str, str], way: str) -> None:
         assert expected in findings[0].message
 
 
-@pytest.mark.parametrize("turn", [None, 20.0])
+@looped("turn", [None, 20.0])
 def test_an_angle_that_cannot_be_compared_is_told_as_that(turn: float | None) -> None:
     """C at G12.1 is not known, or the part does not say how it is turned."""
     case = CASES["hexagon"]

@@ -9,6 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from cases import looped
 from drawn_contours import CONTROLS, Drawn, Element
 from overlapped_contours import LEADS, Overlapped, contour, overlapped
 from programs import tables_of
@@ -47,9 +48,8 @@ def is_seen(shape: Overlapped, drift: complex = 0) -> bool:
     return shapes[0].inside == is_pocket and all(abs(area - shape.area) <= slack for area in areas)
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize("turned", [0.0, 33.0])
-@pytest.mark.parametrize("control", BY_MACHINE)
+@looped("turned", [0.0, 33.0], one_in=12)
+@looped("control", BY_MACHINE)
 def test_a_quadrilateral_with_corners_of_chords_that_ends_past_its_start(control: str, turned: float) -> None:
     corners = [cmath.rect(abs(point), cmath.phase(point) + math.radians(turned)) for point in QUADRILATERAL]
     shape = overlapped(corners, 1.5, 16, 0.34, control=BY_MACHINE[control])
@@ -58,12 +58,12 @@ def test_a_quadrilateral_with_corners_of_chords_that_ends_past_its_start(control
     assert "open" not in seen.text
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 def test_closed_contours_that_end_past_their_start() -> None:
     assert [seed for seed in range(40) if not is_seen(contour(seed))] == []
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 def test_many_closed_contours_that_end_past_their_start() -> None:
     assert [seed for seed in range(40, 200) if not is_seen(contour(seed))] == []
 
@@ -83,8 +83,8 @@ def test_two_contours_of_one_level_that_end_past_their_start() -> None:
 # ---- contours that end beside their start ----
 
 
-@pytest.mark.one_in(9)
-@pytest.mark.parametrize("control", BY_MACHINE)
+@pytest.mark.ci
+@looped("control", BY_MACHINE, one_in=9)
 def test_a_contour_that_ends_beside_its_start_keeps_its_last_wall(control: str) -> None:
     for number in range(24):
         turned = [cmath.rect(1, math.radians(7 * number)) * point for point in QUADRILATERAL]
@@ -97,10 +97,10 @@ def test_a_contour_that_ends_beside_its_start_keeps_its_last_wall(control: str) 
     assert is_seen(pocket, 0.05)
 
 
-@pytest.mark.one_in(6)
-@pytest.mark.parametrize("turned", [0.0, 17.0])
-@pytest.mark.parametrize("control", BY_MACHINE)
-@pytest.mark.parametrize("drift", [0.05, -0.05, 0.3, -0.3, 0.05j, -0.05j, 0.1 + 0.1j])
+@pytest.mark.ci
+@looped("turned", [0.0, 17.0], one_in=6)
+@looped("control", BY_MACHINE)
+@looped("drift", [0.05, -0.05, 0.3, -0.3, 0.05j, -0.05j, 0.1 + 0.1j])
 def test_a_hexagon_that_ends_beside_its_first_corner(control: str, turned: float, drift: complex) -> None:
     corners = [cmath.rect(20, math.radians(turned + 60 * number)) for number in range(7)]
     off = drift * cmath.rect(1, math.radians(turned))
@@ -143,8 +143,9 @@ def hexagon(control: str, turned: float = 0, narrower: float = 1, distance: floa
     return Drawn("", points[-1], tuple(map(Element, points)), BY_MACHINE[control], "G42", away, 4, False, False, (2.0,))
 
 
-@pytest.mark.parametrize("turned", [0.0, 11.0])
-@pytest.mark.parametrize("control", BY_MACHINE)
+@pytest.mark.ci
+@looped("turned", [0.0, 11.0])
+@looped("control", BY_MACHINE)
 def test_a_hexagon_without_z_words(control: str, turned: float) -> None:
     drawn = hexagon(control, turned)
     (seen,) = made(without_z(drawn.text()), *drawn.tools, machine=drawn.machine)
@@ -152,9 +153,9 @@ def test_a_hexagon_without_z_words(control: str, turned: float) -> None:
     assert seen.text.endswith("; to Z not known")
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize("narrower", [1.0, 0.6, 0.3])
-@pytest.mark.parametrize("control", BY_MACHINE)
+@pytest.mark.ci
+@looped("narrower", [1.0, 0.6, 0.3], one_in=12)
+@looped("control", BY_MACHINE)
 def test_a_hexagon_without_z_words_as_the_path_of_the_tool(control: str, narrower: float) -> None:
     """All its sides are one level, however short: what they leave is as with Z words."""
     drawn = hexagon(control, narrower=narrower, distance=22)
@@ -183,6 +184,7 @@ def test_flats_by_increments_of_z() -> None:
     assert seen.text == "hexagon, 30.000 across flats; to Z not known"
 
 
+@pytest.mark.ci
 def test_shapes_at_two_depths_by_increments_of_z() -> None:
     """They are told apart, though nobody knows at which Z they are."""
     first = hexagon("fanuc").loop()
@@ -199,7 +201,8 @@ IN_MM = {"units": "G21", "far": "180.", "x": "140", "end": "140.", "r": "70.", "
 IN_INCH = {**IN_MM, "units": "G20", "far": "7.", "x": "5", "end": "5.", "r": "2.5"}
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("words", "machine", "as_meant"),
     [
         (IN_MM, "fanuc", "line 6: X140 is taken as X140., as probably meant; the control reads 0.140"),
@@ -224,6 +227,7 @@ def test_a_number_that_is_taken_as_meant_is_told(words: dict[str, str], machine:
     assert view.remarks == ([as_meant] if as_meant else [])
 
 
+@pytest.mark.ci
 @pytest.mark.usefixtures("own_folder")
 def test_the_report_of_the_part_and_its_page_tell_what_is_taken_as_meant() -> None:
     Path("round.nc").write_text(ROUND.format_map(IN_MM))
@@ -249,9 +253,9 @@ def at_depths(control: str, off: dict[int, complex], turned: float = 0, count: i
     return made("\n".join(blocks), *drawn.tools, machine=drawn.machine)
 
 
-@pytest.mark.one_in(3)
-@pytest.mark.parametrize("turned", [0.0, 20.0])
-@pytest.mark.parametrize("control", BY_MACHINE)
+@pytest.mark.ci
+@looped("turned", [0.0, 20.0], one_in=3)
+@looped("control", BY_MACHINE)
 def test_a_pass_that_differs_is_told_apart_with_how_much(control: str, turned: float) -> None:
     outward = cmath.rect(1, math.radians(turned + 30 + 120))
     unit = BY_MACHINE[control].unit
@@ -268,7 +272,8 @@ def test_a_pass_that_differs_is_told_apart_with_how_much(control: str, turned: f
     assert float(more) * unit == pytest.approx(1, abs=0.01)
 
 
-@pytest.mark.parametrize("control", BY_MACHINE)
+@pytest.mark.ci
+@looped("control", BY_MACHINE)
 def test_passes_that_are_the_same_are_one_entry(control: str) -> None:
     (seen,) = at_depths(control, {})
     assert len(seen.depths) == 3

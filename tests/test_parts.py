@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from cases import looped
 from click.testing import CliRunner
 from polarcheck.errors import JobError
 
@@ -17,7 +18,7 @@ from polarcheck.program.machines.part_keys import SIDES, Part
 HEXAGON = {"shape": "hexagon", "across_flats": 27.0}
 
 
-@pytest.mark.parametrize(
+@looped(
     ("part", "key", "said"),
     [
         ({}, "", "expected drawing = a DXF file, or shape = triangle, square, pentagon"),
@@ -45,7 +46,7 @@ def test_what_fits_no_shape_is_told_with_its_key(part: dict[str, Any], key: str,
     assert str(raised.value).startswith(f"polarcheck.toml: part.2{key}: {said}")
 
 
-@pytest.mark.parametrize(("name", "count"), SIDES.items())
+@looped(("name", "count"), SIDES.items())
 def test_a_name_is_a_number_of_sides(name: str, count: int) -> None:
     (part,) = from_table({"part": [{"shape": name, "across_flats": 2.0}]}, "").part
     assert part.count_of_sides == count

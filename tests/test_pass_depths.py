@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import pytest
+from cases import looped
 from programs import tables_of
+
+pytestmark = pytest.mark.ci
 
 BLOCKS = "Z{}\nG42 X{} C0 F{}\nG3 I-{}\nG1 G40 X{}\n"
 #: Size of X, F, radius and X of the approach: of mm and of inch.
@@ -21,8 +24,8 @@ def off(levels: list[float], code: str) -> dict[int, float]:
     return {rows[row]: float(depths.expected[row]) for row in rows if depths.is_off[row]}
 
 
-@pytest.mark.parametrize("code", UNITS)
-@pytest.mark.parametrize(
+@looped("code", UNITS)
+@looped(
     ("levels", "expected"),
     [
         ([-2, -4, -6, -8], {}),

@@ -7,6 +7,7 @@ from random import Random
 
 import numpy as np
 import pytest
+from cases import looped
 
 from polarcheck.foundation.states import Motion
 from polarcheck.geometry.comparison import path_deviation as paths
@@ -65,7 +66,8 @@ def circle_in(*angles: float, radius: float = 20.0, kind: Motion = Motion.CCW) -
     return path_of(radius + 0j, *((end, 0.0, 0j, kind) for end in ends))
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("old", "new", "deviation"),
     [
         (lines(*SQUARE), lines(*SQUARE), 0),
@@ -103,8 +105,7 @@ def test_closed_forms(old: SpacePath, new: SpacePath, deviation: float) -> None:
             )
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize("seed", range(12))
+@looped("seed", range(12), one_in=12)
 def test_sampling_finds_the_same(seed: int) -> None:
     draw = Random(seed)  # noqa: S311 - paths that can be drawn again
     old = [complex(draw.uniform(-3, 3), draw.uniform(-3, 3)) for _ in range(draw.randint(2, 6))]

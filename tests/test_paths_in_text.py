@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from cases import looped
 from click.testing import CliRunner, Result
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -63,7 +64,7 @@ def only_view(program: str, *tools: str, **limits: float) -> SectionView:
 # ---- what is seen from in front ----
 
 
-@pytest.mark.parametrize("radius", [1e-6, 0.5, 30.0, 1e6, 1e300])
+@looped("radius", [1e-6, 0.5, 30.0, 1e6, 1e300])
 def test_a_circle_is_round(radius: float) -> None:
     found = np.array(sorted(dots(face_view(NOTHING, circle(radius), NOTHING, 80, 12, dots=True))))
     across, down = np.ptp(found, axis=0) + 1
@@ -78,7 +79,7 @@ def test_a_circle_is_round(radius: float) -> None:
     assert abs(max(len(line.removesuffix(" C0")) for line in lines) - 2 * 12) <= 1
 
 
-@pytest.mark.parametrize("with_dots", [True, False])
+@looped("with_dots", [True, False])
 def test_a_square_has_its_corners_and_nothing_inside_but_the_center(with_dots: bool) -> None:
     lines = face_view(NOTHING, square(10), NOTHING, 60, 9, dots=with_dots)
     rows = [line.removesuffix(" C0") for line in lines]
@@ -123,6 +124,7 @@ points = st.lists(
 ).map(lambda values: np.array(values, complex))
 
 
+@pytest.mark.ci
 @settings(max_examples=60)
 @given(points, points, points, st.integers(8, 70), st.integers(2, 20), st.booleans())
 def test_any_points_fit(
@@ -158,7 +160,7 @@ def heights(lines: list[str]) -> list[float]:
     return [sum(values.get(cell, 0.0) for cell in column) for column in columns]
 
 
-@pytest.mark.parametrize("with_dots", [True, False])
+@looped("with_dots", [True, False])
 def test_the_strip_is_as_high_as_its_values(with_dots: bool) -> None:
     time = np.linspace(0, 10, 4001)
     values = 100 * np.sin(time / 10 * np.pi)
@@ -186,7 +188,7 @@ def test_one_short_peak_is_never_lost() -> None:
     assert [at for at, height in enumerate(found) if height == 5] == [7]
 
 
-@pytest.mark.parametrize(
+@looped(
     ("values", "is_empty"),
     [([], True), ([np.nan, np.nan], True), ([0.0, 0.0], True), ([0.0, np.inf], True), ([1.0, np.inf], False)],
 )
@@ -216,6 +218,7 @@ def distance_to(points: Points, path: Points) -> Floats:
     return np.abs(points[:, None] - path[None, :]).min(axis=1)
 
 
+@pytest.mark.ci
 def test_paths_are_those_of_the_program() -> None:
     program = HEAD + "G1 G42 X30. F100\nG3 X30. C0 I-15. J0\nG40 X60.\nG13.1\nM30\n"
     view = only_view(program, "8:radius=4")
@@ -237,7 +240,8 @@ def test_without_the_radius_the_programmed_path_is_shown_and_that_is_said() -> N
     assert "rate of C over time: not known" in text
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("program", "said"),
     [
         (HEAD + "G13.1\nM30\n", "+ C0"),
@@ -261,6 +265,7 @@ def test_of_many_sections_the_first_are_shown_and_the_others_counted() -> None:
     assert [view.remarks for view in views[-2:]] == [[], ["8 more sections are not shown"]]
 
 
+@pytest.mark.ci
 def test_very_many_blocks_are_few_points() -> None:
     angle = np.arange(30_000) / 500
     blocks = "\n".join(f"X{40 * np.cos(one):.4f} C{20 * np.sin(one):.4f}" for one in angle)
@@ -289,7 +294,8 @@ def test_check_shows_paths_behind_the_findings() -> None:
     assert f"{findings}fail" + rest.rpartition("\nfail")[2] == run("check", path).stdout
 
 
-@pytest.mark.parametrize(("charset", "term"), [("ascii", "xterm"), ("utf-8", "dumb"), ("cp437", "xterm")])
+@pytest.mark.ci
+@looped(("charset", "term"), [("ascii", "xterm"), ("utf-8", "dumb"), ("cp437", "xterm")])
 def test_what_a_terminal_cannot_show_is_ascii(charset: str, term: str) -> None:
     for command in ("check", "trace"):
         result = run(command, "--show", "path", str(SAMPLES / "hexagon.nc"), charset=charset, TERM=term)

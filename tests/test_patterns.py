@@ -9,6 +9,7 @@ import re
 
 import numpy as np
 import pytest
+from cases import looped
 from pattern_growth import (
     Used,
     constant_patterns,
@@ -33,7 +34,7 @@ from polarcheck.program.reading.globs import Globs
 from polarcheck.program.reading.source import read_source
 from polarcheck.rewrite.convert import call_words, heads
 
-pytestmark = pytest.mark.slow
+pytestmark = pytest.mark.ci
 
 #: What a stranger's job file may hold.
 GLOBS = ["O12*.nc", "*a*a*a*b", "lathe7/**/x?/**/*.nc", "[a-z]*[!0-9]", "**/a*b*/**", "??*??", "[[[*"]
@@ -120,8 +121,7 @@ def test_the_methods_of_a_pattern_are_known_after_many_others_were_compiled() ->
     assert [used.methods for used in constant_patterns()[0]] == [used.methods for used in before]
 
 
-@pytest.mark.one_in(4)
-@pytest.mark.parametrize("part", range(8))
+@looped("part", range(8), one_in=4)
 def test_no_pattern_costs_more_than_the_length_of_its_text(part: int) -> None:
     """Slow, since it tries each part of each pattern: 90,000 texts of nine sizes. A new pattern is tried by itself."""
     tried = {name: used for name, used in patterns().items() if not name.startswith(OF_SHORT_TEXTS)}
@@ -168,7 +168,7 @@ SLOW = {
 }
 
 
-@pytest.mark.parametrize("name", SLOW)
+@looped("name", SLOW)
 def test_a_pattern_that_costs_more_is_seen(name: str) -> None:
     pattern, method = SLOW[name]
     assert worst(re.compile(pattern, re.IGNORECASE | re.DOTALL), {method})

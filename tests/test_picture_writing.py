@@ -6,6 +6,7 @@ import cmath
 import math
 
 import pytest
+from cases import looped
 from test_pictures import ARCS, HEAD, HEXAGON, points, section_of
 
 from polarcheck.view.picture_data import SectionPicture, Writing
@@ -36,7 +37,8 @@ def plane_point(section: SectionPicture, x: float, c: float) -> complex:
     return cmath.rect(1, math.radians(writing.turn)) * written + complex(*writing.origin)
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("program", "machine", "words", "virtual"),
     [
         (HEXAGON, "fanuc", (0, 17.320508), "C"),

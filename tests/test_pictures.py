@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 import shapely
+from cases import looped
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from polarcheck.errors import TooHardError
@@ -123,6 +124,7 @@ def distance(point: Any, path: Any) -> Any:
     return np.abs(point[:, None] - start - along * way / length).min(axis=1)
 
 
+@pytest.mark.ci
 @settings(deadline=None, max_examples=20)
 @given(st.integers(0, 2**32 - 1), st.integers(50, 400))
 def test_thinned_paths_lie_as_near_as_is_said(seed: int, most: int) -> None:
@@ -155,7 +157,7 @@ def test_a_path_that_is_short_enough_is_left_as_it_is() -> None:
     assert len(section_of(HEXAGON, "8:radius=4").tool.x) == 10
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 def test_50_000_short_blocks_make_a_small_picture_that_is_near() -> None:
     count = 50_000
     angle = 2 * np.pi * np.arange(1, count + 1) / count
@@ -199,6 +201,7 @@ def sampled(section: SectionPicture, times: Any) -> tuple[Any, Any]:
     return np.degrees(np.unwrap(np.angle(points))), np.abs(points)
 
 
+@pytest.mark.ci
 def test_rates_are_those_of_a_dense_sampling() -> None:
     section = section_of(HEXAGON.replace("Z-2. F300", "X60. F300"), "8:radius=4")
     curves = section.rates
@@ -217,7 +220,8 @@ def test_rates_are_those_of_a_dense_sampling() -> None:
     assert np.abs(column(curves.c_feed)).max() == pytest.approx(column(section.moves.c_feed).max(), rel=1e-6)
 
 
-@pytest.mark.parametrize(("i", "sense"), [(-8.0, "G3"), (-8.0, "G2"), (-19.0, "G3")])
+@pytest.mark.ci
+@looped(("i", "sense"), [(-8.0, "G3"), (-8.0, "G2"), (-19.0, "G3")])
 def test_rates_on_arcs_off_the_center_have_their_peaks(i: float, sense: str) -> None:
     """A full circle about a point that is not the center of C: C turns fastest where the circle is nearest to it."""
     program = HEAD + f"G1 X40. F1000\n{sense} X40. C0 I{i} J0 F100\nG1 X80.\nG13.1\nM30\n"
@@ -269,6 +273,7 @@ def test_the_finished_part_is_filled() -> None:
     assert shapely.Polygon(ring).area == pytest.approx(6 * 15**2 * math.tan(math.pi / 6), rel=1e-4)
 
 
+@pytest.mark.ci
 def test_of_a_pocket_only_what_is_near_is_shown_unless_the_bar_is_known() -> None:
     (part,) = section_of(GROOVE, "8:radius=2").parts
     assert not part.known_outside
@@ -278,6 +283,7 @@ def test_of_a_pocket_only_what_is_near_is_shown_unless_the_bar_is_known() -> Non
     assert far.max() == pytest.approx(45, abs=1e-3)
 
 
+@pytest.mark.ci
 def test_an_overcut_is_the_area_that_the_cutter_takes() -> None:
     marks = section_of(GROOVE, "8:radius=4").marks
     assert [(mark.kind, mark.lines, mark.depth) for mark in marks] == [("overcut", [7, 13], 2), ("overcut", [13, 7], 2)]
@@ -290,6 +296,7 @@ def test_an_overcut_is_the_area_that_the_cutter_takes() -> None:
         assert np.sign(area.centroid.y) == side
 
 
+@pytest.mark.ci
 def test_what_is_left_standing_has_its_place_and_line() -> None:
     text = load_all()["material-left"].page
     program = text.partition("Bad")[2].partition(":\n\n")[2].partition("Good")[0]
@@ -306,6 +313,7 @@ def test_what_is_left_standing_has_its_place_and_line() -> None:
     assert "stays behind line" in mark.text
 
 
+@pytest.mark.ci
 def test_a_strip_between_passes_is_as_thick_as_it_is_told() -> None:
     """Round passes at R 30 and R 21.5 with a cutter of 8: half a mm stays between 29.5 and 30."""
     rounds = "G42 X60. F200\nG3 X60. C0 I-30. J0\nG1 X43.\nG3 X43. C0 I-21.5 J0\nG1\n"
@@ -383,6 +391,7 @@ def test_each_section_is_a_picture_with_its_own_limits() -> None:
     assert max(column(first.moves.share)) == pytest.approx(max(column(first.moves.c_feed)) / 900, abs=1e-4)
 
 
+@pytest.mark.ci
 def test_each_channel_has_its_sections() -> None:
     program = "$1\n" + HEXAGON + "$2\n" + HEXAGON.replace("Z-2.", "Z-4.")
     sections = drawn_of(program, "8:radius=4", changes={"control": {"channel_mark": "$"}}).sections
@@ -391,6 +400,7 @@ def test_each_channel_has_its_sections() -> None:
     assert sections[1].line == 20
 
 
+@pytest.mark.ci
 def test_of_two_runs_it_is_said_which_is_drawn() -> None:
     both = drawn_of(HEXAGON.replace("Z-2.", "Z-2.\n/Z-3.\n"), "8:radius=4")
     assert both.skip == "off"
@@ -417,10 +427,12 @@ def test_findings_are_never_thinned(monkeypatch: pytest.MonkeyPatch) -> None:
 # ---- data ----
 
 
+@pytest.mark.ci
 def test_the_same_program_makes_the_same_picture() -> None:
     assert drawn_of(GROOVE, "8:radius=4") == drawn_of(GROOVE, "8:radius=4")
 
 
+@pytest.mark.ci
 def test_columns_have_one_length_and_are_json() -> None:
     import msgspec
 
@@ -433,7 +445,8 @@ def test_columns_have_one_length_and_are_json() -> None:
         assert msgspec.convert(data, SectionPicture) == section
 
 
-@pytest.mark.parametrize("program", ["G12.1\n", "O1\nG12.1\nG13.1\nM30\n", "T0101\nG0 X50. C0\nG12.1\nG13.1\nG12.1\n"])
+@pytest.mark.ci
+@looped("program", ["G12.1\n", "O1\nG12.1\nG13.1\nM30\n", "T0101\nG0 X50. C0\nG12.1\nG13.1\nG12.1\n"])
 def test_a_section_without_moves_has_an_empty_picture(program: str) -> None:
     sections = drawn_of(program, "1:radius=5").sections
     assert [section.move_count for section in sections] == [0] * program.count("G12.1")

@@ -11,6 +11,7 @@ from typing import Any
 import msgspec
 import numpy as np
 import pytest
+from cases import looped
 from click.testing import CliRunner
 from test_pictures import ARCS, GROOVE, HEAD, HEXAGON, column, drawn_of, section_of
 
@@ -88,8 +89,7 @@ CASES: dict[str, tuple[str, dict[str, Any], int, int]] = {
 }
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize("case", CASES)
+@looped("case", CASES, one_in=12)
 def test_the_cutter_x_and_c_are_those_of_the_trace(case: str) -> None:
     program, changes, sense, side = CASES[case]
     radius = 0.25 if case == "inch" else 4.0
@@ -100,7 +100,8 @@ def test_the_cutter_x_and_c_are_those_of_the_trace(case: str) -> None:
     assert compare_with_trace(section, moves_of(trace), sense, side) >= 3
 
 
-@pytest.mark.parametrize("path", ["rotary-a/contour.nc", "second-spindle/contour.nc", "siemens-transmit"])
+@pytest.mark.ci
+@looped("path", ["rotary-a/contour.nc", "second-spindle/contour.nc", "siemens-transmit"])
 def test_samples_of_other_lathes_are_drawn_as_their_trace(path: str) -> None:
     file = SAMPLES / path
     file = next(iter(sorted(each for each in file.iterdir() if each.suffix != ".toml"))) if file.is_dir() else file
@@ -116,6 +117,7 @@ def test_samples_of_other_lathes_are_drawn_as_their_trace(path: str) -> None:
     assert sum(compared) >= 3
 
 
+@pytest.mark.ci
 def test_in_the_center_c_jumps_by_half_a_turn() -> None:
     section = section_of(CENTER)
     moves, curves = section.moves, section.rates
@@ -196,6 +198,7 @@ def test_many_points_are_left_out_where_the_curves_are_straight() -> None:
     assert off < 2
 
 
+@pytest.mark.ci
 def test_the_views_of_a_second_channel_begin_at_their_own_angle() -> None:
     program = "$1\n" + HEXAGON + "$2\n" + HEXAGON.replace("C0 Z2.", "C45. Z2.")
     first, second = drawn_of(program, "8:radius=4", changes={"control": {"channel_mark": "$"}}).sections

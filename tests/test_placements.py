@@ -10,6 +10,7 @@ from typing import Any
 import msgspec
 import pytest
 import shapely
+from cases import looped
 from programs import job_of, report_of
 from test_deviations import HEAD, RULE, TAIL, drawn, polygon, program
 
@@ -83,23 +84,23 @@ CHANGES = {
 }
 
 
-@pytest.mark.one_in(15)
-@pytest.mark.parametrize("name", CHANGES)
-@pytest.mark.parametrize("machine", ["fanuc-30i", "haas-lathe", "siemens-iso"])
+@pytest.mark.ci
+@looped("name", CHANGES, one_in=15)
+@looped("machine", ["fanuc-30i", "haas-lathe", "siemens-iso"])
 def test_a_drawing_that_lies_or_measures_otherwise_is_told_as_that(name: str, machine: str) -> None:
     change, expected = CHANGES[name]
     text = said(on(machine, program(EGG)), drawing([change(corner) for corner in EGG]), machine=machine)
     assert expected in text
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize("name", CHANGES)
+@looped("name", CHANGES, one_in=12)
 def test_so_it_is_where_the_contour_is_turned(name: str) -> None:
     change, expected = CHANGES[name]
     corners = [corner * cmath.exp(2j) for corner in EGG]
     assert expected in said(program(corners), drawing([change(corner) for corner in corners]))
 
 
+@pytest.mark.ci
 def test_so_it_is_in_inch() -> None:
     text = program([corner / 2 for corner in EGG], scale=25.4)
     job = msgspec.structs.replace(drawing([corner / 2 - 12.7 for corner in EGG], 25.4), units="inch")
@@ -109,7 +110,8 @@ def test_so_it_is_in_inch() -> None:
     assert "The drawing would fit 25.4 times as small (as one in mm): within 0" in said(text, job, 3 / 25.4)
 
 
-@pytest.mark.parametrize("of_file", [25.4, math.nan])
+@pytest.mark.ci
+@looped("of_file", [25.4, math.nan])
 def test_units_of_the_file_and_of_the_program(of_file: float) -> None:
     """A drawing without units has those of the program: one in mm does not fit a program in inch."""
     text = program([corner / 2 for corner in EGG], scale=25.4)
@@ -117,6 +119,7 @@ def test_units_of_the_file_and_of_the_program(of_file: float) -> None:
     assert "25.4 times as small (as one in mm)" in said(text, job, 3 / 25.4)
 
 
+@pytest.mark.ci
 def test_of_several_contours_each_is_found_in_a_drawing_in_inch() -> None:
     """The curve that comes nearest is another one then."""
     text = program(polygon(6, 13.5)).replace(TAIL, "G13.1\n") + program(polygon(4, 20.0), z=-8.0).removeprefix("O1\n")
@@ -131,8 +134,8 @@ def test_of_several_contours_each_is_found_in_a_drawing_in_inch() -> None:
         assert "The drawing would fit 25.4 times as large (as one in inch): within 0" in finding.message
 
 
-@pytest.mark.one_in(3)
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("change", "expected"),
     [
         (lambda point: point / 25.4, "The drawing would fit 25.4 times as large (as one in inch)"),
@@ -140,6 +143,7 @@ def test_of_several_contours_each_is_found_in_a_drawing_in_inch() -> None:
         (lambda point: point / TURN, "The part would fit turned by -30 deg"),
     ],
     ids=["inch", "shifted", "turned"],
+    one_in=3,
 )
 def test_of_flats_the_round_of_the_drawing_shows_the_axis(change: Any, expected: str) -> None:
     """A round of 30 with a flat 9 from the center, milled as a wall that ends beyond the bar."""
@@ -162,8 +166,8 @@ def center_path(corners: list[complex]) -> str:
     return HEAD + "\n".join(blocks) + "\n" + TAIL
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("change", "expected"),
     [
         (lambda point: point + 12, "The drawing would fit shifted by x -12.000 c 0.000: within 0"),
@@ -175,14 +179,15 @@ def center_path(corners: list[complex]) -> str:
         ),
     ],
     ids=["shifted", "mm", "turned", "both"],
+    one_in=12,
 )
-@pytest.mark.parametrize(("machine", "turn"), [("fanuc-30i", 0.25), ("haas-lathe", 0.0), ("siemens-iso", 0.25)])
+@looped(("machine", "turn"), [("fanuc-30i", 0.25), ("haas-lathe", 0.0), ("siemens-iso", 0.25)])
 def test_so_it_is_without_compensation(change: Any, expected: str, machine: str, turn: float) -> None:
     text = on(machine, center_path(polygon(6, 17.5, turn=turn)))
     assert expected in said(text, drawing([change(corner) for corner in polygon(6, 13.5, turn=turn)]), 4.0, machine)
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 def test_a_shape_that_is_shifted_or_in_other_units() -> None:
     text = program(polygon(6, 13.5))
     for expected, part in (
@@ -194,12 +199,14 @@ def test_a_shape_that_is_shifted_or_in_other_units() -> None:
         assert expected in said(text, {"part": [{"shape": "hexagon", **part}]})
 
 
-@pytest.mark.parametrize("off", [0.03, 0.06, 0.3, -0.3])
+@pytest.mark.ci
+@looped("off", [0.03, 0.06, 0.3, -0.3])
 def test_one_side_that_is_off_is_no_shift(off: float) -> None:
     text = program(polygon(4, 20.0, {1: off}))
     assert "would fit" not in said(text, {"part": [{"shape": "square", "across_flats": 40.0}]})
 
 
+@pytest.mark.ci
 def test_a_shift_is_told_to_the_last_digit_beside_a_small_slip() -> None:
     corners = polygon(6, 13.5, {1: 0.05})
     message = said(program(corners), drawing([corner + 12 for corner in polygon(6, 13.5)]))

@@ -6,6 +6,7 @@ import math
 from typing import Any
 
 import pytest
+from cases import looped
 from programs import job_of, machine_of, report_of
 from test_pictures import CORNERS, END, GROOVE, HEAD, HEXAGON
 
@@ -40,8 +41,8 @@ REVERSED = contour(*(f"X{x:.1f} C{c:.6f}" for x, c in CORNERS[:1]), "X0.2 C17.26
                    *(f"X{x:.1f} C{c:.6f}" for x, c in CORNERS[2:]))  # fmt: skip
 
 
-@pytest.mark.one_in(2)
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("program", "rule", "place", "span"),
     [
         (HEAD + "G1 X40. F200\nX-40.\nG13.1\nM30\n", "path-through-center", (0, 0), 24.0),
@@ -53,6 +54,7 @@ REVERSED = contour(*(f"X{x:.1f} C{c:.6f}" for x, c in CORNERS[:1]), "X0.2 C17.26
         (HEXAGON.replace("G42 X30.", "G42 X78."), "start-up-shorter-than-radius", (39.5, 0), 24.0),
         (HEXAGON.replace("X0.0 C17.320508", "G0 X0.0 C17.320508\nG1"), "rapid-in-polar", (9.5, 16.4545), 51.9615),
     ],
+    one_in=2,
 )  # fmt: skip
 def test_a_finding_is_marked_where_it_is_at_its_scale(
     program: str, rule: str, place: tuple[float, float], span: float
@@ -67,6 +69,7 @@ def test_a_finding_is_marked_where_it_is_at_its_scale(
     assert 0 <= mark.move < len(found.sections[0].moves.line)
 
 
+@pytest.mark.ci
 def test_the_other_lines_of_a_finding_are_listed() -> None:
     places, _ = pictured(FAST, limits={"c_feed": 3600.0})
     mark = places["c-feed-above-limit"]
@@ -77,7 +80,8 @@ def test_the_other_lines_of_a_finding_are_listed() -> None:
     assert both.places[0][1] == -both.places[1][1] == -3
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("before", "behind", "rule", "place"),
     [
         # Where the tool stands at a block outside of the section, by X and C.
@@ -98,6 +102,7 @@ def test_what_is_outside_the_section_is_marked_where_the_tool_stands(
     assert mark.places == [pytest.approx(place, abs=1e-3)]
 
 
+@pytest.mark.ci
 def test_of_several_sections_the_nearest_one_has_it() -> None:
     note = "(POLARCHECK ALLOW)\n"
     twice = HEXAGON.replace("M30\n", f"M9\nM9\nM9\n{note}") + HEXAGON
@@ -106,7 +111,7 @@ def test_of_several_sections_the_nearest_one_has_it() -> None:
     assert pictured(twice, "8:radius=4")[0]["allow-not-understood"].section == 0
 
 
-@pytest.mark.parametrize("program", ["", "G0 X10.\n(POLARCHECK ALLOW)\nM30\n", "%\n", "G12.1\n"])
+@looped("program", ["", "G0 X10.\n(POLARCHECK ALLOW)\nM30\n", "%\n", "G12.1\n"])
 def test_without_a_section_nothing_has_a_place(program: str) -> None:
     places, _ = pictured(program)
     assert all(not place.places for place in places.values())
@@ -116,7 +121,7 @@ def test_without_a_section_nothing_has_a_place(program: str) -> None:
 NOWHERE = {"number-without-point", "too-many-digits"}
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 def test_all_findings_of_drawn_sections_have_a_place() -> None:
     rules = load_all()
     seen = set[str]()
@@ -153,9 +158,8 @@ def area_of(polygons: Any) -> float:
     return sum(shapely.Polygon(outside, holes).area for outside, *holes in polygons)
 
 
-@pytest.mark.parametrize(
-    ("stock", "known"), [({"diameter": 40.0}, True), ({"diameter": 40.0, "bore": 10.0}, True), (None, False)]
-)
+@pytest.mark.ci
+@looped(("stock", "known"), [({"diameter": 40.0}, True), ({"diameter": 40.0, "bore": 10.0}, True), (None, False)])
 def test_without_compensation_the_part_is_the_bar_without_what_is_swept(stock: Any, known: bool) -> None:
     runs = check.read(
         TOOL_PATH.encode(), machine_of("fanuc"), job_of("8:radius=4", job={"stock": stock} if stock else None), "x.nc"
@@ -201,6 +205,7 @@ def test_without_r_the_path_is_a_line_and_it_is_said_what_to_give() -> None:
     assert "--tool 8:radius=..." in section.makes[0]
 
 
+@pytest.mark.ci
 def test_what_the_job_asks_for_lies_as_the_section_writes_it() -> None:
     part = {"shape": "hexagon", "across_flats": 30.0, "turned": 0.0}
     program = HEXAGON.replace("X80. C0 Z2.", "X80. C30. Z2.")
@@ -251,7 +256,7 @@ def test_very_long_files_are_shown_in_part(monkeypatch: pytest.MonkeyPatch) -> N
 # ---- the center, in words ----
 
 
-@pytest.mark.parametrize(
+@looped(
     ("blocks", "said"),
     [
         ("G1 X40. F200\nX-40.\n", "C has no angle at the center, in line 5 (no limit given)"),

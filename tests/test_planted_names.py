@@ -8,6 +8,7 @@ from pathlib import Path
 
 import click
 import pytest
+from cases import looped
 from test_cli import GOOD, RAPID, RAPID_ONLY, call, check, make
 from test_completion import values
 
@@ -73,7 +74,7 @@ def test_a_name_is_refused_wherever_it_stands_and_nothing_is_done(name: str) -> 
 
 
 @of_posix
-@pytest.mark.parametrize("name", ["-ojson:out/NOTES", "--config=/tmp/x.toml", "--fix/../a.nc"])
+@looped("name", ["-ojson:out/NOTES", "--config=/tmp/x.toml", "--fix/../a.nc"])
 def test_a_name_with_folders_is_that_of_a_file_as_it_is_spelled(name: str) -> None:
     make(a__nc=GOOD)
     plant(name)
@@ -89,6 +90,7 @@ def test_folders_and_links_that_lead_nowhere_have_names_too() -> None:
     assert check("--quiet", "a.nc").stderr == refusal("--quiet")
 
 
+@pytest.mark.ci
 def test_paths_that_cannot_be_options_are_read() -> None:
     make(a__nc=GOOD)
     plant("--fix")
@@ -144,7 +146,7 @@ def test_completion_goes_on_where_a_file_has_the_name_of_an_option() -> None:
     assert "--fail-on" in values("check --quiet", "--fai")
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 @of_posix
 @pytest.mark.parametrize("name", ["--fail-on=never", "--exit-zero", "-ojson:NOTES", "--fix"])
 def test_wildcards_of_a_shell_give_no_options(name: str) -> None:

@@ -69,6 +69,7 @@ def names_in(folder: str) -> list[str]:
 # ---- where pages go ----
 
 
+@pytest.mark.ci
 def test_a_page_holds_findings_and_pictures_whatever_is_found() -> None:
     make(a__nc=GROOVE)
     result = call("plot", "a.nc", *RADIUS, "-o", "part.html")
@@ -84,7 +85,7 @@ def test_a_page_holds_findings_and_pictures_whatever_is_found() -> None:
     assert PLOTLY in Path("part.html").read_text("utf-8")
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 def test_the_page_of_check_is_that_of_plot_and_fails_as_check_does() -> None:
     make(a__nc=GROOVE, b__nc=HEXAGON)
     assert call("plot", "a.nc", *RADIUS, "-o", "plot.html").exit_code == 0
@@ -96,6 +97,7 @@ def test_the_page_of_check_is_that_of_plot_and_fails_as_check_does() -> None:
     assert call("plot", "a.nc", *RADIUS).stdout_bytes == shown.stdout_bytes
 
 
+@pytest.mark.ci
 def test_other_formats_beside_it_know_nothing_of_pictures() -> None:
     make(a__nc=GROOVE)
     alone = check("a.nc", *RADIUS, "--format", "json").stdout
@@ -103,7 +105,7 @@ def test_other_formats_beside_it_know_nothing_of_pictures() -> None:
     assert check("a.nc", *RADIUS, "--format", "jsonl", "-o", "html:a.html").stdout.count("\n") == 3
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 def test_a_folder_gets_a_page_for_each_program_and_plotly_once() -> None:
     make(a__nc=GROOVE, b__nc=HEXAGON)
     Path("sub").mkdir()
@@ -190,6 +192,7 @@ def test_names_of_pages_are_safe_and_differ() -> None:
     assert not any(re.match(r"(?i)con\.", name) for name in names)
 
 
+@pytest.mark.ci
 def test_a_page_is_no_program() -> None:
     Path("O1234").write_text(HEXAGON)
     assert call("plot", "O1234", *RADIUS, "-o", "O1234.html").exit_code == 0
@@ -200,6 +203,7 @@ def test_a_page_is_no_program() -> None:
 # ---- what may stand on them ----
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize(
     "sign", ["</script><script>alert(1)</script>", "<!--<script>", "\u2028\u2029", ACTING, "\x00\x1b"]
 )
@@ -221,6 +225,7 @@ def test_hostile_comments_change_nothing(sign: str) -> None:
     json.loads(found.data)
 
 
+@pytest.mark.ci
 def test_half_characters_are_spelled_out() -> None:
     Path("a.nc").write_bytes(HEXAGON.replace("F300", "F300 (\xe9\xff)").encode("latin-1"))
     assert call("plot", "a.nc", *RADIUS, "-o", "x.html").exit_code == 0
@@ -239,6 +244,7 @@ def test_a_hostile_path_is_text_on_the_index() -> None:
     assert not acting(Path("pages/index.html").read_bytes())
 
 
+@pytest.mark.ci
 def test_no_page_asks_for_anything_elsewhere() -> None:
     make(a__nc=GROOVE)
     call("plot", "a.nc", *RADIUS, "-o", "pages")
@@ -247,6 +253,7 @@ def test_no_page_asks_for_anything_elsewhere() -> None:
         assert not [one for one in addresses if "//" in one]
 
 
+@pytest.mark.ci
 def test_silenced_findings_and_those_behind_block_skip_are_told() -> None:
     program = GROOVE.replace("X30.\nC20.", "X30. (POLARCHECK ALLOW OVERCUT for a good reason)\nC20.", 1)
     make(a__nc=program.replace("Z-2.", "Z-2.\n/Z-3."))

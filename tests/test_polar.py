@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
+from cases import looped
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from plane_moves import points_along
@@ -86,6 +87,7 @@ few = settings(max_examples=80, deadline=None)
 # ---- closed forms against the path itself ----
 
 
+@pytest.mark.ci
 @few
 @given(moves)
 def test_length_and_distances_are_those_of_the_path(move: Move) -> None:
@@ -98,6 +100,7 @@ def test_length_and_distances_are_those_of_the_path(move: Move) -> None:
     assert move.of(polar.farthest) >= np.abs(points).max() - 1e-9
 
 
+@pytest.mark.ci
 @few
 @given(smooth_moves)
 def test_c_sweep_is_that_of_the_path(move: Move) -> None:
@@ -105,6 +108,7 @@ def test_c_sweep_is_that_of_the_path(move: Move) -> None:
     assert move.of(polar.c_sweep) == pytest.approx(math.degrees(c[-1] - c[0]), abs=1e-7)
 
 
+@pytest.mark.ci
 @few
 @given(smooth_moves)
 def test_rates_are_those_of_the_path(move: Move) -> None:
@@ -118,6 +122,7 @@ def test_rates_are_those_of_the_path(move: Move) -> None:
     assert move.of(rates.x_feed, feed) <= feed * (1 + 1e-12)
 
 
+@pytest.mark.ci
 @few
 @given(smooth_moves)
 def test_c_acceleration_is_that_of_the_path(move: Move) -> None:
@@ -129,6 +134,7 @@ def test_c_acceleration_is_that_of_the_path(move: Move) -> None:
     assert move.of(rates.c_acceleration, feed) == pytest.approx(found, rel=2e-2, abs=rounding + 1e-6)
 
 
+@pytest.mark.ci
 @few
 @given(smooth_moves)
 def test_x_acceleration_is_that_of_the_path(move: Move) -> None:
@@ -140,6 +146,7 @@ def test_x_acceleration_is_that_of_the_path(move: Move) -> None:
     assert move.of(rates.x_acceleration, feed) == pytest.approx(found, rel=2e-2, abs=rounding + 1e-6)
 
 
+@pytest.mark.ci
 @few
 @given(moves, st.floats(1, 1e5))
 def test_feed_allowed_is_just_allowed(move: Move, limit: float) -> None:
@@ -172,7 +179,7 @@ def test_line_that_stops_before_the_foot() -> None:
     assert end.of(rates.c_feed, 600) == pytest.approx(661.105, abs=2e-2)
 
 
-@pytest.mark.parametrize(
+@looped(
     ("center", "radius", "rate"),
     [(10, 4, 100), (2, 10, 75), (0, 10, 60)],
 )
@@ -204,6 +211,7 @@ def test_the_manuals_formula() -> None:
     assert line.of(rates.feed_allowed, limit) == pytest.approx(314.159, abs=1e-3)
 
 
+@pytest.mark.ci
 @few
 @given(moves, st.floats(1, 1e5))
 def test_the_manuals_formula_is_never_too_high(move: Move, limit: float) -> None:
@@ -214,8 +222,8 @@ def test_the_manuals_formula_is_never_too_high(move: Move, limit: float) -> None
 # ---- round the center, through it, to it and from it ----
 
 
-@pytest.mark.parametrize(("kind", "sweep"), [(CCW, 360), (CW, -360)])
-@pytest.mark.parametrize("center", [0j, 3 + 4j, -9.99 + 0j])
+@looped(("kind", "sweep"), [(CCW, 360), (CW, -360)])
+@looped("center", [0j, 3 + 4j, -9.99 + 0j])
 def test_a_circle_about_the_center_turns_c_once(kind: Motion, sweep: float, center: complex) -> None:
     start = center + 10
     assert Move(start, start, center, kind).of(polar.c_sweep) == pytest.approx(sweep)
@@ -231,7 +239,7 @@ def test_an_arc_most_of_the_way_round_the_center() -> None:
     assert Move(start, end, 0, CW).of(polar.c_sweep) == pytest.approx(-math.degrees(0.2))
 
 
-@pytest.mark.parametrize("ends", [(3 + 4j, -6 - 8j), (5, -1), (-5, 1), (0.1 + 0.3j, -0.3 - 0.9j), (-2j, 7j)])
+@looped("ends", [(3 + 4j, -6 - 8j), (5, -1), (-5, 1), (0.1 + 0.3j, -0.3 - 0.9j), (-2j, 7j)])
 def test_line_through_the_center(ends: tuple[complex, complex]) -> None:
     line = Move(*ends)
     assert line.of(rates.c_feed, 100) == math.inf
@@ -244,7 +252,7 @@ def test_line_through_the_center(ends: tuple[complex, complex]) -> None:
     assert line.of(rates.x_acceleration, 0) == 0
 
 
-@pytest.mark.parametrize("ends", [(0, 3 + 4j), (3 + 4j, 0), (1, 7), (-6 - 8j, -3 - 4j), (1e-13, 10j), (10j, 1e-13j)])
+@looped("ends", [(0, 3 + 4j), (3 + 4j, 0), (1, 7), (-6 - 8j, -3 - 4j), (1e-13, 10j), (10j, 1e-13j)])
 def test_line_along_a_radius(ends: tuple[complex, complex]) -> None:
     line = Move(*ends)
     assert line.of(rates.c_feed, 100) == 0
@@ -289,7 +297,7 @@ def test_arc_across_the_center() -> None:
     assert arc.of(polar.nearest) == 0
 
 
-@pytest.mark.parametrize("distance", [1e-6, 1e-5, 1e-3])
+@looped("distance", [1e-6, 1e-5, 1e-3])
 def test_a_millionth_beside_the_center(distance: float) -> None:
     line = Move(complex(distance, -50), complex(distance, 70))
     assert line.of(polar.nearest) == pytest.approx(distance, rel=1e-9)
@@ -307,6 +315,7 @@ def test_a_millionth_beside_the_center(distance: float) -> None:
     assert beside.of(rates.c_feed, 100) == pytest.approx(math.degrees(100 / (2 * distance)), rel=1e-6)
 
 
+@pytest.mark.ci
 @few
 @given(smooth_moves, st.sampled_from([1e-6, 1e-3, 1e3]))
 def test_scaling_changes_rates_alone(move: Move, scale: float) -> None:
@@ -320,6 +329,7 @@ def test_scaling_changes_rates_alone(move: Move, scale: float) -> None:
     )
 
 
+@pytest.mark.ci
 @few
 @given(moves, angle)
 def test_turning_the_plane_shifts_c_alone(move: Move, turn: float) -> None:
@@ -330,7 +340,7 @@ def test_turning_the_plane_shifts_c_alone(move: Move, turn: float) -> None:
         assert turned.of(function, *more) == pytest.approx(move.of(function, *more), rel=1e-6, abs=1e-6)
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 @few
 @given(smooth_moves, st.floats(0.05, 0.95))
 def test_splitting_a_move_changes_no_maximum(move: Move, share: float) -> None:
@@ -361,7 +371,7 @@ def test_a_circle_whose_ends_differ_by_rounding_is_full() -> None:
     assert Move(25, 25 + 1e-3j, 0, CCW).of(plane.arc_sweep) == pytest.approx(4e-5)
 
 
-@pytest.mark.parametrize(
+@looped(
     ("end", "radius", "kind", "center"),
     [
         (10 + 20j, 10, CCW, 10 + 10j),
@@ -390,6 +400,7 @@ def test_center_of_a_half_circle_whose_radius_is_short_by_rounding() -> None:
     assert polar.center_from_radius(start, end, radius, kind)[0] == pytest.approx(3.7 - 2.35j)
 
 
+@pytest.mark.ci
 @few
 @given(arcs())
 def test_center_from_radius_finds_the_center(arc: Move) -> None:
@@ -419,8 +430,8 @@ PER_MOVE = [
 ]
 
 
-@pytest.mark.parametrize(("function", "more"), PER_MOVE)
-@pytest.mark.parametrize(
+@looped(("function", "more"), PER_MOVE)
+@looped(
     "move",
     [
         Move(NAN, 1),
@@ -435,13 +446,13 @@ def test_unknown_stays_unknown(function: Any, more: Any, move: Move) -> None:
     assert math.isnan(move.of(function, *more))
 
 
-@pytest.mark.parametrize(("function", "more"), PER_MOVE)
+@looped(("function", "more"), PER_MOVE)
 def test_no_moves_give_nothing(function: Any, more: Any) -> None:
     empty = np.zeros(0, dtype=complex)
     assert len(function(empty, empty, empty, np.zeros(0, dtype=np.int16), *more)) == 0
 
 
-@pytest.mark.parametrize("move", [Move(3 + 4j, 3 + 4j), Move(0, 0), Move(5, 5, 5, CCW)])
+@looped("move", [Move(3 + 4j, 3 + 4j), Move(0, 0), Move(5, 5, 5, CCW)])
 def test_a_point_asks_nothing_of_the_axes(move: Move) -> None:
     for function in (rates.c_feed, rates.c_acceleration, rates.x_feed):
         assert move.of(function, 100) == 0
@@ -549,7 +560,7 @@ def test_c_outside_sections_is_unknown() -> None:
     assert c_angles(section=np.zeros(0, dtype=np.int64), entry=[]) == ([], [])
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 @few
 @given(st.lists(point, min_size=3, max_size=30), st.floats(-360, 360))
 def test_c_angles_lead_to_the_points(points: list[complex], entry: float) -> None:

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from cases import looped
 from programs import report_of
 from test_cli import call, make
 
@@ -52,7 +53,8 @@ def sections(program: str, *tools: str, machine: str = "fanuc", **more: Any) -> 
 # ---- the numbers ----
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("approach", "half", "feed", "radius"),
     [(80, 20, 200, 4), (80, 20, 200, 0), (80, 20, 200, 20), (100, 15, 317, 6.35), (60, 29, 1000, 0.5)],
 )
@@ -64,7 +66,7 @@ def test_the_numbers_of_a_square(approach: float, half: float, feed: float, radi
     assert found.c_feed_limit is None
 
 
-@pytest.mark.parametrize(("approach", "half", "feed", "radius"), [(4, 1, 10, 0.25), (3, 0.5, 7.5, 0.375)])
+@looped(("approach", "half", "feed", "radius"), [(4, 1, 10, 0.25), (3, 0.5, 7.5, 0.375)])
 def test_the_same_in_inch(approach: float, half: float, feed: float, radius: float) -> None:
     [found] = sections(f"{INCH}{square(approach, half, feed, 'Z-.2')}M30\n", f"1:radius={radius}")
     expected = closed_form(approach, half, feed, radius, deep=2.2)
@@ -73,7 +75,8 @@ def test_the_same_in_inch(approach: float, half: float, feed: float, radius: flo
     assert (found.units, found.radius) == ("inch", pytest.approx(25.4 * radius))
 
 
-@pytest.mark.parametrize("machine", ["fanuc-16i", "fanuc-30i", "doosan", "gsk-988", "siemens-iso"])
+@pytest.mark.ci
+@looped("machine", ["fanuc-16i", "fanuc-30i", "doosan", "gsk-988", "siemens-iso"])
 def test_other_controls_see_the_same_path(machine: str) -> None:
     [found] = sections(f"{HEAD}{square(80, 20, 200)}M30\n", "1:radius=4", machine=machine)
     assert values(found) == pytest.approx(closed_form(80, 20, 200, 4), abs=2e-6)
@@ -117,7 +120,8 @@ PROGRAM = f"{HEAD}{square(80, 20, 200)}M30\n"
 COMMENTED = PROGRAM.replace("T0101", "T0101 (D=8. END MILL)")
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("program", "tools", "job", "expected"),
     [
         (PROGRAM, ["1:radius=4"], {}, (4.0, "command line")),
@@ -176,7 +180,8 @@ def test_several_sections() -> None:
     assert [(one.line, one.end_line, one.c_feed_line) for one in (first, second)] == [(5, 15, 8), (18, 28, 21)]
 
 
-@pytest.mark.parametrize("end", ["M30\n", "G0 Z50.\nM30\n", "G28 U0\nM30\n", "T0202\nM30\n"])
+@pytest.mark.ci
+@looped("end", ["M30\n", "G0 Z50.\nM30\n", "G28 U0\nM30\n", "T0202\nM30\n"])
 def test_a_section_that_is_never_left_ends_before_what_can_only_stand_outside(end: str) -> None:
     [found] = sections(f"{HEAD}{square(80, 20, 200, off='')}{end}", "1:radius=4")
     assert (found.line, found.end_line) == (5, 14)
@@ -231,7 +236,8 @@ def test_a_program_without_a_section() -> None:
 # ---- a radius that contradicts the comment ----
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("radius", "contradicts"),
     [
         (4, False),
@@ -254,7 +260,8 @@ def test_a_radius_beyond_wear_contradicts_the_comment(radius: float, contradicts
     assert ("radius-contradicts-comment" in rules) == contradicts
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("radius", "contradicts"),
     [(0.375, False), (0.3848, False), (0.3849, True), (0.3652, False), (0.3651, True), (0.6, True), (0.0098, False)],
 )
@@ -299,7 +306,7 @@ def test_a_radius_that_is_not_given_matters() -> None:
     assert all("--tool 1:" in missing.reason for missing in report.not_evaluated)
 
 
-@pytest.mark.parametrize(
+@looped(
     ("program", "tools", "job", "rule"),
     [
         (PROGRAM.replace("G12.1", "G7.1 C20.\nG7.1 C0\nG12.1"), ["1:radius=4,nose=0"], {}, "all"),
@@ -319,6 +326,7 @@ def test_what_could_hide_a_fault_matters(program: str, tools: list[str], job: di
     assert report.verdict == "unverified"
 
 
+@pytest.mark.ci
 def test_findings_that_are_not_listed_do_not_matter() -> None:
     rapids = "G0 X50.\n" * 1200
     program = f"O1\nG21 G98\nT0101\nG0 X60. C0\nG12.1\n{rapids}G13.1\nM30\n"
@@ -330,7 +338,8 @@ def test_findings_that_are_not_listed_do_not_matter() -> None:
 RATE = math.degrees(200 / 24)
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("harmless", "verdict"),
     [
         (RATE * (1 + 1e-9), "pass"),
@@ -346,9 +355,8 @@ def test_a_missing_limit_matters_above_what_every_axis_manages(harmless: float, 
     assert report.polar_sections[0].c_feed == pytest.approx(RATE)
 
 
-@pytest.mark.parametrize(
-    ("rate", "verdict"), [(3599, "pass"), (3599.99, "pass"), (3600.01, "unverified"), (3601, "unverified")]
-)
+@pytest.mark.ci
+@looped(("rate", "verdict"), [(3599, "pass"), (3599.99, "pass"), (3600.01, "unverified"), (3601, "unverified")])
 def test_that_is_ten_turns_a_minute_unless_the_machine_says_better(rate: float, verdict: str) -> None:
     program = f"{HEAD}{square(80, 20, math.radians(rate) * 24)}M30\n"
     report = report_of(program, "fanuc", "1:radius=4,nose=0")
@@ -386,12 +394,13 @@ def test_a_tool_that_no_file_calls_is_said_once(folder: Path) -> None:
     assert "calls offset 2\n" not in result.stderr
 
 
+@pytest.mark.ci
 def test_a_tool_that_another_file_of_the_run_calls_is_none(folder: Path) -> None:
     assert "offset 2" in call("check", "a.nc", "--tool", "2:radius=4").stderr
     assert "offset 2" not in call("check", "a.nc", "b.nc", "--tool", "2:radius=4").stderr
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 def test_a_tool_of_a_job_may_be_for_other_programs(folder: Path) -> None:
     make(polarcheck__toml="[tools.1]\nradius = 4\nnose = 0\n[tools.99]\nradius = 4\n")
     result = call("check", "a.nc")

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from cases import looped
 from programs import report_of, said, trace_of
 
 NAN = math.nan
@@ -18,7 +19,7 @@ def after(program: str, axis: str, **more: object) -> list[float]:
     return found
 
 
-@pytest.mark.parametrize(
+@looped(
     ("program", "axis", "expected"),
     [
         ("G0 X60.\nU-20.\nZ1.\nX10. U5.\n", "x", [30, 20, 20, 5]),
@@ -71,7 +72,7 @@ def test_centers_of_arcs_by_i_and_j_and_by_r() -> None:
     assert trace.path.length[3] == pytest.approx(10 * math.pi)
 
 
-@pytest.mark.parametrize(("reading", "x"), [("diameter", 20.0), ("radius", 40.0)])
+@looped(("reading", "x"), [("diameter", 20.0), ("radius", 40.0)])
 def test_x_in_the_mode_is_what_the_profile_says(reading: str, x: float) -> None:
     trace = trace_of("G98 G0 X60. C0\nG12.1\nG1 X40. F100\nG13.1\n", changes={"polar": {"x": reading}})
     assert (trace.path.x[0], trace.path.end[2]) == (30, x)
@@ -98,9 +99,10 @@ CUT = "G12.1\n{}G1 X40. F200\n{}C10.\nX60.\nG13.1\nG0 Z50.\nM30\n"
 LENGTH_OFFSETS = ["G43 H01", "G43 H1", "G44 H02.", "G49 H0", "H1 G43"]
 
 
-@pytest.mark.parametrize("block", LENGTH_OFFSETS)
-@pytest.mark.parametrize("at", [0, 1])
-@pytest.mark.parametrize("units", ["G21", "G20"])
+@pytest.mark.ci
+@looped("block", LENGTH_OFFSETS)
+@looped("at", [0, 1])
+@looped("units", ["G21", "G20"])
 def test_a_length_offset_in_the_mode_moves_nothing_on_the_plane(block: str, at: int, units: str) -> None:
     program = HEAD.replace("G21", units) + "G0 X60. Z2. C0\n" + CUT
     blocks = ["", ""]
@@ -116,7 +118,8 @@ def test_a_length_offset_in_the_mode_moves_nothing_on_the_plane(block: str, at: 
     assert said(found) == [(6 + at, "tool-length-offset-in-polar")]
 
 
-@pytest.mark.parametrize("block", LENGTH_OFFSETS)
+@pytest.mark.ci
+@looped("block", LENGTH_OFFSETS)
 def test_a_length_offset_positions_no_c(block: str) -> None:
     assert after(f"G0 C30.\n{block}\nH5.\n", "c_angle") == [30, 30, 35]
     program = f"{HEAD}{block}\nG0 X60. Z2.\n" + CUT.format("", "")
@@ -136,7 +139,8 @@ SQUARE = "G1 X40. F200\n{0}10.\nX-40.\n{0}-10.\nX40.\n{1}10.\nX60.\n"
 AROUND = "O1\nG40 G97 G98\nT0101\nG0 X60. Z2. C0\n{2}\n" + SQUARE + "{3}\nG0 Z50.\nM30\n"
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("machine", "parameters", "own", "others", "switches"),
     [
         ("fanuc", {}, "CH", "YV", ("G12.1", "G13.1")),
@@ -161,6 +165,7 @@ def test_a_wrong_address_of_the_virtual_axis_is_read_as_it_was_meant(
     assert found == sorted([*others_said, (7, "wrong-axis-address-in-polar")])
 
 
+@pytest.mark.ci
 def test_one_wrong_address_among_right_ones() -> None:
     """A slip in one block; beside the right address the right one counts."""
     program = AROUND.format("C", "H", "G12.1", "G13.1")

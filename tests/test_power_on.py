@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
+from cases import looped
 from polarcheck.errors import MachineError
 from programs import report_of, said, trace_of
 
@@ -18,7 +19,7 @@ def power_on(**values: str) -> dict[str, Any]:
     return {"power_on": values}
 
 
-@pytest.mark.parametrize(
+@looped(
     ("code", "motion", "rules"),
     [
         ("", Motion.NONE, []),
@@ -47,7 +48,7 @@ def test_each_program_of_a_file_begins_so() -> None:
     assert trace.modal.state("plane")[-1] == 18
 
 
-@pytest.mark.parametrize(
+@looped(
     ("plane", "program", "rules"),
     [
         ("", WHOLE, []),
@@ -62,9 +63,8 @@ def test_the_plane_of_a_whole_program(plane: str, program: str, rules: list[tupl
     assert said(report_of(program, changes=changes, only=["plane-wrong-at-entry"])) == rules
 
 
-@pytest.mark.parametrize(
-    ("code", "rule"), [("", "feed-mode-unknown"), ("G98", None), ("G99", "feed-per-revolution-in-polar")]
-)
+@pytest.mark.ci
+@looped(("code", "rule"), [("", "feed-mode-unknown"), ("G98", None), ("G99", "feed-per-revolution-in-polar")])
 def test_what_f_means_is_known_where_the_lathe_says_it(code: str, rule: str | None) -> None:
     program = "O1\nG0 X60. C0\nG12.1\nG1 X40. F200\nC10.\nX60.\nG13.1\nM30\n"
     found = report_of(
@@ -80,7 +80,7 @@ def test_distances_or_coordinates() -> None:
     assert trace_of(WHOLE.replace("G98", "G94"), changes=changes).modal.incremental[0]
 
 
-@pytest.mark.parametrize(
+@looped(
     ("key", "code", "told"),
     [
         ("plane", "G98", "power_on.plane: G98 selects no plane; codes are G17, G18, G19"),

@@ -17,6 +17,8 @@ from programs import machine_of, moves_of, report_of, tables_of, trace_of
 
 from polarcheck.columns.path.moves import Moves, programmed_moves
 
+pytestmark = pytest.mark.ci
+
 LIMITS = {"limits": {"c_feed": 7200.0}}
 FANUC = machine_of("fanuc", LIMITS)
 EXAMPLES = 40
@@ -118,7 +120,6 @@ THROUGH_CENTER = [Move(0.002 + 0.004j), Move(-20 - 40j), Move(0.002 + 0.004j), M
 PAST_CENTER = [Move(38 + 39.998j), Move(-38.002 - 40j), Move(-0.002 + 0j), Move(0j), Move(0.002 - 0.002j)]
 
 
-@pytest.mark.slow
 @given(contours(), st.data())
 @settings(max_examples=EXAMPLES, deadline=None)
 def test_spelling_changes_nothing(moves: list[Move], data: st.DataObject) -> None:
@@ -140,7 +141,6 @@ def test_spelling_changes_nothing(moves: list[Move], data: st.DataObject) -> Non
     assert [(f.line, f.rule, f.values) for f in ours.findings] == [(f.line, f.rule, f.values) for f in theirs.findings]
 
 
-@pytest.mark.slow
 @given(contours())
 @example(AT_CENTER)
 @example(THROUGH_CENTER)
@@ -150,7 +150,6 @@ def test_incremental_twin_has_the_same_path(moves: list[Move]) -> None:
     same_path(moves_of(program(moves), FANUC), moves_of(program(moves, incremental=True), FANUC))
 
 
-@pytest.mark.slow
 @given(contours())
 @example(AT_CENTER)
 @example(THROUGH_CENTER)
@@ -161,7 +160,6 @@ def test_inch_twin_has_the_same_path(moves: list[Move]) -> None:
     same_path(moves_of(program(moves), FANUC), moves_of(program(moves, unit=25.4), FANUC), point=2e-8)
 
 
-@pytest.mark.slow
 @given(contours())
 @settings(max_examples=EXAMPLES, deadline=None)
 def test_radius_twin_has_the_same_path(moves: list[Move]) -> None:
@@ -169,7 +167,6 @@ def test_radius_twin_has_the_same_path(moves: list[Move]) -> None:
     same_path(moves_of(program(moves), FANUC), moves_of(program(moves, x_factor=1.0), by_radius))
 
 
-@pytest.mark.slow
 @given(contours(), st.floats(-math.pi, math.pi))
 @settings(max_examples=EXAMPLES, deadline=None)
 def test_turning_the_entry_shifts_only_c(moves: list[Move], angle: float) -> None:
@@ -182,7 +179,6 @@ def test_turning_the_entry_shifts_only_c(moves: list[Move], angle: float) -> Non
         np.testing.assert_allclose(theirs - ours, degrees, atol=1e-9)
 
 
-@pytest.mark.slow
 @given(contours(), st.floats(-math.pi, math.pi))
 @settings(max_examples=EXAMPLES, deadline=None)
 def test_turning_the_contour_keeps_speed_and_distance(moves: list[Move], angle: float) -> None:
@@ -222,7 +218,6 @@ def rounded_square(corner: float, on: str) -> str:
     return COMPENSATED.format(on=on, half=words(half), inner=words(2 * half), corner=words(corner))
 
 
-@pytest.mark.slow
 @given(coordinate(0.5, 25), coordinate(0, 12))
 @settings(max_examples=EXAMPLES, deadline=None)
 def test_a_rounded_square_is_followed_at_its_distance(corner: float, radius: float) -> None:
@@ -233,7 +228,6 @@ def test_a_rounded_square_is_followed_at_its_distance(corner: float, radius: flo
     np.testing.assert_allclose(np.abs(table.end - table.center)[arcs], corner + radius, atol=1e-9)
 
 
-@pytest.mark.slow
 @given(coordinate(0.5, 25), coordinate(0.1, 12))
 @settings(max_examples=EXAMPLES, deadline=None)
 def test_mirroring_swaps_the_sides(corner: float, radius: float) -> None:
@@ -255,7 +249,6 @@ def test_radius_zero_gives_the_programmed_path(corner: float) -> None:
     np.testing.assert_allclose(ours.end, programmed.end[moved], atol=1e-9)
 
 
-@pytest.mark.slow
 @given(contours(), st.floats(500, 20_000), st.floats(1, 3))
 @settings(max_examples=EXAMPLES, deadline=None)
 def test_raising_a_limit_adds_no_finding(moves: list[Move], limit: float, more: float) -> None:
@@ -266,7 +259,6 @@ def test_raising_a_limit_adds_no_finding(moves: list[Move], limit: float, more: 
     assert {(f.line, f.rule) for f in high.findings} <= {(f.line, f.rule) for f in low.findings}
 
 
-@pytest.mark.slow
 @given(contours())
 @settings(max_examples=EXAMPLES, deadline=None)
 def test_splitting_a_move_changes_no_finding(moves: list[Move]) -> None:
@@ -287,7 +279,6 @@ def test_splitting_a_move_changes_no_finding(moves: list[Move]) -> None:
     assert {(f.rule, f.severity) for f in ours.findings} == {(f.rule, f.severity) for f in theirs.findings}
 
 
-@pytest.mark.slow
 @given(st.binary(max_size=400))
 @settings(max_examples=200, deadline=None)
 def test_any_bytes_give_a_report(data: bytes) -> None:
@@ -295,7 +286,6 @@ def test_any_bytes_give_a_report(data: bytes) -> None:
     assert msgspec.json.decode(msgspec.json.encode(report))["path"] == "-"
 
 
-@pytest.mark.slow
 @given(st.text(alphabet="GMXYZCUWHIJKRFTSNO%();/#[]=.-+0123456789 \n<>ABWHILEDOT", max_size=300))
 @settings(max_examples=200, deadline=None)
 def test_any_text_like_a_program_gives_a_report(text: str) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 
 import pytest
+from cases import looped
 from programs import SHARED, report_of, said, trace_of
 
 from polarcheck.foundation.finding import FileReport
@@ -166,19 +167,21 @@ def addresses(text: Text) -> str:
     return "".join(map(chr, text.words.address))
 
 
-@pytest.mark.parametrize(("block", "expected"), TEXTS)
+@pytest.mark.ci
+@looped(("block", "expected"), TEXTS)
 def test_text_beside_a_block(block: str, expected: str) -> None:
     head = "O0002\n" if not block.startswith("O") else ""
     assert "+".join(part.strip() for part in texts(f"{head}{block}\nM30\n")) == expected.replace(" + ", "+")
     assert addresses(text_of(f"{head}{block}\nM30\n"))[-1:] == "M"
 
 
-@pytest.mark.parametrize("block", LEFT)
+@looped("block", LEFT)
 def test_what_is_no_text_in_no_parentheses(block: str) -> None:
     assert texts(f"O0002\n{block}\nM30\n") == []
 
 
-@pytest.mark.parametrize("name", profiles.names())
+@pytest.mark.ci
+@looped("name", profiles.names())
 def test_words_of_every_controls_own_language_are_left(name: str) -> None:
     machine = profiles.load(name).machine
     words = [*machine.control.native_words, *machine.polar.on_of_other_controls]
@@ -186,7 +189,7 @@ def test_words_of_every_controls_own_language_are_left(name: str) -> None:
     assert [word for word in lettered if texts(f"O1\n{word}\nG0 {word}\nM30\n")] == []
 
 
-@pytest.mark.parametrize("encoding", ["latin-1", "utf-8", "utf-16"])
+@looped("encoding", ["latin-1", "utf-8", "utf-16"])
 def test_text_in_every_encoding(encoding: str) -> None:
     assert texts("O1\nM8 KÜHLUNG FÜR DEN FRÄSER\nM30\n".encode(encoding)) == ["KÜHLUNG FÜR DEN FRÄSER"]
 
@@ -255,7 +258,7 @@ def test_a_description_in_a_called_file_stays_with_it() -> None:
     assert text.source.excerpt(start, end) == "STOP THE SPINDLE"
 
 
-@pytest.mark.parametrize(
+@looped(
     ("program", "expected"),
     [
         ("0 BEGIN PGM FLAT MM\n1 TOOL CALL 1 Z S5000\n2 L X+10 R0 FMAX M3\n3 END PGM FLAT MM\n", "other-dialect"),
@@ -283,8 +286,8 @@ HOSTILE = [
 ]
 
 
-@pytest.mark.one_in(5)
-@pytest.mark.parametrize("program", HOSTILE, ids=[program[:12] for program in HOSTILE])
+@pytest.mark.ci
+@looped("program", HOSTILE, ids=[program[:12] for program in HOSTILE], one_in=5)
 def test_no_text_takes_long(program: str) -> None:
     """In time that grows as the text does: where it grew as the square, these would take hours."""
     text = text_of(program)
@@ -329,7 +332,8 @@ LAYOUTS = {
 }
 
 
-@pytest.mark.parametrize("layout", LAYOUTS)
+@pytest.mark.ci
+@looped("layout", LAYOUTS)
 def test_the_sample_of_the_guide_copied_with_its_descriptions_is_one_finding(layout: str) -> None:
     program = "\n".join(map(LAYOUTS[layout], table().splitlines())) + "\n"
     report = checked(program)
@@ -340,7 +344,8 @@ def test_the_sample_of_the_guide_copied_with_its_descriptions_is_one_finding(lay
     assert len(report.polar_sections) == 1
 
 
-@pytest.mark.parametrize("layout", ["as printed", "blanks for the tab", "Markdown", "HTML", "description below"])
+@pytest.mark.ci
+@looped("layout", ["as printed", "blanks for the tab", "Markdown", "HTML", "description below"])
 def test_a_real_fault_beside_the_descriptions_is_found(layout: str) -> None:
     program = table().replace("Z-.88\t", "G0 Z-.88\t")
     assert program != table()
@@ -363,7 +368,7 @@ def test_the_page_of_the_guide_with_two_programs_in_a_block_says_what_it_is() ->
     assert len(rules) < 20
 
 
-@pytest.mark.parametrize("machine", ["siemens-transmit", "siemens-iso", "okuma-osp"])
+@looped("machine", ["siemens-transmit", "siemens-iso", "okuma-osp"])
 def test_where_statements_have_names_text_is_one_of_them_and_told_as_such(machine: str) -> None:
     report = report_of("G0 X50. RAPID TO START\nM30\n", machine)
     assert not [found for found in report.findings if found.rule == RULE]

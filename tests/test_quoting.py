@@ -9,6 +9,7 @@ from itertools import pairwise
 from pathlib import Path
 
 import pytest
+from cases import looped
 from click.testing import CliRunner
 from polarcheck.errors import PolarcheckError
 from test_certify import EXAMPLE
@@ -170,8 +171,8 @@ def lead_to(route: str, folder: str) -> None:
     Path("post.toml").write_text(manifest(path.as_posix()))
 
 
-@pytest.mark.one_in(7)
-@pytest.mark.parametrize("route", ROUTES)
+@pytest.mark.ci
+@looped("route", ROUTES, one_in=7)
 def test_no_text_of_a_file_outside_is_quoted(route: str) -> None:
     lead_to(route, "../secret")
     assert not quotes(secret_of(route))
@@ -229,7 +230,7 @@ def golden() -> None:
     Path("post.toml").write_text(text.replace('golden = "golden/', 'golden = "../secret/golden/'), "utf-8")
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 @pytest.mark.usefixtures("golden")
 def test_a_golden_trace_outside_is_compared_and_not_quoted() -> None:
     assert certificate()[0] == "pass"
@@ -246,7 +247,7 @@ def test_a_golden_trace_outside_is_compared_and_not_quoted() -> None:
         assert not quotes(MARK, "--case", "contour/lathe-7", "--update")
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 def test_the_path_of_a_program_outside_is_compared_and_not_quoted() -> None:
     shutil.copytree(EXAMPLE, ".", dirs_exist_ok=True)
     text = Path("sinumerik/contour.mpf").read_text("utf-8")

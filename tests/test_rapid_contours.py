@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from cases import looped
 from programs import report_of, said
 
 RULE = "rapid-along-contour"
@@ -31,8 +32,9 @@ def sides(first: str = "") -> str:
     return first + "\n".join(f"X{x} Y{y}" for x, y in points)
 
 
-@pytest.mark.parametrize("machine", MODES)
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped("machine", MODES)
+@looped(
     ("down", "start_up", "contour", "cancel"),
     [
         (DOWN, ON, sides("G0 "), OFF),
@@ -46,8 +48,9 @@ def test_a_contour_at_depth_is_one_finding(machine: str, down: str, start_up: st
     assert len(rules(machine, down, start_up, contour, cancel, UP)) == 1
 
 
-@pytest.mark.parametrize("machine", MODES)
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped("machine", MODES)
+@looped(
     "blocks",
     [
         (DOWN, ON, sides(), OFF, UP),

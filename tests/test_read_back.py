@@ -6,6 +6,7 @@ from collections.abc import Collection
 
 import numpy as np
 import pytest
+from cases import looped
 from programs import job_of, machine_of, tables_of
 
 from polarcheck.checking.settings import Settings
@@ -14,6 +15,8 @@ from polarcheck.rewrite.writing.original import Original, read
 from polarcheck.rewrite.writing.part_paths import PartPath, path_on_part
 from polarcheck.rewrite.writing.reading_back import read_back
 from polarcheck.rules.tables import Tables
+
+pytestmark = pytest.mark.ci
 
 HEXAGON = """\
 G98
@@ -55,7 +58,7 @@ def unrolled(path: PartPath, angle: float, step: float) -> str:
     return "\n".join([*blocks, "M30", ""])
 
 
-@pytest.mark.parametrize("angle", [0.0, 30.0])
+@looped("angle", [0.0, 30.0])
 def test_points_in_steps_are_the_same_way_on_the_part_up_to_their_chords(angle: float) -> None:
     tables = tables_of(HEXAGON.format(angle=f"{angle}"), "fanuc", "8:radius=4,nose=0")
     path = polar_part(tables)
@@ -83,8 +86,7 @@ def differences(old: Original, text: str, machine: str = "fanuc", decided: Colle
     return [f"{each.line}: {each.text}" for each in result.differences]
 
 
-@pytest.mark.one_in(4)
-@pytest.mark.parametrize(
+@looped(
     ("was", "becomes", "said"),
     [
         ("C9.", "C9.01", "8: the path differs by 0.0"),
@@ -96,6 +98,7 @@ def differences(old: Original, text: str, machine: str = "fanuc", decided: Colle
         ("M8", "", "17: M8 is missing"),
         ("G0 X70. C90.", "G0 X70. C91.", "18: the path differs by C alone"),
     ],
+    one_in=4,
 )
 def test_what_differs_has_the_line_of_the_original(was: str, becomes: str, said: str) -> None:
     text = HEXAGON.format(angle="30.").replace("M30", "G4 P500\nM8\nG0 X70. C90.\nM30")

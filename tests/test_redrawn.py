@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from cases import looped
 from contour_families import FAMILIES, program_of
 from contour_verdicts import compare
 from drawn_contours import contour
@@ -38,8 +39,8 @@ def differences(tables: Tables, made: list[MadeShape], bar: float = np.nan, all_
     return list(mismatches(tables, made, bar, all_moves))
 
 
-@pytest.mark.one_in(4)
-@pytest.mark.parametrize("path", SAMPLES, ids=NAMES)
+@pytest.mark.ci
+@looped("path", SAMPLES, ids=NAMES, one_in=4)
 def test_words_of_a_sample_are_what_its_cutters_leave(path: Path) -> None:
     work: dict[str, Any] = settings(path)
     tables = tables_of(path.read_bytes(), **work, path=path.name)
@@ -60,13 +61,13 @@ def of_family(family: str, seed: int) -> list[Mismatch]:
     return differences(tables, made_by(tables), bar, all_moves=False)
 
 
-@pytest.mark.one_in(13)
-@pytest.mark.parametrize("family", FAMILIES)
+@pytest.mark.ci
+@looped("family", FAMILIES, one_in=13)
 def test_words_of_a_family_are_what_its_cutters_leave(family: str) -> None:
     assert [(seed, found) for seed in range(SHARE) if (found := of_family(family, seed))] == []
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 @pytest.mark.parametrize("family", FAMILIES)
 def test_words_of_many_programs_are_what_their_cutters_leave(family: str) -> None:
     assert [(seed, found) for seed in range(SHARE, MANY) if (found := of_family(family, seed))] == []
@@ -94,8 +95,9 @@ def test_a_wall_that_a_line_between_loops_crosses_is_one_wall() -> None:
     assert ([one.shape for one in made], wrong) == (["keyway"], [])
 
 
-@pytest.mark.parametrize("unit", [1.0, 25.4])
-@pytest.mark.parametrize(("radius", "stands"), [(1.5, False), (4.0, True)])
+@pytest.mark.ci
+@looped("unit", [1.0, 25.4])
+@looped(("radius", "stands"), [(1.5, False), (4.0, True)])
 def test_a_corner_just_outside_the_bar_is_told_where_its_rounding_reaches_in(
     radius: float, stands: bool, unit: float
 ) -> None:
@@ -148,7 +150,8 @@ def keyed(count: int, turned: float, center: complex = 0j) -> str:
     return "\n".join([*blocks, f"G3 {words(first, here)}", f"G1 G40 {words(away)}"])
 
 
-@pytest.mark.parametrize(("count", "turned", "center"), [(1, 0.0, 0j), (4, 30.0, 0j), (1, 90.0, 3 - 2j)])
+@pytest.mark.ci
+@looped(("count", "turned", "center"), [(1, 0.0, 0j), (4, 30.0, 0j), (1, 90.0, 3 - 2j)])
 def test_a_shaft_with_keyways_is_no_round_with_flats(count: int, turned: float, center: complex) -> None:
     made, wrong = told(keyed(count, turned, center), 2.0)
     assert ([one.shape for one in made], wrong) == (["round with keyway"], [])
@@ -167,7 +170,7 @@ def test_extents_of_a_polygon_with_round_corners_are_those_of_its_arcs() -> None
     assert wrong == []
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 def test_words_of_drawn_contours_are_what_their_cutters_leave() -> None:
     wrong = []
     for seed in range(80):
@@ -188,8 +191,9 @@ def flats(*places: tuple[float, float]) -> str:
     return "\n".join(blocks)
 
 
-@pytest.mark.parametrize("bar", [0, 32])
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped("bar", [0, 32])
+@looped(
     ("places", "words"),
     [
         (((0, 12), (90, 12)), "2 flats, 12.000 from the center at 0 and 90 deg; to Z-2.000"),

@@ -8,6 +8,7 @@ import math
 import random
 
 import pytest
+from cases import looped
 from drawn_regular import (
     MEANT,
     SLIPS,
@@ -41,7 +42,7 @@ def sound_contour(seed: int) -> tuple[Contour, Style, list[str]] | None:
     return None if findings(blocks, contour, how) else (contour, how, blocks)
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 @pytest.mark.parametrize("name", SLIPS)
 def test_most_slips_in_a_regular_contour_are_noticed(name: str) -> None:
     noticed = written = 0
@@ -64,7 +65,7 @@ def test_most_slips_in_a_regular_contour_are_noticed(name: str) -> None:
     assert noticed >= 0.7 * written
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 def test_what_differs_on_purpose_is_silent() -> None:
     for seed in range(40):
         draw = random.Random(seed)  # noqa: S311
@@ -73,7 +74,7 @@ def test_what_differs_on_purpose_is_silent() -> None:
         assert not [message for rule, message in found if rule in RULES], (seed, contour.family)
 
 
-@pytest.mark.parametrize(
+@looped(
     ("written", "meant", "kind"),
     [
         ("13.586", 13.856, "two digits are swapped"),
@@ -91,7 +92,7 @@ def test_a_slip_of_the_pen(written: str, meant: float, kind: str | None) -> None
     assert (slip.kind if slip else None) == kind
 
 
-@pytest.mark.parametrize(
+@looped(
     ("written", "how"),
     [("X1.0426", "two digits are swapped"), ("X1.0346", "a digit is wrong"), ("X1.246", "a digit is missing")],
 )

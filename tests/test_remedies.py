@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from cases import looped
 from programs import report_of, said
 
 from polarcheck.program.machines import profiles
@@ -28,7 +29,8 @@ def messages(values: str, before: str, feed: str = "200") -> dict[str, str]:
     }
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("values", "before", "rule", "told"),
     [
         ("[m_codes]\nc_axis_on = ['M35']", "M8\nM76", "c-axis-not-engaged",
@@ -55,7 +57,7 @@ def test_a_lathe_of_ones_own_is_told_where_to_add(values: str, before: str, rule
     assert messages(values, before)[rule].endswith(told)
 
 
-@pytest.mark.parametrize(
+@looped(
     ("values", "before"),
     [
         ("", "M8 / M9 / M6 / M3 S500"),
@@ -81,7 +83,7 @@ def test_what_the_file_lacks_has_no_weight() -> None:
     assert report.verdict == "pass"
 
 
-@pytest.mark.parametrize(("feed", "key"), [("900", "no c-feed-above-limit"), ("90000", "c-feed-above-limit")])
+@looped(("feed", "key"), [("900", "no c-feed-above-limit"), ("90000", "c-feed-above-limit")])
 def test_the_limit_of_c_is_asked_for_where_it_belongs(feed: str, key: str) -> None:
     assert "limits.c_feed in lathe.toml" in messages("", "M8", feed.replace("900", "9000", 1))[key]
     program = PROGRAM.format("M8", feed.replace("900", "9000", 1))
@@ -90,7 +92,7 @@ def test_the_limit_of_c_is_asked_for_where_it_belongs(feed: str, key: str) -> No
     assert any("--set limits.c_feed=..." in text for text in told)
 
 
-@pytest.mark.parametrize(
+@looped(
     ("before", "rule", "told"),
     [
         ("G245", "unknown-code", f"; if the lathe has it, add it to control.known_codes in {IN_NEW}"),

@@ -8,6 +8,7 @@ from itertools import pairwise
 from pathlib import Path
 
 import pytest
+from cases import looped
 from programs import report_of, report_of_example, said
 
 from polarcheck.foundation.finding import Edit, FileReport, Finding, Fix
@@ -57,7 +58,7 @@ def pairs() -> list[tuple[str, Example, Example]]:
     return [(name, bad, good) for name, page in PAGES.items() for bad, good in list(pairwise(examples(page)))[::2]]
 
 
-@pytest.mark.parametrize("name", PAGES)
+@looped("name", PAGES)
 def test_each_repair_is_of_a_rule_and_has_a_page(name: str) -> None:
     found = repair_of(name)
     assert found is not None
@@ -70,8 +71,8 @@ def test_each_repair_is_of_a_rule_and_has_a_page(name: str) -> None:
     assert kinds == [False, True] * (len(kinds) // 2)
 
 
-@pytest.mark.one_in(4)
-@pytest.mark.parametrize(("name", "bad", "good"), pairs())
+@pytest.mark.ci
+@looped(("name", "bad", "good"), pairs(), one_in=4)
 def test_the_fix_makes_the_bad_example_the_good_one(name: str, bad: Example, good: Example) -> None:
     assert (bad.machine, bad.tools, bad.settings) == (good.machine, good.tools, good.settings)
     report = report_of_example(bad)
@@ -84,9 +85,9 @@ def test_the_fix_makes_the_bad_example_the_good_one(name: str, bad: Example, goo
     assert sorted(others) == sorted(rule for _, rule in said(report_of_example(good)))
 
 
-@pytest.mark.one_in(7)
-@pytest.mark.parametrize("end", ["\r\n", "\n\r\r", "\r\r\n", "\r"])
-@pytest.mark.parametrize(("name", "bad", "good"), pairs())
+@pytest.mark.ci
+@looped("end", ["\r\n", "\n\r\r", "\r\r\n", "\r"], one_in=7)
+@looped(("name", "bad", "good"), pairs())
 def test_lines_keep_their_ends(name: str, bad: Example, good: Example, end: str) -> None:
     def with_ends(example: Example) -> Example:
         return Example(
@@ -116,7 +117,7 @@ def test_nothing_is_written_before_a_switch_that_is_computed() -> None:
     assert fixes_of(report_of(program, "fanuc", "1:radius=4", only=[rule]), rule) == [None]
 
 
-@pytest.mark.parametrize(("entry", "is_mended"), [("X60. Z2. C0", True), ("X60. C0", False)])
+@looped(("entry", "is_mended"), [("X60. Z2. C0", True), ("X60. C0", False)])
 def test_z_is_moved_only_where_it_is_known_whether_it_goes_in_or_comes_out(entry: str, is_mended: bool) -> None:
     rule = "z-with-plane-axis"
     program = f"G98 G0 {entry}\nG12.1\nG1 X40. Z-5. F200\nC10.\nX60.\nG13.1\n"
@@ -360,15 +361,15 @@ CASES = [
 ]
 
 
-@pytest.mark.one_in(4)
-@pytest.mark.parametrize(("rule", "machine", "program", "good"), CASES)
+@pytest.mark.ci
+@looped(("rule", "machine", "program", "good"), CASES, one_in=4)
 def test_fixes_of_programs_of_any_kind(rule: str, machine: str, program: str, good: str) -> None:
     tool = "1:radius=0.2" if "G20" in program else "1:radius=4"
     report = report_of(program, machine, tool, changes={"limits": {"c_feed": 3600}})
     assert edited(program, fixes_of(report, rule)) == good
 
 
-@pytest.mark.parametrize("rule", PAGES)
+@looped("rule", PAGES)
 def test_each_repair_is_tried_on_three_programs(rule: str) -> None:
     of_rule = [(machine, program) for name, machine, program, _ in CASES if name == rule]
     assert len(of_rule) + sum(not example.good for example in examples(PAGES[rule])) > 3
@@ -378,7 +379,8 @@ def test_each_repair_is_tried_on_three_programs(rule: str) -> None:
 # ---- where there is no fix ----
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("rule", "machine", "program"),
     [
         # Macro: the words do not stand in the file as they are executed.

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 
 import pytest
+from cases import looped
 from contour_families import program_of
 from programs import report_of, said, trace_of
 
@@ -46,9 +47,9 @@ def with_all(program: str) -> str:
     return "\n".join(lines) + "\n"
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize("machine", ["fanuc-30i", "fanuc-16i", "doosan", "siemens-iso", "mitsubishi-m700"])
-@pytest.mark.parametrize("contour", [SQUARE, ROUND, FULL, INCREMENTAL], ids=["square", "round", "full", "incremental"])
+@pytest.mark.ci
+@looped("machine", ["fanuc-30i", "fanuc-16i", "doosan", "siemens-iso", "mitsubishi-m700"], one_in=12)
+@looped("contour", [SQUARE, ROUND, FULL, INCREMENTAL], ids=["square", "round", "full", "incremental"])
 def test_z_repeated_in_each_block_is_no_move(contour: str, machine: str) -> None:
     program = SECTION.format(contour)
     assert said(report_of(with_z(program), machine, "1:radius=4,nose=0")) == said(
@@ -56,7 +57,8 @@ def test_z_repeated_in_each_block_is_no_move(contour: str, machine: str) -> None
     )
 
 
-@pytest.mark.parametrize("machine", ["fanuc-30i", "doosan"])
+@pytest.mark.ci
+@looped("machine", ["fanuc-30i", "doosan"])
 def test_all_words_repeated_in_each_block_are_no_moves(machine: str) -> None:
     assert "Z-5.0000" in with_all(SECTION.format(SQUARE))
     program = SECTION.format(SQUARE)
@@ -65,6 +67,7 @@ def test_all_words_repeated_in_each_block_are_no_moves(machine: str) -> None:
     )
 
 
+@pytest.mark.ci
 @pytest.mark.one_in(12)
 @pytest.mark.parametrize("seed", range(0, 60, 3))
 def test_contours_with_z_repeated_give_the_same(seed: int) -> None:
@@ -75,7 +78,8 @@ def test_contours_with_z_repeated_give_the_same(seed: int) -> None:
     assert said(report_of(with_z(program.text), "fanuc-30i", tool)) == said(report_of(program.text, "fanuc-30i", tool))
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("blocks", "rule"),
     [
         ("X40. Z-5.", ""),
@@ -105,7 +109,8 @@ def test_x_and_c_outside_the_mode() -> None:
     assert path.moves.tolist() == [True, False, True, False, True, True]
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("machine", "changes", "rules"),
     [
         ("turning-center", {}, ["z-with-plane-axis", "helical-arc-in-polar"]),

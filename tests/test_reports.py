@@ -11,6 +11,7 @@ from typing import Any
 import jsonschema
 import msgspec
 import pytest
+from cases import looped
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -234,7 +235,7 @@ def underlined(line: str, start: int, end: int, room: int = 80) -> str:
     return "".join(grid[shown.first : shown.first + shown.marked])
 
 
-@pytest.mark.parametrize(
+@looped(
     ("line", "fault", "marked"),
     [
         ("G0 X1.8", "X1.8", "X1.8"),
@@ -270,7 +271,7 @@ def test_a_long_line_is_cut_around_the_fault() -> None:
     assert excerpt("X" * 60, 55, 60, 60) == Excerpt("X" * 60, 55, 5)
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 @given(st.text(max_size=80), st.integers(0, 90), st.integers(1, 20), st.integers(20, 60))
 def test_excerpts_of_anything_are_one_harmless_line(line: str, start: int, length: int, room: int) -> None:
     shown = excerpt(line, start, start + length, room)
@@ -287,7 +288,7 @@ DIRECTIONS = ("LRE", "RLE", "LRO", "RLO", "PDF", "LRI", "RLI", "FSI", "PDI")
 HOSTILE = "G0\x1b[2J\x07\x00\r\n\x9b31m\u202eX\u2066\ufeff [red]<b>%0A::error::"
 
 
-@pytest.mark.parametrize("form", formats())
+@looped("form", formats())
 def test_nothing_from_a_program_acts_on_a_terminal(form: str) -> None:
     found = finding(message=HOSTILE, block=HOSTILE, program=HOSTILE, alarm=HOSTILE, rule=HOSTILE)
     gap = missing(HOSTILE, HOSTILE)

@@ -185,6 +185,7 @@ def test_options_without_effect_are_warnings(program: Path) -> None:
     assert "warning: --force does nothing without -o\n" in call(program, "--force").stderr
 
 
+@pytest.mark.ci
 def test_many_programs_go_to_a_folder_and_none_stops_the_others(program: Path) -> None:
     Path("jobs/left").mkdir(parents=True)
     for name, text in {"a.nc": PROGRAM, "left/b.nc": PROGRAM, "c.nc": PROGRAM.replace("C10.", "G2 X30. R9.")}.items():

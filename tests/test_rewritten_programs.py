@@ -8,6 +8,7 @@ from functools import partial
 from typing import Any
 
 import pytest
+from cases import looped
 from setter_programs import FAMILIES, drawn
 from test_convert import END, HEAD, MILLED, SIEMENS, convert
 
@@ -47,7 +48,7 @@ def compensate(original: Original) -> Outcome:
 
 
 @pytest.mark.one_in(2)
-@pytest.mark.slow
+@pytest.mark.ci
 @pytest.mark.one_in(1)
 @pytest.mark.parametrize("start", range(8))
 def test_programs_of_setters_are_rewritten(start: int) -> None:
@@ -80,7 +81,8 @@ CIRCLES += "X30. C10.\nX-30.\nC-10.\nX30.\nC10.\nX60.\nG13.1\nG0 Z50.\n" + END
 CIRCLE = "G1 X40. C0 F200\nG3 X-40. C0 I-20. J0\nX40. C0 I20. J0\nG1 X60. C0"
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("program", "expected"),
     [
         (IN_MODE.format("G1 X40. C5. F200").replace("G13.1\n", ""), "polar mode is never left"),
@@ -97,7 +99,7 @@ def test_why_a_section_is_not_unrolled(program: str, expected: str) -> None:
     assert expected in refusal(program, unroll)
 
 
-@pytest.mark.parametrize(
+@looped(
     ("program", "expected"),
     [
         (IN_MODE.format("G42 G1 X40. C0 F200\nC5.\nG40 X60."), "all polar sections have G41 or G42"),
@@ -111,7 +113,8 @@ def test_why_a_path_is_not_compensated(program: str, expected: str) -> None:
     assert expected in refusal(program, compensate, "fanuc-30i", "1:radius=4", "3:radius=5")
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("program", "source", "target", "expected"),
     [
         (IN_MODE.format("G1 X[40.] C#1 F200"), "fanuc-30i", "haas-lathe", "is computed, and has to be another number"),
@@ -130,8 +133,8 @@ def test_why_a_path_is_not_compensated(program: str, expected: str) -> None:
         (HEAD + "G65 P9010 A1. B2.\n" + END, "fanuc-30i", "haas-lathe", ""),
         (HEAD + "G90 X40. Z-5. F.2\nU-2.\nG0 X60.\n" + END, "fanuc-30i", "mitsubishi-m700", ""),
     ],
+    one_in=2,
 )
-@pytest.mark.one_in(2)
 def test_what_converting_does_with_what_it_cannot_write(program: str, source: str, target: str, expected: str) -> None:
     """It is refused with the reason, or written with a decision where none is expected."""
     if expected:
@@ -163,6 +166,7 @@ def faulty(old: str, new: str, real: Callable[..., Any], *arguments: Any) -> tup
     return data.replace(old.encode(), new.encode(), 1), origin
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize("fault", [*FAULTS, "X", "C", "F"])
 @pytest.mark.parametrize("command", ["unroll", "center", "compensate", "roll"])
 @pytest.mark.one_in(13)
@@ -200,7 +204,8 @@ def test_a_fault_of_a_writer_is_found(command: str, fault: str, monkeypatch: pyt
 # ---- words that only some programs have ----
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("program", "source", "target", "expected"),
     [
         ("O1\nG90 G94\nT030203\nG0 X60. Z2. C0\n" + "M2\n", "okuma-osp", "fanuc-30i", "T0203"),
@@ -216,8 +221,8 @@ def test_a_fault_of_a_writer_is_found(command: str, fault: str, monkeypatch: pyt
         (HEAD + "M3 S500\nM08\nG98\n" + END, "fanuc-30i", "mitsubishi-m700", "M08\nG94\n"),
         (HEAD + "M35\nG97 S900 M33\nG0 X60. Z2.\nM35\n" + END, "turning-center", "haas-lathe", "P900 M133\n"),
     ],
+    one_in=2,
 )  # fmt: skip
-@pytest.mark.one_in(2)
 def test_words_that_few_programs_have(program: str, source: str, target: str, expected: str) -> None:
     assert expected in convert(program, source, target).data.decode()
 
@@ -254,8 +259,8 @@ MORE = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize(("program", "source", "target"), MORE)
-@pytest.mark.one_in(3)
+@pytest.mark.ci
+@looped(("program", "source", "target"), MORE, one_in=3)
 def test_any_program_is_converted_or_refused_with_its_line(program: str, source: str, target: str) -> None:
     """What is written is proven by reading it back; nothing else comes of it than a program or reasons."""
     try:
@@ -277,9 +282,9 @@ PLAIN = [
 ]
 
 
-@pytest.mark.parametrize("machine", ["fanuc-30i", "mitsubishi-m700"])
-@pytest.mark.parametrize("program", PLAIN)
-@pytest.mark.one_in(1)
+@pytest.mark.ci
+@looped("machine", ["fanuc-30i", "mitsubishi-m700"], one_in=1)
+@looped("program", PLAIN)
 def test_any_section_is_unrolled_or_refused_with_its_line(program: str, machine: str) -> None:
     settings = settings_of(machine, "1:radius=4")
     for work in (unroll, compensate, centered):
@@ -287,6 +292,7 @@ def test_any_section_is_unrolled_or_refused_with_its_line(program: str, machine:
         assert outcome is None or outcome.data
 
 
+@pytest.mark.ci
 def test_elements_near_the_center_are_divided_for_the_limit_of_c() -> None:
     """An arc that passes 2 mm from the center: F of its parts keeps C at its limit."""
     program = IN_MODE.format("G1 X30. C0 F300\nG3 X-4. C0 R8.5\nG3 X30. C0 R8.5\nG1 X40. C3.\nX60. C0")

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from cases import looped
 from click.testing import CliRunner, Result
 from programs import job_of, machine_of
 from rolled_programs import cam_contour, cam_program, farthest, way_of_blocks, way_of_section
@@ -67,7 +68,7 @@ CONTOURS = {"hexagon": (hexagon(), 13), "slot": (slot(), 5), "oval": (oval(), 5)
 
 @pytest.mark.one_in(12)
 @pytest.mark.parametrize("name", CONTOURS)
-@pytest.mark.parametrize("inverse", [False, pytest.param(True, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("inverse", [False, pytest.param(True, marks=pytest.mark.ci)])
 def test_a_contour_of_lines_and_arcs_comes_back_with_as_many_of_them_and_its_f(name: str, inverse: bool) -> None:
     contour, count = CONTOURS[name]
     text = cam_contour(contour, inverse=inverse)
@@ -87,7 +88,7 @@ def test_a_contour_of_lines_and_arcs_comes_back_with_as_many_of_them_and_its_f(n
     assert told["largest distance of the ends of the blocks from the new path"] == pytest.approx(measured, abs=1e-3)
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 def test_a_free_contour_is_passed_within_the_tolerance() -> None:
     angle = np.linspace(0, math.tau, 801)
     points = (20 + 2 * np.sin(5 * angle) + 0.7 * np.sin(13 * angle + 1)) * np.exp(1j * angle)
@@ -101,7 +102,7 @@ def test_a_free_contour_is_passed_within_the_tolerance() -> None:
     assert counts[0.02] < counts[0.005] < 120
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 def test_twenty_thousand_blocks_are_few() -> None:
     angle = np.linspace(0, math.tau, 20_001)
     points = (20 + 2 * np.sin(5 * angle) + 0.7 * np.sin(13 * angle + 1)) * np.exp(1j * angle)
@@ -114,6 +115,7 @@ def test_twenty_thousand_blocks_are_few() -> None:
     assert farthest(way_of_blocks(text, 1)[::7], way) <= TOLERANCE
 
 
+@pytest.mark.ci
 def test_several_depths_are_one_section_and_stretches_apart_are_several() -> None:
     points = places(*hexagon(), 0.005)
     lines = cam_program(points).splitlines()
@@ -138,6 +140,7 @@ def test_x_alone_c_alone_and_long_blocks_belong_to_it() -> None:
     assert way_of_section(new)[1] == ["G1", "G3", "G1"]
 
 
+@pytest.mark.ci
 def test_x_below_zero_is_the_other_side_and_through_the_center_is_one_line_where_the_machine_lets_it() -> None:
     inward = "\n".join(f"G1 X{2 * x:.1f} C30. F400." for x in np.arange(19.5, -0.1, -0.5))
     below = "\n".join(f"G1 X{-2 * x:.1f} F400." for x in np.arange(0.5, 20.1, 0.5))
@@ -157,6 +160,7 @@ def test_x_below_zero_is_the_other_side_and_through_the_center_is_one_line_where
         assert "through the center of C" in refusal(plain, machine)
 
 
+@pytest.mark.ci
 def test_c_that_rolls_over_goes_on_and_turns_back_on_a_lathe_that_does_not() -> None:
     text = cam_contour(hexagon())
     within = re.sub(r" C([0-9.]+)", lambda match: f" C{float(match[1]) % 360:.3f}", text)
@@ -165,6 +169,7 @@ def test_c_that_rolls_over_goes_on_and_turns_back_on_a_lathe_that_does_not() -> 
     assert "C turns back by nearly a turn here" in refusal(within)
 
 
+@pytest.mark.ci
 def test_a_helix_is_written_where_z_may_stand_beside_the_plane() -> None:
     points = places(*hexagon(), 0.005)
     text = cam_program(points, inverse=True, z=np.linspace(-2, -4, len(points)).tolist())
@@ -227,10 +232,10 @@ def polar_program(machine: str, inch: bool, c: str) -> str:
     return "\n".join(blocks)
 
 
-@pytest.mark.parametrize("c", ["C0", "C37.5"])
-@pytest.mark.parametrize("inch", [False, True])
-@pytest.mark.parametrize("machine", _ON)
-@pytest.mark.one_in(14)
+@pytest.mark.ci
+@looped("c", ["C0", "C37.5"], one_in=14)
+@looped("inch", [False, True])
+@looped("machine", _ON)
 def test_a_section_without_the_mode_and_back_is_the_same_contour(machine: str, inch: bool, c: str) -> None:
     original = original_of(polar_program(machine, inch, c), machine)
     known = original.settings.machine.feed.with_rotary
@@ -254,7 +259,7 @@ def test_a_section_without_the_mode_and_back_is_the_same_contour(machine: str, i
 # ---- where the section begins ----
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 def test_c_goes_to_0_above_the_part_so_that_the_coordinates_are_those_of_the_drawing() -> None:
     text = cam_contour(slot())
     outcome = roll(text)
@@ -273,6 +278,7 @@ def test_c_goes_to_0_above_the_part_so_that_the_coordinates_are_those_of_the_dra
     assert max(feeds(slow)) == pytest.approx(0.9 * 3600 * math.pi / 180 * 20.616, rel=1e-3)
 
 
+@pytest.mark.ci
 def test_the_nearest_full_turn_of_c_is_its_zero() -> None:
     text = re.sub(r"C([-0-9.]+)", lambda match: f"C{float(match[1]) + 720:.3f}", cam_contour(slot()))
     assert "G0 C720.\nG12.1" in new_text(text).replace("720.000", "720.")
@@ -288,6 +294,7 @@ def test_a_plane_that_stands_still_on_the_part_needs_no_c() -> None:
 # ---- F ----
 
 
+@pytest.mark.ci
 def test_f_is_lower_near_the_center_and_the_line_is_divided_for_it() -> None:
     points = np.array([complex(1, y) for y in np.arange(-15, 15.01, 0.1)])
     angle = np.abs(np.diff(np.unwrap(np.angle(points))))
@@ -307,6 +314,7 @@ def test_f_is_lower_near_the_center_and_the_line_is_divided_for_it() -> None:
     assert feeds(overridden.data.decode())[1:] == [300]
 
 
+@pytest.mark.ci
 def test_each_f_of_the_original_is_one_of_the_section() -> None:
     points = places(*hexagon(), 0.005)
     speed = [150.0 if point.real > 5 else 250.0 for point in points.tolist()]
@@ -322,6 +330,7 @@ def test_a_speed_that_changes_along_the_way_is_told() -> None:
     assert len(set(feeds(outcome.data.decode())[1:])) < 3
 
 
+@pytest.mark.ci
 def test_what_f_per_minute_is_has_to_be_known() -> None:
     text = cam_contour(hexagon())
     assert refusal(text, "haas-lathe").startswith("line 7: what F per minute is")
@@ -334,7 +343,8 @@ def test_what_f_per_minute_is_has_to_be_known() -> None:
 # ---- what stands around it ----
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("behind", "expected"),
     [
         ("G0 Z2.\nX80. C0\nM30", "G13.1\nG0 Z2.\n"),
@@ -348,6 +358,7 @@ def test_what_the_stretch_leaves_in_force_is_in_force_behind_the_section(behind:
     assert expected in new_text(text)
 
 
+@pytest.mark.ci
 def test_inverse_time_is_in_force_again_where_blocks_behind_take_it_over() -> None:
     text = cam_contour(hexagon(), inverse=True)
     stays = text.replace("G98\nG0 Z2.\nX80. C0", "G1 Z2. F60.\nG0 X80. C0")
@@ -355,6 +366,7 @@ def test_inverse_time_is_in_force_again_where_blocks_behind_take_it_over() -> No
     assert "G93" not in new_text(text)
 
 
+@pytest.mark.ci
 def test_the_plane_is_in_force_again_where_arcs_follow() -> None:
     arc = "G0 X30. Z2.\nG1 Z-5. F100.\nG2 X40. Z-10. R5.\nG0 X90.\nM30"
     text = cam_contour(hexagon(), inverse=True).replace("M30", arc)
@@ -367,6 +379,7 @@ def test_an_arc_at_the_end_is_not_in_force_behind_the_section() -> None:
     assert "G13.1\nG1\nZ2. F500.\n" in new_text(text)
 
 
+@pytest.mark.ci
 def test_the_style_of_the_program_stays() -> None:
     lines = cam_contour(hexagon()).splitlines()
     numbered = [
@@ -385,6 +398,7 @@ def test_the_style_of_the_program_stays() -> None:
     assert section.islower()
 
 
+@pytest.mark.ci
 def test_comments_between_the_blocks_stay_where_they_are() -> None:
     lines = cam_contour(hexagon()).splitlines()
     lines[60:60] = ["", "(SECOND HALF)"]
@@ -395,7 +409,7 @@ def test_comments_between_the_blocks_stay_where_they_are() -> None:
 # ---- what stays as it is, and what is refused ----
 
 
-@pytest.mark.parametrize(
+@looped(
     ("was", "becomes", "said"),
     [
         ("Z2.\n", "Z2.\nG42 D1\n", "line 8: cutter compensation is in force"),
@@ -451,6 +465,7 @@ def test_drilling_turning_and_milling_on_the_cylinder_are_left_alone() -> None:
         assert "milling on the cylinder" in refusal(text, machine, feed="per-minute")
 
 
+@pytest.mark.ci
 def test_what_stays_is_told_beside_what_is_rolled() -> None:
     lines = cam_contour(hexagon()).splitlines()
     ramp = [f"G1 X{20 + k} C{k}. Z-{k / 10 + 2:.1f} F100." for k in range(1, 12)]
@@ -464,6 +479,7 @@ def test_a_tolerance_below_rounding_is_refused() -> None:
     assert "is too little" in refusal(cam_contour(hexagon()), tolerance=0.002)
 
 
+@pytest.mark.ci
 def test_states_that_the_original_has_are_notes() -> None:
     outcome = roll(cam_contour(hexagon(), inverse=True), "haas-lathe")
     assert any("live-tool-stopped-in-cut" in note for note in outcome.notes)
@@ -476,7 +492,7 @@ def call(*arguments: str) -> Result:
     return CliRunner().invoke(main, ["roll", *arguments], prog_name="polarcheck")
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 @pytest.mark.usefixtures("own_folder")
 def test_the_command_writes_a_new_program_and_says_what_was_done() -> None:
     text = cam_contour(hexagon())
@@ -499,6 +515,7 @@ def test_the_command_writes_a_new_program_and_says_what_was_done() -> None:
     assert "nothing to roll" in refused.stderr
 
 
+@pytest.mark.ci
 @pytest.mark.usefixtures("own_folder")
 def test_the_tolerance_is_in_the_units_of_the_program() -> None:
     start, pieces = hexagon()

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from cases import looped
 from msgspec.structs import replace
 from polarcheck.errors import MachineError
 from programs import ROOT, machine_of, report_of, said, tables_of, trace_of
@@ -68,6 +69,7 @@ def findings(report: FileReport) -> list[tuple[Any, ...]]:
     return [(one.rule, one.line, one.severity, one.alarm, one.count) for one in report.findings]
 
 
+@pytest.mark.ci
 @pytest.mark.one_in(21)
 @pytest.mark.parametrize(
     ("path", "machine", "name"),
@@ -101,7 +103,7 @@ def test_the_same_program_with_another_address(path: Path, machine: str, name: s
     assert of_twin.verdict == report.verdict
 
 
-@pytest.mark.parametrize(
+@looped(
     ("machine", "changes", "names"),
     [
         ("fanuc", {"polar": {"virtual_axis": "Y"}}, ("C", "H", "Y", "V", ["C", "H"])),
@@ -159,7 +161,7 @@ def test_the_words_beside_the_switch_follow() -> None:
     assert (*further.rotary_words, further.virtual_axis, further.virtual_axis_incremental) == ("C", "H", "C", "H")
 
 
-@pytest.mark.parametrize(
+@looped(
     ("text", "said"),
     [
         ("[polar]\nrotary_address = 'X'", "polar.rotary_address: expected A, B, C or H, or the name of an axis as C2"),
@@ -188,6 +190,7 @@ def test_a_name_that_cannot_be_is_one_line(text: str, said: str) -> None:
     assert "\n" not in str(error.value)
 
 
+@pytest.mark.ci
 def test_words_outside_the_mode_are_angles_of_that_axis() -> None:
     """G28 and the approach; C words there are no axis."""
     changes = {"polar": {"rotary_address": "A"}, **CODES}
@@ -198,7 +201,8 @@ def test_words_outside_the_mode_are_angles_of_that_axis() -> None:
     assert trace.machine.address_number("C") in trace.run.words.address
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("before", "after", "rule", "words"),
     [
         ("M35\nG28 A0\n", "M35\n", "c-axis-not-referenced", "A has not gone to its reference point.*G28 A0"),
@@ -222,6 +226,7 @@ def test_messages_name_the_axis(before: str, after: str, rule: str, words: str) 
     assert [one.line for one in twin.findings] == [one.line for one in report.findings]
 
 
+@pytest.mark.ci
 def test_a_second_spindle_is_followed_by_its_name() -> None:
     """C2=10. with the profile of that spindle; its findings write the name with =."""
     program = renamed(CONTOUR.replace("A", "C"), "C2")
@@ -232,7 +237,8 @@ def test_a_second_spindle_is_followed_by_its_name() -> None:
     assert "write G28 C2=0 before" in missing.findings[0].message
 
 
-@pytest.mark.parametrize("words", ["X0 C2=0", "x0 c2=0", "X0 C2=5.", "P1 Q4", "C2=0 X0"])
+@pytest.mark.ci
+@looped("words", ["X0 C2=0", "x0 c2=0", "X0 C2=5.", "P1 Q4", "C2=0 X0"])
 def test_a_named_axis_beside_the_switch(words: str) -> None:
     """Where the control takes the axes there: by name, by number, in lower case."""
     program = renamed(CONTOUR.replace("A", "C"), "C2").replace("G12.1", f"G12.1 {words}")
@@ -247,7 +253,8 @@ def test_a_named_axis_beside_the_switch(words: str) -> None:
     assert trace.path.center_shift[trace.mode.sections.enter[0]] == (5j if "5." in words else 0)
 
 
-@pytest.mark.parametrize(("name", "number"), [("A", 4), ("C2", 5)])
+@pytest.mark.ci
+@looped(("name", "number"), [("A", 4), ("C2", 5)])
 def test_q_names_another_rotary_axis(name: str, number: int) -> None:
     """Its words are lengths in its section, where C moves by itself; what angle it enters at is not followed."""
     changes = {"control": {"axes": ["X", "Z", "C", "A", "C2"]}}

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
+from cases import looped
 
 from polarcheck.geometry.rounding import may_turn_back
 
 
-@pytest.mark.parametrize("way", [1, 1j, -1, np.exp(2.2j)])
-@pytest.mark.parametrize(
+@looped("way", [1, 1j, -1, np.exp(2.2j)])
+@looped(
     ("half", "radius", "limit"),
     [(0.0005, 5.0, 0.1), (0.0005, -5.0, 0.1), (0.0003 + 0.0004j, 5.0, 0.1), (0.00125, 20.0, 0.31622777), (0.5, 2.0, 2)],
 )

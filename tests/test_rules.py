@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from cases import looped
 from programs import machine_of, report_of_example, report_of_whole_example, said
 from syrupy.assertion import SnapshotAssertion
 
@@ -20,20 +21,16 @@ from polarcheck.rules.examples import Example, examples
 from polarcheck.rules.rule import OVER, Hits, Rule, load_all
 
 RULES = load_all()
-EXAMPLES = [
-    pytest.param(rule, example, id=f"{rule.name}-{number}")
-    for rule in RULES.values()
-    for number, example in enumerate(examples(rule.page))
-]
 
 
-@pytest.mark.one_in(4)
-@pytest.mark.parametrize(("rule", "example"), EXAMPLES)
-def test_example_gives_exactly_its_findings(rule: Rule, example: Example) -> None:
-    assert said(report_of_whole_example(example)) == sorted(example.expected)
-
-
+@pytest.mark.one_in(1)
 @pytest.mark.parametrize("rule", RULES.values(), ids=list(RULES))
+def test_examples_give_exactly_their_findings(rule: Rule) -> None:
+    for example in examples(rule.page):
+        assert said(report_of_whole_example(example)) == sorted(example.expected), example.program
+
+
+@looped("rule", RULES.values(), ids=list(RULES))
 def test_rule_is_complete(rule: Rule) -> None:
     found = examples(rule.page)
     assert rule.title
@@ -49,8 +46,9 @@ def test_rule_is_complete(rule: Rule) -> None:
     assert not re.match(r"no-(?!offset|compensation|tool)|disallow", rule.name)
 
 
-@pytest.mark.parametrize("rule", RULES.values(), ids=list(RULES))
-@pytest.mark.parametrize("value", [True, False])
+@pytest.mark.ci
+@looped("rule", RULES.values(), ids=list(RULES))
+@looped("value", [True, False])
 def test_a_constant_mask_fails(rule: Rule, value: bool) -> None:
     """A rule that always or never fires is found out by its own examples."""
     from msgspec.structs import replace
@@ -80,7 +78,7 @@ def own_severities(name: str) -> list[list[str]]:
     return [[finding.severity for finding in report.findings] for report in reports]
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 def test_severities_are_the_golden_ones(snapshot: SnapshotAssertion) -> None:
     """A line for each rule: what it is listed with, and what it gives in each of its examples."""
     lines = [
@@ -100,7 +98,8 @@ def named_severities(rule: Rule) -> Iterator[str]:
             yield from (word.arg for word in node.keywords if word.arg in SEVERITIES)
 
 
-@pytest.mark.parametrize("rule", RULES.values(), ids=list(RULES))
+@pytest.mark.ci
+@looped("rule", RULES.values(), ids=list(RULES))
 def test_each_severity_of_a_rule_is_seen_in_its_examples(rule: Rule) -> None:
     graded = set(named_severities(rule)) - {rule.severity.name.lower()}
     assert not graded or graded <= {severity for found in own_severities(rule.name) for severity in found}

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import msgspec
-import pytest
+from cases import looped
 from programs import ROOT, expected, report_of, said, tables_of, without_expectations
 from syrupy.assertion import SnapshotAssertion
 
@@ -39,8 +39,7 @@ def report_of_sample(path: Path) -> FileReport:
     )
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize("path", SAMPLES, ids=NAMES)
+@looped("path", SAMPLES, ids=NAMES, one_in=12)
 def test_sample_gives_what_it_expects(path: Path) -> None:
     report = report_of_sample(path)
     assert said(report) == expected(path.read_text("utf-8"))
@@ -48,22 +47,23 @@ def test_sample_gives_what_it_expects(path: Path) -> None:
     assert places == sorted(places), "in the order of the file"
 
 
-@pytest.mark.parametrize("path", SAMPLES, ids=NAMES)
-def test_report_is_the_golden_one(path: Path, snapshot: SnapshotAssertion) -> None:
-    assert msgspec.json.format(msgspec.json.encode(report_of_sample(path))).decode() == snapshot
+@looped(("path", "name"), zip(SAMPLES, NAMES, strict=True))
+def test_report_is_the_golden_one(path: Path, name: str, snapshot: SnapshotAssertion) -> None:
+    assert msgspec.json.format(msgspec.json.encode(report_of_sample(path))).decode() == snapshot(name=name)
 
 
-@pytest.mark.parametrize("path", SAMPLES, ids=NAMES)
-def test_tool_center_path_is_the_golden_one(path: Path, snapshot: SnapshotAssertion) -> None:
+@looped(("path", "name"), zip(SAMPLES, NAMES, strict=True))
+def test_tool_center_path_is_the_golden_one(path: Path, name: str, snapshot: SnapshotAssertion) -> None:
     tables = tables_of(path.read_bytes(), **settings(path), path=path.name)
-    assert "".join(executed.as_jsonl(executed.moves(tables["trace"], tables["tool_center"], "tool"))) == snapshot
+    assert "".join(executed.as_jsonl(executed.moves(tables["trace"], tables["tool_center"], "tool"))) == snapshot(
+        name=name
+    )
 
 
 FAULTY = [path for path in SAMPLES if expected(path.read_text("utf-8"))]
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize("path", FAULTY, ids=lambda path: path.relative_to(FOLDER).as_posix())
+@looped("path", FAULTY, ids=lambda path: path.relative_to(FOLDER).as_posix(), one_in=12)
 def test_comments_that_expect_something_are_no_part_of_it(path: Path) -> None:
     text = path.read_text("utf-8")
     assert said(report_of(without_expectations(text), **settings(path))) == expected(text)
@@ -75,7 +75,7 @@ def test_there_are_enough_samples_good_and_bad() -> None:
     assert len(SAMPLES) - len(FAULTY) >= 4
 
 
-@pytest.mark.parametrize("name", CONTROLS)
+@looped("name", CONTROLS)
 def test_each_control_has_a_good_and_a_bad_sample(name: str) -> None:
     own = [path for path in SAMPLES if path.parent == FOLDER / name]
     assert {path in FAULTY for path in own} == {True, False}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from cases import looped
 
 from polarcheck.foundation.states import Motion
 from polarcheck.geometry.segments import Curves, reach_from_start, segments
@@ -27,7 +28,7 @@ def curves(*moves: tuple[complex, complex, complex | None, Motion], loops: list[
 LINES = [(0j, 1 + 0j, None, Motion.LINE), (1 + 0j, 1 + 1j, None, Motion.LINE), (1 + 1j, 0j, None, Motion.LINE)]
 
 
-@pytest.mark.parametrize(
+@looped(
     ("loops", "order"),
     [
         ([0, 0, 1], [0, 1, 2]),
@@ -44,8 +45,8 @@ def test_loop_after_loop(loops: list[int], order: list[int]) -> None:
     assert found.start.tolist() == [LINES[row][0] for row in order]
 
 
-@pytest.mark.parametrize("kind", [Motion.CW, Motion.CCW])
-@pytest.mark.parametrize("tolerance", [0.1, 0.01, 0.001])
+@looped("kind", [Motion.CW, Motion.CCW])
+@looped("tolerance", [0.1, 0.01, 0.001])
 def test_the_sagitta_is_a_quarter_of_the_tolerance_at_most(kind: Motion, tolerance: float) -> None:
     found = segments(curves((10 + 0j, 0 + 10j, 0j, kind)), tolerance)
     assert np.abs(found.start) == pytest.approx(10)
@@ -83,9 +84,9 @@ def test_what_is_not_known_and_what_has_no_length_is_left_out() -> None:
     assert found.move.tolist() == [3]
 
 
-@pytest.mark.parametrize("kind", [Motion.CW, Motion.CCW])
-@pytest.mark.parametrize("growth", [0.9, 1.0, 1.1])
-@pytest.mark.parametrize("turn", [0, 1, 90, 179, 180, 181, 270, 359])
+@looped("kind", [Motion.CW, Motion.CCW])
+@looped("growth", [0.9, 1.0, 1.1])
+@looped("turn", [0, 1, 90, 179, 180, 181, 270, 359])
 def test_no_point_of_a_curve_is_farther_from_its_start_than_it_reaches(turn: int, growth: float, kind: Motion) -> None:
     arc = curves((10 + 0j, 10 * growth * np.exp(1j * np.radians(turn)), 0j, kind))
     parts = segments(arc, 1e-4)

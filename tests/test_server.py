@@ -19,7 +19,7 @@ from lsprotocol import types
 from pytest_lsp import LanguageClient, make_test_lsp_client
 from test_cli import COMPENSATED, GOOD, IMPORTED_FROM, RAPID, call
 
-pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("own_folder")]
+pytestmark = [pytest.mark.ci, pytest.mark.usefixtures("own_folder")]
 
 SERVER = ("-m", "polarcheck", "server")
 ONLY_RAPID = ("--select", "rapid-in-polar,start-up-shorter-than-radius,wrong-dash")

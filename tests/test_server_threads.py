@@ -7,6 +7,8 @@ import sys
 
 import pytest
 
+pytestmark = pytest.mark.ci
+
 AT_ONCE = """
 import sys, threading
 from pathlib import Path
@@ -30,7 +32,6 @@ print(failures)
 """
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("function", ["load_all()", "settings(Path('a.nc'))"])
 def test_threads_may_need_the_same_for_the_first_time_at_once(function: str) -> None:
     command = [sys.executable, "-c", AT_ONCE.replace("FUNCTION", function)]

@@ -23,10 +23,10 @@ from test_pictures import GROOVE, HEXAGON
 from test_plot import PLOTLY, RADIUS
 
 from polarcheck.commands import serving, watching
-from polarcheck.view import connections, plotly_script
+from polarcheck.view import page_server, plotly_script
 from polarcheck.view import page_server as served
 
-pytestmark = pytest.mark.usefixtures("own_folder")
+pytestmark = [pytest.mark.ci, pytest.mark.usefixtures("own_folder")]
 __all__ = ["browser"]  # a fixture
 
 
@@ -174,7 +174,6 @@ def test_a_folder_has_an_index_and_new_programs_come_to_it(visitor: Visitor, bet
     assert call("plot", "--serve", "f", *RADIUS, "-j", "1").exit_code == 0
 
 
-@pytest.mark.slow
 def test_a_page_depends_on_drawing_offsets_and_subprograms(visitor: Visitor, between: Callable[..., None]) -> None:
     Path("subs").mkdir()
     make(a__nc=HEXAGON.replace("G40 X80.", "M98 P100\nG40 X80."), **{"subs/O0100__nc": "O0100\nM99\n"})
@@ -414,7 +413,7 @@ def drawn_request(seed: int) -> bytes:
     return begin + rest + draw.choice([b"", b" HTTP/1.1\r\n" + RIGHT, b"\r\n\r\n"])
 
 
-@pytest.mark.parametrize("count", [150, pytest.param(4000, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("count", [150, pytest.param(4000, marks=pytest.mark.ci)])
 def test_drawn_bytes_end_nothing_and_print_nothing(
     attacker: Attacker, count: int, capfd: pytest.CaptureFixture[str]
 ) -> None:
@@ -431,11 +430,11 @@ def test_drawn_bytes_end_nothing_and_print_nothing(
 SLOW = (b"", b"G", b"GET / HTTP/1.1\r\nHost: 127.0.0.1\r\nX: ")
 
 
-@pytest.mark.parametrize("most", [6, pytest.param(connections.MOST, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("most", [6, pytest.param(page_server.MOST, marks=pytest.mark.ci)])
 def test_slow_connections_without_the_token_keep_no_page_away(
     attacker: Attacker, monkeypatch: pytest.MonkeyPatch, most: int
 ) -> None:
-    monkeypatch.setattr(connections, "MOST", most)
+    monkeypatch.setattr(page_server, "MOST", most)
     with attacker.visitor.answer("events/") as event:
         assert event.readline() == b'data: {"version": "1", "notice": ""}\n'
         for _ in range(3):
@@ -462,7 +461,7 @@ def test_headers_that_never_end_are_not_waited_for(attacker: Attacker, monkeypat
         with pytest.raises(BlockingIOError):
             slow.recv(1)
         slow.settimeout(30)
-        monkeypatch.setattr(connections, "LONGEST", 0.0)
+        monkeypatch.setattr(page_server, "LONGEST", 0.0)
         gone = threading.Event()
 
         def drip() -> None:
@@ -475,7 +474,7 @@ def test_headers_that_never_end_are_not_waited_for(attacker: Attacker, monkeypat
         assert until_closed(slow) == b""
         gone.set()
         dripping.join()
-        monkeypatch.setattr(connections, "LONGEST", 60.0)
+        monkeypatch.setattr(page_server, "LONGEST", 60.0)
         # A connection that has shown the token lasts.
         attacker.server._site.notice("", "late")
         event.readline()
@@ -483,12 +482,12 @@ def test_headers_that_never_end_are_not_waited_for(attacker: Attacker, monkeypat
 
 
 def test_connections_with_the_token_are_counted_too(attacker: Attacker, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(connections, "MOST", 2)
+    monkeypatch.setattr(page_server, "MOST", 2)
     events = [attacker.visitor.answer("events/") for _ in range(2)]
     for event in events:
         event.readline()
     assert attacker.visitor.ask()[0] == 503
-    monkeypatch.setattr(connections, "MOST", 3)
+    monkeypatch.setattr(page_server, "MOST", 3)
     assert attacker.visitor.ask() == (200, "the page")
     for event in events:
         event.close()
@@ -580,7 +579,6 @@ def test_a_port_that_is_taken_is_one_line(visitor: Visitor) -> None:
     assert result.stderr == f"polarcheck: --port {port}: Address already in use\n"
 
 
-@pytest.mark.slow
 @pytest.mark.xdist_group("browser")
 @pytest.mark.skipif(CHROMIUM is None, reason="there is no chromium here")
 def test_a_browser_shows_what_is_saved_and_keeps_what_is_chosen(browser: Any) -> None:

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 import shapely  # type: ignore[import-untyped]
+from cases import looped
 from contour_families import FAMILIES, Program, Twin, program_of
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -123,8 +124,8 @@ def boundary(program: Program) -> Any:
     return program.part.boundary.intersection(shapely.box(-FAR / 2, -FAR / 2, FAR / 2, FAR / 2))
 
 
-@pytest.mark.one_in(13)
-@pytest.mark.parametrize("family", FAMILIES)
+@pytest.mark.ci
+@looped("family", FAMILIES, one_in=13)
 def test_what_is_drawn_from_a_shape_is_the_part(family: str) -> None:
     told = []
     for seed in range(7):
@@ -152,8 +153,8 @@ SIZES = ("across_flats", "diameter", "width", "length", "apart", "distance", "ra
 TWINS = {"turned": Twin(0.7), "mirror": Twin(mirror=True), "inch": Twin(inch=True), "steps": Twin(incremental=True)}
 
 
-@pytest.mark.one_in(4)
-@pytest.mark.parametrize("twin", TWINS.values(), ids=list(TWINS))
+@pytest.mark.ci
+@looped("twin", TWINS.values(), ids=list(TWINS), one_in=4)
 def test_twins_have_the_same_shape(twin: Twin) -> None:
     compared = 0
     for family, seed in (
@@ -198,7 +199,7 @@ def regular(sides: int, across: float, turned: float = 0.0) -> Any:
     return affinity.rotate(_cut(shapely.box(-FAR, -FAR, FAR, FAR), [across / 2] * sides), turned, origin=(0, 0))
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 @settings(max_examples=25, deadline=None)
 @given(
     st.integers(3, 12), st.floats(8, 80), st.floats(0, 360), st.floats(-15, 15), st.floats(-15, 15)
@@ -213,6 +214,7 @@ def test_regular_polygons_are_told(sides: int, across: float, turned: float, x: 
     assert abs(middle - complex(x, c)) < 0.005
 
 
+@pytest.mark.ci
 @settings(max_examples=15, deadline=None)
 @given(st.floats(10, 60), st.floats(1.05, 4), st.floats(0, 180), st.floats(-9, 9))
 def test_rectangles_are_told(width: float, share: float, turned: float, aside: float) -> None:
@@ -225,7 +227,7 @@ def test_rectangles_are_told(width: float, share: float, turned: float, aside: f
     assert abs((found.values["turned"] - turned + 90) % 180 - 90) < 0.05
 
 
-@pytest.mark.parametrize(("sides", "at"), [(6, 0), (6, 2), (4, 1), (8, 5), (5, 3)])
+@looped(("sides", "at"), [(6, 0), (6, 2), (4, 1), (8, 5), (5, 3)])
 def test_one_side_that_is_off_is_told_with_its_size(sides: int, at: int) -> None:
     sizes = [13.5] * sides
     sizes[at] = 13.55

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from cases import looped
 from programs import report_of, trace_of
 
 from polarcheck.foundation.finding import FileReport
@@ -44,16 +45,19 @@ def rules(of: FileReport) -> list[str]:
 # ---- habits of other languages ----
 
 
-@pytest.mark.parametrize("block", ["R1 5", "N20 R99 .5", "r12 7", "R5"])
+@pytest.mark.ci
+@looped("block", ["R1 5", "N20 R99 .5", "r12 7", "R5"])
 def test_a_parameter_takes_its_value_by_equal(block: str) -> None:
     assert rules(report(block)) == ["equal-sign-missing"]
 
 
-@pytest.mark.parametrize("block", ["R1=5", "R1 = -5", "R[3]=5", "R1=R2", "ROT RPL=10\nROT"])
+@pytest.mark.ci
+@looped("block", ["R1=5", "R1 = -5", "R[3]=5", "R1=R2", "ROT RPL=10\nROT"])
 def test_with_equal_nothing_is_told(block: str) -> None:
     assert rules(report(block)) == []
 
 
+@pytest.mark.ci
 def test_the_radius_of_an_arc_is_no_r() -> None:
     arc = "G1 X30 F300\nG3 X0 Y30 {}\nG1 X40 Y0"
     assert rules(report(inside=arc.format("R30"))) == ["equal-sign-missing"]
@@ -61,7 +65,8 @@ def test_the_radius_of_an_arc_is_no_r() -> None:
     assert rules(report(inside=arc.format("CR=R1+30"), before="R1=0")) == []
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("before", "count"),
     [("(HEXAGON)", 1), ("(ONE)\nX50 (TWO)\n( THREE )", 3), ("N10 G0 X50 (RAPID)", 1)],
 )
@@ -72,7 +77,8 @@ def test_text_in_parentheses_is_told_once(before: str, count: int) -> None:
     assert (f"in {count} blocks" in finding.message) == (count > 1)
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     "before",
     ["X=(R1+2)", "R1=(2+3)*4", 'MSG("(ROUGHING)")', "; (HEXAGON)", "CYCLE832(0.01,1)", "OSCTRL[Z]=(1+2,4)", "SETMS(2)"],
 )
@@ -90,8 +96,8 @@ def test_behind_g291_and_in_the_iso_mode_it_is_a_comment() -> None:
 # ---- predefined procedures and synchronized actions ----
 
 
-@pytest.mark.one_in(3)
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     "block",
     [
         'DELETE(RESULT,"/_N_WKS_DIR/_N_A_MPF")',
@@ -109,6 +115,7 @@ def test_behind_g291_and_in_the_iso_mode_it_is_a_comment() -> None:
         "ID=2 FROM $A_IN[1]==1 DO POS[U]=100",
         "DO $R5=$AA_IM[Z]",
     ],
+    one_in=3,
 )
 def test_what_moves_no_axis_of_the_plane_is_passed_over(block: str) -> None:
     for before, inside in ((block, ""), ("", block)):
@@ -116,7 +123,8 @@ def test_what_moves_no_axis_of_the_plane_is_passed_over(block: str) -> None:
         assert (rules(found), found.verdict) == ([], "pass")
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("block", "reason"),
     [
         ("ID=1 WHENEVER ($R1==0) DO $AC_OVR=0", "synchronized action with $AC_OVR is not simulated"),
@@ -138,7 +146,8 @@ def test_what_moves_the_axes_or_sets_the_feed_is_not_evaluated(block: str, reaso
 # ---- spindles ----
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("before", "is_main"),
     [
         ("SETMS(3)\nM3 S2000", False),
@@ -157,7 +166,7 @@ def test_m3_is_that_of_the_master_spindle(before: str, is_main: bool) -> None:
 # ---- programs with parameters ----
 
 
-@pytest.mark.parametrize(
+@looped(
     ("call", "head", "end"),
     [
         ("CUT(20)", "PROC CUT(REAL A)", 20 + 3j),
@@ -183,7 +192,8 @@ def test_a_head_with_a_letter_is_read() -> None:
 # ---- what stands before and behind the sections of a whole program ----
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     "before",
     [
         "G0 SUPA X300 Z400",
@@ -204,7 +214,8 @@ def test_what_stands_outside_the_mode_leaves_the_section_alone(before: str) -> N
     assert (rules(found), found.verdict) == ([], "pass")
 
 
-@pytest.mark.parametrize("block", ["CYCLE81(5,0,2,-20)", "HOLES1(0,0,20,0,60,6)"])
+@pytest.mark.ci
+@looped("block", ["CYCLE81(5,0,2,-20)", "HOLES1(0,0,20,0,60,6)"])
 def test_a_cycle_matters_where_nothing_says_the_position_behind_it(block: str) -> None:
     text = PROGRAM.format(before="", inside="").replace("TRANSMIT", f"{block}\nTRANSMIT")
     assert report_of(text, MACHINE, "8:radius=4,nose=0").verdict == "unverified"
@@ -223,7 +234,7 @@ def test_x_may_be_open_at_transmit() -> None:
     assert {finding.severity for finding in found.findings} <= {"note"}
 
 
-@pytest.mark.parametrize("block", ["G110 X0 Y0", "G53 G0 Z50", "SUPA G0 Z50"])
+@looped("block", ["G110 X0 Y0", "G53 G0 Z50", "SUPA G0 Z50"])
 def test_poles_and_z_of_the_machine_may_stand_in_the_mode(block: str) -> None:
     assert rules(report(inside=f"{block}\nG0 Z5")) == []
 
@@ -246,7 +257,8 @@ def test_call_block_runs_the_blocks_between_two_labels() -> None:
 # ---- messages ----
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     "block",
     [
         "WHILE R1<5",

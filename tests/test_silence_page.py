@@ -8,6 +8,7 @@ import shlex
 from pathlib import Path
 
 import pytest
+from cases import looped
 from click.testing import CliRunner
 from programs import ROOT, report_of
 
@@ -20,7 +21,7 @@ PROGRAMS = [part for part in PARTS if "\nG12.1\n" in part]
 COMMANDS = [line for part in PARTS if part.startswith("polarcheck ") for line in part.splitlines()]
 
 
-@pytest.mark.parametrize("program", PROGRAMS)
+@looped("program", PROGRAMS)
 def test_each_program_passes_by_its_comments_alone(program: str) -> None:
     found = report_of(program, "fanuc", "1:radius=4", only=["polar", "silence"])
     assert found.findings == []
@@ -28,7 +29,7 @@ def test_each_program_passes_by_its_comments_alone(program: str) -> None:
     assert {one.reason for one in found.silenced} == {"PARAMETER 5431 IS SET"}
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 @pytest.mark.usefixtures("own_folder")
 def test_the_commands_do_what_the_page_says() -> None:
     Path("programs").mkdir()

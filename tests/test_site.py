@@ -12,6 +12,7 @@ from pathlib import Path
 
 import click
 import pytest
+from cases import looped
 from click.testing import CliRunner
 from programs import ROOT
 
@@ -46,7 +47,7 @@ def written_pages() -> list[Path]:
     return [path for path in pages() if path.name == "index.md" or not _MADE & set(path.relative_to(ROOT).parts)]
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 def test_the_made_pages_are_current() -> None:
     """`python docs/make.py` makes them anew."""
     made = site.pages()
@@ -102,6 +103,7 @@ def anchors(path: Path) -> set[str]:
     return {re.sub(r"[^\w\- ]", "", head.lower()).replace(" ", "-") for head in heads}
 
 
+@pytest.mark.ci
 def test_every_link_leads_somewhere() -> None:
     lost = []
     for page in pages():
@@ -168,7 +170,8 @@ def parsed(line: str) -> str:
         return "" if "does not exist" in error.format_message() else error.format_message()
 
 
-@pytest.mark.parametrize("page", written_pages(), ids=lambda page: page.relative_to(ROOT).as_posix())
+@pytest.mark.ci
+@looped("page", written_pages(), ids=lambda page: page.relative_to(ROOT).as_posix())
 def test_every_command_line_is_understood(page: Path) -> None:
     wrong = []
     for line, is_whole in commands(page):
@@ -197,7 +200,7 @@ def beside_samples(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 @pytest.mark.usefixtures("beside_samples")
 def test_those_on_sample_programs_run() -> None:
     lines = {line for page in written_pages() for line, _ in commands(page) if SAMPLES in line}
@@ -206,6 +209,7 @@ def test_those_on_sample_programs_run() -> None:
     assert not failed
 
 
+@pytest.mark.ci
 @pytest.mark.usefixtures("beside_samples")
 def test_shown_reports_are_what_is_said_today(pytestconfig: pytest.Config) -> None:
     """`pytest --accept` writes them into the pages."""

@@ -6,6 +6,7 @@ import codecs
 
 import numpy as np
 import pytest
+from cases import looped
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from polarcheck.errors import SourceError, UsageError
@@ -22,7 +23,7 @@ ENCODED = [
 ]
 
 
-@pytest.mark.parametrize(("data", "encoding", "bom"), ENCODED, ids=["utf-8", "bom", "utf-16-le", "utf-16-be"])
+@looped(("data", "encoding", "bom"), ENCODED, ids=["utf-8", "bom", "utf-16-le", "utf-16-be"])
 def test_encodings_are_recognised(data: bytes, encoding: str, bom: bytes) -> None:
     source = read_source(data)
     assert (source.encoding, source.bom) == (encoding, bom)
@@ -32,7 +33,7 @@ def test_encodings_are_recognised(data: bytes, encoding: str, bom: bytes) -> Non
     assert [source.line_text(line) for line in (1, 2, 3)] == PROGRAM.splitlines()
 
 
-@pytest.mark.parametrize("data", [item[0] for item in ENCODED], ids=["utf-8", "bom", "utf-16-le", "utf-16-be"])
+@looped("data", [item[0] for item in ENCODED], ids=["utf-8", "bom", "utf-16-le", "utf-16-be"])
 def test_places_are_the_same_in_every_encoding(data: bytes) -> None:
     found = read_words(read_source(data))
     assert (
@@ -89,7 +90,7 @@ def test_every_byte_survives(data: bytes) -> None:
 LINE_ENDS = ["\n", "\r\n", "\n\r\r", "\r\r\n", "\r"]
 
 
-@pytest.mark.parametrize("line_end", LINE_ENDS, ids=repr)
+@looped("line_end", LINE_ENDS, ids=repr)
 def test_line_numbers_do_not_depend_on_the_line_end(line_end: str) -> None:
     """Source: B-63524EN/01 p. 649 (LF CR CR); Windows; broken transfers."""
     lines = ["%", "O0001", "", "G0 X60. (A)", "M30", "%"]
@@ -100,6 +101,7 @@ def test_line_numbers_do_not_depend_on_the_line_end(line_end: str) -> None:
     assert [source.line_of(int(start)) for start in found.words.start] == [2, 4, 4, 5]
 
 
+@pytest.mark.ci
 @given(st.lists(st.sampled_from(["G1", "X1.", "", "(A)", ";"]), max_size=12), st.sampled_from(LINE_ENDS))
 @settings(deadline=None)
 def test_a_position_lies_on_its_line(lines: list[str], line_end: str) -> None:

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from cases import looped
 from polarcheck.errors import MachineError
 from programs import report_of, said, tables_of
 
@@ -39,7 +40,8 @@ def broken(before: str, inside: str = "", **codes: list[str]) -> list[str]:
 # ---- codes with a word beside them ----
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("before", "rules"),
     [
         ("M5 P11 / M35 / M3 P12 S2000", []),
@@ -62,7 +64,7 @@ def test_p_tells_which_spindle_is_meant(before: str, rules: list[str]) -> None:
     assert broken(before, **BY_P) == rules
 
 
-@pytest.mark.parametrize(
+@looped(
     ("before", "rules"),
     [
         ("M3 P12 S2000", []),
@@ -100,15 +102,13 @@ def test_the_code_that_is_at_fault_is_the_one_with_its_word() -> None:
     assert broken("M35 / M3 P12", "M8 P12", **BY_P) == []
 
 
-@pytest.mark.parametrize("key", ["program_end", "tool_change", "optional_stop", "stops_reading_ahead"])
+@looped("key", ["program_end", "tool_change", "optional_stop", "stops_reading_ahead"])
 def test_a_code_that_acts_by_itself_takes_no_word(key: str) -> None:
     with pytest.raises(MachineError, match=f"m_codes.{key}: 'M30 P1' is no code"):
         profiles.load("fanuc", {"m_codes": {key: ["M30 P1"]}})
 
 
-@pytest.mark.parametrize(
-    "text", ["M3 P", "M3 12", "M3 PP12", "M3 G12", "M3 P1234567890", "P12 M3", "M3-M5 P12", "M3 P12 S1"]
-)
+@looped("text", ["M3 P", "M3 12", "M3 PP12", "M3 G12", "M3 P1234567890", "P12 M3", "M3-M5 P12", "M3 P12 S1"])
 def test_what_is_no_code_with_a_word_is_one_line(text: str) -> None:
     with pytest.raises(MachineError, match=r"m_codes\.live_tool_on: .* is no code"):
         profiles.load("fanuc", {"m_codes": {"live_tool_on": [text]}})
@@ -128,7 +128,8 @@ SETS: dict[str, list[str]] = {
 }
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("before", "inside", "rules"),
     [
         ("M135 / M33 S900", "", []),
@@ -175,7 +176,7 @@ def test_the_remedy_is_that_of_the_sub_spindle() -> None:
     assert message.startswith("M103 is in force at G12.1; write M105 before")
 
 
-@pytest.mark.parametrize("word", ["H0", "C0", "A0"])
+@looped("word", ["H0", "C0", "A0"])
 def test_c_of_the_sub_spindle_may_be_referenced_by_another_name(word: str) -> None:
     program = PROGRAM.format("M135\nM33 S900", "").replace("G28 H0", f"G28 {word}")
     found = said(report_of(program, "fanuc-30i", changes={"m_codes": SETS}, only=["c-axis-not-referenced"]))
@@ -199,7 +200,8 @@ CLAMPS: dict[str, Any] = {
 }
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("before", "inside", "clamped"),
     [
         ("M200 / M210", "", True),

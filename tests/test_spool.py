@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from cases import looped
 from programs import ROOT, report_of
 
 from polarcheck import reports
@@ -13,6 +14,8 @@ from polarcheck.files.batch.spool import Spool
 from polarcheck.foundation.finding import FileReport
 from polarcheck.program.reading import files
 from polarcheck.rules.rule import load_all
+
+pytestmark = pytest.mark.ci
 
 SAMPLES = ["rapid_in_polar.nc", "hexagon.nc", "degrees.nc", "narrow_groove.nc", "macro_polygon.nc"]
 
@@ -36,7 +39,7 @@ def spooled(found: list[tuple[FileReport, dict[int, str]]], in_memory: int) -> S
     return reports_of
 
 
-@pytest.mark.parametrize("in_memory", [0, 3, 100])
+@looped("in_memory", [0, 3, 100])
 def test_what_is_kept_comes_back_as_often_as_one_likes(
     found: list[tuple[FileReport, dict[int, str]]], in_memory: int
 ) -> None:
@@ -52,8 +55,8 @@ def test_what_is_kept_comes_back_as_often_as_one_likes(
     assert len(stored.lines) == len(found)
 
 
-@pytest.mark.parametrize("form", reports.formats())
-@pytest.mark.parametrize("color", [False, True])
+@looped("form", reports.formats())
+@looped("color", [False, True])
 def test_every_format_takes_reports_that_are_not_in_memory(
     found: list[tuple[FileReport, dict[int, str]]], form: str, color: bool
 ) -> None:

@@ -93,6 +93,7 @@ def test_a_report_does_not_take_its_place() -> None:
     assert "is read by this run" in result.stderr
 
 
+@pytest.mark.ci
 def test_what_cannot_be_read_there_is_told_under_its_name() -> None:
     with process("check", "-", *AS_FILE, "--encoding", "ascii", stdin=-1) as running:
         assert running.stdin is not None

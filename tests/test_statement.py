@@ -6,6 +6,7 @@ import sys
 from typing import Any
 
 import pytest
+from cases import looped
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from macro_values import assign_arguments, called_program, read_statement, variables
@@ -32,7 +33,7 @@ def parts(block: str, statement: Statement) -> dict[str, Any]:
     return found
 
 
-@pytest.mark.parametrize(
+@looped(
     ("block", "kind", "expected"),
     [
         ("#1 = 5", Kind.ASSIGN, {"target": "#1", "value": "5"}),
@@ -207,7 +208,7 @@ FAULTS_OF_READING = [
 ]
 
 
-@pytest.mark.parametrize(("block", "kind", "at_fault"), FAULTS_OF_READING)
+@looped(("block", "kind", "at_fault"), FAULTS_OF_READING)
 def test_fault_of_reading(block: str, kind: str, at_fault: str) -> None:
     for text, shift in ((block, 0), (f"/2 N10 {block}", 7)):
         fault = read_statement(text).fault
@@ -222,14 +223,14 @@ def test_levels_of_brackets_are_a_bound_of_the_control() -> None:
     assert read_statement("#1=[[[1]]]+[[[2]]]+[[[3]]]", levels=3).fault is None
 
 
-@pytest.mark.parametrize(("rest", "kind"), [("+", "format"), (" G1", "nc-and-macro")])
+@looped(("rest", "kind"), [("+", "format"), (" G1", "nc-and-macro")])
 def test_a_worse_fault_goes_before_brackets_too_deep(rest: str, kind: str) -> None:
     fault = read_statement(f"#1=[[[[[[1]]]]]]{rest}").fault
     assert fault is not None
     assert fault.kind == kind
 
 
-@pytest.mark.parametrize("block", ["#1=" + "1+" * 50 + "1", "X#1" * 50, "/" * 50, "O1" * 50, "X[" + "1+" * 50 + "1]"])
+@looped("block", ["#1=" + "1+" * 50 + "1", "X#1" * 50, "/" * 50, "O1" * 50, "X[" + "1+" * 50 + "1]"])
 def test_size_is_bounded(block: str) -> None:
     assert read_statement(block, size=200).fault is None or block.startswith("O")
     short = read_statement(block, size=20)
@@ -238,6 +239,7 @@ def test_size_is_bounded(block: str) -> None:
     assert short.fault.kind == "too-long"
 
 
+@pytest.mark.ci
 def test_size_is_bounded_where_nobody_asks_for_it() -> None:
     statement = read_statement("X1" * 20_100)
     assert len(statement.words) == 20_000
@@ -269,9 +271,9 @@ HOSTILE = [
 HOSTILE += ["ATAN[1]/[", "POW[1,", "IF[1EQ1]TH", "GOTO", "<", ">", "<A>", " ", "#_A", "=", "X[1+", "1EQ", "X1.1"]
 
 
-@pytest.mark.one_in(8)
-@pytest.mark.parametrize("head", ["", "#1=", "IF[", "G1X["])
-@pytest.mark.parametrize("part", HOSTILE)
+@pytest.mark.ci
+@looped("head", ["", "#1=", "IF[", "G1X["], one_in=8)
+@looped("part", HOSTILE)
 def test_reading_takes_linear_time(part: str, head: str) -> None:
     """Twice the text takes at most about twice the calls; and a very long block comes to an end."""
 
@@ -318,7 +320,7 @@ NAMES = [
 MACRO_TEXT = st.lists(st.sampled_from(SIGNS + NAMES), max_size=40).map("".join)
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 @given(block=st.one_of(MACRO_TEXT, st.text(max_size=60)))
 @settings(max_examples=400, deadline=None)
 def test_reading_and_running_never_fail(block: str) -> None:

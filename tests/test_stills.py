@@ -23,7 +23,7 @@ from polarcheck.view.stills.numbering import entries, labels
 from polarcheck.view.stills.palette import ABOVE, PLAIN, SHADES, coloring, round_bounds
 from polarcheck.view.stills.still import printable, still, wrapped
 
-pytestmark = pytest.mark.usefixtures("own_folder")
+pytestmark = [pytest.mark.ci, pytest.mark.usefixtures("own_folder")]
 
 SVG = "{http://www.w3.org/2000/svg}"
 #: Two sections, and a block outside of them that is wrong.
@@ -41,7 +41,6 @@ def read(data: bytes) -> tuple[ElementTree.Element, str]:
     return root, "\n".join(node.text or "" for node in root.iter() if not isinstance(node.tag, str))
 
 
-@pytest.mark.slow
 def test_a_picture_has_the_width_of_a_page_and_says_what_is_wrong() -> None:
     make(a__nc=GROOVE)
     result = call("plot", "a.nc", *RADIUS, "--png", "a.png", "--svg", "a.svg")
@@ -63,7 +62,6 @@ def test_a_picture_has_the_width_of_a_page_and_says_what_is_wrong() -> None:
     assert (Path("b.PNG").read_bytes(), Path("b.svg").read_bytes()) == (data, Path("a.svg").read_bytes())
 
 
-@pytest.mark.slow
 def test_sections_stand_one_below_the_other_and_can_be_chosen() -> None:
     make(a__nc=TWO)
     assert call("plot", "a.nc", *RADIUS, "--svg", "a.svg").exit_code == 0
@@ -117,7 +115,6 @@ def test_without_matplotlib_one_line_says_what_to_install(monkeypatch: pytest.Mo
     assert result.stderr == "polarcheck: --png and --svg need matplotlib, of the extra [plot]: pip install matplotlib\n"
 
 
-@pytest.mark.slow
 def test_hostile_names_and_words_are_text() -> None:
     name = "a--><script>$x^$ \x1b.nc"
     Path(name).write_text(HEXAGON.replace("F200", "F200 $\\frac{1}$ <b>&amp; --> Q\u65e5", 1), "utf-8")
@@ -133,7 +130,6 @@ def colors(root: ElementTree.Element) -> set[str]:
     return {match for node in root.iter() for match in re.findall("stroke: (#[0-9a-f]{6})", node.get("style", ""))}
 
 
-@pytest.mark.slow
 def test_all_that_is_known_of_a_section_is_drawn() -> None:
     moves = msgspec.structs.replace(
         hexagon().moves,

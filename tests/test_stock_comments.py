@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 
 import pytest
+from cases import looped
 from programs import tables_of
 
 from polarcheck.columns.words.bar_comments import bar_in
 from polarcheck.columns.words.stock_comments import StockComments
 
 
-@pytest.mark.parametrize(
+@looped(
     ("comment", "inch", "diameter"),
     [
         ("BAR DIA 28", False, 28),
@@ -39,7 +40,7 @@ def test_round_bars(comment: str, inch: bool, diameter: float) -> None:
     assert math.isnan(bar.across_flats)
 
 
-@pytest.mark.parametrize(
+@looped(
     ("comment", "inch", "across_flats"),
     [
         ("HEX BAR 32", False, 32),
@@ -57,8 +58,8 @@ def test_hexagon_bars(comment: str, inch: bool, across_flats: float) -> None:
     assert math.isnan(bar.diameter)
 
 
-@pytest.mark.parametrize("inch", [False, True])
-@pytest.mark.parametrize(
+@looped("inch", [False, True])
+@looped(
     "comment",
     [
         '1.25" BORING BAR',

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from cases import looped
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
@@ -49,7 +50,7 @@ def test_through_the_center_x_goes_to_0_and_c_keeps_its_angle() -> None:
     assert pieces.turn.tolist() == pytest.approx([0, 0], abs=1e-5)
 
 
-@pytest.mark.parametrize("distance", [0.001, 0.1, 5.0, 40.0])
+@looped("distance", [0.001, 0.1, 5.0, 40.0])
 def test_a_line_beside_the_center_is_d_by_the_cosine(distance: float) -> None:
     """Its points are r = d / cos(theta); near the center C turns by 5 deg a block at most."""
     _, pieces = divided(complex(distance, -25), complex(distance, 25))
@@ -62,6 +63,7 @@ def test_a_line_beside_the_center_is_d_by_the_cosine(distance: float) -> None:
 _POINT = st.builds(complex, st.floats(-40, 40), st.floats(-40, 40))
 
 
+@pytest.mark.ci
 @given(_POINT, _POINT, st.floats(-3, 3), st.sampled_from([0.001, 0.005, 0.05]))
 @settings(max_examples=60, deadline=None)
 def test_dense_samples_stay_within_the_chord_error(
@@ -99,7 +101,7 @@ def test_the_number_of_pieces_is_near_the_least() -> None:
     assert least - 1 <= len(pieces) <= 1.05 * least + 2
 
 
-@pytest.mark.parametrize(
+@looped(
     ("start", "end", "level", "between"),
     [
         (10 + 4j, 10 - 4j, 0.0, [6]),  # by the place that is nearest to the center of C

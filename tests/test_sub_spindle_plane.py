@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from cases import looped
 from programs import moves_of, report_of, said
 
 from polarcheck.foundation.finding import FileReport
@@ -35,7 +36,8 @@ def told(report: FileReport) -> list[str]:
     return [each.reason for each in report.not_evaluated if "sub-spindle" in each.reason]
 
 
-@pytest.mark.parametrize("mirrored", [False, True])
+@pytest.mark.ci
+@looped("mirrored", [False, True])
 def test_where_the_profile_says_that_it_is_programmed_as_the_main_spindle_it_is_judged_whole(mirrored: bool) -> None:
     main, sub = (DOOSAN.format(of, contour(mirrored=mirrored), of) for of in ("", "1"))
     assert moves_of(sub, "doosan", TOOL).end.tolist() == moves_of(main, "doosan", TOOL).end.tolist()
@@ -46,7 +48,7 @@ def test_where_the_profile_says_that_it_is_programmed_as_the_main_spindle_it_is_
     assert bool(wrong.findings) == (not mirrored)
 
 
-@pytest.mark.parametrize(("machine", "code"), [("colchester", "M135"), ("takisawa", "M176"), ("doosan", "M135")])
+@looped(("machine", "code"), [("colchester", "M135"), ("takisawa", "M176"), ("doosan", "M135")])
 def test_where_it_does_not_say_so_the_sides_are_not_judged_and_it_is_told(machine: str, code: str) -> None:
     program = DOOSAN.format("", contour(), "").replace("M35", code).replace("G42", "G41")
     changes = {"polar": {"sub_spindle_plane": "unknown"}}
@@ -59,6 +61,7 @@ def test_where_it_does_not_say_so_the_sides_are_not_judged_and_it_is_told(machin
     assert len(report.not_evaluated) == 1
 
 
+@pytest.mark.ci
 def test_without_compensation_there_is_no_side_to_ask_for() -> None:
     plain = contour().replace("G42 ", "").replace("G40 ", "G1 ")
     program = DOOSAN.format("", plain, "").replace("M35", "M176").replace("M34", "M175")
@@ -67,7 +70,8 @@ def test_without_compensation_there_is_no_side_to_ask_for() -> None:
     assert not told(report)
 
 
-@pytest.mark.parametrize("between", ["", "M134\n"])
+@pytest.mark.ci
+@looped("between", ["", "M134\n"])
 def test_the_main_spindle_is_judged_again_once_it_is_the_c_axis(between: str) -> None:
     first = DOOSAN.format("1", contour(), "1").removesuffix("M30\n").replace("M134\n", between)
     program = first + DOOSAN.format("", contour(), "").removeprefix("O1\n")
@@ -78,7 +82,8 @@ def test_the_main_spindle_is_judged_again_once_it_is_the_c_axis(between: str) ->
     assert radii == [None, 4.0]
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("swap", "judged"),
     [("G14", False), ("G14\nG15", True), ("G15", True), ("G14\nG15\nG14", False), ("N5 G14 M9", False)],
 )
@@ -89,7 +94,8 @@ def test_swapped_spindles_of_a_haas_are_told_by_name(swap: str, judged: bool) ->
     assert (report.verdict == "pass") == judged
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("machine", "feed", "engage", "plane", "on"),
     [
         ("mazak-quick-turn", "G98", "M300", "G91\nG17 XU\nG90", "G12.1"),
@@ -114,7 +120,8 @@ def test_a_mazak_names_the_axes_of_its_sub_spindle_otherwise(
     assert "nothing of it is judged" in reason
 
 
-@pytest.mark.parametrize("on", ["G12.1", "G12.1 P2"])
+@pytest.mark.ci
+@looped("on", ["G12.1", "G12.1 P2"])
 def test_a_sub_spindle_of_a_mazak_with_the_usual_axes_is_followed_but_for_its_sides(on: str) -> None:
     program = MAZAK.format("G94 G90", "M300", "M3 S3000", "G17 XC", on, contour()).replace("U0", "C0")
     program = program.replace("M302", "M5\nM302")

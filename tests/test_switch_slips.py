@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from cases import looped
 from programs import machine_of, report_of, said
 
 PROGRAM = "O1\nG98 G40 G97\nT0101\nG0 X60. C0\n{}\nG1 X10. C0 F200\nC5.\nG3 X0. C10. R5.\nG1 X60. C0\n{}\nG0 Z5.\nM30\n"
@@ -10,7 +11,8 @@ DIAMETER = {"x": "diameter"}
 UNKNOWN = "polar-switch-unknown"
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("on", "off", "line", "severity", "remedy"),
     [
         ("G121", "G13.1", 5, "error", "write G12.1"),
@@ -23,14 +25,14 @@ UNKNOWN = "polar-switch-unknown"
         ("G12.1", "G013", 10, "error", "write G13.1"),
     ],
 )
-@pytest.mark.parametrize("machine", ["fanuc", "mitsubishi-m700"])
+@looped("machine", ["fanuc", "mitsubishi-m700"])
 def test_a_slip_is_one_finding(machine: str, on: str, off: str, line: int, severity: str, remedy: str) -> None:
     report = report_of(PROGRAM.format(on, off), machine, changes={"control": DIAMETER, "polar": DIAMETER})
     assert [(one.line, one.rule, one.severity) for one in report.findings] == [(line, UNKNOWN, severity)]
     assert report.findings[0].message.endswith(remedy)
 
 
-@pytest.mark.parametrize(("on", "off", "line"), [("G12,1", "G13.1", 5), ("G12.1", "G13,1", 10), ("G12,1", "G13,1", 5)])
+@looped(("on", "off", "line"), [("G12,1", "G13.1", 5), ("G12.1", "G13,1", 10), ("G12,1", "G13,1", 5)])
 def test_a_comma_is_the_only_finding_of_its_kind(on: str, off: str, line: int) -> None:
     report = report_of(PROGRAM.format(on, off))
     assert {one.rule for one in report.findings} == {"stray-character"}
@@ -46,7 +48,7 @@ def test_codes_of_the_builder_are_named_with_their_keys() -> None:
     assert said(report_of(PROGRAM.format("G121", "G120"), changes=own)) == []
 
 
-@pytest.mark.parametrize(
+@looped(
     "blocks",
     ["G121\nG0 X70. Z5.", "G121 X50. Z-5.\nG1 C5. F200", "G12\nG0 Z5.", "G13", "G131"],
 )

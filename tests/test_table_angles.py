@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from cases import looped
 from programs import report_of, tables_of
 
 from polarcheck.columns.words.angles import Angles
@@ -31,7 +32,7 @@ def test_usual_angles_are_these_and_no_others() -> None:
     assert np.abs(found).tolist() == USUAL
 
 
-@pytest.mark.parametrize(
+@looped(
     ("program", "machine", "found"),
     [
         ("C90.\nG12.1\nX90. C90.\nH90.\nG13.1\nC90.\n", "fanuc", [3]),
@@ -108,7 +109,8 @@ def moved(*blocks: str, units: str = "G21", machine: str = "fanuc", start: str =
     return lines(table("\n".join([units, f"G0 {start}", on, *blocks, off, ""]), machine), "in_series")
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("blocks", "count"),
     [
         (["X40. C72.", "C144.", "C216.", "C288.", "C360."], 5),
@@ -132,7 +134,7 @@ def test_a_steady_way_to_a_full_turn(blocks: list[str], count: int) -> None:
     assert len(moved(*as_y, machine="haas-lathe", start="X50. Y0")) == count
 
 
-@pytest.mark.parametrize(
+@looped(
     "blocks",
     [
         # A flat, in steps, across the center and on one side of it.
@@ -152,7 +154,8 @@ def test_a_contour_is_no_steady_way_to_a_full_turn(blocks: list[str]) -> None:
     assert moved(*blocks) == []
 
 
-@pytest.mark.parametrize("words", ["Y5. C30.", "C30. Y5.", "C30."])
+@pytest.mark.ci
+@looped("words", ["Y5. C30.", "C30. Y5.", "C30."])
 def test_the_word_that_looks_like_an_angle_is_named(words: str) -> None:
     report = report_of(f"G98\nG12.1\nG1 X10. {words} F100\nG13.1\n")
     angle = next(found for found in report.findings if found.rule == "degrees-in-polar")

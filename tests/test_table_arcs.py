@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from cases import looped
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from programs import report_of, tables_of
@@ -24,7 +25,8 @@ def last(program: str, column: str, **changes: Any) -> Any:
     return getattr(tables_of(HEAD + program, changes=changes)["arcs"], column)[-1].item()
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("block", "by_radius", "by_center", "of_plane", "of_other_plane"),
     [
         ("G3 X20. C20. R10.", True, False, True, False),
@@ -53,7 +55,7 @@ def test_arcs_are_in_force_in_the_mode_and_where_axis_words_are_coordinates() ->
     assert [line for line, hit in enumerate(in_force, 1) if hit] == [5, 6, 7]
 
 
-@pytest.mark.parametrize(
+@looped(
     ("block", "same"),
     [("G3 X40. C10. R5.", True), ("G3 I-5.", True), ("M8", True), ("G3 X40.001 C10. R5.", False), ("G1 C20.", False)],
 )
@@ -69,7 +71,7 @@ def test_of_an_unknown_position_no_end_is_at_its_start() -> None:
     assert not arcs.is_no_circle.any()
 
 
-@pytest.mark.parametrize(
+@looped(
     ("block", "start_radius", "end_radius"),
     [
         ("G3 X20. C20. I-10. J0", 10, 10),
@@ -96,8 +98,8 @@ def test_radii_are_in_mm_and_no_diameters() -> None:
 BY_RADIUS = [(20 + 10j, 10 + 20j, 10.0), (20 + 10j, 20 - 10j, -12.5), (5 + 0j, 5 + 4j, 2.0)]
 
 
-@pytest.mark.parametrize(("start", "end", "radius"), BY_RADIUS)
-@pytest.mark.parametrize("code", ["G2", "G3"])
+@looped(("start", "end", "radius"), BY_RADIUS)
+@looped("code", ["G2", "G3"])
 def test_sweep(code: str, start: complex, end: complex, radius: float) -> None:
     """The chord sees the center under the sweep: 2 asin(chord / 2R), or the rest of the turn for a negative R."""
     program = f"G1 X{2 * start.real:.4f} C{start.imag:.4f}\n{code} X{2 * end.real:.4f} C{end.imag:.4f} R{radius:.4f}\n"
@@ -106,7 +108,7 @@ def test_sweep(code: str, start: complex, end: complex, radius: float) -> None:
     assert last(program, "sweep") == pytest.approx(math.degrees(expected))
 
 
-@pytest.mark.parametrize(
+@looped(
     ("block", "sweep"),
     [("G3 I-20.", 360), ("G3 X20. C20. I-10. J0", 90), ("G2 X20. C20. I-10. J0", 270), ("G1 X20.", math.nan)],
 )
@@ -114,7 +116,7 @@ def test_sweep_about_a_center(block: str, sweep: float) -> None:
     assert last(block, "sweep") == pytest.approx(sweep, nan_ok=True)
 
 
-@pytest.mark.parametrize(
+@looped(
     ("block", "no_circle"),
     [
         ("G3 X20. C20. I-10. J0", False),
@@ -157,7 +159,7 @@ def hits(tables: Tables, name: str) -> Any:
     return load_all()[name].hits(tables).mask
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 @settings(deadline=None)
 @given(st.lists(st.tuples(st.sampled_from(["G1", "G2", "G3"]), WORDS), max_size=8))
 def test_no_circle_is_what_one_of_five_rules_says(blocks: list[tuple[str, dict[str, str]]]) -> None:
@@ -176,7 +178,7 @@ def misread(program: str, x: str) -> bool:
     return bool(arcs.x_is_misread[-1])
 
 
-@pytest.mark.parametrize(
+@looped(
     ("program", "x", "expected"),
     [
         (HEAD + QUARTER, "diameter", False),
@@ -204,7 +206,7 @@ DIRECTIONS = st.integers(0, 359).filter(lambda degrees: abs(degrees % 90 - 45) >
 """Of the centers of quarters that move X and C by more than the tolerance."""
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 @settings(deadline=None)
 @given(st.lists(st.tuples(st.integers(1, 19), DIRECTIONS), min_size=2, max_size=6))
 def test_a_program_for_the_other_reading_is_known_by_its_arcs(quarters: list[tuple[int, int]]) -> None:

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from cases import looped
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from programs import tables_of
@@ -24,7 +25,7 @@ def test_the_least_increment_is_that_of_the_units() -> None:
     assert changed == pytest.approx([0.0001] * 2)
 
 
-@pytest.mark.parametrize(
+@looped(
     ("program", "meets", "off"),
     [
         ("G1 X-40. F200\nC10.\n", [4], [5]),  # straight through
@@ -73,7 +74,7 @@ def test_moves_that_stop_at_the_center() -> None:
 STEPS = st.integers(-3, 3)
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 @settings(deadline=None)
 @given(st.lists(st.tuples(STEPS, STEPS), min_size=1, max_size=8))
 def test_lines_through_the_center_are_those_of_a_plain_loop(points: list[tuple[int, int]]) -> None:

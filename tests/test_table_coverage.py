@@ -7,6 +7,7 @@ import math
 import re
 
 import pytest
+from cases import looped
 from programs import report_of
 
 from polarcheck.foundation.finding import Finding
@@ -71,17 +72,18 @@ def test_the_rib_of_an_overlap_below_two_r() -> None:
     assert "go on 5 mm farther" in finding.message
 
 
-@pytest.mark.one_in(5)
-@pytest.mark.parametrize("overlap", [0, 0.5, 1, 2.5, 4, 5])
-@pytest.mark.parametrize("side", ["G41", "G42"])
-@pytest.mark.parametrize("turn", [0, 0.7, 2, math.pi / 2])
+@pytest.mark.ci
+@looped("overlap", [0, 0.5, 1, 2.5, 4, 5], one_in=5)
+@looped("side", ["G41", "G42"])
+@looped("turn", [0, 0.7, 2, math.pi / 2])
 def test_ribs_by_their_overlap(overlap: float, side: str, turn: float) -> None:
     [finding] = found(square(overlap, side=side, turn=turn))
     assert finding.rule == "material-left"
     assert height(finding) == pytest.approx(rib(overlap), abs=0.005)
 
 
-@pytest.mark.parametrize("count", [1, 2, 3, 4, 5])
+@pytest.mark.ci
+@looped("count", [1, 2, 3, 4, 5])
 def test_ribs_beside_a_lead_of_several_blocks(count: int) -> None:
     """The rib stands at one corner alone, that of the straight lead; the other lead is round."""
     steps = [f"X{40 + 8 * number}." for number in range(count + 1)]
@@ -96,6 +98,7 @@ def test_ribs_beside_a_lead_of_several_blocks(count: int) -> None:
         assert height(finding) == pytest.approx(0.106, abs=0.001)
 
 
+@pytest.mark.ci
 def test_a_rib_of_the_second_contour_stands_where_it_is() -> None:
     whole = "G42 X60. C0./X40./C20./X-40./C-20./X40./C15./X60./G40 X80. C5."
     inner = "G42 X60. C0./X20./C10./X-20./C-10./X20./C1./X60./G40 X80. C5."
@@ -106,7 +109,8 @@ def test_a_rib_of_the_second_contour_stands_where_it_is() -> None:
     assert height(finding) == pytest.approx(rib(1), abs=0.001)
 
 
-@pytest.mark.parametrize("overlap", [0, 1, 3])
+@pytest.mark.ci
+@looped("overlap", [0, 1, 3])
 def test_ribs_in_inch(overlap: float) -> None:
     [finding] = found(
         square(overlap, scale=MM_PER_INCH),
@@ -118,19 +122,22 @@ def test_ribs_in_inch(overlap: float) -> None:
     assert height(finding) == pytest.approx(rib(overlap), abs=0.01)
 
 
-@pytest.mark.parametrize("machine", ["fanuc-16i", "fanuc-30i", "siemens-iso", "gsk-988"])
+@pytest.mark.ci
+@looped("machine", ["fanuc-16i", "fanuc-30i", "siemens-iso", "gsk-988"])
 def test_ribs_on_other_controls(machine: str) -> None:
     said = [rule for _, rule in rules(square(1), machine=machine, changes={"limits": {"c_feed": 36000}})]
     assert said == ["material-left"]
 
 
-@pytest.mark.parametrize("overlap", [5.6, 6, 6.5, 9, 15])
+@pytest.mark.ci
+@looped("overlap", [5.6, 6, 6.5, 9, 15])
 def test_nothing_stands_after_an_overlap_of_two_r(overlap: float) -> None:
     """At 5.6 the rib is 7 micrometers high: no witness."""
     assert rules(square(overlap)) == []
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     "contour",
     [
         # Straight onto the contour, and off where it began.
@@ -155,6 +162,7 @@ def test_inside_corners_of_the_part_are_no_ribs() -> None:
     assert rules(cross) == []
 
 
+@pytest.mark.ci
 def test_what_is_cut_later_is_not_left() -> None:
     direct = "G42 X40. C0./C20./X-40./C-20./X40./C0./G40 X80."
     once_more = square(1) + "/G1 X80. C0./Z-2./" + direct + "/Z2."
@@ -221,10 +229,10 @@ def test_beyond_the_bar_nothing_stands() -> None:
 # ---- gaps ----
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize("gap", [0.1, 1, 3, 5.5])
-@pytest.mark.parametrize("side", ["G41", "G42"])
-@pytest.mark.parametrize("turn", [0, 0.7])
+@pytest.mark.ci
+@looped("gap", [0.1, 1, 3, 5.5], one_in=12)
+@looped("side", ["G41", "G42"])
+@looped("turn", [0, 0.7])
 def test_a_gap_with_leads_side_by_side(gap: float, side: str, turn: float) -> None:
     [finding] = found(square(-gap, side=side, turn=turn))
     assert (finding.rule, finding.severity) == ("contour-not-closed", "warning")
@@ -249,7 +257,8 @@ def test_a_gap_in_inch() -> None:
     )
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     "contour",
     [
         # Rounding; and a gap through which the cutter goes.
@@ -281,8 +290,9 @@ def rings(*halves: float, loops: bool = False) -> str:
     return "/".join(["G1 X140. C0. F300", "Z-2.", *ways, "Z2."])
 
 
-@pytest.mark.parametrize("loops", [False, True])
-@pytest.mark.parametrize("thickness", [0.5, 1, 2])
+@pytest.mark.ci
+@looped("loops", [False, True])
+@looped("thickness", [0.5, 1, 2])
 def test_rings_between_squares(thickness: float, loops: bool) -> None:
     [finding] = found(rings(36.0, 30.0 - thickness, loops=loops))
     assert finding.rule == "material-left"
@@ -290,14 +300,14 @@ def test_rings_between_squares(thickness: float, loops: bool) -> None:
     assert "write passes that are 6 mm apart at most" in finding.message
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize("loops", [False, True])
-@pytest.mark.parametrize("inner", [26.0, 20.0, 30.0, 31.0, 35.0])
+@looped("loops", [False, True], one_in=12)
+@looped("inner", [26.0, 20.0, 30.0, 31.0, 35.0])
 def test_passes_near_enough_and_rings_thicker_than_r(inner: float, loops: bool) -> None:
     assert rules(rings(36.0, inner, loops=loops)) == []
 
 
-@pytest.mark.parametrize(("step", "leaves"), [(5.5, False), (5.9, False), (6.5, True), (8, True), (9.5, False)])
+@pytest.mark.ci
+@looped(("step", "leaves"), [(5.5, False), (5.9, False), (6.5, True), (8, True), (9.5, False)])
 def test_circles_one_in_the_other(step: float, leaves: bool) -> None:
     circles = "/".join(f"G1 G42 X{2 * size}/G3 I{-size}/G1 G40 X140." for size in (20.0 + step, 20.0))
     said = found(f"G1 X140. C0. F300/Z-2./{circles}/Z2.")
@@ -306,7 +316,8 @@ def test_circles_one_in_the_other(step: float, leaves: bool) -> None:
         assert height(said[0]) == pytest.approx(step - 6, abs=0.01)
 
 
-@pytest.mark.parametrize(("pitch", "leaves"), [(5.5, False), (7.0, True)])
+@pytest.mark.ci
+@looped(("pitch", "leaves"), [(5.5, False), (7.0, True)])
 def test_a_spiral(pitch: float, leaves: bool) -> None:
     """Of half circles, inwards, with a full turn at its end."""
     sizes = [45 - pitch / 2 * number for number in range(5)]
@@ -318,6 +329,7 @@ def test_a_spiral(pitch: float, leaves: bool) -> None:
     assert [rule for _, rule in rules(section)] == ["material-left"] * leaves
 
 
+@pytest.mark.ci
 def test_the_bar_ends_what_may_stand() -> None:
     """The outer pass runs beyond the bar, and there is no ring."""
     circles = "/".join(f"G1 G42 X{2 * size}/G3 I{-size}/G1 G40 X140." for size in (28.0, 20.0))
@@ -336,7 +348,8 @@ def test_the_middle_of_a_pocket_is_no_strip() -> None:
     assert rules("G1 X12. C0. F300/Z-2./G41 X20./G3 I-10./G1 G40 X12./Z2.", "1:radius=4") == []
 
 
-@pytest.mark.parametrize(("island", "leaves"), [(16.0, True), (17.0, True), (18.5, False), (13.0, False)])
+@pytest.mark.ci
+@looped(("island", "leaves"), [(16.0, True), (17.0, True), (18.5, False), (13.0, False)])
 def test_a_ring_between_a_pocket_and_its_island(island: float, leaves: bool) -> None:
     """Neither of the two passes lies behind the other; a ramp cuts through what stays between them."""
     pocket = "G1 X46. C0. F300/Z-2./G41 X60./G3 I-30./G1 G40 X46./Z2."

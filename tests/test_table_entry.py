@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
+from cases import looped
 from programs import report_of, tables_of, trace_of
 
 from polarcheck.columns.modes.origin import Origin
@@ -17,7 +18,7 @@ def asked(program: str, machine: str = "fanuc", **job: Any) -> list[str]:
     return [finding.rule for finding in report_of(program, machine, job=job, only=("setup",)).findings]
 
 
-@pytest.mark.parametrize(
+@looped(
     ("program", "whole"),
     [
         ("G0 X1.\nM30", [False, False]),
@@ -52,7 +53,8 @@ def test_after_an_unknown_block_nothing_is_asked() -> None:
     assert asked("O1\nM98 P1234\n" + SECTION + "M30", "turning-center") == []
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("before", "unknown"),
     [
         ("G0 X60.", False),
@@ -85,7 +87,7 @@ def test_c_is_positioned_again_after_it_was_engaged_again() -> None:
 OFFSETS = {"work_offsets": {"G54": {"x": 0.0}, "G55": {"x": 0.5}, "G54.1 P3": {"x": 1.0}}}
 
 
-@pytest.mark.parametrize(
+@looped(
     ("before", "name"),
     [
         ("", ""),
@@ -108,7 +110,7 @@ def test_origin(before: str, name: str) -> None:
     assert " and ".join(tables["entry"].origin.causes(enter)) == name
 
 
-@pytest.mark.parametrize(("before", "expected"), [("", True), ("G54.1 P1", False), ("G55", False)])
+@looped(("before", "expected"), [("", True), ("G54.1 P1", False), ("G55", False)])
 def test_without_a_work_offset_g54_is_in_force(before: str, expected: bool) -> None:
     tables = tables_of(f"{before}\nG0 X60. C0\n{SECTION}", job={"work_offsets": {"G54": {"x": 1.0}}})
     assert bool(tables["entry"].origin_shift[tables["sections"].enter[0]]) == expected
@@ -135,7 +137,7 @@ def test_a_spindle_speed_is_no_shift_of_the_origin(monkeypatch: pytest.MonkeyPat
 INSIDE = ["approach-inside-stock"]
 
 
-@pytest.mark.parametrize(
+@looped(
     ("units", "x", "expected"),
     [
         ("mm", "43.9", INSIDE),

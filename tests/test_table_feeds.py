@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from cases import looped
 from programs import report_of, tables_of
 
 PER_MINUTE_ONLY = {"feed": {"carried_into_polar": "per-minute-only"}}
@@ -19,7 +20,7 @@ def lines(program: str, column: str, changes: dict[str, Any] | None = None) -> l
     return (np.flatnonzero(found) + 1).tolist()
 
 
-@pytest.mark.parametrize(
+@looped(
     ("program", "expected"),
     [
         ("O1\nG98 G0 X60. C0\nG12.1\nG1 X40.\nC10. F200\nC5.\nX60. F0\nX50.\nG13.1\n", [4, 7, 8]),
@@ -39,7 +40,7 @@ def test_missing(program: str, expected: list[int]) -> None:
 TURNED = "O1\nG99 G0 X60. C0\nG1 Z-5. F.2\nG12.1\n"
 
 
-@pytest.mark.parametrize(
+@looped(
     ("program", "expected"),
     [
         (TURNED + "X40.\nC10.\nX30. F200\nC5.\nG13.1\n", [5, 6]),
@@ -96,7 +97,7 @@ NO_CLAMP = {"limits": {"polar_feed": 500, "polar_feed_clamps": False}}
 FAST = "O1\nG98 G0 X60. C0\nG1 Z-1. F2000\nG12.1\nG1 X40.\nC10. F200\nX60. F800\nG4 X1.\nG13.1\nG1 Z5. F900\n"
 
 
-@pytest.mark.parametrize("name", ["fanuc", "gsk-988"])
+@looped("name", ["fanuc", "gsk-988"])
 def test_f_of_the_mode_is_clamped_and_f_outside_is_not(name: str) -> None:
     trace = tables_of(FAST, name, changes=CLAMP)["trace"]
     assert trace.feedrate.feed[2:].tolist() == [2000, 2000, 500, 200, 500, 500, 800, 900]
@@ -116,7 +117,7 @@ def test_an_unknown_f_or_limit_clamps_nothing() -> None:
     assert no_limit.feedrate.feed[2:].tolist() == no_limit.feedrate.programmed_feed[2:].tolist()
 
 
-@pytest.mark.parametrize("units", ["G21", "G20"])
+@looped("units", ["G21", "G20"])
 def test_rates_and_times_are_those_of_the_clamped_f(units: str) -> None:
     """As if the lower F were written; in inch as well, the limit being in mm/min."""
     scale = 25.4 if units == "G20" else 1
@@ -145,7 +146,8 @@ def told(blocks: str, machine: str, system: str = "") -> list[tuple[int, str]]:
     return [(found.line, found.message) for found in report.findings if found.rule == LEFT_OVER]
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("blocks", "machine", "line", "number"),
     [
         # The F of before, written again in a mode in which every F is per minute.
@@ -175,7 +177,8 @@ def test_the_same_with_g98_and_g99_of_the_other_list_of_codes() -> None:
     assert len(told("G99 G0 X60. Z2. C0/G1 Z1. F.1/G12.1/G1 X40. F.1/C5./G13.1", M700, "A")) == 1
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("blocks", "machine"),
     [
         ("G95 G0 X60. Z2. C0/G1 Z1. F.1/G12.1/G1 X40. F100/C5./G13.1/G1 X60.", M700),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from cases import looped
 from programs import tables_of
 
 from polarcheck.columns.contour import fitting_radius
@@ -32,9 +33,10 @@ def fitting_of(sections: str, radius: float = 4.0) -> Fitting:
     return found
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize(
-    ("radius", "width"), [(3.05, 6), (3.4, 6), (4, 6), (5, 6), (9, 6), (1.55, 3), (5, 3), (9, 3), (0.4, 0.7), (4, 0.7)]
+@looped(
+    ("radius", "width"),
+    [(3.05, 6), (3.4, 6), (4, 6), (5, 6), (9, 6), (1.55, 3), (5, 3), (9, 3), (0.4, 0.7), (4, 0.7)],
+    one_in=12,
 )
 def test_half_of_a_groove_is_room_for_the_cutter(radius: float, width: float) -> None:
     found = fitting_of(groove(width), radius)
@@ -89,6 +91,7 @@ def test_a_file_without_a_row_has_no_loop() -> None:
     assert len(found.never) == len(found.radius) == 0
 
 
+@pytest.mark.ci
 def test_so_many_rows_are_not_tried(monkeypatch: pytest.MonkeyPatch) -> None:
     rows = int(np.count_nonzero(~np.isnan(fitting_of(groove(6)).radius)))
     for most, is_tried in ((rows, True), (rows - 1, False)):

@@ -10,6 +10,7 @@ import re
 
 import numpy as np
 import pytest
+from cases import looped
 from programs import moves_of, report_of, said, tables_of
 
 from polarcheck.columns.path.infeed import MOST_PASSES, Infeed
@@ -25,9 +26,7 @@ def table(program: str, machine: str = "gsk-988", *tools: str, **changes: dict[s
     return infeed
 
 
-@pytest.mark.parametrize(
-    ("written", "depth"), [("E4.", 4.0), ("E-4.", 4.0), ("E0", 0.0), ("", 0.0), ("P1", 0.0), ("E", 0.0)]
-)
+@looped(("written", "depth"), [("E4.", 4.0), ("E-4.", 4.0), ("E0", 0.0), ("", 0.0), ("P1", 0.0), ("E", 0.0)])
 def test_depth_is_a_radius_without_its_sign(written: str, depth: float) -> None:
     infeed = table(SQUARE.format(written, "C0"))
     assert infeed.depth[ENTRY] == depth
@@ -38,7 +37,8 @@ def test_depth_in_inch() -> None:
     assert table("G20\n" + SQUARE.format("E.1", "C0")).depth[ENTRY + 1] == pytest.approx(2.54)
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("second", "entry", "reasons"),
     [
         ("", "E4.", 0),
@@ -56,7 +56,8 @@ def test_a_second_contour_of_a_cycle_is_told(second: str, entry: str, reasons: i
     assert (len(told), said(report)) == (reasons, [])
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("number", "written", "depth", "is_told"),
     [
         ("least-increment", "E4000", 4.0, True),
@@ -79,7 +80,7 @@ def test_depth_is_that_of_the_section_beginning() -> None:
     assert not infeed.depth.any()
 
 
-@pytest.mark.parametrize(
+@looped(
     ("last", "gap"),
     [
         ("C0", 0.0),
@@ -97,7 +98,7 @@ def test_gap_is_the_way_back_to_where_the_contour_begins(last: str, gap: float |
     assert np.isnan(np.delete(infeed.gap, ENTRY)).all()
 
 
-@pytest.mark.parametrize("codes", [("G1 ", ""), ("", "G1 "), ("G0 ", "G1 ")])
+@looped("codes", [("G1 ", ""), ("", "G1 "), ("G0 ", "G1 ")])
 def test_a_start_up_in_rapid_traverse_leads_to_the_contour(codes: tuple[str, str]) -> None:
     """G0 of the approach in force, or written, gives rapid-in-polar, and beside it no contour that is open."""
     program = "T0202 G98 G0 X60. C0\nG12.1 E4.\n{}G42 X40. C0 F100\n{}C20.\nX-40.\nC-20.\nX40.\nC0\nG40 X60.\nG13.1\n"
@@ -114,7 +115,7 @@ def test_gap_of_a_compensated_contour_ends_with_its_compensation() -> None:
     assert infeed.gap[ENTRY] == pytest.approx(3.0)
 
 
-@pytest.mark.parametrize(
+@looped(
     "program",
     [
         "G98 G0 X60. C0\nG12.1 E4.\nG13.1\n",
@@ -131,7 +132,7 @@ def test_one_move_has_no_gap() -> None:
     assert table("G98 G0 X60. C0\nG12.1 E4.\nG1 X40. F100\nG13.1\n").gap[ENTRY] == 0.0
 
 
-@pytest.mark.parametrize(
+@looped(
     ("written", "offsets"),
     [("E4.", [8.0, 4.0]), ("E5.", [5.0]), ("E10.", []), ("E3.", [9.0, 6.0, 3.0]), ("E9.999", []), ("E9.99", [9.99])],
 )
@@ -145,7 +146,7 @@ def test_an_open_contour_has_one_pass() -> None:
     assert len(table(SQUARE.format("E4.", "C-4.")).offsets(ENTRY)) == 0
 
 
-@pytest.mark.parametrize(("count", "in_part"), [(MOST_PASSES, False), (MOST_PASSES + 1, True)])
+@looped(("count", "in_part"), [(MOST_PASSES, False), (MOST_PASSES + 1, True)])
 def test_of_many_passes_only_some_are_simulated(count: int, in_part: bool) -> None:
     """10 mm and one pass less than there are whole depths in them: the last is the contour itself."""
     depth = 10.0 / (count + 0.5)
@@ -154,7 +155,7 @@ def test_of_many_passes_only_some_are_simulated(count: int, in_part: bool) -> No
     assert infeed.is_simulated_in_part.tolist() == [in_part and row == ENTRY for row in range(len(infeed.trace))]
 
 
-@pytest.mark.parametrize(
+@looped(
     ("head", "written", "depth"),
     [
         ("", "E8.0009", 8.0),
@@ -217,8 +218,9 @@ CIRCLES = [
 ]
 
 
-@pytest.mark.parametrize(("radius", "cutter", "start", "infeed"), CIRCLES)
-@pytest.mark.parametrize("way", ["G3", "G2"])
+@pytest.mark.ci
+@looped(("radius", "cutter", "start", "infeed"), CIRCLES)
+@looped("way", ["G3", "G2"])
 def test_passes_of_a_circle(radius: float, cutter: float, start: float, infeed: float, way: str) -> None:
     """Outside and inside, G41 and G42, both ways round: none is beyond the start point, R counts, the steps are E."""
     code = "G42" if (start > radius) == (way == "G3") else "G41"
@@ -230,7 +232,8 @@ def test_passes_of_a_circle(radius: float, cutter: float, start: float, infeed: 
     assert mirrored == pytest.approx(found) or cutter == 0, "R below 0 is the other side"
 
 
-@pytest.mark.parametrize(("radius", "cutter", "start", "infeed"), CIRCLES)
+@pytest.mark.ci
+@looped(("radius", "cutter", "start", "infeed"), CIRCLES)
 def test_passes_of_twins(radius: float, cutter: float, start: float, infeed: float) -> None:
     """The same in inch, with numbers fine enough, and with X as a radius in the mode."""
     code = "G42" if start > radius else "G41"
@@ -246,8 +249,8 @@ def test_passes_of_twins(radius: float, cutter: float, start: float, infeed: flo
     assert radii_of(f"{before}G12.1{halved}", f"2:radius={cutter}", parameters={"5450#6": 1}) == expected
 
 
-@pytest.mark.parametrize("angle", [0.0, 30.0, 137.0, 250.0])
-@pytest.mark.parametrize(("start", "code"), [(62.0, "G42"), (25.0, "G41")])
+@looped("angle", [0.0, 30.0, 137.0, 250.0])
+@looped(("start", "code"), [(62.0, "G42"), (25.0, "G41")])
 def test_passes_of_a_turned_twin(angle: float, start: float, code: str) -> None:
     """Begun from any direction: the number of passes hangs on the distance alone."""
     degrees = [0, 0, 120, 240, 360, 0]
@@ -259,7 +262,7 @@ def test_passes_of_a_turned_twin(angle: float, start: float, code: str) -> None:
     assert found == pytest.approx(radii_by_steps(40, 3, start, 4), abs=1e-3)
 
 
-@pytest.mark.parametrize(
+@looped(
     ("start", "widths"),
     [
         ("X68. C0.", [30.0, 25.0, 20.0]),
@@ -327,7 +330,8 @@ ROUND = "C38.\nG2 X-20. R10.\nG1"
 SHARP = "C30.\nX-20.\n"
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("start", "infeed", "inner", "unfit"),
     [
         # The groove is 20 mm wide: R 5 and 4 mm fit, with 8 mm they do not.
@@ -351,12 +355,14 @@ def test_passes_that_do_not_fit_are_one_finding(
         assert unfit[2] in report.findings[0].message
 
 
+@pytest.mark.ci
 def test_passes_that_do_not_fit_in_two_sections_are_two_findings() -> None:
     one = SLOT.format("120.", "4.", ROUND, "120.").removeprefix("T0202\n")
     report = report_of(f"T0202\n{one}{one}", "gsk-988", "2:radius=5,nose=0")
     assert [rule for _, rule in said(report)] == ["infeed-pass-does-not-fit"] * 2
 
 
+@pytest.mark.ci
 def test_a_pass_does_not_fit_where_the_contour_does_not() -> None:
     """R 11 in an arc of 10 is the fault of the contour, from which that of its passes follows."""
     report = report_of(SLOT.format("120.", "4.", ROUND, "120."), "gsk-988", "2:radius=11,nose=0")

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from cases import looped
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from programs import tables_of, trace_of
@@ -30,7 +31,7 @@ def in_increments(program: str, **changes: Any) -> list[bool]:
     return [one.pop() for one in found]
 
 
-@pytest.mark.parametrize(
+@looped(
     ("program", "expected"),
     [
         (POINTED, False),
@@ -120,6 +121,7 @@ def test_what_is_a_coordinate() -> None:
 NUMBERS = st.lists(st.integers(0, 4), max_size=8)
 
 
+@pytest.mark.ci
 @settings(deadline=None)
 @given(NUMBERS)
 def test_points_are_counted_by_a_plain_loop(kinds: list[int]) -> None:

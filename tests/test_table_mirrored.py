@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 
 import pytest
+from cases import looped
 from programs import report_of, said
 
 from polarcheck.foundation.finding import FileReport
@@ -53,10 +54,10 @@ def serious(found: FileReport) -> list[tuple[int, str]]:
     return sorted((one.line, one.rule) for one in found.findings if one.severity != "note")
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize("section", [SOUND[name] for name in TOLD], ids=TOLD)
-@pytest.mark.parametrize("units", ["G21", "G20"])
-@pytest.mark.parametrize("machine", ["fanuc", "fanuc-30i"])
+@pytest.mark.ci
+@looped("section", [SOUND[name] for name in TOLD], ids=TOLD, one_in=12)
+@looped("units", ["G21", "G20"])
+@looped("machine", ["fanuc", "fanuc-30i"])
 def test_the_other_side_is_one_finding(section: str, units: str, machine: str) -> None:
     section, radius = (section, 4.0) if units == "G21" else (in_inch(section), 4 / 25.4)
     assert serious(report(section, radius, units, machine)) == []
@@ -81,6 +82,7 @@ def test_of_two_loops_the_wrong_one_is_named() -> None:
     assert serious(report(wrong)) == [(14, MIRRORED)]
 
 
+@pytest.mark.ci
 def test_a_negative_r_is_wrong_itself_or_the_code_is() -> None:
     found = report(SOUND["square"], -4.0)
     assert serious(found) == [(7, MIRRORED)]
@@ -90,8 +92,8 @@ def test_a_negative_r_is_wrong_itself_or_the_code_is() -> None:
     assert serious(report(exchanged(SOUND["square"]), -4.0)) == []
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("name", "changed", "radius"),
     [
         ("keyway", {}, 7.0),
@@ -107,6 +109,7 @@ def test_a_negative_r_is_wrong_itself_or_the_code_is() -> None:
         ("round pocket", {}, 21.0),
         ("lead of an arc", {"G1 G40 X132.": "G1 G40 X10. C0"}, 6.0),
     ],
+    one_in=12,
 )
 def test_another_fault_is_not_called_mirrored(name: str, changed: dict[str, str], radius: float) -> None:
     section = SOUND[name]
@@ -130,8 +133,8 @@ def test_a_slot_beside_its_walls_is_not_told() -> None:
 BENT = "G0 X100. Z2. C0/G12.1/G1 Z-5. F300/G42 X40. F200/C20./X0 C19.65/X-40. C20./C-20./X40./C0/G40 X100./Z2./G13.1"
 
 
-@pytest.mark.one_in(2)
-@pytest.mark.parametrize(("pause", "is_mirrored"), [("", True), ("M8/", True), ("M8/M9/", False), ("M8/M9/M8/", False)])
+@pytest.mark.ci
+@looped(("pause", "is_mirrored"), [("", True), ("M8/", True), ("M8/M9/", False), ("M8/M9/M8/", False)], one_in=2)
 def test_a_loop_that_the_control_objects_to_on_the_other_side_is_not_mirrored(pause: str, is_mirrored: bool) -> None:
     """Two blocks without a way leave the corner unknown to the control, whichever side the cutter is on."""
     wrong = exchanged(BENT).replace("X-40. C20.", pause + "X-40. C20.")

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from cases import looped
 from programs import report_of, said, tables_of
 
 from polarcheck.columns.modes.mode_words import ModeWords
@@ -46,7 +47,7 @@ def test_rows_and_words_lead_to_each_other() -> None:
     assert not words.in_rows(np.zeros(len(words.trace), bool)).any()
 
 
-@pytest.mark.parametrize(
+@looped(
     ("names", "found"),
     [
         (("G1",), ["G1", "G01"]),
@@ -99,7 +100,7 @@ def test_unknown_codes_are_known_only_where_the_profile_lists_all() -> None:
     assert shown(words, words.unknown) == []
 
 
-@pytest.mark.parametrize(
+@looped(
     ("column", "block", "found"),
     [
         ("selects_plane", "G17 G18 G19 G16 G20", ["G17", "G18", "G19"]),
@@ -116,7 +117,7 @@ def test_the_code_that_sets_coordinates_hangs_on_the_code_system() -> None:
     assert in_mode("sets_coordinates", "G50 S100 G92", control={"g_code_system": "B"}) == ["G92"]
 
 
-@pytest.mark.parametrize(
+@looped(
     ("block", "found"),
     [
         ("G52 X1.", ["G52"]),
@@ -159,7 +160,7 @@ def test_outside_the_mode_nothing_shifts() -> None:
     assert shown(words, words.shifts_origin) == []
 
 
-@pytest.mark.parametrize(
+@looped(
     ("block", "found"),
     [
         ("G10 L10 P1 R1.", ["G10"]),
@@ -187,7 +188,7 @@ def test_switches_are_those_of_sections() -> None:
     assert words.trace.blocks.line[words.switches].tolist() == [2, 4, 6]
 
 
-@pytest.mark.parametrize(
+@looped(
     ("block", "machine", "others"),
     [
         ("N10 G12.1", "fanuc", []),
@@ -215,22 +216,21 @@ def test_codes_beside_a_switch_are_allowed_by_name() -> None:
 # ---- the virtual axis ----
 
 
-@pytest.mark.parametrize(
-    ("machine", "found"), [("fanuc", ["Y1.", "V2.", "Y5."]), ("haas-lathe", ["C3.", "H4.", "C5."])]
-)
+@looped(("machine", "found"), [("fanuc", ["Y1.", "V2.", "Y5."]), ("haas-lathe", ["C3.", "H4.", "C5."])])
 def test_coordinates_under_the_address_of_other_controls(machine: str, found: list[str]) -> None:
     """Not a Y or C beside G28, where it is no coordinate of a move."""
     words = table("G1 Y1. V2.\nG1 C3. H4.\nG28 Y0 C0\nY5. C5.\n", machine)
     assert shown(words, words.of_other_axis) == found
 
 
-@pytest.mark.parametrize("code", ["G505", "G54.7", "G12.11"])
+@looped("code", ["G505", "G54.7", "G12.11"])
 def test_a_code_that_no_control_has_is_one_finding(code: str) -> None:
     report = report_of(f"G98 G0 X60. C0\nG12.1\nG1 X40. F100\n{code}\nC5.\nX60.\nG13.1\n")
     assert said(report) == [(4, "unknown-code")]
 
 
-@pytest.mark.parametrize("code", ["G10 L10 P1 R5.", "G10 L2 P1 X0", "G18", "G43 H1", "G0"])
+@pytest.mark.ci
+@looped("code", ["G10 L10 P1 R5.", "G10 L2 P1 X0", "G18", "G43 H1", "G0"])
 def test_what_has_a_rule_of_its_own_is_not_said_twice(code: str) -> None:
     report = report_of(f"G98 G0 X60. C0\nG12.1\nG1 X40. F100\n{code}\nG1 C5.\nX60.\nG13.1\n")
     assert "code-not-allowed-in-polar" not in {finding.rule for finding in report.findings}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from cases import looped
 from programs import report_of, said, tables_of
 
 from polarcheck.columns.contour.overcuts import CutsOfRows, loop_of_row, objected
@@ -22,7 +23,8 @@ def depths(tables: Tables, column: str = "depth") -> dict[int, float]:
     return {int(tables["trace"].blocks.line[row]): float(values[row]) for row in np.flatnonzero(values)}
 
 
-@pytest.mark.parametrize(("radius", "depth"), [(4, 2), (5, 4), (3.002, 0.004), (3, 0)])
+@pytest.mark.ci
+@looped(("radius", "depth"), [(4, 2), (5, 4), (3.002, 0.004), (3, 0)])
 def test_a_groove_narrower_than_the_cutter(radius: float, depth: float) -> None:
     """The tool center runs R from one wall, that is 6 - R from the other one: 2 R - 6 too near."""
     tables = tables_of(GROOVE, "fanuc", f"1:radius={radius}", changes={"compensation": {"overcut_tolerance": 0.003}})
@@ -56,7 +58,7 @@ def test_up_to_the_tolerance_nothing_is_cut() -> None:
         assert bool(depths(tables_of(GROOVE, "fanuc", "1:radius=4", changes=changes))) == found
 
 
-@pytest.mark.parametrize("program", [GROOVE.replace("G41 ", ""), GROOVE.replace("T0101", "T0202"), "O1\nM30\n", ""])
+@looped("program", [GROOVE.replace("G41 ", ""), GROOVE.replace("T0101", "T0202"), "O1\nM30\n", ""])
 def test_without_compensation_or_radius_nothing_is_cut(program: str) -> None:
     overcuts = tables_of(program, "fanuc", "1:radius=4")["overcuts"]
     assert not overcuts.depth.any()
@@ -116,14 +118,14 @@ def test_a_start_up_above_the_part_sweeps_nothing() -> None:
     assert depths(tables_of(OVER_CORNER.format("G1 Z1. F100\n", "Z-1.\n"), "fanuc", "1:radius=5"), "sweep_depth") == {}
 
 
-@pytest.mark.parametrize(("z", "sweeps"), [("0", False), ("-0.1", True), ("0.1", False)])
+@looped(("z", "sweeps"), [("0", False), ("-0.1", True), ("0.1", False)])
 def test_the_face_is_at_z0(z: str, sweeps: bool) -> None:
     """At Z0 a ramp runs in air, above a contour that lies deeper; just below there is material."""
     tables = tables_of(OVER_CORNER.format(f"G1 Z{z} F100\n", "Z-1.\n"), "fanuc", "1:radius=5")
     assert bool(depths(tables, "sweep_depth")) == sweeps
 
 
-@pytest.mark.parametrize("z", ["0", "-1.", "2."])
+@looped("z", ["0", "-1.", "2."])
 def test_a_ramp_at_the_depth_of_its_contour_sweeps_it(z: str) -> None:
     tables = tables_of(OVER_CORNER.format(f"G1 Z{z} F100\n", ""), "fanuc", "1:radius=5")
     assert depths(tables, "sweep_depth") == {5: pytest.approx(5, abs=0.006)}
@@ -173,9 +175,9 @@ SQUARE = (
 )
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize("radius", ["-.005", ".005", "0", "-.01", ".01", "-.0002", ".0002", "-.001"])
-@pytest.mark.parametrize("machine", ["fanuc", "haas-lathe", "gsk-988"])
+@pytest.mark.ci
+@looped("radius", ["-.005", ".005", "0", "-.01", ".01", "-.0002", ".0002", "-.001"], one_in=12)
+@looped("machine", ["fanuc", "haas-lathe", "gsk-988"])
 def test_an_adjusted_path_of_the_center_has_no_walls(radius: str, machine: str) -> None:
     """The guide's own sample, an inch program; and a contour in mm, with as many mm and with inches."""
     groups = ("compensation", "feed", "motion")
@@ -185,6 +187,7 @@ def test_an_adjusted_path_of_the_center_has_no_walls(radius: str, machine: str) 
     assert said(report_of(SQUARE, machine, in_mm, only=groups)) == []
 
 
+@pytest.mark.ci
 def test_a_cutter_on_the_wrong_side_is_one_all_the_same() -> None:
     """A negative R exchanges the sides: a cutter of that size goes through the part."""
     assert (12, "start-up-sweeps-contour") in said(report_of(FLATS, "fanuc", "8:radius=-.15"))

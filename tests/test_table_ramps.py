@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import pytest
+from cases import looped
 from programs import report_of, said, tables_of
 
 HEAD = "T0101\nG98 G0 X60. C0\nG12.1\n"
@@ -16,7 +17,8 @@ def lines(program: str, column: str, *tools: str, **more: object) -> list[int]:
     return (tables["trace"].blocks.line[getattr(tables["ramps"], column)] - 3).tolist()
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("program", "start_up", "cancel"),
     [
         ("G41\nG13.1\n", [1], []),
@@ -57,7 +59,7 @@ def test_the_next_section_makes_up_for_nothing() -> None:
     assert lines("G1 G41 X40. F100\nC5.\nG40\n" + following, "cancel_missing") == [3]
 
 
-@pytest.mark.parametrize(
+@looped(
     ("move", "tool", "short"),
     [
         # From X60 as a diameter: 4 mm are X52; the slanted way is one of 3, 4, 5.
@@ -105,10 +107,11 @@ ON_INCH = ("O1\nG20 G40 G97 G98 G18\nT0101\nG0 X140. Z.1 C0\n", "1:radius=.375")
 G40_ALONE, G40_STANDING = "G40\nX140.\n", "G40 X40. C0\nX140.\n"
 
 
-@pytest.mark.parametrize("machine", ["fanuc", "turning-center", "gsk-988"])
-@pytest.mark.parametrize(("start", "tool"), [ON_MM, ON_INCH], ids=["mm", "inch"])
-@pytest.mark.parametrize("off", ["G40 X140.\n", G40_ALONE, G40_STANDING, "G40 U0\nX140.\n"])
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped("machine", ["fanuc", "turning-center", "gsk-988"])
+@looped(("start", "tool"), [ON_MM, ON_INCH], ids=["mm", "inch"])
+@looped("off", ["G40 X140.\n", G40_ALONE, G40_STANDING, "G40 U0\nX140.\n"])
+@looped(
     "on",
     [
         "G01 G42 X140. C0 F50.\nG01 X40.\n",
@@ -138,11 +141,8 @@ def test_an_arc_after_a_standing_block_is_the_ramp() -> None:
     assert said(report_of(HEAD + program, "fanuc", "1:radius=4")) == [(6, "start-up-on-arc")]
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize("off", ["G40\n", "G40 X40.\n", "G40 X40. C0\n", "G40 U0\n"])
-@pytest.mark.parametrize(
-    ("machine", "severity"), [("fanuc", "error"), ("gsk-988", "note"), ("turning-center", "error")]
-)
+@looped("off", ["G40\n", "G40 X40.\n", "G40 X40. C0\n", "G40 U0\n"], one_in=12)
+@looped(("machine", "severity"), [("fanuc", "error"), ("gsk-988", "note"), ("turning-center", "error")])
 def test_a_cancel_that_never_comes(off: str, machine: str, severity: str) -> None:
     program = AROUND.format(start=ON_MM[0], on="G1 G42 X40. F50.\n", off=off)
     found = [(one.rule, one.severity) for one in report_of(program, machine, ON_MM[1]).findings if one.line == 12]
@@ -156,7 +156,7 @@ def test_a_cancel_too_short_is_an_error_on_every_control() -> None:
         assert (found.rule, found.severity) == ("cancel-shorter-than-radius", "error")
 
 
-@pytest.mark.parametrize(
+@looped(
     ("program", "again"),
     [
         ("G1 G41 X40. F100\nC5.\nG42 C-20.\nG40 X80.\nG13.1\n", [3]),
@@ -201,7 +201,7 @@ def test_of_neighbouring_faults_the_first_is_none_of_another() -> None:
     assert len(own) < len(faulty)
 
 
-@pytest.mark.parametrize(
+@looped(
     ("program", "expected"),
     [
         # An arc of 3 mm at R 4: itself and the moves on both sides.

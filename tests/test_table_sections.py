@@ -5,6 +5,7 @@ from __future__ import annotations
 import msgspec
 import numpy as np
 import pytest
+from cases import looped
 from programs import machine_of, report_of, said, trace_of
 
 from polarcheck.columns.modes.sections import Marks, Sections, find_sections, section_column
@@ -22,7 +23,7 @@ def sections(program: str) -> list[tuple[int, int, bool]]:
     return [(lines[enter] - 4, max(lines[leave] - 4, 0), left) for enter, leave, left in zip(*columns, strict=True)]
 
 
-@pytest.mark.parametrize(
+@looped(
     ("program", "expected"),
     [
         ("G12.1\nG1 X40. F100\nC5.\nG13.1\nM30\n", [(1, 4, True)]),
@@ -68,7 +69,8 @@ def test_sections_end_where_they_were_meant_to(program: str, expected: list[tupl
 CHOSEN_BACK = "O1\nT0101\nG98 G0 X60. C0 Z5.\n{}\n{}\nG1 X20. F200\n{}10.\nX60.\n{}{}\nG0 Z100.\nM30\n"
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("machine", "on", "axis", "off", "back"),
     [
         ("haas-lathe", "G112", "Y", "G113", "G18"),
@@ -80,7 +82,7 @@ CHOSEN_BACK = "O1\nT0101\nG98 G0 X60. C0 Z5.\n{}\n{}\nG1 X20. F200\n{}10.\nX60.\
         ("turning-center", "G12.1", "C", "G13.1", "G17"),
     ],
 )
-@pytest.mark.parametrize("retract", ["", "Z5. F500\n", "G0 X70. {}0\n"])
+@looped("retract", ["", "Z5. F500\n", "G0 X70. {}0\n"])
 def test_a_plane_chosen_back_ends_a_section_that_nobody_has_left(
     machine: str, on: str, axis: str, off: str, back: str, retract: str
 ) -> None:
@@ -151,7 +153,7 @@ def marks(generator: np.random.Generator, count: int) -> Marks:
     )
 
 
-@pytest.mark.parametrize("seed", range(50))
+@looped("seed", range(50))
 def test_whatever_the_rows_sections_are_in_order_and_apart(seed: int) -> None:
     generator = np.random.default_rng(seed)
     given = marks(generator, int(generator.integers(1, 60)))
@@ -171,9 +173,7 @@ def test_whatever_the_rows_sections_are_in_order_and_apart(seed: int) -> None:
     assert given.off[found.leave[by_off]].all()
 
 
-@pytest.mark.parametrize(
-    ("enter", "leave", "count"), [([], [], 3), ([0], [2], 3), ([1, 4], [4, 9], 9), ([0, 3, 5], [2, 4, 6], 8)]
-)
+@looped(("enter", "leave", "count"), [([], [], 3), ([0], [2], 3), ([1, 4], [4, 9], 9), ([0, 3, 5], [2, 4, 6], 8)])
 def test_section_column_by_a_plain_loop(enter: list[int], leave: list[int], count: int) -> None:
     flags, rows = np.ones(len(enter), bool), np.array([], np.int64)
     found = Sections(np.array(enter, np.int64), np.array(leave, np.int64), flags, flags, rows)

@@ -6,6 +6,7 @@ import re
 
 import numpy as np
 import pytest
+from cases import looped
 from programs import report_of
 
 HEAD = "O1\nG21 G40 G97 G98 G18\nT0101\nG0 X150. Z2. C0\nG12.1\nG1 Z-5. F300.\n"
@@ -53,21 +54,22 @@ def hexagon(radius: float, decimals: int, *wrong: int, scale: float = 1.0) -> st
     return "/".join([*blocks, f"G1 {words(middle)}", f"G40 {words(2.2 * middle)}"])
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize("number", range(4))
-@pytest.mark.parametrize("section", [BY_RADIUS, BY_CENTER, POCKET], ids=["R", "I J", "pocket"])
+@looped("number", range(4), one_in=12)
+@looped("section", [BY_RADIUS, BY_CENTER, POCKET], ids=["R", "I J", "pocket"])
 def test_one_of_four_corners(section: str, number: int) -> None:
     [(block, rule, severity)] = told(swapped(section, number), 4)
     assert (rule, severity) == (RULE, "warning")
     assert block.startswith("G2")
 
 
-@pytest.mark.parametrize("machine", ["fanuc-16i", "fanuc-30i", "gsk-988", "siemens-iso"])
+@pytest.mark.ci
+@looped("machine", ["fanuc-16i", "fanuc-30i", "gsk-988", "siemens-iso"])
 def test_on_other_controls(machine: str) -> None:
     assert [rule for _, rule, _ in told(swapped(BY_RADIUS, 2), 4, machine)] == [RULE]
 
 
-@pytest.mark.parametrize(("radius", "decimals"), [(3, 3), (3, 2), (0.5, 3), (0.5, 2), (8, 3)])
+@pytest.mark.ci
+@looped(("radius", "decimals"), [(3, 3), (3, 2), (0.5, 3), (0.5, 2), (8, 3)])
 def test_ends_that_are_rounded(radius: float, decimals: int) -> None:
     assert told(hexagon(radius, decimals), radius / 2) == []
     assert [rule for _, rule, _ in told(hexagon(radius, decimals, 2), radius / 2)] == [RULE]
@@ -79,7 +81,8 @@ def test_in_inch() -> None:
     assert [rule for _, rule, _ in told(section, 0.05, head=head)] == [RULE]
 
 
-@pytest.mark.parametrize("section", [swapped(BY_RADIUS, 1), swapped(BY_CENTER, 1)], ids=["R", "I J"])
+@pytest.mark.ci
+@looped("section", [swapped(BY_RADIUS, 1), swapped(BY_CENTER, 1)], ids=["R", "I J"])
 def test_a_notch_too_narrow_for_the_cutter_follows(section: str) -> None:
     [(_, rule, severity)] = told(section, 12)
     assert (rule, severity) == (RULE, "error")
@@ -91,8 +94,7 @@ def test_the_rest_of_a_circle_needs_no_other_arc() -> None:
     assert [rule for _, rule, _ in told(section, 4)] == [RULE]
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize(
+@looped(
     "section",
     [
         BY_RADIUS,
@@ -108,6 +110,7 @@ def test_the_rest_of_a_circle_needs_no_other_arc() -> None:
         # a dogbone in the corner of a pocket: tangent to neither wall, one way round or the other
         POCKET.replace("G1 X-20./G3 X-40. C10. R10./", "G1 X-32./G2 X-40. C16. R2.829/G1 C10./"),
     ],
+    one_in=12,
 )
 def test_contours_that_mean_their_arcs(section: str) -> None:
     assert RULE not in [rule for _, rule, _ in told(section, 1.5)]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from cases import looped
 from programs import report_of, said, tables_of
 
 MM = "O1\nG21 G40 G97 G98 G18\nT0101\nG0 X150. Z2. C0\nG12.1\nG1 F300\n{}\nG13.1\nM30\n"
@@ -20,7 +21,8 @@ def found(blocks: str, radius: float, head: str = MM, machine: str = "fanuc") ->
     return [(one.block, one.rule) for one in report.findings if one.severity == "error"]
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("blocks", "radius", "head", "machine", "block"),
     [
         (SLOT, 5, MM, "fanuc", "X-50."),
@@ -55,7 +57,8 @@ def test_two_walls_that_leave_less_than_the_cutter(
     assert block in (None, first)
 
 
-@pytest.mark.parametrize("tail", ["", "Z-2./{0}", "Z-2./{0}/Z-4./{0}"])
+@pytest.mark.ci
+@looped("tail", ["", "Z-2./{0}", "Z-2./{0}/Z-4./{0}"])
 def test_one_finding_for_both_walls_at_all_depths(tail: str) -> None:
     only = ["slot-narrower-than-cutter"]
     report = report_of(program(f"{SLOT}/{tail.format(SLOT)}".rstrip("/")), "fanuc", "1:radius=5", only=only)
@@ -83,7 +86,8 @@ def test_round_a_corner_there_is_no_room() -> None:
     assert "take a smaller cutter" in finding.message
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("blocks", "radius"),
     [
         (SLOT, 2.9),
@@ -121,6 +125,7 @@ def test_loops_that_cut_nothing_of_each_other(blocks: str, radius: float) -> Non
     assert found(blocks, radius) == []
 
 
+@pytest.mark.ci
 def test_a_ramp_through_the_wall_of_another_loop() -> None:
     boss = "X-30. C-40./G42 X-20. C-10./X20./C10./X-20./C-10./G40 X-30. C-40."
     other = "G42 X60. C30./X80./C40./X60./C30./G40 X60. C70."
@@ -130,9 +135,7 @@ def test_a_ramp_through_the_wall_of_another_loop() -> None:
     assert "the contour of line" in report.findings[0].message
 
 
-@pytest.mark.parametrize(
-    "text", [program(SLOT).replace("T0101", "T0202"), program(SLOT).replace("G41 ", ""), "O1\nM30\n", ""]
-)
+@looped("text", [program(SLOT).replace("T0101", "T0202"), program(SLOT).replace("G41 ", ""), "O1\nM30\n", ""])
 def test_without_radius_or_compensation_nothing_is_compared(text: str) -> None:
     slots = tables_of(text, "fanuc", "1:radius=5")["slots"]
     assert not slots.depth.any()

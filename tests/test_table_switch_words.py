@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from cases import looped
 from click.testing import CliRunner
 from polarcheck.errors import MachineError
 from programs import report_of, said, tables_of
@@ -37,10 +38,10 @@ def table(entry: str, name: str = "gsk-988", **changes: Any) -> SwitchWords:
 MOST = table("G12.1").trace.axes.most_axes
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize(
+@looped(
     "words",
     ["P0", "P-1", "P1.5", "Q0", "Q-3", "Q2.5", f"P{MOST + 1}", f"Q{MOST + 1}", "P99", "P1 Q0", "P0 Q99", "Q999999999"],
+    one_in=12,
 )
 def test_what_is_no_axis(words: str) -> None:
     report = report_of(PROGRAM.format(f"G12.1 {words}", "G13.1"), "gsk-988", TOOL)
@@ -48,12 +49,14 @@ def test_what_is_no_axis(words: str) -> None:
     assert report.findings[0].message.endswith(f"no such axis; P and Q take whole numbers from 1 to {MOST}")
 
 
-@pytest.mark.parametrize("words", ["", "P1", "Q3", "P1 Q3", "Q3 P1", "P1. Q3.", "P2", "Q2", "P3 Q1", f"P1 Q{MOST}"])
+@pytest.mark.ci
+@looped("words", ["", "P1", "Q3", "P1 Q3", "Q3 P1", "P1. Q3.", "P2", "Q2", "P3 Q1", f"P1 Q{MOST}"])
 def test_what_is_a_pair_of_axes(words: str) -> None:
     assert found(f"G12.1 {words}") == []
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("words", "parameters", "axis"),
     [
         ("P2 Q2", {}, 2),
@@ -83,9 +86,7 @@ def test_p_alone_may_be_anything_elsewhere() -> None:
     assert "polar-axis-number-wrong" not in [rule for _, rule in found("G12.1 P99", name="mazak-eia")]
 
 
-@pytest.mark.parametrize(
-    ("name", "rule"), [("fanuc", "polar-switch-not-alone"), ("gsk-988", "polar-axis-number-wrong")]
-)
+@looped(("name", "rule"), [("fanuc", "polar-switch-not-alone"), ("gsk-988", "polar-axis-number-wrong")])
 def test_words_that_a_control_does_not_take_stay_out_of_place(name: str, rule: str) -> None:
     assert rule in [one for _, one in found("G12.1 P0", name=name)]
 
@@ -99,7 +100,8 @@ def test_axes_by_macro_and_in_a_second_section() -> None:
 # ---- IP ----
 
 
-@pytest.mark.parametrize("words", ["U5.", "H5.", "U0", "U5. H5.", "U-2. P1 Q3", "X0 H1."])
+@pytest.mark.ci
+@looped("words", ["U5.", "H5.", "U0", "U5. H5.", "U-2. P1 Q3", "X0 H1."])
 def test_the_shift_is_absolute(words: str) -> None:
     report = report_of(PROGRAM.format(f"G12.1 {words}", "G13.1"), "gsk-988", TOOL)
     assert said(report) == [(AT, "polar-shift-incremental")]
@@ -117,25 +119,28 @@ def test_the_shift_of_another_linear_axis_is_absolute() -> None:
     assert report.findings[0].message.endswith("in absolute words only, Y and C")
 
 
-@pytest.mark.parametrize("words", ["X0", "C0", "X0 C0", "X0 C0 P1 Q3"])
+@pytest.mark.ci
+@looped("words", ["X0", "C0", "X0 C0", "X0 C0 P1 Q3"])
 def test_an_absolute_shift_is_right(words: str) -> None:
     assert found(f"G12.1 {words}") == []
 
 
-@pytest.mark.parametrize(("mode", "rules"), [("G90", []), ("G91", ["polar-shift-incremental"])])
+@looped(("mode", "rules"), [("G90", []), ("G91", ["polar-shift-incremental"])])
 def test_in_another_system_the_mode_of_distance_counts(mode: str, rules: list[str]) -> None:
     program = f"T0202\nG94 G90 G0 X120. C0\n{mode}\nG12.1 X0 C0\nG1 X20. C10. F100\nG13.1\n"
     report = report_of(program, "gsk-988", TOOL, changes={"control": {"g_code_system": "B"}})
     assert [rule for _, rule in said(report) if rule == "polar-shift-incremental"] == rules
 
 
-@pytest.mark.parametrize("words", ["U5.", "H5."])
+@pytest.mark.ci
+@looped("words", ["U5.", "H5."])
 def test_where_nothing_shifts_incremental_words_are_out_of_place(words: str) -> None:
     assert (AT, "polar-switch-not-alone") in found(f"G12.1 {words}", name="fanuc")
     assert (AT, "polar-shift-incremental") not in found(f"G12.1 {words}", name="fanuc")
 
 
-@pytest.mark.parametrize("words", ["P1", "Q3", "E8.", "X0", "U5.", "P1 Q3 E8."])
+@pytest.mark.ci
+@looped("words", ["P1", "Q3", "E8.", "X0", "U5.", "P1 Q3 E8."])
 def test_words_are_for_the_beginning(words: str) -> None:
     """G13.1 stands alone on this control, too."""
     assert found("G12.1", f"G13.1 {words}") == [(11, "polar-switch-not-alone")]
@@ -146,7 +151,8 @@ def test_words_are_for_the_beginning(words: str) -> None:
 TOO_LARGE = "is too large: {} is the most"
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("increments", "program", "inside", "beyond", "most"),
     [
         ((0.001, 0.0001), PROGRAM, "E999999.999", "E1000000.", "999999.999 mm"),
@@ -156,7 +162,7 @@ TOO_LARGE = "is too large: {} is the most"
     ],
     ids=["IS-B mm", "IS-C mm", "IS-B inch", "IS-C inch"],
 )
-@pytest.mark.parametrize("sign", ["", "-"])
+@looped("sign", ["", "-"])
 def test_the_four_ranges_of_the_infeed(
     increments: tuple[float, float], program: str, inside: str, beyond: str, most: str, sign: str
 ) -> None:
@@ -171,7 +177,8 @@ def test_the_four_ranges_of_the_infeed(
         assert all(found.message.endswith(TOO_LARGE.format(most)) for found in report.findings)
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("increments", "program", "word", "taken"),
     [
         ((0.001, 0.0001), PROGRAM, "E8.0004", "0.001 mm: 8 mm is taken"),
@@ -198,6 +205,7 @@ def test_digits_below_the_increment_are_dropped(
         assert report.findings[0].message.endswith(f"is finer than the least increment, {taken}")
 
 
+@pytest.mark.ci
 def test_every_number_of_increments_is_taken_as_it_is() -> None:
     """None of them is taken for one with a digit too many, or cut by one, whatever binary fractions make of it."""
     for count in [*range(1, 3000, 37), 12345678, 999999999]:
@@ -217,8 +225,8 @@ def test_an_infeed_of_no_control_has_no_range() -> None:
 # ---- the parameters ----
 
 
-@pytest.mark.parametrize("parameter", ["5460", "5461"])
-@pytest.mark.parametrize("value", [0, -1, 1.5, 25, 99])
+@looped("parameter", ["5460", "5461"])
+@looped("value", [0, -1, 1.5, 25, 99])
 def test_a_parameter_that_is_no_axis_is_one_line(parameter: str, value: float) -> None:
     key = {"5460": "linear_axis", "5461": "rotary_axis"}[parameter]
     text = rf"parameters\.{parameter}: polar\.{key}: expected the number of an axis from 1 to 24, found {value}"
@@ -227,7 +235,7 @@ def test_a_parameter_that_is_no_axis_is_one_line(parameter: str, value: float) -
 
 
 @pytest.mark.usefixtures("own_folder")
-@pytest.mark.parametrize(
+@looped(
     ("given", "said"),
     [
         ("5460 = 99", "parameters.5460: polar.linear_axis: expected the number of an axis from 1 to 24, found 99"),
@@ -241,7 +249,7 @@ def test_a_wrong_parameter_ends_the_run_with_one_line(given: str, said: str) -> 
     assert (ended.exit_code, ended.stdout, ended.stderr) == (2, "", f"polarcheck: own.toml:3: {said}\n")
 
 
-@pytest.mark.parametrize(("parameters", "axis"), [({"5460": 3}, 3), ({"5461": 1}, 1), ({"5460": 2, "5461": 2}, 2)])
+@looped(("parameters", "axis"), [({"5460": 3}, 3), ({"5461": 1}, 1), ({"5460": 2, "5461": 2}, 2)])
 def test_parameters_that_name_one_axis_are_one_line(parameters: dict[str, int], axis: int) -> None:
     with pytest.raises(MachineError, match=f"linear_axis and rotary_axis are both {axis}; expected two axes"):
         profiles.load("gsk-988", {"parameters": parameters})

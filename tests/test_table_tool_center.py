@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from cases import looped
 from programs import tables_of
 
 from polarcheck.rules.tables import Tables
@@ -20,7 +21,7 @@ def tables_with(program: str, *tools: str, **more: Any) -> Tables:
     return tables_of(HEAD + program + TAIL, "fanuc", *(tools or ("1:radius=4",)), **more)
 
 
-@pytest.mark.parametrize(
+@looped(
     ("program", "column", "lines"),
     [
         # An arc of 3 mm, the tool on its inner side; at R 2.5 it fits.
@@ -81,7 +82,7 @@ def test_rows_without_a_move() -> None:
         assert tool_center.feed_allowed[row] == math.inf
 
 
-@pytest.mark.parametrize("tool", ["1:nose=0", "2:radius=4"])
+@looped("tool", ["1:nose=0", "2:radius=4"])
 def test_without_a_radius_the_compensated_rows_are_not_known(tool: str) -> None:
     tables = tables_with(FLAT, tool)
     for column in ("nearest", "farthest", "c_feed", "c_acceleration", "feed_allowed"):
@@ -97,7 +98,7 @@ def test_without_a_feed_the_rates_are_not_known() -> None:
     assert math.degrees(tool_center.feed_allowed[3] / 20) == pytest.approx(tool_center.c_feed_limit)
 
 
-@pytest.mark.parametrize(
+@looped(
     ("limits", "limit"),
     [
         ({"c_feed": 3600}, 3600),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 
 import numpy as np
-import pytest
+from cases import looped
 from programs import trace_of
 
 from polarcheck.foundation.states import Side
@@ -94,7 +94,7 @@ def test_what_t_calls() -> None:
     assert trace.tools.has_called_tool.tolist() == [False] * 2 + [True] * 4 + [False] * 3
 
 
-@pytest.mark.parametrize(
+@looped(
     ("nose", "allowed", "expected"), [("0", [0, 9], True), ("9", [0, 9], True), ("3", [0, 9], False), ("3", [3], True)]
 )
 def test_noses_that_a_mill_may_have(nose: str, allowed: list[int], expected: bool) -> None:

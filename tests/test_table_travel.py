@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from cases import looped
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from programs import tables_of
@@ -46,7 +47,7 @@ def test_z_is_the_programmed_one() -> None:
     assert travel.z == pytest.approx([NAN] + [5] * 6 + [-3] * 4 + [-5] * 2, nan_ok=True)
 
 
-@pytest.mark.parametrize(
+@looped(
     ("limits", "x", "z"),
     [
         ({}, False, False),
@@ -75,7 +76,7 @@ def test_where_the_tool_center_is_not_known_x_is_not() -> None:
 WAYS = st.lists(st.sampled_from(["X70.", "X80.", "X90.", "X-10.", "Z-20.", "Z-21.", "Z30.", "M8", "M30", "Z0 X99."]))
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 @settings(deadline=None)
 @given(WAYS)
 def test_each_way_out_is_told_once_as_a_plain_loop_tells_it(blocks: list[str]) -> None:

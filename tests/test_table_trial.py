@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from cases import looped
 from programs import tables_of
 
 from polarcheck.columns.path.tool_center import OtherRadius
 from polarcheck.columns.path.trial import Trial
 from polarcheck.foundation.arrays import Floats
+
+pytestmark = pytest.mark.ci
 
 HEAD, TAIL = "T0101\nG98 G0 X100. C0\nG12.1\nG1 C20. F500\n", "G40 X100.\nG13.1\n"
 
@@ -22,7 +25,7 @@ def trial_of(blocks: str, share: float, radius: float = 4.0) -> tuple[Trial, Flo
     return Trial(trace, other), trace.blocks.line
 
 
-@pytest.mark.parametrize(
+@looped(
     ("blocks", "share", "lines"),
     [
         # An arc of 3 mm on the inner side of R 4, and of R 2; on the other side it has room.

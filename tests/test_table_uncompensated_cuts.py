@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from cases import looped
 from programs import report_of, tables_of
 
 RULE = "uncompensated-cut-into-part"
@@ -23,8 +24,7 @@ def found(
     return [(one.block, one.severity) for one in findings if one.rule == RULE]
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize(
+@looped(
     ("blocks", "expected"),
     [
         (f"Z-3./{HEXAGON}/X-80.", ("X-80.", "warning")),
@@ -46,13 +46,13 @@ def found(
         # One deeper contour bounds the part of the other.
         (f"Z-3./{HEXAGON}/Z2./X4. C1./Z-6./G41 X16. C0/C6./X-16./C-6./X16./C0/G40 X4. C1./X30.", ("X30.", "warning")),
     ],
+    one_in=12,
 )
 def test_through_the_part(blocks: str, expected: tuple[str, str]) -> None:
     assert found(blocks) == [expected]
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize(
+@looped(
     "blocks",
     [
         # Above the contour: a slot or a facing pass.
@@ -74,6 +74,7 @@ def test_through_the_part(blocks: str, expected: tuple[str, str]) -> None:
         f"Z-3./{HEXAGON}/G13.1/G0 Z2./X20.",
         f"Z-3./{HEXAGON}/G13.1/G28 U0/X20.",
     ],
+    one_in=12,
 )
 def test_past_the_part(blocks: str) -> None:
     assert found(blocks) == []
@@ -101,7 +102,8 @@ def test_where_rapid_traverse_is_an_alarm_it_follows_from_that() -> None:
     assert [one.rule for one in finding.follows] == [RULE]
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("move", "beginning", "end"),
     [
         ("X-80.", "G1 without compensation leads through the part that the contour of line ", " Z-3; retract Z "),
@@ -121,7 +123,7 @@ def test_a_bar_that_is_known_bounds_the_part() -> None:
     assert found(f"{FLAT}/X120./C-30.2/X-120./C32.", bar=50) == []
 
 
-@pytest.mark.parametrize("text", ["O1\nM30\n", "", MM.format(HEXAGON.replace("/", "\n")).replace("T0101", "T0202")])
+@looped("text", ["O1\nM30\n", "", MM.format(HEXAGON.replace("/", "\n")).replace("T0101", "T0202")])
 def test_without_a_contour_or_its_radius_nothing_is_said(text: str) -> None:
     cuts = tables_of(text, "fanuc", "1:radius=5")["uncompensated_cuts"]
     assert not cuts.depth.any()
@@ -132,7 +134,8 @@ def test_without_a_contour_or_its_radius_nothing_is_said(text: str) -> None:
 OPEN = HEXAGON.removesuffix("X80. C5.")
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("blocks", "expected"),
     [
         # Away from a cancel that is too short, and the block behind that.

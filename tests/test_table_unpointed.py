@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-import pytest
+from cases import looped
 from programs import report_of, tables_of
 
 POINTED = "G98 G0 X60. C0\nG12.1\nG1 X40. F200\nC10.\nX-40.\nG13.1\n"
@@ -23,7 +23,7 @@ def counts(program: str, column: str, **changes: Any) -> dict[str, int]:
     }
 
 
-@pytest.mark.parametrize(
+@looped(
     ("program", "expected"),
     [
         (POINTED, {}),
@@ -59,7 +59,7 @@ def test_slips(program: str, expected: dict[str, int]) -> None:
     assert counts(program, "slips") == expected
 
 
-@pytest.mark.parametrize(
+@looped(
     ("program", "expected"),
     [
         (POINTED, {}),

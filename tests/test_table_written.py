@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 
 import pytest
+from cases import looped
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from programs import report_of, said
@@ -20,7 +21,7 @@ def places(program: str | bytes, rule: str, **control: int) -> list[tuple[int, i
     return [(finding.line, finding.column) for finding in findings(program, rule, **control)]
 
 
-@pytest.mark.parametrize(
+@looped(
     ("block", "expected"),
     [
         ("X1. Z2. X3.", [9]),
@@ -38,7 +39,7 @@ def test_word_repeated(block: str, expected: list[int]) -> None:
     assert places(block, "word-repeated") == [(1, column) for column in expected]
 
 
-@pytest.mark.parametrize(
+@looped(
     ("block", "expected"),
     [
         ("G0 G1 X1.", ["G0 and G1"]),
@@ -63,7 +64,7 @@ FITS = ["X99999999", "X0000000001", "X99999.999", "X1.23456789"]
 TOO_LONG = ["X999999999", "X999999.999", "X123456.7891", "N123456789", "X12345678901234567890123456789"]
 
 
-@pytest.mark.parametrize(("word", "wrong"), [(word, word in TOO_LONG) for word in [*FITS, *TOO_LONG]])
+@looped(("word", "wrong"), [(word, word in TOO_LONG) for word in [*FITS, *TOO_LONG]])
 def test_digits_are_counted_in_least_increments(word: str, wrong: bool) -> None:
     assert bool(places(word, "too-many-digits", digit_limit=8)) == wrong
 
@@ -90,7 +91,7 @@ def test_an_unknown_code_is_reported_once() -> None:
     )
 
 
-@pytest.mark.parametrize(
+@looped(
     ("program", "expected"),
     [
         ("G0 X1.", []),
@@ -118,8 +119,9 @@ def test_stray_characters_of_a_block_are_one_finding() -> None:
 HEAD = "O1\nG21 G40 G97 G98 G18\nT0101\nG0 X60. Z2.\n"
 
 
-@pytest.mark.parametrize("character", ["$", "*", "!", "\uff1b", "\u00b0"])
-@pytest.mark.parametrize("blocks", [1, 3, 212])
+@pytest.mark.ci
+@looped("character", ["$", "*", "!", "\uff1b", "\u00b0"])
+@looped("blocks", [1, 3, 212])
 def test_a_foreign_end_of_block_is_one_finding(character: str, blocks: int) -> None:
     program = HEAD + f"X50.{character}\n" * blocks + "#1=5\nM30\n"
     times = f" (in {blocks} blocks)" if blocks > 1 else ""
@@ -127,7 +129,7 @@ def test_a_foreign_end_of_block_is_one_finding(character: str, blocks: int) -> N
     assert told == [(5, "stray-character", f"{character} is no character of a word{times}")]
 
 
-@pytest.mark.parametrize("character", ["$", "*"])
+@looped("character", ["$", "*"])
 def test_a_foreign_end_of_block_behind_macro_statements_and_calls(character: str) -> None:
     program = "O1\nT0101\n#1=5\nG0 X#1\nIF[#1 GT 5]GOTO 9\nM98 P2\nN9 M30\nO2\nM99\n".replace("\n", f"{character}\n")
     report = report_of(program)
@@ -168,7 +170,8 @@ HABITS = [
 ]
 
 
-@pytest.mark.parametrize(("block", "rule", "message"), HABITS)
+@pytest.mark.ci
+@looped(("block", "rule", "message"), HABITS)
 def test_a_habit_is_one_finding(block: str, rule: str, message: str) -> None:
     """What stands a few times is told at each place; what stands more often, once, with the number of blocks."""
     few, many = (report_of(HEAD + f"{block}\n" * count + "M30\n").findings for count in (5, 40))
@@ -204,7 +207,7 @@ BLOCKS = st.lists(
 )
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 @given(st.lists(BLOCKS, max_size=6))
 @settings(max_examples=100, deadline=None)
 def test_repeated_words_are_those_that_a_count_finds(blocks: list[list[tuple[str, str]]]) -> None:
@@ -220,7 +223,7 @@ def test_repeated_words_are_those_that_a_count_finds(blocks: list[list[tuple[str
     assert [line for line, _ in places(program, "word-repeated")] == expected
 
 
-@pytest.mark.parametrize(
+@looped(
     ("block", "is_mark"),
     [
         ("$1X0X0", True),
@@ -275,7 +278,7 @@ MORE = [
 ]
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 @given(
     st.one_of(
         st.binary(max_size=80), st.lists(st.sampled_from(PARTS + MORE)).map(lambda parts: "".join(parts).encode())

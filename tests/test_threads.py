@@ -13,11 +13,14 @@ from typing import Any
 
 import msgspec
 import pytest
+from cases import looped
 from click.testing import CliRunner
 
 import polarcheck
 from polarcheck.commands import main
 from polarcheck.foundation import decoding
+
+pytestmark = pytest.mark.ci
 
 PACKAGE = Path(polarcheck.__file__).parent
 
@@ -111,7 +114,6 @@ def test_threads_may_begin_with_the_same_function(post: None) -> None:
     assert results_of("machine", 2) == results_of("machine", 1)
 
 
-@pytest.mark.slow
 @pytest.mark.one_in(28)
 @pytest.mark.parametrize("threads", [2, 8])
 @pytest.mark.parametrize("name", FUNCTIONS)
@@ -150,7 +152,7 @@ def decoded_by(text: str) -> list[int]:
     return lines
 
 
-@pytest.mark.parametrize(
+@looped(
     "planted",
     [
         "value = msgspec.convert(table, Kind)",

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 import shapely  # type: ignore[import-untyped]
+from cases import looped
 from click.testing import CliRunner
 from clocks import Clock, even, jump
 from polarcheck.errors import StoppedError, TooHardError
@@ -48,8 +49,8 @@ def checked(program: str, *tools: str) -> FileReport:
 # ---- without any time ----
 
 
-@pytest.mark.one_in(42)
-@pytest.mark.parametrize("family", FAMILIES)
+@pytest.mark.ci
+@looped("family", FAMILIES, one_in=42)
 def test_without_any_time_a_check_ends_and_says_so(family: str) -> None:
     """What needs no time is judged as ever; a file is never passed whose contours nobody has looked at."""
     program = FAMILIES[family].make(200)
@@ -68,7 +69,7 @@ def test_without_any_time_a_check_ends_and_says_so(family: str) -> None:
     assert left <= set(said(report)) | following
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 def test_the_limit_is_kept_wherever_it_runs_out() -> None:
     """A few milliseconds end anywhere: in a table, in a trial, in a message."""
     program = FAMILIES["overcut-loops"].make(400)
@@ -78,9 +79,8 @@ def test_the_limit_is_kept_wherever_it_runs_out() -> None:
         assert report.verdict == "fail" or any("--max-seconds" in reason for reason in given_up(report).values())
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize("family", ["zigzag", "bosses", "overcut-loops", "passes", "slanted-leads", "bare-moves"])
-@pytest.mark.parametrize("seconds", [-1, 0.01])
+@looped("family", ["zigzag", "bosses", "overcut-loops", "passes", "slanted-leads", "bare-moves"], one_in=12)
+@looped("seconds", [-1, 0.01])
 def test_every_column_of_contours_is_there_or_given_up(family: str, seconds: float) -> None:
     tables = tables_of(FAMILIES[family].make(200), MACHINE, TOOL)
     asked = 0
@@ -115,7 +115,7 @@ BEYOND = {
 }
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 @pytest.mark.parametrize("case", BEYOND)
 def test_a_loop_beyond_all_bounds_is_left_out_alone(case: str) -> None:
     """The other one is judged as if it stood there by itself."""
@@ -136,8 +136,8 @@ WITHOUT_MEASURE = {
 }
 
 
-@pytest.mark.one_in(3)
-@pytest.mark.parametrize("case", WITHOUT_MEASURE)
+@pytest.mark.ci
+@looped("case", WITHOUT_MEASURE, one_in=3)
 def test_numbers_without_measure_leave_the_other_loop_as_it_is(case: str) -> None:
     alone = checked(in_mode([*GROOVE, "G1 X100. C0"]))
     both = checked(in_mode([*GROOVE, "G1 X100. C0", *loop(WITHOUT_MEASURE[case], 40 + 0j)]))
@@ -182,6 +182,7 @@ def test_only_so_many_loops_are_named(monkeypatch: pytest.MonkeyPatch) -> None:
     assert reasons[-1].blocks == 10 * reasons[0].blocks
 
 
+@pytest.mark.ci
 def test_walls_that_only_together_are_too_many_are_said(monkeypatch: pytest.MonkeyPatch) -> None:
     """Whether the tool fits between contours is open where they cross again and again, and nobody passes that."""
     program = FAMILIES["nested-squares"].make(200)
@@ -198,7 +199,7 @@ def all_rules(report: FileReport) -> set[str]:
     return {one.rule for finding in report.findings for one in (finding, *finding.follows)}
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 def test_what_is_not_looked_for_is_said_without_weight(monkeypatch: pytest.MonkeyPatch) -> None:
     from polarcheck.geometry.material_left import ribs, strips
 
@@ -227,7 +228,7 @@ def test_a_pass_that_is_written_once_more_deeper_sweeps_nothing_else(monkeypatch
 # ---- the same, with less ----
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 @pytest.mark.one_in(3)
 @pytest.mark.parametrize("family", ["pockets", "bosses", "passes"])
 def test_rings_by_what_they_lie_in_or_one_by_one(family: str, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -269,6 +270,7 @@ def test_rings_in_rings() -> None:
     assert _nested(boxes, np.zeros(20, bool)) is None
 
 
+@pytest.mark.ci
 def test_loops_that_begin_in_a_row_are_held_together_by_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
     """What they are cut into grows with their number, not with its square."""
     from polarcheck.geometry.polygons import faces
@@ -351,7 +353,7 @@ def test_points_are_compared_in_portions(monkeypatch: pytest.MonkeyPatch) -> Non
 # ---- whole processes ----
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 @pytest.mark.skipif(sys.platform == "win32", reason="no limit of address space there")
 @pytest.mark.parametrize(
     ("family", "moves", "reason"),
@@ -377,8 +379,9 @@ def test_a_check_stays_within_its_memory(family: str, moves: int, reason: str, t
 # ---- when nobody waits any more ----
 
 
-@pytest.mark.parametrize("turns", [0, 3, 100])
-@pytest.mark.parametrize("program", ["G12.1\nG1 X4. F100\nG13.1\nM30\n", "#1=1\nWHILE[#1GT0]DO1\n#1=#1+1\nEND1\nM30\n"])
+@pytest.mark.ci
+@looped("turns", [0, 3, 100])
+@looped("program", ["G12.1\nG1 X4. F100\nG13.1\nM30\n", "#1=1\nWHILE[#1GT0]DO1\n#1=#1+1\nEND1\nM30\n"])
 def test_a_check_that_nobody_waits_for_ends_at_its_next_turn(program: str, turns: int) -> None:
     """Not as one that was too hard, which would be a report: its outcome is of no interest."""
     asked: list[int] = []
@@ -414,7 +417,7 @@ GIVEN_UP = {
 
 
 @pytest.mark.parametrize(
-    "share", [0.5, pytest.param(0.1, marks=pytest.mark.slow), pytest.param(0.9, marks=pytest.mark.slow)]
+    "share", [0.5, pytest.param(0.1, marks=pytest.mark.ci), pytest.param(0.9, marks=pytest.mark.ci)]
 )
 @pytest.mark.parametrize("program", GIVEN_UP.values(), ids=list(GIVEN_UP))
 def test_a_program_is_given_up_at_the_same_place_on_a_busy_machine(
@@ -464,6 +467,7 @@ def spin(seconds: float) -> None:
         pass
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize("is_seen_by_others", [True, False])
 def test_the_time_of_a_limit_is_that_of_its_thread(is_seen_by_others: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     """Others read it; where only the thread itself can, they see the work of the process since."""
@@ -498,6 +502,7 @@ def test_the_time_of_a_limit_is_that_of_its_thread(is_seen_by_others: bool, monk
 # ---- the time runs out at any look at the clock ----
 
 
+@pytest.mark.ci
 @pytest.mark.one_in(12)
 @pytest.mark.parametrize("side", ["", "G42 "])
 @pytest.mark.parametrize(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from cases import looped
 from programs import report_of, said
 
 SECTION = "G0 X60. C0\nG12.1\nG1 G41 X40. F200\nC-10.\nG40 X60.\nG13.1\n"
@@ -13,8 +14,8 @@ def lines(program: str, machine: str = "fanuc") -> list[int]:
     return [line for line, rule in said(report_of(program, machine, "7:radius=6,nose=0")) if rule == RULE]
 
 
-@pytest.mark.one_in(3)
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     "comment",
     [
         "T9 END MILL D12",
@@ -26,6 +27,7 @@ def lines(program: str, machine: str = "fanuc") -> list[int]:
         "t9 end mill",
         "T9: ROUGH TURN",
     ],
+    one_in=3,
 )
 def test_another_tool_in_the_block_of_the_call_or_beside_it(comment: str) -> None:
     assert lines(f"O1\nG21 G98\nT0707 ({comment})\n{SECTION}M30\n") == [3]
@@ -33,8 +35,8 @@ def test_another_tool_in_the_block_of_the_call_or_beside_it(comment: str) -> Non
     assert lines(f"O1\nG21 G98\nT0707\n({comment})\n{SECTION}M30\n") == [3]
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     "comment",
     [
         "T7 END MILL D12",
@@ -53,6 +55,7 @@ def test_another_tool_in_the_block_of_the_call_or_beside_it(comment: str) -> Non
         "TAP M9",
         "9 END MILL",
     ],
+    one_in=12,
 )
 def test_comments_that_contradict_no_call(comment: str) -> None:
     for program in (

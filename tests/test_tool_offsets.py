@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from cases import looped
 from programs import report_of, said, trace_of
 
 from polarcheck.files.settings.of_programs import OfPrograms, Options
@@ -82,7 +83,8 @@ def test_the_nose_type_of_a_turning_tool_is_an_error_that_names_the_block() -> N
     assert found.message == ("offset 8 is set by G10 P8 R.375 Q3 in line 3 to nose type T3; for a mill it must be 0")
 
 
-@pytest.mark.parametrize("tools", [(), ("8:radius=0",), ("8:radius=.2,nose=0",)])
+@pytest.mark.ci
+@looped("tools", [(), ("8:radius=0",), ("8:radius=.2,nose=0",)])
 def test_ramps_that_its_own_radius_does_not_fit(tools: tuple[str, ...]) -> None:
     """As printed the program is that of the tool center: with R .375 its ramps are too short."""
     report = report_of(guide("G10 P8 R.375", x=AS_PRINTED), "turning-center", *tools)
@@ -100,8 +102,8 @@ def test_the_size_adjusted_by_its_own_radius() -> None:
 # ---- which R ----
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("blocks", "radius"),
     [
         ("G10 P1 R4.\nT0101", 4),
@@ -135,8 +137,9 @@ def test_the_size_adjusted_by_its_own_radius() -> None:
         ("#1=4.\nG10 P1 R#1\nT0101", 4),
         ("#2901=#500\n#2901=4.\nT0101", 4),
     ],
+    one_in=12,
 )
-@pytest.mark.parametrize("inch", [False, True])
+@looped("inch", [False, True])
 def test_the_radius_that_the_program_sets(blocks: str, radius: float, inch: bool) -> None:
     # What is set is read in the units of its block, whatever those of the section are.
     blocks, head = (f"G21\n{blocks}\nG20", MM.replace("G21", "G20")) if inch else (blocks, MM)
@@ -150,7 +153,8 @@ def test_lengths_are_in_the_units_of_their_block() -> None:
     assert taken("#2901=.25\nT0101\nG21", head=head) == (pytest.approx(6.35), "program")
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("blocks", "expected"),
     [
         ("G10 P1 R4.", (4, "program")),
@@ -169,7 +173,7 @@ def test_lengths_are_in_the_units_of_their_block() -> None:
         ("IF[1EQ2]THEN #2901=4.", (3, "job")),
     ],
 )
-@pytest.mark.parametrize("first", [True, False])
+@looped("first", [True, False])
 def test_what_the_program_sets_takes_the_place_of_the_job(
     blocks: str, expected: tuple[float, str], first: bool
 ) -> None:
@@ -177,7 +181,7 @@ def test_what_the_program_sets_takes_the_place_of_the_job(
     assert taken(blocks, job={"tools": {"1": {"radius": 3}}}) == (pytest.approx(expected[0]), expected[1])
 
 
-@pytest.mark.parametrize(
+@looped(
     ("blocks", "machine", "expected"),
     [
         ("G91 G10 P1 R-.1\nG90\nT0101", "siemens-iso", (2.9, "program")),
@@ -206,6 +210,7 @@ def test_from_its_block_on_for_each_tool_and_program() -> None:
     )
 
 
+@pytest.mark.ci
 def test_in_a_called_program_and_behind_a_block_skip() -> None:
     called = f"{MM}M98 P2\nT0101\n{SECTION}M30\nO2\nG10 P1 R4.\nM99\n"
     [section] = report_of(called).polar_sections
@@ -225,7 +230,8 @@ def test_what_is_set_in_the_mode_is_one_finding_and_changes_nothing_else() -> No
 # ---- what is not known ----
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("block", "reason"),
     [
         (
@@ -268,7 +274,7 @@ def test_a_nose_type_that_cannot_be_known_has_no_weight() -> None:
     assert any("no nose type for offset 8: G10 P8 R.375 Q#500 in line 3" in reason for reason, _ in found)
 
 
-@pytest.mark.parametrize(
+@looped(
     ("blocks", "nose"),
     [
         ("G10 P1 Q3\nT0101", 3),
@@ -286,8 +292,9 @@ def test_the_nose_type(blocks: str, nose: int) -> None:
 # ---- comments ----
 
 
-@pytest.mark.parametrize("block", ["G10 P8 R.375", "G10 P8 R.37", "G10 P10008 R.375 Q0/G10 P8 R-.005"])
-@pytest.mark.parametrize("first", [True, False])
+@pytest.mark.ci
+@looped("block", ["G10 P8 R.375", "G10 P8 R.37", "G10 P10008 R.375 Q0/G10 P8 R-.005"])
+@looped("first", [True, False])
 def test_a_comment_that_agrees(block: str, first: bool) -> None:
     places = (block, "") if first else ("", block)
     program = guide(*places, comment=' (3/4" DIA. CUTTER)')
@@ -296,8 +303,9 @@ def test_a_comment_that_agrees(block: str, first: bool) -> None:
         assert (said(report), report.polar_sections[0].radius_source) == ([], "program")
 
 
-@pytest.mark.parametrize("first", [True, False])
-@pytest.mark.parametrize("tools", [(), ("8:radius=.375",)])
+@pytest.mark.ci
+@looped("first", [True, False])
+@looped("tools", [(), ("8:radius=.375",)])
 def test_a_comment_that_contradicts(first: bool, tools: tuple[str, ...]) -> None:
     places = ("G10 P8 R.25", "") if first else ("", "G10 P8 R.25")
     [found] = report_of(guide(*places, comment=' (3/4" DIA. CUTTER)'), "turning-center", *tools).findings
@@ -322,8 +330,7 @@ def test_a_comment_that_the_program_adjusts() -> None:
 TOOL = "8:radius=.375,nose=0"
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize(
+@looped(
     ("block", "word", "column"),
     [
         ("G10 P8 U-.005", "U-.005", 8),
@@ -337,8 +344,9 @@ TOOL = "8:radius=.375,nose=0"
         ("#15008=#15008+.01", "#15008", 1),
         ("#2008=#500", "#2008", 1),
     ],
+    one_in=12,
 )
-@pytest.mark.parametrize("first", [True, False])
+@looped("first", [True, False])
 def test_a_size_that_the_x_offset_is_to_keep(block: str, word: str, column: int, first: bool) -> None:
     places = (block, "") if first else ("", block)
     report = report_of(guide(*places), "turning-center", TOOL)
@@ -349,8 +357,7 @@ def test_a_size_that_the_x_offset_is_to_keep(block: str, word: str, column: int,
     assert report.verdict == "pass"
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize(
+@looped(
     "block",
     [
         "G10 P8 X0 Z-.01",
@@ -365,12 +372,14 @@ def test_a_size_that_the_x_offset_is_to_keep(block: str, word: str, column: int,
         "#2708=-5.25",
         "#2108=.1",
     ],
+    one_in=12,
 )
 def test_offsets_that_keep_no_size(block: str) -> None:
     report = report_of(guide(block), "turning-center", TOOL)
     assert said(report) == []
 
 
+@pytest.mark.ci
 def test_the_size_of_turned_diameters_and_on_other_machines() -> None:
     turned = "O1\nG20\nG10 P8 U-.005\nT0808\nG0 X2.\nG1 Z-1. F.01\nM30\n"
     assert "size-by-x-offset" not in [found.rule for found in report_of(turned, "turning-center").findings]
@@ -382,7 +391,8 @@ def test_the_size_of_turned_diameters_and_on_other_machines() -> None:
 # ---- the wear in X of the job ----
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("table", "block", "expected"),
     [
         ("G10 P8 X-.005 Z0 R0 Q0\nG10 P10008 X-5.25 R.375 Q0", "", True),
@@ -416,7 +426,8 @@ def test_the_wear_in_x_of_a_job() -> None:
     assert not report_of(guide(), "fanuc", job={"units": "mm", "tools": tools}).findings
 
 
-@pytest.mark.parametrize("setting", ["G10 P#500 R.3", "#[#500+2200]=.3", "G10 L12 P#500 R4."])
+@pytest.mark.ci
+@looped("setting", ["G10 P#500 R.3", "#[#500+2200]=.3", "G10 L12 P#500 R4."])
 def test_an_offset_whose_number_is_not_known(setting: str) -> None:
     """It may be the one in force: nobody can say that its R is as the job gives it."""
     program = f"O1\n{setting}\nT0808\nG98 G0 X60. C0\nG12.1\nG1 G41 X40. F200\nC-10.\nG40 X60.\nG13.1\nM30\n"
@@ -435,7 +446,8 @@ def test_a_variable_whose_number_is_known_by_the_job_is_no_question() -> None:
     assert not [entry for entry in report.not_evaluated if entry.matters]
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("calls", "number"),
     [
         ("T05.01 T00 M6", 5),

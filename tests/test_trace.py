@@ -11,6 +11,7 @@ from typing import Any
 import jsonschema
 import numpy as np
 import pytest
+from cases import looped
 from click.testing import CliRunner, Result
 
 from polarcheck import __version__
@@ -38,7 +39,7 @@ def moves(*arguments: str) -> list[dict[str, Any]]:
     return [json.loads(line) for line in run("--format", "jsonl", *arguments).splitlines()]
 
 
-@pytest.mark.parametrize("path", ["tool", "programmed"])
+@looped("path", ["tool", "programmed"])
 def test_moves_have_the_fields_of_the_contract(path: str) -> None:
     table = moves("--path", path, str(SAMPLES / "turning-center" / "two_flats_b.nc"))
     assert table
@@ -119,7 +120,7 @@ def written(folder: Path, text: str, name: str = "a.nc") -> str:
     return str(folder / name)
 
 
-@pytest.mark.parametrize(("machine", "remedy"), [("fanuc", "1:radius"), ("haas-lathe", "8:radius")])
+@looped(("machine", "remedy"), [("fanuc", "1:radius"), ("haas-lathe", "8:radius")])
 def test_without_the_radius_moves_in_offset_mode_are_the_programmed_ones_and_say_so(
     folder: Path, machine: str, remedy: str
 ) -> None:
@@ -143,9 +144,7 @@ def test_without_the_radius_moves_in_offset_mode_are_the_programmed_ones_and_say
     assert {json.loads(line)["path"] for line in programmed.stdout.splitlines()} == {"programmed"}
 
 
-@pytest.mark.parametrize(
-    ("machine", "tool", "radius"), [("fanuc", "1:radius=4", 4.0), ("haas-lathe", "8:radius=.25", 6.35)]
-)
+@looped(("machine", "tool", "radius"), [("fanuc", "1:radius=4", 4.0), ("haas-lathe", "8:radius=.25", 6.35)])
 def test_with_the_radius_all_moves_are_the_tools(folder: Path, machine: str, tool: str, radius: float) -> None:
     name = written(folder, FACES[machine])
     result = call("--machine", machine, "--tool", tool, "--path", "tool", "--format", "jsonl", name)
@@ -307,7 +306,8 @@ def test_a_golden_file_is_never_a_table_for_people(folder: Path) -> None:
         assert "--golden" in call(*options, "--golden", name, code=2).stderr
 
 
-@pytest.mark.parametrize("form", [("--path", "tool"), ("--path", "tool", "--format", "table"), ("--format", "json")])
+@pytest.mark.ci
+@looped("form", [("--path", "tool"), ("--path", "tool", "--format", "table"), ("--format", "json")])
 def test_the_exit_code_says_that_the_radius_is_not_known(folder: Path, form: tuple[str, ...]) -> None:
     name = written(folder, FACES["fanuc"])
     assert "no radius for T0101" in call(*form, name, code=1).stderr

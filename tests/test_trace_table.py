@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from cases import looped
 from click.testing import CliRunner
 
 from polarcheck.commands import main
@@ -56,7 +57,8 @@ def shown(text: str) -> list[dict[str, str]]:
     return rows
 
 
-@pytest.mark.parametrize("path", [(), ("--path", "tool"), ("--path", "programmed")])
+@pytest.mark.ci
+@looped("path", [(), ("--path", "tool"), ("--path", "programmed")])
 def test_the_table_has_the_numbers_of_the_csv(path: tuple[str, ...], tmp_path: Path) -> None:
     arcs = tmp_path / "arcs.nc"
     arcs.write_text(ARCS)
@@ -89,6 +91,7 @@ def test_what_says_nothing_is_left_out(tmp_path: Path) -> None:
     assert run("--format", "table", "--path", "tool", str(SAMPLES.parent / "docs" / "trace.md")) == ""
 
 
+@pytest.mark.ci
 @pytest.mark.usefixtures("on_terminal")
 def test_a_terminal_shows_what_there_is_room_for(monkeypatch: pytest.MonkeyPatch) -> None:
     before = 0

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from cases import looped
 from programs import moves_of, report_of, tables_of, trace_of
 
 from polarcheck.columns.path.moves import Moves
@@ -22,7 +23,7 @@ def run(program: str, **more: Any) -> Moves:
     return moves_of(program, MACHINE, **more)
 
 
-@pytest.mark.parametrize(
+@looped(
     ("word", "start", "angles"),
     [
         ("C90", -40j, [90, 0, -90]),
@@ -41,14 +42,15 @@ def test_c_runs_against_the_plane(word: str, start: complex, angles: list[float]
     np.testing.assert_allclose(trace.path.c_angle[-1], angles[-1], atol=1e-9)
 
 
-@pytest.mark.parametrize("changes", [OTHER_SENSE, {"parameters": {"24910": 0}}])
+@looped("changes", [OTHER_SENSE, {"parameters": {"24910": 0}}])
 def test_the_owner_says_the_sense_of_c(changes: dict[str, Any]) -> None:
     moves = run(HEAD.format(c="C90") + SECTION + "M30\n", changes=changes)
     np.testing.assert_allclose(moves.start[0], 40j, atol=1e-9)
     np.testing.assert_allclose([moves.c_angles[0][0], *moves.c_angles[1]], [90, 0, 90], atol=1e-9)
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("between", "of_plane", "angle", "angle_of_other_sense"),
     [
         ("", 90, -90, 90),
@@ -90,7 +92,7 @@ def test_a_fanuc_begins_its_plane_at_g12_1() -> None:
 # ---- F and the units of lengths ----
 
 
-@pytest.mark.parametrize(
+@looped(
     ("units", "lengths", "feed"),
     [
         ("G70", 25.4, 300),
@@ -111,8 +113,8 @@ def test_g70_leaves_f_alone(units: str, lengths: float, feed: float) -> None:
     assert moves.feed == pytest.approx(feed)
 
 
-@pytest.mark.parametrize(("units", "feed"), [("G70", 7620), ("G71", 7620), ("G710", 300), ("", 7620)])
-@pytest.mark.parametrize("changes", [{"parameters": {"10240": 0}}, {"control": {"units": "inch"}}])
+@looped(("units", "feed"), [("G70", 7620), ("G71", 7620), ("G710", 300), ("", 7620)])
+@looped("changes", [{"parameters": {"10240": 0}}, {"control": {"units": "inch"}}])
 def test_on_an_inch_basic_system_f_is_in_inch(units: str, feed: float, changes: dict[str, Any]) -> None:
     program = f"G94 S2=1000\nDIAMOF\n{units}\nG0 X2 C0 Z1\nTRANSMIT\nG17\nG1 X1 F300\nY1\nTRAFOOF\nM30\n"
     assert run(program, changes=changes).feed == pytest.approx(feed)
@@ -167,7 +169,7 @@ M30
 """
 
 
-@pytest.mark.parametrize(
+@looped(
     ("first", "is_known"),
     [
         ("G0 Z5\nG0 X40 Y10", True),
@@ -182,8 +184,8 @@ def test_a_first_move_in_the_mode_positions_x_and_c(first: str, is_known: bool) 
     assert ["x-unknown-at-entry"] * (not is_known) == [finding.rule for finding in found]
 
 
-@pytest.mark.parametrize(("machine", "on", "off"), [(MACHINE, "TRANSMIT", "TRAFOOF"), ("haas-lathe", "G112", "G113")])
-@pytest.mark.parametrize(
+@looped(("machine", "on", "off"), [(MACHINE, "TRANSMIT", "TRAFOOF"), ("haas-lathe", "G112", "G113")])
+@looped(
     ("between", "behind", "rule"),
     [
         ("", "G0 X35. Y10.\n", "polar-entered-twice"),
@@ -200,7 +202,7 @@ def test_the_mode_switched_on_again_before_the_first_cut_is_one_too_many(
     assert [finding.rule for finding in found] == [rule]
 
 
-@pytest.mark.parametrize(
+@looped(
     ("word", "what"),
     [
         ("SPOS=0", "SPOS positions the spindle, which is the C axis of the mode"),

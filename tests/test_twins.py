@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import pytest
+from cases import looped
 from twin_sections import CONTROLS, compare
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize("name", CONTROLS)
-@pytest.mark.parametrize("seed", [1, 2])
+@looped("name", CONTROLS, one_in=12)
+@looped("seed", [1, 2])
 def test_a_section_is_the_same_on_each_control(name: str, seed: int) -> None:
     compare(seed, name)

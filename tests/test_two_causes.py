@@ -9,9 +9,12 @@ from __future__ import annotations
 import random
 
 import pytest
+from cases import looped
 from drawn_sections import Section
 from drawn_slips import SLIPS, Slip, gives_two_findings, loops, pairs, planted, rules_of, sound_sections
 from programs import report_of
+
+pytestmark = pytest.mark.ci
 
 #: Two of each family, on all controls.
 DRAWN = sound_sections(12, 1)
@@ -21,8 +24,7 @@ def test_the_drawn_sections_are_sound() -> None:
     assert len(DRAWN) > 9
 
 
-@pytest.mark.one_in(20)
-@pytest.mark.parametrize("slip", SLIPS, ids=lambda slip: slip.name)
+@looped("slip", SLIPS, ids=lambda slip: slip.name, one_in=20)
 def test_one_slip_is_one_finding(slip: Slip) -> None:
     draw = random.Random(5)  # noqa: S311
     written = [
@@ -35,7 +37,6 @@ def test_one_slip_is_one_finding(slip: Slip) -> None:
         assert len(found) == 1, (section.family, found)
 
 
-@pytest.mark.slow
 def test_two_slips_are_two_findings() -> None:
     found = [gives_two_findings(numbered) for numbered in enumerate(pairs(DRAWN, 40, 1))]
     known = [one for one in found if one is not None]
@@ -43,7 +44,7 @@ def test_two_slips_are_two_findings() -> None:
     assert sum(known) >= len(known) - 1
 
 
-@pytest.mark.parametrize("machine", ["fanuc", "gsk-988", "siemens-iso"])
+@looped("machine", ["fanuc", "gsk-988", "siemens-iso"])
 def test_an_if_that_a_control_does_not_know_is_one_finding(machine: str) -> None:
     is_siemens = machine.startswith("siemens")
     head = "G0 X80." if is_siemens else "#1=6\nIF [#1 GT 5]\nG0 X80."
@@ -51,7 +52,7 @@ def test_an_if_that_a_control_does_not_know_is_one_finding(machine: str) -> None
     assert [found.rule for found in report.findings] == ["loop-unbalanced" if is_siemens else "macro-syntax"]
 
 
-@pytest.mark.parametrize(
+@looped(
     ("machine", "blocks", "rule"),
     [
         ("fanuc", "#2=FOO+1\n#3=FOO*2", "macro-syntax"),

@@ -15,6 +15,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from cases import looped
 from click.testing import CliRunner, Result
 from hypothesis import Phase, assume, given, settings
 from hypothesis import strategies as st
@@ -133,8 +134,7 @@ CASES = [
 ]
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize(("name", "method"), CASES)
+@looped(("name", "method"), CASES, one_in=12)
 def test_the_tool_stays_on_the_contour_and_is_nowhere_faster_than_f(name: str, method: str) -> None:
     contour = CONTOURS[name]
     text, said = unrolled(contour.program, *METHODS[method], *contour.options)
@@ -151,7 +151,8 @@ def test_the_tool_stays_on_the_contour_and_is_nowhere_faster_than_f(name: str, m
     assert figure(said, "largest rate of C") >= 0.999 * rate
 
 
-@pytest.mark.parametrize("chord_error", ["0.002", "0.02"])
+@pytest.mark.ci
+@looped("chord_error", ["0.002", "0.02"])
 def test_the_chord_error_is_held(chord_error: str) -> None:
     contour = CONTOURS["slot"]
     text, _ = unrolled(contour.program, *METHODS["per-minute"], "--chord-error", chord_error)
@@ -159,7 +160,8 @@ def test_the_chord_error_is_held(chord_error: str) -> None:
     assert 0.7 * float(chord_error) <= largest(blocks, contour.distance) <= float(chord_error)
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("name", "place"),
     [
         ("circle off the center", lambda share: 12 + 5j + 6 * np.exp(2j * np.pi * share)),
@@ -397,7 +399,8 @@ def test_block_skip_is_that_of_one_position_of_the_switch() -> None:
 # ---- what is refused ----
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("program", "arguments", "expected"),
     [
         (HEXAGON.program, (), "8: R of T0101 is not known: give --tool 1:radius=..."),
@@ -428,6 +431,7 @@ def test_on_the_sub_spindle_only_where_the_profile_says_how_c_turns() -> None:
     assert any("on the sub-spindle is not known" in reason for reason in reasons(program, *unknown))
 
 
+@pytest.mark.ci
 def test_a_program_in_a_file_is_kept() -> None:
     Path("a.nc").write_text(CONTOURS["slot"].program)
     run = CliRunner()
@@ -441,7 +445,7 @@ def test_a_program_in_a_file_is_kept() -> None:
     assert Path("a.nc").read_text() == unrolled(CONTOURS["slot"].program)[0]
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 def test_a_long_section_has_a_block_for_each_short_line() -> None:
     """20,000 lines around the center, each within the chord error of one block."""
     turns = np.exp(1j * 0.02 * np.arange(20_000)) * (15 + 10 * np.sin(0.0013 * np.arange(20_000)))
@@ -455,7 +459,7 @@ def test_a_long_section_has_a_block_for_each_short_line() -> None:
 _POINT = st.builds(complex, st.integers(-40_000, 40_000), st.integers(-40_000, 40_000)).map(lambda point: point / 1000)
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 @given(st.lists(_POINT, min_size=1, max_size=6), st.sampled_from(list(METHODS)), st.sampled_from(["3600", "20000"]))
 @settings(max_examples=25, deadline=None, phases=[Phase.explicit, Phase.generate])
 def test_any_lines_are_followed_in_order(points: list[complex], method: str, limit: str) -> None:

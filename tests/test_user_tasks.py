@@ -6,6 +6,7 @@ import re
 
 import numpy as np
 import pytest
+from cases import looped
 from programs import moves_of, report_of, said, tables_of, trace_of
 
 from polarcheck.columns.trace import Trace
@@ -97,8 +98,8 @@ SIMULATED = {
 }
 
 
-@pytest.mark.one_in(6)
-@pytest.mark.parametrize("body", SIMULATED)
+@pytest.mark.ci
+@looped("body", SIMULATED, one_in=6)
 def test_it_is_simulated(body: str) -> None:
     report, trace = run(body)
     assert path(trace) == SIMULATED[body]
@@ -106,12 +107,13 @@ def test_it_is_simulated(body: str) -> None:
     assert [entry.reason for entry in report.not_evaluated if entry.rule == "all"] == []
 
 
-@pytest.mark.parametrize("end", ["NEND M02", "/NEND X200 M30", "NEND M2 (END)"])
+@looped("end", ["NEND M02", "/NEND X200 M30", "NEND M2 (END)"])
 def test_a_name_and_the_end_of_the_program_stand_in_one_block(end: str) -> None:
     report = report_of(f"VC1=1\nG0 X200\nIF [VC1 EQ 1] NEND\nG0 X300\n{end}\n", "okuma-osp")
     assert (said(report), report.not_evaluated) == ([], [])
 
 
+@pytest.mark.ci
 def test_values_of_a_call_are_calculated_before_it_and_gone_behind_it() -> None:
     assert path(run("VC1=1\nCALL OSUB LX=VC1+2\nX=VC1*20")[1]) == [(40, 8), (20, 8)]
     assert said(run("CALL OSUB LX=3\nX=LX")[0]) == [(FIRST + 1, "vacant-variable")]
@@ -146,8 +148,8 @@ NAMED = {
 }
 
 
-@pytest.mark.one_in(3)
-@pytest.mark.parametrize("body", NAMED)
+@pytest.mark.ci
+@looped("body", NAMED, one_in=3)
 def test_it_is_named_where_it_is_not_simulated(body: str) -> None:
     report, _ = run(body)
     name, matters = NAMED[body]
@@ -157,14 +159,16 @@ def test_it_is_named_where_it_is_not_simulated(body: str) -> None:
 
 
 #: Words that belong to cycles, or that the control itself looks after.
-@pytest.mark.parametrize("body", ["DA=1 X20.", "X20. QA=5", "SA=20 X20.", "SB=3000 X20.", "NAT03\nX20.", "NOEX X20."])
+@pytest.mark.ci
+@looped("body", ["DA=1 X20.", "X20. QA=5", "SA=20 X20.", "SB=3000 X20.", "NAT03\nX20.", "NOEX X20."])
 def test_it_is_harmless(body: str) -> None:
     report, trace = run(body)
     assert path(trace) == [(20, 0)]
     assert (report.verdict, said(report)) == ("pass", [])
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     "body",
     [
         *("X=VC1", "X=VZOFX", "VC1=VTOFX[2]\nX=VC1", "X=V5+1", "VC1=1\nX=VC1*VSIOZ"),
@@ -184,7 +188,8 @@ def test_a_condition_with_a_value_that_is_not_known_is_said_to_be_open() -> None
     assert ["depends on a value that is not known" in entry.reason for entry in report.not_evaluated] == [True]
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("arc", "sweep"),
     [
         ("G103 X0 Y20. L20.", 90),
@@ -202,7 +207,8 @@ def test_a_word_takes_the_larger_of_two_arcs(arc: str, sweep: int) -> None:
     assert told == ["warning"] * (sweep == 180)
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("body", "rule"),
     [
         ("X=1/0", "arithmetic-error"),
@@ -298,8 +304,9 @@ FANUC = CONTOUR.format(
 )
 
 
-@pytest.mark.parametrize("side", ["G41", "G42"])
-@pytest.mark.parametrize("radius", ["0", "4"])
+@pytest.mark.ci
+@looped("side", ["G41", "G42"])
+@looped("radius", ["0", "4"])
 def test_a_program_and_its_twin_have_one_tool_center_path(side: str, radius: str) -> None:
     tool, changes = f"1:radius={radius},nose=0", {"compensation": {"read_ahead": 10}}
     own = moves_of(OWN.replace("{side}", side), LATHE, tool)
@@ -322,8 +329,8 @@ def test_the_direction_of_the_new_axis_turns_the_whole_plane() -> None:
 # ---- hostile files ----
 
 
-@pytest.mark.one_in(16)
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     "program",
     [
         "VC1=VC1+1\n" * 1_500,
@@ -344,6 +351,7 @@ def test_the_direction_of_the_new_axis_turns_the_whole_plane() -> None:
         "=" * 40_000 + "\n",
     ],
     ids=range(16),
+    one_in=16,
 )
 def test_it_ends_in_bounded_time(program: str) -> None:
     report = report_of(HEAD + program + "G136\nM2\n", LATHE, CUTTER)
@@ -355,7 +363,8 @@ def test_a_jump_to_itself_is_one_endless_loop() -> None:
     assert said(report_of("O1\nNBAC GOTO NBAC\nM2\n", LATHE))[0] == (2, "endless-loop")
 
 
-@pytest.mark.parametrize("stop", ["M1", "M01", "M0", "/CALL OBAR\nM1"])
+@pytest.mark.ci
+@looped("stop", ["M1", "M01", "M0", "/CALL OBAR\nM1"])
 def test_a_jump_back_over_a_stop_begins_the_next_part(stop: str) -> None:
     """The frame of shop programs with a bar feeder: no loop that never ends, and no section that runs twice."""
     frame = f"$A.MIN%\n{stop}\nNBAR\nCLEAR\nDEF WORK\nPS LC,[-400,0],[400,19]\nEND\nDRAW\n{stop}\n"
@@ -365,7 +374,7 @@ def test_a_jump_back_over_a_stop_begins_the_next_part(stop: str) -> None:
     assert report.sections == 1
 
 
-@pytest.mark.parametrize("jump", ["GOTO NCUT", "IF [1 EQ 1] NCUT", "IF [1 EQ 1] GOTO NCUT"])
+@looped("jump", ["GOTO NCUT", "IF [1 EQ 1] NCUT", "IF [1 EQ 1] GOTO NCUT"])
 def test_a_jump_is_shown_with_the_name_that_it_goes_to(jump: str) -> None:
     (finding,) = (
         one for one in report_of(f"O1\nNCUT G0 X100.\n{jump}\nM2\n", LATHE).findings if one.rule == "endless-loop"

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from cases import looped
 from click.testing import CliRunner
 from polarcheck.errors import RuleError
 from programs import report_of, report_of_whole_example
@@ -47,8 +48,8 @@ def values_in_examples(name: str) -> list[dict[str, Any]]:
     return [one.values for one in found if one.rule == name]
 
 
-@pytest.mark.one_in(24)
-@pytest.mark.parametrize("rule", RULES.values(), ids=list(RULES))
+@pytest.mark.ci
+@looped("rule", RULES.values(), ids=list(RULES), one_in=24)
 def test_each_value_of_a_rule_is_of_its_kind_and_seen_in_its_examples(rule: Rule) -> None:
     declared, shown = kinds(rule.values, rule.name), values_in_examples(rule.name)
     assert {name for one in shown for name in one} == declared.keys()
@@ -86,7 +87,7 @@ def test_a_limit_has_the_kind_of_the_number_before_it() -> None:
         kinds(["speeds"], "rapid-in-polar")
 
 
-@pytest.mark.parametrize(
+@looped(
     ("value", "kind", "data"),
     [
         (np.float64(1 / 3), Kind.LENGTH, 0.333333),
@@ -119,7 +120,7 @@ G13.1
 """
 
 
-@pytest.mark.parametrize(("program", "feed", "nearest"), [(FAST, 500.0, 2.0), (INCH, 508.0, 2.032)])
+@looped(("program", "feed", "nearest"), [(FAST, 500.0, 2.0), (INCH, 508.0, 2.032)])
 def test_c_feed_limit_and_highest_feed_are_numbers_in_mm_and_deg(program: str, feed: float, nearest: float) -> None:
     (found,) = report_of(program, changes={"limits": {"c_feed": 3600}}, only=["c-feed-above-limit"]).findings
     values = found.values
@@ -147,6 +148,7 @@ def shown(*arguments: str) -> Any:
     return json.loads(CliRunner().invoke(main, arguments, catch_exceptions=False).stdout)
 
 
+@pytest.mark.ci
 @pytest.mark.parametrize(
     ("machine", "named"), [("fanuc-30i", ("fanuc-30i", None)), ("lathes/nl2000.toml", ("nl2000", "lathes/nl2000.toml"))]
 )

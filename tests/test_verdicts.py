@@ -11,6 +11,7 @@ from xml.etree import ElementTree as ET
 
 import jsonschema
 import pytest
+from cases import looped
 from click.testing import CliRunner, Result
 from programs import ROOT
 
@@ -53,8 +54,8 @@ def deselected(report: dict[str, Any]) -> list[str]:
 # ---- no exit policy, no selection makes a pass ----
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("options", "code"),
     [
         ("--fail-on never", 0),
@@ -67,6 +68,7 @@ def deselected(report: dict[str, Any]) -> list[str]:
         ("--severity rapid-in-polar=warning --max-warnings 1", 0),
         ("--severity rapid-in-polar=warning --fail-on never --max-warnings 0", 1),
     ],
+    one_in=12,
 )
 def test_what_fails_a_file_does_not_hang_on_the_exit_code(options: str, code: int) -> None:
     make(a__nc=RAPID)
@@ -76,8 +78,7 @@ def test_what_fails_a_file_does_not_hang_on_the_exit_code(options: str, code: in
     assert failed.attrib["failures"] == "1"
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize(
+@looped(
     ("options", "environment", "line"),
     [
         ("--select polar-never-left", {}, "145 rules were deselected by --select polar-never-left"),
@@ -91,6 +92,7 @@ def test_what_fails_a_file_does_not_hang_on_the_exit_code(options: str, code: in
         ("--severity overcut=note", {}, "overcut was lowered to a note by --severity overcut=note"),
         ("--set severities.overcut=off", {}, "overcut was switched off by severities.overcut of --set, which gives no"),
     ],
+    one_in=12,
 )  # fmt: skip
 def test_a_selection_of_rules_is_no_pass(options: str, environment: dict[str, str], line: str) -> None:
     make(a__nc=GOOD)
@@ -103,7 +105,8 @@ def test_a_selection_of_rules_is_no_pass(options: str, environment: dict[str, st
     assert told.count("\nsettings: ") == 1
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     "options",
     [
         "--select polar-never-left",
@@ -117,6 +120,7 @@ def test_a_program_with_an_error_does_not_pass_without_its_rule(options: str) ->
     assert check("a.nc", *options.split())["files"][0]["verdict"] == "unverified"
 
 
+@pytest.mark.ci
 def test_rules_without_weight_are_no_matter() -> None:
     make(a__nc=GOOD)
     for options in ("--ignore start-up-without-move", "--ignore size-by-x-offset", "--severity overcut=error"):
@@ -131,8 +135,7 @@ def test_a_program_without_a_polar_section_was_not_looked_at_either() -> None:
     assert check("a.nc", "--ignore", "word-repeated")["files"][0]["verdict"] == "unverified"
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize(
+@looped(
     ("written", "line"),
     [
         (f"ignore = {{ rules = ['rapid-in-polar'], reason = '{REASON}' }}", ""),
@@ -146,6 +149,7 @@ def test_a_program_without_a_polar_section_was_not_looked_at_either() -> None:
         (f"[[programs]]\nfiles = ['*']\nignore = {{ rules = ['polar'], reason = '{REASON}' }}", ""),
         ("[[programs]]\nfiles = ['*']\nignore = ['rapid-in-polar']", "rapid-in-polar was deselected by ignore of"),
     ],
+    one_in=12,
 )  # fmt: skip
 def test_a_job_file_keeps_the_pass_with_a_reason(written: str, line: str) -> None:
     make(f"{written}\n{JOB}" if "[[" not in written else f"{JOB}\n{written}\n", a__nc=RAPID)
@@ -162,6 +166,7 @@ def test_an_option_that_overrides_a_reason_has_none() -> None:
     assert deselected(check("a.nc", "--select", "overcut")) == ["144 rules were deselected by --select overcut"]
 
 
+@pytest.mark.ci
 def test_a_nearer_file_takes_the_reason_with_the_value() -> None:
     Path("sub").mkdir()
     make(f"ignore = {{ rules = ['rapid-in-polar'], reason = '{REASON}' }}\n{JOB}")
@@ -174,6 +179,7 @@ def test_a_nearer_file_takes_the_reason_with_the_value() -> None:
         assert check("sub/a.nc")["files"][0]["verdict"] == verdict
 
 
+@pytest.mark.ci
 def test_a_profile_gives_its_reason_as_source() -> None:
     for value, verdict in (("'off'", "unverified"), (f"{{ value = 'off', source = '{REASON}' }}", "pass")):
         make(JOB.replace('"fanuc-30i"', "'our.toml'"), a__nc=RAPID)
@@ -185,7 +191,7 @@ def test_a_profile_gives_its_reason_as_source() -> None:
         )
 
 
-@pytest.mark.parametrize(
+@looped(
     ("written", "told"),
     [
         ("ignore = { rules = ['overcut'] }", "polarcheck.toml:1: ignore.reason is missing"),
@@ -208,7 +214,7 @@ def test_a_wrong_reason_is_one_line(written: str, told: str) -> None:
 # ---- warnings over a run ----
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 def test_warnings_are_counted_over_the_programs_that_share_the_limit() -> None:
     warned = "severities = { rapid-in-polar = 'warning' }\n"
     for folder, most in (("one", 1), ("two", 2)):
@@ -230,6 +236,7 @@ def test_warnings_are_counted_over_the_programs_that_share_the_limit() -> None:
 # ---- what decided ----
 
 
+@pytest.mark.ci
 def test_reports_say_what_decided() -> None:
     make(f"strict = true\n{JOB}", a__nc=GOOD)
     settings = check(
@@ -270,6 +277,7 @@ def test_reports_say_what_decided() -> None:
         )
 
 
+@pytest.mark.ci
 def test_files_with_settings_of_their_own_say_them() -> None:
     for folder, more in (("one", ""), ("two", "fail_on = 'never'\n")):
         Path(folder).mkdir()
@@ -290,6 +298,7 @@ def test_files_with_settings_of_their_own_say_them() -> None:
     assert [line["settings"]["fail_on"] for line in lines if line["type"] == "file"] == ["warning", "never"]
 
 
+@pytest.mark.ci
 def test_a_file_and_its_machine_have_a_hash() -> None:
     import hashlib
 
@@ -303,6 +312,7 @@ def test_a_file_and_its_machine_have_a_hash() -> None:
     assert check("a.nc", "--ignore", "start-up-without-move")["files"][0]["profile_sha256"] == same
 
 
+@pytest.mark.ci
 def test_reports_name_the_doubtful_keys_that_they_rest_on() -> None:
     profile = "inherits = 'fanuc-30i'\n[control]\nx = { value = 'diameter', source = 'GUESS', doubtful = true }\n"
     codes = "[m_codes]\nlive_tool_on = { value = ['M133'], source = 'GUESS', doubtful = true }\n"
@@ -331,6 +341,7 @@ def broken() -> None:
     Path("c.nc").mkdir()
 
 
+@pytest.mark.ci
 @pytest.mark.skipif(os.name == "nt", reason="links need rights there")
 def test_a_link_to_nowhere_is_a_file_that_did_not_pass() -> None:
     broken()
@@ -379,6 +390,7 @@ def test_pages_name_what_could_not_be_read() -> None:
     assert "No such file or directory" in Path("one.html").read_text("utf-8")
 
 
+@pytest.mark.ci
 def test_folders_and_what_takes_too_much_are_named_as_well() -> None:
     make(a__nc=GOOD, b__nc=GOOD + "(MORE)\n" * 200)
     report = check("a.nc", "b.nc", "--max-size", str(len(GOOD)))
@@ -419,8 +431,7 @@ def test_a_bug_and_a_lost_worker_leave_a_file_that_did_not_pass(monkeypatch: pyt
     assert check("a.nc")["files"][0]["reason"] == "there is not enough memory to check it"
 
 
-@pytest.mark.one_in(12)
-@pytest.mark.parametrize("form", [form for form in formats() if form not in ("concise", "html")])
+@looped("form", [form for form in formats() if form not in ("concise", "html")], one_in=12)
 def test_every_report_says_that_the_run_was_interrupted(form: str) -> None:
     make(a__nc=GOOD, b__nc=GOOD, c__nc=GOOD)
     outcome = batch.outcome

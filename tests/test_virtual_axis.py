@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from cases import looped
 from programs import moves_of, report_of, said, tables_of
 
 HEAD = "O0001\nG98 G40 G97\nT0101\nG0 X60. C0 Z5.\n"
@@ -16,7 +17,8 @@ def section(switch: str, address: str, increment: str) -> str:
     return f"{switch}\nG17\n{CONTOUR.format(a=address, i=increment)}"
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("switch", "address", "increment"),
     [
         ("G12.1 D0 E=C", "Y", "V"),
@@ -74,8 +76,9 @@ def test_a_message_names_the_word_that_would_take_the_address() -> None:
     ]
 
 
-@pytest.mark.parametrize("word", ["D1 E=A", "D0 E=B", "D2 E=C", "D9"])
-@pytest.mark.parametrize(("address", "increment"), [("C", "H"), ("Y", "V")])
+@pytest.mark.ci
+@looped("word", ["D1 E=A", "D0 E=B", "D2 E=C", "D9"])
+@looped(("address", "increment"), [("C", "H"), ("Y", "V")])
 def test_a_mode_that_is_not_simulated_is_named_and_not_judged(word: str, address: str, increment: str) -> None:
     # Half of the arcs have no circle: nothing of the section counts.
     program = HEAD + section(f"G12.1 {word}", address, increment).replace("R5.", "R1.") + END

@@ -20,7 +20,7 @@ from polarcheck.commands import watching
 from polarcheck.files.batch import tasks as batch
 
 pytestmark = [
-    pytest.mark.slow,
+    pytest.mark.ci,
     pytest.mark.usefixtures("own_folder"),
     pytest.mark.skipif(sys.platform == "win32", reason="ends the process by a signal of POSIX"),
 ]

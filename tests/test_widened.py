@@ -10,12 +10,15 @@ from typing import Any
 import numpy as np
 import pytest
 import shapely  # type: ignore[import-untyped]
+from cases import looped
 
 from polarcheck.foundation.states import Motion
 from polarcheck.geometry.polygons import areas
 from polarcheck.geometry.polygons.cleared import cleared
 from polarcheck.geometry.polygons.widened import widened
 from polarcheck.geometry.segments import Curves, segments
+
+pytestmark = pytest.mark.ci
 
 TOLERANCE = 0.004
 
@@ -71,9 +74,8 @@ FAMILIES = {
 }
 
 
-@pytest.mark.one_in(7)
-@pytest.mark.parametrize("family", FAMILIES)
-@pytest.mark.parametrize("radius", [0.4, 4.0, 25.0])
+@looped("family", FAMILIES, one_in=7)
+@looped("radius", [0.4, 4.0, 25.0])
 def test_it_is_the_union_of_its_widened_chords(family: str, radius: float) -> None:
     found, expected = area_of(FAMILIES[family], radius), chord_by_chord(FAMILIES[family], radius)
     assert found.is_valid
@@ -81,7 +83,7 @@ def test_it_is_the_union_of_its_widened_chords(family: str, radius: float) -> No
     assert furthest_apart(found, expected) < 0.1
 
 
-@pytest.mark.parametrize("seed", range(5))
+@looped("seed", range(5))
 def test_random_arcs(seed: int) -> None:
     chance = Random(seed)  # noqa: S311
     arcs = [

@@ -45,6 +45,7 @@ def held(text: str, page: str) -> str:
     return text.encode(page, "backslashreplace").decode(page)
 
 
+@pytest.mark.ci
 @pytest.mark.one_in(5)
 @pytest.mark.parametrize("page", CODE_PAGES)
 def test_people_are_told_in_every_code_page_and_files_are_utf_8(page: str) -> None:

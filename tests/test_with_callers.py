@@ -8,6 +8,7 @@ import shutil
 from pathlib import Path
 
 import pytest
+from cases import looped
 from test_cli import call
 from test_diff_base import GOOD, ONLY, commit, git
 
@@ -45,7 +46,8 @@ def checked(*paths: str, code: int = 0) -> list[str]:
 ALL_OF_ONE = ["one/calls.nc", "one/plain.nc", "one/subs/O9001"]
 
 
-@pytest.mark.parametrize(
+@pytest.mark.ci
+@looped(
     ("changed", "concerned"),
     [
         ("one/subs/O9001", ["one/calls.nc", "one/subs/O9001"]),
@@ -66,6 +68,7 @@ def test_a_changed_subprogram_fails_its_callers() -> None:
     assert result.stderr.startswith("polarcheck: --with-callers: 2 of 6 programs to check: changed, or calling")
 
 
+@pytest.mark.ci
 def test_a_subprogram_that_is_gone_concerns_its_callers() -> None:
     """No hook names it: it is missing beside what the last commit holds."""
     git("rm", "-q", "one/subs/O9001")
@@ -84,6 +87,7 @@ def test_a_subprogram_that_is_gone_concerns_its_callers() -> None:
     assert checked("one/subs/O9001") == ["one/calls.nc"]
 
 
+@pytest.mark.ci
 def test_a_renamed_subprogram_and_a_job_file_that_is_gone() -> None:
     git("mv", "one/subs/O9001", "one/subs/O9002")
     assert checked("one/subs/O9002") == ["one/calls.nc", "one/subs/O9002"]
@@ -99,6 +103,7 @@ def test_a_new_subprogram_that_shadows_another() -> None:
     assert checked("one/more/9001.NC") == ["one/calls.nc", "one/more/9001.NC"]
 
 
+@pytest.mark.ci
 def test_it_takes_the_files_that_a_walk_takes() -> None:
     """Endings of polarcheck.toml, names of programs, and what looks like one; without the excluded."""
     Path("one/polarcheck.toml").write_text(JOB)
@@ -114,6 +119,7 @@ def test_it_takes_the_files_that_a_walk_takes() -> None:
     assert {"O1234", "P.SUB", "plain"} == {path for path in walked if "/" not in path}
 
 
+@pytest.mark.ci
 def test_programs_that_the_commit_does_not_hold_are_no_matter_of_it() -> None:
     Path("one/draft.nc").write_text(CALLER)
     assert checked("one/subs/O9001") == ["one/calls.nc", "one/subs/O9001"]
@@ -121,6 +127,7 @@ def test_programs_that_the_commit_does_not_hold_are_no_matter_of_it() -> None:
     assert checked("one/subs/O9001") == ["one/calls.nc", "one/draft.nc", "one/subs/O9001"]
 
 
+@pytest.mark.ci
 def test_before_the_first_commit_and_without_a_repository() -> None:
     shutil.rmtree(".git")
     assert checked("one/subs/O9001") == ["one/calls.nc", "one/subs/O9001"]
@@ -132,7 +139,7 @@ def test_before_the_first_commit_and_without_a_repository() -> None:
     assert git_of_polarcheck.staged(os.getcwd(), nowhere).paths == set()  # noqa: PTH109
 
 
-@pytest.mark.parametrize(
+@looped(
     ("arguments", "line"),
     [
         (("one",), "one: expected the names of changed files"),

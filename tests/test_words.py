@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 import words_oracle as oracle
+from cases import looped
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
@@ -70,7 +71,7 @@ WORDS = st.tuples(
 )
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 @given(st.lists(WORDS, max_size=20))
 @settings(max_examples=100, deadline=None)
 def test_words_are_read_back_exactly(parts: list[tuple[str, str, str, str, str, str]]) -> None:
@@ -100,7 +101,7 @@ SHORT_AND_LONG = (
 )
 
 
-@pytest.mark.parametrize("number", SHORT_AND_LONG.split())
+@looped("number", SHORT_AND_LONG.split())
 def test_numbers_have_the_value_that_python_gives_them(number: str) -> None:
     """Up to 15 digits; both the ways that read short and long numbers."""
     words = text_of(f"X{number}").words
@@ -160,7 +161,7 @@ def test_block_skip_is_a_word() -> None:
 # ---- what is wrong ----
 
 
-@pytest.mark.parametrize(
+@looped(
     ("block", "expected"),
     [
         ("X", ["NO_DIGITS"]),
@@ -224,7 +225,7 @@ def test_comments_of_other_dialects() -> None:
     assert not len(text.tape_marks)
 
 
-@pytest.mark.parametrize("name", ["<A>", "<FLANGE_2.NC>", "<" + "N" * 32 + ">"])
+@looped("name", ["<A>", "<FLANGE_2.NC>", "<" + "N" * 32 + ">"])
 def test_program_names(name: str) -> None:
     text = text_of(f"O{name}\nM98 {name}")
     assert in_text(text, text.names) == [name, name]
@@ -232,7 +233,7 @@ def test_program_names(name: str) -> None:
     assert faults(text) == ["NONE", "NONE"]
 
 
-@pytest.mark.parametrize("name", ["<>", "<A", "<" + "N" * 33 + ">", "<A\nB>"])
+@looped("name", ["<>", "<A", "<" + "N" * 33 + ">", "<A\nB>"])
 def test_what_is_no_program_name(name: str) -> None:
     text = text_of(f"O1\nM98 {name}")
     assert not len(text.names)
@@ -252,7 +253,7 @@ SEMICOLONS = [
 ]
 
 
-@pytest.mark.parametrize(("line", "expected", "comments", "blocks"), SEMICOLONS)
+@looped(("line", "expected", "comments", "blocks"), SEMICOLONS)
 def test_semicolons(line: str, expected: str, comments: list[str], blocks: int) -> None:
     """The end of the block, or the begin of a remark where the rest does not read as blocks."""
     text = text_of(line + "\nM30")
@@ -265,7 +266,7 @@ def test_semicolons(line: str, expected: str, comments: list[str], blocks: int) 
 # ---- macro statements ----
 
 
-@pytest.mark.parametrize(
+@looped(
     "block",
     [
         "#100=5",
@@ -288,7 +289,7 @@ def test_macro_blocks_are_left_to_others(block: str) -> None:
     assert addresses(text) == "GXG"
 
 
-@pytest.mark.parametrize("block", ["GOOD DOG", "DO IT", "END", "ENDIF", "SHIFT", "E1", "G1 GOTO5", "N5 D1", "G", "D"])
+@looped("block", ["GOOD DOG", "DO IT", "END", "ENDIF", "SHIFT", "E1", "G1 GOTO5", "N5 D1", "G", "D"])
 def test_what_is_no_macro_block(block: str) -> None:
     assert not text_of(f"{block}\nX").blocks.is_macro.any()
 
@@ -319,7 +320,7 @@ REGIONS = [
 ]
 
 
-@pytest.mark.parametrize(("program", "outside", "expected"), REGIONS)
+@looped(("program", "outside", "expected"), REGIONS)
 def test_outside(program: str, outside: list[str], expected: str) -> None:
     """Source: B-63524EN/01 p. 649."""
     text = text_of(program)
@@ -346,6 +347,7 @@ def test_percent_inside_a_block_ends_what_is_read_of_it() -> None:
     assert in_text(text, text.strays) == ["%"]
 
 
+@pytest.mark.ci
 def test_a_file_of_many_tape_marks_is_one_program() -> None:
     text = text_of("%\nsome text\n" * 10_001)
     assert not len(text.outside)
@@ -401,7 +403,7 @@ def as_meant(program: str, text: Text) -> str:
     return "".join(shown)
 
 
-@pytest.mark.slow
+@pytest.mark.ci
 @given(GARBAGE)
 @example(["X1.", ";", "X", "Z-2.5"])
 @settings(max_examples=300, deadline=None)
@@ -428,6 +430,7 @@ def test_any_text_reads_as_one_word_after_another(parts: list[str]) -> None:
     assert not len(text.outside)
 
 
+@pytest.mark.ci
 @given(
     st.one_of(st.binary(max_size=120), GARBAGE.map(lambda parts: "".join(parts).encode())),
     st.sampled_from(["", "%;", "'"]),

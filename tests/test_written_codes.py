@@ -9,6 +9,7 @@ from typing import Any
 
 import msgspec
 import pytest
+from cases import looped
 from polarcheck.errors import MachineError
 from programs import report_of, said
 
@@ -32,7 +33,7 @@ def load(text: str, name: str = "own.toml") -> profiles.Profile:
 # ---- the form of a code ----
 
 
-@pytest.mark.parametrize(
+@looped(
     ("text", "plain"),
     [
         ("G98", "G98"), ("g98", "G98"), ("G098", "G98"), ("G00", "G0"), ("M08", "M8"), ("m035", "M35"),
@@ -48,7 +49,7 @@ def test_a_code_has_one_plain_form(text: str, plain: str) -> None:
     assert written_codes.plain(text) == plain
 
 
-@pytest.mark.parametrize(
+@looped(
     ("written", "key", "value"),
     [
         ("[m_codes]\nc_axis_on = ['m035']", "m_codes.c_axis_on", ["M35"]),
@@ -81,7 +82,7 @@ def test_a_code_with_leading_zeros_ends_the_program() -> None:
 # ---- lists that differ ----
 
 
-@pytest.mark.parametrize(
+@looped(
     ("changes", "expected"),
     [
         (["+G93", "-G4"], [*(code for code in ALLOWED if code != "G4"), "G93"]),
@@ -113,7 +114,7 @@ def test_a_code_is_taken_out_of_a_range() -> None:
     assert said(report_of("G98 G0 X1.\nG57\n", own.machine, only=["unknown-code"])) == []
 
 
-@pytest.mark.parametrize(
+@looped(
     ("key", "before", "after"),
     [
         ("[m_codes]\nspindle_on = ['+M203']", "M203", ["main-spindle-running-at-entry"]),
@@ -139,7 +140,7 @@ def test_a_lathe_that_allows_one_code_more() -> None:
     assert not report_of(program.format("G4 P100"), more, only=asked).findings
 
 
-@pytest.mark.parametrize(
+@looped(
     ("values", "told"),
     [
         ("[polar]\nallowed_codes = ['+G0', 'G1']", "polar.allowed_codes: 'G1' beside '+G0': write + or - before each"),
@@ -159,7 +160,7 @@ def test_what_means_nothing_is_one_line(values: str, told: str) -> None:
     assert "\n" not in str(caught.value)
 
 
-@pytest.mark.parametrize(
+@looped(
     ("changes", "inherited", "idle"),
     [
         (["+G1", "+G93"], ["G1"], ["+G1"]),
@@ -176,7 +177,7 @@ def test_changes_that_change_nothing_are_known(changes: Any, inherited: Any, idl
     assert written_codes.without_effect(changes, inherited) == idle
 
 
-@pytest.mark.parametrize("path", sorted(profiles.FOLDER.glob("*.toml")), ids=lambda path: path.stem)
+@looped("path", sorted(profiles.FOLDER.glob("*.toml")), ids=lambda path: path.stem)
 def test_our_own_files_hold_the_plain_form(path: Path) -> None:
     """They are taken as they are: every run of a check reads them."""
     tables = tomllib.loads(path.read_text("utf-8"))
@@ -215,7 +216,8 @@ def test_every_list_of_texts_is_one_of_codes_or_of_addresses() -> None:
 _OTHER_WORDS = {f"g_codes.{key}" for key in FRAME_LISTS} | {f"control.{key}" for key in code_keys.TYPED["control"]}
 
 
-@pytest.mark.parametrize("key", sorted(code_keys.EVERY - _OTHER_WORDS))
+@pytest.mark.ci
+@looped("key", sorted(code_keys.EVERY - _OTHER_WORDS))
 def test_what_is_no_code_is_refused_in_one_line(key: str) -> None:
     table, _, name = key.partition(".")
     with pytest.raises(MachineError) as raised:
