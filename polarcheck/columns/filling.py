@@ -1,4 +1,4 @@
-"""What is in force from row to row, and positions from absolute and incremental words: sums and fills, no loops."""
+"""Values in force from row to row, and positions from absolute and incremental words: sums and fills, no loops."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _SELDOM = 4
 
 
 def fill_down(values: NDArray[Scalar], written: Mask, before: object) -> NDArray[Scalar]:
-    """What is in force in each row: the last written value at or above it, `before` where none is."""
+    """The value in force in each row: the last one written at or above it, `before` where none is."""
     start = np.array([before], values.dtype)
     written_rows = written.nonzero()[0]
     if len(written_rows) * _SELDOM < len(values):
@@ -31,7 +31,7 @@ def fill_down(values: NDArray[Scalar], written: Mask, before: object) -> NDArray
 
 
 def happened(mask: Mask, ends: Mask) -> Mask:
-    """Whether a row of the mask stands at or above each row, back to the last row of `ends`."""
+    """True where a row of the mask stands at or above the row, back to the last row of `ends`."""
     return fill_down(mask, mask | ends, False).astype(bool)
 
 

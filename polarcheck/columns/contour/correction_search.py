@@ -39,7 +39,7 @@ _WORD = re.compile(r"([A-Z])([+-]?+(?:\d++\.?+\d*+|\.\d++))")
 
 class Correction(NamedTuple):
     """
-    What makes a contour regular.
+    A correction that makes a contour regular.
 
     row: of the block. word: the executed word that is wrong, -1 where a word or a block is missing or too many. text:
     as it is to be written. why: the slip. becomes: what the contour is then.
@@ -278,7 +278,7 @@ class _Search:
                         yield from self._closing(step, gap)
 
     def _closing(self, corner: int, gap: complex) -> Iterator[_Trial]:
-        """What in a block of increments closes a gap: a word, the block run once less, or another one before it."""
+        """Corrections of blocks of increments that close a gap: a word, the block once less, or one more block."""
         for axis in self._axes:
             local = gap / axis.direction
             if axis.word[corner] >= 0 and abs(local.imag) <= 2 * self.tolerance:

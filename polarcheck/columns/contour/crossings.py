@@ -58,9 +58,9 @@ class Crossings(Columns, frozen=True):
         begins, ends = passes.tangents
         is_wall = passes.is_wall[passes.number]
         joined = (np.diff(passes.number) == 0) & is_wall[1:]
-        # What ends or begins nobody knows where is no move of a pass, and leaves a gap.
+        # A move with an unknown end or start belongs to no pass, and leaves a gap.
         joined &= np.abs(passes.start[1:] - passes.end[:-1]) <= _SAME
-        # Without R nobody knows that it is a wall, and a slot is milled to and fro along one line.
+        # Without R the path may be no wall, and a slot is milled to and fro along one line.
         radius = self.trace.compensation.radius[passes.row]
         joined &= passes.closed[passes.number][1:] | ~np.isnan(radius[1:])
         if not joined.any():

@@ -12,7 +12,7 @@ from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Columns, Floats, Mask, cached_property
 from polarcheck.foundation.time_limit import keep_time
 
-#: Share of R that is taken for a cutter that goes in everywhere; how near the answer comes; how often it is asked for.
+#: Share of R of a cutter that fits everywhere; relative accuracy of the result; most steps of the bisection.
 _SMALL, _NEAR, _TRIALS = 1 / 16, 0.01, 9
 #: More rows than this are not run again and again.
 _MANY = 20_000

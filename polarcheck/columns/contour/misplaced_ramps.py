@@ -25,7 +25,7 @@ _DIGITS = (0, 1, 2, 3, 4)
 _ROUND = 2e-4
 #: Sizes of drawings in inch are parts of this.
 _FRACTION = 32
-#: So many rows are looked at one by one; a program with more is written so on purpose.
+#: Most rows that are examined; a program with more is written so on purpose.
 _MOST = 2000
 
 

@@ -88,7 +88,7 @@ class Passes(Columns, frozen=True):
 
     @cached_property
     def half_of_last_digit(self) -> Floats:
-        """What the rounding of its words may shift the points of each move by [mm]."""
+        """How far the rounding of its words may shift the points of each move [mm]."""
         return np.asarray(np.abs(half_of_last_digit(self.trace))[self.row])
 
     @cached_property

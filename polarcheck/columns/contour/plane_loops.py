@@ -58,7 +58,7 @@ class PlaneLoop(NamedTuple):
         return rings_in(point, self.bulges(point))
 
     def symmetry(self, point: Points | None = None) -> Symmetry | None:
-        """That of the ring which is most regular; None where the path does not close."""
+        """Symmetry of the most regular ring; None where the path does not close."""
         rings = self.rings if point is None else self.rings_through(point)
         return max((symmetry_of(ring, self.tolerance) for ring in rings), key=lambda found: found.fixed, default=None)
 

@@ -14,7 +14,7 @@ from polarcheck.geometry import polar
 _CLEARANCE = 0.01
 #: Distances from the center that differ by less are one [mm].
 _SAME = 0.02
-#: So many moves in a row are a contour where nothing shows that the cutter is beside one.
+#: Moves in a row that count as a contour outside offset mode.
 _SEVERAL = 3
 
 
@@ -29,8 +29,8 @@ class RapidContours(Columns, frozen=True):
         """
         Moves in rapid traverse at depth that run where a contour is.
 
-        They come as near to the center as the moves at feed do, in offset mode, or several in a row. Those that only
-        lead away from the center or towards it are the way to a contour and back, as are start-ups and offset cancels.
+        They come as near to the center as the moves at feed do, in offset mode, or several in a row. Moves that only
+        lead away from the center or towards it approach or leave a contour, as do start-ups and offset cancels.
         """
         trace = self.trace
         path, compensation = trace.path, trace.compensation

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from polarcheck.columns.contour.correction_search import Correction
 
 
-#: What is regular has more turns than a rectangle, which is one however long; and so many corners.
+#: A regular contour has a higher order of symmetry than a rectangle, and at least this many corners.
 _PLAIN_ORDER, _FEWEST_CORNERS = 2, 5
 #: Share of the ends of arcs that may be tangent by chance.
 _SMOOTH_BY_CHANCE = 0.25

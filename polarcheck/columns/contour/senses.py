@@ -13,7 +13,7 @@ from polarcheck.geometry.plane import angle_between
 
 #: A turn that is meant as a corner [rad]: 10 degrees, and this many times what rounding turns a tangent by.
 _CORNER, _CLEARLY = np.radians(10), 4
-#: What else turns a tangent [rad], as an I that is rounded to another digit.
+#: Further slack for the direction of a tangent [rad], as from an I that is rounded to another digit.
 _SLACK = 2e-3
 
 
@@ -33,7 +33,7 @@ class Senses(Columns, frozen=True):
 
     @cached_property
     def _arc(self) -> Rows:
-        """The rows that are judged: arcs that are circles, with a block of their contour on either side."""
+        """The candidates: arcs that are circles, with a block of their contour on either side."""
         rows = self._moving
         if not self.trace.path.is_arc[rows].any():
             return np.zeros(0, np.int64)
@@ -59,7 +59,7 @@ class Senses(Columns, frozen=True):
 
     @cached_property
     def _turns(self) -> tuple[Floats, Floats, Floats]:
-        """Of the judged arcs the larger turn at their ends in the other sense, the smaller and larger as written."""
+        """Angles at the ends of each candidate [rad]: the larger one if reversed, the smaller and larger as written."""
         trace, arc = self.trace, self._arc
         row = self._moving[arc]
         start, end, center, motion = (
@@ -80,7 +80,7 @@ class Senses(Columns, frozen=True):
 
     @cached_property
     def _tolerance(self) -> Floats:
-        """What rounding may turn a judged arc and its neighbours by, one against the other [rad]."""
+        """How much rounding may turn a candidate arc against its neighbours [rad]."""
         trace, arc = self.trace, self._arc
         if not len(arc):
             return np.zeros(0)
@@ -113,7 +113,7 @@ class Senses(Columns, frozen=True):
 
     @cached_property
     def turns_back(self) -> Mask:
-        """Those that go round the rest of the circle, back along the blocks on both sides; nobody means that."""
+        """Arcs that go round the rest of the circle, back along the blocks on both sides, which is never intended."""
         back = self._column(self._turns[1] >= np.pi - self._tolerance)
         return np.asarray(back & self.fits_reversed & (self.arcs.sweep > 180))
 

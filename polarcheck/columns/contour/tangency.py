@@ -22,7 +22,7 @@ from polarcheck.geometry.plane import angle_between
 _CORNER, _CLEARLY = np.radians(1.5), 4
 #: A contour with a single arc: from this turn on a factor alone speaks for another R [rad].
 _SHARP = np.radians(5)
-#: What else turns a tangent [rad], as an I that is rounded to another digit.
+#: Further slack for the direction of a tangent [rad], as from an I that is rounded to another digit.
 _SLACK = 2e-3
 #: Arcs that are nearly straight, or nearly a full circle, have no R that can be read from their neighbours [rad].
 _FLAT = 0.02
@@ -116,7 +116,7 @@ class Tangency(Columns, frozen=True):
         return np.concatenate([np.zeros(0, np.int64), *chosen])
 
     def _misfits_of(self, number: int, candidate: Mask) -> Rows:
-        """Of the candidates of a pass those for which the rest of the pass shows that another arc is meant."""
+        """Candidates of a pass where the rest of the pass shows that another arc is intended."""
         passes, candidates = self.passes, self._judged
         begin, until = np.searchsorted(passes.number[candidates.move], (number, number + 1)).tolist()
         of_contour = np.arange(begin, until)
@@ -183,7 +183,7 @@ class Tangency(Columns, frozen=True):
         return bool(len(chosen) > 2 and np.ptp(had) <= near and (np.abs(whole - np.rint(whole)) <= near / step).all())
 
     def _tolerance_of(self, index: int) -> float:
-        """What rounding leaves open of the R that would be tangent [mm]."""
+        """Uncertainty by rounding of the R that would be tangent [mm]."""
         candidates, passes = self._judged, self.passes
         move, needed = candidates.move[index], abs(float(candidates.radius[index]))
         half = np.arcsin(min(1.0, abs(passes.end[move] - passes.start[move]) / 2 / needed))
@@ -207,7 +207,7 @@ class Tangency(Columns, frozen=True):
 
     @cached_property
     def _meant(self) -> Meant:
-        """All arcs for which another one is meant: on the circle of other arcs, else tangent to its neighbours."""
+        """All arcs where another one is intended: on the circle of other arcs, else tangent to its neighbours."""
         candidates, chosen = self._judged, self._misfits
         tolerance = np.array([self._tolerance_of(index) for index in chosen.tolist()])
         tangent = Meant(candidates.move[chosen], candidates.radius[chosen], candidates.center[chosen], tolerance)
@@ -243,7 +243,7 @@ class Tangency(Columns, frozen=True):
 
     @cached_property
     def radius_tolerance(self) -> Floats:
-        """What rounding leaves open of that R [mm]."""
+        """Uncertainty of that R by rounding [mm]."""
         return self._of_meant(self._meant.tolerance)
 
     @cached_property

@@ -40,7 +40,7 @@ def time_of_dwells(trace: Trace) -> Floats:
     """
     How long each dwell takes [s]; NaN where no word of this machine says it, several do, or it counts turns.
 
-    Without any word that is a time somewhere there is none, but an exact stop. Of other rows it means nothing.
+    A dwell without any such word is an exact stop, with no time. The value of other rows means nothing.
     """
     words = trace.machine.feed.dwell_words
     time, word_count = _sums(trace, words)
@@ -63,7 +63,7 @@ def _sums(trace: Trace, words: Mapping[str, str]) -> tuple[Floats, Rows]:
 
 
 def _seconds(trace: Trace, unit: str, index: Rows) -> Floats:
-    """What these words are in seconds."""
+    """The values of these words in seconds."""
     words, control = trace.run.words, trace.machine.control
     with_point, without_point = _SECONDS.get(unit, (np.nan, np.nan))
     if unit == "as-lengths":
@@ -78,7 +78,7 @@ def _seconds(trace: Trace, unit: str, index: Rows) -> Floats:
 
 
 def _has_other_words(trace: Trace, rows: Mask) -> Mask:
-    """Of the dwells in these rows those with a word that is not read, as S2=30."""
+    """Dwells in these rows with a word that is not read, as S2=30."""
     blocks, has_equals = trace.text.blocks, np.zeros(len(trace), bool)
     for row in np.flatnonzero(dwells(trace) & rows).tolist():
         block = int(trace.run.block[row])

@@ -1,5 +1,5 @@
 """
-What the axes do at the F that really runs: rates, accelerations and times of the moves, and the time of each row.
+Rates, accelerations and times of the moves at the F that really runs, and the time of each row.
 
 F that runs is F in force, clamped in the mode where the control does so (Trace.feed), and slowed down where automatic
 override acts. A block that moves Z beside X or C takes the time of its way on the plane, or in space, by what F is
@@ -129,7 +129,7 @@ class Dynamics:
 
     @cached_property
     def move_time(self) -> Floats:
-        """How long each move takes [s]; NaN where it is not known. That of a rapid is a matter of its row."""
+        """Time of each move [s]; NaN where it is not known. The time of a rapid belongs to its row."""
         time = self.time_without_override.copy()
         if self.is_slowed.any():
             time[self.is_slowed] = 0.0
@@ -168,7 +168,7 @@ class Dynamics:
         return time
 
     def _time_of_way(self, rows: Rows) -> Floats:
-        """Of straight ways in X and Z at F per minute; what moves C or is an arc outside the mode is not followed."""
+        """Time of straight moves in X and Z at F per minute; moves of C and arcs outside the mode are not followed."""
         trace = self.trace
         x, z, c = self._way(rows)
         along_x = np.where(trace.mode.in_polar[rows], 0.0, x)
@@ -185,7 +185,7 @@ class Dynamics:
         return longest
 
     def _way(self, rows: Rows) -> tuple[Floats, Floats, Floats]:
-        """What X [mm, radius], Z [mm] and C [deg] move by; 0 for an axis that the row does not program."""
+        """Distances that X [mm, radius], Z [mm] and C [deg] move; 0 for an axis that the row does not program."""
         trace = self.trace
         on_plane = trace.axes.moves_plane[rows] & trace.mode.in_polar[rows]
         x = np.where(trace.mode.in_polar[rows], np.abs(trace.path.end[rows]) - np.abs(trace.path.start[rows]), 0.0)

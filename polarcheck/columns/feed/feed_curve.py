@@ -67,7 +67,7 @@ def _begun(dynamics: Dynamics, row: Rows, time: Floats) -> Floats:
     trace = dynamics.trace
     if not len(row):
         return np.zeros(0)
-    # What a row takes besides its moves: Z alone, dwells.
+    # Time of a row besides its moves: Z alone, dwells.
     rest = _Sums(np.where(dynamics.on_path | (trace.mode.section < 0), 0.0, dynamics.time))
     moving = _Sums(time)
     section = trace.mode.section[row]

@@ -16,8 +16,8 @@ class FeedRanges:
     """
     Columns of one trace, one value per row.
 
-    Whether a move cuts is told by the contour: with compensation, and neither a ramp nor a way round the stock. Of
-    other moves nobody knows, and any F between the lowest for cutting and the highest for positioning may be right.
+    A move cuts if it has compensation and is neither a ramp nor a move round the stock. Other moves are uncertain:
+    any F between the lowest for cutting and the highest for positioning may be right.
     """
 
     def __init__(self, trace: Trace, tool_center: ToolCenter, ramps: Ramps) -> None:
@@ -74,7 +74,7 @@ class FeedRanges:
 
     @cached_property
     def without_contour(self) -> Mask:
-        """Moves of sections without compensation, of which nobody knows whether they cut."""
+        """Moves of sections without compensation, which may cut or not."""
         trace = self.trace
         return trace.path.cuts & ~trace.mode.anywhere_in_section(
             trace.compensation.compensates | (trace.modal.state("side") != Side.OFF)
@@ -138,7 +138,7 @@ class FeedRanges:
 
     @cached_property
     def nearest_of_cuts(self) -> Floats:
-        """Of the moves of the section at an F for cutting the one farthest out: its distance from the center [mm]."""
+        """Largest distance from the center of the moves of the section at an F for cutting [mm]."""
         return self._most(self.tool_center.nearest)
 
     @cached_property

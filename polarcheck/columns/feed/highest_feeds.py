@@ -14,7 +14,7 @@ from polarcheck.foundation.states import Motion
 from polarcheck.geometry import rates
 from polarcheck.geometry.tolerances import SHARE
 
-#: What limits F, in the order of the rows of `HighestFeeds.limits`; the first of equals counts.
+#: Limits of F, in the order of the rows of `HighestFeeds.limits`; the first of equals counts.
 LIMITS = C_FEED, C_ACCELERATION, X_FEED, X_ACCELERATION, POLAR_FEED = (
     "C",
     "acceleration of C",
@@ -29,7 +29,7 @@ class HighestFeeds(Columns, frozen=True):
     Columns of one trace, one value per row.
 
     Along a move the rates of C and X are proportional to F, and their accelerations to its square; so each limit
-    gives an F in closed form. What is not limited by the machine limits nothing here.
+    gives an F in closed form. An axis without a limit in the profile limits nothing.
     """
 
     trace: Trace

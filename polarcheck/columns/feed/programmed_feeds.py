@@ -36,7 +36,7 @@ class Feeds(Columns, frozen=True):
 
     @cached_property
     def missing(self) -> Mask:
-        """No F was ever given, or F0 is in force. What stands before an excerpt may have given one."""
+        """No F was ever given, or F0 is in force. Blocks before an excerpt may have given one."""
         trace = self.trace
         given = happened(trace.blocks.has("F") | trace.run.unknown, trace.blocks.starts)
         return np.asarray((~given & ~self._in_excerpt) | (trace.feedrate.feed_number == 0))
@@ -170,7 +170,7 @@ class Feeds(Columns, frozen=True):
         return mask
 
     def first_at_each(self, mask: Mask) -> Mask:
-        """Of the rows of a mask the first in each section at its F."""
+        """The first row of a mask at each F in each section."""
         rows = np.flatnonzero(mask)
         kinds = np.stack((self.trace.mode.section[rows].astype(float), self.trace.feedrate.feed_number[rows]))
         first = np.zeros(len(mask), bool)
@@ -225,7 +225,7 @@ class Feeds(Columns, frozen=True):
     @cached_property
     def allowed_by_acceleration(self) -> Floats:
         """
-        F in force or, where that asks for more acceleration of C than its limit, the highest that does not [mm/min].
+        F in force, reduced where it would exceed the acceleration limit of C [mm/min].
 
         The acceleration grows with the square of F. inf where the profile has no limit, NaN unknown.
         """

@@ -180,7 +180,7 @@ class AirCuts(Columns, frozen=True):
         nearest = np.full(len(trace), np.inf)
         path, motion = trace.path, trace.axes.motion
         nearest[rows] = polar.nearest(path.start[rows], path.end[rows], path.center[rows], motion[rows])
-        # Of a tool center path with G41 and G42 for small corrections the cutter reaches R farther in, too.
+        # Where G41 and G42 only correct a tool center path, the cutter reaches R farther in, too.
         reach = nearest - self.workpiece.radius
         inner = self._of_section(np.where(np.isnan(reach), -np.inf, reach), self.walls, np.minimum, np.inf)
         return np.asarray(inner > largest / 2 + ROUNDING)

@@ -29,7 +29,7 @@ _MOST = 4000
 
 class Known(NamedTuple):
     """
-    What is known of the bar, diameters and lengths in mm.
+    The known sizes of the bar, diameters and lengths in mm.
 
     smallest: diameter within which there is material for certain; NaN unknown. largest: diameter outside which there is
     none for certain; NaN unknown. bore: inside diameter; NaN where a hole of unknown size is drilled. face: Z of the
@@ -57,7 +57,7 @@ class Bar(Columns, frozen=True):
 
     @cached_property
     def known(self) -> Known:
-        """What the job says, then what the turning of the program leaves."""
+        """The bar as the job gives it and the program turns it; a comment counts where neither does."""
         trace, stock = self.trace, self.trace.job.stock
         if not len(trace.mode.sections):
             return _NOTHING
@@ -148,7 +148,7 @@ class Bar(Columns, frozen=True):
 
     @cached_property
     def turned(self) -> Known:
-        """What turning tools leave before the first section."""
+        """The bar that turning tools leave before the first section."""
         if not self.turns.any():
             return _NOTHING
         segments = _Segments.concatenated([self._of_moves, self._of_cycles])

@@ -21,14 +21,14 @@ if TYPE_CHECKING:
 
 class Level(NamedTuple):
     """
-    What the contours at one Z of one section leave standing.
+    The part that the contours at one Z of one section leave standing.
 
     section: its number, of several the first. z: [mm], NaN where it is not known. radius: |R| of the cutter, the
     largest [mm]. polygon: what stands (shapely, mm, x and c as its x and y), with chords for arcs; empty where nothing
-    does. open: the polygon ends somewhere beyond the walls, where nobody knows what the part is like. gap: what was
-    closed [mm], 0 for none. tangled: the walls cross so often that they are no contour. outline: what of the polygon is
-    programmed, as lines and arcs. walls: the programmed contours, leads in offset mode included; left: bool, the tool
-    runs left of each.
+    does. open: the polygon ends somewhere beyond the walls, where the part is unknown. gap: width of the gap that was
+    closed [mm], 0 for none. tangled: the walls cross so often that they are no contour. outline: the programmed edges
+    of the polygon, as lines and arcs. walls: the programmed contours, leads in offset mode included; left: bool, the
+    tool runs left of each.
     sections: the numbers of all its sections. angle: of C at G12.1 [deg], which has been added where the level is in
     the frame of the part; NaN where it is not known.
     """
@@ -75,23 +75,23 @@ class Finished(Columns, frozen=True):
 
     @cached_property
     def of_sections_put_together(self) -> list[Level]:
-        """Those levels of single sections, in the frame of the part, that others are put together with."""
+        """The levels of single sections, in the frame of the part, that levels of several sections are joined from."""
         return self._parts_of(self.of_part, self.levels)
 
     @cached_property
     def meant_put_together(self) -> list[Level]:
-        """The same of contours whose R is not known."""
+        """The same for contours whose R is not known."""
         return self._parts_of(self.meant_of_part, self.meant)
 
     def _parts_of(self, of_part: list[Level], levels: list[Level]) -> list[Level]:
-        """The levels of single sections, in the frame of the part, of which levels of several are put together."""
+        """The levels of single sections, in the frame of the part, that levels of several sections are joined from."""
         rows = [level.walls.row for level in of_part if len(level.sections) > 1]
         together = set(np.concatenate(rows).tolist()) if rows else set()
         return [self._turned(level) for level in levels if int(level.walls.row[0]) in together]
 
     @cached_property
     def meant(self) -> list[Level]:
-        """The same of contours whose R is not known, which is 0 in them: what the program is meant to make."""
+        """Levels of contours whose R is not known, and taken as 0: the part that the program is intended to make."""
         walls, left = self.overcuts.walls_of_unknown_radius
         return self._levels_of(walls, left, level_of(self.trace, walls))
 
@@ -103,7 +103,7 @@ class Finished(Columns, frozen=True):
 
     @cached_property
     def meant_of_part(self) -> list[Level]:
-        """Those in the frame of the part, put together likewise."""
+        """The same in the frame of the part, joined over sections."""
         return self._put_together(self.meant, *self.overcuts.walls_of_unknown_radius)
 
     def _put_together(self, levels: list[Level], walls: Curves, left: Mask) -> list[Level]:
@@ -201,6 +201,6 @@ class Finished(Columns, frozen=True):
 def turned_columns(table: Turned, turn: complex) -> Turned:
     """Curves or an outline turned about the center."""
     columns = {name: getattr(table, name) for name in ("start", "end", "center")}
-    # Of lines the center stays NaN in its real part alone: equal lines are recognised by that.
+    # The center of lines stays NaN in its real part alone: equal lines are recognised by that.
     turned = {name: np.where(np.isnan(points), points, points * turn) for name, points in columns.items()}
     return msgspec.structs.replace(table, **turned)

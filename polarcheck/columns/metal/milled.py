@@ -1,4 +1,4 @@
-"""What mills cut, in the frame of the part: all moves at feed of all sections, turned by C at G12.1."""
+"""Cuts of mills in the frame of the part: all moves at feed of all sections, turned by C at G12.1."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class Cuts(Table, frozen=True):
 
 
 class Milled(Columns, frozen=True):
-    """What the mills of one trace cut in their sections."""
+    """Cuts of the mills of one trace in their sections."""
 
     trace: Trace
     tool_center: ToolCenter
@@ -135,7 +135,7 @@ class Milled(Columns, frozen=True):
         )
 
     def cleared(self, chosen: Mask) -> tuple[Cleared, float]:
-        """What the largest cutter of these cuts clears, and its R [mm]. Raises TooHardError as `cleared` does."""
+        """The area cleared by the largest of these cutters, and its R [mm]. Raises TooHardError as `cleared` does."""
         from polarcheck.geometry.polygons.cleared import cleared
 
         radius = float(self.cuts.radius[chosen].max())

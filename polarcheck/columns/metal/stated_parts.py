@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 #: One of these stands in each comment that states a shape, a size or a depth.
 _WORDS = ("HEX", "SQ", "OCT", "PENT", "FLATS", "BOSS", "AF", "A/F", "A.F", "SW", "KANT", "KT", "DEEP", "DEPTH")
-#: What is made may differ from a comment by so much: sizes of drawings are rounded, and have tolerances [mm].
+#: Tolerance of a size in a comment: sizes of drawings are rounded, and have tolerances [mm].
 _SIZE_TOLERANCE, _SIZE_SHARE = 0.25, 0.01
 _DEPTH_TOLERANCE, _DEPTH_SHARE = 0.3, 0.02
 #: A program with more sections than this is not held against its comments.
@@ -48,7 +48,7 @@ class PartComment(NamedTuple):
 
 class _Statement(NamedTuple):
     """
-    What a comment states, and where.
+    A statement of a comment, with its location.
 
     comment: its number. row: of its block, or the first one below it. tool: that it names, -1 for none. size, depth: as
     in PartComment.
@@ -83,7 +83,7 @@ DEPTH, TURNED, BEYOND = "depth", "turned", "beyond"
 
 
 class PartComments(Columns, frozen=True):
-    """What comments state of the part; contours are looked at where a comment asks for it, and nowhere else."""
+    """Statements of comments on the part; contours are computed only where a comment needs them."""
 
     trace: Trace
     finished: Finished
@@ -204,7 +204,7 @@ class PartComments(Columns, frozen=True):
         for level in (*self.finished.levels, *self.finished.meant):
             found = [] if level.tangled else shapes_of(level.outline, level.gap, self.finished.overcuts.bar)
             row = int(level.walls.row[0])
-            # Of the contour as it is programmed the first block; a shape may begin with any of its sides.
+            # The first block of the contour as programmed; a shape may begin with any of its sides.
             shapes.setdefault(level.section, []).extend(shape._replace(row=row) for shape in found)
         return shapes
 
@@ -234,7 +234,7 @@ class PartComments(Columns, frozen=True):
         of_comment = np.isin(section, comment.of_depth)
         chosen = np.flatnonzero(of_comment & self.trace.path.moves_at_feed)
         top = z[self.trace.mode.sections.enter[comment.of_depth]]
-        # Where the tool does not come from above Z0 nobody knows where the face is.
+        # Where the tool does not come from above Z0 the face is unknown.
         if not len(chosen) or np.isnan(z[chosen]).any() or not (top > 0).all():
             return
         bottom = np.full(len(self.trace.mode.sections), np.inf)

@@ -37,7 +37,7 @@ _CLEARANCE = 0.01
 _FAR, _SLOWEST_X = 200.0, 0.4
 #: The share of the way up to the face at which such a move is looked at.
 _SHARE = 0.75
-#: What rounding moves an axis by [mm, deg].
+#: Largest move of an axis by rounding alone [mm, deg].
 _STILL = 1e-4
 #: More ways to a place within the bar than these are not followed, nor more moves that cut.
 _MOST_WAYS, _MOST_MOVES = 200, 20_000
@@ -77,7 +77,7 @@ class Ways(Table, frozen=True):
 
 class Hits(Table, frozen=True):
     """
-    What ways lead through, n of them.
+    Hits of moves on the bar or the part, n of them.
 
     row: int[n]. place: complex128[n] [mm], on the plane of the part. is_sure: bool[n], as in Ways.
     """
@@ -92,7 +92,7 @@ class Hits(Table, frozen=True):
 
 
 class Workpiece(Columns, frozen=True):
-    """What the ways of mills to a place lead through, by rows of one trace."""
+    """Hits of mills on their way to a point, by rows of one trace."""
 
     trace: Trace
     tool_center: ToolCenter
@@ -170,7 +170,7 @@ class Workpiece(Columns, frozen=True):
             is_sure=np.ones(len(row), bool),
         )
         several = [rapids[~np.isnan(rapids.end + rapids.tip) & (moves_x | moves_c | moves_z)]]
-        # X and Z, or X and C, below the face at once: in which order nobody knows.
+        # X and Z, or X and C, below the face at once: their order is unknown.
         with np.errstate(invalid="ignore"):
             turned_x = x_to * np.exp(1j * np.radians(c_from))
         low = moves_x & (z_from < self.top - _CLEARANCE) & ~np.isnan(begin + turned_x)
@@ -279,7 +279,7 @@ class Workpiece(Columns, frozen=True):
 
     @cached_property
     def through_bar(self) -> Hits:
-        """Ways in rapid traverse through what stands of the bar."""
+        """Rapid moves through the remaining bar."""
         bar = self.bar.known
         if np.isnan(bar.smallest + bar.bore):
             return Hits.none()
@@ -409,7 +409,7 @@ class Workpiece(Columns, frozen=True):
 
     @cached_property
     def through_part(self) -> Hits:
-        """Ways to a place through the finished part."""
+        """Rapid moves through the finished part."""
         rapids = self._over_contour
         if not len(rapids):
             return Hits.none()
@@ -460,7 +460,7 @@ class Workpiece(Columns, frozen=True):
 
     @cached_property
     def hits_bar(self) -> Mask:
-        """Rows whose way in rapid traverse leads through what stands of the bar, or may."""
+        """Rapid moves that pass through the remaining bar, or may."""
         return self._mask(self.through_bar.row)
 
     @cached_property

@@ -14,7 +14,7 @@ from polarcheck.foundation.arrays import Columns, Floats, Mask, cached_property,
 from polarcheck.foundation.states import STATES, Motion
 from polarcheck.geometry.tolerances import ROUNDING
 
-#: What may stand beside a D that is meant for the cutter: words, and modal groups of G codes.
+#: Words and modal groups of G codes that may stand beside a D for the cutter.
 _WORDS_BESIDE_D = ("T", "S", "M", "G", "F", "X", "U", "Z", "W")
 _BESIDE_D = ("motion", "side", "units", "plane", "feed_mode", "speed")
 

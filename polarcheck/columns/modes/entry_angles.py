@@ -1,4 +1,4 @@
-"""The angle of C at which each section begins, where nobody has positioned C since the section before."""
+"""The angle of C at which each section begins, where C was not positioned since the section before."""
 
 from __future__ import annotations
 
@@ -29,9 +29,9 @@ class EntryAngles(Columns, frozen=True):
     @cached_property
     def turned_by(self) -> Floats:
         """
-        By how much C stands elsewhere at the G12.1 than at that of the section before [deg], nobody having positioned
-        it; NaN where it stands where it did, where somebody has, or where what is cut is the same turned by that angle.
+        Difference of C at the G12.1 from its angle at the G12.1 before [deg], where no block has positioned C.
 
+        NaN where it is the same, where C was positioned, or where the cut is the same turned by that angle.
         Only where the plane begins at the switch, and both sections cut.
         """
         trace, sections = self.trace, self.trace.mode.sections
@@ -78,7 +78,7 @@ class EntryAngles(Columns, frozen=True):
         return np.asarray((named | lost | trace.blocks.starts) & (trace.mode.section < 0))
 
     def _is_invariant(self, number: int, angle: float) -> bool:
-        """What is cut in a section is the same turned by this angle [deg]."""
+        """The cut of a section is the same turned by this angle [deg]."""
         trace = self.trace
         rows = np.flatnonzero(trace.path.cuts & (trace.mode.section == number))
         if len(rows) > _MOST_MOVES:
@@ -104,7 +104,7 @@ def _corners(start: Points, end: Points, center: Points) -> Points:
 
 
 def _ring(rows: Rows, start: Points, end: Points) -> Rows:
-    """Of a path the longest part that comes back to where it began; all of it where it does not."""
+    """The longest closed part of a path; the whole path where none closes."""
     places = np.append(start[:1], end)
     begins, length = 0, 0
     for first in range(min(len(rows), _MOST_LEADS)):

@@ -1,4 +1,4 @@
-"""What stands in each executed block: its words by address and its codes, its line and its program."""
+"""The contents of each executed block: its words by address and its codes, its line and its program."""
 
 from __future__ import annotations
 
@@ -133,7 +133,7 @@ class ExecutedBlocks(Lookups):
         return column
 
     def has(self, *addresses: str) -> Mask:
-        """Whether a row has a word of any of the addresses; cannot be written to."""
+        """True where the row has a word of any of the addresses; cannot be written to."""
         return self._column(f"has {' '.join(addresses)}", lambda: self._has(*addresses))
 
     def _has(self, *addresses: str) -> Mask:
@@ -142,14 +142,14 @@ class ExecutedBlocks(Lookups):
         return mask
 
     def consists_of(self, *addresses: str) -> Mask:
-        """Whether a row has words of these addresses and no others; N and block skip may stand beside them."""
+        """True where the row has words of these addresses and no others, except N and block skip."""
         allowed = np.zeros(256, bool)
         named = [self.machine.address_number(address) for address in (*addresses, "N", "/") if address]
         allowed[named] = True
         return self.has(*addresses) & ~self.with_words(~allowed[self.run.words.address])
 
     def in_rows(self, address: str, values: Floats) -> Floats:
-        """Of values per executed word those of an address, per row: the last where it is repeated, NaN without it."""
+        """Per row the value of an address, given values per executed word: the last where repeated, NaN without it."""
         index = self.word_indices(address)
         if not len(index):
             return repeated(_NOT_WRITTEN, len(self.run))
@@ -158,7 +158,7 @@ class ExecutedBlocks(Lookups):
         return column
 
     def assigns(self, ranges: Iterable[tuple[int, int]]) -> Mask:
-        """Whether a row assigns a variable of an offset in one of these ranges."""
+        """True where the row assigns a variable of an offset in one of these ranges."""
         mask = np.zeros(len(self.run), bool)
         spans = list(ranges)
         for row, assigned in self.run.assigned.items():
@@ -190,7 +190,7 @@ class ExecutedBlocks(Lookups):
         """
         The executed words that are any of these G or M codes (`G54-G59` is a range).
 
-        `M3 P12` asks for the word beside the code, too. What the machine lists so is not the M code alone.
+        `M3 P12` requires the word beside the code, too. A word with a listed one beside it is not the code alone.
         """
         parts: list[Rows] = []
         for letter, alone, with_others in _by_letter(words):
@@ -202,7 +202,7 @@ class ExecutedBlocks(Lookups):
         return parts[0] if len(parts) == 1 else np.concatenate((np.zeros(0, np.int64), *parts))
 
     def _of_codes(self, letter: str, codes: Mask) -> Rows:
-        """The G or M words, in order, whose codes are asked for (codes.code_set), and listed without another word."""
+        """The G or M words with these codes (codes.code_set), in order, but not those listed with another word."""
         order, present, begins = self._by_code[letter]
         groups = [
             order[begin:end]
@@ -240,11 +240,11 @@ class ExecutedBlocks(Lookups):
         return mask
 
     def codes(self, *words: str) -> Mask:
-        """Whether a row has any of these G or M codes."""
+        """True where the row has any of these G or M codes."""
         return self.with_words(self.code_indices(*words))
 
     def listed(self, *keys: str) -> Mask:
-        """Whether a row has a G code of any of these lists of the machine, as in `reference_return`."""
+        """True where the row has a G code of any of these lists of the machine, as in `reference_return`."""
         machine = self.machine
         return self.codes(
             *machine.cached(" ".join(keys), lambda: tuple(code for key in keys for code in machine.codes(key)))

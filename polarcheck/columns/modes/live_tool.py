@@ -59,7 +59,7 @@ def _named(trace: Trace) -> Mask:
 
 
 def _next_starts_live_tool(trace: Trace) -> Mask:
-    """Of the spindles the live tool is the one that starts next."""
+    """The live tool is the spindle that starts next."""
     codes = trace.machine.m_codes
     started = trace.blocks.codes(*codes.live_tool_on)
     begins = np.flatnonzero(started | trace.blocks.codes(*codes.spindle_on))

@@ -45,12 +45,12 @@ class ModalStates(Lookups):
         return self._column(f"state {group}", lambda: self._filled(group)[0])
 
     def has_state(self, group: str, codes: Sequence[str]) -> Mask:
-        """Whether the state of a modal group is one that these codes set."""
+        """True where the state of a modal group is one that these codes set."""
         _, _, state_of = self._modal
         return is_among(self.state(group), [state_of[code(word)] for word in codes])
 
     def sets(self, group: str) -> Mask:
-        """Whether a row has a code of the group."""
+        """True where the row has a code of the group."""
         return self._column(f"sets {group}", lambda: self._filled(group)[1])
 
     def _filled(self, group: str) -> tuple[States, Mask]:
@@ -96,7 +96,7 @@ class ModalStates(Lookups):
         return fill_down(start, self.sets("motion") | self.blocks.starts, -1)
 
     def switched(self, on: list[str], off: list[str], spindle: str = "") -> Mask:
-        """What M codes have switched on, in each row after its own; spindle: of which a speed of 0 (S1=0) stops it."""
+        """The state that M codes switch, in each row after its own; spindle: its speed of 0 (S1=0) stops it."""
         return self._column(
             f"switched {on} {off} {spindle}",
             lambda: happened(self.blocks.codes(*on), self._stops(self.blocks.codes(*off), spindle)),
@@ -178,7 +178,7 @@ class ModalStates(Lookups):
         return np.asarray(self.state("distance") == Distance.INCREMENTAL)
 
     def is_step(self, address: str) -> Mask:
-        """Whether the word of an address is a distance, by G91 or as the word itself says: X=IC(10)."""
+        """True where the word of an address is a distance, by G91 or as the word itself says: X=IC(10)."""
         distance = self.blocks.distance(address)
         return (
             self.incremental

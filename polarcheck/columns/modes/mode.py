@@ -113,7 +113,7 @@ class PolarMode(Columns, frozen=True):
         return self.blocks.mask_of(self.sections.again)
 
     def first_in_section(self, mask: Mask) -> Mask:
-        """Of the rows of a mask the first in each section."""
+        """The first row of a mask in each section."""
         rows = np.flatnonzero(mask & (self.section >= 0))
         first = np.ones(len(rows), bool)
         first[1:] = np.diff(self.section[rows]) > 0
@@ -125,7 +125,7 @@ class PolarMode(Columns, frozen=True):
         return (self.section >= 0) & ~self.enters
 
     def given_in_section(self, rows: Mask) -> Mask:
-        """Whether one of these rows is the present one or above it in the same section."""
+        """True from the first of these rows to the end of its section."""
         return np.asarray(happened(rows & self.in_polar, self.enters) & self.in_polar)
 
     @cached_property

@@ -34,7 +34,7 @@ class ModeWords(Columns, frozen=True):
         return self.codes(*(code for key in keys for code in self.trace.machine.codes(key)))
 
     def first_of(self, *names: str) -> Mask:
-        """Of the code or address that is named first of those in its row; `G91` is a code, `U` an address, or none."""
+        """Words of the first of these names that stands in their row; `G91` is a code, `U` an address, or none."""
         trace = self.trace
         row = trace.run.row
         first, listed = np.zeros(len(row), bool), np.zeros(len(trace), bool)

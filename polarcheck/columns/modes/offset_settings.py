@@ -1,4 +1,4 @@
-"""What a program sets of offsets by itself, one by one, and what that makes of an offset down the rows."""
+"""Settings of offsets by the program itself, and the values of an offset that result down the rows."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from polarcheck.columns.filling import fill_down, positions
 from polarcheck.foundation.arrays import Floats, Mask, Rows
 from polarcheck.geometry.tolerances import ADJUSTMENT, ROUNDING
 
-#: What a setting is of.
+#: Kinds of settings.
 RADIUS, RADIUS_WEAR, NOSE, X, X_WEAR = range(5)
 
 
 class Settings(NamedTuple):
     """
-    What the program sets of offsets outside the mode, one element each.
+    Settings of offsets by the program outside the mode, one element each.
 
     number: of the offset. kind: RADIUS and the like. value: [mm], or the nose type; NaN where it is not known.
     is_step: it is added.
@@ -30,13 +30,13 @@ class Settings(NamedTuple):
     is_step: Mask
 
     def of(self, chosen: Mask | Rows) -> Settings:
-        """Those at some indices, or of a mask."""
+        """The settings at some indices, or of a mask."""
         row, number, kind, value, is_step = self
         return Settings(row[chosen], number[chosen], kind[chosen], value[chosen], is_step[chosen])
 
 
 def of_list(found: Sequence[tuple[int, int, int, float, bool]]) -> Settings:
-    """Settings that were found one by one: row, number, kind, value, is_step."""
+    """Columns of a list of settings: row, number, kind, value, is_step."""
     table = np.array(found, np.float64).reshape(-1, 5)
     row, number, kind = (table[:, column].astype(np.int64) for column in range(3))
     return Settings(row, number, kind, table[:, 3], table[:, 4].astype(bool))
@@ -52,7 +52,7 @@ def in_order(parts: Sequence[Settings]) -> Settings:
 
 class Steps:
     """
-    What the settings of one offset make of it, down the rows in which it is in force.
+    The values of one offset after its settings, down the rows in which it is in force.
 
     Computed in the rows of the settings and of program heads alone: there may be many offsets, and many rows.
     """
@@ -93,7 +93,7 @@ class Steps:
         return geometry, wear, fill_down(written, written | self.starts, False)[self.asked].astype(bool)
 
     def _summed(self, value: Floats, absolute: Mask, added: Mask) -> Floats:
-        """What some settings put together make, from 0 on; NaN from one that is not known to the next absolute one."""
+        """The sum of some settings, from 0 on; NaN from an unknown one to the next absolute one."""
         absolute_value, step = np.full(len(self.row), np.nan), np.zeros(len(self.row))
         absolute_value[self.at[absolute]] = value[absolute]
         step[self.at[absolute & np.isnan(value)]] = np.nan

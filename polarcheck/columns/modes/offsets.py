@@ -42,7 +42,7 @@ _LARGEST_X_WEAR = 5.0
 
 
 class _Set(NamedTuple):
-    """What the program has set of the offset in force: the row that did so last, -1 where none has, and the value."""
+    """The last setting of the offset in force by the program: its row, -1 where there is none, and the value."""
 
     row: Rows
     value: Floats
@@ -53,7 +53,7 @@ _LARGEST_T = 1e15
 
 
 class ToolOffsets(Columns, frozen=True):
-    """What the tool offset in force holds."""
+    """The contents of the tool offset in force."""
 
     run: Run
     text: Text
@@ -67,7 +67,7 @@ class ToolOffsets(Columns, frozen=True):
 
     @cached_property
     def radius_of_offset(self) -> Floats:
-        """R of the tool offset in force [mm]; NaN where neither program, job nor, if asked, a comment tells it."""
+        """R of the tool offset in force [mm]; NaN where neither program, job nor, if allowed, a comment gives it."""
         return np.where(self.radius_set_in >= 0, self._radius_set.value, self._radius_given)
 
     @cached_property
@@ -97,7 +97,7 @@ class ToolOffsets(Columns, frozen=True):
         """
         Between the call of the offset in force and the next, the program sets R of its offset before the mode needs it.
 
-        A row of unknown effect may set it. What a comment tells of R is not taken there.
+        A row of unknown effect may set it. An R of a comment does not count there.
         """
         call = np.cumsum(self.tools.calls_offset | self.blocks.starts)
         sets_radius = (self.radius_set_in == np.arange(len(self.run))) | self.run.unknown
@@ -130,7 +130,7 @@ class ToolOffsets(Columns, frozen=True):
         return sizes
 
     def _is_used(self, rows: Rows, numbers: Rows) -> Mask:
-        """Whether offsets that are named in some rows are in force in the polar mode of the same program."""
+        """True for offsets, named in some rows, that are in force in the polar mode of the same program."""
         inside, most = self.mode.in_polar | self.mode.enters, self.tools.offset_count
         used = self.blocks.program[inside] * most + self.tools.offset_number[inside]
         return np.isin(self.blocks.program[rows] * most + numbers, used)
@@ -167,7 +167,7 @@ class ToolOffsets(Columns, frozen=True):
 
     @cached_property
     def radii_in_comments(self) -> dict[int, Found]:
-        """What the comments say of R by offset number."""
+        """R by offset number as comments give it."""
 
         tools = self.tools
         rows = np.flatnonzero(tools.calls_offset)
@@ -179,15 +179,15 @@ class ToolOffsets(Columns, frozen=True):
 
     @cached_property
     def radii_from_comments(self) -> dict[int, Found]:
-        """What the comments say of R by offset number, if that is asked for."""
+        """R by offset number as comments give it, if they are to count."""
         return self.radii_in_comments if self.job.radius_from_comments else {}
 
     @cached_property
     def offset_settings(self) -> Settings:
         """
-        What the program sets of tool offsets, by data input and by system variables.
+        Settings of tool offsets by the program, by data input and by system variables.
 
-        What it sets in the mode is a finding, and changes nothing of what is meant.
+        A setting in the mode is a finding, and does not change the intended offset.
         """
         settings = in_order([*self._set_by_data_input(), self._set_by_variables()])
         settings = settings.of((settings.number > 0) & (settings.number < 10**self.machine.control.offset_digits))
@@ -304,7 +304,7 @@ class ToolOffsets(Columns, frozen=True):
 
     @cached_property
     def sets_offsets(self) -> bool:
-        """Whether the program may set any offset."""
+        """True if the program may set any offset."""
         return bool(self.run.assigned) or bool(self.blocks.listed("data_input").any())
 
     @cached_property

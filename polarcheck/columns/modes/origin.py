@@ -23,7 +23,7 @@ _EXTERNAL, _SHIFT = 0, -1
 _MOST_EXTENDED = 300
 #: P of no work offset.
 _LONGEST = 1e9
-#: What G10 sets beyond it [mm] is the way from the reference position of the lathe, of which nothing is known.
+#: A setting by G10 beyond it [mm] is the distance from the reference position of the lathe, which is unknown.
 _NEAR = 50.0
 
 
@@ -73,7 +73,7 @@ class Origin(Columns, frozen=True):
 
     @cached_property
     def _settings(self) -> Settings:
-        """What the program sets of X of work offsets outside the mode, in order of the rows."""
+        """Settings of X of work offsets by the program outside the mode, in order of the rows."""
         return in_order([self._set_by_data_input(), self._set_by_variables()])
 
     def _set_by_data_input(self) -> Settings:
@@ -164,7 +164,7 @@ class Origin(Columns, frozen=True):
         return repeated(np.float64(0), len(self.trace)), repeated(np.int64(-1), len(self.trace))
 
     def _set_in(self, row: int, setter: int) -> str:
-        """What has set a work offset that counts in a row: `G10 on G54`, `G10 P0`, `#5221`, or the job."""
+        """The setter of the work offset that counts in a row: `G10 on G54`, `G10 P0`, `#5221`, or the job."""
         number = float(self._number[row])
         if setter < 0:
             return self._name(number)
@@ -213,7 +213,7 @@ class Origin(Columns, frozen=True):
 
     @cached_property
     def frame(self) -> Floats:
-        """X of the frame in force; 0 in the mode, where frames are meant, and where nobody knows it."""
+        """X of the frame in force; 0 in the mode, where frames are intended, and where it is unknown."""
         trace = self.trace
         if trace.path.frames is None:
             return repeated(np.float64(0), len(trace))

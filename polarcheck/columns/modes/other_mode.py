@@ -103,8 +103,8 @@ class OtherMode(Columns, frozen=True):
     @cached_property
     def is_meant(self) -> Mask:
         """
-        Of the rows that begin it those that can be nothing else: behind them the code that ends it follows, or a move
-        in the mode, or a word begins it, while macros are called by codes.
+        Rows that certainly begin the mode, and call no macro: the code that ends it or a move in the mode follows, or
+        a word begins it, while macros are called by codes.
         """
         mask = np.zeros(len(self.trace), bool)
         for switch in self.switches:
@@ -274,7 +274,7 @@ def known_by(name: str) -> tuple[Profile, ...]:
 
 
 def ends_of(profile: Profile, name: str) -> list[str]:
-    """What ends the mode on a machine that begins it by a code or word, in its own language first."""
+    """Codes that end the mode on a machine that begins it by a code or word, in its own language first."""
     control, polar = profile.machine.control, profile.machine.polar
     code = dict(zip(polar.on, polar.off, strict=False)).get(_intended(profile, name), polar.off[0])
     return [*(word for word, text in control.native_words.items() if text == code), code]

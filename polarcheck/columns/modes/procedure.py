@@ -71,7 +71,7 @@ class Procedure(Columns, frozen=True):
 
     @cached_property
     def _may_begin(self) -> Mask:
-        """Rows that begin the mode, that of another control, another plane, a cylinder, or nobody knows what."""
+        """Rows that begin the mode, a mode of another control, another plane, a cylinder, or something unknown."""
         trace, mode = self.trace, self.trace.machine.polar
         foreign = [name for name in mode.on_of_other_controls if is_code(name) and name not in mode.on_of_macros]
         begins = (

@@ -90,7 +90,7 @@ class Since(Columns, frozen=True):
 
     @cached_property
     def modal_state(self) -> Rows:
-        """Of scaling, rotation, mirror image, drilling cycles and constant surface speed."""
+        """From one code of scaling, rotation, mirror image, drilling cycles or constant surface speed to the next."""
         groups = ("scaling", "rotation", "mirror", "drilling", "speed")
         return self._last(np.logical_or.reduce([self.trace.modal.sets(group) for group in groups]))
 
@@ -123,20 +123,20 @@ class Since(Columns, frozen=True):
 
     @cached_property
     def spindle_code(self) -> Rows:
-        """Of a spindle."""
+        """From one M code of a spindle to the next."""
         codes = self.trace.machine.m_codes
         of_both = (codes.spindle_on, codes.spindle_off, codes.sub_spindle_on, codes.sub_spindle_off)
         return self._last(self.trace.blocks.codes(*chain.from_iterable(of_both)))
 
     @cached_property
     def c_axis_code(self) -> Rows:
-        """Of the C axis."""
+        """From one M code of the C axis to the next."""
         codes = self.trace.machine.m_codes
         of_both = (codes.c_axis_on, codes.c_axis_off, codes.sub_c_axis_on, codes.sub_c_axis_off)
         return self._last(self.trace.blocks.codes(*chain.from_iterable(of_both)))
 
     @cached_property
     def live_tool_code(self) -> Rows:
-        """Of the live tool."""
+        """From one M code of the live tool to the next."""
         codes = self.trace.machine.m_codes
         return self._last(self.trace.blocks.codes(*codes.live_tool_on, *codes.live_tool_off))

@@ -14,7 +14,7 @@ from polarcheck.program.machines.machine import Machine
 from polarcheck.program.machines.offset_keys import key_of
 
 _LONGEST_TOOL_NUMBER = 1e15
-#: Of T, where digits of their own say which offset has R.
+#: Digits of T for the tool, where digits of their own name the offset with R.
 _TOOL_DIGITS = 2
 #: As many edges a tool may have, and as large its number may be where it has some.
 _EDGES = 100_000
@@ -85,7 +85,7 @@ class CalledTools(Columns, frozen=True):
 
     @cached_property
     def tool_called(self) -> Rows:
-        """What is called in each row, tool and offset as one number: 808 for T0808; 0 before the first call."""
+        """The tool and offset called in each row as one number: 808 for T0808; 0 before the first call."""
         if not self.has_edges.any():
             return self._t
         tool = np.where(happened(self.blocks.has("T"), self.blocks.starts), self._t, _NO_TOOL)
@@ -94,7 +94,7 @@ class CalledTools(Columns, frozen=True):
 
     @cached_property
     def tool_called_before(self) -> Rows:
-        """What T called above the row."""
+        """The tool and offset that T called above the row."""
         return before(self.tool_called, self.blocks.starts, 0)
 
     @cached_property
@@ -182,7 +182,7 @@ class CalledTools(Columns, frozen=True):
         return self.tool_name(tool), "?" if edge == _UNKNOWN else str(edge)
 
     def offset_key(self, offset: int) -> str:
-        """The key by which a job gives an offset number (offset_keys); of what nobody knows, none that a job has."""
+        """The key by which a job gives an offset number (offset_keys); for an unknown one, a key that no job has."""
         pair = self.edge_of(offset)
         if pair is None:
             return str(offset)
@@ -191,7 +191,7 @@ class CalledTools(Columns, frozen=True):
 
     @cached_property
     def of_job(self) -> dict[int, Tool]:
-        """What the job says of the offsets of this file, by offset number."""
+        """The offsets of this file in the job, by offset number."""
         if not self.job.tools:
             return {}
         plain = {int(key): tool for key, tool in self.job.tools.items() if key.isdecimal()}

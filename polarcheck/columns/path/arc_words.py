@@ -21,7 +21,7 @@ _PLAIN = (
     "absolute",
     "incremental",
 )
-#: What else turns a tangent [rad].
+#: Further slack for the direction of a tangent [rad].
 _SLACK = 5e-3
 
 

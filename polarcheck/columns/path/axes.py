@@ -168,7 +168,7 @@ class PlaneAxes(Columns, frozen=True):
         return [axis for axis in INCREMENTS if axis != "X" and (self.linear_axis == ord(axis)).any()]
 
     def of_linear_axis(self, column: Callable[[str], NDArray[Element]]) -> NDArray[Element]:
-        """Of a column for each axis the values of the linear axis of each row."""
+        """Per row the value of its linear axis, from a column for each axis."""
         values = column("X")
         for axis in self.other_linear_axes:
             values = np.where(self.linear_axis == ord(axis), column(axis), values)
@@ -262,7 +262,7 @@ class PlaneAxes(Columns, frozen=True):
         return fill_down(form, self.switches_on | self.ends_mode | self.blocks.starts, 0).astype(np.int64)
 
     def _of_form(self, column: Callable[[Pair], NDArray[Element]]) -> NDArray[Element]:
-        """Of a column for each form the values of the one of each row."""
+        """Per row the value of its form, from a column for each form."""
         values = column(self._forms[0])
         for number, pair in enumerate((*self._forms[1:], *self._by_number), 1):
             if (self._form == number).any():
@@ -278,7 +278,7 @@ class PlaneAxes(Columns, frozen=True):
         return [*self._forms, *self._by_number][int(self._form[row])]
 
     def of_virtual_axis(self, column: Callable[[str], NDArray[Element]]) -> NDArray[Element]:
-        """Of a column for each address the values of the virtual axis of each row."""
+        """Per row the value of its virtual axis, from a column for each address."""
         return self._of_form(lambda pair: column(pair[0]))
 
     @cached_property
@@ -320,7 +320,7 @@ class PlaneAxes(Columns, frozen=True):
 
     @property
     def followed_virtual_words(self) -> Rows:
-        """Of the words of the virtual axis those that count: of Y and C in one block the one that it has there."""
+        """Words of the virtual axis that count: if Y and C stand in one block, only the address of the axis there."""
         return np.sort(np.concatenate([self._words_of_pair(pair, rows) for pair, rows in self.virtual_pairs]))
 
     def _moves_itself(self, pair: Pair) -> Mask:
@@ -363,7 +363,7 @@ class PlaneAxes(Columns, frozen=True):
 
     @cached_property
     def is_simulated(self) -> Mask:
-        """What the row does in the mode is simulated; True outside the mode."""
+        """The effect of the row in the mode is simulated; True outside the mode."""
         ends = self.switches_on | self.ends_mode | self.blocks.starts
         if not (self.words_not_simulated.any() or self.selects_plane_not_simulated.any()):
             return np.ones(len(self.run), bool)
@@ -394,7 +394,7 @@ class PlaneAxes(Columns, frozen=True):
 
     @cached_property
     def motion(self) -> States:
-        """What the row does with its axis words (Motion); NONE without axis words."""
+        """The motion of the row's axis words (Motion); NONE without axis words."""
         moves_others = self.modal.uses_axes & self.blocks.has(*self.machine.polar.rotary_words, "Y", "V")
         moving = self.moves_plane | self.commands_z | moves_others
         motion = np.where(self.modal.in_cycle, Motion.CYCLE, self.modal.state("motion"))

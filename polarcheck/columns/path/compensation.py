@@ -130,7 +130,7 @@ class CutterCompensation(Columns, frozen=True):
 
     @cached_property
     def allowance(self) -> Floats:
-        """What is added to R while cutter compensation is in force [mm]: OFFN, up to the next or the program's end."""
+        """Allowance on R while cutter compensation is in force [mm]: OFFN, up to the next or the program's end."""
         word = self.machine.offsets.allowance_word
         written = self.blocks.has(word)
         if not written.any():

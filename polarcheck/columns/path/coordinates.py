@@ -19,7 +19,7 @@ _FARTHEST = 1e7
 
 
 class Coordinates(Lookups):
-    """What the numbers of the coordinates count. Most columns have one element per executed word."""
+    """Units of the numbers of coordinates. Most columns have one element per executed word."""
 
     def __init__(
         self,
@@ -121,7 +121,7 @@ class Coordinates(Lookups):
         return self.is_large_unpointed | (self.is_unpointed & self.in_increments[self.run.row])
 
     def meant(self, least: Floats | float) -> Floats:
-        """Per word: the value that is meant; least: what an increment is."""
+        """Per word: the intended value; least: the length of an increment."""
         value, in_increments = self.run.words.value, self._counts_increments
         values = np.where(in_increments, value * least, value) if in_increments.any() else value
         too_far = np.abs(values) > _FARTHEST

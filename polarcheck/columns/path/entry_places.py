@@ -52,7 +52,7 @@ def entry_places(
     The places for the C words of a program.
 
     words: coordinates of C, NaN where none, and increments, 0 where none [deg]. referenced: rows that take C to its
-    reference point. lost: rows after which nobody knows where C stands.
+    reference point. lost: rows after which the position of C is unknown.
     """
     count = len(sections)
     last = np.append(0, sections.leave)[:count] - 1

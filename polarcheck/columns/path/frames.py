@@ -26,7 +26,7 @@ _OTHER_PLANES = (18, 19)
 
 class FrameWords(NamedTuple):
     """
-    What each row says of frames.
+    Frame words of each row.
 
     begins: a new frame. adds: changes the one in force. ends: the frame in force is none from here on. unknown: begins
     one that is not simulated, or changes the one in force so. angle [deg], shift [mm], z [mm]: of the words beside it,
@@ -99,7 +99,7 @@ def find_frames(
 
 
 def _or_nothing(value: Floats, written: Mask) -> Floats:
-    """Of words that are written their values, NaN where these are not known; else 0."""
+    """The value of a word, NaN where it is not known; 0 where none is written."""
     return np.where(written, value, 0.0)
 
 
@@ -115,7 +115,7 @@ def in_force(words: FrameWords) -> Frames:
 
 
 def _summed(value: Floats, words: FrameWords, resets: Mask, values: Floats) -> Floats:
-    """What new frames set, and what is added to them."""
+    """The sum of a new frame and of the frames added to it."""
     set_by = np.where(words.begins & ~words.unknown, value, np.nan)
     return positions(set_by, np.where(words.adds & ~words.unknown, value, 0.0), resets, values)
 
@@ -126,7 +126,7 @@ def in_frame(
     """
     Coordinates (NaN where none) and increments of an axis as those of the lathe, but along the axes of the frame.
 
-    Outside the mode X is not known in a frame that is turned: it then goes with Z, at which nobody looks.
+    Outside the mode X is not known in a frame that is turned: it then goes with Z, which is not used.
     """
     if frames is None:
         return absolute, steps

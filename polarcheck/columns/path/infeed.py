@@ -3,7 +3,7 @@ The infeed cycle of `G12.1 E`: the closed contour is cut in passes, each nearer 
 
 What the description says: from the start point to the beginning of the cut, along the contour, then in by E for each
 further cycle until the contour is reached; the contour must be closed; E is a radius value, its sign is ignored.
-What it leaves open, and what is taken here: a pass is the contour, moved off by a whole multiple of E to the side on
+It leaves open, and is assumed here: a pass is the contour, moved off by a whole multiple of E to the side on
 which the tool is, and its F is that of the contour; as many passes are cut as lie between the contour and the start
 point, the farthest first; the control goes straight from the end of a pass to the beginning of the next.
 
@@ -11,7 +11,7 @@ How many these are: the start point is one of the tool center, and lies d off th
 tool center of the pass k E off the contour runs R + k E off it. The first pass is an infeed from the start point, too,
 so that R + k E < d: there are ceil((d - R) / E) - 1 of them before the contour itself, inside as outside. One that is
 through the start point but for the rounding of coordinates is none. R is 0 where the tool center itself is programmed,
-and where nobody knows R. Where the contour lies between the start point and the tool there is none; and round a corner,
+and where R is unknown. Where the contour lies between the start point and the tool there is none; and round a corner,
 where the tool center swings out by more than R + k E, none beyond the start point.
 
 A pass that runs along arcs or corners into which R and its offset together do not fit has a finding and no moves.
@@ -36,7 +36,7 @@ CLOSED = 0.002
 #: Passes of a section that are simulated, those next to the contour: C turns fastest where the tool is nearest.
 MOST_PASSES = 200
 MOST_MOVES = 200_000
-#: Of a least increment: what computing leaves of a whole number of them.
+#: Rounding error of a whole number of least increments, as a share of one.
 CUT = 1e-6
 
 

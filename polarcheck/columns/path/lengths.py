@@ -29,7 +29,7 @@ def _scale(units: States) -> Floats:
 
 class Lengths(Lookups):
     """
-    What the words are as lengths. The units in force and those written differ where a section refuses a code of units.
+    Words as lengths. The units in force and those written differ where a section refuses a code of units.
     """
 
     def __init__(
@@ -98,7 +98,7 @@ class Lengths(Lookups):
 
     @property
     def stock_diameter(self) -> Floats:
-        """Of the stock [mm]; NaN where the job gives none."""
+        """Diameter of the stock [mm]; NaN where the job gives none."""
         return np.broadcast_to(self.job.stock.diameter * self.job_scale, len(self.run))
 
     @cached_property

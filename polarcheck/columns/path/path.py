@@ -130,7 +130,7 @@ class ProgrammedPath(Columns, frozen=True):
         return self.blocks.listed("machine_coordinates") & self.mode.in_polar & is_z
 
     def _set_by(self, axis: str) -> Floats:
-        """What G50 (G92) or G28 make the coordinate of an axis; NaN where that is not known."""
+        """The coordinate of an axis after G50 (G92) or G28; NaN where that is not known."""
         return np.where(self.modal.sets_coordinates & self.blocks.has(axis), self.lengths.length_of(axis), np.nan)
 
     @cached_property
@@ -214,7 +214,7 @@ class ProgrammedPath(Columns, frozen=True):
         enter = self.mode.sections.enter[off_axis]
         resets = self._forgets("X", "U") | self.blocks.mask_of(leave) | self.blocks.mask_of(enter)
         values, virtual = self._set_by("X") * self.lengths.x_factor, shift.imag.copy()
-        # Outside its section nobody asks where another linear axis is but at G12.1, and X is not followed within.
+        # Another linear axis counts in its section and at its G12.1 only, where X is not followed.
         for axis in self.axes.other_linear_axes:
             begins = self.mode.enters & (self.axes.linear_axis == ord(axis))
             resets, values = resets | begins, np.where(begins, self._alone(axis), values)
@@ -296,9 +296,9 @@ class ProgrammedPath(Columns, frozen=True):
     @cached_property
     def depth(self) -> Floats:
         """
-        Z after the row, counted from 0 where Z is not known [mm]: by that, what is made at one depth is told apart.
+        Z after the row, counted from 0 where Z is not known [mm]: enough to tell depths apart.
 
-        Increments tell how much deeper a block is than another one. A Z word without a known value moves nothing.
+        Increments show how much deeper one block is than another. A Z word without a known value moves nothing.
         """
         absolute, steps = self._z_words
         return positions(absolute, np.nan_to_num(steps), self._forgets("Z", "W"), np.nan_to_num(self._set_by("Z")))
@@ -338,7 +338,7 @@ class ProgrammedPath(Columns, frozen=True):
         return along, np.where(is_place_across, across - start.imag, across)
 
     def is_coordinate_of_center(self, axis: str, at: int) -> Mask:
-        """Whether a word of the center of an arc is a coordinate; at: 0 along the linear axis, 1 along the other."""
+        """True where a center word of an arc is a coordinate; at: 0 along the linear axis, 1 along the virtual one."""
         distance = self.blocks.distance(self.axes.center_words_along(axis)[at])
         return np.zeros(len(self.run), bool) if distance is None else distance == Distance.ABSOLUTE
 
@@ -410,12 +410,12 @@ class ProgrammedPath(Columns, frozen=True):
 
     @cached_property
     def c_turn(self) -> Floats:
-        """What C turns by in the row [deg]; NaN while unknown."""
+        """Angle that C turns in the row [deg]; NaN while unknown."""
         return self.c_turn_from(self.c_angle_before, np.arange(len(self.run)))
 
     def c_turn_from(self, before: Floats, rows: Rows) -> Floats:
         """
-        What C turns by in rows, from the angle at which it stands before each of them [deg].
+        Angles that C turns in rows, from the angle at which it stands before each of them [deg].
 
         Where C rolls over, an angle outside the mode is reached the shorter way (B-63534EN/02 p. 531).
         """
@@ -507,7 +507,7 @@ class ProgrammedPath(Columns, frozen=True):
         resets, direction = self._forgets(axis, increment), self.machine.polar.direction_word
         turns_plane = self.mode.enters & self.blocks.has(direction)
         if turns_plane.any():
-            # Where the tool stands is not told by it, but in which direction of C the first axis of the plane points.
+            # It does not give the position of the tool, but the direction of the first axis of the plane.
             resets, values = resets | turns_plane, np.where(turns_plane, self.coordinates.angle_of(direction), values)
         return positions(absolute, turn, resets, values)
 
@@ -539,8 +539,8 @@ class ProgrammedPath(Columns, frozen=True):
         """
         A move on the polar plane, be it in rapid traverse; a cycle is none, and neither is a move of no length.
 
-        At G0 most controls alarm. A start-up or offset cancel in it is one nevertheless: what was meant is G1, and
-        compensation itself asks for G0 or G1 (B-63324EN/03 p. 402).
+        At G0 most controls alarm. A start-up or offset cancel in it is one nevertheless: G1 was intended, and
+        compensation itself requires G0 or G1 (B-63324EN/03 p. 402).
         """
         return np.asarray(self.travels & ~self.modal.in_cycle)
 

@@ -1,6 +1,6 @@
 """
-The path of the tool center as columns: what the control would object to on the way, how near it comes to the center
-of C, and what it asks of the C axis.
+The path of the tool center as columns: faults that the control would report, the distance to the center of C, and the
+turning of the C axis.
 """
 
 from __future__ import annotations
@@ -83,7 +83,7 @@ class ToolCenter:
     # ---- what the control would object to while it compensates ----
 
     def _found(self, in_path: Mask) -> Mask:
-        """From the rows of the path to those of the trace."""
+        """A mask over the rows of the trace from a mask over the rows of the path."""
         rows = np.zeros(len(self.trace), bool)
         rows[self._rows[in_path]] = True
         return rows
@@ -119,7 +119,7 @@ class ToolCenter:
     @cached_property
     def interferes_by_rounding(self) -> Mask:
         """
-        Of those the ones that would not, were the contour as straight as the last digit of its points leaves it open.
+        Moves that interfere only because of the rounding of their points to the last digit.
 
         Where blocks are so short that this digit turns them by more than the contour does, a part that is convex has
         inside corners, too tight for the cutter.

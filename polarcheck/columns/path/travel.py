@@ -68,8 +68,7 @@ class Travel(Columns, frozen=True):
 
     def first_beyond(self, beyond: Mask, moving: Mask) -> Mask:
         """
-        Of the moving rows beyond a limit those before which the last moving row of the program was not: each way out
-        once.
+        Moving rows beyond a limit whose previous moving row in the program was within it: each excursion once.
         """
         rows = np.flatnonzero(moving | self.trace.blocks.starts)
         first = beyond & moving

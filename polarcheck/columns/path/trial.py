@@ -11,7 +11,7 @@ from polarcheck.columns.path.tool_center import OtherRadius, ToolCenter
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Mask, cached_property
 
-#: What two points may differ by that are meant as one [tolerances].
+#: Largest distance of two points that are intended as one [tolerances].
 _ROUNDINGS = 10
 
 
@@ -34,7 +34,7 @@ class Trial(Overcuts):
 
     @cached_property
     def faulty(self) -> Mask:
-        """Rows to which the control would object, or that would cut into the part; and those of which nobody knows."""
+        """Rows that the control would refuse, that would cut into the part, or of which this is unknown."""
         faulty = np.zeros(len(self.trace), bool)
         faulty[self.sweeps.row] = True
         return faulty | self.fails
@@ -48,7 +48,7 @@ class Trial(Overcuts):
 
     @cached_property
     def objects(self) -> Mask:
-        """Rows to which the control would object, and those of which nobody knows, without what is cut."""
+        """Rows that the control would refuse, or of which this is unknown; cuts not included."""
         tool = self.tool_center
         faulty = tool.inside_arc_too_small | tool.interferes | tool.no_intersection
         faulty |= tool.movement_missing | tool.arc_center_on_path
