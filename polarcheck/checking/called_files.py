@@ -14,7 +14,7 @@ from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Rows
 from polarcheck.foundation.finding import Finding, Silenced
 
-#: What a finding is at the block of the file that calls: that may allow it.
+#: Turns a finding at a block of the calling file into its reported form: that block may allow it.
 Answered = Callable[[Finding, int], Finding]
 
 
@@ -24,7 +24,7 @@ RowsOfFindings = Mapping[tuple[str, int, int], int]
 
 def in_call(trace: Trace, rows: Rows, row: int) -> str:
     """
-    Of which calls a finding in a called program is, where the program is called several times and only some have it.
+    The calls in which a finding of a called program occurs, where only some of several calls have it.
 
     rows: all that the rule has hit. row: where the finding stands. Calls are those of the main program; where one of
     them runs the block several times, those of the program that calls it.

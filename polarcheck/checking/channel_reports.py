@@ -24,7 +24,7 @@ _Reports = Sequence[tuple[Source, FileReport]]
 
 
 def first_runs(runs: Sequence[tuple[str, Tables]]) -> list[tuple[str, Tables]]:
-    """Of the runs of a file (check.read) the first one of each channel, which is that with block skip off."""
+    """The first run of each channel of a file (check.read), which has block skip off."""
     first: dict[str, tuple[str, Tables]] = {}
     for state, tables in runs:
         first.setdefault(tables["text"].source.channel, (state, tables))
@@ -33,10 +33,10 @@ def first_runs(runs: Sequence[tuple[str, Tables]]) -> list[tuple[str, Tables]]:
 
 def united(reports: _Reports) -> FileReport:
     """
-    One report of those of the channels, each with its view of the file.
+    Join the reports of the channels, each with its view of the file, to one.
 
-    A finding belongs to the channel in which its line stands, whichever runs it, and is told once. One before the first
-    mark of a channel belongs to none, where all of them show it.
+    A finding belongs to the channel in which its line stands, whichever runs it, and is listed once. One before the
+    first mark of a channel belongs to none, if all of them have it.
     """
     (_, first), *_ = reports
     sections = _joined(reports, attrgetter("polar_sections"))
@@ -82,7 +82,7 @@ def _key(entry: Finding) -> tuple[object, ...]:
 
 
 def _joined(reports: _Reports, parts: Callable[[FileReport], Sequence[Part]]) -> Iterator[Part]:
-    """What the reports have of a kind, each with the name of its channel."""
+    """The entries of one kind in all reports, each with the name of its channel."""
     for source, report in reports:
         for part in parts(report):
             yield replace(part, channel=source.channel)

@@ -31,7 +31,7 @@ from polarcheck.rules.tables import OF_CAUSE, Tables
 if TYPE_CHECKING:
     from polarcheck.columns.words.allow_comments import Allows
 
-#: Findings listed per rule and file. Further ones are only counted: nobody reads them, and memory stays bounded.
+#: Findings listed per rule and file. Further ones are only counted, which bounds memory.
 LISTED = 1000
 #: Longest program name in a finding [characters].
 _NAME_LENGTH = 40

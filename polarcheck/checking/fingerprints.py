@@ -1,8 +1,8 @@
 """
-What a finding is known by: its rule and its block as the control reads it.
+The fingerprint of a finding: its rule and its block as the control reads it.
 
-It stays the same where a program is renumbered, punched out, moved, or changed elsewhere. What cannot be told apart so
-is counted: the same block twice has the same fingerprint.
+It stays the same where a program is renumbered, punched out, moved, or changed elsewhere. The same block twice has the
+same fingerprint; equal fingerprints are counted.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from polarcheck.program.reading.words import Text
 from polarcheck.rules.places import Place
 from polarcheck.rules.rule import Rule
 
-#: Of a block that is looked at; no longer one was written by hand [characters].
+#: Characters of a block that count; no block written by hand is longer.
 _LONGEST = 4000
 _BLANKS = re.compile(r"[\0-\x20\x7f\xa0;]+")
 _SEQUENCE_NUMBER = re.compile(r"^(/?)N\d+")

@@ -241,7 +241,7 @@ def _c_axis_without_limit(tables: Tables, rule: Rule) -> Iterator[Missing]:
     """
     Report the highest C rate if the profile has no limit, so that the setter can compare it.
 
-    told() drops a rate that every C axis reaches, and one that none does, which is a finding.
+    merged_by_reason() drops a rate that every C axis reaches, and one that none does, which is a finding.
     """
     trace: Trace = tables["trace"]
     c_feed: Floats = tables["tool_center"].c_feed

@@ -14,7 +14,7 @@ from polarcheck.program.machines.machine import Machine
 from polarcheck.rules.remedies import place
 from polarcheck.rules.wording.written import block_and_line, executed_word, written
 
-#: Names of axes that are told one by one; a hostile file has any number of them.
+#: Names of axes that are listed one by one; a hostile file has any number of them.
 _NAMES = 20
 
 
@@ -78,7 +78,7 @@ def names_not_followed(trace: Trace) -> Iterator[tuple[str, int]]:
 
 
 def _by_name(trace: Trace, words: Rows, what: str) -> Iterator[tuple[str, int]]:
-    """What is said of each name of an axis among some words, from the line where it stands first; and its blocks."""
+    """The reason for each name of an axis among some words, with its first line; and the number of its blocks."""
     rows_by_name: dict[str, list[int]] = {}
     for index in words.tolist():
         name = executed_word(trace.run, index).partition("=")[0].upper()
@@ -110,7 +110,7 @@ def on_sub_spindle(trace: Trace) -> Iterator[tuple[str, int]]:
 
 
 def not_simulated(infeed: Infeed) -> Iterator[tuple[str, int]]:
-    """What of an infeed cycle is not simulated, and in how many blocks."""
+    """Each part of an infeed cycle that is not simulated, and in how many blocks."""
     partly = int(infeed.is_simulated_in_part.sum())
     yield (
         "of an infeed cycle only the passes next to the contour are simulated: look at the others on the control",

@@ -21,13 +21,13 @@ if TYPE_CHECKING:
 #: Why a column is not known in a row.
 _Reason: TypeAlias = Callable[[Tables, int], str]
 
-#: What to give where a value of the program is not known.
+#: Remedies where a value of the program is not known.
 _OF_VARIABLES = "give its variables as [run.variables] in polarcheck.toml, or write the number"
 #: Variables of other languages have names, and no number for the job.
 _OF_NAMED = "give its variables a value in the program, or write the number"
 #: Causes, beside the offset numbers, for which a move is not known.
 _DEPTH, _POSITION, _NO_FEED, _FEED_OF_SPINDLE = -4, -3, -2, -1
-#: Of a block that is named; more is cut off [characters].
+#: Characters of a block that is quoted; more is cut off.
 _BLOCK_LENGTH = 40
 
 
@@ -66,7 +66,7 @@ def _of_move(tables: Tables, row: int) -> str:
 
 
 def of_variables(machine: Machine) -> str:
-    """What to do where a value is not known."""
+    """The remedy where a value is not known."""
     return _OF_VARIABLES if machine.macro.language == "custom-macro" else _OF_NAMED
 
 

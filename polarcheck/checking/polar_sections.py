@@ -1,4 +1,4 @@
-"""What the verdict of a file rests on: each polar section, its radius, and how near it comes to a limit."""
+"""The polar sections on which the verdict of a file rests: each with its radius, and how near it comes to a limit."""
 
 from __future__ import annotations
 
@@ -101,7 +101,7 @@ def _polar_sections(trace: Trace, dynamics: Dynamics, center: Center, ramps: Ram
 
 
 def _of_known_blocks(dynamics: Dynamics, section: int) -> dict[str, Any]:
-    """Of a section whose time is not known that of the other blocks, and each reason with its first line."""
+    """The known part of the time of a section whose time is not known, and each reason with its first line."""
     trace = dynamics.trace
     times = dynamics.times(np.flatnonzero(trace.mode.section == section))
     reasons = [f"{reason} in line {trace.blocks.line_in_file[first]}" for reason, _, first in times.unknown]

@@ -1,4 +1,4 @@
-"""What the programs of a folder tell of the job that they need: the machines that read them, and the offsets called."""
+"""The job that the programs of a folder need: the machines that read them, and the offsets called."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _NUMBERED = re.compile(r"([GM])(\d+)(?:\.(\d))?")
 
 
 class Told(msgspec.Struct, frozen=True):
-    """What a program tells of an offset that it needs: R [mm] and the comment that says so; None where none does."""
+    """An offset that a program needs: its R [mm] and the comment that gives it; None where none does."""
 
     path: str
     radius: float | None = None
@@ -38,10 +38,10 @@ class Told(msgspec.Struct, frozen=True):
 
 class Survey(msgspec.Struct, frozen=True):
     """
-    What some programs tell.
+    The needs of some programs.
 
     programs: how many there are. polar: those that begin the polar mode. machine: the name of that which read them.
-    fitting: the built-in machines that read all that were tried. offsets: by key, with what each program tells of it.
+    fitting: the built-in machines that read all that were tried. offsets: by key, one entry per program that calls it.
     units: mm, inch, both or, where none says it, none.
     """
 
@@ -55,7 +55,7 @@ class Survey(msgspec.Struct, frozen=True):
 
 def survey(paths: Sequence[str], requested: Profile | None, awaited: Iterable[str] | None = None) -> Survey:
     """
-    Read the programs of some paths; those that cannot be read tell nothing.
+    Read the programs of some paths; those that cannot be read are skipped.
 
     requested: the machine, if somebody knows it; else those that fit are looked for. awaited: the same paths, as they
     are gone through.
@@ -100,7 +100,7 @@ def _data(path: str) -> bytes | None:
 
 
 def _begins(requested: Profile | None) -> re.Pattern[bytes]:
-    """What begins the polar mode, as it may be written: most programs of a folder need no closer look."""
+    """A pattern of the codes that begin the polar mode, as they may be written: it skips most programs of a folder."""
     known = [requested] if requested else profiles.built_in()
     codes = {word for profile in known for word in (*profile.machine.polar.on, *profile.machine.control.native_words)}
     return re.compile(rb"(?i)" + b"|".join(sorted(_written(code) for code in codes)))
