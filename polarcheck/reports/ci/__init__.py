@@ -1,1 +1,1 @@
-"""What CI systems need in reports: paths from the root of the repository, XML, a summary in Markdown."""
+"""Parts of reports for CI systems: paths from the root of the repository, XML, a summary in Markdown."""

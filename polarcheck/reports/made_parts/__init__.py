@@ -1,1 +1,1 @@
-"""What a program makes, in words, and how that differs from the part that the job asks for."""
+"""The part that a program makes, in words, and how it differs from the part of the job."""

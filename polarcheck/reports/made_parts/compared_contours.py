@@ -30,8 +30,8 @@ def compared_in(report: FileReport, runs: Sequence[tuple[str, Tables]]) -> FileR
 
 def compared(tables: Tables) -> list[PartComparison]:
     """
-    What is compared in a run, in the order of the program, without what is only roughing; empty where the job asks for
-    nothing. Raises TooHardError as the finished part does.
+    The comparisons of a run, in the order of the program, without those of roughing; empty where the job gives no
+    part. Raises TooHardError as the finished part does.
     """
     trace: Trace = tables["trace"]
     deviations: Deviations = tables["deviations"]

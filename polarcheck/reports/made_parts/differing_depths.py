@@ -18,7 +18,7 @@ _IN_COMMON = 0.25
 
 
 class Area(NamedTuple):
-    """What stands at one depth, or what is cleared there: its Z [mm], and the polygon (shapely, mm)."""
+    """The area that stands at one depth, or that is cleared there: its Z [mm], and the polygon (shapely, mm)."""
 
     z: float
     polygon: Any

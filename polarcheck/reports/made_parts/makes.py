@@ -1,4 +1,4 @@
-"""What the only section of a file makes, in one line of the text report of a check."""
+"""The part that the only section of a file makes, in one line of the text report of a check."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
 """
-What a program makes: the shapes of its finished part, section by section and depth by depth.
+The shapes of the finished part of a program, section by section and depth by depth.
 
-All is told in the frame of the part, whose x runs towards C0: C at G12.1 is added to angles and turns places. Where it
-is not known they are told as the section writes them.
+All are in the frame of the part, whose x runs towards C0: C at G12.1 is added to angles and turns points. Where it is
+not known they are given as the section writes them.
 """
 
 from __future__ import annotations
@@ -49,12 +49,12 @@ def part_of(report: FileReport, runs: Sequence[tuple[str, Tables]]) -> FileRepor
 
 #: More shapes than these are no line.
 _IN_ONE_LINE = 4
-#: More angles than these are told by their first and last one, if their steps are the same [deg].
+#: More angles than these are given by their first and last one, if their steps are the same [deg].
 _IN_A_LIST, _SAME_STEP = 8, 1e-3
 
 
 def made_by(tables: Tables) -> list[MadeShape]:
-    """What one run makes, an entry for each shape of each section, with all its depths."""
+    """The part of one run: an entry for each shape of each section, with all its depths."""
     trace: Trace = tables["trace"]
     if not len(trace.mode.sections):
         return []
@@ -66,7 +66,7 @@ def made_by(tables: Tables) -> list[MadeShape]:
 
 def in_one_line(tables: Tables) -> str:
     """
-    What one run makes, as short as it is true: `hexagon, 30.000 across flats, to Z-5.000`.
+    The part of one run in one line: `hexagon, 30.000 across flats, to Z-5.000`.
 
     Empty where not all of it is known, or where it takes too long.
     """
@@ -140,7 +140,7 @@ def _by_section(trace: Trace, tables: Tables) -> list[MadeShape]:
 
 
 def _missing(trace: Trace, section: int) -> str:
-    """Why the contour of a section is not whole: the line of the first block that ends nobody knows where."""
+    """The reason why the contour of a section is incomplete: the line of the first block with an unknown end."""
     mills = np.where(
         trace.mode.anywhere_in_section(trace.compensation.compensates), trace.compensation.compensates, trace.path.cuts
     )
@@ -157,14 +157,14 @@ def _replaced_needs(entry: MadeShape, missing: str) -> MadeShape:
 
 
 def shapes_of_level(trace: Trace, level: Level) -> list[Shape]:
-    """What the contours of one depth make."""
+    """The shapes that the contours of one depth make."""
     from polarcheck.geometry.shapes.shapes import shapes_of
 
     return [] if level.tangled else shapes_of(level.outline, level.gap, _bar(trace))
 
 
 def level_in_words(trace: Trace, level: Level) -> str:
-    """What a level of one section makes, in the frame of the part, in the units of the program; empty for nothing."""
+    """The shapes of a level of one section in words, in the frame of the part and the units of the program."""
     turn = _turn(trace, level.section)
     if not level.angle and turn != 1:
         level = level._replace(outline=turned_columns(level.outline, turn))
@@ -243,7 +243,7 @@ def _of_meant_level(trace: Trace, level: Level) -> Depth:
 
 
 def _ribs_and_strips(tables: Tables) -> list[tuple[int, LeftStanding]]:
-    """What the tool leaves between passes and where it comes and goes; with the section."""
+    """Ribs between passes and strips at leads that the tool leaves standing, each with its section."""
     trace: Trace = tables["trace"]
     overcuts: Overcuts = tables["overcuts"]
     if not overcuts.compensates:

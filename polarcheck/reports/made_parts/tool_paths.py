@@ -1,4 +1,4 @@
-"""What sections without cutter compensation make: there the programmed path is that of the tool center."""
+"""The shapes of sections without cutter compensation, where the programmed path is that of the tool center."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def depths_of_paths(tables: Tables) -> Iterator[Depth]:
 
 
 def _depth(trace: Trace, moves: Moves, chosen: Rows, cutter: float) -> Depth:
-    """What these moves of a cutter at one Z make."""
+    """The shapes that these moves of a cutter at one Z make."""
     row = int(moves.row[chosen[0]])
     sections = tuple(dict.fromkeys(trace.mode.section[moves.row[chosen]].tolist()))
     z = float(trace.path.z[row])
@@ -97,7 +97,7 @@ def above_the_face(trace: Trace) -> Mask:
     Rows in the air, one for each: where G0 is not allowed, G1 takes the tool to its place.
 
     They are no deeper than the tool came to the section, before the face of the part, at Z0, and their section goes on
-    to Z0 or deeper. Where the whole section lies on one side of Z0 nobody knows where the face is, and none is.
+    to Z0 or deeper. Where the whole section lies on one side of Z0 the face is unknown, and there are no such rows.
     """
     inside = np.flatnonzero(trace.mode.section >= 0)
     deepest = np.full(len(trace.mode.sections), np.inf)

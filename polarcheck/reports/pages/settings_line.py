@@ -1,4 +1,4 @@
-"""What decided a run, beside the defaults, in one line."""
+"""The settings of a run that are not defaults, in one line."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def settings_line(report: Report) -> Iterator[str]:
 
 
 def _fact(settings: RunSettings, name: str) -> str:
-    """Return a setting with its origin; empty for one that nobody has set."""
+    """Return a setting with its origin; empty for a default."""
     if name in settings.differing:
         return f"{name} differs between the files (--format json)"
     value, sources = getattr(settings, name), settings.sources or {}
@@ -39,7 +39,7 @@ def _fact(settings: RunSettings, name: str) -> str:
     return f"{name} {_text(value)} ({', '.join(named)})" if named else ""
 
 
-#: Values that are not worth a word where nobody knows whether somebody has set them.
+#: Values that are left out where it is unknown whether they were set.
 _DEFAULTS: Mapping[str, Sequence[Any]] = {
     **{name: ([], (), {}) for name in ("changes", "select", "ignore", "severities")},
     "inline": (True,),

@@ -1,4 +1,4 @@
-"""What the walks through folders did not read, in words."""
+"""The files and folders that were not read, in words."""
 
 from __future__ import annotations
 
