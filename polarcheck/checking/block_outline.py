@@ -79,8 +79,8 @@ def _of_rule(listed: Listed, over: str, tables: Tables) -> Iterable[tuple[str, d
         np.fmax.at(numbers[name], listed.finding, column(trace)[rows])
     for number, finding in enumerate(listed.findings):
         values = {name: float(column[number]) for name, column in numbers.items() if not np.isnan(column[number])}
-        for shown in in_the_file([finding], trace, lambda answered, _: answered, tables.get("rows_in_calls")):
-            yield Outline.key(shown), values
+        for reported in in_the_file([finding], trace, lambda answered, _: answered, tables.get("rows_in_calls")):
+            yield Outline.key(reported), values
 
 
 #: The most hashes of an outline: of a longer file a part of the blocks is listed.
@@ -115,14 +115,14 @@ def outline(text: str, lines: Iterable[int], most: int = MOST) -> Outline:
     lines: those whose places are wanted, from 1.
     most: hashes that are listed.
     """
-    wanted = {*lines}
+    requested = {*lines}
     with_block: list[int] = []
     of_lines: list[int] = []
     hashes: list[int] = []
     for number, block in enumerate(_in_one_spelling(text).split("\n"), 1):
         if block and not _HEAD.fullmatch(block):
             of_lines.append(number)
-            if number in wanted:
+            if number in requested:
                 with_block.append(number)
             hashes.append(zlib.crc32(block.encode("utf-8", "replace")) & ((1 << BITS) - 1))
     of = 1

@@ -89,7 +89,7 @@ def _not_suppressed(finding: Finding, trace: Trace, answered: Answered, row: int
     section_line = finding.section_line
     if source.is_own(part):
         return _moved_to_call(finding, part[1], source.part_of(section_line) if section_line else None)
-    shown = msgspec.structs.replace(
+    located = msgspec.structs.replace(
         finding,
         message=f"in {part[0]}, line {part[1]}, {finding.block}: {finding.message}",
         line=line,
@@ -100,7 +100,7 @@ def _not_suppressed(finding: Finding, trace: Trace, answered: Answered, row: int
         section_line=None if section_line and source.part_of(section_line) else section_line,
         fix=None,
     )
-    return answered(shown, block)
+    return answered(located, block)
 
 
 def _moved_to_call(finding: Finding, line: int, section: tuple[str, int] | None) -> Finding:

@@ -54,7 +54,7 @@ def united(reports: _Reports) -> FileReport:
 
 
 def _once(reports: _Reports, findings: Callable[[FileReport], Sequence[Found]]) -> Iterator[Found]:
-    shown = Counter(_key(entry) for _, report in reports for entry in findings(report))
+    counts = Counter(_key(entry) for _, report in reports for entry in findings(report))
     listed: set[tuple[object, ...]] = set()
     for source, report in reports:
         for entry in findings(report):
@@ -70,11 +70,11 @@ def _once(reports: _Reports, findings: Callable[[FileReport], Sequence[Found]]) 
             if len(owners) == 1:
                 yield _of_channel(entry, owners[0])
             else:
-                yield entry if shown[key] == len(reports) else _of_channel(entry, source.channel)
+                yield entry if counts[key] == len(reports) else _of_channel(entry, source.channel)
 
 
 def _of_channel(entry: Found, name: str) -> Found:
-    return replace(entry, channel=name, follows=[_of_channel(one, name) for one in entry.follows])
+    return replace(entry, channel=name, follows=[_of_channel(follower, name) for follower in entry.follows])
 
 
 def _key(entry: Finding) -> tuple[object, ...]:

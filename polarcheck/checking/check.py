@@ -78,7 +78,7 @@ def check_file(
 
 
 def check_runs(
-    found: Sequence[tuple[str, Tables]],
+    runs: Sequence[tuple[str, Tables]],
     rules: Sequence[Rule],
     severities: Mapping[str, str] | None = None,
     inline: bool = True,
@@ -89,7 +89,7 @@ def check_runs(
 
     deselected: lines on what keeps rules of weight from running; with any of them no file passes.
     """
-    channels = [list(channel) for _, channel in groupby(found, lambda run: _source(run[1]).channel)]
+    channels = [list(channel) for _, channel in groupby(runs, lambda run: _source(run[1]).channel)]
     checked = [_check_channel(channel, rules, severities, inline) for channel in channels]
     # An allow comment is unused only if no run of any channel used it.
     used = set[Used]().union(*(engine.used for _, engines in checked for engine in engines))
@@ -159,12 +159,12 @@ def _check_channel(
     first = report_of(engine)
     if not more:
         return first, [engine]
-    ((other, second_tables),) = more
+    ((second_state, second_tables),) = more
     of_text = {rule.name: engine.hits(rule) for rule in engine.rules.values() if rule.of_text}
     # The texts differ if one run calls a program that the other does not.
-    known = of_text if second_tables["text"] is tables["text"] else None
-    second = engine_of(second_tables, rules, severities, known, inline)
-    return _merged((state, first), (other, report_of(second)), of_text), [engine, second]
+    reusable = of_text if second_tables["text"] is tables["text"] else None
+    second = engine_of(second_tables, rules, severities, reusable, inline)
+    return _merged((state, first), (second_state, report_of(second)), of_text), [engine, second]
 
 
 def engine_of(
@@ -315,14 +315,14 @@ def _worst(off: Sequence[PolarSection], on: Sequence[PolarSection]) -> list[Pola
 def _worse(first: PolarSection, second: PolarSection) -> PolarSection:
     fastest = max(first, second, key=lambda section: math.inf if section.c_feed is None else section.c_feed)
     reasons = dict.fromkeys(reason for section in (first, second) for reason in section.time_not_known or ())
-    known = max(section.time_known or section.time or 0.0 for section in (first, second))
+    time_known = max(section.time_known or section.time or 0.0 for section in (first, second))
     return msgspec.structs.replace(
         fastest,
         nearest=_fold(min, first.nearest, second.nearest),
         center_line=first.center_line or second.center_line,
         ramp_used=max((used for used in (first.ramp_used, second.ramp_used) if used is not None), default=None),
         time=_fold(max, first.time, second.time),
-        time_known=known if reasons else msgspec.UNSET,
+        time_known=time_known if reasons else msgspec.UNSET,
         time_not_known=list(reasons) or msgspec.UNSET,
     )
 

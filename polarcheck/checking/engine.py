@@ -80,7 +80,7 @@ class Engine:
         tables: Tables,
         severities: Mapping[str, str],
         rules: Iterable[Rule],
-        known: Mapping[str, Hits] | None = None,
+        known_hits: Mapping[str, Hits] | None = None,
         allows: Allows | None = None,
     ) -> None:
         self.tables = tables
@@ -90,7 +90,7 @@ class Engine:
         self.unlisted: list[NotEvaluated] = []
         self.allows = allows
         self.used: set[Used] = set()
-        self._hits: dict[str, Hits] = dict(known or {})
+        self._hits: dict[str, Hits] = dict(known_hits or {})
         self._empty_hits: dict[int, Hits] = {}
         self._columns_seen: dict[str, int] = {}
         self._constant_masks: dict[tuple[int, bool], Mask] = {}
@@ -248,8 +248,8 @@ class Engine:
         self.used |= self.allows.used(rule.name, blocks)
         return silenced
 
-    def _allowed(self, finding: Finding, place: Place) -> Finding:
-        return finding if self.allows is None else allowed(finding, self.allows.reason(finding.rule, place.block))
+    def _allowed(self, finding: Finding, element: Place) -> Finding:
+        return finding if self.allows is None else allowed(finding, self.allows.reason(finding.rule, element.block))
 
     def _reported(self, rule: Rule, index: Rows) -> Rows:
         """Hits that are reported: those that no allow comment silences."""
@@ -378,13 +378,13 @@ class Engine:
             fix=fix_of(rule, hits, self.tables, element, count),
         )
 
-    def _alarm(self, rule: Rule, at: list[int]) -> str | None:
+    def _alarm(self, rule: Rule, indices: list[int]) -> str | None:
         """Return the alarm of the control; None if the alarm names G codes and the words at fault are others."""
         machine, table = self.trace.machine, self.trace.run.words
         alarm = machine.alarms.get(rule.name) or None
         if alarm not in machine.alarm_codes:
             return alarm
-        written = code_numbers(table.value[[index for index in at if table.address[index] == ord("G")]])
+        written = code_numbers(table.value[[index for index in indices if table.address[index] == ord("G")]])
         return alarm if not len(written) or code_set(machine.codes_of_alarm(alarm))[written].any() else None
 
     def _program_name(self, block: int) -> str | None:
@@ -471,6 +471,6 @@ def _order(finding: Finding) -> tuple[int, int, int, str]:
     return finding.line, finding.column, -SEVERITIES[finding.severity], finding.rule
 
 
-def _severity(rule: Rule, hits: Hits, place: Place) -> Severity:
+def _severity(rule: Rule, hits: Hits, element: Place) -> Severity:
     severity = rule.severity if hits.severity is None else hits.severity
-    return Severity(int(severity[place.index])) if isinstance(severity, np.ndarray) else Severity(severity)
+    return Severity(int(severity[element.index])) if isinstance(severity, np.ndarray) else Severity(severity)

@@ -24,11 +24,11 @@ _NUMBER = re.compile(r"(\d*)\.(\d*)|(\d+)")
 _PLUS = re.compile(r"(?<=[A-Z=])\+(?=[\d.])")
 
 
-def fingerprint(rule: Rule, text: Text, place: Place) -> str:
+def fingerprint(rule: Rule, text: Text, element: Place) -> str:
     """16 hexadecimal digits, the same for the same rule in the same block, wherever that stands."""
     import hashlib  # late: a program without findings does not need it
 
-    words = "" if rule.over == "files" else _words(text, place)
+    words = "" if rule.over == "files" else _words(text, element)
     return hashlib.sha256(f"{rule.name}\0{words}".encode("utf-8", "replace")).hexdigest()[:16]
 
 
@@ -36,8 +36,8 @@ def _words(text: Text, element: Place) -> str:
     """The words of the block; where it has none, as before a comment, the characters at fault."""
     start, end = int(text.blocks.start[element.block]), int(text.blocks.end[element.block])
     end = min(end, start + _LONGEST)
-    found = normal(_without_comments(text, start, end))
-    return found or normal(text.source.excerpt(element.start, min(element.end, element.start + _LONGEST)))
+    normalized = normal(_without_comments(text, start, end))
+    return normalized or normal(text.source.excerpt(element.start, min(element.end, element.start + _LONGEST)))
 
 
 def _without_comments(text: Text, start: int, end: int) -> str:
@@ -51,8 +51,8 @@ def _without_comments(text: Text, start: int, end: int) -> str:
 
 def normal(words: str) -> str:
     """A block without comments in one spelling: N G01 X+05.0 is G1X5. in any case, with or without blanks."""
-    found = _BLANKS.sub("", words).upper().replace(":", "O")
-    return _NUMBER.sub(_shortest, _PLUS.sub("", _SEQUENCE_NUMBER.sub(r"\1", found)))
+    shortened = _BLANKS.sub("", words).upper().replace(":", "O")
+    return _NUMBER.sub(_shortest, _PLUS.sub("", _SEQUENCE_NUMBER.sub(r"\1", shortened)))
 
 
 def _shortest(number: re.Match[str]) -> str:

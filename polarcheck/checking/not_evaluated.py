@@ -85,8 +85,8 @@ def bounds_not_reported(tables: Tables, findings: Iterable[Finding]) -> Iterator
     for index in np.flatnonzero(faults.is_bound).tolist():
         line = int(trace.text.blocks.line[trace.run.faults[index].block])
         # The block at which time runs out differs between runs; the report must not.
-        at = "a block" if faults.kind[index] == "runs-too-long" else f"the block of line {line}"
-        yield NotEvaluated(rule="all", reason=f"{at} {faults.reason(index)}", blocks=1)
+        block = "a block" if faults.kind[index] == "runs-too-long" else f"the block of line {line}"
+        yield NotEvaluated(rule="all", reason=f"{block} {faults.reason(index)}", blocks=1)
 
 
 def bound_silenced(finding: Finding) -> NotEvaluated | None:
@@ -125,8 +125,8 @@ def _is_done_before(trace: Trace, remark: Remark) -> bool:
     enter = trace.mode.sections.enter
     next_ = enter[np.minimum(np.searchsorted(enter, rows), max(len(enter) - 1, 0))] if len(enter) else rows
     follows = next_ > rows
-    place = trace.path.x_before[next_] + trace.path.z[next_] + trace.path.c_angle[next_]
-    return len(rows) > 0 and not bool(np.any((trace.mode.section[rows] >= 0) | (follows & np.isnan(place))))
+    position = trace.path.x_before[next_] + trace.path.z[next_] + trace.path.c_angle[next_]
+    return len(rows) > 0 and not bool(np.any((trace.mode.section[rows] >= 0) | (follows & np.isnan(position))))
 
 
 def unexecuted(tables: Tables) -> Iterator[NotEvaluated]:

@@ -21,8 +21,8 @@ _NAMES = 20
 def axes_not_followed(trace: Trace) -> Iterator[tuple[str, int]]:
     """Which axes of the polar plane are not followed, and in how many blocks."""
     polar, names_of_axes = trace.machine.polar, trace.machine.control.axes
-    other = trace.mode.enters & trace.axes.enters_other_axes
-    unknown = trace.mode.enters & ~trace.axes.linear_is_known & ~other
+    other_axes = trace.mode.enters & trace.axes.enters_other_axes
+    unknown = trace.mode.enters & ~trace.axes.linear_is_known & ~other_axes
     named = unknown & trace.blocks.has("P") & ("P" in polar.words_beside_switch)
     names = place(trace.machine, 'control.axes = ["X", "Z", "C"]')
     remedy = "look at it on the control" if names_of_axes else f"give their names in order, as {names}"
@@ -31,19 +31,19 @@ def axes_not_followed(trace: Trace) -> Iterator[tuple[str, int]]:
         (unknown & ~named, f"{polar.linear_axis}, the number in {_linear_axis_key(trace.machine)},"),
     ):
         yield f"{what} is a linear axis that is not known, nothing of the section is judged: {remedy}", int(rows.sum())
-    beside = [
+    words = [
         int(index) for index in trace.axes.words_not_simulated.nonzero()[0] if trace.mode.enters[trace.run.row[index]]
     ]
-    for name, indices in itertools.groupby(beside, lambda index: executed_word(trace.run, index)):
+    for name, indices in itertools.groupby(words, lambda index: executed_word(trace.run, index)):
         effect = "makes another mode of it, which is not simulated: look at the section on the control"
         yield f"{name} beside {polar.on[0]} {effect}", len(list(indices))
     planes = (trace.axes.selects_plane_not_simulated & trace.mode.in_polar).nonzero()[0]
     if len(planes):
         where = block_and_line(trace, int(planes[0]))
         yield f"the plane of {where} is not simulated: look at the section on the control", len(planes)
-    other = trace.mode.enters & (trace.axes.rotary_number != polar.rotary_axis)
+    other_axes = trace.mode.enters & (trace.axes.rotary_number != polar.rotary_axis)
     effect = "its angle at the switch and its limits are not followed: look at them on the control"
-    yield f"Q names another rotary axis than {polar.rotary_axis}; {effect}", int(other.sum())
+    yield f"Q names another rotary axis than {polar.rotary_axis}; {effect}", int(other_axes.sum())
 
 
 def _linear_axis_key(machine: Machine) -> str:
@@ -60,8 +60,8 @@ def names_not_known(trace: Trace) -> Iterator[tuple[str, int]]:
     yield from _by_name(
         trace, trace.blocks.words_not_named, f"is an axis that this lathe is not known to have: {remedy}"
     )
-    other = trace.blocks.words_of_no_axis
-    yield from _by_name(trace, other, "is no word of this lathe, and not read: give --machine, or mend it")
+    indices = trace.blocks.words_of_no_axis
+    yield from _by_name(trace, indices, "is no word of this lathe, and not read: give --machine, or mend it")
 
 
 def names_not_followed(trace: Trace) -> Iterator[tuple[str, int]]:
@@ -91,13 +91,13 @@ def _by_name(trace: Trace, words: Rows, what: str) -> Iterator[tuple[str, int]]:
 
 def on_sub_spindle(trace: Trace) -> Iterator[tuple[str, int]]:
     """Which sections stand on the sub-spindle, of which the machine does not say how it is programmed."""
-    other, open_sides = (
+    other_axes, open_sides = (
         trace.mode.enters & trace.axes.enters_other_axes,
         trace.compensation.sides_are_open & trace.compensation.compensates,
     )
     title = trace.machine.title
     for rows, what in (
-        (other, f"whose axes have other addresses on {title}; nothing of it is judged: look at it on the control"),
+        (other_axes, f"whose axes have other addresses on {title}; nothing of it is judged: look at it on the control"),
         (
             open_sides,
             'and on which side G41 and G42 are there is not known: polar.sub_spindle_plane = "as-main" in a file '

@@ -28,7 +28,7 @@ _TRIED = 12
 _NUMBERED = re.compile(r"([GM])(\d+)(?:\.(\d))?")
 
 
-class Told(msgspec.Struct, frozen=True):
+class StatedOffset(msgspec.Struct, frozen=True):
     """An offset that a program needs: its R [mm] and the comment that gives it; None where none does."""
 
     path: str
@@ -49,7 +49,7 @@ class Survey(msgspec.Struct, frozen=True):
     polar: list[str]
     machine: str
     fitting: list[str]
-    offsets: dict[str, list[Told]]
+    offsets: dict[str, list[StatedOffset]]
     units: list[str]
 
 
@@ -61,16 +61,16 @@ def survey(paths: Sequence[str], requested: Profile | None, awaited: Iterable[st
     are gone through.
     """
     begins = _begins(requested)
-    known = [requested] if requested else list(profiles.built_in())
+    candidates = [requested] if requested else list(profiles.built_in())
     contents: list[tuple[str, bytes]] = []
     for path in paths if awaited is None else awaited:
         data = _data(path)
         if data is not None and begins.search(data.replace(b"\0", b"")):  # UTF-16, too
             contents.append((path, data))
-    fitting = _fitting([data for _, data in _sample(contents)], known)
+    fitting = _fitting([data for _, data in _sample(contents)], candidates)
     names = [profile.name for profile in fitting]
     chosen = _chosen(requested, fitting)
-    offsets: dict[str, list[Told]] = {}
+    offsets: dict[str, list[StatedOffset]] = {}
     units: set[str] = set()
     polar = []
     for path, data in contents:
@@ -79,8 +79,8 @@ def survey(paths: Sequence[str], requested: Profile | None, awaited: Iterable[st
             continue
         polar.append(path)
         trace: Trace = tables["trace"]
-        for key, told in _of_program(path, trace):
-            offsets.setdefault(key, []).append(told)
+        for key, offset in _of_program(path, trace):
+            offsets.setdefault(key, []).append(offset)
         units |= set(_units(trace))
     return Survey(len(paths), polar, chosen.name, names, offsets, sorted(units))
 
@@ -101,8 +101,8 @@ def _data(path: str) -> bytes | None:
 
 def _begins(requested: Profile | None) -> re.Pattern[bytes]:
     """A pattern of the codes that begin the polar mode, as they may be written: it skips most programs of a folder."""
-    known = [requested] if requested else profiles.built_in()
-    codes = {word for profile in known for word in (*profile.machine.polar.on, *profile.machine.control.native_words)}
+    choices = [requested] if requested else profiles.built_in()
+    codes = {word for profile in choices for word in (*profile.machine.polar.on, *profile.machine.control.native_words)}
     return re.compile(rb"(?i)" + b"|".join(sorted(_written(code) for code in codes)))
 
 
@@ -126,19 +126,19 @@ def _tables(data: bytes, machine: Machine) -> Tables | None:
         return None
 
 
-def _fitting(programs: Sequence[bytes], tried: Sequence[Profile]) -> list[Profile]:
+def _fitting(programs: Sequence[bytes], candidates: Sequence[Profile]) -> list[Profile]:
     """The machines that read all of the programs well which any machine reads."""
     reading: list[set[str]] = []
     for data in programs:
         well = set()
-        for profile in tried:
+        for profile in candidates:
             tables = _tables(data, profile.machine)
             if tables is not None and _reads(tables):
                 well.add(profile.name)
         if well:
             reading.append(well)
     names = set.intersection(*reading) if reading else set()
-    return [profile for profile in tried if profile.name in names]
+    return [profile for profile in candidates if profile.name in names]
 
 
 def _reads(tables: Tables) -> bool:
@@ -149,7 +149,7 @@ def _reads(tables: Tables) -> bool:
         return False
 
 
-def _of_program(path: str, trace: Trace) -> Iterator[tuple[str, Told]]:
+def _of_program(path: str, trace: Trace) -> Iterator[tuple[str, StatedOffset]]:
     """The offsets that the program calls in the polar mode or with cutter compensation there."""
     needed = trace.mode.in_polar & (trace.compensation.side != Side.OFF)
     needed = needed if needed.any() else trace.mode.in_polar
@@ -157,12 +157,12 @@ def _of_program(path: str, trace: Trace) -> Iterator[tuple[str, Told]]:
     for number in given[given > 0].tolist():
         key, comment = trace.tools.offset_key(number), trace.offsets.radii_in_comments.get(number)
         if key:
-            yield key, Told(path, comment.radius, comment.comment) if comment else Told(path)
+            yield key, StatedOffset(path, comment.radius, comment.comment) if comment else StatedOffset(path)
 
 
 def _units(trace: Trace) -> Iterator[str]:
     """The units that the program itself says."""
     state = trace.modal.state("units")
     yield from (
-        name for name, one in (("inch", Units.INCH), ("mm", Units.MM)) if np.any(state[trace.mode.in_polar] == one)
+        name for name, unit in (("inch", Units.INCH), ("mm", Units.MM)) if np.any(state[trace.mode.in_polar] == unit)
     )

@@ -55,9 +55,9 @@ def positions(absolute: Floats, increment: Floats, resets: Mask, values: Floats)
     value[~programmed] += moved[~programmed]
     travelled = np.cumsum(moved)
     last = np.maximum.accumulate(np.where(base, np.arange(1, len(base) + 1), 0)) - 1
-    known = last >= 0
+    is_known = last >= 0
     after = value[last] + (travelled - travelled[last])
-    return np.where(known, after, np.nan)
+    return np.where(is_known, after, np.nan)
 
 
 def before(after: NDArray[Scalar], starts: Mask, at_start: Any) -> NDArray[Scalar]:

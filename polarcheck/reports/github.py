@@ -44,8 +44,8 @@ def _lines(report: Report, background: Background) -> Iterator[str]:
     for name, reason, path in _not_checked(report):
         counts["error"] += 1
         if counts["error"] <= MOST:
-            place = {"title": name, **({"file": from_root(path, background)} if path else {})}
-            yield _command("error", place, reason)
+            properties = {"title": name, **({"file": from_root(path, background)} if path else {})}
+            yield _command("error", properties, reason)
     for file in report.files:
         texts = [unreadable_line(file)] if file.verdict == UNREADABLE else []
         texts += [line(file, finding) for finding in file.findings]
@@ -89,8 +89,8 @@ def _annotation(file: FileReport, finding: Finding, background: Background) -> s
     return _command(_level(finding), properties, finding.full_message)
 
 
-def _command(level: str, place: Mapping[str, str | int], message: str) -> str:
-    written = ",".join(f"{key}={_property(visible(str(value)))}" for key, value in place.items())
+def _command(level: str, properties: Mapping[str, str | int], message: str) -> str:
+    written = ",".join(f"{key}={_property(visible(str(value)))}" for key, value in properties.items())
     return f"::{level} {written}::{_data(visible(message))}"
 
 

@@ -34,7 +34,7 @@ def jsonl_pieces(report: Report, background: Background) -> Iterator[str]:
 def jsonl_parts(background: Background) -> Parts:
     """Return how the report is written while files are being checked."""
 
-    def of_file(file: FileReport, shown: Mapping[int, str]) -> str:
+    def of_file(file: FileReport, lines_shown: Mapping[int, str]) -> str:
         return "".join(encoded(line) + "\n" for line in lines(file))
 
     def end(report: Report) -> str:

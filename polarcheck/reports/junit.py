@@ -126,8 +126,8 @@ def _cases(file: FileReport, background: Background, ran: _Groups) -> Iterator[_
         failing = [finding for finding in reaching if not isinstance(finding, Undecided)]
         reasons = [finding.message for finding in reaching if isinstance(finding, Undecided)]
         reasons += [gap.reason for gap in missing.get(group, ())]
-        others = [finding for finding in findings.get(group, ()) if finding not in failing]
-        yield _Case(group, failing, others, list(dict.fromkeys(reasons)), is_strict)
+        not_failing = [finding for finding in findings.get(group, ()) if finding not in failing]
+        yield _Case(group, failing, not_failing, list(dict.fromkeys(reasons)), is_strict)
 
 
 def _group(rule: str, background: Background) -> str:

@@ -106,9 +106,9 @@ def _result(
         },
     }
     if section is not None:
-        place = {"artifactLocation": artifact, "region": {"startLine": section}}
+        location = {"artifactLocation": artifact, "region": {"startLine": section}}
         about = {"text": "the polar section begins here"}
-        result["relatedLocations"] = [{"id": 1, "physicalLocation": place, "message": about}]
+        result["relatedLocations"] = [{"id": 1, "physicalLocation": location, "message": about}]
     if finding.fix is not None:
         result["fixes"] = [_fix(finding.fix, artifact)]
     if isinstance(finding, Silenced):
@@ -159,9 +159,9 @@ def _failures(report: Report, background: Background) -> Iterator[dict[str, Any]
     """Yield a notification for each file that was not checked, and for an interrupted run."""
     for file in report.files:
         if file.verdict == UNREADABLE:
-            place = {"artifactLocation": {"uri": uri(file.path, background), "uriBaseId": _ROOT}}
+            location = {"artifactLocation": {"uri": uri(file.path, background), "uriBaseId": _ROOT}}
             about = {"text": visible(f"{file.path}: {file.reason}")}
-            yield {"level": "error", "message": about, "locations": [{"physicalLocation": place}]}
+            yield {"level": "error", "message": about, "locations": [{"physicalLocation": location}]}
     if report.interrupted is not UNSET:
         yield {"level": "error", "message": {"text": visible(report.interrupted.reason)}}
 
@@ -173,7 +173,7 @@ def _not_evaluated(report: Report, background: Background) -> Iterator[dict[str,
         for gap in file.not_evaluated:
             if gap.matters:
                 rules.setdefault(gap.reason, []).append(gap.rule)
-        place = {"artifactLocation": {"uri": uri(file.path, background), "uriBaseId": _ROOT}}
+        location = {"artifactLocation": {"uri": uri(file.path, background), "uriBaseId": _ROOT}}
         for reason, names in rules.items():
             text = visible(f"not evaluated: {reason} ({', '.join(dict.fromkeys(names))})")
-            yield {"level": "warning", "message": {"text": text}, "locations": [{"physicalLocation": place}]}
+            yield {"level": "warning", "message": {"text": text}, "locations": [{"physicalLocation": location}]}

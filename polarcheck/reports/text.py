@@ -250,8 +250,8 @@ def _not_evaluated(files: Iterable[FileReport], page: _Page) -> Iterator[str]:
             reasons.setdefault(reason, _Reason()).add(file, group)
     for reason, gap in reasons.items():
         yield from page.heading("not evaluated", reason)
-        for place, blocks in gap.places.items():
-            yield from page.labelled("at", f"{place}, {counted(blocks, 'block')}")
+        for location, blocks in gap.places.items():
+            yield from page.labelled("at", f"{location}, {counted(blocks, 'block')}")
         if gap.more:
             yield from page.labelled("", f"and in {counted(gap.more, 'more file')}")
         if not gap.rules.keys() - {DESELECTED}:

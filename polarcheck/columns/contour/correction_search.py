@@ -101,7 +101,7 @@ class _Search:
         trials = [*self._fitting(self._of_words(np.append(places, ends))), *self._fitting(self._of_steps())]
         if not trials and len(places):
             trials = [*self._fitting(self._of_blocks(places))]
-        return min(trials, key=lambda one: one[:2])[2] if trials else None
+        return min(trials, key=lambda trial: trial[:2])[2] if trials else None
 
     def _fitting(self, trials: Iterator[_Trial]) -> Iterator[tuple[int, int, Correction]]:
         """The trials that make the contour regular: what they leave free, their number, the correction."""
@@ -120,8 +120,8 @@ class _Search:
         trace = self.trace
         indices = trace.blocks.word_indices(word[1])
         rows = trace.run.row[indices]
-        others = indices[(rows < self.loop.row[0]) | (rows > self.loop.row[-1])]
-        return bool(np.any(np.abs(trace.run.words.value[others] - float(word[2])) < _SAME_NUMBER))
+        elsewhere = indices[(rows < self.loop.row[0]) | (rows > self.loop.row[-1])]
+        return bool(np.any(np.abs(trace.run.words.value[elsewhere] - float(word[2])) < _SAME_NUMBER))
 
     def _row(self, corner: int) -> int:
         """The row of a block of the loop; behind the last one, that of the next move."""
@@ -175,17 +175,17 @@ class _Search:
 
     def _axis(self, addresses: tuple[str, str], scale: Floats, direction: complex, digit: float) -> _Axis:
         trace, rows = self.trace, self.loop.row
-        place = {row: index_of_step for index_of_step, row in enumerate(rows.tolist())}
+        step_of_row = {row: step for step, row in enumerate(rows.tolist())}
         word, is_step = [-1] * len(rows), [False] * len(rows)
         for number, address in enumerate(addresses):
             indices = trace.blocks.word_indices(address)
             low, high = np.searchsorted(trace.run.row[indices], (rows[0], rows[-1] + 1)).tolist()
             for index in indices[low:high].tolist():
-                index_of_step = place.get(int(trace.run.row[index]))
-                if index_of_step is not None:
-                    word[index_of_step], is_step[index_of_step] = (
+                step = step_of_row.get(int(trace.run.row[index]))
+                if step is not None:
+                    word[step], is_step[step] = (
                         index,
-                        bool(number) or bool(trace.modal.is_step(address)[rows[index_of_step]]),
+                        bool(number) or bool(trace.modal.is_step(address)[rows[step]]),
                     )
         return _Axis(*addresses, word, is_step, scale.tolist(), direction, digit)
 
@@ -197,8 +197,8 @@ class _Search:
         for number, axis in enumerate(self._axes):
             local = away / axis.direction
             along = np.abs(local.imag) <= tolerance * 2
-            for corner, place in np.argwhere(along & (np.abs(local.real) >= 2 * tolerance)).tolist():
-                shift = float(local[corner, place].real)
+            for corner, target in np.argwhere(along & (np.abs(local.real) >= 2 * tolerance)).tolist():
+                shift = float(local[corner, target].real)
                 for begin in _writers(axis, corner):
                     key = (number, begin, round(shift, 2))
                     if key not in tried:
@@ -240,8 +240,8 @@ class _Search:
 
     def _is_of_neighbor(self, axis: _Axis, corner: int, tolerance: float) -> bool:
         value = self.trace.run.words.value
-        beside = [axis.word[neighbor] for neighbor in (corner - 1, corner + 1) if 0 <= neighbor < len(axis.word)]
-        return any(word >= 0 and abs(float(value[word] - value[axis.word[corner]])) <= tolerance for word in beside)
+        words = [axis.word[neighbor] for neighbor in (corner - 1, corner + 1) if 0 <= neighbor < len(axis.word)]
+        return any(word >= 0 and abs(float(value[word] - value[axis.word[corner]])) <= tolerance for word in words)
 
     def _looks_like_angle(self, value: float, length: float) -> bool:
         """A number is one of the usual angles, and as a length twice as far out as any other point of the loop."""
@@ -305,9 +305,9 @@ class _Search:
             yield self._with_block(len(point) - 1, complex(point[first]), 0)
         detour = np.abs(places[:, None] - point[:-1]) + np.abs(places[:, None] - point[1:]) - np.abs(np.diff(point))
         for index in range(len(places)):
-            for at in np.argsort(detour[index])[:_GAPS].tolist():
+            for corner in np.argsort(detour[index])[:_GAPS].tolist():
                 for turns in dict.fromkeys((0, self._usual_arc[0])):
-                    yield self._with_block(at, complex(places[index]), turns)
+                    yield self._with_block(corner, complex(places[index]), turns)
 
     @cached_property
     def _usual_arc(self) -> tuple[int, float]:

@@ -27,7 +27,7 @@ _MOST, _MOST_MOVES = 200, 20_000
 _ENDS = 2
 
 
-class _Found(NamedTuple):
+class _CrossingMoves(NamedTuple):
     """
     Blocks that cross, or run back along, an earlier block of their pass.
 
@@ -47,12 +47,12 @@ class Crossings(Columns, frozen=True):
     passes: Passes
 
     @cached_property
-    def _found(self) -> _Found:
+    def _found(self) -> _CrossingMoves:
         parts = [self._turning_back, *self._crossing]
-        return _Found(*(np.concatenate(columns) for columns in zip(*parts, strict=True)))
+        return _CrossingMoves(*(np.concatenate(columns) for columns in zip(*parts, strict=True)))
 
     @cached_property
-    def _turning_back(self) -> _Found:
+    def _turning_back(self) -> _CrossingMoves:
         """Moves that run back along the move before them."""
         passes = self.passes
         begins, ends = passes.tangents
@@ -74,10 +74,10 @@ class Crossings(Columns, frozen=True):
         length = self.trace.path.length[passes.row]
         long = np.minimum(length[1:], length[:-1]) > _LEAST
         move = np.flatnonzero(joined & back & long & (lines | arcs)) + 1
-        return _Found(move, move - 1, passes.start[move], np.ones(len(move), bool))
+        return _CrossingMoves(move, move - 1, passes.start[move], np.ones(len(move), bool))
 
     @cached_property
-    def _crossing(self) -> list[_Found]:
+    def _crossing(self) -> list[_CrossingMoves]:
         """Moves that cross an earlier move of their pass: the first of each pass."""
         passes = self.passes
         first = np.where(passes.closed, passes.ring[0], passes.first)
@@ -93,10 +93,10 @@ class Crossings(Columns, frozen=True):
             chosen = np.sort(chosen[order[np.append(True, np.diff(shape[order]) != 0)]])
         chosen = chosen[:_MOST]
         chosen = chosen[np.cumsum(count[chosen]) <= _MOST_MOVES]
-        found = [self._crossing_of(int(first[which]), int(last[which]), bool(passes.closed[which])) for which in chosen]
-        return [crossing for crossing in found if crossing is not None]
+        pairs = [self._crossing_of(int(first[which]), int(last[which]), bool(passes.closed[which])) for which in chosen]
+        return [crossing for crossing in pairs if crossing is not None]
 
-    def _crossing_of(self, first: int, last: int, closed: bool) -> _Found | None:
+    def _crossing_of(self, first: int, last: int, closed: bool) -> _CrossingMoves | None:
         from polarcheck.geometry.segments import Curves, segments
         from polarcheck.geometry.self_crossing import self_crossings
 
@@ -113,7 +113,7 @@ class Crossings(Columns, frozen=True):
         if not keep.any():
             return None
         nearest = np.flatnonzero(keep)[np.argmin(later[keep])]
-        return _Found(later[[nearest]], earlier[[nearest]], crossing.place[[nearest]], np.zeros(1, bool))
+        return _CrossingMoves(later[[nearest]], earlier[[nearest]], crossing.place[[nearest]], np.zeros(1, bool))
 
     # ---- cheap tests: which passes cannot cross themselves ----
 
@@ -158,6 +158,6 @@ class Crossings(Columns, frozen=True):
         return into, complex(self._found.place[index]), bool(self._found.back[index])
 
 
-def _nothing() -> _Found:
+def _nothing() -> _CrossingMoves:
     none = np.zeros(0, np.int64)
-    return _Found(none, none, np.full(0, NOWHERE), np.zeros(0, bool))
+    return _CrossingMoves(none, none, np.full(0, NOWHERE), np.zeros(0, bool))

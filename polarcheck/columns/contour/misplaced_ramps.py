@@ -90,9 +90,9 @@ class MisplacedRamps(Columns, frozen=True):
         count = np.cumsum(trace.path.cuts)
         rows &= count - trace.path.cuts - np.where(since >= 0, count[since], 0) >= _MOVES_OF_CONTOUR
         rows &= ~(trace.offsets.radius_of_offset == 0)
-        at = np.flatnonzero(rows)[:_MOST]
+        candidates = np.flatnonzero(rows)[:_MOST]
         rows = np.zeros(len(trace), bool)
-        rows[[row for row in at.tolist() if self._has_witness(row, int(since[row]))]] = True
+        rows[[row for row in candidates.tolist() if self._has_witness(row, int(since[row]))]] = True
         return rows
 
     def _has_witness(self, row: int, since: int) -> bool:
@@ -109,7 +109,7 @@ class MisplacedRamps(Columns, frozen=True):
         # Above Z0 nothing is cut on most programs: only a contour that closes shows there that one is meant.
         in_air = float(trace.path.z[row]) > 0
         return closes or (
-            not in_air and any(_mirrors(leaves_to, place) for place in self._approaches(row, since, first, last))
+            not in_air and any(_mirrors(leaves_to, approach) for approach in self._approaches(row, since, first, last))
         )
 
     def _approaches(self, row: int, since: int, first: int, last: int) -> list[complex]:
@@ -117,7 +117,7 @@ class MisplacedRamps(Columns, frozen=True):
         trace = self.trace
         down = np.flatnonzero(trace.path.moves_z[since:row] & ~trace.path.travels[since:row]) + since
         leads = self._moves.start[first : min(first + _LEADS, last)]
-        return [*(complex(trace.path.end[at]) for at in (since, *down.tolist()[-_LEADS:])), *leads.tolist()]
+        return [*(complex(trace.path.end[index]) for index in (since, *down.tolist()[-_LEADS:])), *leads.tolist()]
 
     def _is_path_of_center(self, row: int, first: int, last: int) -> bool:
         """The contour is no round size as written, and one with R taken off either side."""
@@ -130,8 +130,8 @@ class MisplacedRamps(Columns, frozen=True):
         ends = ends[same[0] :] if len(same) > 1 else ends  # a closed contour without its lead
         sizes = [size for size in (float(np.ptp(ends.real)), float(np.ptp(ends.imag)), _across_flats(ends)) if size > 0]
         written = [_digits(size / scale) for size in sizes]
-        meant = [min(_digits((size + sign * 2 * radius) / scale) for sign in (-1, 1)) for size in sizes]
-        return bool(sizes) and min(written) > min(meant) + 1
+        intended = [min(_digits((size + sign * 2 * radius) / scale) for sign in (-1, 1)) for size in sizes]
+        return bool(sizes) and min(written) > min(intended) + 1
 
     # ---- a start-up that comes late, or is taken back at once ----
 
@@ -175,10 +175,10 @@ class MisplacedRamps(Columns, frozen=True):
         starts, until = starts[whole], until[whole]
         final = moves.start[np.minimum(until, n - 1)]
         near = np.abs(moves.end[starts] - final) <= _SAME
-        for start, end, place, closes in zip(
+        for start, end, point, closes in zip(
             starts.tolist(), until.tolist(), final.tolist(), near.tolist(), strict=True
         ):
-            row = -1 if closes else self._cut_before(start, end, place, bare)
+            row = -1 if closes else self._cut_before(start, end, point, bare)
             if row >= 0:
                 late[moves.row[start]] = row
         return late

@@ -100,8 +100,8 @@ class PassDifferences(Columns, frozen=True):
         # The most frequent first; of those as frequent the one above.
         order = np.lexsort((first, -count))
         differences = []
-        for place, kind in enumerate(order.tolist()):
-            for model in order[:place].tolist():
+        for rank, kind in enumerate(order.tolist()):
+            for model in order[:rank].tolist():
                 difference = self._difference(
                     int(group[first[kind]]), int(group[first[model]]), bool(count[model] > count[kind])
                 )
@@ -119,11 +119,11 @@ class PassDifferences(Columns, frozen=True):
 
     def _difference(self, number: int, model: int, is_rare: bool) -> Difference | None:
         """Where a pass differs from a model of it, if a slip explains that; is_rare: more passes are as the model."""
-        items, two = self._items(number), self._items(model)
-        shorter = min(len(items), len(two))
-        head = _agreeing(items[:shorter], two[:shorter])
-        tail = min(_agreeing(items[::-1][:shorter], two[::-1][:shorter]), shorter - head)
-        differing = len(items) - head - tail, len(two) - head - tail
+        moves, model_moves = self._items(number), self._items(model)
+        shorter = min(len(moves), len(model_moves))
+        head = _agreeing(moves[:shorter], model_moves[:shorter])
+        tail = min(_agreeing(moves[::-1][:shorter], model_moves[::-1][:shorter]), shorter - head)
+        differing = len(moves) - head - tail, len(model_moves) - head - tail
         if not 0 < max(differing) <= _MOST_DIFFERING or head + tail < max(_LEAST_AGREEING, max(differing)):
             return None
         if not tail:
@@ -132,7 +132,7 @@ class PassDifferences(Columns, frozen=True):
         if self.trace.run.block[row] == self.trace.run.block[model_row] and differing[0] == differing[1]:
             return None
         if differing[0] == differing[1]:
-            here, there = items[head : head + differing[0]], two[head : head + differing[0]]
+            here, there = moves[head : head + differing[0]], model_moves[head : head + differing[0]]
             if np.abs(here - there).max() < _OTHER:
                 return None
             explained = is_rare or self._is_slip(here, there, row, model_row)
@@ -144,15 +144,15 @@ class PassDifferences(Columns, frozen=True):
         first, last = (int(passes.row[ends[model]]) for ends in (passes.first, passes.last))
         return Difference(row, model_row, differing[0] < differing[1], first, last)
 
-    def _turns_at(self, number: int, place: int) -> bool:
+    def _turns_at(self, number: int, step: int) -> bool:
         """The pass turns where a block of it ends that the other one does not have: it is no point on a line."""
         passes = self.passes
-        move = int(passes.first[number]) + place
+        move = int(passes.first[number]) + step
         start, corner, end = passes.start[move], passes.end[move], passes.end[move + 1]
         off = ((corner - start) * np.conj(end - start)).imag / max(abs(end - start), _SAME)
         return bool(abs(off) > _OTHER or passes.is_arc[move] or passes.is_arc[move + 1])
 
-    def _is_slip(self, here: Points, there: Points, row: int, other: int) -> bool:
+    def _is_slip(self, here: Points, there: Points, row: int, second_row: int) -> bool:
         """
         One point that differs, or an arc with other words; or a coordinate of several points, where the words are those
         of a slip: a side that is moved on purpose moves two points.
@@ -166,14 +166,14 @@ class PassDifferences(Columns, frozen=True):
             return False
         blocks = self.trace.blocks
         address = chr(int(self.trace.axes.linear_axis[row])) if along_x else self.trace.axes.virtual_axis_of(row)
-        words = float(blocks.word(address)[row]), float(blocks.word(address)[other])
+        words = float(blocks.word(address)[row]), float(blocks.word(address)[second_row])
         if np.isnan(sum(words)):
             return False
         slip = slip_of(plain_number(words[0]), words[1], _SAME)
         return slip is not None and (slip.plain or len(plain_number(words[0]).strip("-").replace(".", "")) >= _FINE)
 
 
-def _agreeing(one: Points, two: Points) -> int:
+def _agreeing(first: Points, second: Points) -> int:
     """How many moves agree from the first on."""
-    same: Mask = np.all(np.abs(one - two) <= _SAME, axis=1)
+    same: Mask = np.all(np.abs(first - second) <= _SAME, axis=1)
     return int(np.argmin(same)) if not same.all() else len(same)

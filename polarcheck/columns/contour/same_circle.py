@@ -26,7 +26,7 @@ _ROUND, _ROUNDING = 15, 0.05
 _NEAR = 0.15
 
 
-class Meant(NamedTuple):
+class IntendedArcs(NamedTuple):
     """
     Arcs that are meant on another circle, n of them.
 
@@ -56,7 +56,7 @@ class SameCircle(Columns, frozen=True):
         return np.asarray(passes.is_arc & is_circle & corner)
 
     @cached_property
-    def leaves_circle(self) -> Meant:
+    def leaves_circle(self) -> IntendedArcs:
         """Arcs with both ends on the circle of an arc beside them, or of one about the center of C."""
         passes = self.passes
         move = np.flatnonzero(self._judged)
@@ -74,7 +74,7 @@ class SameCircle(Columns, frozen=True):
         near = on_bar & self._is_slip(move, radius)
         adjacent = np.zeros(len(move), bool)
         for neighbor, joint, far in ((passes.beside[0][move], start, end), (passes.beside[1][move], end, start)):
-            known = (
+            valid = (
                 (neighbor >= 0)
                 & passes.is_arc[neighbor]
                 & (passes.motion[neighbor] == passes.motion[move])
@@ -82,7 +82,7 @@ class SameCircle(Columns, frozen=True):
             )
             about = passes.center[neighbor]
             size = np.abs(joint - about)
-            fits = known & (np.abs(np.abs(far - about) - size) <= _SAME) & (np.abs(about - passes.center[move]) > _SAME)
+            fits = valid & (np.abs(np.abs(far - about) - size) <= _SAME) & (np.abs(about - passes.center[move]) > _SAME)
             # In a circle of two halves each of them lies on the circle of the other one.
             fits &= passes.beside[0][move] != passes.beside[1][move]
             center[fits], radius[fits], adjacent[fits] = about[fits], size[fits], True
@@ -131,12 +131,12 @@ class SameCircle(Columns, frozen=True):
         scale = self.trace.lengths.scale[passes.row[move]]
         for index in np.flatnonzero(~slip & ~np.isnan(radius)).tolist()[:100]:
             unit = float(scale[index])
-            slip_found = slip_of(plain_number(written[index] / unit), float(radius[index]) / unit, _SAME / unit)
-            slip[index] = slip_found is not None and slip_found.plain
+            mistake = slip_of(plain_number(written[index] / unit), float(radius[index]) / unit, _SAME / unit)
+            slip[index] = mistake is not None and mistake.plain
         return np.asarray(slip)
 
     @cached_property
-    def mistaken_together(self) -> Meant:
+    def mistaken_together(self) -> IntendedArcs:
         """Arcs of one R, one after the other, on the circle through whose ends that R is mistaken by a factor."""
         passes = self.passes
         following = passes.beside[1]
@@ -173,13 +173,13 @@ class SameCircle(Columns, frozen=True):
         move, first = np.unique(move, return_index=True)
         return self._meant(move, both_center[first], both_radius[first])
 
-    def _meant(self, move: Rows, center: Points, radius: Floats) -> Meant:
+    def _meant(self, move: Rows, center: Points, radius: Floats) -> IntendedArcs:
         passes = self.passes
         spoke, last = passes.start[move] - center, passes.end[move] - center
-        left = passes.motion[move] == Motion.CCW
-        sweep = np.angle(last * spoke.conj()) * np.where(left, 1, -1) % (2 * np.pi)
+        is_ccw = passes.motion[move] == Motion.CCW
+        sweep = np.angle(last * spoke.conj()) * np.where(is_ccw, 1, -1) % (2 * np.pi)
         tolerance = 4 * passes.half_of_last_digit[move] + 2e-3
-        return Meant(move, np.where(sweep > np.pi + 2e-3, -radius, radius), center, tolerance)
+        return IntendedArcs(move, np.where(sweep > np.pi + 2e-3, -radius, radius), center, tolerance)
 
 
 def _ratio(written: Floats, radius: Floats) -> Floats:
@@ -198,6 +198,6 @@ def _circumcenter(first_point: Points, two: Points, three: Points) -> Points:
     return center
 
 
-def _nothing() -> Meant:
+def _nothing() -> IntendedArcs:
     none = np.zeros(0)
-    return Meant(np.zeros(0, np.int64), none, none.astype(np.complex128), none)
+    return IntendedArcs(np.zeros(0, np.int64), none, none.astype(np.complex128), none)

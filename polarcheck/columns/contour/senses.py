@@ -40,21 +40,21 @@ class Senses(Columns, frozen=True):
         loop = self._loop[rows]
         joined = (loop[1:] == loop[:-1]) & (loop[1:] >= 0)
         between = np.append(False, joined) & np.append(joined, False)
-        judged = (
+        is_candidate = (
             self.trace.path.is_arc
             & ~self.arcs.is_no_circle
             & ~self.arcs.ends_at_start
             & ~np.isnan(self.trace.path.center)
         )
-        return np.flatnonzero(between & judged[rows])
+        return np.flatnonzero(between & is_candidate[rows])
 
     @cached_property
     def _moving(self) -> Rows:
         return np.flatnonzero(self.trace.path.on_plane)
 
-    def _tangents(self, place: Rows) -> tuple[Points, Points]:
+    def _tangents(self, index: Rows) -> tuple[Points, Points]:
         """Directions in which some of the moving rows begin and end."""
-        trace, rows = self.trace, self._moving[place]
+        trace, rows = self.trace, self._moving[index]
         return _tangents(trace.path.start[rows], trace.path.end[rows], trace.path.center[rows], trace.axes.motion[rows])
 
     @cached_property
@@ -70,8 +70,8 @@ class Senses(Columns, frozen=True):
         )
         by_radius = self.arcs.by_radius[row]
         # By R it is the other circle through both ends, by I and J the same circle the other way round.
-        other = np.where(by_radius, start + end - center, center)
-        begins, ends = _tangents(start, end, other, np.where(motion == Motion.CW, Motion.CCW, Motion.CW))
+        opposite_center = np.where(by_radius, start + end - center, center)
+        begins, ends = _tangents(start, end, opposite_center, np.where(motion == Motion.CW, Motion.CCW, Motion.CW))
         into, out = self._tangents(arc - 1)[1], self._tangents(arc + 1)[0]
         reversed_ = np.maximum(_angle(into, begins), _angle(ends, out))
         leaving, arriving = self._tangents(arc)

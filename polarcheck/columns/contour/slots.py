@@ -166,7 +166,7 @@ class Slots(Columns, frozen=True):
         chords = segments(
             walls[walls.loop == self.overcuts.loop[row]], self.trace.machine.compensation.overcut_tolerance
         )
-        _, place = self.cuts.deepest(row)
+        _, point = self.cuts.deepest(row)
         return float(
-            shapely.distance(lines_of(chords.start, chords.end), shapely.points(coordinates(np.array(place)))).min()
+            shapely.distance(lines_of(chords.start, chords.end), shapely.points(coordinates(np.array(point)))).min()
         )

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from polarcheck.columns.contour.passes import Passes
-from polarcheck.columns.contour.same_circle import Meant, SameCircle
+from polarcheck.columns.contour.same_circle import IntendedArcs, SameCircle
 from polarcheck.columns.path.arcs import Arcs
 from polarcheck.columns.trace import Trace
 from polarcheck.columns.words.slips import plain_number, slip_of
@@ -82,8 +82,8 @@ class Tangency(Columns, frozen=True):
             fits = (np.abs(into - out) <= 2 * fits_within) & (np.abs(half) > _FLAT) & (np.abs(half) < np.pi - _FLAT)
             fits &= (half > 0) == (passes.motion[move] == Motion.CCW)
             size = np.where(fits, half_chord / np.sin(np.abs(half)), np.nan)
-            way = chord / np.abs(chord) * np.exp(-1j * half)
-        center = start + 1j * np.sign(half) * size * way
+            direction = chord / np.abs(chord) * np.exp(-1j * half)
+        center = start + 1j * np.sign(half) * size * direction
         # Half a circle is one by either sign.
         signed = np.where(np.abs(half) > np.pi / 2 + fits_within, -size, size)
         return _Candidates(move, tolerance, signed, center)
@@ -135,7 +135,7 @@ class Tangency(Columns, frozen=True):
         if not single:
             return np.zeros(0, np.int64)
         limit = candidates.tolerance[of_contour]
-        previous, following = (beside[candidates.move[of_contour]] for beside in passes.beside)
+        previous, following = (neighbor[candidates.move[of_contour]] for neighbor in passes.beside)
         into, out = (np.abs(turn[candidates.move[of_contour]]) <= limit for turn in passes.turns)
         tangent_before = into & out
         if not tangent_before.any() and len(single) == len(of_contour) > 1:
@@ -206,18 +206,18 @@ class Tangency(Columns, frozen=True):
         return np.where(self.arcs.sweep[passes.row] > 180 + 1e-3, -size, size)
 
     @cached_property
-    def _meant(self) -> Meant:
+    def _meant(self) -> IntendedArcs:
         """All arcs where another one is intended: on the circle of other arcs, else tangent to its neighbours."""
         candidates, chosen = self._judged, self._misfits
         tolerance = np.array([self._tolerance_of(index) for index in chosen.tolist()])
-        tangent = Meant(candidates.move[chosen], candidates.radius[chosen], candidates.center[chosen], tolerance)
+        tangent = IntendedArcs(candidates.move[chosen], candidates.radius[chosen], candidates.center[chosen], tolerance)
         parts = [self.same_circle.mistaken_together, self.same_circle.leaves_circle, tangent]
         parts = [part for part in parts if len(part.move)] or [tangent]
         if len(parts) == 1:
             return parts[0]
         move, first = np.unique(np.concatenate([part.move for part in parts]), return_index=True)
-        columns = (np.concatenate([part[at] for part in parts])[first] for at in range(1, 4))
-        return Meant(move, *columns)
+        columns = (np.concatenate([part[column] for part in parts])[first] for column in range(1, 4))
+        return IntendedArcs(move, *columns)
 
     @cached_property
     def misfits(self) -> Mask:

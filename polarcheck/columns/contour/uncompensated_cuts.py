@@ -143,8 +143,8 @@ class UncompensatedCuts(Columns, frozen=True):
         )
         row = np.append(moves, -1)[np.searchsorted(moves, last, side="right")]
         last, row = last[row >= 0], row[row >= 0]
-        others = trace.path.moves_z | trace.path.moves_c | trace.blocks.has("Y", "V", "B")
-        alone = (trace.axes.motion == Motion.RAPID) & trace.path.moves_x & ~others
+        further = trace.path.moves_z | trace.path.moves_c | trace.blocks.has("Y", "V", "B")
+        alone = (trace.axes.motion == Motion.RAPID) & trace.path.moves_x & ~further
         alone &= (
             self._has_contour & (trace.mode.section < 0) & (trace.compensation.side == trace.compensation.side_before)
         )

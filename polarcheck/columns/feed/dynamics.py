@@ -179,8 +179,8 @@ class Dynamics:
         """The longest of its axes; one that stands still needs no rate."""
         limits = self.trace.machine.limits
         rates = (limits.x_rapid, limits.z_rapid, limits.c_rapid)
-        ways = self._way(rows)
-        times = [np.where(length <= ZERO, 0.0, 60 * length / rate) for length, rate in zip(ways, rates, strict=True)]
+        lengths = self._way(rows)
+        times = [np.where(length <= ZERO, 0.0, 60 * length / rate) for length, rate in zip(lengths, rates, strict=True)]
         longest: Floats = np.max(np.stack(times), axis=0) if len(rows) else np.zeros(0)
         return longest
 
@@ -250,9 +250,9 @@ class Dynamics:
 
     def times(self, rows: Rows) -> Times:
         """How long these rows take together."""
-        known = float(np.nansum(self.time[rows]))
+        seconds = float(np.nansum(self.time[rows]))
         hit = ((reason, rows[mask[rows]]) for reason, mask in self.unknown)
-        return Times(known, tuple((reason, len(limited), int(limited[0])) for reason, limited in hit if len(limited)))
+        return Times(seconds, tuple((reason, len(limited), int(limited[0])) for reason, limited in hit if len(limited)))
 
     @cached_property
     def section_time(self) -> Floats:

@@ -71,8 +71,8 @@ def _begun(dynamics: Dynamics, row: Rows, time: Floats) -> Floats:
     rest = _Sums(np.where(dynamics.on_path | (trace.mode.section < 0), 0.0, dynamics.time))
     moving = _Sums(time)
     section = trace.mode.section[row]
-    first, at = np.searchsorted(section, section), np.arange(len(row))
-    return rest.between(trace.mode.sections.enter[section], row) + moving.between(first, at)
+    first, index = np.searchsorted(section, section), np.arange(len(row))
+    return rest.between(trace.mode.sections.enter[section], row) + moving.between(first, index)
 
 
 class _Sums:

@@ -172,8 +172,8 @@ class FeedRanges:
         if len(rows):
             parts = np.flatnonzero(np.diff(self.ramps.loop[rows]) != 0)
             ends[rows[np.concatenate(([0], parts, parts + 1, [len(rows) - 1]))]] = True
-        way = trace.path.end - trace.path.start
-        begins, finishes = ((point * way.conj()).real for point in (trace.path.start, trace.path.end))
+        chord = trace.path.end - trace.path.start
+        begins, finishes = ((point * chord.conj()).real for point in (trace.path.start, trace.path.end))
         passes = (trace.axes.motion == Motion.LINE) & (begins < -ROUNDING) & (finishes > ROUNDING)
         return np.asarray(ends & ~passes)
 

@@ -102,8 +102,8 @@ class Feeds(Columns, frozen=True):
         trace = self.trace
         written = trace.blocks.has("F") | trace.blocks.starts
         per_revolution = fill_down(trace.feedrate.feed_mode == FeedMode.PER_REVOLUTION, written, False)
-        known = ~np.isnan(trace.feedrate.feed)
-        return np.asarray(per_revolution & trace.feedrate.per_minute & known & ~self.is_too_high_per_revolution)
+        has_feed = ~np.isnan(trace.feedrate.feed)
+        return np.asarray(per_revolution & trace.feedrate.per_minute & has_feed & ~self.is_too_high_per_revolution)
 
     @cached_property
     def looks_per_revolution(self) -> Mask:
@@ -137,8 +137,8 @@ class Feeds(Columns, frozen=True):
         time = np.zeros(len(trace))
         depth = np.where(trace.path.moves_z[rows], np.abs(trace.path.z[rows] - trace.path.z_before[rows]), 0.0)
         length = trace.path.length[rows]
-        way = np.where(length == 0, depth, np.hypot(length, trace.path.rise[rows]))
-        time[rows] = 60 * way / trace.feedrate.feed_number[rows]
+        distance = np.where(length == 0, depth, np.hypot(length, trace.path.rise[rows]))
+        time[rows] = 60 * distance / trace.feedrate.feed_number[rows]
         return time
 
     @cached_property
@@ -155,8 +155,8 @@ class Feeds(Columns, frozen=True):
         is_small = ~self._is_at_least(_NOT_PER_MINUTE) & ~may_do & (trace.feedrate.feed_number > 0)
         takes_long = is_small & (self.block_time > _MINUTES)
         hours = trace.feedrate.per_minute & (self.block_time > _HOURS)
-        known = self.is_left_per_revolution | self.looks_per_revolution
-        return np.asarray((((trace.feedrate.per_minute | self.mode_is_unknown) & takes_long) | hours) & ~known)
+        explained = self.is_left_per_revolution | self.looks_per_revolution
+        return np.asarray((((trace.feedrate.per_minute | self.mode_is_unknown) & takes_long) | hours) & ~explained)
 
     @cached_property
     def begins(self) -> Mask:

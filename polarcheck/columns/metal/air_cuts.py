@@ -166,8 +166,8 @@ class AirCuts(Columns, frozen=True):
     def is_cut_below(self) -> Mask:
         """Rows at whose Z with the other sign the program cuts elsewhere."""
         depths = np.sort(self.trace.path.z[self.walls])
-        wanted = -self.trace.path.z
-        near = [np.searchsorted(depths, wanted + way * ROUNDING) for way in (-1, 1)]
+        mirrored = -self.trace.path.z
+        near = [np.searchsorted(depths, mirrored + sign * ROUNDING) for sign in (-1, 1)]
         return np.asarray((near[1] > near[0]) & (self.trace.path.z > ROUNDING))
 
     @property
@@ -203,7 +203,7 @@ class AirCuts(Columns, frozen=True):
         for members in self._alike:
             angles = angle[members]
             _, number, count = np.unique(angles, return_inverse=True, return_counts=True)
-            later = np.array([index not in number[:place] for place, index in enumerate(number)]) == 0
+            later = np.array([index not in number[:position] for position, index in enumerate(number)]) == 0
             if len(count) > 1 and count.min() < count.max():
                 repeated[members[later]] = True
             repeated[members[later & self._idle_index[members]]] = True

@@ -115,10 +115,10 @@ class Bar(Columns, frozen=True):
         rotary = trace.machine.polar.rotary_words
         uses_c = trace.blocks.has(*rotary) & trace.modal.uses_axes & trace.axes.moves
         uses_c |= trace.blocks.has("Y", "V") & trace.axes.moves
-        other = uses_c | (trace.modal.drilling != 0) | (trace.mode.section >= 0) | trace.mode.on_cylinder
+        excluded = uses_c | (trace.modal.drilling != 0) | (trace.mode.section >= 0) | trace.mode.on_cylinder
         call = self.tool_call
         has_other = np.zeros(int(call.max(initial=0)) + 1, bool)
-        has_other[call[other]] = True
+        has_other[call[excluded]] = True
         first = int(trace.mode.sections.enter[0])
         result = ~has_other[call] & trace.tools.has_called_tool
         result[first:] = False
@@ -224,7 +224,7 @@ class Bar(Columns, frozen=True):
         x = fill_down(trace.lengths.length_of("X") * trace.lengths.x_factor, trace.blocks.has("X") | begins, np.nan)
         z = fill_down(trace.lengths.length_of("Z"), trace.blocks.has("Z") | begins, np.nan)
         first = in_cycle & begins
-        x_start, z_start = (fill_down(self._place[at], first | ended, np.nan) for at in (0, 2))
+        x_start, z_start = (fill_down(self._place[coordinate], first | ended, np.nan) for coordinate in (0, 2))
         steps = trace.blocks.has(INCREMENTS["X"], INCREMENTS["Z"], "R")
         rows = np.flatnonzero(in_cycle & trace.blocks.has("X", "Z") & ~np.isnan(x + z + x_start + z_start) & ~steps)
         faces = kind[rows] == 2

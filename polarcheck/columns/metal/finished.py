@@ -107,12 +107,12 @@ class Finished(Columns, frozen=True):
         return self._put_together(self.meant, *self.overcuts.walls_of_unknown_radius)
 
     def _put_together(self, levels: list[Level], walls: Curves, left: Mask) -> list[Level]:
-        trace, known = self.trace, self.trace.path.knows_section_entry
+        trace, knows_entry = self.trace, self.trace.path.knows_section_entry
         groups: dict[tuple[float, ...], list[Level]] = {}
         for level in levels:
             row = int(level.walls.row[0])
             face = bool(trace.modal.on_sub_spindle[row]), int(trace.modal.state("work_offset")[row])
-            alone = not known[level.section] or np.isnan(level.z)
+            alone = not knows_entry[level.section] or np.isnan(level.z)
             key = (
                 (*face, round(level.z, 4), round(level.radius, 1)) if not alone else (float(level.section), float(row))
             )

@@ -202,10 +202,10 @@ class PartComments(Columns, frozen=True):
 
         shapes: dict[int, list[Shape]] = {}
         for level in (*self.finished.levels, *self.finished.meant):
-            found = [] if level.tangled else shapes_of(level.outline, level.gap, self.finished.overcuts.bar)
+            of_level = [] if level.tangled else shapes_of(level.outline, level.gap, self.finished.overcuts.bar)
             row = int(level.walls.row[0])
             # The first block of the contour as programmed; a shape may begin with any of its sides.
-            shapes.setdefault(level.section, []).extend(shape._replace(row=row) for shape in found)
+            shapes.setdefault(level.section, []).extend(shape._replace(row=row) for shape in of_level)
         return shapes
 
     def _sizes(self, comment: PartComment) -> Iterator[Contradiction]:
@@ -218,8 +218,8 @@ class PartComments(Columns, frozen=True):
         of_comment = [shape for section in comment.of_size for shape in self._shapes.get(section, [])]
         comparable = _comparable(size, of_comment)
         if comparable:
-            shape, made = min(comparable, key=lambda pair: pair[1])
-            yield Contradiction(shape.row, comment.comment, size.size, made, shape.name)
+            shape, machined = min(comparable, key=lambda pair: pair[1])
+            yield Contradiction(shape.row, comment.comment, size.size, machined, shape.name)
         elif of_comment and size.shape in POLYGONS.values() and all(map(_is_regular_polygon, of_comment)):
             shape = of_comment[0]
             yield Contradiction(shape.row, comment.comment, size.size, shape.values["across_flats"], shape.name)
@@ -272,7 +272,7 @@ class PartComments(Columns, frozen=True):
             turns = np.flatnonzero(self.trace.blocks.line_in_file == stock.lines[0])
             yield Contradiction(int(turns[0]), comment, stated, stock.smallest, TURNED)
         elif stock.source == "comment" and self._may_be_beyond(largest / 2):
-            yield from (Contradiction(at, comment, stated, made, BEYOND) for at, made in self._beyond(largest / 2))
+            yield from (Contradiction(at, comment, stated, needed, BEYOND) for at, needed in self._beyond(largest / 2))
 
     def _may_be_beyond(self, radius: float) -> bool:
         """A cheap test: some of a contour lies beyond this radius with both ends."""

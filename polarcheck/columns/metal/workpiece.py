@@ -43,7 +43,7 @@ _STILL = 1e-4
 _MOST_WAYS, _MOST_MOVES = 200, 20_000
 
 
-class Ways(Table, frozen=True):
+class ToolMoves(Table, frozen=True):
     """
     Moves that take a mill to a place, n of them in the order of the program.
 
@@ -120,7 +120,7 @@ class Workpiece(Columns, frozen=True):
     # ---- where they go ----
 
     @cached_property
-    def _outside(self) -> Ways:
+    def _outside(self) -> ToolMoves:
         """All moves of mills outside of sections of which the end or the way is known."""
         trace = self.trace
         path, axes = trace.path, trace.axes
@@ -157,7 +157,7 @@ class Workpiece(Columns, frozen=True):
         with np.errstate(invalid="ignore"):
             on_slope = (x_from + aside) * np.exp(1j * np.radians(c_from))
         end = np.where(slope, on_slope, np.where(full, begin, end))
-        rapids = Ways(
+        rapids = ToolMoves(
             row=row,
             start=np.asarray(np.where(arc | line, begin, end), np.complex128),
             end=np.asarray(end, np.complex128),
@@ -187,7 +187,7 @@ class Workpiece(Columns, frozen=True):
                     is_sure=np.zeros(len(row), bool),
                 )[chosen]
             )
-        rapids = Ways.concatenated(several)
+        rapids = ToolMoves.concatenated(several)
         return rapids[np.argsort(rapids.row, kind="stable")]
 
     @property
@@ -197,7 +197,7 @@ class Workpiece(Columns, frozen=True):
         return np.asarray(self.trace.mode.in_polar & path.moves_z & ~path.travels)
 
     @cached_property
-    def _inside(self) -> Ways:
+    def _inside(self) -> ToolMoves:
         """All moves of the tool center in sections, those of Z alone as places."""
         trace, moves = self.trace, self.tool_center.moves
         low = np.minimum(*z_along(trace, moves))
@@ -218,7 +218,7 @@ class Workpiece(Columns, frozen=True):
         is_rapid = trace.axes.motion == Motion.RAPID
         rows = np.concatenate([moves.row, row])
         order = np.argsort(rows, kind="stable")
-        ways = Ways(
+        tool_moves = ToolMoves(
             row=rows,
             start=np.concatenate([moves.start * of_move, point]),
             end=np.concatenate([moves.end * of_move, point]),
@@ -230,16 +230,16 @@ class Workpiece(Columns, frozen=True):
             plunges=np.concatenate([np.zeros(len(moves), bool), ~(trace.path.z[row] >= trace.path.z_before[row])]),
             is_sure=np.ones(len(rows), bool),
         )
-        return ways[order]
+        return tool_moves[order]
 
     @cached_property
-    def _all(self) -> Ways:
+    def _all(self) -> ToolMoves:
         """Both, in the order of the program."""
-        moves = Ways.concatenated([self._outside, self._inside])
+        moves = ToolMoves.concatenated([self._outside, self._inside])
         return moves[np.argsort(moves.row, kind="stable")]
 
     @cached_property
-    def _with_all_rapids(self) -> Ways:
+    def _with_all_rapids(self) -> ToolMoves:
         """
         The moves outside of sections, and those in sections, too, where one of these is in rapid traverse.
 
@@ -248,7 +248,7 @@ class Workpiece(Columns, frozen=True):
         rapid_on_plane = self.is_rapid[self.tool_center.moves.row].any()
         return self._all if rapid_on_plane or (self.is_rapid & self._z_alone).any() else self._outside
 
-    def _sweeps(self, moves: Ways) -> Sweeps:
+    def _sweeps(self, moves: ToolMoves) -> Sweeps:
         from polarcheck.geometry.polygons.standing_metal import Sweeps
         from polarcheck.geometry.segments import Curves
 
@@ -266,7 +266,7 @@ class Workpiece(Columns, frozen=True):
         return 0.0 if np.isnan(face) else face
 
     @cached_property
-    def _into_bar(self) -> Ways:
+    def _into_bar(self) -> ToolMoves:
         """Moves in rapid traverse with the tip below the face and the cutter within the circle of the bar."""
         bar, moves = self.bar.known, self._with_all_rapids
         low = moves.is_rapid & (moves.tip < self.top - _CLEARANCE)
@@ -292,10 +292,10 @@ class Workpiece(Columns, frozen=True):
 
         stands = disc(bar.smallest, bar.bore)
         lower = self._all[(self._all.tip < self.top) & self._all.is_sure]
-        hit, place = hits_on_bar(self._sweeps(moves), stands, self._sweeps(lower), *self._holes)
-        return Hits(moves.row[hit], place[hit], moves.is_sure[hit])
+        hit, point = hits_on_bar(self._sweeps(moves), stands, self._sweeps(lower), *self._holes)
+        return Hits(moves.row[hit], point[hit], moves.is_sure[hit])
 
-    def _bound(self, mills: Ways) -> None:
+    def _bound(self, mills: ToolMoves) -> None:
         if len(mills) > _MOST_WAYS or len(self._all) > _MOST_MOVES:
             raise TooHardError(
                 f"{len(mills)} ways of mills at depth and {len(self._all)} moves are too many to follow the metal: "
@@ -360,7 +360,7 @@ class Workpiece(Columns, frozen=True):
     # ---- the finished part ----
 
     @cached_property
-    def _over_contour(self) -> Ways:
+    def _over_contour(self) -> ToolMoves:
         """
         Moves outside of sections to a place within the reach of a contour and no higher than it.
 

@@ -138,10 +138,10 @@ class PolarMode(Columns, frozen=True):
         simulated = self.axes.linear_is_known & self.axes.is_simulated
         if not len(self.blocks.words_not_followed):
             return simulated
-        beside = self.anywhere_in_section(self.blocks.with_words(self.blocks.words_not_followed))
+        not_followed = self.anywhere_in_section(self.blocks.with_words(self.blocks.words_not_followed))
         linear, virtual = self.axes.programs_linear_axis, self.axes.programs_virtual_axis
         both = self.anywhere_in_section(linear) & self.anywhere_in_section(virtual)
-        return np.asarray(simulated & (~beside | both))
+        return np.asarray(simulated & (~not_followed | both))
 
     @cached_property
     def rotary_is_followed(self) -> Mask:

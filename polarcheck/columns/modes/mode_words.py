@@ -115,8 +115,8 @@ class ModeWords(Columns, frozen=True):
         trace = self.trace
         first = next(iter(numbers(trace.machine.codes("work_offset"))), 0) // 10
         offset = np.where(trace.modal.state("work_offset") == 0, first, trace.modal.state("work_offset"))
-        others = trace.mode.in_polar & (offset != before(offset, trace.blocks.starts, first))
-        return np.asarray(others & self.rows(self.listed("work_offset") & ~self.not_allowed))
+        changes = trace.mode.in_polar & (offset != before(offset, trace.blocks.starts, first))
+        return np.asarray(changes & self.rows(self.listed("work_offset") & ~self.not_allowed))
 
     @cached_property
     def changes_tool_offset(self) -> Mask:

@@ -35,9 +35,9 @@ class Settings(NamedTuple):
         return Settings(row[chosen], number[chosen], kind[chosen], value[chosen], is_step[chosen])
 
 
-def of_list(found: Sequence[tuple[int, int, int, float, bool]]) -> Settings:
+def of_list(settings: Sequence[tuple[int, int, int, float, bool]]) -> Settings:
     """Columns of a list of settings: row, number, kind, value, is_step."""
-    table = np.array(found, np.float64).reshape(-1, 5)
+    table = np.array(settings, np.float64).reshape(-1, 5)
     row, number, kind = (table[:, column].astype(np.int64) for column in range(3))
     return Settings(row, number, kind, table[:, 3], table[:, 4].astype(bool))
 

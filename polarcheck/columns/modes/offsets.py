@@ -338,5 +338,5 @@ class ToolOffsets(Columns, frozen=True):
         return np.isin(self.nose, self.machine.compensation.nose_types)
 
 
-def _first_known(first: Floats, other: Floats) -> Floats:
-    return np.where(np.isnan(first), other, first)
+def _first_known(first: Floats, second: Floats) -> Floats:
+    return np.where(np.isnan(first), second, first)

@@ -170,8 +170,8 @@ class Origin(Columns, frozen=True):
             return self._name(number)
         if setter in self.trace.run.assigned:
             return self.trace.run.assigned[setter].name
-        own = self._settings.number[self._settings.row == setter]
-        on = f"on {self._name(number)}" if own[-1] > 0 else "P0"
+        numbers = self._settings.number[self._settings.row == setter]
+        on = f"on {self._name(number)}" if numbers[-1] > 0 else "P0"
         return f"{self._code('data_input')} {on}"
 
     def _name(self, number: float) -> str:

@@ -57,8 +57,8 @@ class OtherMode(Columns, frozen=True):
     def _in_text(self) -> list[str]:
         """The codes that begin the mode on other controls, of those that stand in the file, executed or not."""
         polar = self.trace.machine.polar
-        own = {*polar.on, *self.trace.machine.control.native_words}
-        names = [name for name in polar.on_of_other_controls if name not in own and self._stands_in_text(name)]
+        of_machine = {*polar.on, *self.trace.machine.control.native_words}
+        names = [name for name in polar.on_of_other_controls if name not in of_machine and self._stands_in_text(name)]
         return [name for name in names if known_by(name)]
 
     def _stands_in_text(self, name: str) -> bool:
@@ -162,8 +162,8 @@ class OtherMode(Columns, frozen=True):
         stops = trace.tools.changes_tool | trace.blocks.ends_program | trace.blocks.starts | self.begins
         following = np.flatnonzero(stops)
         last = int(np.append(following, len(trace))[np.searchsorted(following, row, "right")])
-        own = {*trace.machine.polar.off, *trace.machine.control.native_words}
-        return [name for name in ends if name not in own and self._has([name])[row:last].any()]
+        of_machine = {*trace.machine.polar.off, *trace.machine.control.native_words}
+        return [name for name in ends if name not in of_machine and self._has([name])[row:last].any()]
 
     def other_axes_written(self, row: int) -> list[str]:
         """The second axes of the moves in the mode that a row begins, where this control has another."""
@@ -182,10 +182,10 @@ class OtherMode(Columns, frozen=True):
         """
         switch = self.switch(row)
         within = self._within(self.trace.blocks.mask_of(np.array([row])), self._ends(switch))
-        beside = {chr(self.trace.run.words.address[at]) for at in np.flatnonzero(self.trace.run.row == row)}
+        addresses = {chr(self.trace.run.words.address[index]) for index in np.flatnonzero(self.trace.run.row == row)}
 
         def reads(profile: Profile) -> bool:
-            return not is_code(switch.name) or beside <= {*"GNO/", *profile.machine.polar.words_beside_switch}
+            return not is_code(switch.name) or addresses <= {*"GNO/", *profile.machine.polar.words_beside_switch}
 
         def moves(profile: Profile) -> bool:
             return bool(np.any(within & self.trace.blocks.has(*profile.machine.polar.virtual_axes)))

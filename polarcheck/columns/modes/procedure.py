@@ -225,10 +225,10 @@ class Procedure(Columns, frozen=True):
             is_among(trace.axes.motion, _AT_FEED) | trace.blocks.codes(*codes.live_tool_off) | trace.blocks.ends_program
         )
         until = np.append(np.flatnonzero(ends), len(trace) - 1)[np.searchsorted(np.flatnonzero(ends), rows)]
-        known = (trace.blocks.whole_program | trace.tools.has_called_tool) & trace.blocks.anywhere_in_program(
+        is_whole = (trace.blocks.whole_program | trace.tools.has_called_tool) & trace.blocks.anywhere_in_program(
             trace.mode.enters
         )
-        return np.asarray(started & ~has_speed[until] & known)
+        return np.asarray(started & ~has_speed[until] & is_whole)
 
     @cached_property
     def live_tool_above_highest_speed(self) -> Mask:
@@ -276,9 +276,9 @@ class Procedure(Columns, frozen=True):
         """
         trace = self.trace
         of_mode = last_row(trace.modal.sets("feed_mode"), trace.blocks.starts)
-        known = ~happened(trace.run.unknown, trace.mode.leaves | trace.blocks.starts)
+        sure = ~happened(trace.run.unknown, trace.mode.leaves | trace.blocks.starts)
         carried = (
-            (of_mode >= 0) & (of_mode < self.section_before) & (trace.feedrate.feed_mode == FeedMode.PER_MINUTE) & known
+            (of_mode >= 0) & (of_mode < self.section_before) & (trace.feedrate.feed_mode == FeedMode.PER_MINUTE) & sure
         )
         is_own = last_row(trace.blocks.has("F"), trace.blocks.starts) > self.section_before
         least = np.where(trace.modal.live_tool, _LEAST_OF_LIVE_TOOL, _LEAST_OF_TURNING)

@@ -125,11 +125,11 @@ def section_column(sections: Sections, count: int) -> Rows:
     return np.where(inside, number, -1)
 
 
-def _first_after(rows: Rows, at: Rows, none: int) -> Rows:
-    """For each of `at` the first of the sorted rows after it."""
-    return np.append(rows, none)[np.searchsorted(rows, at, side="right")]
+def _first_after(rows: Rows, start: Rows, none: int) -> Rows:
+    """For each of `start` the first of the sorted rows after it."""
+    return np.append(rows, none)[np.searchsorted(rows, start, side="right")]
 
 
-def _last_before(rows: Rows, at: Rows) -> Rows:
-    """For each of `at` the last of the sorted rows before it, -1 where none is."""
-    return np.concatenate(([-1], rows))[np.searchsorted(rows, at, side="left")]
+def _last_before(rows: Rows, end: Rows) -> Rows:
+    """For each of `end` the last of the sorted rows before it, -1 where none is."""
+    return np.concatenate(([-1], rows))[np.searchsorted(rows, end, side="left")]

@@ -95,8 +95,8 @@ class Spindles:
         listed += [
             word for word in (*machine.macro.flow_codes, *machine.polar.on, *machine.polar.off) if word[0] == "M"
         ]
-        known = trace.blocks.words_at(trace.blocks.code_indices(*OF_EVERY_LATHE, *listed))
-        return np.asarray(trace.blocks.m_words[~known[trace.blocks.m_words] & (trace.blocks.m_codes != NO_CODE)])
+        is_listed = trace.blocks.words_at(trace.blocks.code_indices(*OF_EVERY_LATHE, *listed))
+        return np.asarray(trace.blocks.m_words[~is_listed[trace.blocks.m_words] & (trace.blocks.m_codes != NO_CODE)])
 
     # ---- the spindle itself ----
 

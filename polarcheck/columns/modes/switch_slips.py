@@ -49,7 +49,7 @@ class SwitchSlips(Columns, frozen=True):
     def _forms(self) -> tuple[dict[str, str], dict[str, str]]:
         """By misspelled code the code that is meant: those that begin the mode, and those that end it."""
         mode = self.trace.machine.polar
-        own = code_set([*mode.on, *mode.off, *self.trace.machine.listed_codes])
+        is_of_machine = code_set([*mode.on, *mode.off, *self.trace.machine.listed_codes])
         native = self.trace.machine.control.native_words.values()
         first, second = (
             {
@@ -57,7 +57,7 @@ class SwitchSlips(Columns, frozen=True):
                 for name in names
                 if "." in name and name not in native
                 for form in (name.replace(".", ""), name.partition(".")[0])
-                if not own[code(form)]
+                if not is_of_machine[code(form)]
             }
             for names in (mode.on, mode.off)
         )

@@ -55,9 +55,9 @@ class ArcWords(Columns, frozen=True):
         """Rows of straight moves on the plane in the mode, with no code beside them that uses such words."""
         trace = self.trace
         plain = code_set([code for key in _PLAIN for code in trace.machine.codes(key)])
-        other = trace.blocks.g_words[~plain[trace.blocks.g_codes]]
+        words = trace.blocks.g_words[~plain[trace.blocks.g_codes]]
         is_line = trace.path.on_plane & (trace.axes.motion == Motion.LINE) & trace.mode.in_polar
-        return np.asarray(is_line & ~trace.blocks.with_words(other))
+        return np.asarray(is_line & ~trace.blocks.with_words(words))
 
     @cached_property
     def rows(self) -> Mask:

@@ -44,8 +44,8 @@ class Arcs(Columns, frozen=True):
     @cached_property
     def has_word_of_other_plane(self) -> Mask:
         """Rows with a center word of another plane: a K with X and C; K0 moves nothing."""
-        other = self.trace.blocks.with_words(self.trace.axes.other_center_words)
-        return np.asarray(other & (self.trace.axes.other_center_word != 0))
+        has_word = self.trace.blocks.with_words(self.trace.axes.other_center_words)
+        return np.asarray(has_word & (self.trace.axes.other_center_word != 0))
 
     @cached_property
     def has_word_of_plane(self) -> Mask:

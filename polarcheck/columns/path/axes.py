@@ -357,8 +357,8 @@ class PlaneAxes(Columns, frozen=True):
         changes_mode = self.blocks.words_at(self.blocks.word_indices(*mode.not_simulated_beside)).copy()
         for letter in letters:
             index = self.blocks.word_indices(letter)
-            known = [float(word[1:]) for word in mode.virtual_axis_by_word if word[0] == letter]
-            changes_mode[index[~np.isin(self.run.words.value[index], known)]] = True
+            simulated = [float(word[1:]) for word in mode.virtual_axis_by_word if word[0] == letter]
+            changes_mode[index[~np.isin(self.run.words.value[index], simulated)]] = True
         return np.asarray(changes_mode & self.switches_on[self.run.row])
 
     @cached_property

@@ -31,8 +31,8 @@ class Center(Columns, frozen=True):
     def stops_at_center(self) -> Mask:
         """Per move of the tool center: it ends at the center of C. Without compensation that is the programmed end."""
         trace, moves = self.trace, self.tool_center.moves
-        known = moves.known | (trace.compensation.side[moves.row] == Side.OFF)
-        return np.asarray((np.abs(moves.end) < self.trace.lengths.least_step[moves.row]) & known)
+        is_known = moves.known | (trace.compensation.side[moves.row] == Side.OFF)
+        return np.asarray((np.abs(moves.end) < self.trace.lengths.least_step[moves.row]) & is_known)
 
     @cached_property
     def meets_center(self) -> Mask:

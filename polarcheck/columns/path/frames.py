@@ -133,11 +133,11 @@ def in_frame(
     shift = np.conj(frames.turn) * frames.shift
     is_followed = frames.is_known & (in_polar | (frames.angle == 0))
     moves = ~np.isnan(absolute) | (steps != 0)
-    found = np.where(is_followed, absolute + (shift.imag if along_virtual else shift.real), np.nan)
-    return found, np.where(moves & ~is_followed, np.nan, steps)
+    coordinate = np.where(is_followed, absolute + (shift.imag if along_virtual else shift.real), np.nan)
+    return coordinate, np.where(moves & ~is_followed, np.nan, steps)
 
 
-class Way(NamedTuple):
+class AxisPath(NamedTuple):
     """
     Where an axis is programmed to go, in the coordinates of the lathe but along the axes of the frame.
 
@@ -150,7 +150,7 @@ class Way(NamedTuple):
     values: Floats
 
 
-def along(linear: Way, virtual: Way, turn: Points) -> Points:
+def along(linear: AxisPath, virtual: AxisPath, turn: Points) -> Points:
     """
     Where both axes of the plane stand after each row [mm]; each part NaN while it is unknown.
 
@@ -179,15 +179,15 @@ def along(linear: Way, virtual: Way, turn: Points) -> Points:
     return result
 
 
-def _between(axis_path: Way, is_change: Mask) -> tuple[Floats, Mask]:
+def _between(axis_path: AxisPath, is_change: Mask) -> tuple[Floats, Mask]:
     """An axis after each row as if it stood at 0 where the frame turned last; whether that is to be added."""
     programmed = ~np.isnan(axis_path.absolute)
     starts_anew = is_change & ~axis_path.resets
-    found = positions(
+    position = positions(
         axis_path.absolute,
         axis_path.increment,
         axis_path.resets | starts_anew,
         np.where(starts_anew, 0.0, axis_path.values),
     )
     hangs = fill_down(starts_anew & ~programmed, starts_anew | programmed | axis_path.resets, False)
-    return found, hangs.astype(bool)
+    return position, hangs.astype(bool)

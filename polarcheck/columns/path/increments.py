@@ -50,11 +50,11 @@ class Increments(Columns, frozen=True):
         steps = np.add.reduceat(self.is_step[passes.row].astype(np.int64), passes.first)
         chosen = passes.compensated & ~passes.closed & (count >= _LEAST_MOVES) & (steps >= _MOSTLY * count)
         chosen &= (np.abs(self._turn) >= _ROUND) & (np.abs(self._turn) < _SPIRAL)
-        gaps = [self._gap_of(which) for which in np.flatnonzero(chosen).tolist()]
-        gaps_found = [gap for gap in gaps if gap is not None]
-        if not gaps_found:
+        gap_of_passes = [self._gap_of(which) for which in np.flatnonzero(chosen).tolist()]
+        gaps = [gap for gap in gap_of_passes if gap is not None]
+        if not gaps:
             return nothing
-        row, end, start = zip(*gaps_found, strict=True)
+        row, end, start = zip(*gaps, strict=True)
         return np.array(row, np.int64), np.array(end, np.complex128), np.array(start, np.complex128)
 
     @cached_property

@@ -217,8 +217,8 @@ class Infeed(Columns, frozen=True):
     def _moves(self, cycle: _Cycle, start: complex) -> Moves:
         """The moves of the passes that fit, in order, from a start point; the path of other passes is not known."""
         tool, number = cycle.tool, cycle.tool.row // len(cycle.contour)
-        allowance, known = cycle.offsets[number], tool.known & cycle.known[tool.row]
-        rounds = replace(of_tool(self.trace, tool, cycle.rows), known=known, allowance=allowance)
+        allowance, is_known = cycle.offsets[number], tool.known & cycle.known[tool.row]
+        rounds = replace(of_tool(self.trace, tool, cycle.rows), known=is_known, allowance=allowance)
         fits = ~cycle.is_unfit[number]
         rounds, number = rounds[fits], number[fits]
         first = np.flatnonzero(np.diff(number, prepend=-1))
@@ -292,8 +292,8 @@ class Infeed(Columns, frozen=True):
         for row, cycle in self._cycles.items():
             bad = np.flatnonzero(cycle.is_unfit)
             if len(bad):
-                at = int(cycle.contour[np.argmax(cycle.unfit[bad[-1]])])
-                least[row] = float(cycle.offsets[bad[-1]]), at
+                row_at_fault = int(cycle.contour[np.argmax(cycle.unfit[bad[-1]])])
+                least[row] = float(cycle.offsets[bad[-1]]), row_at_fault
         return least
 
     @cached_property

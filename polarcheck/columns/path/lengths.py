@@ -152,5 +152,5 @@ class Lengths(Lookups):
         both = self.blocks.codes(*control.x_absolute_diameter_words)
         if not both.any():
             return None
-        others = self.blocks.codes(*control.x_radius_words, *control.x_diameter_words)
-        return np.where(happened(both, others | self.blocks.starts), 1.0, self.x_factor)
+        lasting = self.blocks.codes(*control.x_radius_words, *control.x_diameter_words)
+        return np.where(happened(both, lasting | self.blocks.starts), 1.0, self.x_factor)

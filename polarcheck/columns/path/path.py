@@ -18,7 +18,7 @@ from polarcheck.columns.modes.mode import PolarMode
 from polarcheck.columns.modes.tools import CalledTools
 from polarcheck.columns.path.axes import PlaneAxes
 from polarcheck.columns.path.coordinates import Coordinates
-from polarcheck.columns.path.frames import Frames, Way, along, find_frames, in_frame
+from polarcheck.columns.path.frames import AxisPath, Frames, along, find_frames, in_frame
 from polarcheck.columns.path.lengths import RADIUS_FACTOR, Lengths
 from polarcheck.foundation.arrays import (
     Columns,
@@ -125,8 +125,8 @@ class ProgrammedPath(Columns, frozen=True):
         """Blocks in the mode with Z alone in machine coordinates, where the profile allows them there."""
         if not self.machine.polar.z_of_machine:
             return self.blocks.nowhere
-        others = [word for word in (*self.machine.axis_words, *self.machine.polar.axis_addresses) if word not in "ZW"]
-        is_z = self.blocks.has("Z") & ~self.blocks.has(*others)
+        further = [word for word in (*self.machine.axis_words, *self.machine.polar.axis_addresses) if word not in "ZW"]
+        is_z = self.blocks.has("Z") & ~self.blocks.has(*further)
         return self.blocks.listed("machine_coordinates") & self.mode.in_polar & is_z
 
     def _set_by(self, axis: str) -> Floats:
@@ -219,8 +219,8 @@ class ProgrammedPath(Columns, frozen=True):
             begins = self.mode.enters & (self.axes.linear_axis == ord(axis))
             resets, values = resets | begins, np.where(begins, self._alone(axis), values)
         leave = leave[(self.axes.linear_axis == ord("X"))[leave - 1]]
-        x_words = Way(*self._linear_coordinates, resets, values)
-        c_words = Way(*self._virtual_coordinates, self.mode.enters, virtual)
+        x_words = AxisPath(*self._linear_coordinates, resets, values)
+        c_words = AxisPath(*self._virtual_coordinates, self.mode.enters, virtual)
         alone = None if len(enter) else self._virtual(c_words)
         for _ in range(_PASSES):
             x, c = self._both(x_words, c_words, alone)
@@ -253,11 +253,11 @@ class ProgrammedPath(Columns, frozen=True):
         lost = self.run.unknown | self.blocks.starts | (self.axes.linear_axis != ord("X"))
         return entry_places(self.mode.sections, self.c_axis, self.c_words, referenced, lost)
 
-    def _virtual(self, words: Way) -> Floats:
+    def _virtual(self, words: AxisPath) -> Floats:
         """The virtual axis after each row where no frame turns it; NaN outside the mode."""
         return np.where(self.mode.section >= 0, positions(*words), np.nan)
 
-    def _both(self, x_words: Way, c_words: Way, alone: Floats | None) -> tuple[Floats, Floats]:
+    def _both(self, x_words: AxisPath, c_words: AxisPath, alone: Floats | None) -> tuple[Floats, Floats]:
         """The linear and the virtual axis after each row; alone: the latter without frames, where it is known."""
         if self.frames is None or not np.any((self.frames.angle != 0) & self.mode.in_polar):
             return positions(*x_words), self._virtual(c_words) if alone is None else alone
@@ -453,8 +453,8 @@ class ProgrammedPath(Columns, frozen=True):
         """Moves any axis, or one that is not followed; words that name the present place of each are no move."""
         outside, rotary = self.mode.section < 0, self.blocks.has(*self.machine.polar.rotary_words)
         followed = self.travels | self.moves_z | self.moves_c | (self.moves_x & outside)
-        others = (self.blocks.has("Y", "V") & outside) | (rotary & ~outside & ~self.axes.moves_plane)
-        return np.asarray(self.axes.moves & (followed | others | self.modal.in_cycle))
+        not_followed = (self.blocks.has("Y", "V") & outside) | (rotary & ~outside & ~self.axes.moves_plane)
+        return np.asarray(self.axes.moves & (followed | not_followed | self.modal.in_cycle))
 
     @cached_property
     def length(self) -> Floats:
@@ -473,8 +473,8 @@ class ProgrammedPath(Columns, frozen=True):
         if not in_space and not axes.any():
             return repeated(np.float64(0), len(self.run))
         measured = (axes == FeedAxes.SPACE) | ((axes == FeedAxes.AS_MACHINE) & in_space)
-        beside = self.mode.in_polar & self.axes.moves_plane & measured & self.moves_z
-        return np.where(beside, np.abs(self.z - self.z_before), 0.0)
+        rises = self.mode.in_polar & self.axes.moves_plane & measured & self.moves_z
+        return np.where(rises, np.abs(self.z - self.z_before), 0.0)
 
     def _move(self, rows: Mask) -> tuple[Points, Points, Points, States]:
         return self.start[rows], self.end[rows], self.center[rows], self.axes.motion[rows]

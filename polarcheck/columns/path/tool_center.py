@@ -164,8 +164,8 @@ class ToolCenter:
         moved, waiting = np.cumsum(trace.path.travels), np.flatnonzero(idle)
         rows = np.flatnonzero(missing)
         last_waiting = np.append(waiting, -1)[np.searchsorted(waiting, rows)]
-        own = (last_waiting >= 0) & (moved[last_waiting] == moved[rows])
-        return trace.blocks.mask_of(np.where(own, last_waiting, rows))
+        has_reason = (last_waiting >= 0) & (moved[last_waiting] == moved[rows])
+        return trace.blocks.mask_of(np.where(has_reason, last_waiting, rows))
 
     @cached_property
     def arc_center_on_path(self) -> Mask:

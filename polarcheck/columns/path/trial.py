@@ -72,8 +72,8 @@ class Trial(Overcuts):
         )
         contour_at = np.where(trace.compensation.starts_up, trace.path.end, trace.path.start)[ramp]
         far = np.where(trace.compensation.starts_up, trace.path.start, trace.path.end)[ramp]
-        way = np.where(self._at_depth[ramp], far, contour_at), contour_at
-        depth = depth_inside(*self.walls, way, self._loop_of_ramps[ramp], tolerance, _ROUNDINGS * tolerance)
+        ramps = np.where(self._at_depth[ramp], far, contour_at), contour_at
+        depth = depth_inside(*self.walls, ramps, self._loop_of_ramps[ramp], tolerance, _ROUNDINGS * tolerance)
         result = np.zeros(len(trace), bool)
         result[ramp[depth > _ROUNDINGS * tolerance]] = True
         return result

@@ -56,8 +56,8 @@ def _lines(report: Report, background: Background) -> Iterator[str]:
     if findings:
         yield "\n| severity | where | what | rule |\n|---|---|---|---|\n"
     for file, entry in findings:
-        place = f"{from_root(file.path, background)}:{entry.line}"
-        yield f"| {_cell(entry.severity)} | {_cell(place)} | {_cell(entry.message)} | {_cell(entry.rule)} |\n"
+        location = f"{from_root(file.path, background)}:{entry.line}"
+        yield f"| {_cell(entry.severity)} | {_cell(location)} | {_cell(entry.message)} | {_cell(entry.rule)} |\n"
     gaps = list(
         dict.fromkeys(
             (gap.reason, from_root(file.path, background))

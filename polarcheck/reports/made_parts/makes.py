@@ -29,16 +29,16 @@ def with_makes(report: FileReport, runs: Sequence[tuple[str, Tables]]) -> FileRe
     That depends on the program alone, never on what the process has loaded before.
     """
     tables = [tables for _, tables in runs]
-    if report.sections != 1 or any(len(one["sections"]) != 1 for one in tables) or not all(map(_has_areas, tables)):
+    if report.sections != 1 or any(len(run["sections"]) != 1 for run in tables) or not all(map(_has_areas, tables)):
         return report
     rules = load_all()
     if any(_is_doubtful(finding, rules) for finding in chain(report.findings, report.silenced)):
         return report
     from polarcheck.reports.made_parts.part_report import in_one_line
 
-    line, *others = dict.fromkeys(map(in_one_line, tables))
+    line, *different = dict.fromkeys(map(in_one_line, tables))
     # With block skip on and off it may be two parts.
-    return msgspec.structs.replace(report, makes=line) if line and not others else report
+    return msgspec.structs.replace(report, makes=line) if line and not different else report
 
 
 def _has_areas(tables: Tables) -> bool:

@@ -81,8 +81,8 @@ def in_one_line(tables: Tables) -> str:
         return ""
     sizes = _sizes(trace, int(trace.mode.sections.enter[0]))
     parts = []
-    for depth, made in groupby(shapes, lambda pair: _deepest(pair[0], sizes)):
-        words = [_words(trace, shape, group[0], short=True) for group, shape in made]
+    for depth, alike in groupby(shapes, lambda pair: _deepest(pair[0], sizes)):
+        words = [_words(trace, shape, group[0], short=True) for group, shape in alike]
         parts.append(f"{'; '.join(dict.fromkeys(words))}, {depth}")
     needs = dict.fromkeys(group[0].needs.partition(",")[0] for group in groups if group[0].needs)
     return "; ".join(parts) + (f" ({', '.join(needs)})" if needs else "")
@@ -130,8 +130,8 @@ def _by_section(trace: Trace, tables: Tables) -> list[MadeShape]:
             entries = [_nothing(trace, (section,), _why_nothing(tables, section))]
         sections = of_section[0].sections if of_section else (section,)
         if entries:
-            meant = "; ".join(filter(None, (as_meant(trace, number) for number in sections)))
-            entries[0] = msgspec.structs.replace(entries[0], as_meant=meant or None)
+            intended = "; ".join(filter(None, (as_meant(trace, number) for number in sections)))
+            entries[0] = msgspec.structs.replace(entries[0], as_meant=intended or None)
         if job.part:
             is_compared = any(part.section in (None, number + 1) for part in job.part for number in sections)
             entries = [msgspec.structs.replace(entry, is_compared=is_compared) for entry in entries]
@@ -174,8 +174,8 @@ def level_in_words(trace: Trace, level: Level) -> str:
 
 def _turn(trace: Trace, section: int) -> complex:
     """The direction of x of a section in the frame of the part; 1 where C is not known at its beginning."""
-    known = trace.path.knows_section_entry[section]
-    return complex(np.exp(1j * np.radians(trace.path.section_entry[section]))) if known else 1 + 0j
+    is_known = trace.path.knows_section_entry[section]
+    return complex(np.exp(1j * np.radians(trace.path.section_entry[section]))) if is_known else 1 + 0j
 
 
 def _bar(trace: Trace) -> float:
@@ -188,9 +188,9 @@ def _sizes(trace: Trace, row: int) -> Sizes:
 
 
 def _words(trace: Trace, shape: Shape, depth: Depth, short: bool = False) -> str:
-    known = bool(trace.path.knows_section_entry[depth.sections[0]])
-    how = Manner(short=short, from_c0=known, switch=_switch(trace, depth.sections[0]))
-    line_of = lambda at: int(trace.blocks.line_in_file[at])  # noqa: E731
+    is_known = bool(trace.path.knows_section_entry[depth.sections[0]])
+    how = Manner(short=short, from_c0=is_known, switch=_switch(trace, depth.sections[0]))
+    line_of = lambda row: int(trace.blocks.line_in_file[row])  # noqa: E731
     return shape_in_words(shape, line_of, _sizes(trace, _row_of(trace, depth, shape)), how)
 
 
@@ -223,10 +223,10 @@ def _of_levels(
         if len(level.sections) == 1:
             yield depth
         else:
-            own = np.isin(first, level.walls.row)
+            matches = np.isin(first, level.walls.row)
             yield from put_together(
                 depth,
-                [depth_of(trace, single_level) for single_level, is_own in zip(single, own, strict=True) if is_own],
+                [depth_of(trace, single_level) for single_level, is_own in zip(single, matches, strict=True) if is_own],
             )
 
 
@@ -258,10 +258,10 @@ def _ribs_and_strips(tables: Tables) -> list[tuple[int, LeftStanding]]:
             size = float(columns.height[row])
             how = "high" if kind == "rib" else "thick"
             text = f"a {kind} {sizes(size)} {how} behind line {line}, at x {sizes(point.real)} c {sizes(point.imag)}"
-            told = LeftStanding(
+            entry = LeftStanding(
                 kind=kind, text=text, line=line, size=round(size, 6), place=(round(point.real, 6), round(point.imag, 6))
             )
-            entries.append((section, told))
+            entries.append((section, entry))
     return entries
 
 
@@ -284,7 +284,7 @@ def _entry(trace: Trace, group: Sequence[Depth], shape: Shape) -> MadeShape:
     depths_known = [depth.z for depth in group if not np.isnan(depth.z)]
     sections = _sections(trace, first.sections)
     odd = [OddSide(line=int(trace.blocks.line_in_file[side.row]), size=round(side.size, 6)) for side in shape.odd]
-    told = [
+    texts = [
         _words(trace, shape, first),
         _depths_in_words(depths_known, sizes),
         *_sections_in_words(trace, first, sections),
@@ -300,7 +300,7 @@ def _entry(trace: Trace, group: Sequence[Depth], shape: Shape) -> MadeShape:
         is_regular=shape.is_regular,
         values={name: round(value, 6) + 0.0 for name, value in shape.values.items()},
         odd=odd,
-        text="; ".join(told),
+        text="; ".join(texts),
         left_standing=[*_corners_left(shape, first.radius, sizes)],
         needs=first.needs,
     )

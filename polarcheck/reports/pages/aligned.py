@@ -68,11 +68,11 @@ def table(columns: Sequence[Column], text: Callable[[int], str], room: int | Non
     step = min(rows, _AT_ONCE)
     for first in range(0, count, step):
         chosen = slice(first, first + step)
-        shown = [column.cells(chosen) for column in aligned]
+        cells = [column.cells(chosen) for column in aligned]
         lines = [head] if first % rows == 0 else []
-        for number, line in enumerate(zip(*shown, strict=True), first):
-            behind = excerpt(text(number), 0, 0, min(remaining, _WIDEST)).text if remaining >= _NARROWEST else ""
-            lines.append((_GAP.join(line) + _GAP + behind).rstrip() + "\n")
+        for number, line in enumerate(zip(*cells, strict=True), first):
+            block = excerpt(text(number), 0, 0, min(remaining, _WIDEST)).text if remaining >= _NARROWEST else ""
+            lines.append((_GAP.join(line) + _GAP + block).rstrip() + "\n")
         yield "".join(lines)
 
 

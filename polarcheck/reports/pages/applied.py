@@ -34,8 +34,8 @@ def text(path: str, heads: Sequence[str], rows: Iterable[Row]) -> str:
     """Return the values in aligned lines as in TOML: `key = value  # origin`."""
     lines = [(f"{row.key} = {_toml(row.value)}", row.origin) for row in rows]
     width = max((len(line) for line, _ in lines if len(line) <= _LONGEST), default=0)
-    shown = [f"{line:<{width}}  # {origin}" for line, origin in lines]
-    return "".join(f"{visible(line)}\n" for line in [f"# {path}", *(f"# {head}" for head in heads), "", *shown])
+    aligned = [f"{line:<{width}}  # {origin}" for line, origin in lines]
+    return "".join(f"{visible(line)}\n" for line in [f"# {path}", *(f"# {head}" for head in heads), "", *aligned])
 
 
 def as_json(

@@ -52,12 +52,12 @@ def text(profile: Profile, rules: Mapping[str, Rule]) -> str:
 
     rules: the rules by name, which the keys of [alarms] and [severities] refer to.
     """
-    behind = f"inherits {' < '.join(profile.chain[1:])}, " if profile.chain[1:] else ""
+    ancestry = f"inherits {' < '.join(profile.chain[1:])}, " if profile.chain[1:] else ""
     count = len(list(_own_values(profile)))
     doubts = [key for key, origin in profile.origins.items() if origin.doubtful]
     in_doubt = f"{len(doubts)}, marked with ? by `polarcheck machines {profile.name}`" if doubts else "none"
     values = "1 value of its own" if count == 1 else f"{count} values of its own"
-    lines = [f"{head(profile.name)}: sound, {behind}{values}; in doubt: {in_doubt}"]
+    lines = [f"{head(profile.name)}: sound, {ancestry}{values}; in doubt: {in_doubt}"]
     remarks = _remarks(profile, rules) if profile.chain[0] not in names() else ()
     for title, entries in (("to look at", remarks), ("still to be answered", _open(profile))):
         listed = [f"  {line}" for line in entries]
@@ -111,9 +111,9 @@ def _as_live_tool(first: str, second: str, code: str) -> str:
 def _not_known(machine: Machine, values: Mapping[str, Any]) -> Iterator[str]:
     """Yield codes that are allowed in the mode, but unknown to the control."""
     if "polar.allowed_codes" in values:
-        known = set(expanded(filter(is_code, (*machine.control.known_codes, *machine.listed_codes))))
+        codes = set(expanded(filter(is_code, (*machine.control.known_codes, *machine.listed_codes))))
         for code in expanded(machine.polar.allowed_codes):
-            if code not in known:
+            if code not in codes:
                 yield f"polar.allowed_codes: {code} is no code of this control: it is in no list, nor in known_codes"
 
 
@@ -133,12 +133,12 @@ def _overruled(profile: Profile, values: Mapping[str, Any]) -> Iterator[str]:
 
 
 def _of_rules(machine: Machine, values: Mapping[str, Any], rules: Mapping[str, Rule]) -> Iterator[str]:
-    shown = set(machine.alarms.values())
+    alarms = set(machine.alarms.values())
     for key in values:
         table, _, name = key.partition(".")
         if table == "alarms" and rules[name].level(machine.severities) == "off":
             yield f"{key}: it has no effect: severities.{name} is off"
-        if table == "alarm_codes" and name not in shown:
+        if table == "alarm_codes" and name not in alarms:
             yield f"{key}: it has no effect: no rule has this alarm in [alarms]"
 
 

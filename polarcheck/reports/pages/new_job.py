@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 import msgspec
 
-from polarcheck.checking.survey import Survey, Told
+from polarcheck.checking.survey import StatedOffset, Survey
 from polarcheck.foundation.states import MM_PER_INCH
 from polarcheck.program.machines import profiles
 from polarcheck.program.reading import files
@@ -198,9 +198,9 @@ def _differing(survey: Survey) -> Iterator[tuple[list[str], str, float, str]]:
             yield [files.display_path(call.path) for call in calls], key, radius, calls[0].comment
 
 
-def _radii(calls: Sequence[Told]) -> dict[float, list[Told]]:
+def _radii(calls: Sequence[StatedOffset]) -> dict[float, list[StatedOffset]]:
     """Return the calls by the R that their comment gives [mm]."""
-    by_radius: dict[float, list[Told]] = {}
+    by_radius: dict[float, list[StatedOffset]] = {}
     for call in calls:
         if call.radius is not None:
             by_radius.setdefault(round(call.radius, _DECIMALS), []).append(call)

@@ -261,8 +261,8 @@ def _in_doubt(profile: Profile, group: str, listed: set[str]) -> Iterator[str]:
                 yield from _prose(f"in doubt: {origin.source}")
             doubt = origin.source
             # A merged table is extended, not replaced: one entry shows how.
-            shown = dict(list(value.items())[:1]) if f"{group}.{key}" in MERGED else value
-            yield from _answer(key, shown, meaning.get(key, ""))
+            sample = dict(list(value.items())[:1]) if f"{group}.{key}" in MERGED else value
+            yield from _answer(key, sample, meaning.get(key, ""))
 
 
 def _answer(key: str, value: Any, meaning: str) -> Iterator[str]:

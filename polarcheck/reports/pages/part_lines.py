@@ -27,8 +27,8 @@ def part_lines(file: FileReport) -> Iterator[tuple[str, str]]:
     for shape in file.part:
         channel = f"{shape.channel} " if shape.channel else ""
         yield f"{channel}line {shape.line}", shape.text
-        for left in shape.left_standing:
-            yield "left", left.text
+        for standing in shape.left_standing:
+            yield "left", standing.text
         if shape.needs and shape.shape is not None:
             yield "but", shape.needs
         if shape.is_compared is False:

@@ -54,8 +54,8 @@ def _section(section: PolarSection) -> str:
     if section.time is not None:
         facts.append(f"{section.time:.0f} s")
     elif section.time_not_known and section.c_feed is not None:
-        known = f"{section.time_known:.0f} s without" if section.time_known else "time not known:"
-        facts.append(f"{known} {', '.join(section.time_not_known)}")
+        seconds = f"{section.time_known:.0f} s without" if section.time_known else "time not known:"
+        facts.append(f"{seconds} {', '.join(section.time_not_known)}")
     channel = f" in channel {section.channel}" if section.channel else ""
     return f"section of line {section.line}{channel}: {', '.join(fact for fact in facts if fact)}"
 
@@ -101,8 +101,8 @@ def _rate(section: PolarSection) -> str:
     at_center = f"no angle at the center, in line {section.center_line}" if section.center_line else ""
     if section.c_feed_line is None:
         return f"{rotary} has {at_center} ({limit})" if at_center else f"{rotary} does not turn ({limit})"
-    beside = f", and {at_center}" if at_center else ""
-    return f"{rotary} at most {section.c_feed:.0f} deg/min in line {section.c_feed_line}{beside} ({limit})"
+    and_at_center = f", and {at_center}" if at_center else ""
+    return f"{rotary} at most {section.c_feed:.0f} deg/min in line {section.c_feed_line}{and_at_center} ({limit})"
 
 
 def _length(value: float, section: PolarSection) -> str:

@@ -78,14 +78,14 @@ def statistics(report: Report, background: Background, form: str) -> str:
     if form == "jsonl":
         return "".join(encoded(entry) + "\n" for entry in entries)
     table = [[str(getattr(entry, head)) for head in _HEADS] for entry in entries]
-    shown = [
+    chosen = [
         column for column, head in enumerate(_HEADS) if head != "silenced" or any(entry.silenced for entry in entries)
     ]
     widths = [max(len(visible(row[column])) for row in [list(_HEADS), *table]) for column in range(len(_HEADS))]
     lines = []
     for row in [list(_HEADS), *table] if table else []:
         cells = []
-        for column in shown:
+        for column in chosen:
             text, width = visible(row[column]), widths[column]
             cell = text.ljust(width) if _HEADS[column] in _OF_TEXT else text.rjust(width)
             is_severity = background.color and text in SEVERITIES

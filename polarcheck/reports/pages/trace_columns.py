@@ -126,8 +126,8 @@ def _words(
     usual: float | None = None,
 ) -> Column:
     """Return a column of words, which may come from the program."""
-    shown = {int(key): visible(word) for key, word in words.items()}
-    return Column(name, "", rank, values, words=shown, is_blank=is_blank, usual=usual)
+    display_text = {int(key): visible(word) for key, word in words.items()}
+    return Column(name, "", rank, values, words=display_text, is_blank=is_blank, usual=usual)
 
 
 def _point(name: str, rank: int, point: NDArray[np.complex128], is_blank: Mask | None = None) -> list[Column]:
