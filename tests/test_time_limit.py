@@ -293,7 +293,7 @@ def test_loops_that_begin_in_a_row_are_held_together_by_one_line(monkeypatch: py
 
 def test_a_trial_is_given_up_between_two_of_them(monkeypatch: pytest.MonkeyPatch) -> None:
     tables = tables_of(in_mode(GROOVE), MACHINE, TOOL)
-    assert tables["fitting"]._asked.any()
+    assert tables["fitting"]._candidates.any()
     tried = []
     monkeypatch.setattr(fitting_radius, "keep_time", lambda: tried.append(1))
     assert tables["fitting"].radius[-1] == pytest.approx(3, rel=0.02)

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from polarcheck.rules.tables import Tables
 
 Part = TypeVar("Part", NotEvaluated, PolarSection)
-Found = TypeVar("Found", bound=Finding)
+AnyFinding = TypeVar("AnyFinding", bound=Finding)
 
 _Reports = Sequence[tuple[Source, FileReport]]
 
@@ -53,7 +53,7 @@ def united(reports: _Reports) -> FileReport:
     )
 
 
-def _once(reports: _Reports, findings: Callable[[FileReport], Sequence[Found]]) -> Iterator[Found]:
+def _once(reports: _Reports, findings: Callable[[FileReport], Sequence[AnyFinding]]) -> Iterator[AnyFinding]:
     counts = Counter(_key(entry) for _, report in reports for entry in findings(report))
     listed: set[tuple[object, ...]] = set()
     for source, report in reports:
@@ -73,7 +73,7 @@ def _once(reports: _Reports, findings: Callable[[FileReport], Sequence[Found]]) 
                 yield entry if counts[key] == len(reports) else _of_channel(entry, source.channel)
 
 
-def _of_channel(entry: Found, name: str) -> Found:
+def _of_channel(entry: AnyFinding, name: str) -> AnyFinding:
     return replace(entry, channel=name, follows=[_of_channel(follower, name) for follower in entry.follows])
 
 

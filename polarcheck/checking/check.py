@@ -228,8 +228,8 @@ def looked_at(tables: Tables) -> list[str]:
 
 
 #: Identifies a finding within a file: rule, line, column.
-_Place = tuple[str, int, int]
-Found = TypeVar("Found", bound=Finding)
+_Position = tuple[str, int, int]
+AnyFinding = TypeVar("AnyFinding", bound=Finding)
 
 
 def _merged(first: tuple[str, FileReport], second: tuple[str, FileReport], of_text: Collection[str]) -> FileReport:
@@ -248,7 +248,7 @@ def _merged(first: tuple[str, FileReport], second: tuple[str, FileReport], of_te
         for report in (off, on)
     )
 
-    def labelled(finding: Found, rival_places: set[_Place], state: str) -> Found:
+    def labelled(finding: AnyFinding, rival_places: set[_Position], state: str) -> AnyFinding:
         key = _position(finding)
         # A fix for one run must not change the other.
         agrees = fixes_off[key] == fixes_on[key] if key in fixes_off.keys() & fixes_on.keys() else _skips(finding)
@@ -332,7 +332,7 @@ def _fold(worst: Callable[..., float], first: float | None, second: float | None
     return None if first is None or second is None else worst(first, second)
 
 
-def _position(finding: Finding) -> _Place:
+def _position(finding: Finding) -> _Position:
     return finding.rule, finding.line, finding.column
 
 

@@ -37,7 +37,7 @@ LISTED = 1000
 _NAME_LENGTH = 40
 #: Longer programs share constant columns [rows]. In shorter ones the memory saved is not worth the time.
 _MANY_ROWS = 10_000
-Found = TypeVar("Found", bound=Finding)
+AnyFinding = TypeVar("AnyFinding", bound=Finding)
 #: Identifies a finding of a run: the name of its rule, and its index in Listed.findings of that rule.
 _Number = tuple[str, int]
 
@@ -104,14 +104,14 @@ class Engine:
         if rule.name not in self._hits:
             keep_going()
             try:
-                self._hits[rule.name] = self._found(rule)
+                self._hits[rule.name] = self._evaluated(rule)
                 if len(self.trace) > _MANY_ROWS:
                     self._share_constant_columns()
             except TooHardError as error:
                 self._give_up(rule, error)
         return self._hits[rule.name]
 
-    def _found(self, rule: Rule) -> Hits:
+    def _evaluated(self, rule: Rule) -> Hits:
         if not self.tables.may_hold(rule.parameters):
             return Hits(np.zeros(0, np.bool_))
         return self._shared_if_empty(rule.hits(self.tables))
@@ -462,7 +462,7 @@ def with_following(finding: Finding, following: list[Finding]) -> Finding:
     return msgspec.structs.replace(finding, severity=severity, follows=in_order(following))
 
 
-def in_order(findings: Iterable[Found]) -> list[Found]:
+def in_order(findings: Iterable[AnyFinding]) -> list[AnyFinding]:
     """Sort by line and column; at one place the most severe first."""
     return sorted(findings, key=_order)
 

@@ -47,7 +47,7 @@ class Crossings(Columns, frozen=True):
     passes: Passes
 
     @cached_property
-    def _found(self) -> _CrossingMoves:
+    def _hits(self) -> _CrossingMoves:
         parts = [self._turning_back, *self._crossing]
         return _CrossingMoves(*(np.concatenate(columns) for columns in zip(*parts, strict=True)))
 
@@ -149,13 +149,13 @@ class Crossings(Columns, frozen=True):
         """Rows that cross, or run back along, an earlier row of their pass."""
         if not self.passes.is_wall.any():
             return self.trace.blocks.nowhere
-        return self.trace.blocks.mask_of(self.passes.row[self._found.move])
+        return self.trace.blocks.mask_of(self.passes.row[self._hits.move])
 
     def of_row(self, row: int) -> tuple[int, complex, bool]:
         """The earlier row that a row crosses, the place, and whether it runs back along it."""
-        index = int(np.flatnonzero(self.passes.row[self._found.move] == row)[0])
-        into = int(self.passes.row[self._found.into[index]])
-        return into, complex(self._found.place[index]), bool(self._found.back[index])
+        index = int(np.flatnonzero(self.passes.row[self._hits.move] == row)[0])
+        into = int(self.passes.row[self._hits.into[index]])
+        return into, complex(self._hits.place[index]), bool(self._hits.back[index])
 
 
 def _nothing() -> _CrossingMoves:

@@ -36,28 +36,28 @@ class Fitting(Columns, frozen=True):
         return self._worst(rows.astype(float)) > 0
 
     @cached_property
-    def _asked(self) -> Mask:
+    def _candidates(self) -> Mask:
         """The rows of the loops that are cut into; none if they are too many."""
         cut_into = self._any(self.overcuts.depth > 0)
         return cut_into & (np.count_nonzero(cut_into) <= _MANY)
 
     def _trial(self, radius: Floats) -> Trial:
         signed = radius * np.sign(self.trace.compensation.radius)
-        return Trial(self.trace, OtherRadius(self._asked, self.since.compensation, signed))
+        return Trial(self.trace, OtherRadius(self._candidates, self.since.compensation, signed))
 
     @cached_property
     def never(self) -> Mask:
         """Rows of loops that any cutter cuts into, so that a point of the contour is wrong."""
         cut = np.zeros(len(self.trace), bool)
-        if self._asked.any():
+        if self._candidates.any():
             cut[self._trial(np.abs(self.trace.compensation.radius) * _SMALL).cuts.row] = True
-        return self._asked & self._any(cut)
+        return self._candidates & self._any(cut)
 
     @cached_property
     def radius(self) -> Floats:
         """The largest R that leaves the loop of the row whole [mm]; NaN where there is none, or it is not known."""
         programmed = np.abs(self.trace.compensation.radius)
-        searched = self._asked & ~self.never
+        searched = self._candidates & ~self.never
         low, high = np.where(searched, 0.0, np.nan), programmed
         if not searched.any():
             return low

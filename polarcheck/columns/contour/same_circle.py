@@ -48,7 +48,7 @@ class SameCircle(Columns, frozen=True):
     passes: Passes
 
     @cached_property
-    def _judged(self) -> Mask:
+    def _candidates(self) -> Mask:
         """Per move: a circle, with a corner at one end at least."""
         passes, arcs = self.passes, self.arcs
         is_circle = ~(arcs.is_no_circle | arcs.ends_at_start)[passes.row] & ~np.isnan(passes.center)
@@ -59,7 +59,7 @@ class SameCircle(Columns, frozen=True):
     def leaves_circle(self) -> IntendedArcs:
         """Arcs with both ends on the circle of an arc beside them, or of one about the center of C."""
         passes = self.passes
-        move = np.flatnonzero(self._judged)
+        move = np.flatnonzero(self._candidates)
         # What is left of the bar is cut as it stands.
         move = move[np.abs(passes.center[move]) > _SAME]
         if not len(move):
@@ -87,13 +87,13 @@ class SameCircle(Columns, frozen=True):
             fits &= passes.beside[0][move] != passes.beside[1][move]
             center[fits], radius[fits], adjacent[fits] = about[fits], size[fits], True
         chosen = near | adjacent
-        return self._meant(move[chosen], center[chosen], radius[chosen])
+        return self._intended(move[chosen], center[chosen], radius[chosen])
 
     @cached_property
     def reversed(self) -> Mask:
         """Rows of arcs that end on the circle of such an arc and have its R, and bend the other way."""
         passes, trace = self.passes, self.trace
-        move = np.flatnonzero(self._judged & self.arcs.by_radius[passes.row])
+        move = np.flatnonzero(self._candidates & self.arcs.by_radius[passes.row])
         if not len(move):
             return trace.blocks.nowhere
         start, end, motion = passes.start[move], passes.end[move], passes.motion[move]
@@ -140,7 +140,7 @@ class SameCircle(Columns, frozen=True):
         """Arcs of one R, one after the other, on the circle through whose ends that R is mistaken by a factor."""
         passes = self.passes
         following = passes.beside[1]
-        candidates = self._judged
+        candidates = self._candidates
         former = np.flatnonzero(candidates & (following >= 0))
         two = following[former]
         size = np.abs(passes.start - passes.center)
@@ -171,9 +171,9 @@ class SameCircle(Columns, frozen=True):
         if not len(move):
             return _nothing()
         move, first = np.unique(move, return_index=True)
-        return self._meant(move, both_center[first], both_radius[first])
+        return self._intended(move, both_center[first], both_radius[first])
 
-    def _meant(self, move: Rows, center: Points, radius: Floats) -> IntendedArcs:
+    def _intended(self, move: Rows, center: Points, radius: Floats) -> IntendedArcs:
         passes = self.passes
         spoke, last = passes.start[move] - center, passes.end[move] - center
         is_ccw = passes.motion[move] == Motion.CCW

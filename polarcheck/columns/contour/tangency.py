@@ -62,7 +62,7 @@ class Tangency(Columns, frozen=True):
     same_circle: SameCircle
 
     @cached_property
-    def _judged(self) -> _Candidates:
+    def _candidates(self) -> _Candidates:
         passes, arcs = self.passes, self.arcs
         previous, following = passes.beside
         is_circle = ~(arcs.is_no_circle | arcs.ends_at_start)[passes.row] & ~np.isnan(passes.center)
@@ -93,7 +93,7 @@ class Tangency(Columns, frozen=True):
     @cached_property
     def is_tangent(self) -> Mask:
         """Arcs that are tangent to the moves on both sides."""
-        candidates, (into, out) = self._judged, self.passes.turns
+        candidates, (into, out) = self._candidates, self.passes.turns
         turn = np.maximum(np.abs(into), np.abs(out))[candidates.move]
         return self._column(candidates.move[turn <= candidates.tolerance])
 
@@ -105,7 +105,7 @@ class Tangency(Columns, frozen=True):
     @cached_property
     def _misfits(self) -> Rows:
         """The judged arcs, by their number there, for which another arc is meant."""
-        passes, candidates = self.passes, self._judged
+        passes, candidates = self.passes, self._candidates
         into, out = (np.abs(turn[candidates.move]) for turn in passes.turns)
         corner = np.minimum(into, out)
         candidate = ~np.isnan(candidates.radius) & (corner > np.maximum(_CORNER, _CLEARLY * candidates.tolerance))
@@ -117,7 +117,7 @@ class Tangency(Columns, frozen=True):
 
     def _misfits_of(self, number: int, candidate: Mask) -> Rows:
         """Candidates of a pass where the rest of the pass shows that another arc is intended."""
-        passes, candidates = self.passes, self._judged
+        passes, candidates = self.passes, self._candidates
         begin, until = np.searchsorted(passes.number[candidates.move], (number, number + 1)).tolist()
         of_contour = np.arange(begin, until)
         wrong = of_contour[candidate[begin:until]]
@@ -169,7 +169,7 @@ class Tangency(Columns, frozen=True):
 
     def _all_mistaken(self, chosen: Rows) -> bool:
         """No arc of a pass is tangent, and all would be with an R that is mistaken in the same way."""
-        candidates = self._judged
+        candidates = self._candidates
         needed, had = candidates.radius[chosen], self._written[candidates.move[chosen]]
         ratio = np.abs(had / needed)
         near = max(self._tolerance_of(index) for index in chosen.tolist())
@@ -184,7 +184,7 @@ class Tangency(Columns, frozen=True):
 
     def _tolerance_of(self, index: int) -> float:
         """Uncertainty by rounding of the R that would be tangent [mm]."""
-        candidates, passes = self._judged, self.passes
+        candidates, passes = self._candidates, self.passes
         move, needed = candidates.move[index], abs(float(candidates.radius[index]))
         half = np.arcsin(min(1.0, abs(passes.end[move] - passes.start[move]) / 2 / needed))
         slack = min(float(candidates.tolerance[index]), 0.05)
@@ -192,9 +192,10 @@ class Tangency(Columns, frozen=True):
 
     def _is_mistyped(self, index: int, near: float) -> bool:
         """The R that would be tangent is the one that is written but for a slip that no other design explains."""
-        row = self.passes.row[self._judged.move[index]]
+        candidates = self._candidates
+        row = self.passes.row[candidates.move[index]]
         scale = float(self.trace.lengths.scale[row])
-        had, needed = (abs(float(of[index])) / scale for of in (self._written[self._judged.move], self._judged.radius))
+        had, needed = (abs(float(of[index])) / scale for of in (self._written[candidates.move], candidates.radius))
         slip = slip_of(plain_number(had), needed, near / scale)
         return slip is not None and slip.plain
 
@@ -206,9 +207,9 @@ class Tangency(Columns, frozen=True):
         return np.where(self.arcs.sweep[passes.row] > 180 + 1e-3, -size, size)
 
     @cached_property
-    def _meant(self) -> IntendedArcs:
+    def _intended(self) -> IntendedArcs:
         """All arcs where another one is intended: on the circle of other arcs, else tangent to its neighbours."""
-        candidates, chosen = self._judged, self._misfits
+        candidates, chosen = self._candidates, self._misfits
         tolerance = np.array([self._tolerance_of(index) for index in chosen.tolist()])
         tangent = IntendedArcs(candidates.move[chosen], candidates.radius[chosen], candidates.center[chosen], tolerance)
         parts = [self.same_circle.mistaken_together, self.same_circle.leaves_circle, tangent]
@@ -222,29 +223,29 @@ class Tangency(Columns, frozen=True):
     @cached_property
     def misfits(self) -> Mask:
         """Arcs that turn a corner where another R, or center, would be tangent, as the rest of the contour shows."""
-        return self._column(self._meant.move)
+        return self._column(self._intended.move)
 
     def _of_meant(self, values: Floats) -> Floats:
         column = np.full(len(self.trace), np.nan)
-        column[self.passes.row[self._meant.move]] = values
+        column[self.passes.row[self._intended.move]] = values
         return column
 
     @cached_property
     def radius_needed(self) -> Floats:
         """R of the arc that is meant, negative above 180 deg [mm]; NaN for rows that are no misfits."""
-        return self._of_meant(self._meant.radius)
+        return self._of_meant(self._intended.radius)
 
     @cached_property
     def center_needed(self) -> Points:
         """Its center [mm]."""
         column = np.full(len(self.trace), complex("nan+nanj"))
-        column[self.passes.row[self._meant.move]] = self._meant.center
+        column[self.passes.row[self._intended.move]] = self._intended.center
         return column
 
     @cached_property
     def radius_tolerance(self) -> Floats:
         """Uncertainty of that R by rounding [mm]."""
-        return self._of_meant(self._meant.tolerance)
+        return self._of_meant(self._intended.tolerance)
 
     @cached_property
     def on_circle(self) -> Mask:
@@ -255,7 +256,7 @@ class Tangency(Columns, frozen=True):
     @cached_property
     def corner(self) -> Floats:
         """The larger turn at the ends of an arc that does not fit [deg]."""
-        into, out = (np.abs(turn[self._meant.move]) for turn in self.passes.turns)
+        into, out = (np.abs(turn[self._intended.move]) for turn in self.passes.turns)
         return self._of_meant(np.degrees(np.fmax(into, out)))
 
     @cached_property

@@ -160,17 +160,17 @@ class Dynamics:
         switches = trace.mode.enters | trace.mode.leaves
         rest = np.flatnonzero(~self.on_path & ~switches & (trace.axes.moves | self.dwells | self._returns))
         at_feed = is_among(trace.axes.motion[rest], (Motion.LINE, Motion.CW, Motion.CCW))
-        time[rest] = np.where(at_feed, self._time_of_way(rest), np.nan)
+        time[rest] = np.where(at_feed, self._time_of_lines(rest), np.nan)
         rapids = rest[trace.axes.motion[rest] == Motion.RAPID]
         time[rapids] = self._time_of_rapids(rapids)
         time[rest] = np.where(self.dwells[rest], self._dwell_times[0][rest], time[rest])
         time[trace.run.unknown] = np.nan
         return time
 
-    def _time_of_way(self, rows: Rows) -> Floats:
+    def _time_of_lines(self, rows: Rows) -> Floats:
         """Time of straight moves in X and Z at F per minute; moves of C and arcs outside the mode are not followed."""
         trace = self.trace
-        x, z, c = self._way(rows)
+        x, z, c = self._axis_distances(rows)
         along_x = np.where(trace.mode.in_polar[rows], 0.0, x)
         is_line = trace.mode.in_polar[rows] | ((trace.axes.motion[rows] == Motion.LINE) & (c <= ZERO))
         return np.where(is_line, polar.time(np.hypot(along_x, z), trace.feedrate.feed[rows]), np.nan)
@@ -179,12 +179,12 @@ class Dynamics:
         """The longest of its axes; one that stands still needs no rate."""
         limits = self.trace.machine.limits
         rates = (limits.x_rapid, limits.z_rapid, limits.c_rapid)
-        lengths = self._way(rows)
+        lengths = self._axis_distances(rows)
         times = [np.where(length <= ZERO, 0.0, 60 * length / rate) for length, rate in zip(lengths, rates, strict=True)]
         longest: Floats = np.max(np.stack(times), axis=0) if len(rows) else np.zeros(0)
         return longest
 
-    def _way(self, rows: Rows) -> tuple[Floats, Floats, Floats]:
+    def _axis_distances(self, rows: Rows) -> tuple[Floats, Floats, Floats]:
         """Distances that X [mm, radius], Z [mm] and C [deg] move; 0 for an axis that the row does not program."""
         trace = self.trace
         on_plane = trace.axes.moves_plane[rows] & trace.mode.in_polar[rows]

@@ -125,7 +125,7 @@ class Bar(Columns, frozen=True):
         return np.asarray(result & ~trace.modal.on_sub_spindle)
 
     @cached_property
-    def _place(self) -> tuple[Floats, Floats, Floats, Floats]:
+    def _x_and_z(self) -> tuple[Floats, Floats, Floats, Floats]:
         """
         X before and after each row, Z before and after each row of turning tools.
 
@@ -144,7 +144,7 @@ class Bar(Columns, frozen=True):
     def _turning_rows(self) -> Rows:
         """Feed moves of X or Z by turning tools, known at both ends."""
         at_feed = is_among(self.trace.axes.motion, (Motion.LINE, Motion.CW, Motion.CCW))
-        return np.flatnonzero(self.turns & at_feed & ~np.isnan(sum(self._place)))
+        return np.flatnonzero(self.turns & at_feed & ~np.isnan(sum(self._x_and_z)))
 
     @cached_property
     def turned(self) -> Known:
@@ -206,7 +206,7 @@ class Bar(Columns, frozen=True):
     @property
     def _of_moves(self) -> _Segments:
         rows = self._turning_rows
-        x_from, x_to, z_from, z_to = (column[rows] for column in self._place)
+        x_from, x_to, z_from, z_to = (column[rows] for column in self._x_and_z)
         faces = (np.abs(z_to - z_from) <= ROUNDING) & (np.abs(x_to) <= _CENTER) & (x_from > x_to + _CENTER)
         return _Segments(rows, x_from, x_to, z_from, z_to, faces)
 
@@ -224,7 +224,7 @@ class Bar(Columns, frozen=True):
         x = fill_down(trace.lengths.length_of("X") * trace.lengths.x_factor, trace.blocks.has("X") | begins, np.nan)
         z = fill_down(trace.lengths.length_of("Z"), trace.blocks.has("Z") | begins, np.nan)
         first = in_cycle & begins
-        x_start, z_start = (fill_down(self._place[coordinate], first | ended, np.nan) for coordinate in (0, 2))
+        x_start, z_start = (fill_down(self._x_and_z[coordinate], first | ended, np.nan) for coordinate in (0, 2))
         steps = trace.blocks.has(INCREMENTS["X"], INCREMENTS["Z"], "R")
         rows = np.flatnonzero(in_cycle & trace.blocks.has("X", "Z") & ~np.isnan(x + z + x_start + z_start) & ~steps)
         faces = kind[rows] == 2
@@ -246,7 +246,7 @@ class Bar(Columns, frozen=True):
         """A tool drills on X0 before the first section, by a cycle or in Z at feed."""
         trace = self.trace
         first = int(trace.mode.sections.enter[0])
-        on_center = np.abs(self._place[0]) <= _CENTER
+        on_center = np.abs(self._x_and_z[0]) <= _CENTER
         down = trace.path.moves_z & (np.abs(trace.path.x) <= _CENTER) & on_center
         down &= trace.path.z < trace.path.z_before - 1
         cycle = (trace.modal.drilling != 0) | trace.blocks.listed("repetitive_cycle")
@@ -266,8 +266,8 @@ class Bar(Columns, frozen=True):
         along = along[segments.z_to[along] < segments.z_from[along] - ROUNDING]
         call = self.tool_call
         inside = np.zeros(int(call.max()) + 1, bool)
-        inside[call[segments.row[in_cycle & (segments.x_to > self._place[0][segments.row])]]] = True
-        x_before, x_after = self._place[:2]
+        inside[call[segments.row[in_cycle & (segments.x_to > self._x_and_z[0][segments.row])]]] = True
+        x_before, x_after = self._x_and_z[:2]
         moves_x = np.flatnonzero(trace.axes.moves & (np.abs(x_after - x_before) > ROUNDING))
         for index in along.tolist():
             row = int(segments.row[index])

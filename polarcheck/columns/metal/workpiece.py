@@ -39,7 +39,7 @@ _FAR, _SLOWEST_X = 200.0, 0.4
 _SHARE = 0.75
 #: Largest move of an axis by rounding alone [mm, deg].
 _STILL = 1e-4
-#: More ways to a place within the bar than these are not followed, nor more moves that cut.
+#: Most moves to points within the bar that are followed, and most moves that cut.
 _MOST_WAYS, _MOST_MOVES = 200, 20_000
 
 
@@ -79,7 +79,7 @@ class Hits(Table, frozen=True):
     """
     Hits of moves on the bar or the part, n of them.
 
-    row: int[n]. place: complex128[n] [mm], on the plane of the part. is_sure: bool[n], as in Ways.
+    row: int[n]. place: complex128[n] [mm], on the plane of the part. is_sure: bool[n], as in ToolMoves.
     """
 
     row: Rows
@@ -331,9 +331,7 @@ class Workpiece(Columns, frozen=True):
         return int(rows[0]) if len(rows) else len(trace)
 
     def not_followed(self) -> Iterator[tuple[int, int, str]]:
-        """
-        Ways in rapid traverse below the face that are not compared with the bar: the first row, their number, and why.
-        """
+        """Rapid moves below the face that are not compared with the bar: the first row, their number, and why."""
         trace, bar = self.trace, self.bar.known
         if not len(trace.mode.sections) or np.isnan(bar.smallest):
             return

@@ -198,7 +198,7 @@ class ExecutedBlocks(Lookups):
                 parts.append(self._of_codes(letter, code_set(alone)))
             if with_others:
                 indices, numbers = (self.g_words, self.g_codes) if letter == "G" else (self.m_words, self.m_codes)
-                parts += [indices[self._beside(word, indices, numbers)] for word in with_others]
+                parts += [indices[self._with_second_word(word, indices, numbers)] for word in with_others]
         return parts[0] if len(parts) == 1 else np.concatenate((np.zeros(0, np.int64), *parts))
 
     def _of_codes(self, letter: str, codes: Mask) -> Rows:
@@ -226,7 +226,7 @@ class ExecutedBlocks(Lookups):
             groups[letter] = order, rising[begins], np.append(begins, len(order))
         return groups
 
-    def _beside(self, word: str, indices: Rows, numbers: NDArray[np.int32]) -> Mask:
+    def _with_second_word(self, word: str, indices: Rows, numbers: NDArray[np.int32]) -> Mask:
         """Per G or M word: it is the code of `M3 P12`, and that other word stands in its row."""
         first, _, second = word.partition(" ")
         return np.asarray((numbers == code(first)) & (self.word(second[0])[self.run.row[indices]] == float(second[1:])))
@@ -236,7 +236,7 @@ class ExecutedBlocks(Lookups):
         """Per M word: the machine lists it with a word that stands beside it."""
         mask = np.zeros(len(self.m_words), bool)
         for word in self.machine.m_codes.with_words:
-            mask |= self._beside(word, self.m_words, self.m_codes)
+            mask |= self._with_second_word(word, self.m_words, self.m_codes)
         return mask
 
     def codes(self, *words: str) -> Mask:

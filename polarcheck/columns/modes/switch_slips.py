@@ -72,7 +72,7 @@ class SwitchSlips(Columns, frozen=True):
         begins = begins & (self.trace.mode.section < 0) & ~self.trace.blocks.has(*AXES)
         slips = [slip for row in np.flatnonzero(begins).tolist() for slip in self._begun_at(row, begins, ends)]
         alone = ends & self.trace.mode.in_polar & ~self.trace.blocks.has(*AXES)
-        slips += [Slip(row, self._meant(row, 1), row) for row in np.flatnonzero(alone).tolist()]
+        slips += [Slip(row, self._intended(row, 1), row) for row in np.flatnonzero(alone).tolist()]
         return {slip.row: slip for slip in slips}
 
     def _begun_at(self, row: int, begins: Mask, ends: Mask) -> list[Slip]:
@@ -89,9 +89,9 @@ class SwitchSlips(Columns, frozen=True):
         if not cuts[row + 1 : end].any():
             return []
         answer = end if is_answered and not trace.axes.switches_off[end] else -1
-        return [Slip(row, self._meant(row, 0), end, answer, is_answered, answer >= 0 and bool(of_builder[end]))]
+        return [Slip(row, self._intended(row, 0), end, answer, is_answered, answer >= 0 and bool(of_builder[end]))]
 
-    def _meant(self, row: int, which: int) -> str:
+    def _intended(self, row: int, which: int) -> str:
         """The code that is meant in a row."""
         forms = self._forms[which]
         return next(name for form, name in forms.items() if self.trace.blocks.codes(form)[row])
@@ -99,7 +99,7 @@ class SwitchSlips(Columns, frozen=True):
     def meant_in(self, row: int) -> str:
         """The code that is meant in the place of the one of a row, be it the answer of a slip."""
         slip = self.slips.get(row)
-        return slip.meant if slip else self._meant(row, 1)
+        return slip.meant if slip else self._intended(row, 1)
 
     @cached_property
     def begins(self) -> Mask:

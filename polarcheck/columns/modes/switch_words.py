@@ -23,7 +23,7 @@ class SwitchWords(Columns, frozen=True):
     trace: Trace
     infeed: Infeed
 
-    def _beside(self, *addresses: str) -> Mask:
+    def _words_at_switch(self, *addresses: str) -> Mask:
         """Per executed word: of one of these addresses, with a good number, beside a G12.1 that begins a section."""
         trace = self.trace
         words = trace.run.words
@@ -39,7 +39,7 @@ class SwitchWords(Columns, frozen=True):
     @cached_property
     def names_axis(self) -> Mask:
         """Per word: P or Q where both name axes."""
-        return self._beside(*_KINDS) if self.trace.axes.takes_axes else self._beside()
+        return self._words_at_switch(*_KINDS) if self.trace.axes.takes_axes else self._words_at_switch()
 
     @cached_property
     def names_no_axis(self) -> Mask:
@@ -82,11 +82,11 @@ class SwitchWords(Columns, frozen=True):
     @cached_property
     def shifts_incrementally(self) -> Mask:
         """Per word: a shift of the center by an incremental word, or by an absolute one while G91 is in force."""
-        absolute = self._beside(*self.shifts)
+        absolute = self._words_at_switch(*self.shifts)
         if absolute.any():
             is_incremental = self.trace.modal.state("distance") == Distance.INCREMENTAL
             absolute = absolute & is_incremental[self.trace.run.row]
-        return np.asarray(self._beside(*self.shifts.values()) | absolute)
+        return np.asarray(self._words_at_switch(*self.shifts.values()) | absolute)
 
     # ---- the infeed ----
 

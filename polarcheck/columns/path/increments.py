@@ -40,7 +40,7 @@ class Increments(Columns, frozen=True):
         return np.asarray(step & trace.path.on_plane)
 
     @cached_property
-    def _found(self) -> tuple[Rows, Points, Points]:
+    def _gaps(self) -> tuple[Rows, Points, Points]:
         """The rows in which such contours end, where they end [mm], and where they began [mm]."""
         passes = self.passes
         nothing = np.zeros(0, np.int64), np.zeros(0, np.complex128), np.zeros(0, np.complex128)
@@ -88,14 +88,14 @@ class Increments(Columns, frozen=True):
     def begins(self) -> Points:
         """In these rows the start of the contour [mm]; NaN in others."""
         column = np.full(len(self.trace), NOWHERE)
-        column[self._found[0]] = self._found[2]
+        column[self._gaps[0]] = self._gaps[2]
         return column
 
     @cached_property
     def gap(self) -> Floats:
         """In these rows the distance from the end of the contour to its start [mm]; 0 in others."""
         column = np.zeros(len(self.trace))
-        column[self._found[0]] = np.abs(self._found[1] - self._found[2])
+        column[self._gaps[0]] = np.abs(self._gaps[1] - self._gaps[2])
         return column
 
 

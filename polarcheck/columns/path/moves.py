@@ -53,12 +53,12 @@ class Moves(Table, frozen=True, dict=True):
 
     @cached_property
     def length(self) -> Floats:
-        """Way on the plane [mm]."""
+        """Distance on the plane [mm]."""
         return polar.length(*self.shape)
 
     @cached_property
     def way(self) -> Floats:
-        """Way along which F is measured [mm]: on the plane, or in space."""
+        """Distance along which F is measured [mm]: on the plane, or in space."""
         return np.hypot(self.length, self.rise)
 
     @cached_property
@@ -151,7 +151,7 @@ def _shares_of_block(row: Rows, length: Floats) -> tuple[Mask, Floats, Floats]:
 
 def rise_of(trace: Trace, row: Rows, length: Floats) -> Floats:
     """
-    Way of Z beside moves of these rows [mm], where F measures it; 0 elsewhere, NaN where Z is not known.
+    Distance of Z beside moves of these rows [mm], where F measures it; 0 elsewhere, NaN where Z is not known.
 
     length: their ways on the plane [mm]; a block of several moves shares its Z out by them, as z_along does.
     """

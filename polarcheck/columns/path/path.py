@@ -200,10 +200,10 @@ class ProgrammedPath(Columns, frozen=True):
     @cached_property
     def _after(self) -> Points:
         """Plane point after each row; the virtual coordinate is NaN outside the mode."""
-        return self._way[0]
+        return self._points[0]
 
     @cached_property
-    def _way(self) -> tuple[Points, Points]:
+    def _points(self) -> tuple[Points, Points]:
         """Plane point after each row, and per section where the tool stands at its G12.1, X being positive."""
         shift = self.center_shift
         leave = self.mode.sections.leave[self.mode.sections.leave < len(self.run)]
@@ -458,7 +458,7 @@ class ProgrammedPath(Columns, frozen=True):
 
     @cached_property
     def length(self) -> Floats:
-        """Way of the row on the polar plane [mm]; 0 where it does not move there, NaN where unknown."""
+        """Distance of the row on the polar plane [mm]; 0 where it does not move there, NaN where unknown."""
         moving = self.mode.in_polar & self.axes.moves_plane
         length = np.zeros(len(self.run))
         length[moving] = polar.length(*self._move(moving))
@@ -466,9 +466,7 @@ class ProgrammedPath(Columns, frozen=True):
 
     @cached_property
     def rise(self) -> Floats:
-        """
-        Way of Z beside a move on the polar plane, where F measures it, too [mm]; 0 elsewhere, NaN while Z is not known.
-        """
+        """Distance of Z in a move on the polar plane, where F measures it, too [mm]; 0 elsewhere, NaN unknown."""
         axes, in_space = self.modal.state("feed_axes"), self.machine.polar.feed_measures == "space"
         if not in_space and not axes.any():
             return repeated(np.float64(0), len(self.run))
@@ -525,7 +523,7 @@ class ProgrammedPath(Columns, frozen=True):
         angle = np.nan_to_num(self.c_angle[self.mode.sections.enter])
         if not self.c_axis.is_fixed:
             return angle
-        direction = self._way[1]
+        direction = self._points[1]
         turned = np.degrees(angle_between(np.ones_like(direction), direction))
         return np.asarray(360 * np.round((angle - self.c_axis.sense * turned) / 360))
 

@@ -82,7 +82,7 @@ class ToolCenter:
 
     # ---- what the control would object to while it compensates ----
 
-    def _found(self, in_path: Mask) -> Mask:
+    def _in_trace(self, in_path: Mask) -> Mask:
         """A mask over the rows of the trace from a mask over the rows of the path."""
         rows = np.zeros(len(self.trace), bool)
         rows[self._rows[in_path]] = True
@@ -91,12 +91,12 @@ class ToolCenter:
     @cached_property
     def inside_arc_too_small(self) -> Mask:
         """An arc on whose inner side the tool does not fit: its radius is not above R."""
-        return self._found(self._path.inside_arc_too_small)
+        return self._in_trace(self._path.inside_arc_too_small)
 
     @cached_property
     def interferes(self) -> Mask:
         """The tool center would run against the program."""
-        return self._found(self._path.interferes)
+        return self._in_trace(self._path.interferes)
 
     @cached_property
     def _kept(self) -> Mask:
@@ -134,9 +134,9 @@ class ToolCenter:
         stretches = msgspec.structs.replace(path[rows], start=path.start[first], radius=radius)
         straight = tool_center_path(self.trace, stretches)
         faulty = straight.interferes | straight.no_intersection | straight.inside_arc_too_small
-        by_rounding = self._found(self._path.interferes & ~faulty[np.searchsorted(rows, np.arange(len(kept)))])
+        by_rounding = self._in_trace(self._path.interferes & ~faulty[np.searchsorted(rows, np.arange(len(kept)))])
         # Among many such blocks a few that rounding may well turn round tell nothing, whatever is left of them.
-        short = self._found(may_turn_back(path.start, path.end, self._half_of_last_digit, path.radius))
+        short = self._in_trace(may_turn_back(path.start, path.end, self._half_of_last_digit, path.radius))
         really = self.interferes & short & ~by_rounding
         most = self.trace.mode.count_in_section(by_rounding) > self.trace.mode.count_in_section(really)
         return np.asarray(by_rounding | (really & np.append(most, False)[self.trace.mode.section]))
@@ -144,12 +144,12 @@ class ToolCenter:
     @cached_property
     def no_intersection(self) -> Mask:
         """The paths of the tool center do not meet at the inside corner at the end of the row."""
-        return self._found(self._path.no_intersection)
+        return self._in_trace(self._path.no_intersection)
 
     @cached_property
     def movement_missing(self) -> Mask:
         """The control does not know the next move in time, so that the row ends perpendicular, which is wrong there."""
-        return self._found(self._path.movement_missing)
+        return self._in_trace(self._path.movement_missing)
 
     @cached_property
     def waits_for_movement(self) -> Mask:
@@ -170,7 +170,7 @@ class ToolCenter:
     @cached_property
     def arc_center_on_path(self) -> Mask:
         """An arc whose center is its start or its end."""
-        return self._found(self._path.arc_center_on_path)
+        return self._in_trace(self._path.arc_center_on_path)
 
     # ---- where it runs and how fast ----
 
