@@ -45,7 +45,7 @@ os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 NO_CACHE = ("POLARCHECK_NO_CACHE", "1")
 os.environ.update([NO_CACHE])
 
-#: Of a test of more cases than these, one in SHARE runs by default.
+#: Of a test of more cases than these, one in SHARE runs before the nightly run.
 MANY_CASES, SHARE = 8, 12
 
 #: What `pytest` alone collects at most: beyond it, tests take their cases in loops (cases.looped) or wait for .ci/run.
@@ -87,7 +87,7 @@ def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """
-    Before pytest deselects by markers: where all files run, all cases but a share are `ci` of a test of many.
+    Before pytest deselects by markers: where all files run, all cases but a share are `nightly` of a test of many.
 
     `one_in(5)` says which share of a test runs before the nightly run; `one_in(1)` that all cases do.
     """
@@ -98,12 +98,10 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         if item.get_closest_marker("installs") and not config.getoption("--installs"):
             item.add_marker(pytest.mark.skip(reason="--installs runs what installs packages"))
         test = item.nodeid.partition("[")[0]
-        share = item.get_closest_marker("one_in")
         is_many = everything and count[test] > MANY_CASES
-        if share and cases[test] % share.args[0]:
+        one_in = item.get_closest_marker("one_in")
+        if cases[test] % (one_in.args[0] if one_in else SHARE if is_many else 1):
             item.add_marker("nightly")
-        elif not share and is_many and cases[test] % SHARE:
-            item.add_marker("ci")
         cases[test] += 1
     quick = sum(not any(map(item.get_closest_marker, ("ci", "nightly"))) for item in items)
     if quick > MOST_CASES:

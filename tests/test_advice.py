@@ -45,7 +45,7 @@ def only(program: str, machine: str = "fanuc-30i", tool: str = "1:radius=4", **m
         ("X-40. / C-20.", "X-40. / X-40. / C-20.", "10: this block moves nowhere, its point is"),
         # F of a turning tool, written in the ramp.
         ("F200", "F.1", "0.1 mm/min here, by F.1 of line 7: this block alone takes"),
-    ],
+    ], one_in=4,
 )  # fmt: skip
 def test_one_slip(old: str, new: str, says: str) -> None:
     assert old in SOUND

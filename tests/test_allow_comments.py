@@ -59,6 +59,7 @@ def messages(program: str, rule: str) -> list[str]:
         f"G0 C5. (FAST) {COMMENT} (END)\n",
         f"#1=5.\nG0 C#1 {COMMENT}\n",
     ],
+    one_in=4,
 )
 def test_in_the_block(block: str) -> None:
     program = HEAD + block + TAIL
@@ -111,6 +112,7 @@ def test_blocks_that_share_a_line_are_told_apart() -> None:
         "%\n:0001 (PART 7)\n(REV B)\nN1 (POLARCHECK ALLOW-FILE {})\n",
         "%\r\nO0001\r\n(POLARCHECK ALLOW-FILE {})\r\n",
     ],
+    one_in=3,
 )
 def test_at_the_head_of_the_file(head: str) -> None:
     program = head.format(f"RAPID-IN-POLAR {REASON}") + RAPID.replace("G1 C-5.", "G0 C-5.")
@@ -225,6 +227,7 @@ def test_names_and_reason(words: str, names: list[str], reason: str) -> None:
         ("POLARCHECK IGNORE OVERCUT", [], "did you mean ALLOW?"),
         ("POLARCHECK ALLOWFILE OVERCUT", [], "did you mean ALLOW-FILE?"),
     ],
+    one_in=4,
 )
 def test_what_is_not_understood_is_told_and_not_heeded(comment: str, names: list[str], told: str) -> None:
     found = read_allow(f"({comment})", NAMES)

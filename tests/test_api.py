@@ -82,7 +82,7 @@ def test_part_gives_what_the_command_gives(samples: None) -> None:
     assert [json.loads(msgspec.json.encode(polarcheck.part(name))) for name in SAMPLES] == files
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @pytest.mark.one_in(2)
 @pytest.mark.parametrize("which", ["tool", "programmed"])
 def test_trace_gives_the_moves_of_the_command(samples: None, which: Any) -> None:

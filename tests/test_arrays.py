@@ -12,7 +12,7 @@ from polarcheck.foundation.arrays import computed, different, is_among, is_unifo
 NUMBERS = st.lists(st.one_of(st.integers(-5, 5).map(float), st.floats(allow_nan=False)), max_size=9)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @given(NUMBERS)
 def test_different_values_are_those_of_numpy(values: list[float]) -> None:
     assert different(np.array(values)).tolist() == np.unique(values).tolist()

@@ -126,7 +126,7 @@ def of_bound(report: FileReport) -> list[tuple[str, str]]:
 
 
 @pytest.mark.ci
-@looped("in_mode", [True, False], ids=["in the mode", "before the mode"], one_in=16)
+@looped("in_mode", [True, False], ids=["in the mode", "before the mode"], one_in=32)
 @looped("loop", LOOPS)
 def test_a_bound_within_the_mode_is_one_warning_and_leaves_the_file_unverified(loop: str, in_mode: bool) -> None:
     machine, program = program_of(loop, in_mode)

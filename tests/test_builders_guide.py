@@ -32,7 +32,7 @@ def message(program: str, rule: str, *tools: str, job: Changes | None = None) ->
 
 
 @pytest.mark.ci
-@looped("name", PROGRAMS)
+@looped("name", PROGRAMS, one_in=2)
 @looped("unit", ["inch", "mm"])
 def test_the_programs_of_the_guide_are_right(name: str, unit: str) -> None:
     program, *tools = PROGRAMS[name]
@@ -46,7 +46,7 @@ def test_the_programs_of_the_guide_are_right(name: str, unit: str) -> None:
 
 
 @pytest.mark.ci
-@looped("name", PROGRAMS)
+@looped("name", PROGRAMS, one_in=3)
 @looped("compensated", [True, False])
 @looped("machine", [MACHINE, "fanuc"])
 def test_a_section_without_its_g12_1_is_one_finding(name: str, compensated: bool, machine: str) -> None:
@@ -95,6 +95,7 @@ def test_an_arc_of_c_belongs_into_the_mode(between: str) -> None:
         "O1\nG98 T0101\nG0 X62. C0\nG1 X58. F50\nZ-30. C360. F800.\nC720.\nX62.\nG13.1\nM30\n",
         "O1\nG98 T0101\nG0 X62. Z2. C0\nG1 Z-.2 F50\nX20. C3600. F800.\nC3960.\nX62.\nG13.1\nM30\n",
     ],
+    one_in=2,
 )
 def test_what_is_no_contour_needs_no_g12_1(program: str) -> None:
     assert "polar-never-entered" not in [rule for _, rule in said(report_of(program, "fanuc"))]
@@ -131,6 +132,7 @@ AGAIN = SAMPLE.replace("%\nO0001\n", "M34\n{}").replace("S2000 ", "")
         (METHOD_A.replace("M30\n%\n", "") + AGAIN.format(TURNED.format("G97 S800 M3")), "G97 M33"),
         (METHOD_A.replace("M30\n%\n", "") + AGAIN.format(TURNED.format("G96 S200 M3")), "G97 M33"),
     ],
+    one_in=2,
 )
 def test_a_live_tool_wants_its_speed(wrong: str, block: str) -> None:
     assert errors_and_warnings(wrong, "8:radius=0", "1:radius=.25") == [(block, "live-tool-without-speed")]
@@ -151,6 +153,7 @@ def test_a_live_tool_wants_its_speed(wrong: str, block: str) -> None:
         SAMPLE.replace("G97 S2000 M33", "M98 P9000\nM33"),
         "%\nO1\nT0808\nM33\nG98 G0 X1. Z.1\nG1 Z-.5 F3.\nM30\n%\n",  # no section: M33 may be anything
     ],
+    one_in=2,
 )
 def test_a_speed_that_may_be_meant_for_the_live_tool_is_enough(right: str) -> None:
     assert "live-tool-without-speed" not in [rule for _, rule, _ in found(right, "8:radius=0", "1:radius=.25")]
@@ -179,6 +182,7 @@ NEXT_TOOL = "M1\nT0202\nM35\nG0 X5. Z5.\nM30\n"
         (METHOD_A.replace("Z5. M35", "Z5.").replace("M1\nM30\n", NEXT_TOOL), "T0202", "warning"),
         (SAMPLE.replace("Z.1 M35", "Z.1").replace("M1\nM30\n", NEXT_TOOL), "T0202", "warning"),
     ],
+    one_in=3,
 )
 def test_a_live_tool_is_stopped_after_its_section(wrong: str, block: str, severity: str) -> None:
     tools = "8:radius=0", "1:radius=.25"
@@ -224,7 +228,7 @@ TURNING = "T0101\nM34\nG97 S800 M3\nG0 X1. Z.1\n{}\nG0 X5. Z5.\nM30\n"
         ("G83 Z-1. F.004", "G83 Z-1. F.004"),
         ("G71 U.1 R.05\nG71 P10 Q20 U.02 W.01 F.012\nN10 G0 X.5\nG1 Z-1.\nN20 X1.", "G71 P10 Q20 U.02 W.01 F.012"),
     ],
-    one_in=2,
+    one_in=6,
 )
 def test_the_feed_of_a_mill_is_not_carried_into_turning(work: str, block: str) -> None:
     wrong = CARRIED.replace("M30\n", TURNING.format(work))
@@ -275,13 +279,14 @@ def test_each_g98_is_carried_once() -> None:
         "T0909\nM35\nG28 H0\nS3000 M33\nG0 X1. Z.1\nG1 Z-.5 F3.\nG0 Z1. M35\nM30\n",
         "T0909\nM35\nG28 H0\nS3000 M33\nG0 X1. Z.1\nG83 Z-.5 F1.5\nG80 G0 Z1. M35\nM30\n",
     ],
+    one_in=2,
 )
 def test_a_feed_per_minute_that_is_meant_is_right(work: str) -> None:
     assert errors_and_warnings(CARRIED.replace("M30\n", work), "8:radius=0") == []
 
 
 @pytest.mark.ci
-@looped("machine", ["fanuc", "haas-lathe", "mazak-eia", "siemens-iso", "okuma-osp", "gsk-988"])
+@looped("machine", ["fanuc", "haas-lathe", "mazak-eia", "siemens-iso", "okuma-osp", "gsk-988"], one_in=4)
 def test_the_procedure_is_that_of_one_builder(machine: str) -> None:
     program = CARRIED.replace("S2000 ", "").replace("Z.1 M35", "Z.1").replace("M30\n", TURNING.format("G1 Z-.5 F.008"))
     rules = {"live-tool-without-speed", "live-tool-never-stopped", "turning-feed-not-restored"}
@@ -293,7 +298,7 @@ def test_the_procedure_is_that_of_one_builder(machine: str) -> None:
 
 
 @pytest.mark.ci
-@looped("radius", ["-.005", ".005", "0", "-.0098", ".0098"])
+@looped("radius", ["-.005", ".005", "0", "-.0098", ".0098"], one_in=3)
 @looped("unit", ["inch", "mm"])
 def test_r_is_adjusted_either_plus_or_minus(radius: str, unit: str) -> None:
     """Beside a comment that tells the cutter, too."""
@@ -334,6 +339,7 @@ def test_feed_is_per_minute_or_per_revolution(before: str) -> None:
         ("Z-.88\n", "Z-.88\nG18\n"),
         ('G40\nG13.1\nG30 U0 W0\nG28 H0\nT0808 (3/4" DIA. CUTTER)\nG97 S2000 M33\nG0Z.1 C0 M8\nX2.15\nG12.1\n', None),
     ],
+    one_in=2,
 )
 def test_g18_in_the_mode_or_before_it_satisfies_the_guide(old: str, new: str | None) -> None:
     """So does the default plane of the lathe, and G18 as the first block in the mode after G17."""
@@ -371,6 +377,7 @@ def test_only_g17_and_g19_are_wrong(old: str, new: str, block: str, rule: str) -
         ("G12.1\n", "G12.1\nD8\n"),
         ("G1 G41 X1.75", "G1 G41 D8 X1.75"),
     ],
+    one_in=2,
 )
 def test_d_calls_nothing_on_a_lathe(old: str, new: str) -> None:
     [(_, rule, severity)] = found(SAMPLE.replace(old, new, 1), "8:radius=0")
@@ -389,6 +396,7 @@ def test_d_calls_nothing_on_a_lathe(old: str, new: str) -> None:
         "M200 D8",
         "G101 X1. D8",
     ],
+    one_in=2,
 )
 def test_a_cycle_or_a_call_has_a_d_of_its_own(before: str) -> None:
     program = SAMPLE.replace("X2.15\n", f"{before}\nG0 X2.15\n", 1)
@@ -426,6 +434,7 @@ def test_the_page_of_the_nose_type_speaks_of_no_other_machine() -> None:
         (METHOD_A, "G1 G41 X1.0 F5.\n", "G42\nG41\nX1.0 F5.\n"),
         (METHOD_B, "G1 G41 X1.0 F5.\n", "G41 C.4153\nX1.0 F5.\n"),  # where it stands already
     ],
+    one_in=2,
 )
 def test_g41_belongs_beside_the_move_that_begins_the_offset(program: str, old: str, new: str) -> None:
     assert old in program
@@ -449,6 +458,7 @@ def test_g41_belongs_beside_the_move_that_begins_the_offset(program: str, old: s
         ("X2.15\n", "", "X was not programmed before the polar mode"),
         ("X2.15\nG12.1\n", "G12.1 X2.15\n", "X was not programmed before the polar mode"),
     ],
+    one_in=2,
 )
 def test_what_leaves_the_position_open_is_named(old: str, new: str, reason: str) -> None:
     program = SAMPLE.replace("G30 U0 W0\n", "", 1).replace(old, new, 1)
@@ -478,7 +488,7 @@ def of_feed(program: str, *tools: str, job: Changes | None = None) -> list[str]:
 
 
 @pytest.mark.ci
-@looped("program", [SAMPLE, METHOD_A, METHOD_B])
+@looped("program", [SAMPLE, METHOD_A, METHOD_B], one_in=2)
 @looped("convert", [str, in_mm])
 def test_the_feeds_of_the_guide_are_its_recommendation(program: str, convert: Callable[[str], str]) -> None:
     """F20. for positioning and F60. on the way round the part included."""
@@ -526,7 +536,7 @@ def test_positioning_goes_at_any_feed_of_the_ranges_and_between(feed: str, progr
 
 
 @pytest.mark.ci
-@looped(("feed", "where"), [(".9", "below"), ("60.5", "above")])
+@looped(("feed", "where"), [(".9", "below"), ("60.5", "above")], one_in=4)
 @looped("old", ["G98 C.5339 F60.", "X1.75F7.", "R1.025 F60.", "G40 X-2.15 F60."])
 def test_beyond_both_ranges_any_move_is_told(feed: str, where: str, old: str) -> None:
     wrong = SAMPLE.replace(old, re.sub(r"F\d+\.", f"F{feed}", old), 1)
@@ -542,7 +552,7 @@ def test_each_f_of_a_section_is_told_once() -> None:
 
 
 @pytest.mark.ci
-@looped(("diameter", "cuts"), [(1.25, False), (1.29, False), (1.31, True), (1.4, True)], one_in=3)
+@looped(("diameter", "cuts"), [(1.25, False), (1.29, False), (1.31, True), (1.4, True)], one_in=8)
 @looped("convert", [str, in_mm])
 def test_given_stock_decides_whether_the_way_round_cuts(
     diameter: float, cuts: bool, convert: Callable[[str], str]
@@ -578,6 +588,7 @@ def test_a_cut_outside_the_stock_is_none() -> None:
         # A polygon in chords, each of which is nearest at an end.
         ("G1 C.1 F40.\nG41 X1.1 F5.\nX1.08 C.15\nX1. C.25 F40.\nX.8 C.37\nX.6 C.45 F5.\nG40 X2.4", ["X1. C.25 F40."]),
     ],
+    one_in=2,
 )
 def test_leads_and_moves_in_the_air_are_no_cuts(blocks: str, told: list[str]) -> None:
     program = f"T0101\nM5\nM35\nG28 H0\nG97 S900 M33\nG98 G0 X2.4 Z.1 C0\nG12.1\n{blocks}\nG13.1\n"
@@ -600,6 +611,7 @@ def test_an_unknown_radius_takes_nothing_from_it() -> None:
 @looped(
     ("feed", "shown"),
     [("25.", "25 mm"), ("25.4", ""), ("250.", ""), ("254.", ""), ("254.0001", "254.0001 mm"), ("254.5", "254.5 mm")],
+    one_in=3,
 )
 def test_limits_in_mm_are_true_as_they_are_shown(feed: str, shown: str) -> None:
     program = in_mm(METHOD_A).replace("F127.", f"F{feed}", 1)

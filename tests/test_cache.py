@@ -269,7 +269,7 @@ def test_a_broken_cache_is_ignored(checked: list[str]) -> None:
     assert shown(check()) == fresh
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_a_cache_of_somebody_else_makes_nothing_pass(checked: list[str], tmp_path: Path) -> None:
     """A cache can come with an archive; a verdict of it would be that of whoever wrote it."""
     check()

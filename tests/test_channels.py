@@ -89,7 +89,7 @@ def places(report: FileReport) -> list[tuple[int, str, object]]:
 
 
 @pytest.mark.ci
-@looped("order", list(itertools.permutations(PROGRAMS)))
+@looped("order", list(itertools.permutations(PROGRAMS)), one_in=3)
 def test_each_channel_gives_the_tool_center_path_of_a_file_of_its_own(order: tuple[int, ...]) -> None:
     file = "%\nO1000(PART)\n" + "".join(f"${number}\n{PROGRAMS[number]}" for number in order) + "%\n"
     found = ends_of(file, *TOOLS)
@@ -129,7 +129,7 @@ def test_the_order_of_the_channels_makes_no_difference() -> None:
         "O1\n$1 !2L1\n{0}$2!1L1\n{1}",
         "O1\n$3\n{1}$1\n{0}",
     ],
-    one_in=11,
+    one_in=33,
 )
 @looped("ending", ["\n", "\r\n", "\r"])
 def test_marks_of_channels_as_they_are_written(file: str, ending: str) -> None:
@@ -172,7 +172,7 @@ def test_a_channel_without_a_program_is_none() -> None:
 
 
 @pytest.mark.ci
-@looped("rest", ["", "\n", "(NOT USED)\n", "!1L1\n", "%\n"])
+@looped("rest", ["", "\n", "(NOT USED)\n", "!1L1\n", "%\n"], one_in=2)
 def test_nor_is_one_with_what_stands_before_all_of_them_alone(rest: str) -> None:
     report = report_of(f"%\nO1\n#500=1\n$1\n{FIRST}$2\n{rest}", "fanuc", *TOOLS)
     assert said(report) == []
@@ -209,6 +209,7 @@ CALLS = "G98 G40\nT0{0}0{0}\nG0 X60. C0\nM98 P2000\nM30\n"
         f"O2000\n{SUBPROGRAM}O1\n$1\n{CALLS.format(1)}$2\n{CALLS.format(2)}",
         f"$1\nO1\n{CALLS.format(1)}O2000\n{SUBPROGRAM}$2\nO1\n{CALLS.format(2)}O2000\n{SUBPROGRAM}",
     ],
+    one_in=3,
 )
 def test_a_call_finds_its_program_in_every_channel(file: str) -> None:
     report = report_of(file, "fanuc", *TOOLS)
@@ -290,7 +291,7 @@ def test_common_variables_of_another_channel_are_not_vacant() -> None:
 
 
 @pytest.mark.ci
-@looped("wait", ["!2L1", "!1L10", "!L3", "!1", "!12L2", "! 2 L 1", "!2l1", "!2L1!3L1", "!9L99999"], one_in=12)
+@looped("wait", ["!2L1", "!1L10", "!L3", "!1", "!12L2", "! 2 L 1", "!2l1", "!2L1!3L1", "!9L99999"], one_in=36)
 @looped(
     "block",
     ["{}", "/{}", "N10{}", "{}G1 X39.", "G1 X39.{}", "G1{}X39.", "#101=5 {}", "IF[#101GT0]GOTO5 {}", "{}(WAIT)"],
@@ -305,7 +306,7 @@ def test_a_wait_is_a_comment(wait: str, block: str) -> None:
 
 
 @pytest.mark.ci
-@looped("wait", ["M200", "M200 P12", "M100P123", "M82"])
+@looped("wait", ["M200", "M200 P12", "M100P123", "M82"], one_in=2)
 def test_a_wait_by_an_m_code_is_no_fault(wait: str) -> None:
     file = f"O1\n$1\n{FIRST.replace('G13.1', f'G13.1{chr(10)}{wait}')}$2\n{wait}\n{SECOND}"
     assert said(report_of(file, "fanuc", *TOOLS)) == []

@@ -272,6 +272,7 @@ def test_a_reader_who_goes_away_changes_no_exit_code() -> None:
         (["--output", "xml:a.xml"], "expected FORMAT:FILE, the format one of text, short, concise, checkstyle"),
         (["--units", "cm"], "'cm' is not one of 'mm', 'inch'"),
     ],
+    one_in=2,
 )
 def test_what_means_nothing_is_named_in_one_line(arguments: list[str], told: str) -> None:
     make(a__nc=GOOD, big__txt=f"G10 P10008 R1{'0' * 30}. Q0\n", nose__txt="G10 P10008 R4. Q12\n")
@@ -335,6 +336,7 @@ def test_what_means_nothing_is_named_in_one_line(arguments: list[str], told: str
         ("[limits]\nc_feed = -5\n", "polarcheck.toml:2: limits.c_feed: expected a number above 0, found -5"),
         ("[limits]\nc_feed = 'fast'\n", "polarcheck.toml:2: limits.c_feed: expected a number"),
     ],
+    one_in=6,
 )
 def test_a_broken_job_file_is_named_with_its_key(text: str, told: str) -> None:
     make(a__nc=GOOD, polarcheck__toml=text)
@@ -581,6 +583,7 @@ def test_a_report_that_cannot_be_written_is_told_and_the_other_one_printed() -> 
         ([], {"FORCE_COLOR": "1", "NO_COLOR": ""}, True),
         ([], {"POLARCHECK_COLOR": "always"}, True),
     ],
+    one_in=3,
 )
 def test_color_is_the_option_then_no_color_then_force_color(
     arguments: list[str], environment: dict[str, str], colored: bool
@@ -839,7 +842,7 @@ def test_the_version_is_shown() -> None:
 
 
 @pytest.mark.ci
-@looped("name", ["report", "job", "machine", "feeds", "trace", "comparison", "rewriting"], one_in=4)
+@looped("name", ["report", "job", "machine", "feeds", "trace", "comparison", "rewriting"], one_in=7)
 def test_schemas_are_valid_and_say_what_they_are(name: str) -> None:
     shown = json.loads(call("schema", name).stdout, parse_constant=pytest.fail)
     jsonschema.Draft202012Validator.check_schema(shown)

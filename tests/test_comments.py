@@ -84,7 +84,7 @@ def test_radius_of_a_comment(comment: str, inch: bool, radius: float | None) -> 
 
 
 @pytest.mark.ci
-@looped("tool", ["1", "01", "T1", "0" * 5000 + "1", "9" * 5000, "1" * 8, "1" * 9])
+@looped("tool", ["1", "01", "T1", "0" * 5000 + "1", "9" * 5000, "1" * 8, "1" * 9], one_in=2)
 def test_a_list_of_tools_takes_numbers_of_any_length(tool: str) -> None:
     program = f"O1\n(T{tool} D=20.)\nG21 G98 G18\nT0101\n{FLAT_MM.format(80, 80)}{END}"
     report = report_of(program, "fanuc", job=ASKED)
@@ -154,6 +154,7 @@ def untaken(report: FileReport) -> list[tuple[str, int]]:
         (MM + FLAT_MM.format("65.", "65."), "10 mm", 3),
         (MM + FLAT_MM.format("69.", "52."), "10 mm", 3),
     ],
+    one_in=3,
 )
 def test_ramps_all_shorter_than_the_cutter_are_those_of_its_center(program: str, taken: str, offset: int) -> None:
     report = asked(program)

@@ -92,7 +92,7 @@ IN_INCH = changed(
         pytest.param(changed(("Z-5. F300", "Z-2. F300\nZ-5.")), SAME_METAL, id="plunge in two steps"),
         pytest.param(changed(("G0 X100. Z50.", "G0 X80. Z26.\nX100. Z50.")), SAME_METAL, id="rapid in two steps"),
         pytest.param(changed(("G21 G98 G40", "G21 G98")), SAME_METAL, id="codes in force"),
-    ],
+    ], one_in=3,
 )  # fmt: skip
 def test_twins_are_the_same_metal(new: str, verdict: str) -> None:
     tools = RADIUS if "G20" not in new else ()
@@ -212,6 +212,7 @@ def of_sections(*sections: tuple[int, int]) -> str:
         (((0, 5), (90, 8), (180, 7)), ["same", "changed", "same"]),
         ((), ["missing"] * 3),
     ],
+    one_in=2,
 )
 def test_sections_are_paired_by_what_they_do(new: Sequence[tuple[int, int]], changes: list[str]) -> None:
     result = comparison(of_sections((0, 5), (90, 6), (180, 7)), of_sections(*new))

@@ -294,7 +294,7 @@ def test_refused_with_line_and_reason(text: str, tool: str, line: int, reason: s
     assert (first.line, reason in first.text) == (line, True), refused.value.refusals
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_side_is_chosen_where_the_program_does_not_say_it() -> None:
     """Down onto the path: nothing is cleared beside it. Where arcs are too small there is no contour."""
     blocks = SQUARE.replace("G1 X38.0 C0. F200", "X38. F1500\nZ-9. F100\nC0. F200").replace("C0. F200\nX", "F200\nX")

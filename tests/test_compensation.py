@@ -570,7 +570,7 @@ def test_turning_the_contour_turns_the_path(program, rules, angle):
     assert_same(turned, replace(tool, start=tool.start * turn, end=tool.end * turn, center=tool.center * turn))
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @settings(max_examples=60, deadline=None)
 @given(contours(), RULES)
 def test_mirroring_swaps_g41_and_g42(program, rules):
@@ -595,7 +595,7 @@ def test_negative_radius_swaps_sides(program, rules):
     assert_same(swapped, tool)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @settings(max_examples=60, deadline=None)
 @given(contours(), RULES)
 def test_radius_zero_gives_the_programmed_path(program, rules):

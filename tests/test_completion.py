@@ -192,7 +192,7 @@ def test_every_value_says_what_it_is() -> None:
                 assert completing.metavar(parameter) in known, (command.name, parameter.name)
 
 
-@looped("words", ["", "check --select", "check --machine", "explain", "check", "check --set", "check -o"], one_in=2)
+@looped("words", ["", "check --select", "check --machine", "explain", "check", "check --set", "check -o"], one_in=6)
 def test_a_completion_loads_neither_the_rules_nor_numpy(words: str) -> None:
     code = (
         "import sys, polarcheck.commands\n"
@@ -208,7 +208,7 @@ def test_a_completion_loads_neither_the_rules_nor_numpy(words: str) -> None:
 # ---- the scripts ----
 
 
-@looped("shell", completion.SHELLS)
+@looped("shell", completion.SHELLS, one_in=2)
 def test_the_script_of_each_shell_is_shown_as_it_is(shell: str) -> None:
     done = process("completion", shell)
     told, errors = done.communicate(timeout=60)

@@ -299,6 +299,7 @@ def test_where_all_is_excluded_nothing_is_checked_and_that_is_said(path: str) ->
         ("exclude = ['old']\n", ["--exclude", "sub"], ["a.nc"], 4),
         ("exclude = ['old']\n", ["--exclude", "a.nc"], ["sub/b.nc", "sub/c.nc"], 3),
     ],
+    one_in=3,
 )
 def test_patterns_of_the_command_line_are_added_to_those_of_the_file(
     text: str, options: list[str], read: list[str], count: int
@@ -335,6 +336,7 @@ def test_an_option_that_is_no_pattern_is_told() -> None:
         ("exclude = ['gone']\n", ["--exclude", "old/**"], "--exclude {} excludes nothing|'old/**'"),
         ("extensions = ['tap']\n", ["--extensions", "nc,sub"], "--extensions: no file ends in {}|'sub'"),
     ],
+    one_in=2,
 )
 def test_a_pattern_of_a_walk_without_effect_is_told_once(text: str, options: list[str], told: str) -> None:
     make("a.nc", "sub/b.nc", "sub/c.nc", text="O1\nM30\n")
@@ -654,7 +656,7 @@ TEXT = "[tools.8]\nradius = 4.25\n"
 
 
 @pytest.mark.ci
-@looped("encoding", ["utf-8-sig", "utf-16", "utf-16-le", "utf-16-be"])
+@looped("encoding", ["utf-8-sig", "utf-16", "utf-16-le", "utf-16-be"], one_in=3)
 @looped("name", ["polarcheck.toml", "pyproject.toml"])
 def test_files_are_read_as_windows_saves_them(encoding: str, name: str) -> None:
     make("a.nc")
@@ -865,7 +867,7 @@ def test_init_writes_what_the_programs_tell_and_says_what_is_left() -> None:
     assert {file["verdict"] for path, file in checked(".").items() if path != "O3.nc"} == {"unverified"}
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_what_init_suggests_is_a_job_file_where_the_marks_are_taken_away() -> None:
     make("O1.nc", text=MILL.replace("T0808", "T0808 (D=8. END MILL)"))
     make("O2.nc", text=MILL.replace("T0808", 'T0808 (D=10. "END" MILL)'))
@@ -905,7 +907,7 @@ def test_init_without_a_schema_names_none() -> None:
     assert not Path("polarcheck.schema.json").exists()
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @pytest.mark.parametrize(
     ("folder", "machine"),
     [("haas-lathe", "haas-lathe"), ("hurco", "hurco")],

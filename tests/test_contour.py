@@ -185,7 +185,7 @@ LEGAL = {
 
 
 @pytest.mark.ci
-@looped("name", LEGAL)
+@looped("name", LEGAL, one_in=6)
 def test_a_legal_program_is_never_found(name: str) -> None:
     legal = LEGAL[name]
     assert len(legal.path.row)
@@ -194,7 +194,7 @@ def test_a_legal_program_is_never_found(name: str) -> None:
 
 
 @pytest.mark.ci
-@looped("name", sorted({*LEGAL} - {"exact reversal"}))
+@looped("name", sorted({*LEGAL} - {"exact reversal"}), one_in=4)
 def test_a_tool_too_large_by_a_hundredth_is_found(name: str) -> None:
     found = LEGAL[name].overcuts(LEGAL[name].radius + 0.01)
     assert len(found.row)

@@ -138,7 +138,7 @@ def test_a_block_through_the_part_and_the_wrong_side_are_told() -> None:
 
 
 @pytest.mark.ci
-@looped("seed", range(0, 39, 4), one_in=3)
+@looped("seed", range(0, 39, 4), one_in=6)
 def test_samples_along_the_path_say_the_same(seed: int) -> None:
     one = program_of(seed)
     verdict = judge(one.text, one.radius, one.part)
@@ -175,7 +175,7 @@ def test_every_wall_of_the_part_is_programmed(seed: int) -> None:
 
 
 @pytest.mark.ci
-@looped("seed", range(26), one_in=4)
+@looped("seed", range(26), one_in=12)
 def test_twins_have_the_same_part_and_the_same_path(seed: int) -> None:
     one = program_of(seed)
     assert one == program_of(seed)

@@ -26,7 +26,7 @@ def found(machine: str, contour: str, *, ends: str = "") -> list[str]:
 
 
 @pytest.mark.ci
-@looped("machine", CONTROLS)
+@looped("machine", CONTROLS, one_in=3)
 @looped(
     "contour",
     [
@@ -44,7 +44,7 @@ def test_it_is_one_finding_with_the_code_that_begins_the_mode(machine: str, cont
 
 
 @pytest.mark.ci
-@looped("machine", CONTROLS)
+@looped("machine", CONTROLS, one_in=4)
 @looped(
     "contour",
     [

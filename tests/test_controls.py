@@ -92,7 +92,7 @@ def test_the_lsis_example_is_a_quarter_of_a_circle_with_x_as_a_radius() -> None:
 
 
 @pytest.mark.ci
-@looped("name", ["gsk-988", "fanuc-16i", "turning-center"])
+@looped("name", ["gsk-988", "fanuc-16i", "turning-center"], one_in=2)
 def test_the_m700v_example_is_wrong_where_x_is_a_diameter(name: str) -> None:
     rules = {finding.rule for finding in report_of(M700V.text, name).findings}
     assert rules & {"arc-end-off-circle", "diameter-radius-mixed"}
@@ -137,7 +137,7 @@ def feeds(mode: str, in_mode: str, system: str) -> tuple[float, float, FileRepor
 
 
 @pytest.mark.ci
-@looped("system", ["A", "B"])
+@looped("system", ["A", "B"], one_in=2)
 @looped(
     ("mode", "in_mode", "used", "after", "alarm"),
     [
@@ -410,7 +410,7 @@ def test_a_code_of_another_system_is_another_alarm() -> None:
         ("G94 G0 X60. C0\nG12.1\nG1 X40. F100\nG18\nG13.1\n", "mitsubishi-m700", "plane-selected-in-polar", "P485"),
         ("G94 G0 X60. C0\nG12.1\nG1 X40.\nG13.1\n", "mitsubishi-m700", "feed-missing-in-polar", "P62"),
         ("G98 G0 X60. C0\nG112\nG1 X40. Y5. F9\nG2 X30. Y9. R1.\nG113\n", "haas-lathe", "arc-radius-too-small", "302"),
-    ],
+    ], one_in=3,
 )  # fmt: skip
 def test_alarm_of_the_control(program: str, name: str, rule: str, alarm: str) -> None:
     found = [finding for finding in report_of(program, name).findings if finding.rule == rule]
@@ -518,6 +518,7 @@ PLANES = "plane-selected-in-polar", "plane-wrong-at-entry"
         ("G18", "G17\n", "", "", [(10, "error", "plane-selected-in-polar")]),
         ("G18", "", "", "G19 ", [(11, "error", "plane-selected-in-polar")]),
     ],
+    one_in=2,
 )
 def test_g18_may_stand_right_behind_g12_1_where_the_guide_wants_it(
     before: str, behind: str, beside: str, later: str, expected: list[tuple[int, str, str]]
@@ -667,6 +668,7 @@ Y1.125
 @looped(
     ("absolute", "incremental"),
     [("G390", "G391"), ("g390", "g391"), ("G390.", "G391."), ("N5 G0390", "G0391"), ("G390 M9", "G40 G391")],
+    one_in=4,
 )
 def test_g390_and_g391_are_executed(absolute: str, incremental: str) -> None:
     """Axis words as coordinates and as distances: the same tool center path, whichever way the codes are spelled."""

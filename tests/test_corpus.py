@@ -81,7 +81,7 @@ JUDGED = [
 ]
 
 
-@looped("row", JUDGED, ids=lambda row: " ".join([row.name, row.machine, *row.tools]))
+@looped("row", JUDGED, ids=lambda row: " ".join([row.name, row.machine, *row.tools]), one_in=4)
 def test_judged_program(row: Judged) -> None:
     report = report_of_file(POLAR / row.name, row.machine, *row.tools, changes=row.changes)
     found = [(f.line, f.severity, f.rule) for f in report.findings if f.severity != "note"]
@@ -97,7 +97,7 @@ TOO_LARGE = [
 ]
 
 
-@looped(("name", "lathe", "tool", "lines"), TOO_LARGE, ids=[row[0] for row in TOO_LARGE])
+@looped(("name", "lathe", "tool", "lines"), TOO_LARGE, ids=[row[0] for row in TOO_LARGE], one_in=2)
 def test_a_cutter_too_large_for_its_ramps_is_found(name: str, lathe: str, tool: str, lines: set[int]) -> None:
     found = report_of_file(POLAR / name, lathe, tool).findings
     ramps = {f.line for f in found if f.rule in ("start-up-shorter-than-radius", "cancel-shorter-than-radius")}
@@ -131,7 +131,7 @@ DEFECTS: dict[str, set[tuple[int, str]]] = {
 }
 
 
-@looped("name", DEFECTS)
+@looped("name", DEFECTS, one_in=4)
 def test_known_defects_are_named(name: str) -> None:
     shown = report_of_file(POLAR / name).findings
     assert DEFECTS[name] <= {(one.line, one.rule) for found in shown for one in (found, *found.follows)}
@@ -154,7 +154,7 @@ JUDGED_SO = {row.name for row in JUDGED if (row.machine, row.tools, row.changes)
 OTHERS = [path for path in FILES if path.name not in {*JUDGED_SO, *DEFECTS} and path not in FANUC_LATHES]
 
 
-@looped("path", OTHERS, ids=lambda path: f"{path.parent.name}/{path.name}", one_in=9)
+@looped("path", OTHERS, ids=lambda path: f"{path.parent.name}/{path.name}", one_in=18)
 def test_every_other_program_gives_a_report(path: Path) -> None:
     report_of_file(path)
 

@@ -151,6 +151,7 @@ def layered(space: Any) -> None:
         (["0"], [50]),
         (["notes", "0"], [40, 50]),
     ],
+    one_in=3,
 )
 @looped("version", ["R12", "R2010", "R2018"])
 def test_of_named_layers_only_what_lies_on_them_counts(
@@ -280,7 +281,7 @@ def test_what_is_drawn_twice_counts_once() -> None:
     assert chain[0] == chain[-1]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_reading_a_drawing_leaves_nothing_behind(tmp_path: Path) -> None:
     """ezdxf would write a list of all fonts into the home folder."""
     path = written(tmp_path / "part.dxf", d_shaft)

@@ -45,7 +45,7 @@ VARIANTS = pytest.mark.parametrize(
 )
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @pytest.mark.one_in(8)
 @VARIANTS
 @pytest.mark.parametrize("command", ["check", "part"])
@@ -88,7 +88,7 @@ def test_the_tolerance_of_the_command_line(tmp_path: Path, scale: float, turn: f
         job.unlink()
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @pytest.mark.one_in(4)
 @VARIANTS
 def test_layers_by_name(tmp_path: Path, scale: float, turn: float, machine: str) -> None:

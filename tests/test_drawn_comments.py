@@ -190,7 +190,7 @@ def not_read(read: Callable[[str, bool], object], forms: tuple[str, ...], writte
 
 
 @pytest.mark.ci
-@looped("seed", range(COUNT))
+@looped("seed", range(COUNT), one_in=3)
 def test_look_alikes_are_not_read(seed: int) -> None:
     _, written, _ = draw(seed)
     not_read(radius_in, NO_CUTTERS, written)

@@ -100,6 +100,7 @@ def test_a_dwell_in_the_words_of_its_control(machine: str, words: str, seconds: 
         ("siemens-transmit", "G4 S2=30", "dwell in line 5"),
         ("siemens-transmit", "G4 F=R9", "dwell in line 5"),
     ],
+    one_in=2,
 )
 def test_a_dwell_that_is_not_known_is_the_reason(machine: str, words: str, reason: str) -> None:
     section = report_of(SECTIONS[machine].format(words), machine).polar_sections[0]

@@ -70,7 +70,7 @@ def contours(draw: st.DrawFn) -> str:
     return inside(*blocks, "G1 G40 X80.")
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @settings(max_examples=15, deadline=None)
 @given(contours(), st.integers(0, 5))
 def test_moves_agree_with_dense_sampling(program: str, radius: int) -> None:

@@ -71,6 +71,7 @@ def section_of(program: str, *tools: str, **more: Any) -> tuple[int | str | None
         ('T="D10/2" D1', '"D10/2"/1', "D10/2/1"),
         ('T="D10/2" D3', "D10/2/3", "D10/2/3"),
     ],
+    one_in=5,
 )
 def test_the_offset_in_force_is_tool_and_edge(calls: str, tool: str, offset: str) -> None:
     assert section_of(face(calls), f"{tool}:radius=4") == (offset, 4.0, "command line")
@@ -106,6 +107,7 @@ def test_the_machine_says_which_edge_a_tool_change_calls(edge: int, calls: str, 
         ("08/1", "T8"),
         ("Fräser 8/2", 'T="FRÄSER 8" D2'),
     ],
+    one_in=2,
 )
 def test_a_job_gives_edges_by_their_keys(key: str, calls: str) -> None:
     job = {"tools": {key: {"radius": 4.0}}}
@@ -245,7 +247,7 @@ def test_d_is_no_fault_where_it_calls_an_edge() -> None:
 
 
 @pytest.mark.ci
-@looped("calls", ["T8 D0", "T8 D1\nD0", "T0", 'T="MILL_8" D0'])
+@looped("calls", ["T8 D0", "T8 D1\nD0", "T0", 'T="MILL_8" D0'], one_in=3)
 def test_without_an_edge_compensation_has_no_radius(calls: str) -> None:
     assert [rule for _, rule in said(report_of(face(calls), "siemens-transmit"))] == ["offset-number-missing"]
     plain = face(calls).replace("G41 ", "").replace("G40 ", "")
@@ -253,7 +255,7 @@ def test_without_an_edge_compensation_has_no_radius(calls: str) -> None:
 
 
 @pytest.mark.ci
-@looped(("word", "named"), [("D2", "T8 edge 2"), ("T9 D1", "T9 edge 1"), ("D0", "T8 edge 0")])
+@looped(("word", "named"), [("D2", "T8 edge 2"), ("T9 D1", "T9 edge 1"), ("D0", "T8 edge 0")], one_in=2)
 def test_another_edge_is_called_without_compensation_alone(word: str, named: str) -> None:
     tools = [f"{key}:radius=2" for key in ("8", "8/2", "9")]
     found = report_of(face("T8 D1", f"{word}\n"), "siemens-transmit", *tools).findings

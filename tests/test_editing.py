@@ -88,7 +88,7 @@ def test_without_folders_that_of_the_session_or_of_the_file_counts(uri: bool) ->
 
 
 @pytest.mark.ci
-@looped(("units", "before"), [("utf-8", 7), ("utf-16", 5), ("utf-32", 4)])
+@looped(("units", "before"), [("utf-8", 7), ("utf-16", 5), ("utf-32", 4)], one_in=2)
 def test_an_editor_chooses_how_characters_are_counted(units: str, before: int) -> None:
     with Editor(*ONLY_RAPID, capabilities={"general": {"positionEncodings": [units]}}) as editor:
         assert editor.capabilities["positionEncoding"] == units

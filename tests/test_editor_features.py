@@ -259,6 +259,7 @@ def lines_led_to(judged: Analysis, line: int, character: int = 0) -> list[int]:
         (10, 1, [10]),
         (1, 0, []),
     ],
+    one_in=3,
 )
 def test_calls_and_numbers_lead_to_their_blocks(line: int, character: int, targets: list[int]) -> None:
     assert lines_led_to(judged_of(CALLS), line, character) == targets

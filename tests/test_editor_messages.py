@@ -90,6 +90,7 @@ def asked(number: Any, method: str, **params: Any) -> dict[str, Any]:
         {"id": 7, "method": "textDocument/codeAction", "params": []},
         asked(7, "completionItem/resolve"),
     ],
+    one_in=2,
 )
 def test_wrong_parameters_are_answered(message: dict[str, Any]) -> None:
     assert answers(wire(BEGIN, message)) == [(1, 0), (7, -32602)]
@@ -140,6 +141,7 @@ def test_what_is_not_allowed_now_is_refused(
         ({"id": [7], "method": "shutdown"}, (None, -32600)),
         ({"id": None, "method": "shutdown"}, (None, -32600)),
     ],
+    one_in=2,
 )
 def test_what_is_no_message_is_refused(message: Any, expected: tuple[Any, int]) -> None:
     assert answers(wire(BEGIN, message, HOVER))[:2] == [(1, 0), expected]

@@ -229,6 +229,7 @@ def test_labels_are_refused_in_their_language(machine: str, text: str, new: str,
         renamed(text, new, machine)
 
 
+@pytest.mark.nightly
 @settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.lists(st.sampled_from(_LINES), min_size=1, max_size=12), st.sampled_from(["\n", "\r\n"]), st.data())
 def test_a_rename_back_gives_the_same_program(lines: list[str], end: str, data: Any) -> None:

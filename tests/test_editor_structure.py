@@ -211,6 +211,7 @@ def test_colors_of_lines_and_differences_are_those_of_the_whole() -> None:
     assert token_colors.difference([], new)[0].data == new
 
 
+@pytest.mark.nightly
 @settings(max_examples=60, deadline=None)
 @given(st.text(st.sampled_from("%ON0123456789GXT#[]=()/;.\n\r\"':RIFGOTDW \U0001f600\u2013"), max_size=80), st.data())
 def test_no_text_is_too_strange(text: str, data: Any) -> None:

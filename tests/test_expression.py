@@ -195,7 +195,7 @@ def sparse(tree: Any, around: int = 0) -> str:
     return f"[{text}]" if RANK[name] < around else text
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @pytest.mark.one_in(2)
 @pytest.mark.parametrize("trees_", [REAL_TREES, WHOLE_TREES], ids=["real", "whole"])
 @given(data=st.data())

@@ -53,7 +53,7 @@ def section(machine: str, *blocks: str) -> str:
 
 
 @pytest.mark.ci
-@looped("machine", SECTIONS)
+@looped("machine", SECTIONS, one_in=3)
 @looped(
     ("blocks", "way", "rise"),
     [
@@ -94,7 +94,7 @@ def helices(draw: st.DrawFn) -> str:
     return inside(*blocks, "G1 G40 X80.")
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @settings(max_examples=15, deadline=None)
 @given(helices(), st.integers(0, 5))
 def test_helices_agree_with_dense_sampling(program: str, radius: int) -> None:
@@ -239,6 +239,7 @@ M30
         # On the outer side CFIN leaves F alone.
         ("CFIN", "", 1),
     ],
+    one_in=2,
 )
 def test_cfc_is_the_feed_of_the_contour(before: str, between: str, share: float) -> None:
     program = ROUND.format(before, between, "G1 X-30")

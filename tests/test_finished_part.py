@@ -100,7 +100,7 @@ def test_nor_do_they_when_they_are_turned(name: str, turn: float) -> None:
 
 
 @pytest.mark.ci
-@looped("name", [name for name in SOUND if "flats" not in name])
+@looped("name", [name for name in SOUND if "flats" not in name], one_in=3)
 def test_a_ramp_from_the_other_side_cuts_the_part(name: str) -> None:
     blocks, radius = SOUND[name]
     first, rest = blocks.split("/", 1)
@@ -137,7 +137,7 @@ FLAT = "G1 X60. C8. F300/Z-1./G42 X32. C10./X-32./G40 X-60. C16."
 
 
 @pytest.mark.ci
-@looped(("bar", "found"), [(None, False), (30, False), (37.7, True), (60, True)])
+@looped(("bar", "found"), [(None, False), (30, False), (37.7, True), (60, True)], one_in=2)
 def test_the_bar_says_where_a_flat_ends(bar: float | None, found: bool) -> None:
     """Its end (16, 10) is 18.868 from the center: a bar of 37.7 has its corner just there."""
     job = {"job": {"stock": {"diameter": bar}}} if bar else {}
@@ -202,7 +202,7 @@ OTHER_INWARDS = [14 + 1j, 20 + 1j, *ROUND, 20 - 1j, 26 - 1j]
 
 
 @pytest.mark.ci
-@looped("mirrored", [False, True])
+@looped("mirrored", [False, True], one_in=3)
 @looped("turn", [1, -1j, np.exp(0.7j)])
 @looped(
     ("points", "radius", "gap", "area"),

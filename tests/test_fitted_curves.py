@@ -75,7 +75,7 @@ CONTOURS = {"hexagon": (hexagon(), 13), "slot": (slot(), 5), "oval": (oval(), 5)
 
 
 @pytest.mark.ci
-@looped("chord_error", [0.005, 0.0005], one_in=3)
+@looped("chord_error", [0.005, 0.0005], one_in=6)
 @looped("name", CONTOURS)
 def test_a_clean_contour_comes_back_with_its_lines_and_arcs(name: str, chord_error: float) -> None:
     (start, pieces), count = CONTOURS[name]
@@ -135,7 +135,7 @@ def test_z_is_held_along_a_helix_and_a_change_of_its_slope_ends_an_element() -> 
 
 
 @pytest.mark.ci
-@looped("seed", range(3))
+@looped("seed", range(3), one_in=3)
 def test_random_contours_are_passed_within_the_tolerance(seed: int) -> None:
     random = np.random.default_rng(seed)
     angle = np.linspace(0, 4, 300)

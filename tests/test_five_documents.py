@@ -969,7 +969,7 @@ def name(case: Case) -> str:
 
 
 @pytest.mark.ci
-@looped("printed", PRINTED.values(), ids=PRINTED)
+@looped("printed", PRINTED.values(), ids=PRINTED, one_in=3)
 def test_printed_program(printed: Printed) -> None:
     """No error and no warning, and all that matters is known, but for the limit of C where the document has none."""
     report = report_of(printed.text, printed.machine, *printed.tools)
@@ -988,7 +988,7 @@ def test_a_forgotten_radius_is_a_note() -> None:
 
 
 @pytest.mark.ci
-@looped("case", BROKEN, ids=name, one_in=16)
+@looped("case", BROKEN, ids=name, one_in=96)
 def test_broken_statement(case: Case) -> None:
     """The finding that the document speaks of, and no other."""
     found = beyond_its_notes(case)
@@ -1000,7 +1000,7 @@ def test_broken_statement(case: Case) -> None:
 
 
 @pytest.mark.ci
-@looped("case", KEPT, ids=name, one_in=12)
+@looped("case", KEPT, ids=name, one_in=36)
 def test_kept_statement(case: Case) -> None:
     assert [(one.line, one.rule) for one in beyond_its_notes(case)] == []
 

@@ -441,7 +441,7 @@ ENCODINGS = {
 
 
 @pytest.mark.ci
-@looped("end", ENDS, one_in=12)
+@looped("end", ENDS, one_in=24)
 @looped("encoding", ENCODINGS)
 def test_encodings_and_line_ends_stay(encoding: str, end: str) -> None:
     text = "(\N{LATIN CAPITAL LETTER C}AF\u00c9)\n" if encoding not in ("shift_jis",) else "(\u30ab\u30bf)\n"

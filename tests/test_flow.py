@@ -72,7 +72,7 @@ def polygon_plain(sides: int) -> str:
 
 
 @pytest.mark.ci
-@looped("sides", range(3, 13), one_in=4)
+@looped("sides", range(3, 13), one_in=10)
 def test_polygon_runs_as_its_written_out_twin(sides: int) -> None:
     macro, plain = (tables_of(program(sides), "fanuc", CUTTER) for program in (polygon_macro, polygon_plain))
     ours, theirs = macro["moves"], plain["moves"]
@@ -110,7 +110,7 @@ ENDLESS = {
 
 
 @pytest.mark.ci
-@looped("program", ENDLESS.values(), ids=list(ENDLESS))
+@looped("program", ENDLESS.values(), ids=list(ENDLESS), one_in=2)
 def test_what_never_ends_is_one_finding(program: str) -> None:
     report = report_of(program, job={"run": {"max_statements": 5000}})
     assert [finding.rule for finding in report.findings if finding.rule != "unreachable-block"] == ["endless-loop"]

@@ -65,6 +65,7 @@ def near(found: list[complex], expected: list[complex]) -> bool:
         ("G1 X20 Y10 F200\nROT RPL=90\nAROT RPL=90\nG91 X3\n", [20 + 10j, 17 + 10j]),
         ("G1 X20 Y10 F200\nATRANS X7\nATRANS Z5\nG91 X3\n", [20 + 10j, 23 + 10j]),
     ],
+    one_in=2,
 )
 def test_a_frame_shifts_and_turns_what_is_programmed(body: str, expected: list[complex]) -> None:
     assert near(ends(face(body)), expected)
@@ -166,7 +167,7 @@ def test_each_section_begins_at_the_angle_that_c_has_there() -> None:
 
 
 @pytest.mark.ci
-@looped("word", ["MIRROR X0", "AMIRROR Y0", "SCALE X2 Y2", "ASCALE X.5", "ROT X30", "AROT Y10"])
+@looped("word", ["MIRROR X0", "AMIRROR Y0", "SCALE X2 Y2", "ASCALE X.5", "ROT X30", "AROT Y10"], one_in=2)
 def test_other_frames_are_not_evaluated_by_name(word: str) -> None:
     report = report_of(face(f"{word}\nG1 X20 Y10 F200\n"), MACHINE)
     assert report.verdict == "unverified"

@@ -89,7 +89,7 @@ BOTH = [
 
 
 @pytest.mark.ci
-@looped("program", [SINGLE, CYCLE], ids=["single", "cycle"], one_in=12)
+@looped("program", [SINGLE, CYCLE], ids=["single", "cycle"], one_in=36)
 @looped(("right", "wrong", "number", "rule"), BOTH)
 def test_a_wrong_twin_gives_the_one_finding(program: str, right: str, wrong: str, number: str, rule: str) -> None:
     assert program.count(right) == 1
@@ -145,6 +145,7 @@ def test_near_the_center_the_rate_of_c_is_an_alarm(program: str, limit: float, l
         ("I0 K-20.0", "arc-word-of-other-plane"),
         ("K-20.0", "arc-word-of-other-plane"),
     ],
+    one_in=2,
 )
 def test_centers_are_i_and_j_where_x_is_the_linear_axis(words: str, rule: str | None) -> None:
     twin = SINGLE.replace("N160 G03 X-80.0 C20.0 R20.0", f"N160 G03 X-80.0 C20.0 {words}")
@@ -159,7 +160,7 @@ def test_diameter_or_radius_is_a_parameter(program: str) -> None:
 
 
 @pytest.mark.ci
-@looped("code", ["G04 X1.", "G65 P9000", "G66 P9000\nG67", "G98", "G40", "G99 F.2\nG98 F200"])
+@looped("code", ["G04 X1.", "G65 P9000", "G66 P9000\nG67", "G98", "G40", "G99 F.2\nG98 F200"], one_in=2)
 def test_the_codes_of_the_list_can_be_used(code: str) -> None:
     """Each at its place: G40 where no offset is in force."""
     at = "N120" if code == "G40" else "N150"

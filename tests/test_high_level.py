@@ -196,7 +196,7 @@ HARMLESS = [
 
 
 @pytest.mark.ci
-@looped("blocks", SIMULATED, one_in=4)
+@looped("blocks", SIMULATED, one_in=8)
 def test_a_construct_is_simulated(blocks: str) -> None:
     report = report_of(program(f"{blocks} / M30"), OWN)
     assert executed(f"{blocks} / M30") == [*SIMULATED[blocks], "M30"]
@@ -224,7 +224,7 @@ def test_frames_are_told_by_their_names_where_the_profile_has_no_words_for_them(
 
 
 @pytest.mark.ci
-@looped("blocks", NAMED, one_in=3)
+@looped("blocks", NAMED, one_in=6)
 def test_what_is_not_simulated_is_told_by_its_name(blocks: str) -> None:
     report = report_of(program(f"{blocks} / M30"), OWN)
     assert any(entry.reason.startswith(NAMED[blocks]) for entry in report.not_evaluated), report.not_evaluated
@@ -233,7 +233,7 @@ def test_what_is_not_simulated_is_told_by_its_name(blocks: str) -> None:
 
 
 @pytest.mark.ci
-@looped("blocks", HARMLESS, one_in=5)
+@looped("blocks", HARMLESS, one_in=10)
 @looped("machine", [OWN, ISO])
 def test_what_has_no_bearing_is_silent(blocks: str, machine: str) -> None:
     if blocks == "G290" and machine == ISO:
@@ -347,7 +347,7 @@ def test_a_fault_of_a_statement_is_one_finding(blocks: str, expected: list[tuple
          " / {fault} / X12 / Y-25 / G40 X40 / TRAFOOF / M30"),
         ("fanuc", "1:radius=4,nose=0", "G98 T0101 / G0 X120. C0 Z5. / G12.1 / G1 X60. C-20. F200 / G41 X24. C-12."
          " / X-24. / {fault} / X24. / C-25. / G40 X80. / G13.1 / M30"),
-    ],
+    ], one_in=2,
 )  # fmt: skip
 @looped("value", ["", "12+", "[12"])
 def test_where_a_word_cannot_be_read_nobody_knows_the_contour(
@@ -587,7 +587,7 @@ def test_a_diameter_of_coordinates_alone() -> None:
         "G1 X5 " + "(G290)" * 30000 + "\nM30\n",
         "DEF REAL " + ",".join(f"AA{number}" for number in range(20000)) + "\nM30\n",
     ],
-    one_in=5,
+    one_in=16,
 )
 def test_hostile_blocks_end_and_give_a_report(text: str) -> None:
     job = {"run": {"max_blocks": 2000, "max_statements": 20000}}

@@ -33,7 +33,7 @@ LARGEST = ["POW[10,307]*9", "0-POW[10,308]", "POW[10,155]", "POW[10,18]", "1/POW
 
 
 @pytest.mark.ci
-@looped("value", LARGEST, one_in=12)
+@looped("value", LARGEST, one_in=36)
 @looped("letters", ["XU", "CH", "ZW", "IJ", "R", "FS", "GM", "T", "PQ", "EK"])
 def test_computed_numbers_without_measure_are_unknown(value: str, letters: str) -> None:
     """On a control that calculates up to 1e308, nothing overflows (a warning of NumPy is an error in tests)."""
@@ -45,7 +45,7 @@ def test_computed_numbers_without_measure_are_unknown(value: str, letters: str) 
 
 
 @pytest.mark.ci
-@looped("digits", [10, 16, 23, 150, 400], one_in=12)
+@looped("digits", [10, 16, 23, 150, 400], one_in=24)
 @looped("word", ["X", "C-", "U", "H", "Z", "I", "R", "G3 X40. C30. R", "G3 C30. I", "F", "G", "T", "N"])
 def test_written_numbers_without_measure_have_one_cause(word: str, digits: int) -> None:
     program = f"{HEAD}G12.1\n{word}{'9' * digits}\n{CONTOUR}{word}{'9' * digits}\nG13.1\nM30\n"
@@ -78,7 +78,7 @@ def test_a_feed_without_measure_is_not_told_as_a_number() -> None:
 
 
 @pytest.mark.ci
-@looped("digits", [9, 150, 400, 5000])
+@looped("digits", [9, 150, 400, 5000], one_in=4)
 @looped("statement", ["GOTO{}", "#1={}", "M98 P{}", "M98 P2 L{}", "IF[#1EQ{}]GOTO1", "N{}", "#{}=1", "O{}"])
 def test_statements_take_numbers_of_any_length(statement: str, digits: int) -> None:
     report = report_of(f"O1\n{statement.format('9' * digits)}\nM30\nO2\nM99\n", "fanuc-30i")
@@ -142,7 +142,7 @@ def test_a_file_in_another_language_has_a_place() -> None:
 
 
 @pytest.mark.ci
-@looped("slash", ["/C0. F200", "C0. F200", "/C0", "/2 C0"])
+@looped("slash", ["/C0. F200", "C0. F200", "/C0", "/2 C0"], one_in=3)
 def test_block_skip_tells_nothing_twice(slash: str) -> None:
     """What stands alone with block skip off may follow from something else with it on."""
     program = (
@@ -199,7 +199,7 @@ CALLED = {
 
 
 @pytest.mark.ci
-@looped("name", CALLED)
+@looped("name", CALLED, one_in=6)
 @looped("machine", ["fanuc", "fanuc-30i"])
 def test_a_section_that_is_begun_in_a_called_program(name: str, machine: str) -> None:
     program, expected = CALLED[name]

@@ -463,6 +463,7 @@ def test_numbers_without_end_on_the_command_line(arguments: list[str]) -> None:
         *("--encoding", "--block-skip", "--subprograms", "--config", "--max-blocks", "--max-seconds", "--fail-on"),
         *("--color", "command", "path", "explain", "machines", "new", "trace", "schema", "option"),
     ],
+    one_in=3,
 )
 @looped("word", ["9" * 100_000, "json:limits.c_feed=" + "x" * 100_000])
 def test_arguments_without_end(option: str, word: str) -> None:

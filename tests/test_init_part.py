@@ -73,7 +73,7 @@ CASES: dict[str, tuple[str, dict[str, Any]]] = {
 
 
 @pytest.mark.ci
-@looped("machine", ["fanuc-30i", "siemens-iso", "haas-lathe"], one_in=15)
+@looped("machine", ["fanuc-30i", "siemens-iso", "haas-lathe"], one_in=30)
 @looped("name", CASES)
 def test_the_entry_of_a_shape_and_its_program_agree(tmp_path: Path, name: str, machine: str) -> None:
     text, expected = CASES[name]
@@ -284,7 +284,7 @@ def again(text: str, radius: float, machine: str = "fanuc-30i") -> None:
 
 
 @pytest.mark.ci
-@looped("seed", sound_seeds(2), one_in=13)
+@looped("seed", sound_seeds(2), one_in=78)
 @looped("twin", [Twin(), Twin(turn=0.7), Twin(inch=True)], ids=["plain", "turned", "inch"])
 def test_programs_of_all_families_agree_with_what_they_make(seed: int, twin: Twin) -> None:
     one = program_of(seed, twin)

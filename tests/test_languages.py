@@ -54,7 +54,7 @@ OWN = [
 
 
 @pytest.mark.ci
-@looped(("title", "file"), PAIRS)
+@looped(("title", "file"), PAIRS, one_in=8)
 @looped("ends", ["\n", "\r\n", "\r"])
 def test_a_file_of_another_world_is_named_once(title: str, file: str, ends: str) -> None:
     for machine in ("fanuc", "haas-lathe", "okuma-osp", "siemens-transmit"):

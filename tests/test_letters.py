@@ -102,7 +102,7 @@ def messages(program: str, machine: str = "fanuc") -> list[tuple[int, str, str]]
 
 
 @pytest.mark.ci
-@looped("head", [HEAD, INCH], one_in=12)
+@looped("head", [HEAD, INCH], one_in=24)
 @looped("machine", ["fanuc", "fanuc-30i", "mitsubishi-m700"])
 @looped(
     ("written", "meant"),

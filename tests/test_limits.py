@@ -104,7 +104,7 @@ LIMITS = [
 
 
 @pytest.mark.ci
-@looped("limit", LIMITS, ids=lambda limit: f"{limit.rule} {limit.at}")
+@looped("limit", LIMITS, ids=lambda limit: f"{limit.rule} {limit.at}", one_in=6)
 def test_at_the_limit_nothing_is_said(limit: Limit) -> None:
     tools = [limit.tool] if limit.tool else []
     for word, is_beyond in ((limit.at, False), (limit.beyond, True)):

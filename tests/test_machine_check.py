@@ -215,7 +215,7 @@ def test_a_fault_in_the_file_that_a_file_inherits_from_is_said_beside_its_own() 
 
 
 @pytest.mark.ci
-@looped("name", names())
+@looped("name", names(), one_in=4)
 def test_every_machine_of_ours_and_a_new_file_for_it_are_sound(name: str) -> None:
     assert call("machines", "check", name).stdout.startswith(f"{name}: sound, ")
     Path("own.toml").write_text(new_machine.text("own", name), "utf-8")

@@ -432,7 +432,7 @@ def changed(key: str, use: Use) -> dict[str, Any]:
 
 
 @pytest.mark.ci
-@looped("key", USES, one_in=15)
+@looped("key", USES, one_in=150)
 def test_changing_a_key_changes_a_result(key: str) -> None:
     use = USES[key]
     assert outcome(use, use.also) != outcome(use, changed(key, use))
@@ -446,7 +446,7 @@ def test_no_key_is_forgotten() -> None:
 
 
 @pytest.mark.ci
-@looped("key", LISTS, one_in=23)
+@looped("key", LISTS, one_in=90)
 def test_a_list_may_be_empty_or_hold_codes_of_ones_own(key: str) -> None:
     """No rule counts on a code to be there; what is listed is no unknown code."""
     table, _, name = key.partition(".")

@@ -152,7 +152,7 @@ def is_error_in_doubt(profile: profiles.Profile, rule: str) -> bool:
 
 
 @pytest.mark.ci
-@looped("name", profiles.names())
+@looped("name", profiles.names(), one_in=3)
 def test_what_is_known_without_a_page_is_in_doubt_and_shown_so(name: str) -> None:
     profile = profiles.load(name)
     shown = machines(name).output
@@ -327,7 +327,7 @@ def test_what_is_wrong_is_said_in_one_line(text: str, said: str) -> None:
         ("[arcs]\nsweep_limit = 400", "arcs.sweep_limit: expected a number above 0, 360 at most, found 400"),
         ("[macro]\ngiven = { 0 = 1 }", "macro.given.0: expected the number of a variable, 100 for #100, found 0"),
         ("[macro]\nlocal_variables = [[33, 1]]", "macro: local_variables: the range 33 to 1 ends before it begins"),
-    ],
+    ], one_in=2,
 )  # fmt: skip
 def test_values_that_make_no_sense_are_refused(values: str, said: str) -> None:
     said_of_text = "own.toml:3: " if said.startswith("Expected") else "own.toml: "
@@ -423,7 +423,7 @@ def test_old_names_are_told_wherever_they_stand(monkeypatch: pytest.MonkeyPatch)
 
 
 @pytest.mark.ci
-@looped("name", profiles.names())
+@looped("name", profiles.names(), one_in=2)
 @looped("system", "ABC")
 def test_built_in_lists_hold_codes(name: str, system: str) -> None:
     profiles.load(name, {"control": {"g_code_system": system}})  # changes are checked, and what they are made to
@@ -535,6 +535,7 @@ def test_each_answer_of_a_new_profile_can_be_taken_alone(name: str) -> None:
         *('#allowed_codes = ["+G93","-G80"]', '#known_codes = ["+G150"]', '#rapid-in-polar = "PS0146"', "#axes = []"),
         *('#rapid-in-polar = "error"', '#"1430" = 3600 ', "#main_spindle_must_stop = false", '#units = "mm"'),
     ],
+    one_in=2,
 )
 def test_a_new_profile_asks_what_a_shop_has_to_say(answer: str) -> None:
     text = new_machine.text("NL2000", "fanuc-30i")

@@ -122,7 +122,7 @@ def test_nothing_is_judged_by_an_axis_whose_word_was_lost() -> None:
 
 
 @pytest.mark.ci
-@looped("kind", sorted(FAULTS))
+@looped("kind", sorted(FAULTS), one_in=6)
 def test_a_kind_is_reported_by_its_rule(kind: str) -> None:
     statements, behind, lines = FAULTS[kind]
     program = f"O1\nG0 X50.\n{statements}\nM30\n{behind}"

@@ -160,7 +160,7 @@ _WITH_NUMBERS = (
 
 #: 20 digits, 309 (ten times that is no float), and 400 (which no float holds).
 @pytest.mark.ci
-@looped("digits", ["1" + "0" * 19, "1" + "0" * 308, "9" * 400], one_in=5)
+@looped("digits", ["1" + "0" * 19, "1" + "0" * 308, "9" * 400], one_in=15)
 @looped("block", _WITH_NUMBERS)
 def test_a_number_of_any_length_is_a_finding_and_no_warning(block: str, digits: str) -> None:
     report = report_of("O1\nG0 X50.\n" + block.replace("{}", digits) + "\nM30\nO2\nM99\n")

@@ -96,6 +96,7 @@ def test_several_sections_have_no_line() -> None:
         ("G1 G40 X80. C0", "G1 G40 X30.5", False),  # the ramp is too short
         ("G98 G40 G97", "G40 G97", True),  # the feed mode is not known: the path is the same
     ],
+    one_in=2,
 )
 def test_a_finding_that_makes_the_part_doubtful_leaves_it_out(block: str, written: str, is_told: bool) -> None:
     text = program([Section(polygon(6, 30.0), depths=TWICE)])

@@ -31,7 +31,7 @@ def interferences(text: str, tool: str, machine: str = "fanuc") -> list[Finding]
 
 
 @pytest.mark.ci
-@looped("machine", ["fanuc", "fanuc-30i", "gsk-988", "siemens-iso"])
+@looped("machine", ["fanuc", "fanuc-30i", "gsk-988", "siemens-iso"], one_in=4)
 def test_a_mesh_is_one_finding_with_its_count(machine: str) -> None:
     [finding] = interferences(program(circle(10, 4000), 60), "1:radius=5", machine)
     assert finding.count > 500
@@ -41,7 +41,7 @@ def test_a_mesh_is_one_finding_with_its_count(machine: str) -> None:
 
 
 @pytest.mark.ci
-@looped(("radius", "blocks", "tool"), [(10, 4000, 1), (10, 4000, 16), (5, 1000, 5), (40, 4000, 16)])
+@looped(("radius", "blocks", "tool"), [(10, 4000, 1), (10, 4000, 16), (5, 1000, 5), (40, 4000, 16)], one_in=3)
 def test_of_any_size(radius: float, blocks: int, tool: float) -> None:
     [finding] = interferences(program(circle(radius, blocks), 140), f"1:radius={tool}")
     assert finding.count > 30

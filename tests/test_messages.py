@@ -148,6 +148,7 @@ def test_a_ramp_and_its_radius_are_told_apart() -> None:
         ("G0 X60.\nT0404\nG30 U0.\nG0 Z2. C0", "X is not known since G30 U0. in line 5;"),
         ("G0 Z2. C0", "X has not been positioned in this program;"),
     ],
+    one_in=2,
 )
 def test_since_when_x_is_not_known(blocks: str, said: str) -> None:
     program = polar("G1 X40. F200", "C10.", "X60.", head=f"O1\nG21 G40 G97 G98 G18\n{blocks}\n")
@@ -199,6 +200,7 @@ def test_the_virtual_axis_has_the_address_of_the_machine(machine: str, on: str, 
         ("haas-lathe", "G112", "G113", "Y"),
         ("siemens-transmit", "TRANSMIT", "TRAFOOF", "Y"),
     ],
+    one_in=2,
 )
 def test_a_point_of_the_plane_has_the_words_of_the_machine(machine: str, on: str, off: str, axis: str) -> None:
     ends = [

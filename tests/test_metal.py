@@ -31,7 +31,7 @@ def test_a_hexagon_is_sound() -> None:
 
 
 @pytest.mark.ci
-@looped("job", [{}, bar(40), bar(60)])
+@looped("job", [{}, bar(40), bar(60)], one_in=3)
 def test_an_index_with_the_cutter_in_a_hole_goes_through_the_part(job: dict[str, object]) -> None:
     program = f"G21 G98 G40/T0101/G97 S3000 M13/{HOLE}/{{retract}}G13.1/G0 C120./Z50./X100./M30"
     assert found(program.format(retract="Z2./"), 2.5, **job) == {}

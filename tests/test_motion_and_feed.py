@@ -130,7 +130,7 @@ def places(program: str) -> list[tuple[complex, ...]]:
 
 
 @pytest.mark.ci
-@looped("base", [POINTED, WHOLE], ids=["with points", "without"], one_in=5)
+@looped("base", [POINTED, WHOLE], ids=["with points", "without"], one_in=20)
 @looped("units", ["", "G20 "], ids=["mm", "inch"])
 @looped("place", ["before", "inside", "behind"])
 @looped(
@@ -168,7 +168,7 @@ def test_the_highest_rate_is_told_where_there_is_nothing_to_compare_it_with() ->
 
 
 @pytest.mark.ci
-@looped("name", ["fanuc", "gsk-988", "turning-center"])
+@looped("name", ["fanuc", "gsk-988", "turning-center"], one_in=3)
 def test_a_rate_that_every_c_axis_manages_needs_no_limit(name: str) -> None:
     """57.3 deg is a radian: with F628.3 at 10 mm from the center C turns at 3,600 deg/min."""
     program = "O1\nG21 G98 G0 X60. C0\nG12.1\nG1 C10. F{}\nX-60.\n"

@@ -80,6 +80,7 @@ def test_what_no_program_could_show_is_left_alone(source: str) -> None:
     assert planted(source) == []
 
 
+@pytest.mark.nightly
 def test_faults_are_those_of_the_package_and_a_sample_is_the_same_for_a_seed() -> None:
     command = [sys.executable, BENCHMARKS / "mutants.py", "--list", "--count", "3", "--seed", "5", "--only", "rules"]
     first, second = (subprocess.run(command, capture_output=True, check=True, text=True).stdout for _ in range(2))

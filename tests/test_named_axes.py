@@ -50,7 +50,7 @@ def named(program: str, **names: str) -> str:
 
 
 @pytest.mark.ci
-@looped("names", [{"C": "C1"}, {"X": "X1"}, {"X": "X1", "C": "C1", "Z": "Z1"}, {"C": "c1"}])
+@looped("names", [{"C": "C1"}, {"X": "X1"}, {"X": "X1", "C": "C1", "Z": "Z1"}, {"C": "c1"}], one_in=4)
 def test_a_named_axis_is_the_address_that_the_machine_gives_it(names: dict[str, str]) -> None:
     """The same positions, side by side with plain words or alone in a block; F and G codes behind them count."""
     program = named(PLAIN, **names)
@@ -166,7 +166,7 @@ def test_names_that_cannot_be_are_one_line(names: object) -> None:
 
 
 @pytest.mark.ci
-@looped("block", ["R1=5.", "R1=R2*2", "r1=R2*2 X5.", "M2=70", "S3=2000 F5.", "L1=AC(10)"])
+@looped("block", ["R1=5.", "R1=R2*2", "r1=R2*2 X5.", "M2=70", "S3=2000 F5.", "L1=AC(10)"], one_in=5)
 def test_a_word_of_another_language_is_told_and_is_no_mistake(block: str) -> None:
     """It is read as no code, and as no axis of the lathe."""
     report = report_of(PLAIN.replace("G50 S2000", block), "fanuc", TOOL)

@@ -170,7 +170,7 @@ def test_nothing_acts_in_a_file_that_is_written(form: str) -> None:
     assert not acting(Path("out").read_bytes())
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_nothing_acts_in_the_bytes_of_a_process() -> None:
     """Whatever stands between click and the terminal, markup is no color even where color is asked for."""
     with process("check", *PATHS, *OF_MACHINE, "--color", "always") as running:
@@ -217,7 +217,7 @@ OF_FILES = (
 without_such_names = pytest.mark.skipif(sys.platform == "win32", reason="no file of Windows has : in its name")
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @pytest.mark.one_in(13)
 @without_such_names
 @pytest.mark.parametrize("arguments", OF_FILES, ids=" ".join)

@@ -117,7 +117,7 @@ def test_an_arc_without_a_radius_is_refused_by_its_line(name: str, target: str) 
 
 
 @pytest.mark.ci
-@looped("code", ["G2", "G3"])
+@looped("code", ["G2", "G3"], one_in=3)
 @looped("x", ["39.998", "40.002"])
 def test_an_arc_along_its_own_radius_is_a_line(code: str, x: str) -> None:
     """Its angle is 0: no control is told to go round a full circle."""
@@ -176,7 +176,7 @@ def test_an_arc_whose_neighbours_ask_for_an_r_of_0_is_checked(machine: str, move
 
 
 @pytest.mark.ci
-@looped("side", SIDES, one_in=8)
+@looped("side", SIDES, one_in=20)
 @looped("blocks", ["G3 X2. I7.", "G2 X2. I7.", "G3 X2. Y.2 I7. J0", "G3 X4. Y.2 I0. J0", "G3 X3.999 Y.2 I-1. J0"])
 def test_odd_arcs_are_compensated_or_refused(blocks: str, side: str) -> None:
     """An arc from X4. Y.2 without a sweep or a radius is no part of a contour: it stays, or all is refused."""
@@ -230,7 +230,7 @@ def test_a_section_whose_cuts_are_not_known_is_compared_by_its_rapids(first: str
 
 
 @pytest.mark.ci
-@looped("count", [400, 5000])
+@looped("count", [400, 5000], one_in=2)
 @looped("word", ["Z", "X20. Z", "F"])
 def test_a_number_of_any_length_is_written_or_refused(word: str, count: int) -> None:
     program = f"G21 G98\nG1 {word}{'9' * count}\nM30\n"

@@ -587,7 +587,7 @@ CASES = [
 
 
 @pytest.mark.ci
-@looped(("mistake", "form"), CASES, one_in=12)
+@looped(("mistake", "form"), CASES, one_in=156)
 def test_one_mistake_is_one_finding(mistake: Mistake, form: Callable[[Mistake], tuple[list[str], int]]) -> None:
     program, before = form(mistake)
     report = report_of("\n".join(program) + "\n", "fanuc", "1:radius=4", changes=mistake.changes, job=mistake.job)
@@ -598,7 +598,7 @@ def test_one_mistake_is_one_finding(mistake: Mistake, form: Callable[[Mistake], 
 
 
 @pytest.mark.ci
-@looped("mistake", [one for one in MISTAKES if one.inch], ids=title, one_in=12)
+@looped("mistake", [one for one in MISTAKES if one.inch], ids=title, one_in=36)
 def test_it_is_one_finding_in_inch(mistake: Mistake) -> None:
     program = [in_inch(block) for block in plain(mistake)[0]]
     program[1] = program[1].replace("G21", "G20")
@@ -617,7 +617,7 @@ def test_it_is_one_finding_in_inch(mistake: Mistake) -> None:
         for number, one in enumerate(MISTAKES)
         for name in one.others[number % 2 :: 2] or one.others
     ],
-    one_in=15,
+    one_in=90,
 )
 def test_it_is_one_finding_on_other_controls(mistake: Mistake, machine: str) -> None:
     program, _ = plain(mistake)
@@ -627,7 +627,9 @@ def test_it_is_one_finding_on_other_controls(mistake: Mistake, machine: str) -> 
 
 
 @pytest.mark.ci
-@looped(("head", "section", "end", "block", "rule"), [one[1:] for one in WHOLE], ids=[one[0] for one in WHOLE])
+@looped(
+    ("head", "section", "end", "block", "rule"), [one[1:] for one in WHOLE], ids=[one[0] for one in WHOLE], one_in=4
+)
 def test_one_mistake_of_a_whole_program_is_one_finding(
     head: list[str], section: str, end: list[str], block: str, rule: str
 ) -> None:
@@ -858,6 +860,7 @@ def test_a_chain_hangs_on_what_is_reported_of_it() -> None:
         ({ROOT_OF_NEAR: "note", NEXT_OF_NEAR: "note"}, "note"),
         ({ROOT_OF_NEAR: "note", NEXT_OF_NEAR: "off"}, "note"),
     ],
+    one_in=2,
 )
 def test_the_cause_is_as_severe_as_the_worst_that_follows(severities: dict[str, str], expected: str) -> None:
     report = report_of(NEAR, "fanuc", "1:radius=4", job={"severities": severities})
@@ -905,7 +908,7 @@ def test_what_follows_is_shown_where_it_is_asked_for(near: str) -> None:
     assert "2 errors" not in asked
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_angles_under_the_address_of_another_control_are_named_as_written() -> None:
     """No word was at fault where the virtual axis has another address, and the message could not be made."""
     steps = "\n".join(f"C{angle}." for angle in range(72, 361, 72))

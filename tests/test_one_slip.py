@@ -34,7 +34,7 @@ def test_there_are_enough_families_and_kinds() -> None:
 
 
 @pytest.mark.ci
-@looped("machine", DIALECTS, one_in=12)
+@looped("machine", DIALECTS, one_in=17)
 def test_sound_programs_are_silent(machine: str) -> None:
     for seed in range(4):
         program = drawn(seed, machine, "hexagon, single" if seed == 0 else "")
@@ -69,7 +69,7 @@ def test_a_sound_program_has_no_event(seed: int) -> None:
         ("index missing", "keyway, indexed"),
         ("G41 forgotten", "octagon, depths"),
     ],
-    one_in=3,
+    one_in=5,
 )
 def test_slips_are_found_that_do_something(kind: str, family: str) -> None:
     draw = random.Random(kind)  # noqa: S311

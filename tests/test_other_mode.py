@@ -101,7 +101,7 @@ def test_a_program_for_another_machine_is_read_or_fails_with_one_finding(name: s
 
 
 @pytest.mark.ci
-@looped("name", WRONG)
+@looped("name", WRONG, one_in=2)
 @looped(
     ("program", "line"),
     [
@@ -139,6 +139,7 @@ def test_a_program_full_of_faults_does_not_pass_under_the_wrong_machine(program:
         ("G0 X60 Y0\nTRANSMIT\nG1 X40 Y5 F9\nTRAFOOF\nM30\n", "fanuc", "siemens-transmit"),
         ("G0 X60 Y0\nDIAMOF\ntransmit(1)\nG3 X40 Y5 CR=9\nTRAFOOF\nDIAMON\nM30\n", "haas-lathe", "siemens-transmit"),
     ],
+    one_in=2,
 )
 def test_the_machines_that_know_the_code_are_named(program: str, name: str, machines: str) -> None:
     """Only where nobody has chosen a machine: the code is to be changed on a lathe that is there."""
@@ -311,7 +312,7 @@ MAPPED = "O1\nG94 G0 X40. C0\n{}\nG17\nG1 X20. Y5. F300\nY-5.\n{}\nM30\n"
 
 
 @pytest.mark.ci
-@looped("name", ["fanuc", "haas-lathe", "okuma-osp", "doosan", "siemens-transmit"])
+@looped("name", ["fanuc", "haas-lathe", "okuma-osp", "doosan", "siemens-transmit"], one_in=3)
 @looped(("on", "off"), [("G101", "G109"), ("G105", "G110"), ("N9 G101", "N20 G109"), ("G101", "G103")])
 def test_a_map_with_its_moves_and_its_end_is_the_mode_of_another_control(on: str, off: str, name: str) -> None:
     report = report_of(MAPPED.format(on, off), name)

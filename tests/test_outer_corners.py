@@ -207,7 +207,7 @@ def test_the_code_may_stand_before_the_mode_and_change_within() -> None:
 
 
 @pytest.mark.ci
-@looped("shape", SHAPES.values(), ids=SHAPES, one_in=3)
+@looped("shape", SHAPES.values(), ids=SHAPES, one_in=7)
 def test_the_part_is_the_same_whatever_the_corners(shape: list[Element]) -> None:
     """No overcut, no remnant, the same words for what is made: the arcs touch the corner and cut nothing else."""
     reports = [report_of(program(shape, code), MACHINE, TOOL) for code in ("G450", "G451")]

@@ -180,7 +180,7 @@ def test_the_summary_of_a_step_is_appended_to_no_file_of_the_run() -> None:
     assert contents() == before
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_a_baseline_a_fix_and_a_new_program_in_place_are_written() -> None:
     with_job()
     assert call("baseline", "update", "jobs", "-q").exit_code == 0

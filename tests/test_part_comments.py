@@ -38,6 +38,7 @@ def messages(call: str, *sections: str, units: str = "G21") -> list[str]:
         ("DEPTH 6", "the cut is 5 mm deep"),
         ("HEX 22 AF, 0.5 DEEP", "the cut is 5 mm deep"),
     ],
+    one_in=5,
 )
 @looped("form", ["T0101 ({})", "({})\nT0101", "T0101\n({})", "(T1 {})\nG97\nT0101"])
 def test_another_size_shape_or_depth(comment: str, made: str, form: str) -> None:
@@ -68,6 +69,7 @@ def test_another_size_shape_or_depth(comment: str, made: str, form: str) -> None
         "BAR DIA 26",
         "6 SIDES",
     ],
+    one_in=2,
 )
 def test_what_contradicts_nothing(comment: str) -> None:
     assert messages(f"T0101 ({comment})", HEXAGON) == []

@@ -35,7 +35,7 @@ def flats(count: int, distance: float = 12.0, half: float = 22.0, first: float =
 
 
 @pytest.mark.ci
-@looped(("control", "inch"), VARIATIONS, one_in=4)
+@looped(("control", "inch"), VARIATIONS, one_in=16)
 @looped("first", [0.0, 15.0])
 @looped(("count", "name"), [(3, "triangle"), (4, "square"), (6, "hexagon"), (8, "octagon")])
 def test_flats_with_c_between_them_are_one_shape(count: int, name: str, first: float, control: str, inch: bool) -> None:
@@ -105,7 +105,7 @@ def test_each_depth_is_put_together() -> None:
 
 
 @pytest.mark.ci
-@looped(("control", "inch"), VARIATIONS)
+@looped(("control", "inch"), VARIATIONS, one_in=4)
 @looped(("entry", "written"), [(10.0, 0.0), (120.0, 0.0), (20.0, 15.0), (350.0, 0.0)])
 def test_c_at_the_switch_is_added_to_the_angle(entry: float, written: float, control: str, inch: bool) -> None:
     (shape,) = made([Section(polygon(6, 30.0, written), entry)], control, inch)
@@ -115,7 +115,7 @@ def test_c_at_the_switch_is_added_to_the_angle(entry: float, written: float, con
 
 
 @pytest.mark.ci
-@looped(("control", "inch"), VARIATIONS)
+@looped(("control", "inch"), VARIATIONS, one_in=2)
 @looped("entry", [90.0, 180.0])
 def test_places_are_those_of_the_part(entry: float, control: str, inch: bool) -> None:
     square = [point + 14 for point in polygon(4, 8.0)]
@@ -175,7 +175,7 @@ def test_what_has_no_name_together_is_told_one_by_one() -> None:
 
 
 @pytest.mark.ci
-@looped(("control", "inch"), VARIATIONS)
+@looped(("control", "inch"), VARIATIONS, one_in=2)
 def test_a_flat_of_several_that_is_off_is_told_with_its_line(control: str, inch: bool) -> None:
     sections = flats(6, half=14.0)
     sections[4] = sections[4]._replace(points=flat(12.1, 14.0))
@@ -278,7 +278,7 @@ def of_init(sections: list[Section], control: str = "fanuc", inch: bool = False)
 
 
 @pytest.mark.ci
-@looped(("control", "inch"), VARIATIONS, one_in=3)
+@looped(("control", "inch"), VARIATIONS, one_in=14)
 @looped("first", [0.0, 15.0])
 def test_what_sections_make_together_agrees_with_the_part_that_is_written_of_it(
     first: float, control: str, inch: bool

@@ -152,7 +152,7 @@ def checked(case: Case, text: str, way: str) -> FileReport:
     return report_of(program, machine, f"3:radius={case.radius}", job=job, only=[RULE])
 
 
-@looped("way", WAYS, one_in=3)
+@looped("way", WAYS, one_in=15)
 @looped("name", CASES)
 def test_a_sound_program_agrees(name: str, way: str) -> None:
     report = checked(CASES[name], CASES[name].program, way)
@@ -160,7 +160,7 @@ def test_a_sound_program_agrees(name: str, way: str) -> None:
     assert [missing.reason for missing in report.not_evaluated] == []
 
 
-@looped("way", WAYS, one_in=38)
+@looped("way", WAYS, one_in=76)
 @looped(("name", "slip"), [(name, slip) for name in CASES for slip in CASES[name].slips])
 def test_scrap_does_not(name: str, slip: tuple[str, str], way: str) -> None:
     case = CASES[name]

@@ -98,7 +98,7 @@ def test_a_contour_that_ends_beside_its_start_keeps_its_last_wall(control: str) 
 
 
 @pytest.mark.ci
-@looped("turned", [0.0, 17.0], one_in=6)
+@looped("turned", [0.0, 17.0], one_in=24)
 @looped("control", BY_MACHINE)
 @looped("drift", [0.05, -0.05, 0.3, -0.3, 0.05j, -0.05j, 0.1 + 0.1j])
 def test_a_hexagon_that_ends_beside_its_first_corner(control: str, turned: float, drift: complex) -> None:
@@ -144,7 +144,7 @@ def hexagon(control: str, turned: float = 0, narrower: float = 1, distance: floa
 
 
 @pytest.mark.ci
-@looped("turned", [0.0, 11.0])
+@looped("turned", [0.0, 11.0], one_in=3)
 @looped("control", BY_MACHINE)
 def test_a_hexagon_without_z_words(control: str, turned: float) -> None:
     drawn = hexagon(control, turned)
@@ -254,7 +254,7 @@ def at_depths(control: str, off: dict[int, complex], turned: float = 0, count: i
 
 
 @pytest.mark.ci
-@looped("turned", [0.0, 20.0], one_in=3)
+@looped("turned", [0.0, 20.0], one_in=18)
 @looped("control", BY_MACHINE)
 def test_a_pass_that_differs_is_told_apart_with_how_much(control: str, turned: float) -> None:
     outward = cmath.rect(1, math.radians(turned + 30 + 120))
@@ -273,7 +273,7 @@ def test_a_pass_that_differs_is_told_apart_with_how_much(control: str, turned: f
 
 
 @pytest.mark.ci
-@looped("control", BY_MACHINE)
+@looped("control", BY_MACHINE, one_in=2)
 def test_passes_that_are_the_same_are_one_entry(control: str) -> None:
     (seen,) = at_depths(control, {})
     assert len(seen.depths) == 3

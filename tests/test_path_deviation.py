@@ -89,6 +89,7 @@ def circle_in(*angles: float, radius: float = 20.0, kind: Motion = Motion.CCW) -
         # An arc against its chord: the sagitta.
         (path_of(20 + 0j, (20j, 0.0, 0j, Motion.CCW)), lines(20 + 0j, 20j), 20 - 20 * math.cos(math.pi / 4)),
     ],
+    one_in=3,
 )
 def test_closed_forms(old: SpacePath, new: SpacePath, deviation: float) -> None:
     for pair in ((old, new), (new, old)):

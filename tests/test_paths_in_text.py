@@ -295,7 +295,7 @@ def test_check_shows_paths_behind_the_findings() -> None:
 
 
 @pytest.mark.ci
-@looped(("charset", "term"), [("ascii", "xterm"), ("utf-8", "dumb"), ("cp437", "xterm")])
+@looped(("charset", "term"), [("ascii", "xterm"), ("utf-8", "dumb"), ("cp437", "xterm")], one_in=2)
 def test_what_a_terminal_cannot_show_is_ascii(charset: str, term: str) -> None:
     for command in ("check", "trace"):
         result = run(command, "--show", "path", str(SAMPLES / "hexagon.nc"), charset=charset, TERM=term)

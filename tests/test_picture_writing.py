@@ -53,6 +53,7 @@ def plane_point(section: SectionPicture, x: float, c: float) -> complex:
         (HEXAGON.replace("G12.1", "G12.1 X6. C2."), "gsk-988", (0, 17.320508), "C"),
     ],
     ids=["mm", "inch", "Y", "frame", "center"],
+    one_in=3,
 )
 def test_words_and_points_of_the_plane_agree(
     program: str, machine: str, words: tuple[float, float], virtual: str

@@ -201,7 +201,7 @@ def sampled(section: SectionPicture, times: Any) -> tuple[Any, Any]:
     return np.degrees(np.unwrap(np.angle(points))), np.abs(points)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_rates_are_those_of_a_dense_sampling() -> None:
     section = section_of(HEXAGON.replace("Z-2. F300", "X60. F300"), "8:radius=4")
     curves = section.rates

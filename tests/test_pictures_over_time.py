@@ -101,7 +101,7 @@ def test_the_cutter_x_and_c_are_those_of_the_trace(case: str) -> None:
 
 
 @pytest.mark.ci
-@looped("path", ["rotary-a/contour.nc", "second-spindle/contour.nc", "siemens-transmit"])
+@looped("path", ["rotary-a/contour.nc", "second-spindle/contour.nc", "siemens-transmit"], one_in=3)
 def test_samples_of_other_lathes_are_drawn_as_their_trace(path: str) -> None:
     file = SAMPLES / path
     file = next(iter(sorted(each for each in file.iterdir() if each.suffix != ".toml"))) if file.is_dir() else file

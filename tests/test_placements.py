@@ -85,7 +85,7 @@ CHANGES = {
 
 
 @pytest.mark.ci
-@looped("name", CHANGES, one_in=15)
+@looped("name", CHANGES, one_in=30)
 @looped("machine", ["fanuc-30i", "haas-lathe", "siemens-iso"])
 def test_a_drawing_that_lies_or_measures_otherwise_is_told_as_that(name: str, machine: str) -> None:
     change, expected = CHANGES[name]
@@ -200,13 +200,13 @@ def test_a_shape_that_is_shifted_or_in_other_units() -> None:
 
 
 @pytest.mark.ci
-@looped("off", [0.03, 0.06, 0.3, -0.3])
+@looped("off", [0.03, 0.06, 0.3, -0.3], one_in=4)
 def test_one_side_that_is_off_is_no_shift(off: float) -> None:
     text = program(polygon(4, 20.0, {1: off}))
     assert "would fit" not in said(text, {"part": [{"shape": "square", "across_flats": 40.0}]})
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_a_shift_is_told_to_the_last_digit_beside_a_small_slip() -> None:
     corners = polygon(6, 13.5, {1: 0.05})
     message = said(program(corners), drawing([corner + 12 for corner in polygon(6, 13.5)]))

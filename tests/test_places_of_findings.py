@@ -54,7 +54,7 @@ REVERSED = contour(*(f"X{x:.1f} C{c:.6f}" for x, c in CORNERS[:1]), "X0.2 C17.26
         (HEXAGON.replace("G42 X30.", "G42 X78."), "start-up-shorter-than-radius", (39.5, 0), 24.0),
         (HEXAGON.replace("X0.0 C17.320508", "G0 X0.0 C17.320508\nG1"), "rapid-in-polar", (9.5, 16.4545), 51.9615),
     ],
-    one_in=2,
+    one_in=6,
 )  # fmt: skip
 def test_a_finding_is_marked_where_it_is_at_its_scale(
     program: str, rule: str, place: tuple[float, float], span: float

@@ -97,7 +97,7 @@ def test_the_page_of_check_is_that_of_plot_and_fails_as_check_does() -> None:
     assert call("plot", "a.nc", *RADIUS).stdout_bytes == shown.stdout_bytes
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_other_formats_beside_it_know_nothing_of_pictures() -> None:
     make(a__nc=GROOVE)
     alone = check("a.nc", *RADIUS, "--format", "json").stdout

@@ -108,7 +108,7 @@ def test_c_sweep_is_that_of_the_path(move: Move) -> None:
     assert move.of(polar.c_sweep) == pytest.approx(math.degrees(c[-1] - c[0]), abs=1e-7)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @few
 @given(smooth_moves)
 def test_rates_are_those_of_the_path(move: Move) -> None:
@@ -315,7 +315,7 @@ def test_a_millionth_beside_the_center(distance: float) -> None:
     assert beside.of(rates.c_feed, 100) == pytest.approx(math.degrees(100 / (2 * distance)), rel=1e-6)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @few
 @given(smooth_moves, st.sampled_from([1e-6, 1e-3, 1e3]))
 def test_scaling_changes_rates_alone(move: Move, scale: float) -> None:
@@ -329,7 +329,7 @@ def test_scaling_changes_rates_alone(move: Move, scale: float) -> None:
     )
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @few
 @given(moves, angle)
 def test_turning_the_plane_shifts_c_alone(move: Move, turn: float) -> None:

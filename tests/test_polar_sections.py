@@ -136,6 +136,7 @@ COMMENTED = PROGRAM.replace("T0101", "T0101 (D=8. END MILL)")
         (PROGRAM.replace("T0101", "G10 P1 R4. Q0\nT0101"), ["1:radius=3"], {}, (4.0, "program")),
         (COMMENTED.replace("G0 ", "G10 P1 R3.9\nG0 ", 1), [], {"radius_from_comments": True}, (3.9, "program")),
     ],
+    one_in=3,
 )
 def test_where_the_radius_comes_from(
     program: str, tools: list[str], job: dict[str, Any], expected: tuple[float | None, str]
@@ -254,6 +255,7 @@ def test_a_program_without_a_section() -> None:
         # The adjustment of a builder's guide is of either sign.
         (-0.005, False),
     ],
+    one_in=3,
 )
 def test_a_radius_beyond_wear_contradicts_the_comment(radius: float, contradicts: bool) -> None:
     rules = [found.rule for found in report_of(COMMENTED, "fanuc", f"1:radius={radius}").findings]
@@ -264,6 +266,7 @@ def test_a_radius_beyond_wear_contradicts_the_comment(radius: float, contradicts
 @looped(
     ("radius", "contradicts"),
     [(0.375, False), (0.3848, False), (0.3849, True), (0.3652, False), (0.3651, True), (0.6, True), (0.0098, False)],
+    one_in=2,
 )
 def test_the_bounds_are_the_same_in_inch(radius: float, contradicts: bool) -> None:
     program = f"{INCH}{square(4, 1, 10, 'Z-.2')}M30\n".replace("T0101", "T0101 (3/4 DIA. CUTTER)")
@@ -326,7 +329,7 @@ def test_what_could_hide_a_fault_matters(program: str, tools: list[str], job: di
     assert report.verdict == "unverified"
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_findings_that_are_not_listed_do_not_matter() -> None:
     rapids = "G0 X50.\n" * 1200
     program = f"O1\nG21 G98\nT0101\nG0 X60. C0\nG12.1\n{rapids}G13.1\nM30\n"
@@ -356,7 +359,9 @@ def test_a_missing_limit_matters_above_what_every_axis_manages(harmless: float, 
 
 
 @pytest.mark.ci
-@looped(("rate", "verdict"), [(3599, "pass"), (3599.99, "pass"), (3600.01, "unverified"), (3601, "unverified")])
+@looped(
+    ("rate", "verdict"), [(3599, "pass"), (3599.99, "pass"), (3600.01, "unverified"), (3601, "unverified")], one_in=2
+)
 def test_that_is_ten_turns_a_minute_unless_the_machine_says_better(rate: float, verdict: str) -> None:
     program = f"{HEAD}{square(80, 20, math.radians(rate) * 24)}M30\n"
     report = report_of(program, "fanuc", "1:radius=4,nose=0")

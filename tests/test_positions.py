@@ -100,7 +100,7 @@ LENGTH_OFFSETS = ["G43 H01", "G43 H1", "G44 H02.", "G49 H0", "H1 G43"]
 
 
 @pytest.mark.ci
-@looped("block", LENGTH_OFFSETS)
+@looped("block", LENGTH_OFFSETS, one_in=5)
 @looped("at", [0, 1])
 @looped("units", ["G21", "G20"])
 def test_a_length_offset_in_the_mode_moves_nothing_on_the_plane(block: str, at: int, units: str) -> None:
@@ -119,7 +119,7 @@ def test_a_length_offset_in_the_mode_moves_nothing_on_the_plane(block: str, at: 
 
 
 @pytest.mark.ci
-@looped("block", LENGTH_OFFSETS)
+@looped("block", LENGTH_OFFSETS, one_in=2)
 def test_a_length_offset_positions_no_c(block: str) -> None:
     assert after(f"G0 C30.\n{block}\nH5.\n", "c_angle") == [30, 30, 35]
     program = f"{HEAD}{block}\nG0 X60. Z2.\n" + CUT.format("", "")
@@ -148,6 +148,7 @@ AROUND = "O1\nG40 G97 G98\nT0101\nG0 X60. Z2. C0\n{2}\n" + SQUARE + "{3}\nG0 Z50
         ("mitsubishi-m700", {"1517": 1}, "CH", "YV", ("G12.1", "G13.1")),
         ("haas-lathe", {}, "YV", "CH", ("G112", "G113")),
     ],
+    one_in=2,
 )
 def test_a_wrong_address_of_the_virtual_axis_is_read_as_it_was_meant(
     machine: str, parameters: dict[str, int], own: str, others: str, switches: tuple[str, str]

@@ -287,7 +287,7 @@ HOSTILE = [
 
 
 @pytest.mark.ci
-@looped("program", HOSTILE, ids=[program[:12] for program in HOSTILE], one_in=5)
+@looped("program", HOSTILE, ids=[program[:12] for program in HOSTILE], one_in=10)
 def test_no_text_takes_long(program: str) -> None:
     """In time that grows as the text does: where it grew as the square, these would take hours."""
     text = text_of(program)
@@ -333,7 +333,7 @@ LAYOUTS = {
 
 
 @pytest.mark.ci
-@looped("layout", LAYOUTS)
+@looped("layout", LAYOUTS, one_in=3)
 def test_the_sample_of_the_guide_copied_with_its_descriptions_is_one_finding(layout: str) -> None:
     program = "\n".join(map(LAYOUTS[layout], table().splitlines())) + "\n"
     report = checked(program)

@@ -172,7 +172,7 @@ def lead_to(route: str, folder: str) -> None:
 
 
 @pytest.mark.ci
-@looped("route", ROUTES, one_in=7)
+@looped("route", ROUTES, one_in=21)
 def test_no_text_of_a_file_outside_is_quoted(route: str) -> None:
     lead_to(route, "../secret")
     assert not quotes(secret_of(route))

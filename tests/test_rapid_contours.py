@@ -33,7 +33,7 @@ def sides(first: str = "") -> str:
 
 
 @pytest.mark.ci
-@looped("machine", MODES)
+@looped("machine", MODES, one_in=4)
 @looped(
     ("down", "start_up", "contour", "cancel"),
     [
@@ -49,7 +49,7 @@ def test_a_contour_at_depth_is_one_finding(machine: str, down: str, start_up: st
 
 
 @pytest.mark.ci
-@looped("machine", MODES)
+@looped("machine", MODES, one_in=8)
 @looped(
     "blocks",
     [

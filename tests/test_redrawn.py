@@ -40,7 +40,7 @@ def differences(tables: Tables, made: list[MadeShape], bar: float = np.nan, all_
 
 
 @pytest.mark.ci
-@looped("path", SAMPLES, ids=NAMES, one_in=4)
+@looped("path", SAMPLES, ids=NAMES, one_in=20)
 def test_words_of_a_sample_are_what_its_cutters_leave(path: Path) -> None:
     work: dict[str, Any] = settings(path)
     tables = tables_of(path.read_bytes(), **work, path=path.name)

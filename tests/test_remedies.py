@@ -51,7 +51,7 @@ def messages(values: str, before: str, feed: str = "200") -> dict[str, str]:
          "code that starts the live tool: if M33 of line 3 does, add it to m_codes.live_tool_on in lathe.toml"),
         ("[polar]\nlinear_axis = 2", "M8", "no all",
          'give their names in order, as control.axes = ["X", "Z", "C"] in lathe.toml'),
-    ],
+    ], one_in=3,
 )  # fmt: skip
 def test_a_lathe_of_ones_own_is_told_where_to_add(values: str, before: str, rule: str, told: str) -> None:
     assert messages(values, before)[rule].endswith(told)

@@ -233,7 +233,7 @@ def polar_program(machine: str, inch: bool, c: str) -> str:
 
 
 @pytest.mark.ci
-@looped("c", ["C0", "C37.5"], one_in=14)
+@looped("c", ["C0", "C37.5"], one_in=28)
 @looped("inch", [False, True])
 @looped("machine", _ON)
 def test_a_section_without_the_mode_and_back_is_the_same_contour(machine: str, inch: bool, c: str) -> None:
@@ -352,6 +352,7 @@ def test_what_f_per_minute_is_has_to_be_known() -> None:
         ("Z2.\nX80. C0\nM30", "G13.1\nF1144"),
         ("Z2. F500.\nC40.\nX80.\nM30", "G13.1\nG1 X20.000\nZ2. F500.\n"),
     ],
+    one_in=4,
 )
 def test_what_the_stretch_leaves_in_force_is_in_force_behind_the_section(behind: str, expected: str) -> None:
     text = cam_contour(hexagon()).replace("G0 Z2.\nX80. C0\nM30", behind)

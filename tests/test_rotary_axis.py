@@ -213,6 +213,7 @@ def test_words_outside_the_mode_are_angles_of_that_axis() -> None:
         ("\nA10.", "\nC10.", "wrong-axis-address-in-polar", "its second axis is A here"),
         ("\nG40 X60.\n", "\nG40 X60.\nX-60. A0\n", "path-through-center", "center of the A axis"),
     ],
+    one_in=2,
 )
 def test_messages_name_the_axis(before: str, after: str, rule: str, words: str) -> None:
     assert before in CONTOUR
@@ -238,7 +239,7 @@ def test_a_second_spindle_is_followed_by_its_name() -> None:
 
 
 @pytest.mark.ci
-@looped("words", ["X0 C2=0", "x0 c2=0", "X0 C2=5.", "P1 Q4", "C2=0 X0"])
+@looped("words", ["X0 C2=0", "x0 c2=0", "X0 C2=5.", "P1 Q4", "C2=0 X0"], one_in=4)
 def test_a_named_axis_beside_the_switch(words: str) -> None:
     """Where the control takes the axes there: by name, by number, in lower case."""
     program = renamed(CONTOUR.replace("A", "C"), "C2").replace("G12.1", f"G12.1 {words}")

@@ -47,7 +47,7 @@ def test_rule_is_complete(rule: Rule) -> None:
 
 
 @pytest.mark.ci
-@looped("rule", RULES.values(), ids=list(RULES))
+@pytest.mark.parametrize("rule", RULES.values(), ids=list(RULES))
 @looped("value", [True, False])
 def test_a_constant_mask_fails(rule: Rule, value: bool) -> None:
     """A rule that always or never fires is found out by its own examples."""
@@ -99,7 +99,7 @@ def named_severities(rule: Rule) -> Iterator[str]:
 
 
 @pytest.mark.ci
-@looped("rule", RULES.values(), ids=list(RULES))
+@pytest.mark.parametrize("rule", RULES.values(), ids=list(RULES))
 def test_each_severity_of_a_rule_is_seen_in_its_examples(rule: Rule) -> None:
     graded = set(named_severities(rule)) - {rule.severity.name.lower()}
     assert not graded or graded <= {severity for found in own_severities(rule.name) for severity in found}

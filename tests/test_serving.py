@@ -89,6 +89,7 @@ def between(monkeypatch: pytest.MonkeyPatch) -> Callable[..., None]:
     return set_steps
 
 
+@pytest.mark.nightly
 def test_a_saved_program_is_a_new_version_and_a_broken_one_keeps_the_last(
     visitor: Visitor, between: Callable[..., None]
 ) -> None:

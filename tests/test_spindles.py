@@ -59,6 +59,7 @@ def broken(before: str, inside: str = "", **codes: list[str]) -> list[str]:
         ("M135 / M3 P13 S500 / M3 P12 S2000", ["main-spindle-running-at-entry"]),
         ("M135 / M3 P11 S500 / M3 P12 S2000", []),
     ],
+    one_in=2,
 )
 def test_p_tells_which_spindle_is_meant(before: str, rules: list[str]) -> None:
     assert broken(before, **BY_P) == rules
@@ -155,6 +156,7 @@ SETS: dict[str, list[str]] = {
         ("M135 / M33 S900", "M5", []),
         ("M135 / M33 S900", "M105", ["spindle-code-in-polar"]),
     ],
+    one_in=3,
 )
 def test_a_section_is_on_the_spindle_that_is_engaged(before: str, inside: str, rules: list[str]) -> None:
     assert broken(before, inside, **SETS) == rules

@@ -39,7 +39,7 @@ def spooled(found: list[tuple[FileReport, dict[int, str]]], in_memory: int) -> S
     return reports_of
 
 
-@looped("in_memory", [0, 3, 100])
+@looped("in_memory", [0, 3, 100], one_in=3)
 def test_what_is_kept_comes_back_as_often_as_one_likes(
     found: list[tuple[FileReport, dict[int, str]]], in_memory: int
 ) -> None:
@@ -55,7 +55,7 @@ def test_what_is_kept_comes_back_as_often_as_one_likes(
     assert len(stored.lines) == len(found)
 
 
-@looped("form", reports.formats())
+@looped("form", reports.formats(), one_in=4)
 @looped("color", [False, True])
 def test_every_format_takes_reports_that_are_not_in_memory(
     found: list[tuple[FileReport, dict[int, str]]], form: str, color: bool

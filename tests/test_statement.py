@@ -272,7 +272,7 @@ HOSTILE += ["ATAN[1]/[", "POW[1,", "IF[1EQ1]TH", "GOTO", "<", ">", "<A>", " ", "
 
 
 @pytest.mark.ci
-@looped("head", ["", "#1=", "IF[", "G1X["], one_in=8)
+@looped("head", ["", "#1=", "IF[", "G1X["], one_in=80)
 @looped("part", HOSTILE)
 def test_reading_takes_linear_time(part: str, head: str) -> None:
     """Twice the text takes at most about twice the calls; and a very long block comes to an end."""

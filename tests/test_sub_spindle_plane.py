@@ -86,6 +86,7 @@ def test_the_main_spindle_is_judged_again_once_it_is_the_c_axis(between: str) ->
 @looped(
     ("swap", "judged"),
     [("G14", False), ("G14\nG15", True), ("G15", True), ("G14\nG15\nG14", False), ("N5 G14 M9", False)],
+    one_in=3,
 )
 def test_swapped_spindles_of_a_haas_are_told_by_name(swap: str, judged: bool) -> None:
     report = report_of(HAAS.format(swap, contour("Y")), "haas-lathe", TOOL)

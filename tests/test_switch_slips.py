@@ -24,6 +24,7 @@ UNKNOWN = "polar-switch-unknown"
         ("G12.1", "G13", 10, "error", "write G13.1"),
         ("G12.1", "G013", 10, "error", "write G13.1"),
     ],
+    one_in=3,
 )
 @looped("machine", ["fanuc", "mitsubishi-m700"])
 def test_a_slip_is_one_finding(machine: str, on: str, off: str, line: int, severity: str, remedy: str) -> None:

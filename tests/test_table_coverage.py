@@ -73,7 +73,7 @@ def test_the_rib_of_an_overlap_below_two_r() -> None:
 
 
 @pytest.mark.ci
-@looped("overlap", [0, 0.5, 1, 2.5, 4, 5], one_in=5)
+@looped("overlap", [0, 0.5, 1, 2.5, 4, 5], one_in=20)
 @looped("side", ["G41", "G42"])
 @looped("turn", [0, 0.7, 2, math.pi / 2])
 def test_ribs_by_their_overlap(overlap: float, side: str, turn: float) -> None:
@@ -83,7 +83,7 @@ def test_ribs_by_their_overlap(overlap: float, side: str, turn: float) -> None:
 
 
 @pytest.mark.ci
-@looped("count", [1, 2, 3, 4, 5])
+@looped("count", [1, 2, 3, 4, 5], one_in=4)
 def test_ribs_beside_a_lead_of_several_blocks(count: int) -> None:
     """The rib stands at one corner alone, that of the straight lead; the other lead is round."""
     steps = [f"X{40 + 8 * number}." for number in range(count + 1)]
@@ -130,7 +130,7 @@ def test_ribs_on_other_controls(machine: str) -> None:
 
 
 @pytest.mark.ci
-@looped("overlap", [5.6, 6, 6.5, 9, 15])
+@looped("overlap", [5.6, 6, 6.5, 9, 15], one_in=2)
 def test_nothing_stands_after_an_overlap_of_two_r(overlap: float) -> None:
     """At 5.6 the rib is 7 micrometers high: no witness."""
     assert rules(square(overlap)) == []
@@ -291,7 +291,7 @@ def rings(*halves: float, loops: bool = False) -> str:
 
 
 @pytest.mark.ci
-@looped("loops", [False, True])
+@looped("loops", [False, True], one_in=3)
 @looped("thickness", [0.5, 1, 2])
 def test_rings_between_squares(thickness: float, loops: bool) -> None:
     [finding] = found(rings(36.0, 30.0 - thickness, loops=loops))
@@ -307,7 +307,7 @@ def test_passes_near_enough_and_rings_thicker_than_r(inner: float, loops: bool) 
 
 
 @pytest.mark.ci
-@looped(("step", "leaves"), [(5.5, False), (5.9, False), (6.5, True), (8, True), (9.5, False)])
+@looped(("step", "leaves"), [(5.5, False), (5.9, False), (6.5, True), (8, True), (9.5, False)], one_in=3)
 def test_circles_one_in_the_other(step: float, leaves: bool) -> None:
     circles = "/".join(f"G1 G42 X{2 * size}/G3 I{-size}/G1 G40 X140." for size in (20.0 + step, 20.0))
     said = found(f"G1 X140. C0. F300/Z-2./{circles}/Z2.")
@@ -349,7 +349,7 @@ def test_the_middle_of_a_pocket_is_no_strip() -> None:
 
 
 @pytest.mark.ci
-@looped(("island", "leaves"), [(16.0, True), (17.0, True), (18.5, False), (13.0, False)])
+@looped(("island", "leaves"), [(16.0, True), (17.0, True), (18.5, False), (13.0, False)], one_in=3)
 def test_a_ring_between_a_pocket_and_its_island(island: float, leaves: bool) -> None:
     """Neither of the two passes lies behind the other; a ramp cuts through what stays between them."""
     pocket = "G1 X46. C0. F300/Z-2./G41 X60./G3 I-30./G1 G40 X46./Z2."

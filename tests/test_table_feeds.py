@@ -166,6 +166,7 @@ def told(blocks: str, machine: str, system: str = "") -> list[tuple[int, str]]:
         ("G99 G0 X60. Z2. C0/G1 Z1. F.1/G98/G12.1/G1 X40. F.1/C5./G13.1", "fanuc", 6, "0.1"),
         ("G99 G0 X60. Z2. C0/G1 Z1. F.1/G98/G0 X60./G12.1/G1 Z-1./X40./G13.1", "fanuc", 7, "0.1"),
     ],
+    one_in=2,
 )
 def test_f_of_feed_per_revolution_is_read_per_minute(blocks: str, machine: str, line: int, number: str) -> None:
     ((found, message),) = told(blocks, machine)
@@ -193,6 +194,7 @@ def test_the_same_with_g98_and_g99_of_the_other_list_of_codes() -> None:
         ("G98 G0 X60. Z2. C0/G12.1/G1 X40. F.5/C5./G13.1", "fanuc"),
         ("G98 G0 X60. Z2. C0/G12.1/G1 X40. F200/C5./G13.1/G99 G1 X60. F.2", "fanuc"),
     ],
+    one_in=2,
 )
 def test_f_that_is_meant_as_it_is_read(blocks: str, machine: str) -> None:
     assert told(blocks, machine) == []

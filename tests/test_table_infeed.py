@@ -219,7 +219,7 @@ CIRCLES = [
 
 
 @pytest.mark.ci
-@looped(("radius", "cutter", "start", "infeed"), CIRCLES)
+@looped(("radius", "cutter", "start", "infeed"), CIRCLES, one_in=4)
 @looped("way", ["G3", "G2"])
 def test_passes_of_a_circle(radius: float, cutter: float, start: float, infeed: float, way: str) -> None:
     """Outside and inside, G41 and G42, both ways round: none is beyond the start point, R counts, the steps are E."""
@@ -233,7 +233,7 @@ def test_passes_of_a_circle(radius: float, cutter: float, start: float, infeed: 
 
 
 @pytest.mark.ci
-@looped(("radius", "cutter", "start", "infeed"), CIRCLES)
+@looped(("radius", "cutter", "start", "infeed"), CIRCLES, one_in=2)
 def test_passes_of_twins(radius: float, cutter: float, start: float, infeed: float) -> None:
     """The same in inch, with numbers fine enough, and with X as a radius in the mode."""
     code = "G42" if start > radius else "G41"
@@ -342,6 +342,7 @@ SHARP = "C30.\nX-20.\n"
         ("98.", "2.", SHARP, None),
         ("120.", "0", ROUND, None),
     ],
+    one_in=4,
 )
 def test_passes_that_do_not_fit_are_one_finding(
     start: str, infeed: str, inner: str, unfit: tuple[int, str, str] | None

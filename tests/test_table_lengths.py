@@ -121,7 +121,7 @@ def test_what_is_a_coordinate() -> None:
 NUMBERS = st.lists(st.integers(0, 4), max_size=8)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @settings(deadline=None)
 @given(NUMBERS)
 def test_points_are_counted_by_a_plain_loop(kinds: list[int]) -> None:

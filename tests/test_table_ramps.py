@@ -108,7 +108,7 @@ G40_ALONE, G40_STANDING = "G40\nX140.\n", "G40 X40. C0\nX140.\n"
 
 
 @pytest.mark.ci
-@looped("machine", ["fanuc", "turning-center", "gsk-988"])
+@looped("machine", ["fanuc", "turning-center", "gsk-988"], one_in=14)
 @looped(("start", "tool"), [ON_MM, ON_INCH], ids=["mm", "inch"])
 @looped("off", ["G40 X140.\n", G40_ALONE, G40_STANDING, "G40 U0\nX140.\n"])
 @looped(

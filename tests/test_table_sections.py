@@ -81,6 +81,7 @@ CHOSEN_BACK = "O1\nT0101\nG98 G0 X60. C0 Z5.\n{}\n{}\nG1 X20. F200\n{}10.\nX60.\
         ("okuma-osp", "G137 C0", "Y", "G136", "G18"),
         ("turning-center", "G12.1", "C", "G13.1", "G17"),
     ],
+    one_in=4,
 )
 @looped("retract", ["", "Z5. F500\n", "G0 X70. {}0\n"])
 def test_a_plane_chosen_back_ends_a_section_that_nobody_has_left(

@@ -63,13 +63,13 @@ def test_one_of_four_corners(section: str, number: int) -> None:
 
 
 @pytest.mark.ci
-@looped("machine", ["fanuc-16i", "fanuc-30i", "gsk-988", "siemens-iso"])
+@looped("machine", ["fanuc-16i", "fanuc-30i", "gsk-988", "siemens-iso"], one_in=3)
 def test_on_other_controls(machine: str) -> None:
     assert [rule for _, rule, _ in told(swapped(BY_RADIUS, 2), 4, machine)] == [RULE]
 
 
 @pytest.mark.ci
-@looped(("radius", "decimals"), [(3, 3), (3, 2), (0.5, 3), (0.5, 2), (8, 3)])
+@looped(("radius", "decimals"), [(3, 3), (3, 2), (0.5, 3), (0.5, 2), (8, 3)], one_in=5)
 def test_ends_that_are_rounded(radius: float, decimals: int) -> None:
     assert told(hexagon(radius, decimals), radius / 2) == []
     assert [rule for _, rule, _ in told(hexagon(radius, decimals, 2), radius / 2)] == [RULE]

@@ -48,6 +48,7 @@ def found(blocks: str, radius: float, head: str = MM, machine: str = "fanuc") ->
             None,
         ),
     ],
+    one_in=3,
 )
 def test_two_walls_that_leave_less_than_the_cutter(
     blocks: str, radius: float, head: str, machine: str, block: str | None
@@ -120,6 +121,7 @@ def test_round_a_corner_there_is_no_room() -> None:
         # The same wall in two loops.
         ("X80. C-30./G42 X40. C-20./C20./G40 X80. C30./X120./C-30./X80./G42 X40. C-20./C20./G40 X80. C30.", 5),
     ],
+    one_in=2,
 )
 def test_loops_that_cut_nothing_of_each_other(blocks: str, radius: float) -> None:
     assert found(blocks, radius) == []

@@ -50,7 +50,7 @@ def test_what_is_no_axis(words: str) -> None:
 
 
 @pytest.mark.ci
-@looped("words", ["", "P1", "Q3", "P1 Q3", "Q3 P1", "P1. Q3.", "P2", "Q2", "P3 Q1", f"P1 Q{MOST}"])
+@looped("words", ["", "P1", "Q3", "P1 Q3", "Q3 P1", "P1. Q3.", "P2", "Q2", "P3 Q1", f"P1 Q{MOST}"], one_in=2)
 def test_what_is_a_pair_of_axes(words: str) -> None:
     assert found(f"G12.1 {words}") == []
 
@@ -161,6 +161,7 @@ TOO_LARGE = "is too large: {} is the most"
         ((0.0001, 0.00001), INCH, "E9999.99999", "E10000.", "9999.99999 inch"),
     ],
     ids=["IS-B mm", "IS-C mm", "IS-B inch", "IS-C inch"],
+    one_in=4,
 )
 @looped("sign", ["", "-"])
 def test_the_four_ranges_of_the_infeed(
@@ -193,6 +194,7 @@ def test_the_four_ranges_of_the_infeed(
         ((0.001, 0.0001), PROGRAM, "E8.000", None),
         ((0.001, 0.0001), PROGRAM, "E0.0000", None),
     ],
+    one_in=3,
 )
 def test_digits_below_the_increment_are_dropped(
     increments: tuple[float, float], program: str, word: str, taken: str | None

@@ -44,6 +44,7 @@ def trial_of(blocks: str, share: float, radius: float = 4.0) -> tuple[Trial, Flo
         ("G41 X60. F200\nM8\nC-20.\n", 1, []),
         ("G41 X60. F200\nC0\nG3 X66. C-3. I0 J0\nG1 X80.\n", 1, [7]),
     ],
+    one_in=2,
 )
 def test_what_the_control_would_object_to(blocks: str, share: float, lines: list[int]) -> None:
     trial, line = trial_of(blocks, share)

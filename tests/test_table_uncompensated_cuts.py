@@ -151,6 +151,7 @@ OPEN = HEXAGON.removesuffix("X80. C5.")
         # Both ramps, each with its block.
         (f"X46. C-3./{OPEN}X46. C0/C3.", []),
     ],
+    one_in=4,
 )
 def test_beside_a_ramp_that_is_too_short_the_way_is_no_second_mistake(blocks: str, expected: list[str]) -> None:
     assert [block for block, _ in found(f"Z-3./{blocks}")] == expected

@@ -120,7 +120,7 @@ HEAD = "O1\nG21 G40 G97 G98 G18\nT0101\nG0 X60. Z2.\n"
 
 
 @pytest.mark.ci
-@looped("character", ["$", "*", "!", "\uff1b", "\u00b0"])
+@looped("character", ["$", "*", "!", "\uff1b", "\u00b0"], one_in=2)
 @looped("blocks", [1, 3, 212])
 def test_a_foreign_end_of_block_is_one_finding(character: str, blocks: int) -> None:
     program = HEAD + f"X50.{character}\n" * blocks + "#1=5\nM30\n"
@@ -171,7 +171,7 @@ HABITS = [
 
 
 @pytest.mark.ci
-@looped(("block", "rule", "message"), HABITS)
+@looped(("block", "rule", "message"), HABITS, one_in=2)
 def test_a_habit_is_one_finding(block: str, rule: str, message: str) -> None:
     """What stands a few times is told at each place; what stands more often, once, with the number of blocks."""
     few, many = (report_of(HEAD + f"{block}\n" * count + "M30\n").findings for count in (5, 40))

@@ -110,6 +110,7 @@ def results_of(name: str, threads: int) -> tuple[int, str, str]:
     return ended.returncode, ended.stdout, ended.stderr
 
 
+@pytest.mark.nightly
 def test_threads_may_begin_with_the_same_function(post: None) -> None:
     assert results_of("machine", 2) == results_of("machine", 1)
 

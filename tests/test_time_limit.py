@@ -380,7 +380,7 @@ def test_a_check_stays_within_its_memory(family: str, moves: int, reason: str, t
 
 
 @pytest.mark.ci
-@looped("turns", [0, 3, 100])
+@looped("turns", [0, 3, 100], one_in=5)
 @looped("program", ["G12.1\nG1 X4. F100\nG13.1\nM30\n", "#1=1\nWHILE[#1GT0]DO1\n#1=#1+1\nEND1\nM30\n"])
 def test_a_check_that_nobody_waits_for_ends_at_its_next_turn(program: str, turns: int) -> None:
     """Not as one that was too hard, which would be a report: its outcome is of no interest."""

@@ -27,7 +27,7 @@ def lines(program: str, machine: str = "fanuc") -> list[int]:
         "t9 end mill",
         "T9: ROUGH TURN",
     ],
-    one_in=3,
+    one_in=6,
 )
 def test_another_tool_in_the_block_of_the_call_or_beside_it(comment: str) -> None:
     assert lines(f"O1\nG21 G98\nT0707 ({comment})\n{SECTION}M30\n") == [3]

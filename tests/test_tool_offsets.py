@@ -84,7 +84,7 @@ def test_the_nose_type_of_a_turning_tool_is_an_error_that_names_the_block() -> N
 
 
 @pytest.mark.ci
-@looped("tools", [(), ("8:radius=0",), ("8:radius=.2,nose=0",)])
+@looped("tools", [(), ("8:radius=0",), ("8:radius=.2,nose=0",)], one_in=2)
 def test_ramps_that_its_own_radius_does_not_fit(tools: tuple[str, ...]) -> None:
     """As printed the program is that of the tool center: with R .375 its ramps are too short."""
     report = report_of(guide("G10 P8 R.375", x=AS_PRINTED), "turning-center", *tools)
@@ -172,6 +172,7 @@ def test_lengths_are_in_the_units_of_their_block() -> None:
         ("#2001=.1", (3, "job")),
         ("IF[1EQ2]THEN #2901=4.", (3, "job")),
     ],
+    one_in=6,
 )
 @looped("first", [True, False])
 def test_what_the_program_sets_takes_the_place_of_the_job(
@@ -293,7 +294,7 @@ def test_the_nose_type(blocks: str, nose: int) -> None:
 
 
 @pytest.mark.ci
-@looped("block", ["G10 P8 R.375", "G10 P8 R.37", "G10 P10008 R.375 Q0/G10 P8 R-.005"])
+@looped("block", ["G10 P8 R.375", "G10 P8 R.37", "G10 P10008 R.375 Q0/G10 P8 R-.005"], one_in=4)
 @looped("first", [True, False])
 def test_a_comment_that_agrees(block: str, first: bool) -> None:
     places = (block, "") if first else ("", block)
@@ -404,6 +405,7 @@ def test_the_size_of_turned_diameters_and_on_other_machines() -> None:
         # The program sets its own.
         ("G10 P8 X-.005 Z0 R0 Q0\nG10 P10008 X-5.25 R.375 Q0", "G10 P8 X0", False),
     ],
+    one_in=2,
 )
 def test_the_wear_in_x_of_an_offset_table(tmp_path: Path, table: str, block: str, expected: bool) -> None:
     (tmp_path / "offsets.txt").write_text(f"%\n{table}\n%\n")
@@ -458,6 +460,7 @@ def test_a_variable_whose_number_is_known_by_the_job_is_no_question() -> None:
         ("T0505 M6", 5),
         ("T0505", 5),
     ],
+    one_in=3,
 )
 def test_t_beside_m6_is_the_tool_of_an_integrex(calls: str, number: int) -> None:
     """The first T of the block is the tool and the number of its R; the second one, and a T alone, prepare the next."""

@@ -58,7 +58,7 @@ def shown(text: str) -> list[dict[str, str]]:
 
 
 @pytest.mark.ci
-@looped("path", [(), ("--path", "tool"), ("--path", "programmed")])
+@looped("path", [(), ("--path", "tool"), ("--path", "programmed")], one_in=2)
 def test_the_table_has_the_numbers_of_the_csv(path: tuple[str, ...], tmp_path: Path) -> None:
     arcs = tmp_path / "arcs.nc"
     arcs.write_text(ARCS)

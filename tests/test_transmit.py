@@ -61,6 +61,7 @@ def test_the_owner_says_the_sense_of_c(changes: dict[str, Any]) -> None:
         ("G0 C0", 0, 0, 0),
         ("SPOS=180", 180, 180, 180),
     ],
+    one_in=2,
 )
 def test_a_second_section_begins_where_c_stands(
     between: str, of_plane: float, angle: float, angle_of_other_sense: float

@@ -417,7 +417,7 @@ def test_block_skip_is_that_of_one_position_of_the_switch() -> None:
         (f"{HEAD}G1 X60. F100\n{END}", ("--set", "limits.x_minimum=35"), "7: X would go below its travel limit of 35"),
         (f"{HEAD}G1 X60. C9. F100\n{END}", ("--chord-error", "0.0008"), "7: rounding of X and C alone moves the tool"),
         ("O1\nG0 X10.\nM30\n", (), "None: there is no polar section in it"),
-    ],
+    ], one_in=2,
 )  # fmt: skip
 def test_the_reason_is_named(program: str, arguments: tuple[str, ...], expected: str) -> None:
     machine = () if "--machine" in arguments else METHODS["per-minute"]

@@ -99,7 +99,7 @@ SIMULATED = {
 
 
 @pytest.mark.ci
-@looped("body", SIMULATED, one_in=6)
+@looped("body", SIMULATED, one_in=18)
 def test_it_is_simulated(body: str) -> None:
     report, trace = run(body)
     assert path(trace) == SIMULATED[body]
@@ -149,7 +149,7 @@ NAMED = {
 
 
 @pytest.mark.ci
-@looped("body", NAMED, one_in=3)
+@looped("body", NAMED, one_in=6)
 def test_it_is_named_where_it_is_not_simulated(body: str) -> None:
     report, _ = run(body)
     name, matters = NAMED[body]
@@ -160,7 +160,7 @@ def test_it_is_named_where_it_is_not_simulated(body: str) -> None:
 
 #: Words that belong to cycles, or that the control itself looks after.
 @pytest.mark.ci
-@looped("body", ["DA=1 X20.", "X20. QA=5", "SA=20 X20.", "SB=3000 X20.", "NAT03\nX20.", "NOEX X20."])
+@looped("body", ["DA=1 X20.", "X20. QA=5", "SA=20 X20.", "SB=3000 X20.", "NAT03\nX20.", "NOEX X20."], one_in=2)
 def test_it_is_harmless(body: str) -> None:
     report, trace = run(body)
     assert path(trace) == [(20, 0)]
@@ -174,6 +174,7 @@ def test_it_is_harmless(body: str) -> None:
         *("X=VC1", "X=VZOFX", "VC1=VTOFX[2]\nX=VC1", "X=V5+1", "VC1=1\nX=VC1*VSIOZ"),
         *("X=NOT[20]", "V1=NOT VC1\nX=V1+1", "X=DROUND[20.12]", "X=DFIX[20.12] Y3."),
     ],
+    one_in=3,
 )
 def test_what_is_not_known_is_not_evaluated(body: str) -> None:
     report, trace = run(body)
@@ -221,6 +222,7 @@ def test_a_word_takes_the_larger_of_two_arcs(arc: str, sweep: int) -> None:
         ("CALL O77", "subprogram-missing"),
         ("CALL OFAR", "subprogram-missing"),
     ],
+    one_in=5,
 )
 def test_a_fault_is_one_finding_in_its_block(body: str, rule: str) -> None:
     assert said(run(body)[0])[0] == (FIRST, rule)
@@ -305,7 +307,7 @@ FANUC = CONTOUR.format(
 
 
 @pytest.mark.ci
-@looped("side", ["G41", "G42"])
+@looped("side", ["G41", "G42"], one_in=2)
 @looped("radius", ["0", "4"])
 def test_a_program_and_its_twin_have_one_tool_center_path(side: str, radius: str) -> None:
     tool, changes = f"1:radius={radius},nose=0", {"compensation": {"read_ahead": 10}}

@@ -49,7 +49,7 @@ def values_in_examples(name: str) -> list[dict[str, Any]]:
 
 
 @pytest.mark.ci
-@looped("rule", RULES.values(), ids=list(RULES), one_in=24)
+@looped("rule", RULES.values(), ids=list(RULES), one_in=96)
 def test_each_value_of_a_rule_is_of_its_kind_and_seen_in_its_examples(rule: Rule) -> None:
     declared, shown = kinds(rule.values, rule.name), values_in_examples(rule.name)
     assert {name for one in shown for name in one} == declared.keys()

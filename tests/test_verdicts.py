@@ -114,6 +114,7 @@ def test_a_selection_of_rules_is_no_pass(options: str, environment: dict[str, st
         "--severity rapid-in-polar=off",
         "--severity rapid-in-polar=note",
     ],
+    one_in=2,
 )
 def test_a_program_with_an_error_does_not_pass_without_its_rule(options: str) -> None:
     make(a__nc=RAPID)

@@ -27,6 +27,7 @@ def section(switch: str, address: str, increment: str) -> str:
         ("G12.1 D01", "C", "H"),
         ("G12.1", "Y", "V"),
     ],
+    one_in=4,
 )
 def test_a_word_beside_the_switch_chooses_the_address(switch: str, address: str, increment: str) -> None:
     program = HEAD + section(switch, address, increment) + END

@@ -74,7 +74,7 @@ FAMILIES = {
 }
 
 
-@looped("family", FAMILIES, one_in=7)
+@looped("family", FAMILIES, one_in=14)
 @looped("radius", [0.4, 4.0, 25.0])
 def test_it_is_the_union_of_its_widened_chords(family: str, radius: float) -> None:
     found, expected = area_of(FAMILIES[family], radius), chord_by_chord(FAMILIES[family], radius)
@@ -83,7 +83,7 @@ def test_it_is_the_union_of_its_widened_chords(family: str, radius: float) -> No
     assert furthest_apart(found, expected) < 0.1
 
 
-@looped("seed", range(5))
+@looped("seed", range(5), one_in=5)
 def test_random_arcs(seed: int) -> None:
     chance = Random(seed)  # noqa: S311
     arcs = [

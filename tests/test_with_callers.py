@@ -55,6 +55,7 @@ ALL_OF_ONE = ["one/calls.nc", "one/plain.nc", "one/subs/O9001"]
         *((f"one/{name}", ALL_OF_ONE) for name in ("TOOLOFST", "lathe.toml", "polarcheck.toml")),
         ("README.md", []),
     ],
+    one_in=3,
 )
 def test_a_changed_file_concerns_the_programs_that_use_it(changed: str, concerned: list[str]) -> None:
     assert checked(changed) == concerned
@@ -103,7 +104,7 @@ def test_a_new_subprogram_that_shadows_another() -> None:
     assert checked("one/more/9001.NC") == ["one/calls.nc", "one/more/9001.NC"]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_it_takes_the_files_that_a_walk_takes() -> None:
     """Endings of polarcheck.toml, names of programs, and what looks like one; without the excluded."""
     Path("one/polarcheck.toml").write_text(JOB)

@@ -430,7 +430,7 @@ def test_any_text_reads_as_one_word_after_another(parts: list[str]) -> None:
     assert not len(text.outside)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @given(
     st.one_of(st.binary(max_size=120), GARBAGE.map(lambda parts: "".join(parts).encode())),
     st.sampled_from(["", "%;", "'"]),
