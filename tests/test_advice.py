@@ -183,7 +183,7 @@ def test_an_angle_among_the_points_of_a_hexagon(machine: str, axis: str) -> None
     )
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_most_advice_leads_back_to_the_slip() -> None:
     kinds = tuple(KINDS)
     judged = [judged_slip(seed, kinds) for seed in range(5, 83, 10)]

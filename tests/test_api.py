@@ -55,7 +55,7 @@ def by_command(*arguments: str) -> Any:
 # ---- the command and the function agree ----
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @pytest.mark.filterwarnings("ignore::polarcheck.errors.PolarcheckWarning")
 def test_check_gives_the_report_of_the_command(samples: None) -> None:
     assert json.loads(polarcheck.render(polarcheck.check("."), "json")) == by_command("check", ".", "--format", "json")

@@ -208,7 +208,7 @@ def files(own_folder: None) -> None:
     Path("post.toml").write_text(MANIFEST, "utf-8")
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @pytest.mark.one_in(16)
 @pytest.mark.parametrize("name", FUNCTIONS)
 def test_any_value_of_any_argument_is_taken_or_refused_in_one_line(name: str, files: None) -> None:

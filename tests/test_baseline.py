@@ -449,7 +449,7 @@ def test_what_an_editor_holds_is_known_as_its_file() -> None:
     assert (silenced(result), result.exit_code, result.stderr) == ({"sub/a.nc": 1}, 1, "")
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_many_files_by_several_processes() -> None:
     for number in range(30):
         make(**{f"{number:02}__nc": RAPID if number % 2 else TWICE})

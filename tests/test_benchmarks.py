@@ -101,6 +101,7 @@ def test_what_a_reader_repeats_is_no_message(tmp_path: Path) -> None:
     assert peers._messages(said, path) == {"executing", "warning no G13.1 in"}
 
 
+@pytest.mark.nightly
 def test_the_page_is_written_without_any_peer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for name in ("RS274", "PEERS_PYTHON", "NCTAB", "NCPLOT7PY"):
         monkeypatch.delenv(name, raising=False)
@@ -148,6 +149,7 @@ def test_each_package_and_table_has_a_stage() -> None:
     assert {*stages.OF_ROOM.values(), *stages.OF_TABLE.values()} <= {*stages.STAGES}
 
 
+@pytest.mark.nightly
 def test_a_check_is_profiled(tmp_path: Path) -> None:
     path = tmp_path / "sound.nc"
     path.write_text(GOOD)

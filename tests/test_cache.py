@@ -170,7 +170,7 @@ def test_what_has_changed_is_checked_again(name: str) -> None:
     assert after != before
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @settings(max_examples=12, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.lists(st.sampled_from(list(CHANGES)), min_size=1, max_size=4))
 def test_changes_in_any_order(names: list[str]) -> None:

@@ -278,8 +278,9 @@ RAMP = "G12.1\nG1 G42 X40. F200\nC10.\nX-40.\nC-10.\nX40.\nC0\nG40 X60.\nG13.1\n
 """Its start-up needs 4 mm in X: too short where X is 41 before it."""
 
 
+@pytest.mark.one_in(4)
 @pytest.mark.ci
-@looped(
+@pytest.mark.parametrize(
     ("starts", "ends"),
     [
         ([60, 41], " (in the call of line 7)"),
@@ -287,7 +288,6 @@ RAMP = "G12.1\nG1 G42 X40. F200\nC10.\nX-40.\nC-10.\nX40.\nC0\nG40 X60.\nG13.1\n
         ([41, 60, 41], " (in the call of line 5 and 1 more)"),
         ([41, 41], "on the diameter"),
     ],
-    one_in=4,
 )
 def test_a_finding_of_one_call_says_of_which(folder: Path, starts: list[int], ends: str) -> None:
     calls = "".join(f"G0 X{x}. C0\n{{}}\n" for x in starts)

@@ -88,8 +88,9 @@ def test_the_manifest_of_the_page_is_one(example: Path) -> None:
 CONTOUR, ROUND, INDEXED = "fanuc/contour.nc", "fanuc/arc-above-180.nc", "fanuc/indexing.nc"
 
 
+@pytest.mark.one_in(6)
 @pytest.mark.ci
-@looped(
+@pytest.mark.parametrize(
     ("file", "before", "after"),
     [
         (CONTOUR, "\nG", "\nN10 G"),
@@ -99,15 +100,15 @@ CONTOUR, ROUND, INDEXED = "fanuc/contour.nc", "fanuc/arc-above-180.nc", "fanuc/i
         (ROUND, "G3 C-9.798 I-10.000 J-9.798", "G3 C-9.798 R-14."),
         (INDEXED, "C240.0", "C-120."),
     ],
-    one_in=6,
 )
 def test_other_words_for_the_same_path_pass(example: Path, file: str, before: str, after: str) -> None:
     edit(file, before, after)
     assert reasons(f"{Path(file).stem}/lathe-7") == []
 
 
+@pytest.mark.one_in(9)
 @pytest.mark.ci
-@looped(
+@pytest.mark.parametrize(
     ("file", "before", "after", "said"),
     [
         (
@@ -130,7 +131,6 @@ def test_other_words_for_the_same_path_pass(example: Path, file: str, before: st
         (INDEXED, "C120.0", "C125.0", "error: "),
         (INDEXED, "G1 C20.000 F200.000", "G1 C20.000 F60000.", "line 13: warning: C axis would turn"),
     ],
-    one_in=9,
 )
 def test_another_path_fails(example: Path, file: str, before: str, after: str, said: str) -> None:
     edit(file, before, after)
@@ -241,11 +241,11 @@ def test_a_program_that_is_not_there(example: Path) -> None:
     assert "the path is not compared: contour/lathe-7 was not run" in " ".join(result.stdout.split())
 
 
+@pytest.mark.one_in(4)
 @pytest.mark.ci
-@looped(
+@pytest.mark.parametrize(
     ("arguments", "status"),
     [((), 0), (("--strict",), 1), (("--case", "contour/lathe-8"), 0), (("--case", "contour/lathe"), 2)],
-    one_in=4,
 )
 def test_what_is_missing_fails_where_it_is_asked_for(example: Path, arguments: tuple[str, ...], status: int) -> None:
     assert certify(example, *arguments).exit_code == status
@@ -394,7 +394,7 @@ def test_a_golden_trace_that_is_none(example: Path) -> None:
 # ---- reports ----
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_the_page_escapes_what_others_have_written(example: Path) -> None:
     edit("post.toml", "Example post 1.0", "<script>alert(1)</script>\\u001b[31m")
     edit("post.toml", "the control takes no Z", "<b>no Z</b>")
@@ -428,7 +428,7 @@ def test_many_controls_stand_below_each_other(example: Path) -> None:
     assert all(len(line) <= 100 for part in shown for line in part.splitlines())
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_the_certificate_and_the_manifest_fit_their_schemas(example: Path) -> None:
     import tomllib
 

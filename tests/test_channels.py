@@ -110,8 +110,9 @@ def test_the_order_of_the_channels_makes_no_difference() -> None:
     assert reports[0] == reports[1] == [("$1", "rapid-in-polar", "G0 C10."), ("$2", "bad-number", "C-.5 F.")]
 
 
+@pytest.mark.one_in(33)
 @pytest.mark.ci
-@looped(
+@pytest.mark.parametrize(
     "file",
     [
         "O1\n$1\n{0}$2\n{1}",
@@ -129,9 +130,8 @@ def test_the_order_of_the_channels_makes_no_difference() -> None:
         "O1\n$1 !2L1\n{0}$2!1L1\n{1}",
         "O1\n$3\n{1}$1\n{0}",
     ],
-    one_in=33,
 )
-@looped("ending", ["\n", "\r\n", "\r"])
+@pytest.mark.parametrize("ending", ["\n", "\r\n", "\r"])
 def test_marks_of_channels_as_they_are_written(file: str, ending: str) -> None:
     program = file.format(FIRST, SECOND).replace("\r\n", "\n").replace("\n", ending)
     found = ends_of(program, *TOOLS)
@@ -290,9 +290,10 @@ def test_common_variables_of_another_channel_are_not_vacant() -> None:
 # ---- waits ----
 
 
+@pytest.mark.one_in(36)
 @pytest.mark.ci
-@looped("wait", ["!2L1", "!1L10", "!L3", "!1", "!12L2", "! 2 L 1", "!2l1", "!2L1!3L1", "!9L99999"], one_in=36)
-@looped(
+@pytest.mark.parametrize("wait", ["!2L1", "!1L10", "!L3", "!1", "!12L2", "! 2 L 1", "!2l1", "!2L1!3L1", "!9L99999"])
+@pytest.mark.parametrize(
     "block",
     ["{}", "/{}", "N10{}", "{}G1 X39.", "G1 X39.{}", "G1{}X39.", "#101=5 {}", "IF[#101GT0]GOTO5 {}", "{}(WAIT)"],
 )
@@ -378,8 +379,11 @@ def test_remarks_and_comments_stand_in_the_order_of_the_file() -> None:
 # ---- hostile ----
 
 
+@pytest.mark.one_in(7)
 @pytest.mark.ci
-@looped("line", ["$1\n", "$1\n$2\n", "O1$1\n!2L1\n", "$9 !1\n", "$1!1L1!2L2(A)\n", "N1 $3;$4;\n", "!1L1;"], one_in=7)
+@pytest.mark.parametrize(
+    "line", ["$1\n", "$1\n$2\n", "O1$1\n!2L1\n", "$9 !1\n", "$1!1L1!2L2(A)\n", "N1 $3;$4;\n", "!1L1;"]
+)
 def test_very_many_marks(line: str) -> None:
     report = report_of("O1\n" + line * 100_000, "fanuc", job={"run": {"max_seconds": 60}})
     assert not {"stray-character", "bad-number"} & {rule for _, rule in said(report)}

@@ -125,8 +125,9 @@ def test_nasty_text_is_no_fault_and_all_is_the_same_twice(form: str) -> None:
     assert text.endswith("\n")
 
 
+@pytest.mark.one_in(12)
 @pytest.mark.ci
-@looped("form", OF_MANY, one_in=12)
+@pytest.mark.parametrize("form", OF_MANY)
 def test_the_exit_code_is_that_of_the_text(form: str) -> None:
     make(a__nc=RAPID, b__nc=GOOD, c__nc=COMPENSATED)
     assert check("a.nc", "b.nc", *RAPID_ONLY, "--format", form).exit_code == 1
@@ -300,8 +301,9 @@ def test_a_baseline_of_the_command_makes_the_others_new() -> None:
     assert fresh["runs"][0]["results"][0]["baselineState"] == "new"
 
 
+@pytest.mark.one_in(10)
 @pytest.mark.ci
-@looped("form", OF_MANY, one_in=10)
+@pytest.mark.parametrize("form", OF_MANY)
 def test_many_files_are_written_as_few_are(form: str) -> None:
     """Piece by piece, and where the format can file by file, as they are finished."""
     for number in range(12):

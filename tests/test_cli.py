@@ -813,8 +813,9 @@ def test_machines_lists_all_of_them() -> None:
 _LEFT_OUT = ("known_parameters", "notes")
 
 
+@pytest.mark.one_in(20)
 @pytest.mark.ci
-@looped("name", names(), one_in=20)
+@pytest.mark.parametrize("name", names())
 def test_a_profile_is_shown_as_a_profile_that_says_the_same(name: str) -> None:
     shown = call("machines", name).stdout
     Path("copy.toml").write_text(shown, "utf-8")
@@ -841,8 +842,9 @@ def test_the_version_is_shown() -> None:
 # ---- schemas ----
 
 
+@pytest.mark.one_in(7)
 @pytest.mark.ci
-@looped("name", ["report", "job", "machine", "feeds", "trace", "comparison", "rewriting"], one_in=7)
+@pytest.mark.parametrize("name", ["report", "job", "machine", "feeds", "trace", "comparison", "rewriting"])
 def test_schemas_are_valid_and_say_what_they_are(name: str) -> None:
     shown = json.loads(call("schema", name).stdout, parse_constant=pytest.fail)
     jsonschema.Draft202012Validator.check_schema(shown)
@@ -885,7 +887,8 @@ def test_a_report_fits_its_schema() -> None:
 # ---- what is imported ----
 
 
-@looped(
+@pytest.mark.one_in(12)
+@pytest.mark.parametrize(
     ("arguments", "unwanted"),
     [
         (["--help"], {"numpy", "shapely", "rich", "msgspec", "tomllib"}),
@@ -908,7 +911,6 @@ def test_a_report_fits_its_schema() -> None:
             },
         ),
     ],
-    one_in=12,
 )
 def test_commands_import_what_they_need_and_no_more(arguments: list[str], unwanted: set[str]) -> None:
     make(a__nc=GOOD)

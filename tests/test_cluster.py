@@ -383,6 +383,7 @@ def real_cluster(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[str
         yield address, workers
 
 
+@pytest.mark.nightly
 @pytest.mark.skipif(sys.platform != "linux", reason="looks into /proc")
 def test_a_worker_that_is_killed_loses_nothing(real_cluster: tuple[str, list[int]]) -> None:
     address, workers = real_cluster
@@ -421,6 +422,7 @@ def scheduler(tmp_path: Path) -> Iterator[tuple[str, int, subprocess.Popen[str]]
             running.send_signal(signal.SIGCONT)
 
 
+@pytest.mark.nightly
 @pytest.mark.skipif(sys.platform != "linux", reason="stops a process and looks into /proc")
 def test_a_scheduler_that_is_stopped_is_one_line(scheduler: tuple[str, int, subprocess.Popen[str]]) -> None:
     """In the middle of a run, and before the next one."""

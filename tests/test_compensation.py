@@ -495,7 +495,7 @@ RULES = st.builds(
 )
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @settings(max_examples=150, deadline=None)
 @given(st.lists(contours(), min_size=1, max_size=3), RULES)
 def test_agrees_with_the_plain_way(programs, rules):

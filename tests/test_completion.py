@@ -192,7 +192,10 @@ def test_every_value_says_what_it_is() -> None:
                 assert completing.metavar(parameter) in known, (command.name, parameter.name)
 
 
-@looped("words", ["", "check --select", "check --machine", "explain", "check", "check --set", "check -o"], one_in=6)
+@pytest.mark.one_in(6)
+@pytest.mark.parametrize(
+    "words", ["", "check --select", "check --machine", "explain", "check", "check --set", "check -o"]
+)
 def test_a_completion_loads_neither_the_rules_nor_numpy(words: str) -> None:
     code = (
         "import sys, polarcheck.commands\n"

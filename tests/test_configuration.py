@@ -455,7 +455,10 @@ def test_a_list_of_files_is_no_check(option: list[str], told: str) -> None:
     assert not Path("x.json").exists()
 
 
-@looped("form", ["text", "short", "github", "json", "jsonl", "html", "concise", "sarif", "gitlab", "junit"], one_in=12)
+@pytest.mark.one_in(12)
+@pytest.mark.parametrize(
+    "form", ["text", "short", "github", "json", "jsonl", "html", "concise", "sarif", "gitlab", "junit"]
+)
 def test_each_format_says_what_was_not_read_or_standard_error_does(form: str) -> None:
     archive()
     result = call("check", ".", "--format", form)
@@ -594,7 +597,8 @@ def test_a_folder_without_a_job_file_cannot_be_extended() -> None:
 # ---- a file below another ----
 
 
-@looped(
+@pytest.mark.one_in(12)
+@pytest.mark.parametrize(
     ("outer", "inner", "left"),
     [
         ("machine = 'fanuc-30i'\nstrict = true\nexclude = ['old']\n", "units = 'mm'\n", "machine, strict, exclude"),
@@ -609,7 +613,6 @@ def test_a_folder_without_a_job_file_cannot_be_extended() -> None:
         ("units = 'mm'\n[[programs]]\nfiles = ['sub/**']\nstrict = true\n", "", ""),
         ("strict = maybe\n", "machine = 'fanuc'\n", ""),
     ],
-    one_in=12,
 )
 def test_what_a_nearer_file_leaves_behind_of_the_one_above_is_said_once(outer: str, inner: str, left: str) -> None:
     make("sub/a.nc", "sub/b.nc", "sub/deep/c.nc", text="O1\nM30\n")

@@ -556,7 +556,7 @@ def is_simple(of: Loop) -> bool:
     return bool(shapely.LinearRing(np.concatenate(points)).is_simple)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @settings(max_examples=120, deadline=None)
 @given(contours())
 def test_random_contours_of_one_turn(drawn: tuple[list[Block], Side, float]) -> None:
@@ -572,7 +572,7 @@ def test_random_contours_of_one_turn(drawn: tuple[list[Block], Side, float]) -> 
             assert move not in depth
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @settings(max_examples=60, deadline=None)
 @given(contours(most=6), st.lists(st.floats(0.05, 0.9), min_size=1, max_size=4), st.booleans())
 def test_random_passes_one_in_the_other(

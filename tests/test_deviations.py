@@ -322,7 +322,7 @@ def shaped(part: dict[str, Any], text: str, radius: float = 2.0) -> list[float]:
     return [one.difference.largest for one in comparisons(text, radius, {"part": [part]})]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_flats_and_slots_are_compared_along_their_walls() -> None:
     flats = "G1 X60. C10. F300/Z-1./G42 X40./X-40./G40 X-60./G1 C-10./G42 X-40./X40./G40 X60."
     text = HEAD + flats.replace("/", "\n") + "\n" + TAIL

@@ -66,7 +66,7 @@ def test_several_drawings_are_several_parts(
     assert "differs from hexagon.dxf" not in result.stdout
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @VARIANTS
 def test_the_tolerance_of_the_command_line(tmp_path: Path, scale: float, turn: float, machine: str) -> None:
     path = tmp_path / "O1.NC"

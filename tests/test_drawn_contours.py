@@ -42,6 +42,7 @@ def test_a_drawn_contour_is_sound(seed: int) -> None:
     assert not rules or _BY_CHANCE & set(rules)
 
 
+@pytest.mark.nightly
 def test_most_drawn_contours_are_clear_of_the_center() -> None:
     assert len(clear_of_center()) > len(SEEDS) / 2
 

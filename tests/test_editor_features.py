@@ -432,6 +432,7 @@ def test_what_is_typed_is_replaced_and_the_page_comes_later() -> None:
 # ---- any text, and what nobody vouches for ----
 
 
+@pytest.mark.nightly
 @settings(max_examples=25, deadline=None)
 @given(
     st.lists(

@@ -104,7 +104,8 @@ def test_the_answer_names_the_place() -> None:
         assert len(error["message"]) < 300
 
 
-@looped(
+@pytest.mark.one_in(12)
+@pytest.mark.parametrize(
     ("messages", "expected"),
     [
         ([HOVER], [(7, -32002)]),
@@ -122,7 +123,6 @@ def test_the_answer_names_the_place() -> None:
         ([BEGIN, {"method": "$/cancelRequest", "params": {"id": 99}}], [(1, 0)]),
         ([BEGIN, {"id": 99, "result": None}, {"id": 98, "error": {"code": 1, "message": ""}}], [(1, 0)]),
     ],
-    one_in=12,
 )
 def test_what_is_not_allowed_now_is_refused(
     messages: Iterable[dict[str, Any]], expected: list[tuple[Any, int]]
@@ -147,7 +147,8 @@ def test_what_is_no_message_is_refused(message: Any, expected: tuple[Any, int]) 
     assert answers(wire(BEGIN, message, HOVER))[:2] == [(1, 0), expected]
 
 
-@looped(
+@pytest.mark.one_in(12)
+@pytest.mark.parametrize(
     "broken",
     [
         b"Content-Length: 3\r\n\r\n{]}",
@@ -160,7 +161,6 @@ def test_what_is_no_message_is_refused(message: Any, expected: tuple[Any, int]) 
         b"G12.1\nG1 X40.\n\n",
         b"x" * 200_000 + b"\n",
     ],
-    one_in=12,
 )
 def test_after_a_broken_message_the_next_one_counts(broken: bytes) -> None:
     assert answers(wire(BEGIN, broken, SHUTDOWN)) == [(1, 0), (None, -32700), (2, 0)]

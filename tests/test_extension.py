@@ -41,6 +41,7 @@ def node(*command: str, **options: Any) -> str:
     return result.stdout
 
 
+@pytest.mark.nightly
 @needs_node
 def test_grammar_and_client_in_node() -> None:
     assert "# fail 0" in node("npm", "--silent", "test")
@@ -59,6 +60,7 @@ def test_the_extension_starts_one_program_whose_path_it_has_searched() -> None:
     assert 'new Connection("polarcheck", "polarcheck", () => this.spawned(line, left)' in SOURCES
 
 
+@pytest.mark.nightly
 @needs_node
 def test_the_package_is_built_from_checked_types(tmp_path: Path) -> None:
     node("npm", "--silent", "run", "types")

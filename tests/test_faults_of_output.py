@@ -152,6 +152,7 @@ def test_a_full_disk_keeps_the_report_of_last_time_and_shows_this_one() -> None:
     assert {path.name for path in Path().iterdir()} == {"a.nc", "b.nc", "many.nc", "r.json", "s.txt"}
 
 
+@pytest.mark.nightly
 @posix
 def test_where_nothing_can_be_written_is_said_and_the_report_is_shown() -> None:
     os.mkfifo("pipe")
@@ -351,6 +352,7 @@ def test_too_little_memory_costs_its_file_only(monkeypatch: pytest.MonkeyPatch) 
     assert bugs == []
 
 
+@pytest.mark.nightly
 @posix
 def test_a_file_that_needs_more_memory_than_there_is_costs_itself_only() -> None:
     Path("huge.nc").write_text(GOOD + "G0 X1.5 Z2.5\n" * 3_000_000)

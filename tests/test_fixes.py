@@ -385,7 +385,7 @@ def test_what_is_refused_stands_in_the_way_of_nothing() -> None:
     assert len(found.fixed) == len(found.refused) == 1
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_of_many_that_are_refused_only_some_are_tried() -> None:
     program = "".join(f"O{number}\n{REFUSED}" for number in range(1, 24))
     job = job_of("1:radius=4", job={"run": {"max_seconds": 1e6}})
@@ -440,9 +440,10 @@ ENCODINGS = {
 }
 
 
+@pytest.mark.one_in(24)
 @pytest.mark.ci
-@looped("end", ENDS, one_in=24)
-@looped("encoding", ENCODINGS)
+@pytest.mark.parametrize("end", ENDS)
+@pytest.mark.parametrize("encoding", ENCODINGS)
 def test_encodings_and_line_ends_stay(encoding: str, end: str) -> None:
     text = "(\N{LATIN CAPITAL LETTER C}AF\u00c9)\n" if encoding not in ("shift_jis",) else "(\u30ab\u30bf)\n"
     program = "%\n" + text + OPEN.replace("G12.1", "G12.1 M8") + "%"
@@ -733,7 +734,7 @@ FAULTS: dict[str, Callable[[str], str]] = {
 PROGRAMS = [path for path in SAMPLES if path.stat().st_size < 3000]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @settings(max_examples=15, deadline=None)
 @given(
     st.sampled_from(PROGRAMS), st.lists(st.sampled_from(sorted(FAULTS)), min_size=1, max_size=4), st.sampled_from(ENDS)
@@ -760,7 +761,7 @@ def never_worse(data: bytes, own: Settings) -> None:
         assert len(after.findings) <= sum(1 + len(one.follows) for one in before.findings)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @pytest.mark.skipif(not CORPUS.is_dir(), reason="the real programs are not here")
 def test_no_real_program_gets_worse() -> None:
     polar, others = (sorted((CORPUS / name).rglob("*")) for name in ("polar", "general"))

@@ -82,6 +82,7 @@ def test_the_reader(data: bytes, setup: int) -> None:
     fuzz_targets.reader(data, setup)
 
 
+@pytest.mark.nightly
 @given(strategies.statements(), strategies.setups)
 @more
 def test_macro_statements(data: bytes, setup: int) -> None:

@@ -15,7 +15,6 @@ from typing import Any
 
 import msgspec
 import pytest
-from cases import looped
 from polarcheck.errors import MachineError
 from programs import job_of
 from test_cli import call
@@ -252,6 +251,7 @@ def run_commands(machine: Machine, program: str) -> None:
     assert feeds.text(FeedReport(schema=1, path="-", machine="", tables=[feed_table(one) for one in tables]))
 
 
+@pytest.mark.nightly
 @pytest.mark.usefixtures("own_folder")
 def test_any_value_of_any_key_is_taken_or_refused_in_one_line() -> None:
     drawn = random.Random(1).sample(list(itertools.product(KEYS, VALUES)), SHARE)  # noqa: S311
@@ -314,6 +314,7 @@ def in_toml(value: Any) -> str:
     return json.dumps(value) if isinstance(value, str) else str(value)
 
 
+@pytest.mark.nightly
 @pytest.mark.usefixtures("own_folder")
 @pytest.mark.parametrize("seed", range(4))
 def test_what_is_nearly_a_value_in_use_is_taken_without_harm_or_refused(seed: int) -> None:
@@ -327,8 +328,9 @@ def test_what_is_nearly_a_value_in_use_is_taken_without_harm_or_refused(seed: in
     assert taken > NEARLY / 4
 
 
+@pytest.mark.one_in(12)
 @pytest.mark.usefixtures("own_folder")
-@looped(
+@pytest.mark.parametrize(
     ("value", "is_sound"),
     [
         ('[""]', False),
@@ -344,7 +346,6 @@ def test_what_is_nearly_a_value_in_use_is_taken_without_harm_or_refused(seed: in
         ('["C2", "H", "Y"]', True),
         ("[]", True),
     ],
-    one_in=12,
 )
 def test_addresses_of_other_controls_are_pairs_that_begin_with_one(value: str, is_sound: bool) -> None:
     def load(base: str) -> Machine:

@@ -245,7 +245,7 @@ def test_what_has_no_bearing_is_silent(blocks: str, machine: str) -> None:
     assert executed(f"{blocks} / M30", machine)[-1] == "M30"
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @pytest.mark.parametrize("name", [OWN, ISO])
 def test_every_statement_of_a_profile_is_told_or_harmless(name: str) -> None:
     """By what the profile says of it, whatever stands behind it."""

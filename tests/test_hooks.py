@@ -113,6 +113,7 @@ def test_a_commit_that_changes_the_lathe_checks_all_programs(tmp_path: Path, mon
         assert commit(tmp_path) == (False, {"polarcheck": "Failed", "polarcheck-config": "Failed"})
 
 
+@pytest.mark.nightly
 @pytest.mark.one_in(6)
 @pytest.mark.parametrize("args", [[], ["--strict", "--machine", "fanuc-30i"]])
 @pytest.mark.parametrize(
@@ -135,6 +136,7 @@ def test_no_name_of_a_file_is_an_option_of_the_hook(
     assert commit(tmp_path) == (True, {"polarcheck": "Passed", "polarcheck-config": "Passed"})
 
 
+@pytest.mark.nightly
 def test_a_commit_that_changes_a_subprogram_or_an_offset_table(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     with_hooks(tmp_path)
@@ -166,6 +168,7 @@ def test_a_commit_that_changes_a_subprogram_or_an_offset_table(tmp_path: Path, m
     assert commit(tmp_path, "new.md") == (True, {"polarcheck": "Passed", "polarcheck-config": skipped})
 
 
+@pytest.mark.nightly
 def test_with_diff_base_only_programs_that_it_concerns(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Arguments of the hook of settings for folders of many programs."""
     monkeypatch.chdir(tmp_path)

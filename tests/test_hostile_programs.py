@@ -156,8 +156,9 @@ def test_block_skip_tells_nothing_twice(slash: str) -> None:
 # ---- what could take time ----
 
 
+@pytest.mark.one_in(6)
 @pytest.mark.ci
-@looped("blank", ["\n", " \n", "%\n", "\r\n", " ", "\n%"], one_in=6)
+@pytest.mark.parametrize("blank", ["\n", " \n", "%\n", "\r\n", " ", "\n%"])
 def test_blank_lines_before_a_called_program_are_read_once(tmp_path: Path, blank: str) -> None:
     """In a process of its own, which is ended if it hangs: read again from each line, this would take hours."""
     (tmp_path / "a.nc").write_text("O1\nG21\nM98 P77\nM30\n", newline="")

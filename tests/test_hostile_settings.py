@@ -227,10 +227,11 @@ def test_what_is_no_file_is_said_to_be_none(kind: str, place: str) -> None:
     assert any(words in error for words in told[kind])
 
 
+@pytest.mark.one_in(12)
 @pytest.mark.ci
 @needs_pipes
-@looped("device", ["/dev/zero", "/dev/random"], one_in=12)
-@looped("place", ["--config", "--machine", "--offsets", "machine", "offsets", "inherits"])
+@pytest.mark.parametrize("device", ["/dev/zero", "/dev/random"])
+@pytest.mark.parametrize("place", ["--config", "--machine", "--offsets", "machine", "offsets", "inherits"])
 def test_a_device_has_no_end(device: str, place: str) -> None:
     make(own__toml=f"inherits = '{device}'\n")
     if place in ("machine", "offsets"):
@@ -296,7 +297,8 @@ def test_inheritance_from_nothing(text: str, told: str) -> None:
 # ---- values of machines ----
 
 
-@looped(
+@pytest.mark.one_in(12)
+@pytest.mark.parametrize(
     ("text", "told"),
     [
         ("[control]\nknown_codes = ['G0-G999999999']", "control.known_codes: 'G0-G999999999' is no code"),
@@ -336,7 +338,6 @@ def test_inheritance_from_nothing(text: str, told: str) -> None:
             "parameters.x: limits.c_feed: expected a number above 0",
         ),
     ],
-    one_in=12,
 )  # fmt: skip
 def test_a_machine_with_values_that_nobody_means(text: str, told: str) -> None:
     make(own__toml=f"inherits = 'fanuc-30i'\n{text}\n")
@@ -395,7 +396,8 @@ def test_each_block_is_an_offset_of_its_own(text: str) -> None:
     assert table(text) == {"1": 1, "2": 2}
 
 
-@looped(
+@pytest.mark.one_in(11)
+@pytest.mark.parametrize(
     ("text", "told"),
     [
         (f"G10 P10001 R{NINES}", "offset 1: radius: expected a number from -1000 to 1000, found inf"),
@@ -410,7 +412,6 @@ def test_each_block_is_an_offset_of_its_own(text: str) -> None:
         ("x" * 16_000_001, "larger than 16 MB; no offset table is"),
         ("G10 P10001 R1." + " " * 50_000_000, "larger than 16 MB; no offset table is"),
     ],
-    one_in=11,
 )
 def test_an_offset_table_that_nobody_means(text: str, told: str) -> None:
     make(offsets__txt=text)

@@ -72,9 +72,10 @@ CASES: dict[str, tuple[str, dict[str, Any]]] = {
 }
 
 
+@pytest.mark.one_in(30)
 @pytest.mark.ci
-@looped("machine", ["fanuc-30i", "siemens-iso", "haas-lathe"], one_in=30)
-@looped("name", CASES)
+@pytest.mark.parametrize("machine", ["fanuc-30i", "siemens-iso", "haas-lathe"])
+@pytest.mark.parametrize("name", CASES)
 def test_the_entry_of_a_shape_and_its_program_agree(tmp_path: Path, name: str, machine: str) -> None:
     text, expected = CASES[name]
     path = tmp_path / "O1.NC"

@@ -504,6 +504,7 @@ def _is_busy(process: int) -> bool:
     return True
 
 
+@pytest.mark.nightly
 @linux
 def test_a_worker_that_somebody_kills_costs_nothing() -> None:
     make(40)
@@ -586,6 +587,7 @@ def test_the_bar_tells_rate_and_what_is_left() -> None:
     assert progress.line(400, 400, 0.0).endswith(", 0:00 left")
 
 
+@pytest.mark.nightly
 @linux
 def test_the_bar_makes_way_for_the_report_and_leaves_nothing() -> None:
     import pty

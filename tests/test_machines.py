@@ -174,7 +174,8 @@ def test_alarms_of_another_control_are_not_inherited(name: str) -> None:
     assert not {"fanuc", "fanuc-16i", "fanuc-30i"} & set(alarms.values()), alarms
 
 
-@looped("name", profiles.names(), one_in=12)
+@pytest.mark.one_in(12)
+@pytest.mark.parametrize("name", profiles.names())
 def test_parameters_set_what_there_is(name: str) -> None:
     """Every setting of every parameter gives a machine that can be loaded."""
     for parameter, meaning in profiles.load(name).machine.known_parameters.items():
@@ -496,7 +497,8 @@ def test_a_value_beside_a_parameter_counts() -> None:
 # ---- a file for a lathe of one's own ----
 
 
-@looped("name", profiles.names(), one_in=12)
+@pytest.mark.one_in(12)
+@pytest.mark.parametrize("name", profiles.names())
 def test_a_new_profile_can_be_read_empty_and_filled_in(name: str) -> None:
     text = new_machine.text("NL2000", name)
     of_parent = profiles.load(name).machine

@@ -137,6 +137,7 @@ def test_what_counts_as_equivalent_is_still_there() -> None:
     assert set(known) <= there
 
 
+@pytest.mark.nightly
 @pytest.mark.skipif(sys.platform == "win32", reason="runs are forks")
 @pytest.mark.skipif(not (mutants.ROOT / ".git").exists(), reason="what is copied is what git lists")
 def test_a_fault_is_killed_by_the_test_that_sees_it() -> None:

@@ -79,12 +79,14 @@ def test_of_many_drawn_archives_none_is_left_out(kind: str, seed: int) -> None:
     verify(seed, kind)
 
 
-@looped("kind", UNRELATED, one_in=7)
+@pytest.mark.one_in(7)
+@pytest.mark.parametrize("kind", UNRELATED)
 def test_a_change_that_concerns_no_program_has_none_checked(kind: str) -> None:
     differs, since, _, in_hook = narrowed(1, UNRELATED[kind], "--select", "rapid-in-polar")
     assert (differs, since, in_hook) == (set(), set(), set())
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("kind", ["link of a drawing", "machine edited", "offset table edited", "extended job edited"])
 def test_cells_that_a_change_is_none_of_are_left_out(kind: str) -> None:
     _, since, _, in_hook = narrowed(2, CHANGES[kind])

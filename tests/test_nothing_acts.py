@@ -233,9 +233,10 @@ def test_no_line_of_a_report_is_a_command_of_a_ci_log(arguments: tuple[str, ...]
     assert not OLD_OF_RUNNER.search(result.stderr)
 
 
+@pytest.mark.one_in(12)
 @pytest.mark.ci
 @without_such_names
-@looped("name", COMMANDS, one_in=12)
+@pytest.mark.parametrize("name", COMMANDS)
 def test_no_line_on_one_file_is_a_command_of_a_ci_log(name: str) -> None:
     for arguments in (("check", name), ("check", f"{name}.gone"), ("feeds", name), ("trace", name), ("init", name)):
         Path(name).write_bytes(PROGRAM.encode())

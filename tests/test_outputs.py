@@ -81,7 +81,7 @@ def test_a_certificate_takes_the_place_of_nothing_that_its_manifest_names(
         assert said in refused("certify", "post.toml", *case, "-o", f"json:{output}")
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_a_golden_trace_that_is_not_there_yet_is_that_of_the_update(post: None) -> None:
     Path("golden/indexing.jsonl").unlink()
     said = "-o golden/indexing.jsonl: is a golden trace of the manifest; name another file"

@@ -34,10 +34,11 @@ def flats(count: int, distance: float = 12.0, half: float = 22.0, first: float =
     return [Section(flat(distance, half), (first + number * 360 / count) % 360) for number in range(count)]
 
 
+@pytest.mark.one_in(16)
 @pytest.mark.ci
-@looped(("control", "inch"), VARIATIONS, one_in=16)
-@looped("first", [0.0, 15.0])
-@looped(("count", "name"), [(3, "triangle"), (4, "square"), (6, "hexagon"), (8, "octagon")])
+@pytest.mark.parametrize(("control", "inch"), VARIATIONS)
+@pytest.mark.parametrize("first", [0.0, 15.0])
+@pytest.mark.parametrize(("count", "name"), [(3, "triangle"), (4, "square"), (6, "hexagon"), (8, "octagon")])
 def test_flats_with_c_between_them_are_one_shape(count: int, name: str, first: float, control: str, inch: bool) -> None:
     (shape,) = made(flats(count, first=first), control, inch)
     assert shape.shape == name
@@ -48,9 +49,10 @@ def test_flats_with_c_between_them_are_one_shape(count: int, name: str, first: f
     assert (shape.line, shape.end_line) == (shape.sections[0].line, shape.sections[0].end_line)
 
 
+@pytest.mark.one_in(12)
 @pytest.mark.ci
-@looped(("control", "inch"), VARIATIONS, one_in=12)
-@looped("first", [0.0, 30.0])
+@pytest.mark.parametrize(("control", "inch"), VARIATIONS)
+@pytest.mark.parametrize("first", [0.0, 30.0])
 def test_two_flats_are_a_part_with_two_flats(first: float, control: str, inch: bool) -> None:
     (shape,) = made(flats(2, half=14.0, first=first), control, inch)
     assert (shape.shape, shape.values["flats"]) == ("flats", 2)
@@ -154,8 +156,9 @@ def test_a_shape_in_a_shape_keeps_its_own_section() -> None:
     assert outside.line < inside.line
 
 
-@looped(("control", "inch"), VARIATIONS, one_in=12)
-@looped("first", [0.0, 15.0])
+@pytest.mark.one_in(12)
+@pytest.mark.parametrize(("control", "inch"), VARIATIONS)
+@pytest.mark.parametrize("first", [0.0, 15.0])
 def test_flats_that_close_no_polygon_are_told_with_their_angles(first: float, control: str, inch: bool) -> None:
     entries = [first + angle for angle in (0.0, 60.0, 120.0, 180.0, 240.0)]
     (shape,) = made([Section(flat(12.0, 14.0), angle) for angle in entries], control, inch)
@@ -206,9 +209,10 @@ def path(distance: float, angle: float, radius: float = 8.0) -> Section:
     return Section([complex(distance + radius, -40), complex(distance + radius, 40)], angle, side=40, approach=60.0)
 
 
+@pytest.mark.one_in(12)
 @pytest.mark.ci
-@looped(("control", "inch"), VARIATIONS, one_in=12)
-@looped("first", [0.0, 10.0])
+@pytest.mark.parametrize(("control", "inch"), VARIATIONS)
+@pytest.mark.parametrize("first", [0.0, 10.0])
 def test_paths_of_the_center_are_put_together_likewise(first: float, control: str, inch: bool) -> None:
     (shape,) = made([path(12.0, first + angle) for angle in (0.0, 120.0, 240.0)], control, inch, 8.0, stock=40.0)
     assert shape.shape == "triangle"
@@ -249,10 +253,11 @@ def test_json_has_the_sections() -> None:
     ]
 
 
+@pytest.mark.one_in(8)
 @pytest.mark.ci
-@looped("inch", [False, True], one_in=8)
-@looped("control", ["fanuc", "haas-lathe"])
-@looped("entry", [0.0, 20.0])
+@pytest.mark.parametrize("inch", [False, True])
+@pytest.mark.parametrize("control", ["fanuc", "haas-lathe"])
+@pytest.mark.parametrize("entry", [0.0, 20.0])
 def test_a_section_that_no_part_is_for_is_told_as_what_it_makes(entry: float, control: str, inch: bool) -> None:
     sections = [Section(polygon(6, 25.4), entry), Section(polygon(4, 20.32), entry, depths=(-2.54,))]
     Path("a.nc").write_text(program(sections, control, inch))
@@ -277,9 +282,10 @@ def of_init(sections: list[Section], control: str = "fanuc", inch: bool = False)
     return call("init", "--part", "a.nc", "--machine", control, "--tool", tool(3, inch)).stdout
 
 
+@pytest.mark.one_in(14)
 @pytest.mark.ci
-@looped(("control", "inch"), VARIATIONS, one_in=14)
-@looped("first", [0.0, 15.0])
+@pytest.mark.parametrize(("control", "inch"), VARIATIONS)
+@pytest.mark.parametrize("first", [0.0, 15.0])
 def test_what_sections_make_together_agrees_with_the_part_that_is_written_of_it(
     first: float, control: str, inch: bool
 ) -> None:

@@ -63,7 +63,7 @@ def test_closed_contours_that_end_past_their_start() -> None:
     assert [seed for seed in range(40) if not is_seen(contour(seed))] == []
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_many_closed_contours_that_end_past_their_start() -> None:
     assert [seed for seed in range(40, 200) if not is_seen(contour(seed))] == []
 

@@ -105,6 +105,7 @@ def patterns() -> dict[str, Used]:
     return used
 
 
+@pytest.mark.nightly
 def test_every_pattern_of_the_package_is_tried() -> None:
     """A call that builds a pattern at run time, and that build_every_pattern does not reach, is named here."""
     places = {used.place for used in patterns().values()}
@@ -115,12 +116,14 @@ def test_every_pattern_of_the_package_is_tried() -> None:
     }
 
 
+@pytest.mark.nightly
 def test_the_methods_of_a_pattern_are_known_after_many_others_were_compiled() -> None:
     before, _ = constant_patterns()
     re.purge()
     assert [used.methods for used in constant_patterns()[0]] == [used.methods for used in before]
 
 
+@pytest.mark.nightly
 @looped("part", range(8), one_in=4)
 def test_no_pattern_costs_more_than_the_length_of_its_text(part: int) -> None:
     """Slow, since it tries each part of each pattern: 90,000 texts of nine sizes. A new pattern is tried by itself."""

@@ -121,7 +121,7 @@ def test_without_a_section_nothing_has_a_place(program: str) -> None:
 NOWHERE = {"number-without-point", "too-many-digits"}
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_all_findings_of_drawn_sections_have_a_place() -> None:
     rules = load_all()
     seen = set[str]()

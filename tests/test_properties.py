@@ -120,6 +120,7 @@ THROUGH_CENTER = [Move(0.002 + 0.004j), Move(-20 - 40j), Move(0.002 + 0.004j), M
 PAST_CENTER = [Move(38 + 39.998j), Move(-38.002 - 40j), Move(-0.002 + 0j), Move(0j), Move(0.002 - 0.002j)]
 
 
+@pytest.mark.nightly
 @given(contours(), st.data())
 @settings(max_examples=EXAMPLES, deadline=None)
 def test_spelling_changes_nothing(moves: list[Move], data: st.DataObject) -> None:
@@ -249,6 +250,7 @@ def test_radius_zero_gives_the_programmed_path(corner: float) -> None:
     np.testing.assert_allclose(ours.end, programmed.end[moved], atol=1e-9)
 
 
+@pytest.mark.nightly
 @given(contours(), st.floats(500, 20_000), st.floats(1, 3))
 @settings(max_examples=EXAMPLES, deadline=None)
 def test_raising_a_limit_adds_no_finding(moves: list[Move], limit: float, more: float) -> None:
@@ -259,6 +261,7 @@ def test_raising_a_limit_adds_no_finding(moves: list[Move], limit: float, more: 
     assert {(f.line, f.rule) for f in high.findings} <= {(f.line, f.rule) for f in low.findings}
 
 
+@pytest.mark.nightly
 @given(contours())
 @settings(max_examples=EXAMPLES, deadline=None)
 def test_splitting_a_move_changes_no_finding(moves: list[Move]) -> None:
@@ -286,6 +289,7 @@ def test_any_bytes_give_a_report(data: bytes) -> None:
     assert msgspec.json.decode(msgspec.json.encode(report))["path"] == "-"
 
 
+@pytest.mark.nightly
 @given(st.text(alphabet="GMXYZCUWHIJKRFTSNO%();/#[]=.-+0123456789 \n<>ABWHILEDOT", max_size=300))
 @settings(max_examples=200, deadline=None)
 def test_any_text_like_a_program_gives_a_report(text: str) -> None:

@@ -9,7 +9,6 @@ from itertools import pairwise
 from pathlib import Path
 
 import pytest
-from cases import looped
 from click.testing import CliRunner
 from polarcheck.errors import PolarcheckError
 from test_certify import EXAMPLE
@@ -171,8 +170,9 @@ def lead_to(route: str, folder: str) -> None:
     Path("post.toml").write_text(manifest(path.as_posix()))
 
 
+@pytest.mark.one_in(21)
 @pytest.mark.ci
-@looped("route", ROUTES, one_in=21)
+@pytest.mark.parametrize("route", ROUTES)
 def test_no_text_of_a_file_outside_is_quoted(route: str) -> None:
     lead_to(route, "../secret")
     assert not quotes(secret_of(route))
@@ -230,7 +230,7 @@ def golden() -> None:
     Path("post.toml").write_text(text.replace('golden = "golden/', 'golden = "../secret/golden/'), "utf-8")
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @pytest.mark.usefixtures("golden")
 def test_a_golden_trace_outside_is_compared_and_not_quoted() -> None:
     assert certificate()[0] == "pass"

@@ -170,7 +170,7 @@ def test_extents_of_a_polygon_with_round_corners_are_those_of_its_arcs() -> None
     assert wrong == []
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_words_of_drawn_contours_are_what_their_cutters_leave() -> None:
     wrong = []
     for seed in range(80):

@@ -278,7 +278,7 @@ MORE = [
 ]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @given(
     st.one_of(
         st.binary(max_size=80), st.lists(st.sampled_from(PARTS + MORE)).map(lambda parts: "".join(parts).encode())

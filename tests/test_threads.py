@@ -115,6 +115,7 @@ def test_threads_may_begin_with_the_same_function(post: None) -> None:
     assert results_of("machine", 2) == results_of("machine", 1)
 
 
+@pytest.mark.nightly
 @pytest.mark.one_in(28)
 @pytest.mark.parametrize("threads", [2, 8])
 @pytest.mark.parametrize("name", FUNCTIONS)

@@ -134,7 +134,8 @@ CASES = [
 ]
 
 
-@looped(("name", "method"), CASES, one_in=12)
+@pytest.mark.one_in(12)
+@pytest.mark.parametrize(("name", "method"), CASES)
 def test_the_tool_stays_on_the_contour_and_is_nowhere_faster_than_f(name: str, method: str) -> None:
     contour = CONTOURS[name]
     text, said = unrolled(contour.program, *METHODS[method], *contour.options)

@@ -54,8 +54,9 @@ def deselected(report: dict[str, Any]) -> list[str]:
 # ---- no exit policy, no selection makes a pass ----
 
 
+@pytest.mark.one_in(12)
 @pytest.mark.ci
-@looped(
+@pytest.mark.parametrize(
     ("options", "code"),
     [
         ("--fail-on never", 0),
@@ -68,7 +69,6 @@ def deselected(report: dict[str, Any]) -> list[str]:
         ("--severity rapid-in-polar=warning --max-warnings 1", 0),
         ("--severity rapid-in-polar=warning --fail-on never --max-warnings 0", 1),
     ],
-    one_in=12,
 )
 def test_what_fails_a_file_does_not_hang_on_the_exit_code(options: str, code: int) -> None:
     make(a__nc=RAPID)
@@ -78,7 +78,8 @@ def test_what_fails_a_file_does_not_hang_on_the_exit_code(options: str, code: in
     assert failed.attrib["failures"] == "1"
 
 
-@looped(
+@pytest.mark.one_in(12)
+@pytest.mark.parametrize(
     ("options", "environment", "line"),
     [
         ("--select polar-never-left", {}, "145 rules were deselected by --select polar-never-left"),
@@ -92,7 +93,6 @@ def test_what_fails_a_file_does_not_hang_on_the_exit_code(options: str, code: in
         ("--severity overcut=note", {}, "overcut was lowered to a note by --severity overcut=note"),
         ("--set severities.overcut=off", {}, "overcut was switched off by severities.overcut of --set, which gives no"),
     ],
-    one_in=12,
 )  # fmt: skip
 def test_a_selection_of_rules_is_no_pass(options: str, environment: dict[str, str], line: str) -> None:
     make(a__nc=GOOD)
@@ -136,7 +136,8 @@ def test_a_program_without_a_polar_section_was_not_looked_at_either() -> None:
     assert check("a.nc", "--ignore", "word-repeated")["files"][0]["verdict"] == "unverified"
 
 
-@looped(
+@pytest.mark.one_in(12)
+@pytest.mark.parametrize(
     ("written", "line"),
     [
         (f"ignore = {{ rules = ['rapid-in-polar'], reason = '{REASON}' }}", ""),
@@ -150,7 +151,6 @@ def test_a_program_without_a_polar_section_was_not_looked_at_either() -> None:
         (f"[[programs]]\nfiles = ['*']\nignore = {{ rules = ['polar'], reason = '{REASON}' }}", ""),
         ("[[programs]]\nfiles = ['*']\nignore = ['rapid-in-polar']", "rapid-in-polar was deselected by ignore of"),
     ],
-    one_in=12,
 )  # fmt: skip
 def test_a_job_file_keeps_the_pass_with_a_reason(written: str, line: str) -> None:
     make(f"{written}\n{JOB}" if "[[" not in written else f"{JOB}\n{written}\n", a__nc=RAPID)
@@ -432,7 +432,8 @@ def test_a_bug_and_a_lost_worker_leave_a_file_that_did_not_pass(monkeypatch: pyt
     assert check("a.nc")["files"][0]["reason"] == "there is not enough memory to check it"
 
 
-@looped("form", [form for form in formats() if form not in ("concise", "html")], one_in=12)
+@pytest.mark.one_in(12)
+@pytest.mark.parametrize("form", [form for form in formats() if form not in ("concise", "html")])
 def test_every_report_says_that_the_run_was_interrupted(form: str) -> None:
     make(a__nc=GOOD, b__nc=GOOD, c__nc=GOOD)
     outcome = batch.outcome
