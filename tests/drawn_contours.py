@@ -34,7 +34,6 @@ class Control:
 
 
 _FANUC_HEAD = ("O1", "G21 G40 G97 G98", "T0101", "G28 H0", "M13 S3000")
-_SYSTEM_A = "fanuc", "fanuc-30i", "doosan", "haas-lathe"
 _END = ("G0 X100. Z50.", "M30")
 CONTROLS = (
     Control("fanuc", _FANUC_HEAD, "G12.1", "G13.1", _END),

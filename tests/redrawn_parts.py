@@ -194,12 +194,6 @@ def _between_flats(values: Values) -> Any:
     return _within(directions, [values[f"distance_{number}"] for number in numbers])
 
 
-def _open_regular(values: Values) -> Drawn:
-    count = round(values["sides"])
-    area = _within(_round_about(count), [values["across_flats"] / 2] * count)
-    return Drawn(area, area, open=True)
-
-
 def _slot(values: Values) -> Drawn:
     half = values["width"] / 2
     if "length" not in values:
