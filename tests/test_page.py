@@ -124,7 +124,7 @@ def test_a_library_stands_once_in_the_page_or_beside_it() -> None:
     within = page([picture(hexagon()), picture(hexagon())], library=LIBRARY)
     assert within.count(LIBRARY) == 1
     assert not any("src" in attributes for attributes in Reader(within).named("script"))
-    beside = Reader(page([picture(hexagon())], beside="plotly.min.js"))
+    beside = Reader(page([picture(hexagon())], script_path="plotly.min.js"))
     assert [attributes["src"] for attributes in beside.named("script") if "src" in attributes] == ["plotly.min.js"]
 
 

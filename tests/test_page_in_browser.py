@@ -64,7 +64,7 @@ def address(tmp_path_factory: pytest.TempPathFactory) -> str:
     whole = picture(hexagon(blocks=blocks, marks=[notch()]), findings=found)
     folder = tmp_path_factory.mktemp("page")
     (folder / "plotly.min.js").write_text(plotly.get_plotlyjs(), "utf-8")
-    (folder / "beside.html").write_text(page([whole], beside="plotly.min.js"), "utf-8")
+    (folder / "beside.html").write_text(page([whole], script_path="plotly.min.js"), "utf-8")
     (folder / "page.html").write_text(page([whole], library=plotly.get_plotlyjs()), "utf-8")
     return (folder / "page.html").as_uri()
 

@@ -17,16 +17,16 @@ from polarcheck.reports.pages.resting import resting
 from polarcheck.rules.examples import examples
 from polarcheck.rules.rule import load_all
 from polarcheck.view.finding_views import with_followers
-from polarcheck.view.picture_data import Drawn, Place, key_of
+from polarcheck.view.picture_data import Drawn, FindingLocation, key_of
 from polarcheck.view.run_drawing import drawn, listing, split
 
 
-def pictured(program: str, *tools: str, **changes: Any) -> tuple[dict[str, Place], Drawn]:
+def pictured(program: str, *tools: str, **changes: Any) -> tuple[dict[str, FindingLocation], Drawn]:
     """The place of the first finding of each rule, and all that is drawn."""
     runs = check.read(program.encode(), machine_of("fanuc", changes), job_of(*tools), "x.nc")
     report, found = split(drawn(check.check_runs(runs, list(load_all().values())), runs))
     assert found is not None
-    places: dict[str, Place] = {}
+    places: dict[str, FindingLocation] = {}
     for finding in with_followers([*report.findings, *report.silenced]):
         places.setdefault(finding.rule, found.places[key_of(finding)])
     return places, found

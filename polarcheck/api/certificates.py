@@ -33,5 +33,5 @@ def certify(path: str | Path, *, cases: Iterable[str] = (), max_size: int = file
     bug = next((run.bug for run in case_runs.values() if run.bug is not None), None)
     if bug is not None:
         raise bug
-    certified = certifying.judged(loaded, settings, case_runs)
+    certified = certifying.certified_cases(loaded, settings, case_runs)
     return certifying.certificate(loaded, {name: certified[name] for name in chosen})

@@ -114,11 +114,11 @@ def _certify(
     bugs = [run.bug for run in case_runs.values() if run.bug is not None]
     for bug in bugs:
         say_lines(bug_lines(bug, debug))
-    certified = certifying.judged(loaded, settings, case_runs)
+    certified = certifying.certified_cases(loaded, settings, case_runs)
     status = CLEAN
     if update:
         status = _update(loaded, certified, frozenset(chosen))
-        certified = certifying.judged(loaded, settings, case_runs)
+        certified = certifying.certified_cases(loaded, settings, case_runs)
     certificate = certifying.certificate(loaded, {name: certified[name] for name in certified if name in chosen})
     for extra_form, output in outputs:
         files.write(output, _report(certificate, extra_form))

@@ -158,7 +158,7 @@ class Folder(Pictures):
             super().store(outcome, drawn)
         name = self._names[report.path]
         pictured = picture(report, self._background._replace(drawn={report.path: drawn}))
-        write(self._folder / name, page([pictured], beside=FILE_NAME))
+        write(self._folder / name, page([pictured], script_path=FILE_NAME))
         self._entries.append(entry(report, name))
 
     def miss(self, report: FileReport) -> None:

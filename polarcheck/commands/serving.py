@@ -232,7 +232,7 @@ class _Pages(picturing.Pictures):
         pictured = picture(report, self._background._replace(drawn={report.path: drawn}))
         version = hashlib.sha256(msgspec.json.encode(pictured)).hexdigest()[:_DIGITS]
         self._put(
-            self.names[report.path], page([pictured], beside=FILE_NAME, version=version, sources="'self'"), version
+            self.names[report.path], page([pictured], script_path=FILE_NAME, version=version, sources="'self'"), version
         )
 
     def miss(self, report: FileReport) -> None:

@@ -130,13 +130,13 @@ class SectionMoves:
         moves, trace = self.moves, self.trace
         row, limit = moves.row[chosen], trace.machine.limits.c_feed
         numbers = _sequence_numbers(trace)
-        written = {each: block_in_line(trace.run, each, _BLOCK) for each in np.unique(row).tolist()}
-        number = {each: numbers.get(each, "") for each in written}
+        written = {unique_row: block_in_line(trace.run, unique_row, _BLOCK) for unique_row in np.unique(row).tolist()}
+        number = {unique_row: numbers.get(unique_row, "") for unique_row in written}
         roles = cast("tuple[Role, ...]", ROLES)
         return MoveTable(
             line=trace.blocks.line_in_file[row].tolist(),
-            number=[number[each] for each in row.tolist()],
-            block=[written[each] for each in row.tolist()],
+            number=[number[unique_row] for unique_row in row.tolist()],
+            block=[written[unique_row] for unique_row in row.tolist()],
             role=[roles[role] for role in self.role[chosen].tolist()],
             start=pairs(moves.start[chosen]),
             end=pairs(moves.end[chosen]),
@@ -169,30 +169,30 @@ def _with_standing(trace: Trace, dynamics: Dynamics) -> tuple[Moves, Rows]:
     if not len(row):
         return moves, np.arange(len(moves))
     # Each pass of an infeed cycle runs over the same rows again.
-    at = np.searchsorted(np.maximum.accumulate(moves.row), row)
-    last = np.append(moves.end, complex(np.nan, np.nan))[at - 1]
-    follows = np.append(moves.section, -1)[at - 1] == trace.mode.section[row]
-    place = np.where(follows, last, trace.path.end[row])
+    insertion = np.searchsorted(np.maximum.accumulate(moves.row), row)
+    last = np.append(moves.end, complex(np.nan, np.nan))[insertion - 1]
+    follows = np.append(moves.section, -1)[insertion - 1] == trace.mode.section[row]
+    point = np.where(follows, last, trace.path.end[row])
     nowhere = np.full(len(row), complex(np.nan, np.nan))
     off = np.where(trace.compensation.compensates[row], Phase.OFFSET, Phase.CANCELLED)
-    known = np.append(moves.known, True)[at - 1]
+    is_known = np.append(moves.known, True)[insertion - 1]
     still: dict[str, Any] = {
         "row": row,
         "section": trace.mode.section[row],
         "kind": np.int16(Motion.LINE),
-        "start": place,
-        "end": place,
+        "start": point,
+        "end": point,
         "center": nowhere,
         "feed": trace.feedrate.feed[row],
         "rise": 0.0,
         "arc_share": 1.0,
-        "known": np.where(follows, known, True) & ~np.isnan(place),
+        "known": np.where(follows, is_known, True) & ~np.isnan(point),
         "phase": off,
         "corner": False,
         "allowance": 0.0,
     }
-    columns = {name: np.insert(getattr(moves, name), at, values) for name, values in still.items()}
-    return Moves(entry=moves.entry, c_axis=moves.c_axis, **columns), np.insert(np.arange(len(moves)), at, -1)
+    columns = {name: np.insert(getattr(moves, name), insertion, values) for name, values in still.items()}
+    return Moves(entry=moves.entry, c_axis=moves.c_axis, **columns), np.insert(np.arange(len(moves)), insertion, -1)
 
 
 def _centers(kind: States, center: Points) -> list[tuple[float, float] | None]:
@@ -200,8 +200,8 @@ def _centers(kind: States, center: Points) -> list[tuple[float, float] | None]:
     is_arc = is_among(kind, (Motion.CW, Motion.CCW)) & ~np.isnan(center)
     rounded = np.round(center, LENGTH) + 0.0
     return [
-        (x, c) if known else None
-        for x, c, known in zip(rounded.real.tolist(), rounded.imag.tolist(), is_arc.tolist(), strict=True)
+        (x, c) if has_center else None
+        for x, c, has_center in zip(rounded.real.tolist(), rounded.imag.tolist(), is_arc.tolist(), strict=True)
     ]
 
 

@@ -22,11 +22,11 @@ def frame(point: Points, radius: float | None, bar: float) -> tuple[float, float
     radius: of the cutter; None if unknown [mm].
     bar: the diameter of the bar; NaN if unknown [mm].
     """
-    known = np.append(point[np.isfinite(point)], 0)
+    finite = np.append(point[np.isfinite(point)], 0)
     reach = abs(radius) if radius is not None else 0.0
     outside = bar / 2 if bar > 0 else 0.0
-    low = [min(float(column.min()) - reach, -outside) for column in (known.real, known.imag)]
-    high = [max(float(column.max()) + reach, outside) for column in (known.real, known.imag)]
+    low = [min(float(column.min()) - reach, -outside) for column in (finite.real, finite.imag)]
+    high = [max(float(column.max()) + reach, outside) for column in (finite.real, finite.imag)]
     room = _AROUND * max(high[0] - low[0], high[1] - low[1], 1.0)
     x0, c0, x1, c1 = (round(value, LENGTH) for value in (*(end - room for end in low), *(end + room for end in high)))
     return x0, c0, x1, c1

@@ -43,10 +43,10 @@ def face_view(
     cells[grid.touched(center)] = _CENTER
     cells[grid.touched(marks)] = _MARK
     lines = ["".join(row) for row in cells]
-    at = int(np.flatnonzero(grid.touched(center).any(axis=1))[0])
-    shown = [_painted(line.rstrip(), paint) for line in lines]
-    shown[at] = _painted(lines[at], paint) + paint("aside", _C0)
-    return shown
+    center_line = int(np.flatnonzero(grid.touched(center).any(axis=1))[0])
+    painted = [_painted(line.rstrip(), paint) for line in lines]
+    painted[center_line] = _painted(lines[center_line], paint) + paint("aside", _C0)
+    return painted
 
 
 class _Grid:

@@ -105,8 +105,8 @@ class Spots:
             order = np.argsort(of_rule.finding, kind="stable")
             bounds = np.searchsorted(of_rule.finding[order], np.arange(len(of_rule.findings) + 1))
             for number, finding in enumerate(of_rule.findings):
-                own = of_rule.index[order[bounds[number] : bounds[number + 1]]]
-                elements.setdefault((rule, finding.line, finding.column), own)
+                indices = of_rule.index[order[bounds[number] : bounds[number + 1]]]
+                elements.setdefault((rule, finding.line, finding.column), indices)
         return elements
 
     @cached_property
@@ -139,13 +139,13 @@ class Spots:
         x, c = finding.values.get("plane_x"), finding.values.get("plane_c")
         if not isinstance(x, float | int) or not isinstance(c, float | int):
             return []
-        known = [complex(x, c)]
+        points = [complex(x, c)]
         if rule is not None and rule.over == "rows":
             for row in rows[1:_LOOKED_UP]:
                 with contextlib.suppress(TooHardError):
                     details = details_of(rule, self.tables, Hit(self.trace, places.of_row(self.tables, row), []))
-                    known.append(complex(details["plane_x"], details["plane_c"]))
-        return known
+                    points.append(complex(details["plane_x"], details["plane_c"]))
+        return points
 
     def _rows(self, finding: Finding) -> tuple[list[int], list[int]]:
         """Return the rows of a finding, those of its line first, and its other lines."""
@@ -212,8 +212,8 @@ class Face:
         if path.travels[row] and not np.isnan(path.start[row] + path.end[row]):
             if where == Where.END_OF_CONTOUR:
                 return complex(path.end[row])
-            moves, own = self._table.moves, self.moves_of(row)
-            if where != Where.CONTOUR and len(own) and self._table.is_known[move := self.move(row, where)]:
+            moves, indices = self._table.moves, self.moves_of(row)
+            if where != Where.CONTOUR and len(indices) and self._table.is_known[move := self.move(row, where)]:
                 if where == Where.NEAREST:
                     return _nearest_point(*(column[move] for column in moves.shape))
                 return _middle(*moves.shape, move)
@@ -223,35 +223,39 @@ class Face:
 
     def move(self, row: int, where: Where) -> int:
         """Return the move of a row that is drawn for it, else the last move before it; -1 if there is none."""
-        own, moves = self.moves_of(row), self._table.moves
-        if not len(own):
+        indices, moves = self.moves_of(row), self._table.moves
+        if not len(indices):
             before = int(np.searchsorted(self._rows, row))
             return int(self._order[before - 1]) if before else -1
-        is_nearest = where == Where.NEAREST and not np.isnan(moves.nearest[own]).all()
-        return int(own[np.nanargmin(moves.nearest[own]) if is_nearest else np.argmax(np.nan_to_num(moves.length[own]))])
+        is_nearest = where == Where.NEAREST and not np.isnan(moves.nearest[indices]).all()
+        return int(
+            indices[
+                np.nanargmin(moves.nearest[indices]) if is_nearest else np.argmax(np.nan_to_num(moves.length[indices]))
+            ]
+        )
 
     def _standing(self, row: int) -> complex:
         """Return where the tool stands behind a row without a move on the plane [mm]."""
         trace, moves = self.trace, self._table.moves
         section = self.nearest_section(row)
-        known = np.flatnonzero((moves.section == section) & ~np.isnan(moves.start + moves.end))
+        known_moves = np.flatnonzero((moves.section == section) & ~np.isnan(moves.start + moves.end))
         is_inside = trace.mode.section[row] >= 0
         if is_inside:
-            before = int(np.searchsorted(moves.row[known], row, side="right"))
+            before = int(np.searchsorted(moves.row[known_moves], row, side="right"))
             if before:
-                return complex(moves.end[known[before - 1]])
-            place = complex(trace.path.end[row])
+                return complex(moves.end[known_moves[before - 1]])
+            point = complex(trace.path.end[row])
         elif section >= 0:
             # Where C is not known the tool is drawn on the X axis.
             turn = float(trace.path.c_angle[row]) - float(trace.path.section_entry[section])
-            place = cmath.rect(float(trace.path.x[row]), math.radians(trace.path.c_axis.sense * np.nan_to_num(turn)))
+            point = cmath.rect(float(trace.path.x[row]), math.radians(trace.path.c_axis.sense * np.nan_to_num(turn)))
         else:
             return complex(math.nan)
-        if cmath.isnan(place) and len(known):
+        if cmath.isnan(point) and len(known_moves):
             # Nobody knows where it stands there: where it is known next, or was known last.
-            is_before = row < moves.row[known[0]]
-            place = complex(moves.start[known[0]] if is_before else moves.end[known[-1]])
-        return place
+            is_before = row < moves.row[known_moves[0]]
+            point = complex(moves.start[known_moves[0]] if is_before else moves.end[known_moves[-1]])
+        return point
 
     def nearest_section(self, row: int) -> int:
         """Return the section of a row or, outside sections, the nearest one; -1 if there is none."""
@@ -269,8 +273,8 @@ class Face:
 
 def _middle(start: Points, end: Points, center: Points, kind: States, index: int) -> complex:
     """Return the point in the middle of a move [mm]."""
-    at = slice(index, index + 1)
-    sweep = float(arc_sweep(start[at], end[at], center[at], np.asarray(kind[at]))[0])
+    element = slice(index, index + 1)
+    sweep = float(arc_sweep(start[element], end[element], center[element], np.asarray(kind[element]))[0])
     if kind[index] in (Motion.CW, Motion.CCW) and not cmath.isnan(complex(center[index])):
         middle = complex(center[index])
         return middle + complex(start[index] - middle) * cmath.exp(0.5j * sweep)
@@ -291,11 +295,11 @@ def _nearest_point(start: complex, end: complex, center: complex, kind: int) -> 
         turn = cmath.phase((toward - center) / (start - center)) if radius > ZERO else 0.0
         turn = turn % (2 * math.pi) if sweep > 0 else -(-turn % (2 * math.pi))
         return toward if abs(turn) <= abs(sweep) else ends
-    way = end - start
-    if abs(way) <= ZERO:
+    chord = end - start
+    if abs(chord) <= ZERO:
         return ends
-    share = -(start * way.conjugate()).real / abs(way) ** 2
-    return start + share * way if 0 < share < 1 else ends
+    share = -(start * chord.conjugate()).real / abs(chord) ** 2
+    return start + share * chord if 0 < share < 1 else ends
 
 
 def with_followers(findings: Sequence[Finding]) -> Iterator[Finding]:

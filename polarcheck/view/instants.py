@@ -28,20 +28,20 @@ def samples(path: Segments, held_at: float, sense: int, most: int) -> Samples:
     sense: 1 where C grows with the angle on the plane, -1 where it falls.
     most: how many points may remain, which limits how many are computed.
     """
-    ways = _Ways(path)
-    of, share = ways.first_shares()
+    sampler = _Sampler(path)
+    of, share = sampler.first_shares()
     if len(of) <= _ADDED * most:
-        of, share = ways.refined(of, share, _ADDED * most)
+        of, share = sampler.refined(of, share, _ADDED * most)
     # In the center C jumps, or turns while the tool waits: two points, before and behind it.
-    at_center = path.jumps[of] & (share == ways.ahead[of])
+    at_center = path.jumps[of] & (share == sampler.ahead[of])
     count = 1 + at_center
     is_behind = np.repeat(at_center, count)
     is_behind[1:] &= np.diff(np.repeat(np.arange(len(of)), count)) == 0
     is_behind[:1] = False
     of, share, at_center = (np.repeat(column, count) for column in (of, share, at_center))
-    point, along = ways.at(of, share)
+    point, along = sampler.at(of, share)
     point = np.where(at_center, 0, point)
-    toward = _seen(point, along, share, is_behind | (path.jumps[of] & (share > ways.ahead[of])))
+    toward = _seen(point, along, share, is_behind | (path.jumps[of] & (share > sampler.ahead[of])))
     far = np.abs(point)
     stands = along == 0
     per_way = np.where(stands, 0.0, np.degrees(cross(point, along) / far**2))
@@ -51,7 +51,7 @@ def samples(path: Segments, held_at: float, sense: int, most: int) -> Samples:
     waits = at_center & (path.waits[of] > 0)
     return Samples(
         move=path.move[of],
-        t=ways.time(of, share, is_behind),
+        t=sampler.time(of, share, is_behind),
         c_feed=np.where(waits, held_at, sense * feed * per_way),
         x_feed=np.where(waits, 0.0, feed * outward),
         feed=np.where(waits, 0.0, feed),
@@ -79,7 +79,7 @@ def _turned_by(move: Rows, toward: Points, is_behind: Mask) -> Floats:
     return np.asarray(total - total[np.maximum.accumulate(np.where(begins, np.arange(len(move)), 0))])
 
 
-class _Ways:
+class _Sampler:
     """
     Segments by the share of their length, from 0 to 1.
 
@@ -142,11 +142,11 @@ class _Ways:
         passes = (self.ahead > 0) & (self.ahead < 1)
         # Each segment has its two ends, count - 1 points that divide its length, as many that divide the turn of C, and
         # the nearest point, where rates are highest.
-        each = 2 * count + passes
-        of = np.repeat(np.arange(len(count)), each)
-        place = np.arange(len(of)) - np.repeat(np.cumsum(each) - each, each)
-        evenly = place <= count[of]
-        share = np.where(evenly, place / count[of], (place - count[of]) / count[of])
+        counts = 2 * count + passes
+        of = np.repeat(np.arange(len(count)), counts)
+        number = np.arange(len(of)) - np.repeat(np.cumsum(counts) - counts, counts)
+        evenly = number <= count[of]
+        share = np.where(evenly, number / count[of], (number - count[of]) / count[of])
         seen = self._seen_first[of] + share * turn[of]
         of_line = (self._offset[of] * np.tan(seen) - self._foot[of]) / self._long[of]
         of_arc = (_turned(seen, self._narrow[of]) - self._first[of]) / np.abs(self._sweep[of])
@@ -154,7 +154,7 @@ class _Ways:
         # Through the center all of the turn is in one point.
         by_turn = np.where(self.path.jumps[of], share, by_turn)
         share = np.clip(np.where(evenly | ~np.isfinite(by_turn), share, by_turn), 0.0, 1.0)
-        share = np.where(place == 2 * count[of], self.ahead[of], share)
+        share = np.where(number == 2 * count[of], self.ahead[of], share)
         order = np.lexsort((share, of))
         of, share = of[order], share[order]
         differs = np.append(True, (np.diff(of) != 0) | (np.diff(share) != 0))[: len(of)]
@@ -163,18 +163,18 @@ class _Ways:
     def refined(self, of: Rows, share: Floats, most: int) -> tuple[Rows, Floats]:
         """Return the points with others between them, where a straight line is off; at most about `most` more."""
         inner = np.flatnonzero((of[1:] == of[:-1]) & (share[1:] > share[:-1]))
-        at, low, high = of[inner], share[inner], share[inner + 1]
+        segment, low, high = of[inner], share[inner], share[inner + 1]
         more, shares, added = [of], [share], 0
         for _ in range(_HALVINGS):
             middle = (low + high) / 2
-            bends = self._bends(at, low, middle, high)
-            at, low, middle, high = at[bends], low[bends], middle[bends], high[bends]
-            added += len(at)
-            if not len(at) or added > most:
+            bends = self._bends(segment, low, middle, high)
+            segment, low, middle, high = segment[bends], low[bends], middle[bends], high[bends]
+            added += len(segment)
+            if not len(segment) or added > most:
                 break
-            more.append(at)
+            more.append(segment)
             shares.append(middle)
-            at = np.concatenate([at, at])
+            segment = np.concatenate([segment, segment])
             low, high = np.concatenate([low, middle]), np.concatenate([middle, high])
         of, share = np.concatenate(more), np.concatenate(shares)
         order = np.lexsort((share, of))
@@ -184,9 +184,10 @@ class _Ways:
         """Return where the line between two points is off in the middle."""
         ends = [self.at(of, share) for share in (low, middle, high)]
         first, between, last = (point for point, _ in ends)
-        behind = low >= self.ahead[of]
+        is_after = low >= self.ahead[of]
         seen = [
-            _seen(point, along, share, behind) for (point, along), share in zip(ends, (low, middle, high), strict=True)
+            _seen(point, along, share, is_after)
+            for (point, along), share in zip(ends, (low, middle, high), strict=True)
         ]
         # The center itself lies behind the first of two points, before the last.
         begin = self.time(of, low, self.path.jumps[of] & (low == self.ahead[of]))

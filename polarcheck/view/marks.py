@@ -44,11 +44,11 @@ def overcut_marks(
         (overcuts.sweeps, overcuts.sweep_depth, "sweeps"),
     ):
         chosen = _deepest(trace, cuts[depth[cuts.row] > 0])
-        for row, into, deep, place in zip(
+        for row, into, deep, point in zip(
             chosen.row.tolist(), chosen.into.tolist(), chosen.depth.tolist(), chosen.place.tolist(), strict=True
         ):
             keep_time()
-            lines = [int(trace.blocks.line_in_file[each]) for each in (row, into)]
+            lines = [int(trace.blocks.line_in_file[marked]) for marked in (row, into)]
             size = f"{in_row(deep, trace.lengths, row):length}"
             text = f"line {lines[0]} {verb} {size} deep into the contour of line {lines[1]}"
             yield (
@@ -57,9 +57,9 @@ def overcut_marks(
                     kind="overcut",
                     text=text,
                     lines=lines,
-                    place=_pair(place),
+                    place=_pair(point),
                     depth=round(deep, LENGTH),
-                    rings=_taken(trace, moves, row, into, levels, place),
+                    rings=_taken(trace, moves, row, into, levels, point),
                 ),
             )
 
@@ -67,21 +67,25 @@ def overcut_marks(
 def left_marks(trace: Trace, coverage: Coverage, levels: Sequence[Level]) -> Iterator[tuple[int, Mark]]:
     """Yield the section and the mark of each rib and strip that no tool removes, at the block that leaves it."""
     ribs, strips = (coverage.ribs, "a rib", "high", _AROUND_RIB), (coverage.strips, "a strip", "thick", _AROUND_STRIP)
-    for left, noun, measure, around in (ribs, strips):
-        for row in _largest(trace, left).tolist():
+    for material_left, noun, measure, around in (ribs, strips):
+        for row in _largest(trace, material_left).tolist():
             keep_time()
-            line, height = int(trace.blocks.line_in_file[row]), float(left.height[row])
-            wide = f" and {in_row(left.width[row], trace.lengths, row):length} wide" if left.width[row] > 0 else ""
-            reach = around * max(height, float(np.nan_to_num(left.width[row])))
+            line, height = int(trace.blocks.line_in_file[row]), float(material_left.height[row])
+            wide = (
+                f" and {in_row(material_left.width[row], trace.lengths, row):length} wide"
+                if material_left.width[row] > 0
+                else ""
+            )
+            reach = around * max(height, float(np.nan_to_num(material_left.width[row])))
             yield (
                 int(trace.mode.section[row]),
                 Mark(
                     kind="left",
                     text=f"{noun} {in_row(height, trace.lengths, row):length} {measure}{wide} stays behind line {line}",
                     lines=[line],
-                    place=_pair(complex(left.place[row])),
+                    place=_pair(complex(material_left.place[row])),
                     depth=round(height, LENGTH),
-                    rings=_untouched(trace, coverage, row, levels, complex(left.place[row]), reach),
+                    rings=_untouched(trace, coverage, row, levels, complex(material_left.place[row]), reach),
                 ),
             )
 
@@ -104,22 +108,22 @@ def _deepest(trace: Trace, cuts: CutsOfRows) -> CutsOfRows:
     return cuts[is_chosen]
 
 
-def _first_of_each(section: Rows, line: Rows, other: Rows, order: Rows) -> Rows:
+def _first_of_each(section: Rows, line: Rows, second_line: Rows, order: Rows) -> Rows:
     """Return the positions in `order` of the first of each section and pair of lines."""
-    keys = np.stack([section[order], line[order], other[order]], axis=1)
+    keys = np.stack([section[order], line[order], second_line[order]], axis=1)
     _, first = np.unique(keys, axis=0, return_index=True)
     return np.sort(first)
 
 
-def _largest(trace: Trace, left: Left) -> Rows:
+def _largest(trace: Trace, material_left: Left) -> Rows:
     """Return the rows that leave something standing, the largest of each section."""
-    rows = np.flatnonzero(left.height > 0)
-    rows = rows[np.lexsort((-left.height[rows], trace.mode.section[rows]))]
+    rows = np.flatnonzero(material_left.height > 0)
+    rows = rows[np.lexsort((-material_left.height[rows], trace.mode.section[rows]))]
     section = trace.mode.section[rows]
     return np.sort(rows[np.arange(len(rows)) - np.searchsorted(section, section) < MOST])
 
 
-def _taken(trace: Trace, moves: Moves, row: int, into: int, levels: Sequence[Level], place: complex) -> list[Ring]:
+def _taken(trace: Trace, moves: Moves, row: int, into: int, levels: Sequence[Level], location: complex) -> list[Ring]:
     """Return the area that the cutter takes off the part in the moves of a row, around this place."""
     part = _level_of(trace, into, levels)
     radius = abs(float(trace.compensation.radius_of_move[row]))
@@ -136,13 +140,13 @@ def _taken(trace: Trace, moves: Moves, row: int, into: int, levels: Sequence[Lev
     taken = areas.intersection(part.polygon, swept, grid_size=GRID)
     # The cutter also touches the walls that it should touch, which gives slivers between chords.
     cut = [polygon for polygon in polygons_of(shapely.buffer(taken, -tolerance / 2)) if not polygon.is_empty]
-    point = shapely.Point(place.real, place.imag)
+    point = shapely.Point(location.real, location.imag)
     near = min(cut, key=point.distance, default=None)
     return [] if near is None else rings(shapely.simplify(shapely.buffer(near, tolerance / 2), tolerance / 2))
 
 
 def _untouched(
-    trace: Trace, coverage: Coverage, row: int, levels: Sequence[Level], place: complex, reach: float
+    trace: Trace, coverage: Coverage, row: int, levels: Sequence[Level], location: complex, reach: float
 ) -> list[Ring]:
     """Return the area that is neither part nor removed by any tool, within `reach` [mm] around a place."""
     part = _level_of(trace, row, levels)
@@ -150,22 +154,22 @@ def _untouched(
         return []
     swept = coverage.swept
     near = swept[swept.at_depth(trace.path.z[row], trace.blocks.program[row])]
-    near = near[_distance(place, near.start, near.end) < near.radius + reach]
+    near = near[_distance(location, near.start, near.end) < near.radius + reach]
     ends = np.stack([near.start, near.end], axis=1)
     lines = shapely.linestrings(np.stack([ends.real, ends.imag], axis=2))
     taken = areas.union_all(areas.buffer(lines, near.radius, quad_segs=_CORNERS), grid_size=GRID)
-    point = shapely.Point(place.real, place.imag)
+    point = shapely.Point(location.real, location.imag)
     about = shapely.buffer(point, reach, quad_segs=_CORNERS)
-    left = areas.difference(areas.difference(about, part.polygon, grid_size=GRID), taken, grid_size=GRID)
-    nearest = min(polygons_of(left), key=point.distance, default=None)
+    material_left = areas.difference(areas.difference(about, part.polygon, grid_size=GRID), taken, grid_size=GRID)
+    nearest = min(polygons_of(material_left), key=point.distance, default=None)
     return [] if nearest is None else rings(nearest)
 
 
 def _distance(point: complex, start: Points, end: Points) -> Floats:
     """Return the distance from a point to each straight line [mm]."""
-    way = end - start
-    share = ((point - start) * way.conj()).real / np.maximum(np.abs(way) ** 2, ROUNDING**2)
-    return np.asarray(np.abs(point - start - np.clip(share, 0, 1) * way))
+    vector = end - start
+    share = ((point - start) * vector.conj()).real / np.maximum(np.abs(vector) ** 2, ROUNDING**2)
+    return np.asarray(np.abs(point - start - np.clip(share, 0, 1) * vector))
 
 
 def _level_of(trace: Trace, row: int, levels: Sequence[Level]) -> Level | None:

@@ -37,33 +37,42 @@ def drawn_parts(tables: Tables, section: int, tolerance: float) -> list[DrawnPar
         return []
     deviations: Deviations = tables["deviations"]
     try:
-        compared = [one for one in deviations.comparisons if one.section == section and not one.is_superseded]
+        compared = [
+            comparison
+            for comparison in deviations.comparisons
+            if comparison.section == section and not comparison.is_superseded
+        ]
     except TooHardError:
         compared = []
-    found: list[DrawnPart] = []
+    drawn: list[DrawnPart] = []
     for number, part in enumerate(nominal.parts):
         if part.section not in (None, section + 1):
             continue
         curves = nominal.curves(number, nominal.unit(number, int(nominal.trace.mode.sections.enter[section])))
-        of_part = [*_nearest([one for one in compared if one.number == number])]
-        for one in of_part or (None,):
-            found.append(_drawn(nominal, section, part, curves, one, tolerance))
-    return found
+        of_part = [*_nearest([comparison for comparison in compared if comparison.number == number])]
+        for comparison in of_part or (None,):
+            drawn.append(_drawn(nominal, section, part, curves, comparison, tolerance))
+    return drawn
 
 
 def _nearest(compared: Sequence[Comparison]) -> list[Comparison]:
     """Return of the comparisons of a part one for each way in which it is turned, the worst of them."""
     worst: dict[float, Comparison] = {}
-    for one in sorted(compared, key=lambda one: one.agrees):
-        worst.setdefault(round(float(np.nan_to_num(one.turned)), 6), one)
+    for comparison in sorted(compared, key=lambda comparison: comparison.agrees):
+        worst.setdefault(round(float(np.nan_to_num(comparison.turned)), 6), comparison)
     return list(worst.values())
 
 
 def _drawn(
-    nominal: NominalParts, section: int, part: Part, curves: Sequence[Points], one: Comparison | None, tolerance: float
+    nominal: NominalParts,
+    section: int,
+    part: Part,
+    curves: Sequence[Points],
+    comparison: Comparison | None,
+    tolerance: float,
 ) -> DrawnPart:
     row = int(nominal.trace.mode.sections.enter[section])
-    angle = -nominal.entry(row) if one is None else float(np.nan_to_num(one.turned)) - one.entry
+    angle = -nominal.entry(row) if comparison is None else float(np.nan_to_num(comparison.turned)) - comparison.entry
     rings: list[Ring] = []
     lines: list[Ring] = []
     while sum(map(len, curves)) > _MOST and tolerance < np.inf:
@@ -74,8 +83,8 @@ def _drawn(
         points = list(zip(np.round(point.real, LENGTH).tolist(), np.round(point.imag, LENGTH).tolist(), strict=True))
         is_closed = len(points) > 3 and points[0] == points[-1]
         (rings if is_closed else lines).append(points[:-1] if is_closed else points)
-    agrees = None if one is None else one.agrees
-    z = None if one is None or np.isnan(one.z) else round(one.z, LENGTH)
+    agrees = None if comparison is None else comparison.agrees
+    z = None if comparison is None or np.isnan(comparison.z) else round(comparison.z, LENGTH)
     return DrawnPart(title=title_of(part), z=z, agrees=agrees, rings=rings, lines=lines)
 
 

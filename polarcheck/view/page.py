@@ -78,7 +78,7 @@ _NO_SCRIPTS = "The pictures need a browser that runs scripts; all findings are i
 def page(
     pictures: Sequence[Picture],
     library: str = "",
-    beside: str = "",
+    script_path: str = "",
     notes: Iterable[str] = (),
     sources: str = "'self' file:",
     version: str = "",
@@ -87,7 +87,7 @@ def page(
     Return the page of one program, or of several one below the other.
 
     library: plotly's JavaScript, to be included in the page.
-    beside: without `library`, the name of the file with it in the folder of the page.
+    script_path: without `library`, the name of the file with it in the folder of the page.
     notes: what the page says behind the programs, in a line each.
     sources: without `library`, the sources from which the policy of the page allows to load it.
     version: of a page that is served; it is loaded anew as soon as the server has another version.
@@ -97,8 +97,8 @@ def page(
     included = library.replace("</script", "<\\/script")
     allowed = [script_hash(script), script_hash(included) if included else sources]
     loaded = f"<script>{included}</script>" if included else ""
-    if beside and not included:
-        loaded = f'<script src="{_text(beside)}"></script>'
+    if script_path and not included:
+        loaded = f'<script src="{_text(script_path)}"></script>'
     return Template(_part("page.html")).substitute(
         policy=_POLICY.format(" ".join(allowed)) + (CONNECTED if version else ""),
         served=served(version) if version else "",
@@ -148,7 +148,7 @@ def _data(pictures: Sequence[Picture]) -> str:
     names = ("findings", "sections", "source", "source_line", "source_lines")
     drawn = [
         {
-            **{name: _shown(getattr(picture, name)) for name in names},
+            **{name: _without_markup(getattr(picture, name)) for name in names},
             "order": (order := _order(picture.findings)),
             "numbers": _numbers(order),
         }
@@ -157,14 +157,14 @@ def _data(pictures: Sequence[Picture]) -> str:
     return msgspec.json.encode(drawn).decode().translate(_IN_SCRIPT)
 
 
-def _shown(value: Any) -> Any:
+def _without_markup(value: Any) -> Any:
     """Make all texts in a value printable; columns of numbers stay as they are."""
     if isinstance(value, str):
         return visible(value)
     if isinstance(value, msgspec.Struct):
-        return {name: _shown(getattr(value, name)) for name in value.__struct_fields__}
+        return {name: _without_markup(getattr(value, name)) for name in value.__struct_fields__}
     if isinstance(value, list) and value and isinstance(value[0], str | msgspec.Struct):
-        return [_shown(element) for element in value]
+        return [_without_markup(element) for element in value]
     return value
 
 
@@ -181,7 +181,7 @@ def _note(text: str) -> str:
 
 
 def _program(number: int, picture: Picture) -> str:
-    sections = "\n".join(_section(number, place, section) for place, section in enumerate(picture.sections))
+    sections = "\n".join(_section(number, index, section) for index, section in enumerate(picture.sections))
     lacking = "".join(f"<li>{_text(reason)}</li>" for reason in picture.not_evaluated)
     return Template(_part("program.html")).substitute(
         picture=number,
@@ -203,13 +203,13 @@ def _order(findings: Sequence[FindingPicture]) -> list[int]:
     """Return the places of the findings as they are listed: the worst first, silenced ones last."""
     return sorted(
         range(len(findings)),
-        key=lambda place: (bool(findings[place].silenced), -SEVERITIES.get(findings[place].severity, -1), place),
+        key=lambda index: (bool(findings[index].silenced), -SEVERITIES.get(findings[index].severity, -1), index),
     )
 
 
 def _numbers(order: Sequence[int]) -> list[int]:
     """Return the number of each finding in the list, from 1."""
-    return [place + 1 for place in sorted(range(len(order)), key=order.__getitem__)]
+    return [index + 1 for index in sorted(range(len(order)), key=order.__getitem__)]
 
 
 def _pairs(pairs: Iterable[tuple[str, str]]) -> str:
@@ -220,7 +220,7 @@ def _findings(number: int, findings: Sequence[FindingPicture]) -> str:
     if not findings:
         return '<p class="none">No findings.</p>\n'
     order = _order(findings)
-    rows = "\n".join(_finding(number, place, count, findings[place]) for count, place in enumerate(order, 1))
+    rows = "\n".join(_finding(number, index, count, findings[index]) for count, index in enumerate(order, 1))
     heads = "".join(f'<th scope="col">{head}</th>' for head in ("No.", "Line", "Severity", "What is wrong", "Rule"))
     return (
         f'<h2>All findings</h2>\n<table class="findings">\n<thead><tr>{heads}</tr></thead>\n<tbody>\n{rows}\n</tbody>\n'
@@ -228,24 +228,24 @@ def _findings(number: int, findings: Sequence[FindingPicture]) -> str:
     )
 
 
-def _finding(number: int, place: int, count: int, finding: FindingPicture) -> str:
+def _finding(number: int, index: int, count: int, finding: FindingPicture) -> str:
     severity = f"{finding.severity}, silenced ({finding.silenced})" if finding.silenced else finding.severity
     more = [("Why", finding.why), ("Fix", finding.fix)]
     notes = "".join(f'<p class="more"><span>{label}</span> {_text(text)}</p>' for label, text in more if text)
     alarm = f'<p class="more">alarm {_text(finding.alarm)}</p>' if finding.alarm else ""
     state = " silenced" if finding.silenced else ""
     return (
-        f'<tr class="{_text(finding.severity)}{state}" data-picture="{number}" data-finding="{place}">'
+        f'<tr class="{_text(finding.severity)}{state}" data-picture="{number}" data-finding="{index}">'
         f'<td class="line">{count}</td><td class="line">{finding.line}</td><td class="severity">{_text(severity)}</td>'
         f"<td><p>{_text(finding.message)}</p><code>{_text(finding.block)}</code>{notes}</td>"
         f"<td>{_text(finding.rule)}{alarm}</td></tr>"
     )
 
 
-def _section(number: int, place: int, section: SectionPicture) -> str:
+def _section(number: int, index: int, section: SectionPicture) -> str:
     return Template(_part("section.html")).substitute(
         picture=number,
-        section=place,
+        section=index,
         title=_text(section.title),
         missing=f'<p class="missing">{_text(section.needs_radius)}</p>' if section.needs_radius else "",
         facts=_pairs(_facts(section)),
@@ -295,22 +295,22 @@ def _notes(number: int, section: SectionPicture) -> str:
         notes += f'<ul class="parts">{"".join(f"<li>{_text(text)}</li>" for text in shapes)}</ul>\n'
     notes += "".join(f'<p class="remark">{_text(remark)}</p>\n' for remark in section.remarks)
     if section.marks:
-        rows = "".join(_mark(number, place, mark, section) for place, mark in enumerate(section.marks))
+        rows = "".join(_mark(number, index, mark, section) for index, mark in enumerate(section.marks))
         heads = "".join(f'<th scope="col">{head}</th>' for head in ("Mark", "Lines", "Where", "By how much"))
         notes += f'<div class="marks"><table><thead><tr>{heads}</tr></thead><tbody>{rows}</tbody></table></div>\n'
     return notes
 
 
-def _letter(place: int) -> str:
+def _letter(index: int) -> str:
     """Return the letter of a mark, as on the drawing: A to Z, then A1."""
-    return chr(ord("A") + place % 26) + (str(place // 26) if place >= 26 else "")
+    return chr(ord("A") + index % 26) + (str(index // 26) if index >= 26 else "")
 
 
-def _mark(number: int, place: int, mark: Mark, section: SectionPicture) -> str:
+def _mark(number: int, index: int, mark: Mark, section: SectionPicture) -> str:
     x, c = mark.place[0] * (2 if section.diameter else 1) / section.scale, mark.place[1] / section.scale
     digits = 4 if section.units == "inch" else 3
     return (
-        f'<tr data-picture="{number}" data-mark="{place}"><td>{_letter(place)}</td>'
+        f'<tr data-picture="{number}" data-mark="{index}"><td>{_letter(index)}</td>'
         f'<td class="line">{", ".join(map(str, mark.lines))}</td><td>X{x:.{digits}f} C{c:.{digits}f}</td>'
         f"<td>{_text(mark.text)}</td></tr>"
     )

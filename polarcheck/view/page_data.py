@@ -9,14 +9,14 @@ from polarcheck.foundation.finding import UNREADABLE
 from polarcheck.reports import SEVERITIES, counted
 from polarcheck.reports.pages.resting import resting
 from polarcheck.reports.text import first_sentence, verdict
-from polarcheck.view.picture_data import Drawn, FindingPicture, Picture, Place, key_of
+from polarcheck.view.picture_data import Drawn, FindingLocation, FindingPicture, Picture, key_of
 
 if TYPE_CHECKING:
     from polarcheck.foundation.finding import FileReport, Finding
     from polarcheck.reports import Background
 
 _NOTHING = Drawn(sections=[], skip="", remarks=[])
-_NOWHERE = Place(section=None, move=None, places=[], span=None, also=[], is_beside=True)
+_NOWHERE = FindingLocation(section=None, move=None, places=[], span=None, also=[], is_beside=True)
 #: The label of each line on what a verdict rests on, by how the line begins.
 _LABELS = {"rests on ": "judged for", "section of ": "section", "not judged, but without weight: ": "not judged"}
 
@@ -81,7 +81,7 @@ def _finding(finding: Finding, drawn: Drawn, background: Background) -> FindingP
     from polarcheck.foundation.finding import Silenced
 
     rule = background.rules.get(finding.rule)
-    place = drawn.places.get(key_of(finding), _NOWHERE)
+    location = drawn.places.get(key_of(finding), _NOWHERE)
     by = ""
     if isinstance(finding, Silenced):
         by = f"{finding.by}: {finding.reason}" if finding.reason else finding.by
@@ -94,11 +94,11 @@ def _finding(finding: Finding, drawn: Drawn, background: Background) -> FindingP
         why=first_sentence(rule.page) if rule else "",
         alarm=finding.alarm or "",
         fix=finding.fix.title if finding.fix is not None else "",
-        section=place.section,
-        move=place.move,
+        section=location.section,
+        move=location.move,
         silenced=by,
-        places=place.places,
-        span=place.span,
-        also=place.also,
-        is_beside=place.is_beside,
+        places=location.places,
+        span=location.span,
+        also=location.also,
+        is_beside=location.is_beside,
     )

@@ -32,8 +32,8 @@ def parts(trace: Trace, levels: Sequence[Level], tolerance: float) -> Iterator[P
     """Yield the part at each depth, its outline simplified within the tolerance [mm]."""
     for level in levels:
         bar = trace.lengths.stock_diameter[level.walls.row[0]]
-        shown, is_known = within_window(level, bar, trace.machine.compensation.overcut_tolerance)
-        polygons = [rings(polygon) for polygon in polygons_of(shapely.simplify(shown, tolerance))]
+        visible, is_known = within_window(level, bar, trace.machine.compensation.overcut_tolerance)
+        polygons = [rings(polygon) for polygon in polygons_of(shapely.simplify(visible, tolerance))]
         if polygons:
             yield PartPicture(
                 z=None if np.isnan(level.z) else round(level.z, LENGTH),

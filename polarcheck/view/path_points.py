@@ -47,10 +47,10 @@ class Chords(msgspec.Struct, frozen=True):
 
 def unseen(point: Points) -> float:
     """Return the largest invisible deviation of a path in a picture of these points [mm]."""
-    known = point[~np.isnan(point)]
-    if not len(known):
+    finite = point[~np.isnan(point)]
+    if not len(finite):
         return _UNSEEN
-    size = max(float(np.ptp(known.real)), float(np.ptp(known.imag)))
+    size = max(float(np.ptp(finite.real)), float(np.ptp(finite.imag)))
     return _UNSEEN * max(size, 1.0)
 
 
@@ -67,11 +67,11 @@ def chords(curves: Curves, tolerance: float, most: int) -> tuple[Chords, float]:
     parts = segments(curves, _SAGITTA * tolerance)
     begins = np.ones(len(parts), bool)
     begins[1:] = np.abs(parts.start[1:] - parts.end[:-1]) > ROUNDING
-    place = np.arange(len(parts)) + np.cumsum(begins)
+    index = np.arange(len(parts)) + np.cumsum(begins)
     total = len(parts) + int(np.count_nonzero(begins))
     point, move, is_first = np.zeros(total, complex), np.zeros(total, np.int64), np.zeros(total, bool)
-    point[place], move[place] = parts.end, parts.move
-    first = place[begins] - 1
+    point[index], move[index] = parts.end, parts.move
+    first = index[begins] - 1
     point[first], move[first], is_first[first] = parts.start[begins], parts.move[begins], True
     return Chords(point, move, is_first), tolerance
 
@@ -103,10 +103,10 @@ def thinned(path: Chords, keep: Mask, look: States, tolerance: float, most: int)
     low, high = bounds[:-1][within], bounds[1:][within]
     count = high - low + 1
     of = np.repeat(np.arange(len(count)), count)
-    at = np.arange(len(of)) - np.repeat(np.cumsum(count) - count, count) + np.repeat(low, count)
-    point = path.point[at]
+    index = np.arange(len(of)) - np.repeat(np.cumsum(count) - count, count) + np.repeat(low, count)
+    point = path.point[index]
     # The third coordinate holds the number of the point, to see which ones remain.
-    lines = shapely.linestrings(np.stack([point.real, point.imag, at], axis=1), indices=of)
+    lines = shapely.linestrings(np.stack([point.real, point.imag, index], axis=1), indices=of)
     for _ in range(_DOUBLINGS):
         simple = shapely.simplify(lines, tolerance, preserve_topology=False)
         chosen = stays.copy()

@@ -308,7 +308,7 @@ class Picture(msgspec.Struct, frozen=True, kw_only=True):
     source_lines: int = 0
 
 
-class Place(msgspec.Struct, frozen=True, kw_only=True):
+class FindingLocation(msgspec.Struct, frozen=True, kw_only=True):
     """
     The place of a finding on the face, as in FindingPicture.
 
@@ -346,7 +346,7 @@ class Drawn(msgspec.Struct, frozen=True, kw_only=True):
     sections: list[SectionPicture]
     skip: str
     remarks: list[str]
-    places: dict[Key, Place] = {}
+    places: dict[Key, FindingLocation] = {}
     source: list[str] = []
     source_line: int = 1
     source_lines: int = 0

@@ -28,4 +28,4 @@ def program_page(
     if drawing is not None:
         background = background._replace(drawn={report.path: drawing})
     plot = page_data.picture(report, background)
-    return page([plot], beside=beside, sources=sources) if beside else page([plot], library())
+    return page([plot], script_path=beside, sources=sources) if beside else page([plot], library())

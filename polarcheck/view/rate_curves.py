@@ -94,10 +94,10 @@ def path_segments(table: SectionMoves, chosen: Rows) -> Segments:
     move = number[pieces.move]
     part = np.flatnonzero(move >= 0)
     part = part[~np.isnan(time[move[part]])]
-    of_part, part_time, way = move[part], pieces.time()[part], polar.length(*pieces.shape)[part]
+    of_part, part_time, length = move[part], pieces.time()[part], polar.length(*pieces.shape)[part]
     first = np.searchsorted(of_part, of_part)
     done = np.cumsum(part_time) - part_time
-    gone = np.cumsum(way) - way
+    gone = np.cumsum(length) - length
     gone -= gone[first]
     rows = np.concatenate([plain, of_part])
     order = np.argsort(rows, kind="stable")
@@ -109,7 +109,7 @@ def path_segments(table: SectionMoves, chosen: Rows) -> Segments:
     z_from, z_to = (column[rows] for column in table.z)
     with np.errstate(all="ignore"):
         whole = np.append(moves.length, 0.0)[of_part]
-        low, high = gone / whole, (gone + way) / whole
+        low, high = gone / whole, (gone + length) / whole
         waiting = np.where(jumps[np.argsort(order)][len(plain) :], 180 * 60 / pieces.allowed, 0.0)
     rise = z_to - z_from
     share_from = np.concatenate([np.zeros(len(plain)), low])
@@ -160,12 +160,12 @@ def thinned(curves: Samples, keep: Mask, most: int) -> tuple[Samples, float]:
 def _without_straight(curves: Samples, rest: Rows, keep: Mask, first: int) -> Rows:
     """Return the points without every second one, if it lies on the curves between its neighbours."""
     middle = np.arange(1 + first, len(rest) - 1, 2)
-    low, at, high = rest[middle - 1], rest[middle], rest[middle + 1]
+    low, inner, high = rest[middle - 1], rest[middle], rest[middle + 1]
     time = curves.t[high] - curves.t[low]
-    part = np.divide(curves.t[at] - curves.t[low], time, out=np.full(len(at), 0.5), where=time > 0)
+    part = np.divide(curves.t[inner] - curves.t[low], time, out=np.full(len(inner), 0.5), where=time > 0)
 
     def off(column: Floats | Points) -> Floats:
-        return np.asarray(np.abs(column[at] - column[low] - part * (column[high] - column[low])))
+        return np.asarray(np.abs(column[inner] - column[low] - part * (column[high] - column[low])))
 
     near = (off(curves.point) <= _NEAR) & (off(np.abs(curves.point)) <= _NEAR) & (off(curves.angle) <= _NEAR_ANGLE)
     near &= ~(off(curves.z) > _NEAR)
@@ -173,7 +173,7 @@ def _without_straight(curves: Samples, rest: Rows, keep: Mask, first: int) -> Ro
         finite = np.abs(column[np.isfinite(column)])
         near &= off(column) <= _SHARE * float(finite.max(initial=0.0))
     goes = np.zeros(len(rest), bool)
-    goes[middle] = near & ~keep[curves.move[at]]
+    goes[middle] = near & ~keep[curves.move[inner]]
     return rest[~goes]
 
 

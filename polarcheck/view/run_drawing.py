@@ -21,7 +21,7 @@ from polarcheck.reports.made_parts.part_report import depths_of, made_by
 from polarcheck.rules.tables import Tables
 from polarcheck.view.drawn_moves import LENGTH, SectionMoves
 from polarcheck.view.finding_views import Face, Spot, Spots, Wanted, with_followers
-from polarcheck.view.picture_data import Drawn, Key, Mark, PartPicture, Place, SectionPicture, key_of
+from polarcheck.view.picture_data import Drawn, FindingLocation, Key, Mark, PartPicture, SectionPicture, key_of
 
 if TYPE_CHECKING:
     from polarcheck.columns.metal.bar import Known
@@ -37,26 +37,26 @@ _LINES, _CHARACTERS, _WIDE = 100_000, 4_000_000, 400
 _BEFORE = 200
 
 
-def listing(source: Source, wanted: Iterable[int]) -> tuple[list[str], int, int]:
+def listing(source: Source, requested: Iterable[int]) -> tuple[list[str], int, int]:
     """
     Return lines of a file, the number of the first of them, and the number of all lines.
 
-    wanted: the lines with findings and sections; if not all lines are shown, these begin shortly before the first one.
+    requested: the lines with findings and sections; if not all lines are shown, these begin shortly before the first.
     """
     is_whole = len(source.code) <= _CHARACTERS
     text = source.text if is_whole else ""
     count = source.parts[0].first_line - 1 if source.parts else len(source.line_starts)
     first = 1
     if count > _LINES or not is_whole:
-        first = max(1, min((line for line in wanted if line > 0), default=1) - _BEFORE)
+        first = max(1, min((line for line in requested if line > 0), default=1) - _BEFORE)
     lines: list[str] = []
-    left = _CHARACTERS
+    remaining = _CHARACTERS
     for line in range(first, min(first + _LINES, count + 1)):
-        shown = _line(source, line, text)
-        left -= len(shown)
-        if left < 0:
+        line_text = _line(source, line, text)
+        remaining -= len(line_text)
+        if remaining < 0:
             break
-        lines.append(shown)
+        lines.append(line_text)
     return lines, first, count
 
 
@@ -91,12 +91,12 @@ def drawn(report: FileReport, runs: Sequence[tuple[str, Tables]]) -> FileReport:
     spots = _spots(report, [Spots(tables) for tables in channels])
     lines = {key[1] for key in spots}
     also = {line for _, spot in spots.values() for line in spot.also}
-    wanted = Wanted(*(np.array(sorted(each), np.int64) for each in (lines, also)))
+    requested = Wanted(*(np.array(sorted(lines_of_kind), np.int64) for lines_of_kind in (lines, also)))
     sections: list[_Section] = []
     for run, tables in enumerate(channels):
         try:
-            own = [spot for of_run, spot in spots.values() if of_run == run]
-            sections += _sections(run, tables, own, wanted, remarks)
+            spots_of_run = [spot for of_run, spot in spots.values() if of_run == run]
+            sections += _sections(run, tables, spots_of_run, requested, remarks)
         except TooHardError as error:
             remarks.append(f"not drawn: {error}")
     sections.sort(key=lambda section: section.picture.line)
@@ -106,17 +106,17 @@ def drawn(report: FileReport, runs: Sequence[tuple[str, Tables]]) -> FileReport:
     states = dict.fromkeys(state for state, _ in first_runs(runs) if state)
     first_lines = (section.picture.line for section in sections)
     source, source_line, source_lines = listing(channels[0]["text"].source, [*lines, *first_lines])
-    shown = Drawn(
+    drawing = Drawn(
         sections=[section.picture for section in sections],
         skip=next(iter(states), ""),
         remarks=list(dict.fromkeys(remarks)),
-        places={key: _place(run, spot, sections) for key, (run, spot) in spots.items()},
+        places={key: _location(run, spot, sections) for key, (run, spot) in spots.items()},
         source=source,
         source_line=source_line,
         source_lines=source_lines,
     )
     fields = {name: getattr(report, name) for name in FileReport.__struct_fields__}
-    return DrawnReport(**fields, drawn=shown)
+    return DrawnReport(**fields, drawn=drawing)
 
 
 def split(report: FileReport) -> tuple[FileReport, Drawn | None]:
@@ -152,24 +152,28 @@ def _spots(report: FileReport, runs: Sequence[Spots]) -> dict[Key, tuple[int, Sp
     return found
 
 
-def _place(run: int, spot: Spot, sections: Sequence[_Section]) -> Place:
+def _location(run: int, spot: Spot, sections: Sequence[_Section]) -> FindingLocation:
     """Return the place of a finding among the pictures of the program."""
-    own = {section.number: place for place, section in enumerate(sections) if section.run == run}
-    if not spot.rows or not own:
-        return Place(section=None, move=None, places=[], span=None, also=spot.also, is_beside=True)
-    face = sections[next(iter(own.values()))].face
+    index_by_number = {section.number: index for index, section in enumerate(sections) if section.run == run}
+    if not spot.rows or not index_by_number:
+        return FindingLocation(section=None, move=None, places=[], span=None, also=spot.also, is_beside=True)
+    face = sections[next(iter(index_by_number.values()))].face
     row = spot.rows[0]
     number = face.nearest_section(row)
-    shown = own.get(number, own[min(own, key=lambda each: abs(each - number))])
-    picture, listed = sections[shown].picture, sections[shown].listed
-    known = [*spot.known, *(face.place(each, spot.where) for each in spot.rows[len(spot.known) :])]
+    index_shown = index_by_number.get(
+        number, index_by_number[min(index_by_number, key=lambda row_or_point: abs(row_or_point - number))]
+    )
+    picture, listed = sections[index_shown].picture, sections[index_shown].listed
+    known = [*spot.known, *(face.place(row_or_point, spot.where) for row_or_point in spot.rows[len(spot.known) :])]
     points = dict.fromkeys(
-        (round(each.real, LENGTH), round(each.imag, LENGTH)) for each in known if cmath.isfinite(each)
+        (round(row_or_point.real, LENGTH), round(row_or_point.imag, LENGTH))
+        for row_or_point in known
+        if cmath.isfinite(row_or_point)
     )
     move = int(np.searchsorted(listed, face.move(row, spot.where)))
     wide = max(picture.frame[2] - picture.frame[0], picture.frame[3] - picture.frame[1])
-    return Place(
-        section=shown,
+    return FindingLocation(
+        section=index_shown,
         move=min(move, len(listed) - 1) if len(listed) else None,
         places=list(points),
         span=None if spot.span is None else round(min(spot.span, wide), LENGTH),
@@ -178,13 +182,13 @@ def _place(run: int, spot: Spot, sections: Sequence[_Section]) -> Place:
     )
 
 
-def _sections(run: int, tables: Tables, spots: Sequence[Spot], wanted: Wanted, remarks: list[str]) -> list[_Section]:
+def _sections(run: int, tables: Tables, spots: Sequence[Spot], requested: Wanted, remarks: list[str]) -> list[_Section]:
     """
     Return the pictures of one run.
 
     run: its number.
     spots: the places of its findings.
-    wanted: the lines with findings.
+    requested: the lines with findings.
     remarks: takes a line for each thing that is not drawn.
     """
     trace: Trace = tables["trace"]
@@ -201,7 +205,7 @@ def _sections(run: int, tables: Tables, spots: Sequence[Spot], wanted: Wanted, r
     moves = SectionMoves(trace, tables["dynamics"])
     programmed = programmed_moves(trace)
     levels = _unless_too_hard(lambda: tables["finished"].levels, "the finished part", remarks)
-    meant = _unless_too_hard(lambda: tables["finished"].meant, "the finished part", remarks)
+    intended = _unless_too_hard(lambda: tables["finished"].meant, "the finished part", remarks)
     makes = _unless_too_hard(lambda: made_by(tables), "what the program makes", remarks)
     marks: list[tuple[int, Mark]] = [
         *_unless_too_hard(
@@ -223,11 +227,11 @@ def _sections(run: int, tables: Tables, spots: Sequence[Spot], wanted: Wanted, r
             windows[number] = min(spot.span, windows.get(number, math.inf))
 
     def parts_of(section: PolarSection, number: int, tolerance: float) -> list[PartPicture]:
-        own = [level for level in (*levels, *meant) if level.section == number]
-        made = [shape for shape in makes if _is_of(shape, section)]
-        found = list(parts(trace, own, tolerance))
-        return found + _unless_too_hard(
-            lambda: list(swept_parts(trace, depths, number, bar, tolerance, made)), "what the cutter leaves", remarks
+        section_levels = [level for level in (*levels, *intended) if level.section == number]
+        shapes = [shape for shape in makes if _is_of(shape, section)]
+        pictures = list(parts(trace, section_levels, tolerance))
+        return pictures + _unless_too_hard(
+            lambda: list(swept_parts(trace, depths, number, bar, tolerance, shapes)), "what the cutter leaves", remarks
         )
 
     return [
@@ -240,7 +244,7 @@ def _sections(run: int, tables: Tables, spots: Sequence[Spot], wanted: Wanted, r
                 programmed,
                 section,
                 number,
-                wanted,
+                requested,
                 Extras(
                     parts=partial(parts_of, section, number),
                     nominal=partial(drawn_parts, tables, number),
@@ -259,19 +263,19 @@ def _sections(run: int, tables: Tables, spots: Sequence[Spot], wanted: Wanted, r
 
 def _bar(tables: Tables) -> tuple[float, float]:
     """Return the diameter of the bar before milling, its largest where there are two, and of its bore [mm]."""
-    known: Known = tables["bar"].known
-    return known.smallest if np.isnan(known.largest) else known.largest, known.bore
+    stock: Known = tables["bar"].known
+    return stock.smallest if np.isnan(stock.largest) else stock.largest, stock.bore
 
 
 def _is_of(shape: MadeShape, section: PolarSection) -> bool:
     """True for a section that makes a shape, or some of it."""
-    return any(one.line == section.line for one in shape.sections)
+    return any(polar_section.line == section.line for polar_section in shape.sections)
 
 
 def _in_words(shape: MadeShape) -> str:
-    left = "".join(f"; left standing: {rest.text}" for rest in shape.left_standing)
+    remainders = "".join(f"; left standing: {rest.text}" for rest in shape.left_standing)
     needs = f"; {shape.needs}" if shape.needs and shape.shape is not None else ""
-    return f"{shape.text}{left}{needs}"
+    return f"{shape.text}{remainders}{needs}"
 
 
 def _unless_too_hard(make: Callable[[], list[Element]], what: str, remarks: list[str]) -> list[Element]:

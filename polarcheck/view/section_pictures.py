@@ -101,7 +101,7 @@ def section_picture(
     programmed: Moves,
     summary: PolarSection,
     section: int,
-    wanted: Wanted,
+    requested: Wanted,
     extras: Extras,
 ) -> tuple[SectionPicture, Rows]:
     """
@@ -111,19 +111,19 @@ def section_picture(
     programmed: the programmed path of the program.
     summary: the section in the report.
     section: its number.
-    wanted: the lines with findings, whose moves stay.
+    requested: the lines with findings, whose moves stay.
     extras: its other content.
     """
     chosen = table.of_section(section)
     moves = table.moves[_mask(chosen, len(table))]
     most = max(min(POINTS, _OF_PROGRAM // len(trace.mode.sections)), _LEAST)
-    role, known = table.role[chosen], table.is_known[chosen]
+    role, is_known = table.role[chosen], table.is_known[chosen]
     line = trace.blocks.line_in_file[moves.row]
-    keep = np.isin(line, wanted.findings)
+    keep = np.isin(line, requested.findings)
     path_moves = programmed[programmed.section == section]
-    unseen = path_points.unseen(_shown(moves, role))
+    unseen = path_points.unseen(_plane_points(moves, role))
     chord = min(unseen / 2, extras.window / _OF_WINDOW)
-    tool, off = _path(moves, known, keep, role, chord, unseen, most)
+    tool, off = _path(moves, is_known, keep, role, chord, unseen, most)
     contour, off_contour = _path(
         path_moves, path_moves.known, np.isin(path_moves.row, moves.row[keep]), path_moves.phase, chord, unseen, most
     )
@@ -135,7 +135,9 @@ def section_picture(
     # The first of the moves of each block.
     first = _first_of(moves.row, path_moves.row[contour.move])
     extremes = (table.c_feed[chosen], table.x_feed[chosen], -moves.nearest)
-    listed = _listed(keep | np.isin(line, wanted.also), [tool.move, first, curves.move, *map(_highest, extremes)], most)
+    listed = _listed(
+        keep | np.isin(line, requested.also), [tool.move, first, curves.move, *map(_highest, extremes)], most
+    )
     enter = int(trace.mode.sections.enter[section])
     limits = trace.machine.limits
     picture = SectionPicture(
@@ -157,8 +159,8 @@ def section_picture(
         thinned=round(max(off, off_contour), LENGTH),
         played=round(off_time, LENGTH),
         time=summary.time,
-        programmed=_points(contour, _place(listed, first)),
-        tool=_points(tool, _place(listed, tool.move)),
+        programmed=_points(contour, _index_of(listed, first)),
+        tool=_points(tool, _index_of(listed, tool.move)),
         moves=table.table(chosen[listed]),
         move_count=len(chosen),
         rates=Rates(
@@ -166,7 +168,7 @@ def section_picture(
             c_feed=numbers_of(curves.c_feed, RATE),
             x_feed=numbers_of(curves.x_feed, RATE),
             feed=numbers_of(curves.feed, RATE),
-            move=_place(listed, curves.move).tolist(),
+            move=_index_of(listed, curves.move).tolist(),
             x=numbers_of(curves.point.real, LENGTH),
             c=numbers_of(curves.point.imag, LENGTH),
             z=numbers_of(curves.z, LENGTH),
@@ -201,7 +203,7 @@ def _mask(chosen: Rows, count: int) -> Mask:
     return mask
 
 
-def _shown(moves: Moves, role: States) -> PlanePoints:
+def _plane_points(moves: Moves, role: States) -> PlanePoints:
     """Return the points that decide the size of the picture: those of cuts, if there are any, and the center of C."""
     is_cut = role != POSITIONING
     chosen = is_cut if is_cut.any() else np.ones(len(moves), bool)
@@ -209,29 +211,31 @@ def _shown(moves: Moves, role: States) -> PlanePoints:
 
 
 def _path(
-    moves: Moves, known: Mask, keep: Mask, look: States, chord: float, unseen: float, most: int
+    moves: Moves, is_known: Mask, keep: Mask, look: States, chord: float, unseen: float, most: int
 ) -> tuple[Chords, float]:
     """Return the path of the known moves, and its largest deviation [mm]."""
-    curves = curves_of(moves, np.zeros(len(moves), np.int64), known)
+    curves = curves_of(moves, np.zeros(len(moves), np.int64), is_known)
     path, off = path_points.chords(curves, chord, _CHORDS * most)
-    path = Chords(path.point, np.flatnonzero(known)[path.move], path.begins)
+    path = Chords(path.point, np.flatnonzero(is_known)[path.move], path.begins)
     path, more = path_points.thinned(path, keep, look, _FINEST * unseen, most)
     return path, off + more
 
 
-def _first_of(row: Rows, wanted: Rows) -> Rows:
+def _first_of(row: Rows, requested: Rows) -> Rows:
     """Return the first move of each wanted row; the moves of a row need not be adjacent."""
     rows, first = np.unique(row, return_index=True)
-    return np.asarray(first[np.minimum(np.searchsorted(rows, wanted), len(rows) - 1)]) if len(rows) else wanted[:0]
+    return (
+        np.asarray(first[np.minimum(np.searchsorted(rows, requested), len(rows) - 1)]) if len(rows) else requested[:0]
+    )
 
 
-def _listed(keep: Mask, shown: Sequence[Rows], most: int) -> Rows:
+def _listed(keep: Mask, drawn: Sequence[Rows], most: int) -> Rows:
     """Return the moves in the table: all moves or, if there are too many, those that are drawn or have an extreme."""
     if len(keep) <= most:
         return np.arange(len(keep))
     is_listed = keep.copy()
     is_listed[[0, -1]] = True
-    for moves in shown:
+    for moves in drawn:
         is_listed[moves] = True
     return np.flatnonzero(is_listed)
 
@@ -242,7 +246,7 @@ def _highest(values: Floats) -> Rows:
     return np.flatnonzero(highest == highest.max(initial=-np.inf))[:1]
 
 
-def _place(listed: Rows, move: Rows) -> Rows:
+def _index_of(listed: Rows, move: Rows) -> Rows:
     """Return the row of moves in the table."""
     return np.asarray(np.searchsorted(listed, move))
 
@@ -260,8 +264,8 @@ def _points(path: Chords, move: Rows) -> Points:
     )
 
 
-def _remarks(count: int, listed: int, meant: str) -> list[str]:
-    remarks = [meant] if meant else []
+def _remarks(count: int, listed: int, intended: str) -> list[str]:
+    remarks = [intended] if intended else []
     return [*remarks, f"the table lists {listed} of {count} moves: those that are drawn"] if listed < count else remarks
 
 

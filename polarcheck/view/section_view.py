@@ -123,7 +123,7 @@ def views_of(tables: Tables, lines: Collection[int] = ()) -> Iterator[SectionVie
         channel = f"{trace.text.source.channel}: " if trace.text.source.channel else ""
         in_section = moves[moves.section == number]
         remarks = [_NO_RADIUS] if not in_section.is_of_tool.all() else []
-        remarks += [meant] if (meant := as_meant(trace, number)) else []
+        remarks += [intended] if (intended := as_meant(trace, number)) else []
         if number + 1 == _SECTIONS < len(sections):
             remarks.append(f"{len(sections) - _SECTIONS} more sections are not shown")
         time, rate = _curve(in_section)
@@ -157,21 +157,21 @@ def points_of(moves: Moves) -> Points:
     ends = np.concatenate((moves.start, moves.end, np.zeros(1, complex)))
     ends = ends[np.isfinite(ends)]
     size = max(np.ptp(ends.real), np.ptp(ends.imag), float(np.nanmax(moves.farthest, initial=0.0)))
-    known = np.isfinite(moves.length) & np.isfinite(moves.start) & np.isfinite(moves.end)
-    length = np.where(known, moves.length, 0.0)
+    is_known = np.isfinite(moves.length) & np.isfinite(moves.start) & np.isfinite(moves.end)
+    length = np.where(is_known, moves.length, 0.0)
     step = max(size / _DOTS, float(length.sum()) / _MOST, np.finfo(float).tiny)
-    count = np.where(known, np.ceil(length / step).astype(np.int64) + 1, 0)
+    count = np.where(is_known, np.ceil(length / step).astype(np.int64) + 1, 0)
     move, share = _shares(count)
     point = _along(moves, move, share)
-    place = np.round(point.real / step) + 1j * np.round(point.imag / step)
-    return np.asarray(point[np.unique(place, return_index=True)[1]])
+    cell = np.round(point.real / step) + 1j * np.round(point.imag / step)
+    return np.asarray(point[np.unique(cell, return_index=True)[1]])
 
 
 def _shares(count: Rows) -> tuple[Rows, Floats]:
     """Return `count` places on each move: the move, and the share of its length, from 0 to 1."""
     move = np.repeat(np.arange(len(count)), count)
-    place = np.arange(len(move)) - np.repeat(np.cumsum(count) - count, count)
-    return move, place / np.maximum(count - 1, 1)[move]
+    number = np.arange(len(move)) - np.repeat(np.cumsum(count) - count, count)
+    return move, number / np.maximum(count - 1, 1)[move]
 
 
 def _along(moves: Moves, move: Rows, share: Floats) -> Points:
@@ -208,11 +208,11 @@ def _curve(moves: Moves) -> tuple[Floats, Floats]:
     rate = np.where(moves.c_feed[move] == 0, 0.0, np.minimum(rate, moves.c_feed[move]))
     order = np.lexsort((rate, move))
     rate[order[np.append(np.diff(move[order]) != 0, True)]] = moves.c_feed
-    at = begin[move] + share * time[move]
-    instant = np.floor(at / whole * _INSTANTS) if whole > 0 else np.zeros(len(at))
+    time_of_point = begin[move] + share * time[move]
+    instant = np.floor(time_of_point / whole * _INSTANTS) if whole > 0 else np.zeros(len(time_of_point))
     order = np.lexsort((rate, instant))
     chosen = np.sort(order[np.append(np.diff(instant[order]) != 0, True)])
-    return at[chosen], rate[chosen]
+    return time_of_point[chosen], rate[chosen]
 
 
 def _legend(view: SectionView, dots: bool) -> Iterator[str]:
@@ -229,11 +229,11 @@ def _legend(view: SectionView, dots: bool) -> Iterator[str]:
 
 def _rate(view: SectionView) -> str:
     """Return the range of the strip in numbers."""
-    known = view.rate[~np.isnan(view.rate)]
-    if not len(known):
+    rates = view.rate[~np.isnan(view.rate)]
+    if not len(rates):
         return "rate of C over time: not known"
     limit = "no limit given" if np.isnan(view.limit) else f"limit {view.limit:.0f}"
     if not view.highest_line:
         return f"C does not turn ({limit})"
-    highest = f"at most {known.max():.0f} deg/min" if np.isfinite(known.max()) else "without bound, through the center,"
+    highest = f"at most {rates.max():.0f} deg/min" if np.isfinite(rates.max()) else "without bound, through the center,"
     return f"rate of C over {view.time[-1]:.0f} s on the plane: {highest} in line {view.highest_line} ({limit})"

@@ -28,8 +28,8 @@ def strip(
 
     Empty if nothing is known, or all values are 0.
     """
-    known = ~np.isnan(values)
-    time, values = time[known], values[known]
+    is_known = ~np.isnan(values)
+    time, values = time[is_known], values[is_known]
     finite = values[np.isfinite(values)]
     highest = float(finite.max(initial=0.0))
     top = max(highest, limit if limit <= _FAR * highest or not highest else 0.0)

@@ -44,19 +44,19 @@ def swept_parts(
     tolerance: of the outline [mm].
     makes: the shapes of the section in words.
     """
-    own: dict[float, Depth] = {}
+    depth_by_z: dict[float, Depth] = {}
     for depth in depths:
         if section in depth.sections and depth.swept is not None:
-            own.setdefault(depth.z, depth)
+            depth_by_z.setdefault(depth.z, depth)
     entry = trace.path.section_entry[section] if trace.path.knows_section_entry[section] else 0.0
     gone: Any = None
     before: Any = None
     polygons: list[list[Ring]] = []
     is_known = True
-    found: dict[float, PartPicture] = {}
+    pictures: dict[float, PartPicture] = {}
     # What is cleared at one depth is cleared above it, too.
-    for z in sorted(own, key=lambda z: (np.isnan(z), z)):
-        depth = own[z]
+    for z in sorted(depth_by_z, key=lambda z: (np.isnan(z), z)):
+        depth = depth_by_z[z]
         # Most passes clear the same as the pass below them.
         if before is None or np.isnan(z) or not shapely.equals_exact(before, depth.swept, ROUNDING):
             swept = shapely.simplify(depth.swept, tolerance)
@@ -67,13 +67,13 @@ def swept_parts(
             polygons = [rings(polygon) for polygon in polygons_of(turned(standing, turn))]
         before = depth.swept
         if polygons:
-            found[z] = PartPicture(
+            pictures[z] = PartPicture(
                 z=None if np.isnan(z) else round(z, LENGTH),
                 polygons=polygons,
                 text=_text(z, makes),
                 known_outside=is_known,
             )
-    yield from (found[z] for z in own if z in found)
+    yield from (pictures[z] for z in depth_by_z if z in pictures)
 
 
 def _standing(gone: Any, depth: Depth, bar: tuple[float, float]) -> tuple[Any, bool]:

@@ -50,12 +50,12 @@ def _matrix(certificate: Certificate, columns: int, paint: Paint) -> Iterator[st
             end += 1
         if begin:
             yield ""
-        yield " " * first + "".join(f"{_GAP}{_padded(heads[at], widths[at])}" for at in range(begin, end))
+        yield " " * first + "".join(f"{_GAP}{_padded(heads[index], widths[index])}" for index in range(begin, end))
         for feature, row in rows.items():
             states = (
-                _GAP + paint(_STYLES[row[at].state], words(row[at], certificate))
-                + " " * (widths[at] - cells(words(row[at], certificate)))
-                for at in range(begin, end)
+                _GAP + paint(_STYLES[row[index].state], words(row[index], certificate))
+                + " " * (widths[index] - cells(words(row[index], certificate)))
+                for index in range(begin, end)
             )  # fmt: skip
             yield _padded(visible(feature), first) + "".join(states)
         begin = end

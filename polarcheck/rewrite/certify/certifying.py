@@ -41,8 +41,8 @@ def chosen(loaded: Loaded, names: Iterable[str], option: str = "--case") -> list
 
     option: what names them. Raises UsageError for an unknown one.
     """
-    wanted = list(dict.fromkeys(names))
-    for name in wanted:
+    requested = list(dict.fromkeys(names))
+    for name in requested:
         if name not in loaded.cases:
             raise UsageError(f"{option} {name}: the manifest has no case of this name{suggestion(name, loaded.cases)}")
     if not loaded.cases:
@@ -50,7 +50,7 @@ def chosen(loaded: Loaded, names: Iterable[str], option: str = "--case") -> list
         raise CertificateError(
             f"{title}: no cases: give a [[case]], or a file for a feature in `programs` of a control"
         )
-    return wanted or [*loaded.cases]
+    return requested or [*loaded.cases]
 
 
 def conditions(loaded: Loaded, names: Collection[str]) -> dict[str, Settings]:
@@ -78,13 +78,13 @@ def conditions(loaded: Loaded, names: Collection[str]) -> dict[str, Settings]:
 
 def needed(loaded: Loaded, names: Iterable[str]) -> list[str]:
     """Return the names of cases and of those that their paths are compared with, in the order of the manifest."""
-    wanted: set[str] = set()
+    required: set[str] = set()
     for name in names:
         reference: str | None = name
-        while reference is not None and reference not in wanted:
-            wanted.add(reference)
+        while reference is not None and reference not in required:
+            required.add(reference)
             reference = loaded.cases[reference].same_path_as
-    return [name for name in loaded.cases if name in wanted]
+    return [name for name in loaded.cases if name in required]
 
 
 def runs(loaded: Loaded, settings: Mapping[str, Settings], most: int) -> Generator[tuple[str, CaseRun], None, None]:
@@ -95,8 +95,8 @@ def runs(loaded: Loaded, settings: Mapping[str, Settings], most: int) -> Generat
         if case.golden is not None:
             paths_of[name].add(loaded.path_of(case))
         if case.same_path_as is not None:
-            for each in (name, case.same_path_as):
-                paths_of[each] |= {"programmed", loaded.path_of(case)}
+            for title in (name, case.same_path_as):
+                paths_of[title] |= {"programmed", loaded.path_of(case)}
     for name, of_case in settings.items():
         yield name, run(str(loaded.beside(loaded.cases[name].program)), of_case, most, sorted(paths_of[name]), loaded)
         forget()
@@ -119,7 +119,9 @@ class _Alone(msgspec.Struct, frozen=True):
         return bool(self.reasons or (is_golden_there and self.path.reasons))
 
 
-def judged(loaded: Loaded, settings: Mapping[str, Settings], case_runs: Mapping[str, CaseRun]) -> dict[str, Certified]:
+def certified_cases(
+    loaded: Loaded, settings: Mapping[str, Settings], case_runs: Mapping[str, CaseRun]
+) -> dict[str, Certified]:
     """Return the cases that were run, each with its result, by name."""
     limits = {
         name: seconds_for(of_case.size, settings[name].job.run.max_seconds) for name, of_case in case_runs.items()
@@ -154,7 +156,7 @@ def _result(
     report, itself = case_runs[case.title].report, alone[case.title]
     reasons = list(itself.reasons)
     remarks = [loaded.remarks[case.title]] if case.title in loaded.remarks else []
-    same_path, compared = (None, _NOTHING) if report is None else _other(loaded, case, case_runs)
+    same_path, compared = (None, _NOTHING) if report is None else _compared_with_reference(loaded, case, case_runs)
     outside = [] if report is None else case_runs[case.title].outside
     not_quoted = [quoting.remark(outside)] if outside else []
     is_golden_there = loaded.has_golden(case)
@@ -214,27 +216,27 @@ def path_of_run(of_case: CaseRun, name: str) -> ToolPath:
     return tool_path(of_case.moves[name], of_case.sense)
 
 
-def _other(loaded: Loaded, case: Case, case_runs: Mapping[str, CaseRun]) -> _Compared:
+def _compared_with_reference(loaded: Loaded, case: Case, case_runs: Mapping[str, CaseRun]) -> _Compared:
     """Compare the path of a case with that of another one."""
     if case.same_path_as is None:
         return None, _NOTHING
     title, which, tolerance = case.same_path_as, loaded.path_of(case), loaded.tolerance(case)
-    of_case, other = case_runs[case.title], case_runs[title]
-    if other.report is None:
+    of_case, reference = case_runs[case.title], case_runs[title]
+    if reference.report is None:
         compared = _not_compared(f"{title} was not run")
-    elif not of_case.moves[which] and not other.moves[which]:
+    elif not of_case.moves[which] and not reference.moves[which]:
         compared = _not_compared(f"neither this program nor {title} has any")
     else:
-        ours, theirs = path_of_run(of_case, which), path_of_run(other, which)
+        ours, theirs = path_of_run(of_case, which), path_of_run(reference, which)
         compared = near_path.with_other(ours, theirs, tolerance, title)
         if which == "tool" and compared.deviation is not None and compared.reasons:
-            programmed = path_of_run(of_case, "programmed"), path_of_run(other, "programmed")
+            programmed = path_of_run(of_case, "programmed"), path_of_run(reference, "programmed")
             if not near_path.with_other(*programmed, tolerance, title).reasons:
                 compared.reasons.append(
                     f"the programmed path is that of {title}: controls lead the tool round corners in different ways; "
                     'path = "programmed" compares what is programmed'
                 )
-        if compared.reasons and (of_case.outside or other.outside):
+        if compared.reasons and (of_case.outside or reference.outside):
             compared = _without_text(compared, title)
     return _comparison(title, compared, tolerance), compared
 

@@ -33,9 +33,9 @@ class _Within(Layer):
     place: the key of the table, `controls.lathe-7`; empty for the manifest itself.
     """
 
-    def __init__(self, written: Written, table: Mapping[str, Any], place: str) -> None:
+    def __init__(self, written: Written, table: Mapping[str, Any], path: str) -> None:
         super().__init__(written, {key: value for key, value in table.items() if key in _OF_JOB})
-        self._place = place
+        self._place = path
 
     @property
     def title(self) -> str:
@@ -48,13 +48,13 @@ class _Within(Layer):
 class _PartWithin(PartLayer):
     """A part of a table of the manifest."""
 
-    def __init__(self, written: Written, table: Mapping[str, Any], number: int, place: str) -> None:
+    def __init__(self, written: Written, table: Mapping[str, Any], number: int, key: str) -> None:
         super().__init__(written, table, number)
-        self._place = place
+        self._place = key
 
     def at(self, key: str) -> str:
-        place = f"{self._place}." if self._place else ""
-        return self.written.at(f"{place}part.{self.number}{key.removeprefix('part')}")
+        prefix = f"{self._place}." if self._place else ""
+        return self.written.at(f"{prefix}part.{self.number}{key.removeprefix('part')}")
 
 
 class _CaseFile(JobFile, frozen=True):
@@ -93,15 +93,15 @@ class ConditionsOfCases:
         if number is not None:
             yield from self._of_table(table["case"][number - 1], f"case.{number}", case)
 
-    def _of_table(self, table: Mapping[str, Any], place: str, case: Case) -> Iterator[Layer]:
+    def _of_table(self, table: Mapping[str, Any], key: str, case: Case) -> Iterator[Layer]:
         if "config" in table:
-            yield from self._config(table["config"], f"{place}.config" if place else "config", case)
-        yield _Within(self._written, table, place)
-        yield from self._parts(table, place)
+            yield from self._config(table["config"], f"{key}.config" if key else "config", case)
+        yield _Within(self._written, table, key)
+        yield from self._parts(table, key)
 
-    def _parts(self, table: Mapping[str, Any], place: str) -> Iterator[Layer]:
+    def _parts(self, table: Mapping[str, Any], key: str) -> Iterator[Layer]:
         for number, part in enumerate(table.get("part", ()), 1):
-            yield _PartWithin(self._written, part, number, place)
+            yield _PartWithin(self._written, part, number, key)
 
     def _config(self, written: str, key: str, case: Case) -> Iterator[Layer]:
         """Yield the layers of a job file that apply to the program of a case."""

@@ -19,22 +19,22 @@ def differences(case: Case, report: FileReport) -> Iterator[str]:
 
     All warnings and errors must be expected. A verdict that differs because a finding does is not mentioned again.
     """
-    left = list(report.findings)
+    remaining = list(report.findings)
     lacking: list[ExpectedFinding] = []
     for expected in sorted(case.findings, key=_is_anywhere):
-        match = next((finding for finding in left if _matches(expected, finding)), None)
+        match = next((finding for finding in remaining if _matches(expected, finding)), None)
         if match is None:
             lacking.append(expected)
         else:
-            left.remove(match)
+            remaining.remove(match)
     for expected in lacking:
-        elsewhere = next((finding for finding in left if finding.rule == expected.rule), None)
+        elsewhere = next((finding for finding in remaining if finding.rule == expected.rule), None)
         if elsewhere is None:
-            yield f"expected {expected.rule}{_place(expected)}: it is not found"
+            yield f"expected {expected.rule}{_location(expected)}: it is not found"
         else:
-            left.remove(elsewhere)
-            yield f"expected {expected.rule}{_place(expected)}: it is in line {elsewhere.line}"
-    unexpected = [finding for finding in left if finding.severity != _NOTE]
+            remaining.remove(elsewhere)
+            yield f"expected {expected.rule}{_location(expected)}: it is in line {elsewhere.line}"
+    unexpected = [finding for finding in remaining if finding.severity != _NOTE]
     for finding in unexpected:
         yield f"line {finding.line}: {finding.severity}: {finding.full_message} [{finding.rule}]"
     if not lacking and not unexpected and report.verdict != case.expected:
@@ -47,7 +47,7 @@ def _is_anywhere(expected: ExpectedFinding) -> bool:
     return expected.line is None and expected.block is None
 
 
-def _place(expected: ExpectedFinding) -> str:
+def _location(expected: ExpectedFinding) -> str:
     if expected.block is not None:
         return f" in the block {expected.block}"
     return "" if expected.line is None else f" in line {expected.line}"

@@ -46,7 +46,7 @@ class Loaded(msgspec.Struct, frozen=True):
 
     def beside(self, written: str) -> Path:
         """Return the path of a file that the manifest names; backslashes count as slashes, too."""
-        return _beside(self.path, written)
+        return _path_from(self.path, written)
 
     def outside(self, paths: Iterable[str | os.PathLike[str]]) -> list[str]:
         """Return the files among the paths that lie neither below its folder nor below the working folder."""
@@ -54,14 +54,14 @@ class Loaded(msgspec.Struct, frozen=True):
 
     def named_files(self) -> Iterator[str]:
         """Yield the drawings, tables and settings that the manifest names, of each case and of none."""
-        left: list[Any] = [self.table]
-        while left:
-            value = left.pop()
+        remaining: list[Any] = [self.table]
+        while remaining:
+            value = remaining.pop()
             if isinstance(value, Mapping):
                 yield from (value[key] for key in _FILES if isinstance(value.get(key), str))
-                left += value.values()
+                remaining += value.values()
             elif isinstance(value, list):
-                left += value
+                remaining += value
 
     def without_programs(self) -> Iterator[str]:
         """Yield a line for each control whose `programs` finds no file at all, as one with a slip in it."""
@@ -69,7 +69,7 @@ class Loaded(msgspec.Struct, frozen=True):
             of_control = [case for title, case in self.cases.items() if title not in self.numbers]
             if control.programs is not None and not any(case.control == name for case in of_control):
                 key = f"controls.{name}.programs"
-                yield f"{_place(self.path, self.text, key)}: {key}: there is no file {control.programs}"
+                yield f"{_location(self.path, self.text, key)}: {key}: there is no file {control.programs}"
 
     def has_golden(self, case: Case) -> bool:
         """Return True if the golden trace of a case is there."""
@@ -104,19 +104,23 @@ def load(path: Path) -> Loaded:
                 cases.setdefault(case.title, case)
         cases, remarks = _with_references(manifest, cases, numbers)
     except MisfitError as misfit:
-        raise CertificateError(f"{_place(path, text, misfit.key)}: {misfit}") from None
+        raise CertificateError(f"{_location(path, text, misfit.key)}: {misfit}") from None
     return Loaded(path, text, table, manifest, cases, numbers, remarks)
 
 
-def _place(path: Path, text: str, key: str) -> str:
+def _location(path: Path, text: str, key: str) -> str:
     """Return the file and the line of a key: post.toml:12."""
     line = toml_lines.line_of(key, toml_lines.of_keys(text))
     return f"{files.display_path(str(path))}:{line}" if line else files.display_path(str(path))
 
 
-def _beside(path: Path, written: str) -> Path:
-    beside = path.parent / written
-    return path.parent / written.replace("\\", "/") if "\\" in written and not beside.exists() else beside
+def _path_from(path: Path, written: str) -> Path:
+    path_as_written = path.parent / written
+    return (
+        path.parent / written.replace("\\", "/")
+        if "\\" in written and not path_as_written.exists()
+        else path_as_written
+    )
 
 
 def _written(manifest: Manifest) -> tuple[dict[str, Case], dict[str, int]]:
@@ -132,7 +136,7 @@ def _written(manifest: Manifest) -> tuple[dict[str, Case], dict[str, int]]:
     return cases, {title: number for number, title in enumerate(cases, 1)}
 
 
-def _known(key: str, name: str, names: Collection[str], what: str) -> None:
+def _require_name(key: str, name: str, names: Collection[str], what: str) -> None:
     """Raise MisfitError for a name that is not among those of a kind."""
     if name not in names:
         near = suggestion(name, names) or (f"; there are {listed(names)}" if names else "; there is none")
@@ -148,7 +152,7 @@ def _check(manifest: Manifest) -> None:
     if not controls:
         raise MisfitError("controls", "controls: expected at least one, as in [controls.lathe-7]")
     for name in manifest.feature:
-        _known(f"feature.{name}", name, features, "feature")
+        _require_name(f"feature.{name}", name, features, "feature")
     for name, control in controls.items():
         key = f"controls.{name}"
         for pattern in ("programs", "golden"):
@@ -160,18 +164,18 @@ def _check(manifest: Manifest) -> None:
         if control.golden is not None and control.programs is None:
             raise MisfitError(f"{key}.golden", f"{key}.golden: is for the programs of {key}.programs, which is missing")
         if control.same_path_as is not None:
-            others = [other for other in controls if other != name]
-            _known(f"{key}.same_path_as", control.same_path_as, others, "other control")
+            rivals = [second for second in controls if second != name]
+            _require_name(f"{key}.same_path_as", control.same_path_as, rivals, "other control")
         for feature in control.not_offered:
-            _known(f"{key}.not_offered.{feature}", feature, features, "feature")
+            _require_name(f"{key}.not_offered.{feature}", feature, features, "feature")
     for number, case in enumerate(manifest.case, 1):
         key = f"case.{number}"
-        _known(f"{key}.feature", case.feature, features, "feature")
-        _known(f"{key}.control", case.control, controls, "control")
+        _require_name(f"{key}.feature", case.feature, features, "feature")
+        _require_name(f"{key}.control", case.control, controls, "control")
         if case.feature in controls[case.control].not_offered:
             raise MisfitError(f"{key}.feature", f"{key}.feature: {case.control} does not offer {case.feature}")
-        for place, finding in enumerate(case.findings, 1):
-            _known(f"{key}.findings.{place}.rule", finding.rule, rules, "rule")
+        for index, finding in enumerate(case.findings, 1):
+            _require_name(f"{key}.findings.{index}.rule", finding.rule, rules, "rule")
 
 
 def _by_pattern(path: Path, manifest: Manifest, name: str, cases: Collection[Case]) -> Iterator[Case]:
@@ -189,7 +193,7 @@ def _by_pattern(path: Path, manifest: Manifest, name: str, cases: Collection[Cas
             continue
         program = control.programs.replace(PLACE, feature)
         golden = control.golden.replace(PLACE, feature) if control.golden is not None else None
-        if any(_beside(path, file).exists() for file in (program, golden) if file is not None):
+        if any(_path_from(path, file).exists() for file in (program, golden) if file is not None):
             yield Case(feature=feature, control=name, program=program, golden=golden)
 
 
@@ -204,15 +208,15 @@ def _with_references(
     referring: dict[str, Case] = {}
     remarks: dict[str, str] = {}
     for title, case in cases.items():
-        other = manifest.controls[case.control].same_path_as
-        if case.same_path_as is None and other is not None and case.expected == "pass":
-            reference = f"{case.feature}/{other}"
+        reference_control = manifest.controls[case.control].same_path_as
+        if case.same_path_as is None and reference_control is not None and case.expected == "pass":
+            reference = f"{case.feature}/{reference_control}"
             if reference in cases:
                 case = msgspec.structs.replace(case, same_path_as=reference)
             else:
-                remarks[title] = f"the path is not compared: {other} has no case {reference}"
+                remarks[title] = f"the path is not compared: {reference_control} has no case {reference}"
         elif case.same_path_as is not None:
-            _known(f"case.{numbers[title]}.same_path_as", case.same_path_as, [*cases], "case")
+            _require_name(f"case.{numbers[title]}.same_path_as", case.same_path_as, [*cases], "case")
         referring[title] = case
     for title, case in referring.items():
         passed = {title}

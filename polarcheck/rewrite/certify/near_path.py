@@ -41,13 +41,13 @@ def with_golden(ours: ToolPath, golden: ToolPath, tolerance: float, title: str) 
     tolerance: [mm]. title: of the golden trace, for the reasons.
     """
 
-    def turned_by(number: int, mine: ToolPath, other: ToolPath) -> tuple[float, str]:
-        ours_at, other_at = float(mine.turned[number]), float(other.turned[number])
+    def turned_by(number: int, mine: ToolPath, theirs: ToolPath) -> tuple[float, str]:
+        ours_at, other_at = float(mine.turned[number]), float(theirs.turned[number])
         if np.isnan(ours_at) and np.isnan(other_at):
             return 0.0, ""
         if np.isnan(ours_at) or np.isnan(other_at):
-            known, where = (other_at, "there") if np.isnan(ours_at) else (ours_at, "here")
-            return 0.0, f"C at its beginning is known {where} alone, as {known:.3f} deg"
+            angle, where = (other_at, "there") if np.isnan(ours_at) else (ours_at, "here")
+            return 0.0, f"C at its beginning is known {where} alone, as {angle:.3f} deg"
         apart = _wrapped(ours_at - other_at)
         if abs(np.radians(apart)) * mine.farthest > tolerance:
             return 0.0, f"it is turned by {apart:.3f} deg against {title}"
@@ -57,15 +57,15 @@ def with_golden(ours: ToolPath, golden: ToolPath, tolerance: float, title: str) 
     if comparison.reasons or comparison.deviation is None:
         return comparison
     for number in range(len(ours.turned)):
-        mine, other = ours.of_section(number), golden.of_section(number)
-        change = _feed_change(mine, other, tolerance)
+        mine, theirs = ours.of_section(number), golden.of_section(number)
+        change = _feed_change(mine, theirs, tolerance)
         if change is not None:
             line, now, before = change
             comparison.reasons.append(f"line {line}: F is {_feed(now)}, in {title} {_feed(before)}")
     return comparison
 
 
-def with_other(ours: ToolPath, other: ToolPath, tolerance: float, title: str) -> Comparison:
+def with_other(ours: ToolPath, reference: ToolPath, tolerance: float, title: str) -> Comparison:
     """
     Compare a path with that of another program: points and Z within the tolerance, up to one turn of the whole part.
 
@@ -75,7 +75,7 @@ def with_other(ours: ToolPath, other: ToolPath, tolerance: float, title: str) ->
     remarks: list[str] = []
 
     def turned_by(number: int, mine: ToolPath, theirs: ToolPath) -> tuple[float, str]:
-        apart = ours.turned - other.turned
+        apart = ours.turned - reference.turned
         if not turns or np.isnan(apart[[0, number]]).any():
             if turns:
                 remarks.append(f"section {number + 1}: its angle is not compared, C at its beginning is not known")
@@ -92,13 +92,13 @@ def with_other(ours: ToolPath, other: ToolPath, tolerance: float, title: str) ->
             return turns[0], f"it is turned by {-off:.3f} deg against {title}"
         return turn, ""
 
-    comparison = _compared(ours, other, tolerance, title, turned_by)
+    comparison = _compared(ours, reference, tolerance, title, turned_by)
     return comparison._replace(remarks=comparison.remarks + remarks)
 
 
 def _compared(
     ours: ToolPath,
-    other: ToolPath,
+    reference: ToolPath,
     tolerance: float,
     title: str,
     turned_by: Callable[[int, ToolPath, ToolPath], tuple[float, str]],
@@ -108,31 +108,31 @@ def _compared(
 
     turned_by: returns the angle by which a section of the other path lies turned [deg], and why it does not agree.
     """
-    count, expected = len(ours.turned), len(other.turned)
+    count, expected = len(ours.turned), len(reference.turned)
     if count != expected:
         return Comparison(
             None,
             [f"the path has {counted(count, 'polar section')}, {title} has {counted(expected, 'polar section')}"],
             [],
         )
-    if ours.is_programmed.any() != other.is_programmed.any():
+    if ours.is_programmed.any() != reference.is_programmed.any():
         which = "this program" if ours.is_programmed.any() else title
         return Comparison(None, [f"R of a cutter is not known in {which}: its path is the programmed one"], [])
     largest, reasons, remarks = 0.0, list[str](), list[str]()
     for number in range(count):
-        mine, theirs = ours.of_section(number), other.of_section(number)
+        mine, theirs = ours.of_section(number), reference.of_section(number)
         section = f"section {number + 1}"
         if np.isnan(mine.z_to).all() and np.isnan(theirs.z_to).all():
             remarks.append(f"{section}: Z is not compared, it is not known")
             mine, theirs = _without_z(mine), _without_z(theirs)
-        known = [path.space().is_known for path in (mine, theirs)]
-        unknown = [int(np.count_nonzero(~of_path)) for of_path in known]
+        is_known = [path.space().is_known for path in (mine, theirs)]
+        unknown = [int(np.count_nonzero(~of_path)) for of_path in is_known]
         if unknown[0] != unknown[1]:
             which = "this program" if unknown[0] > unknown[1] else title
             return Comparison(None, [*reasons, f"{section}: a position is not known in {which}"], remarks)
         if unknown[0]:
             remarks.append(f"{section}: {counted(unknown[0], 'move')} not compared, a position is not known")
-            mine, theirs = mine[known[0]], theirs[known[1]]
+            mine, theirs = mine[is_known[0]], theirs[is_known[1]]
             if not len(mine) or not len(theirs):
                 continue
         turn, why = turned_by(number, mine, theirs)
@@ -153,14 +153,14 @@ def _compared(
 
 def _farthest_apart(deviation: PathDeviation, mine: ToolPath, tolerance: float, title: str, section: str) -> str:
     """Return how far and where a path differs from another one."""
-    place = deviation.place
+    location = deviation.place
     where = section
-    at = ""
-    if place is not None:
-        where = f"line {mine.line[place.new_move]}"
-        at = f" at x {place.new.real:.3f} c {place.new.imag:.3f} z {place.new_z:.3f}"
+    point_text = ""
+    if location is not None:
+        where = f"line {mine.line[location.new_move]}"
+        point_text = f" at x {location.new.real:.3f} c {location.new.imag:.3f} z {location.new_z:.3f}"
     most = "" if deviation.is_exact else "up to "
-    return f"{where}: {most}{deviation.largest:.3f} mm from {title}{at} (tolerance {tolerance:g})"
+    return f"{where}: {most}{deviation.largest:.3f} mm from {title}{point_text} (tolerance {tolerance:g})"
 
 
 def _without_z(path: ToolPath) -> ToolPath:

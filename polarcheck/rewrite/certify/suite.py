@@ -145,7 +145,7 @@ def dxf(outline: Outline, unit: float) -> str:
     pairs += [(0, "SECTION"), (2, "ENTITIES"), (0, "POLYLINE"), (8, "CONTOUR"), (66, 1), (70, 1)]
     pairs += [(10, 0.0), (20, 0.0), (30, 0.0)]
     for corner, bulge in outline:
-        place = [(10, corner.real / unit), (20, corner.imag / unit), (30, 0.0)]
-        pairs += [(0, "VERTEX"), (8, "CONTOUR"), *place, (42, bulge)]
+        coordinates = [(10, corner.real / unit), (20, corner.imag / unit), (30, 0.0)]
+        pairs += [(0, "VERTEX"), (8, "CONTOUR"), *coordinates, (42, bulge)]
     pairs += [(0, "SEQEND"), (8, "CONTOUR"), (0, "ENDSEC"), (0, "EOF")]
     return "".join(f"{code:>3}\n{f'{value:.9f}' if isinstance(value, float) else value}\n" for code, value in pairs)

@@ -20,15 +20,15 @@ def updates(loaded: Loaded, certified: Mapping[str, Certified], names: frozenset
     two cases with one file, for a file outside of the folder of the manifest, and for one that holds anything else,
     before any is written.
     """
-    wanted = [entry for name, entry in certified.items() if name in names and entry.case.golden is not None]
-    _refuse(loaded, wanted)
-    for entry in wanted:
+    requested = [entry for name, entry in certified.items() if name in names and entry.case.golden is not None]
+    _refuse(loaded, requested)
+    for entry in requested:
         yield _updated(loaded, entry)
 
 
-def _refuse(loaded: Loaded, wanted: list[Certified]) -> None:
+def _refuse(loaded: Loaded, requested: list[Certified]) -> None:
     owners: dict[str, str] = {}
-    for entry in wanted:
+    for entry in requested:
         path = loaded.beside(entry.case.golden or "")
         title = files.display_path(str(path))
         owner = owners.setdefault(str(path.resolve()), entry.case.title)

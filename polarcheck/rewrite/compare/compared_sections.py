@@ -127,14 +127,14 @@ def _with_z_alone(trace: Trace, moves: Moves) -> Moves:
     if not len(alone):
         return moves
     section = trace.mode.section[alone]
-    behind = np.searchsorted(moves.row, alone)
-    last = np.maximum(behind - 1, 0)
-    follows = np.minimum(behind, max(len(moves) - 1, 0))
+    insertion = np.searchsorted(moves.row, alone)
+    last = np.maximum(insertion - 1, 0)
+    follows = np.minimum(insertion, max(len(moves) - 1, 0))
     point = trace.path.end[alone].copy()
     if len(moves):
-        has_next = (behind < len(moves)) & (moves.section[follows] == section)
+        has_next = (insertion < len(moves)) & (moves.section[follows] == section)
         point = np.where(has_next, moves.start[follows], point)
-        has_last = (behind > 0) & (moves.section[last] == section)
+        has_last = (insertion > 0) & (moves.section[last] == section)
         point = np.where(has_last, moves.end[last], point)
     count = len(alone)
     added = msgspec.structs.replace(
@@ -212,11 +212,11 @@ def outside(
         if lost.any() and not needs:
             needs = f"{words[0]} of line {int(trace.blocks.line_in_file[row[np.argmax(lost)]])} is not known"
     if rewritten is not None and len(rows):
-        at = [before(column, starts, np.nan)[rows[0]] for column in (path.x, path.z, path.c_angle)]
+        positions = [before(column, starts, np.nan)[rows[0]] for column in (path.x, path.z, path.c_angle)]
         named = [trace.blocks.has(*words)[row] for words in written]
         columns = [
             _following_on(here, start, np.where(names, end, np.nan))
-            for here, (start, end), names in zip(at, columns, named, strict=True)
+            for here, (start, end), names in zip(positions, columns, named, strict=True)
         ]
     (x_from, x_to), (z_from, z_to) = (_without_unknown(*column) for column in columns[:2])
     c_from, c_to = _without_unknown(*columns[2])
@@ -233,18 +233,18 @@ def outside(
     center = _centers(trace, row, start, end, kind)
     kind = np.where(np.isnan(center), Motion.LINE, kind).astype(np.int16)
     of_stretch = SpacePath(start, end, center, kind, c_from * scale, c_to * scale)
-    own = set(rows[~is_left_out].tolist())
-    stretch = _stretch(trace, -1, rows, of_stretch, row, [step for step in steps if step.row in own], needs)
+    rows_kept = set(rows[~is_left_out].tolist())
+    stretch = _stretch(trace, -1, rows, of_stretch, row, [step for step in steps if step.row in rows_kept], needs)
     return msgspec.structs.replace(stretch, c_scale=scale, is_rewritten=rewritten is not None)
 
 
 def _without_unknown(start: Floats, end: Floats) -> tuple[Floats, Floats]:
     """An axis that is not known yet stands where it is first known; one that never is stands at 0."""
     values = np.column_stack((start, end)).ravel()
-    known = np.flatnonzero(~np.isnan(values))
-    if not len(known):
+    known_rows = np.flatnonzero(~np.isnan(values))
+    if not len(known_rows):
         return np.zeros(len(start)), np.zeros(len(end))
-    following = known[np.minimum(np.searchsorted(known, np.arange(len(values))), len(known) - 1)]
+    following = known_rows[np.minimum(np.searchsorted(known_rows, np.arange(len(values))), len(known_rows) - 1)]
     filled = values[following]
     return filled[::2], filled[1::2]
 
@@ -255,10 +255,10 @@ def _following_on(here: float, start: Floats, end: Floats) -> tuple[Floats, Floa
 
     here: where the axis stands before all of them; NaN where that is not known.
     """
-    known = np.flatnonzero(~np.isnan(end))
-    if len(known):
-        last = np.searchsorted(known, np.arange(len(end)), side="right") - 1
-        end = np.where(last < 0, here, end[known[np.maximum(last, 0)]])
+    known_rows = np.flatnonzero(~np.isnan(end))
+    if len(known_rows):
+        last = np.searchsorted(known_rows, np.arange(len(end)), side="right") - 1
+        end = np.where(last < 0, here, end[known_rows[np.maximum(last, 0)]])
     return np.append(here, end)[: len(end)], end
 
 

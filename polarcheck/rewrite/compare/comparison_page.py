@@ -76,8 +76,11 @@ def _headline(comparison: Comparison, sizes: Sizes) -> str:
 
 def _kinds(comparison: Comparison) -> list[str]:
     """What differs, each kind once."""
-    differing = [*comparison.outside, *(each for section in comparison.sections for each in section.differences)]
-    kinds = {_KINDS.get(each.what, "state at entry") for each in differing}
+    differing = [
+        *comparison.outside,
+        *(difference for section in comparison.sections for difference in section.differences),
+    ]
+    kinds = {_KINDS.get(difference.what, "state at entry") for difference in differing}
     return [kind for kind in dict.fromkeys((*_KINDS.values(), "state at entry")) if kind in kinds]
 
 

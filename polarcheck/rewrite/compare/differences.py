@@ -64,8 +64,8 @@ def differences(old: Part, new: Part, deviation: PathDeviation | None, tolerance
 
 
 def _of_path(old: Part, new: Part, deviation: PathDeviation) -> Difference:
-    place = deviation.place
-    if place is None:
+    location = deviation.place
+    if location is None:
         missing = [part for part in (old, new) if not len(part.stretch.path)]
         name = "new" if missing[0] is new else "old"
         moving = old if missing[0] is new else new
@@ -74,9 +74,9 @@ def _of_path(old: Part, new: Part, deviation: PathDeviation) -> Difference:
         return Difference(
             "path", text, old_line=line if moving is old else None, new_line=line if moving is new else None
         )
-    old_row, new_row = int(old.stretch.row[place.old_move]), int(new.stretch.row[place.new_move])
-    at_old = _place(old, old_row, place.old, place.old_z)
-    at_new = _place(new, new_row, place.new, place.new_z)
+    old_row, new_row = int(old.stretch.row[location.old_move]), int(new.stretch.row[location.new_move])
+    at_old = _location(old, old_row, location.old, location.old_z)
+    at_new = _location(new, new_row, location.new, location.new_z)
     largest = _largest(old, deviation)
     size = f"{'' if deviation.is_exact else 'up to '}{old.quantity(largest, old_row).shown('length', 1)}"
     if old.stretch.section < 0 and largest == 0:
@@ -90,10 +90,10 @@ def _of_path(old: Part, new: Part, deviation: PathDeviation) -> Difference:
 
 def _largest(old: Part, deviation: PathDeviation) -> float:
     """The deviation as a length [mm]: outside of sections that of C is none."""
-    place = deviation.place
-    if old.stretch.section >= 0 or place is None:
+    location = deviation.place
+    if old.stretch.section >= 0 or location is None:
         return deviation.largest
-    apart = abs(place.old - place.new)
+    apart = abs(location.old - location.new)
     return apart if apart > ZERO else 0.0
 
 
@@ -102,7 +102,7 @@ def length_of(part: Part, deviation: PathDeviation | None) -> float:
     return 0.0 if deviation is None else _largest(part, deviation)
 
 
-def _place(part: Part, row: int, point: complex, third: float) -> str:
+def _location(part: Part, row: int, point: complex, third: float) -> str:
     """`X60 C5 Z-2` in the units of the program; outside of sections Z and X are the point, and C is the third."""
     trace, section = part.trace, part.stretch.section
     if section >= 0:
@@ -133,10 +133,10 @@ def _of_depth(old: Part, new: Part, tolerance: float) -> Iterator[Difference]:
     if old.stretch.section < 0 or before is None or after is None or abs(before - after) <= tolerance:
         return
     rows = [int(part.stretch.row[~part.stretch.rapid][0]) for part in (old, new)]
-    shown = [
+    depths = [
         part.quantity(z, row).shown("length") for part, row, z in zip((old, new), rows, (before, after), strict=True)
     ]
-    yield Difference("depth", f"the depth was Z{shown[0]} and is Z{shown[1]}", before, after, "mm")
+    yield Difference("depth", f"the depth was Z{depths[0]} and is Z{depths[1]}", before, after, "mm")
 
 
 # ---- feeds ----
@@ -144,33 +144,33 @@ def _of_depth(old: Part, new: Part, tolerance: float) -> Iterator[Difference]:
 
 def _feeds_along(old: Part, new: Part, tolerance: float) -> Iterator[Difference]:
     """Where F differs along one path; changes of one F into one other are one difference."""
-    ways = [_ways(part.stretch) for part in (old, new)]
-    totals = [float(way.sum()) for way in ways]
+    distances = [_distances(part.stretch) for part in (old, new)]
+    totals = [float(distance.sum()) for distance in distances]
     if min(totals) <= ZERO:
         return
-    ends = [np.cumsum(way) / total for way, total in zip(ways, totals, strict=True)]
+    ends = [np.cumsum(distance) / total for distance, total in zip(distances, totals, strict=True)]
     cuts = np.union1d(*ends)
     middle, share = (cuts + np.append(0.0, cuts[:-1])) / 2, np.diff(cuts, prepend=0.0)
-    at = [np.minimum(np.searchsorted(end, middle), len(end) - 1) for end in ends]
-    differs = _feed_differs(old.stretch, at[0], new.stretch, at[1])
+    moves = [np.minimum(np.searchsorted(end, middle), len(end) - 1) for end in ends]
+    differs = _feed_differs(old.stretch, moves[0], new.stretch, moves[1])
     # The ends of moves that are the same up to the tolerance leave slivers between them.
     sliver = 10 * tolerance + 2 * abs(totals[0] - totals[1])
     groups: dict[tuple[str, str], list[tuple[int, int, float]]] = {}
     for index in np.flatnonzero(differs & (share * totals[0] > sliver)).tolist():
-        first, second = int(at[0][index]), int(at[1][index])
+        first, second = int(moves[0][index]), int(moves[1][index])
         key = _feed(old, first), _feed(new, second)
         groups.setdefault(key, []).append((first, second, float(share[index]) * totals[0]))
     for (before, after), places in list(groups.items())[:_LISTED]:
         first, second, _ = places[0]
-        way = sum(length for *_, length in places)
+        distance = sum(length for *_, length in places)
         row, new_row = int(old.stretch.row[first]), int(new.stretch.row[second])
-        text = f"{before} has become {after} along {old.quantity(way, row).shown('length')}"
-        yield Difference("feed", text, before, after, "", old.line(row), new.line(new_row), rounded(way))
+        text = f"{before} has become {after} along {old.quantity(distance, row).shown('length')}"
+        yield Difference("feed", text, before, after, "", old.line(row), new.line(new_row), rounded(distance))
     if len(groups) > _LISTED:
         yield Difference("feed", f"and {len(groups) - _LISTED} other changes of F")
 
 
-def _ways(stretch: Stretch) -> Floats:
+def _distances(stretch: Stretch) -> Floats:
     path = stretch.path
     length = polar.length(path.start, path.end, path.center, path.kind)
     return np.asarray(np.hypot(np.nan_to_num(length), path.z_end - path.z_start))
@@ -178,9 +178,9 @@ def _ways(stretch: Stretch) -> Floats:
 
 def _feed_differs(old: Stretch, first: Rows, new: Stretch, second: Rows) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
     rapid = old.rapid[first], new.rapid[second]
-    feed, other = old.feed[first], new.feed[second]
-    is_known = ~np.isnan(feed), ~np.isnan(other)
-    same = (np.abs(feed - other) <= _SAME_FEED * np.abs(feed)) & (old.feed_mode[first] == new.feed_mode[second])
+    feed, new_feed = old.feed[first], new.feed[second]
+    is_known = ~np.isnan(feed), ~np.isnan(new_feed)
+    same = (np.abs(feed - new_feed) <= _SAME_FEED * np.abs(feed)) & (old.feed_mode[first] == new.feed_mode[second])
     at_feed = ~rapid[0] & ~rapid[1]
     return np.asarray((rapid[0] != rapid[1]) | (at_feed & ((is_known[0] != is_known[1]) | (is_known[0] & ~same))))
 
@@ -194,18 +194,18 @@ def _feed(part: Part, move: int) -> str:
     if np.isnan(feed):
         return "no F"
     quantity = part.quantity(feed, int(stretch.row[move]))
-    shown = quantity.shown("feed")
+    text = quantity.shown("feed")
     if stretch.feed_mode[move] == FeedMode.PER_REVOLUTION:
-        shown = quantity.as_feed.shown("length", 2) + "/rev"
-    return f"F{shown}"
+        text = quantity.as_feed.shown("length", 2) + "/rev"
+    return f"F{text}"
 
 
 def _feeds_apart(old: Part, new: Part) -> Iterator[Difference]:
     """The F of two paths that are not the same: each once."""
     feeds = [list(dict.fromkeys(_feed(part, move) for move in _changes_of_feed(part.stretch))) for part in (old, new)]
     if sorted(feeds[0]) != sorted(feeds[1]):
-        shown = [", ".join(each[:_LISTED]) or "none" for each in feeds]
-        yield Difference("feed", f"F was {shown[0]} and is {shown[1]}", shown[0], shown[1])
+        texts = [", ".join(feeds_of_part[:_LISTED]) or "none" for feeds_of_part in feeds]
+        yield Difference("feed", f"F was {texts[0]} and is {texts[1]}", texts[0], texts[1])
 
 
 def _changes_of_feed(stretch: Stretch) -> list[int]:
@@ -231,52 +231,59 @@ def _orders(old: Part, new: Part, tolerance: float, is_same_path: bool) -> Itera
     pairs = [*zip(before[:head], after[:head], strict=True)]
     if tail:
         pairs += zip(before[-tail:], after[-tail:], strict=True)
-    left, right = before[head : len(before) - tail], after[head : len(after) - tail]
-    found: list[Difference] = []
-    if max(len(left), len(right)) > _PAIRED:
-        found.append(Difference("order", f"{len(left)} orders have become {len(right)} others"))
+    removed, added = before[head : len(before) - tail], after[head : len(after) - tail]
+    differences: list[Difference] = []
+    if max(len(removed), len(added)) > _PAIRED:
+        differences.append(Difference("order", f"{len(removed)} orders have become {len(added)} others"))
     else:
-        matcher = SequenceMatcher(None, [step.tokens for step in left], [step.tokens for step in right], autojunk=False)
+        matcher = SequenceMatcher(
+            None, [step.tokens for step in removed], [step.tokens for step in added], autojunk=False
+        )
         for kind, low, high, new_low, new_high in matcher.get_opcodes():
             if kind == "equal":
-                pairs += zip(left[low:high], right[new_low:new_high], strict=True)
+                pairs += zip(removed[low:high], added[new_low:new_high], strict=True)
             else:
-                found.append(_changed_orders(old, new, left[low:high], right[new_low:new_high]))
-    for step, other in pairs:
-        difference = _of_pair(old, step, new, other, tolerance, is_same_path)
+                differences.append(_changed_orders(old, new, removed[low:high], added[new_low:new_high]))
+    for step, new_step in pairs:
+        difference = _of_pair(old, step, new, new_step, tolerance, is_same_path)
         if difference is not None:
-            found.append(difference)
-    found.sort(key=lambda each: each.old_line or each.new_line or 0)
-    yield from found[:_LISTED]
-    if len(found) > _LISTED:
-        yield Difference("order", f"and {len(found) - _LISTED} other orders")
+            differences.append(difference)
+    differences.sort(key=lambda difference_found: difference_found.old_line or difference_found.new_line or 0)
+    yield from differences[:_LISTED]
+    if len(differences) > _LISTED:
+        yield Difference("order", f"and {len(differences) - _LISTED} other orders")
 
 
-def _changed_orders(old: Part, new: Part, left: Sequence[Step], right: Sequence[Step]) -> Difference:
-    was, is_now = (", ".join(step.text for step in steps[:_LISTED]) for steps in (left, right))
-    if not right:
+def _changed_orders(old: Part, new: Part, removed: Sequence[Step], added: Sequence[Step]) -> Difference:
+    was, is_now = (", ".join(step.text for step in steps[:_LISTED]) for steps in (removed, added))
+    if not added:
         text = f"{was} is missing"
-    elif not left:
+    elif not removed:
         text = f"{is_now} is added"
     else:
         text = f"{was} has become {is_now}"
-    old_line = old.line(left[0].row) if left else None
-    new_line = new.line(right[0].row) if right else None
+    old_line = old.line(removed[0].row) if removed else None
+    new_line = new.line(added[0].row) if added else None
     return Difference("order", text, was or None, is_now or None, "", old_line, new_line)
 
 
-def _of_pair(old: Part, step: Step, new: Part, other: Step, tolerance: float, is_same_path: bool) -> Difference | None:
+def _of_pair(
+    old: Part, step: Step, new: Part, new_step: Step, tolerance: float, is_same_path: bool
+) -> Difference | None:
     """Orders of the same words: their values, and where they stand on the path."""
-    lines = old.line(step.row), new.line(other.row)
-    for value, after in zip(step.values, other.values, strict=True):
+    lines = old.line(step.row), new.line(new_step.row)
+    for value, after in zip(step.values, new_step.values, strict=True):
         if abs(value - after) > tolerance or np.isnan(value) != np.isnan(after):
-            return Difference("order", f"{step.text} has become {other.text}", step.text, other.text, "", *lines)
+            return Difference("order", f"{step.text} has become {new_step.text}", step.text, new_step.text, "", *lines)
     if not is_same_path:
         return None
-    here, there = _where(old, step.row), _where(new, other.row)
+    here, there = _where(old, step.row), _where(new, new_step.row)
     if np.abs(np.nan_to_num(np.subtract(here, there))).max() <= 2 * tolerance:
         return None
-    places = [_place(old, step.row, complex(*here[:2]), here[2]), _place(new, other.row, complex(*there[:2]), there[2])]
+    places = [
+        _location(old, step.row, complex(*here[:2]), here[2]),
+        _location(new, new_step.row, complex(*there[:2]), there[2]),
+    ]
     text = f"{step.text} stands elsewhere on the path: {places[0]} | {places[1]}"
     return Difference("place", text, places[0], places[1], "", *lines)
 

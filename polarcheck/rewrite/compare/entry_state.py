@@ -71,30 +71,30 @@ def entry_differences(old: Part, new: Part, *, is_same_machine: bool, tolerance:
     """Yield what differs at the beginning of two sections; across machines what means the same on both."""
     before, after = (entry_of(part.trace, part.stretch.section) for part in (old, new))
     lines = [part.line(int(part.trace.mode.sections.enter[part.stretch.section])) for part in (old, new)]
-    own = {"tool", "plane", *_of_one_machine(old, new)}
+    machine_specific = {"tool", "plane", *_of_one_machine(old, new)}
     for what in Entry._fields:
-        if not is_same_machine and what in own:
+        if not is_same_machine and what in machine_specific:
             continue
-        value, other = getattr(before, what), getattr(after, what)
+        value, new_value = getattr(before, what), getattr(after, what)
         if isinstance(value, str):
-            if value != other:
-                text = f"{_NAMES[what]}: {value or 'none'} has become {other or 'none'}"
-                yield Difference(what, text, value or None, other or None, "", *lines)
+            if value != new_value:
+                text = f"{_NAMES[what]}: {value or 'none'} has become {new_value or 'none'}"
+                yield Difference(what, text, value or None, new_value or None, "", *lines)
             continue
-        apart = abs(value - other)
+        apart = abs(value - new_value)
         if what == "c_angle":
             apart = min(apart, 360 - apart)
         least = {"c_angle": _SAME_ANGLE, "radius": tolerance}.get(what, 0.0)
-        if (np.isnan(value) and np.isnan(other)) or apart <= least:
+        if (np.isnan(value) and np.isnan(new_value)) or apart <= least:
             continue
         if what in ("radius", "c_angle") and np.isnan(apart):
             continue  # one of them is not known: that is no difference, and the section says so
-        shown = [_shown(part, what, number) for part, number in ((old, value), (new, other))]
+        texts = [_value_text(part, what, number) for part, number in ((old, value), (new, new_value))]
         yield Difference(
             what,
-            f"{_NAMES[what]} was {shown[0]} and is {shown[1]}",
+            f"{_NAMES[what]} was {texts[0]} and is {texts[1]}",
             rounded(value),
-            rounded(other),
+            rounded(new_value),
             _UNITS[what],
             *lines,
         )
@@ -112,7 +112,7 @@ def _of_one_machine(old: Part, new: Part) -> Iterator[str]:
         yield "speed"
 
 
-def _shown(part: Part, what: str, value: float) -> str:
+def _value_text(part: Part, what: str, value: float) -> str:
     if np.isnan(value):
         return "not known"
     if what == "radius":

@@ -55,8 +55,8 @@ def speed_in_force(trace: Trace) -> Floats:
 def special_rows(trace: Trace) -> Mask:
     """Rows whose axis words are no end of a plain move: cycles, references, shifts, dwells, blocks not executed."""
     modal = trace.modal
-    others = trace.blocks.listed("machine_coordinates", "repetitive_cycle") | modal.sets_coordinates
-    return np.asarray(~modal.uses_axes | modal.in_cycle | others)
+    with_other_words = trace.blocks.listed("machine_coordinates", "repetitive_cycle") | modal.sets_coordinates
+    return np.asarray(~modal.uses_axes | modal.in_cycle | with_other_words)
 
 
 def steps(trace: Trace, *, is_same_machine: bool) -> list[Step]:
@@ -72,9 +72,9 @@ def steps(trace: Trace, *, is_same_machine: bool) -> list[Step]:
 def not_comparable(trace: Trace) -> list[str]:
     """The M codes of a program that are not compared with those of another lathe."""
     macro = trace.machine.macro
-    known = {*_EVERYWHERE, *_COMPARED_OTHERWISE, *macro.subprogram_calls, *macro.program_returns}
+    comparable = {*_EVERYWHERE, *_COMPARED_OTHERWISE, *macro.subprogram_calls, *macro.program_returns}
     written = dict.fromkeys(f"M{value:g}" for value in trace.run.words.value[trace.blocks.m_words].tolist())
-    return [word for word in written if word not in known]
+    return [word for word in written if word not in comparable]
 
 
 def _rows(trace: Trace, is_same_machine: bool) -> Rows:
@@ -114,8 +114,8 @@ def _of_calls(trace: Trace) -> Mask:
     plain = (*macro.subprogram_calls, *macro.local_calls, *macro.program_returns)
     of_macros = (*macro.macro_calls, *macro.modal_macro_calls, *macro.modal_macro_calls_each_block)
     words = blocks.words_at(blocks.code_indices(*plain)) | blocks.codes(*of_macros)[row]
-    beside = np.isin(trace.run.words.address, [ord(name) for name in _OF_CALLS])
-    return np.asarray(words | (beside & blocks.codes(*plain)[row]))
+    arguments = np.isin(trace.run.words.address, [ord(name) for name in _OF_CALLS])
+    return np.asarray(words | (arguments & blocks.codes(*plain)[row]))
 
 
 class _Reader:
@@ -142,8 +142,8 @@ class _Reader:
             parts.insert(0, (side, None, side))
         if not parts:
             return None
-        tokens, values, shown = zip(*parts, strict=True)
-        return Step(row, tokens, tuple(value for value in values if value is not None), " ".join(shown))
+        tokens, values, texts = zip(*parts, strict=True)
+        return Step(row, tokens, tuple(value for value in values if value is not None), " ".join(texts))
 
     def _part(self, row: int, index: int) -> tuple[str, float | None, str] | None:
         """Token, value and text of a word; None for one that is compared elsewhere."""

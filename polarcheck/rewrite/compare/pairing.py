@@ -81,8 +81,8 @@ def _pair_most_alike(partner: Rows, old: Floats, new: Floats) -> None:
 
 def _in_order(partner: Rows) -> Rows:
     """The old sections with a partner that come in the same order in both revisions."""
-    own = np.flatnonzero(partner >= 0)
-    return own[longest_rise(partner[own])]
+    paired = np.flatnonzero(partner >= 0)
+    return paired[longest_rise(partner[paired])]
 
 
 def _pair_left_over(partner: Rows, ordered: Rows, count: int) -> None:
@@ -94,7 +94,7 @@ def _pair_left_over(partner: Rows, ordered: Rows, count: int) -> None:
         (*partner[ordered].tolist(), count), strict=True,
     )  # fmt: skip
     for low, high, new_low, new_high in list(bounds):
-        left = [index for index in range(low + 1, high) if partner[index] < 0]
-        right = [index for index in range(new_low + 1, new_high) if free[index]]
-        if len(left) == len(right):
-            partner[left] = right
+        old_unpaired = [index for index in range(low + 1, high) if partner[index] < 0]
+        new_unpaired = [index for index in range(new_low + 1, new_high) if free[index]]
+        if len(old_unpaired) == len(new_unpaired):
+            partner[old_unpaired] = new_unpaired

@@ -54,7 +54,8 @@ def has_same_words(old: Trace, new: Trace) -> bool:
         return False
     macros = [_spans(text, text.blocks[text.blocks.is_macro]) for text in (first, second)]
     return macros[0] == macros[1] and all(
-        np.array_equal(one, other) for one, other in zip(_columns(first), _columns(second), strict=True)
+        np.array_equal(old_column, new_column)
+        for old_column, new_column in zip(_columns(first), _columns(second), strict=True)
     )
 
 
@@ -132,7 +133,7 @@ def compared(
     if verdict == SAME_WORDS:
         missing = [NotCompared(reason.reason, matters=False) for reason in missing]
     measured = [value for run in runs for value in run.measured]
-    largest = max(measured, default=None, key=lambda each: each[0])
+    largest = max(measured, default=None, key=lambda largest_of_pair: largest_of_pair[0])
     return Comparison(
         old=_program(old),
         new=_program(new),
@@ -231,7 +232,7 @@ class _Runs:
     def sections(self) -> list[SectionPair]:
         """Return the pairs in the order of the old revision, then the sections that were added."""
         reports = [polar_sections(tables) for tables in self._tables]
-        known: set[tuple[str, object, object]] = set()
+        reported: set[tuple[str, object, object]] = set()
         pairs = []
         for number, partner in enumerate(self._partner.tolist()):
             keep_time()
@@ -241,8 +242,8 @@ class _Runs:
                 gone = Difference("section", text, old_line=side.line)
                 pairs.append(SectionPair(side, None, "missing", None, True, [gone]))
                 continue
-            other = _side(self._new[partner], self._traces[1], reports[1])
-            pairs.append(self._pair(number, partner, side, other, known))
+            new_side = _side(self._new[partner], self._traces[1], reports[1])
+            pairs.append(self._pair(number, partner, side, new_side, reported))
         taken = set(self._partner.tolist())
         for number, section in enumerate(self._new):
             if number not in taken:
@@ -252,23 +253,27 @@ class _Runs:
         return pairs
 
     def _pair(
-        self, number: int, partner: int, side: Side, other: Side, known: set[tuple[str, object, object]]
+        self, number: int, partner: int, side: Side, new_side: Side, reported: set[tuple[str, object, object]]
     ) -> SectionPair:
         old, new = Part(self._traces[0], self._old[number]), Part(self._traces[1], self._new[partner])
         state = [*_left_open(old, new)]
         state += [
-            each
-            for each in entry_differences(old, new, is_same_machine=self._is_same_machine, tolerance=self._tolerance)
+            difference
+            for difference in entry_differences(
+                old, new, is_same_machine=self._is_same_machine, tolerance=self._tolerance
+            )
             # What holds for all sections stands in the first.
-            if (each.what, each.old, each.new) not in known
+            if (difference.what, difference.old, difference.new) not in reported
         ]
-        known.update((each.what, each.old, each.new) for each in state if each.what != "c_angle")
+        reported.update(
+            (difference.what, difference.old, difference.new) for difference in state if difference.what != "c_angle"
+        )
         why = self._why_not(old, new)
         deviation, differences = None, list[Difference]()
         if not why:
             why, deviation, differences = self._measured(old, new)
         if why:
-            lines = f"section of line {side.line} (old) and {other.line} (new)"
+            lines = f"section of line {side.line} (old) and {new_side.line} (new)"
             self.not_compared.append(NotCompared(f"{lines}: {why}"))
         elif old.stretch.as_programmed:
             reason = f"section of line {side.line}: {old.stretch.as_programmed}: compared as programmed, for any R"
@@ -277,10 +282,10 @@ class _Runs:
         change = "changed" if differences else "not compared" if why else "same"
         if number not in self._ordered:
             change = "moved"
-            text = f"the section of line {side.line} runs at another place in the order, in line {other.line}"
-            differences.insert(0, Difference("section", text, None, None, "", side.line, other.line))
+            text = f"the section of line {side.line} runs at another place in the order, in line {new_side.line}"
+            differences.insert(0, Difference("section", text, None, None, "", side.line, new_side.line))
         largest = None if deviation is None else rounded(length_of(old, deviation))
-        return SectionPair(side, other, change, largest, deviation is None or deviation.is_exact, differences)
+        return SectionPair(side, new_side, change, largest, deviation is None or deviation.is_exact, differences)
 
     def _measured(self, old: Part, new: Part) -> tuple[str, PathDeviation | None, list[Difference]]:
         """Why two parts were not compared, or how far their paths are apart and what differs."""
@@ -296,15 +301,15 @@ class _Runs:
         for name, part in (("old", old), ("new", new)):
             if part.stretch.needs:
                 return f"{name}: {part.stretch.needs}"
-        for what, known in (
+        for what, is_unknown in (
             ("Z", [part.stretch.knows_z for part in (old, new)]),
             (
                 "C at its beginning",
                 [bool(part.trace.path.knows_section_entry[part.stretch.section]) for part in (old, new)],
             ),
         ):
-            if known[0] != known[1]:
-                return f"{'new' if known[0] else 'old'}: {what} is not known"
+            if is_unknown[0] != is_unknown[1]:
+                return f"{'new' if is_unknown[0] else 'old'}: {what} is not known"
         without = [part.stretch.as_programmed for part in (old, new)]
         if bool(without[0]) != bool(without[1]):
             return f"{'old' if without[0] else 'new'}: {without[0] or without[1]}"

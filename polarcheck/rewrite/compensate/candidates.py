@@ -173,8 +173,8 @@ def _has_leads(section: Section, pieces: Sequence[Piece]) -> bool:
     """A path begins with a line that leads to it, and ends with one that leads away; moves before may go aside."""
     backwards = [_back(piece) for piece in reversed(pieces)]
     return all(
-        any(_comes_from_outside(section, *pair) for pair in pairwise(way[:_MOVES_OF_LEAD]))
-        for way in (pieces, backwards)
+        any(_comes_from_outside(section, *pair) for pair in pairwise(path[:_MOVES_OF_LEAD]))
+        for path in (pieces, backwards)
     )
 
 

@@ -83,10 +83,10 @@ class _Writer:
         pen = self.pens[int(trace.lengths.units[first])]
         start = next((stroke.piece.start for row in group for stroke in strokes[row]), complex(trace.path.start[first]))
         motion = self._motion_before(first)
-        at, z = start + complex(trace.path.center_shift[first]), float(trace.path.z_before[first])
+        point, z = start + complex(trace.path.center_shift[first]), float(trace.path.z_before[first])
         if not self._is_section_of_group_before(first):
             pen.at = NOWHERE
-        pen.go_on(at, z, motion)
+        pen.go_on(point, z, motion)
         if self.runs_again[first]:
             # A block of a loop or a subprogram has the same words each time.
             pen.forget()
@@ -147,16 +147,16 @@ class _Writer:
         """The moves with the other words of the block: G codes in front of the first of them, the rest behind it."""
         run = self.trace.run
         front: list[str] = []
-        behind: list[str] = []
+        back: list[str] = []
         for index in words_of(run, row):
             word = written_word(run, index)
             if self.is_said[index] or is_head(run, index):
                 continue
-            (front if chr(int(run.words.address[index])) == "G" else behind).append(word)
-        if not front and not behind:
+            (front if chr(int(run.words.address[index])) == "G" else back).append(word)
+        if not front and not back:
             return moves
         first = moves[0].words if moves else ()
-        return [NewBlock((*front, *first, *behind)), *moves[1:]]
+        return [NewBlock((*front, *first, *back)), *moves[1:]]
 
     def _put(self, row: int, blocks: list[NewBlock]) -> None:
         block = int(self.trace.run.block[row])
@@ -170,21 +170,21 @@ class _Writer:
             if self.sets_motion[following] or trace.run.starts[following]:
                 return
             if trace.axes.moves[following]:
-                meant = _STATES.get(int(trace.axes.motion[following]), "")
-                if meant and meant != code:
-                    own = [index for index in words_of(trace.run, following) if not is_head(trace.run, index)]
-                    words = [written_word(trace.run, index) for index in own]
-                    self._put(following, [NewBlock((pen.numbers.code(meant), *words))])
+                motion = _STATES.get(int(trace.axes.motion[following]), "")
+                if motion and motion != code:
+                    indices = [index for index in words_of(trace.run, following) if not is_head(trace.run, index)]
+                    words = [written_word(trace.run, index) for index in indices]
+                    self._put(following, [NewBlock((pen.numbers.code(motion), *words))])
                 return
 
     def require_once(self, rows: Sequence[int]) -> None:
         """Raise RefusedError where a block that is rewritten runs in other rows, too."""
         block = self.trace.run.block
-        others = np.isin(block, block[list(rows)])
-        others[list(rows)] = False
-        if others.any():
+        is_other_run = np.isin(block, block[list(rows)])
+        is_other_run[list(rows)] = False
+        if is_other_run.any():
             raise refused_at(
-                self.trace, int(np.argmax(others)), "the block runs several times, not always along a contour"
+                self.trace, int(np.argmax(is_other_run)), "the block runs several times, not always along a contour"
             )
 
     def _require_plain(self, row: int) -> None:
@@ -216,11 +216,11 @@ def _said_by_moves(trace: Trace) -> Mask:
 
 def _with_feed(blocks: list[NewBlock], feed: str) -> tuple[list[NewBlock], str]:
     """The blocks of a row with the F of a row above that is left without a move; and F that is still to be written."""
-    own = next((word for block in blocks for word in block.words if word[:1].upper() == "F"), "")
-    if len(blocks) == 1 and blocks[0].words == (own,):
-        return [], own
+    feed_word = next((word for block in blocks for word in block.words if word[:1].upper() == "F"), "")
+    if len(blocks) == 1 and blocks[0].words == (feed_word,):
+        return [], feed_word
     if not blocks or not feed:
         return blocks, feed
-    if not own:
+    if not feed_word:
         blocks = [NewBlock((*blocks[0].words, feed), blocks[0].comment), *blocks[1:]]
     return blocks, ""

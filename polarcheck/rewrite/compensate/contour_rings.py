@@ -47,16 +47,16 @@ def rings_of(path: Sequence[Piece], radius: float, tolerance: float) -> list[Rin
     """
     search = _Search(path, radius, tolerance)
     result: list[Ring] = []
-    at = behind = 0
-    while at < len(path):
+    index = lead_start = 0
+    while index < len(path):
         keep_time()
-        ring = search.ring_from(at, at - behind <= _LEADS)
+        ring = search.ring_from(index, index - lead_start <= _LEADS)
         if ring is None:
-            at += 1
+            index += 1
             continue
         if not (result and search.comes_back(result[-1], ring)):
             result.append(ring)
-        at = behind = ring.last + 1
+        index = lead_start = ring.last + 1
     return result
 
 
@@ -96,7 +96,9 @@ class _Search:
 
     def comes_back(self, before: Ring, ring: Ring) -> bool:
         """A short way that begins where a ring has ended: out, and back for another pass."""
-        lengths = [self.length[way.last + 1] - self.length[way.first] for way in (before, ring)]
+        lengths = [
+            self.length[ring_compared.last + 1] - self.length[ring_compared.first] for ring_compared in (before, ring)
+        ]
         return ring.first == before.last + 1 and lengths[1] < _MOST_OF * lengths[0]
 
     def _closed(self, first: int, most: int) -> Ring | None:
@@ -151,25 +153,25 @@ class _Search:
     def _leads_to_rings(self, ring: Ring, first: int) -> bool:
         """From this move on rings follow one another, and other moves of the ring are not run again within them."""
         inner: list[Ring] = []
-        at = behind = first
+        index = lead_start = first
         # A ring that closes where the whole does is one only if the moves before it close as well.
         apart = abs(self.path[min(first, ring.last)].start - self.path[ring.first].start)
         most = ring.last - (ring.aside == 0 and apart > self.tolerance)
-        while at <= most and (inner or at == first) and at - behind <= _LEADS:
-            hit = self._closed(at, most)
+        while index <= most and (inner or index == first) and index - lead_start <= _LEADS:
+            hit = self._closed(index, most)
             if hit is not None:
                 inner.append(hit)
-                behind = hit.last + 1
-            at = at + 1 if hit is None else behind
-        if ring.last + 1 - behind > _LEADS:
+                lead_start = hit.last + 1
+            index = index + 1 if hit is None else lead_start
+        if ring.last + 1 - lead_start > _LEADS:
             return False
         length = sum(self.length[hit.last + 1] - self.length[hit.first] for hit in inner)
         if length < _MOST_OF * (self.length[ring.last + 1] - self.length[ring.first]):
             return False
         within = {number for hit in inner for number in range(hit.first, hit.last + 1)}
-        ways = {_key(self.path[number], self.tolerance) for number in within}
+        keys = {_key(self.path[number], self.tolerance) for number in within}
         leads = (number for number in range(ring.first, ring.last + 1) if number not in within)
-        return all(_key(self.path[number], self.tolerance) not in ways for number in leads)
+        return all(_key(self.path[number], self.tolerance) not in keys for number in leads)
 
     def _with_overlap(self, ring: Ring) -> Ring:
         """The ring with the moves behind it that run along its first ones again."""
@@ -189,11 +191,11 @@ class _Search:
         return msgspec.structs.replace(ring, last=last)
 
 
-def _same_center(one: Piece, other: Piece, tolerance: float) -> bool:
+def _same_center(first: Piece, second: Piece, tolerance: float) -> bool:
     """Two lines, or two arcs about one center."""
-    if one.center is None or other.center is None:
-        return one.center is other.center
-    return abs(one.center - other.center) <= tolerance
+    if first.center is None or second.center is None:
+        return first.center is second.center
+    return abs(first.center - second.center) <= tolerance
 
 
 def _angle(arc: Piece, point: complex) -> float:

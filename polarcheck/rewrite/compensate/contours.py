@@ -39,11 +39,11 @@ class _Path(msgspec.Struct, frozen=True):
     center: complex
     size: float
 
-    def is_about_part_of(self, other: _Path) -> bool:
+    def is_about_part_of(self, second: _Path) -> bool:
         """Both may be passes round one part."""
-        near = abs(self.center - other.center) <= max(self.section.radius, other.section.radius)
-        sizes = self.size <= _SAME_SIZE * other.size and other.size <= _SAME_SIZE * self.size
-        return self.frame == other.frame and near and sizes
+        near = abs(self.center - second.center) <= max(self.section.radius, second.section.radius)
+        sizes = self.size <= _SAME_SIZE * second.size and second.size <= _SAME_SIZE * self.size
+        return self.frame == second.frame and near and sizes
 
 
 def contours_of(trace: Trace, sections: Sequence[Section], swept: Swept, side: str) -> list[Chosen]:
@@ -54,18 +54,18 @@ def contours_of(trace: Trace, sections: Sequence[Section], swept: Swept, side: s
     Raises RefusedError where there is none, or its side is not known.
     """
     paths = [list(_paths(trace, section, swept, side)) for section in sections]
-    rings = [path for own in paths for path in own if path.candidate.ring is not None]
-    known = [path for path in rings if len(path.candidate.part_sides) == 1]
+    rings = [path for section_paths in paths for path in section_paths if path.candidate.ring is not None]
+    unambiguous = [path for path in rings if len(path.candidate.part_sides) == 1]
     refusals: list[Refusal] = []
     result = []
-    for section, own in zip(sections, paths, strict=True):
+    for section, section_paths in zip(sections, paths, strict=True):
         part_sides = []
-        for path in own:
-            aside = _given(trace, path, side) if side else _aside(path, known)
+        for path in section_paths:
+            aside = _given(trace, path, side) if side else _aside(path, unambiguous)
             if not aside:
                 refusals.append(_ambiguous(trace, path))
             part_sides.append(aside)
-        result.append(_joined(trace, section.moves, [path.candidate for path in own], part_sides))
+        result.append(_joined(trace, section.moves, [path.candidate for path in section_paths], part_sides))
     if refusals:
         raise RefusedError(refusals)
     return result
@@ -125,7 +125,7 @@ def _comes_back(moves: Sequence[Move], candidate: Candidate) -> bool:
 # ---- which side ----
 
 
-def _aside(path: _Path, known: Sequence[_Path]) -> float:
+def _aside(path: _Path, unambiguous: Sequence[_Path]) -> float:
     """
     The distance of the contour to the left of a path [mm]; 0 where its side is not known.
 
@@ -139,12 +139,12 @@ def _aside(path: _Path, known: Sequence[_Path]) -> float:
     if len(candidate.part_sides) == 1:
         return candidate.part_sides[0]
     groups = (
-        [other for other in known if path.is_about_part_of(other)],
-        [other for other in known if other.section is path.section],
-        known,
+        [ring for ring in unambiguous if path.is_about_part_of(ring)],
+        [ring for ring in unambiguous if ring.section is path.section],
+        unambiguous,
     )
     for group in groups:
-        is_inside = {other.candidate.is_inside(other.candidate.part_sides[0]) for other in group}
+        is_inside = {ring.candidate.is_inside(ring.candidate.part_sides[0]) for ring in group}
         if len(is_inside) == 1:
             inner = radius if candidate.is_inside(radius) else -radius
             return inner if is_inside.pop() else -inner

@@ -69,7 +69,7 @@ def contour_beside(path: Sequence[Piece], aside: float) -> list[Piece]:
     if not contour:
         raise NoContourError(path[0].move, "its arcs are too small: beside them nothing is left of a contour")
     ends = [after.begins for after in contour[1:]] + [contour[-1].whole.end]
-    return [each.whole.replaced(each.begins, end) for each, end in zip(contour, ends, strict=True)]
+    return [element.whole.replaced(element.begins, end) for element, end in zip(contour, ends, strict=True)]
 
 
 def _join(contour: list[_Parallel], following: Piece, aside: float) -> None:

@@ -45,8 +45,8 @@ class Piece(msgspec.Struct, frozen=True):
 
     def _tangent(self, point: complex) -> complex:
         if self.center is None:
-            way = self.end - self.start
-            return way / (abs(way) or 1.0)
+            chord = self.end - self.start
+            return chord / (abs(chord) or 1.0)
         spoke = point - self.center
         return 1j * self.turning * spoke / (abs(spoke) or 1.0)
 
@@ -103,13 +103,17 @@ def meeting_points(first: Piece, second: Piece) -> list[complex]:
 
 
 def _of_lines(first: Piece, second: Piece) -> list[complex]:
-    one, other = first.leaving, second.leaving
-    slope = _cross(one, other)
-    return [first.start + one * (_cross(second.start - first.start, other) / slope)] if abs(slope) > _PARALLEL else []
+    direction, second_direction = first.leaving, second.leaving
+    slope = _cross(direction, second_direction)
+    return (
+        [first.start + direction * (_cross(second.start - first.start, second_direction) / slope)]
+        if abs(slope) > _PARALLEL
+        else []
+    )
 
 
-def _cross(one: complex, other: complex) -> float:
-    return (one.conjugate() * other).imag
+def _cross(first: complex, second: complex) -> float:
+    return (first.conjugate() * second).imag
 
 
 def _of_line(line: Piece, center: complex, radius: float) -> list[complex]:
@@ -121,12 +125,12 @@ def _of_line(line: Piece, center: complex, radius: float) -> list[complex]:
 
 
 def _of_circles(center: complex, radius: float, other_center: complex, other_radius: float) -> list[complex]:
-    way = other_center - center
-    apart = abs(way)
+    vector = other_center - center
+    apart = abs(vector)
     if apart <= ZERO:
         return []
     toward = (apart**2 + radius**2 - other_radius**2) / (2 * apart)
     square = radius**2 - toward**2
-    aside = 1j * way / apart * math.sqrt(max(square, 0.0))
-    foot = center + way / apart * toward
+    aside = 1j * vector / apart * math.sqrt(max(square, 0.0))
+    foot = center + vector / apart * toward
     return [foot - aside, foot + aside] if square >= 0 else []

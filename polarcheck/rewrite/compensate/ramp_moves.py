@@ -102,7 +102,7 @@ def _past_its_beginning(contour: Contour, ring: list[Piece], enters: int) -> Ram
     corner = radius * math.tan(abs(turn) / 2) if turn * contour.aside > 0 else 0.0
     stretch = _stretch(ring, radius, corner)
     again = [msgspec.structs.replace(piece, move=contour.last) for piece in _beginning(ring, stretch)]
-    path = [*(ring if enters >= 0 else _behind(ring, stretch)), *again]
+    path = [*(ring if enters >= 0 else _rest_after(ring, stretch)), *again]
     if enters < 0 and ring[0].is_full and len(ring) == 1:
         path = [ring[0].replaced(path[0].start, path[0].start)]
     return Ramped(contour_beside(path, contour.aside), enters, -1, ring[-1].end)
@@ -112,10 +112,10 @@ def _open(contour: Contour, path: list[Piece], enters: int, leaves: int) -> Ramp
     """A path whose ramps are moves before and behind it, or its first and its last stretch."""
     radius, back = abs(contour.aside), path[-1].end
     if enters < 0:
-        path = _behind(path, _stretch(path, radius))
+        path = _rest_after(path, _stretch(path, radius))
     if leaves < 0:
         backwards = _reversed(path)
-        path = _reversed(_behind(backwards, _stretch(backwards, radius)))
+        path = _reversed(_rest_after(backwards, _stretch(backwards, radius)))
     return Ramped(contour_beside(path, contour.aside), enters, leaves, back)
 
 
@@ -129,9 +129,9 @@ def _arcs(moves: Sequence[Move], numbers: Sequence[int], point: complex, along: 
     for number in numbers:
         move, piece = moves[number], moves[number].piece
         is_in = abs(piece.end - point) <= abs(piece.start - point)
-        beside = piece.arriving if is_in else piece.leaving
+        direction = piece.arriving if is_in else piece.leaving
         fits = piece.radius - piece.turning * aside > 2 * NEAR and not piece.is_full
-        if piece.center is None or not (fits and move.feeds and move.is_level) or abs(beside - along) > _SMOOTH_LEAD:
+        if piece.center is None or not (fits and move.feeds and move.is_level) or abs(direction - along) > _SMOOTH_LEAD:
             break
         point, along = (piece.start, piece.leaving) if is_in else (piece.end, piece.arriving)
         result.append(piece)
@@ -142,9 +142,9 @@ def _host(moves: Sequence[Move], number: int, low: int, high: int, point: comple
     """The number of a straight move that is long enough for a ramp between its far end and the contour; else -1."""
     if not low <= number < high:
         return -1
-    move, beside = moves[number], point + 1j * aside * along
+    move, arc_end = moves[number], point + 1j * aside * along
     far = move.piece.start if abs(move.piece.end - point) <= abs(move.piece.start - point) else move.piece.end
-    suits = move.piece.center is None and move.feeds and abs(far - beside) >= abs(aside) + _RESERVE
+    suits = move.piece.center is None and move.feeds and abs(far - arc_end) >= abs(aside) + _RESERVE
     return number if suits else -1
 
 
@@ -168,8 +168,8 @@ def _stretch(path: Sequence[Piece], radius: float, corner: float = 0.0) -> float
 
 def _leaves_by(path: Sequence[Piece]) -> float:
     """The largest distance of a path from the line between its ends [mm]."""
-    start, way = path[0].start, path[-1].end - path[0].start
-    along = way / (abs(way) or 1.0)
+    start, chord = path[0].start, path[-1].end - path[0].start
+    along = chord / (abs(chord) or 1.0)
     points = [point for piece in path for point in (piece.at(0.5), piece.end)]
     return max(abs(((point - start) * along.conjugate()).imag) for point in points)
 
@@ -185,7 +185,7 @@ def _beginning(path: Sequence[Piece], stretch: float) -> list[Piece]:
     return result
 
 
-def _behind(path: Sequence[Piece], stretch: float) -> list[Piece]:
+def _rest_after(path: Sequence[Piece], stretch: float) -> list[Piece]:
     """A path without its first stretch [mm]."""
     for number, piece in enumerate(path):
         if piece.length > stretch + ZERO:

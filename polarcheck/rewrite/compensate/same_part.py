@@ -81,7 +81,7 @@ def require_same_part(
         moves, section = contour.section.moves, contour.section
         numbers, points = _points(contour.ramped.contour)
         z = min(moves[number].ends for number in range(contour.path.first, contour.path.last + 1))
-        was, becomes = (way.distance(points, section.number, z) for way in (swept, now))
+        was, becomes = (sweep.distance(points, section.number, z) for sweep in (swept, now))
         # What other moves take away is no wall.
         differs = np.where(was > -tolerance, np.abs(becomes - was), 0.0)
         worst = int(np.argmax(differs))

@@ -29,11 +29,11 @@ class Swept:
     """
 
     def __init__(self, trace: Trace, moves: Moves, radius: Floats) -> None:
-        known = trace.path.knows_section_entry[moves.section]
-        entry = np.where(known, moves.entry[moves.section], 0.0)
+        is_known = trace.path.knows_section_entry[moves.section]
+        entry = np.where(is_known, moves.entry[moves.section], 0.0)
         self.turn = np.exp(1j * np.radians(entry))
         #: A section at whose beginning C is not known is alone in its frame.
-        self.frame = np.where(known, -1, moves.section)
+        self.frame = np.where(is_known, -1, moves.section)
         begins, ends = z_along(trace, moves)
         self.top = np.fmax(begins, ends)
         usable = trace.path.cuts[moves.row] & ~np.isnan(radius) & ~np.isnan(moves.start + moves.end) & moves.is_of_tool
@@ -55,8 +55,8 @@ class Swept:
 
     def frame_of(self, section: int) -> tuple[int, complex]:
         """The frame of the part in a section, and the number by which its points come into it."""
-        own = int(np.argmax(self.moves.section == section))
-        return int(self.frame[own]), complex(self.turn[own])
+        first_move = int(np.argmax(self.moves.section == section))
+        return int(self.frame[first_move]), complex(self.turn[first_move])
 
     def distance(self, points: Points, section: int, z: float) -> Floats:
         """
@@ -77,23 +77,28 @@ class Swept:
             with_size = chosen[self.radius[chosen] == size]
             chords = segments(self._curves(with_size), _TOLERANCE)
             tree = shapely.STRtree(lines_of(chords.start, chords.end))
-            (at, _), far = tree.query_nearest(places, return_distance=True, all_matches=False)
-            distance[at] = np.minimum(distance[at], far - size)
+            (index, _), far = tree.query_nearest(places, return_distance=True, all_matches=False)
+            distance[index] = np.minimum(distance[index], far - size)
         return distance
 
-    def farthest_from(self, other: Swept, section: int) -> tuple[float, int]:
+    def farthest_from(self, reference: Swept, section: int) -> tuple[float, int]:
         """How far the tool center in a section leaves its path in another program at most [mm], and in which row."""
         import shapely
 
         from polarcheck.geometry.polygons.faces import coordinates, lines_of
 
-        chosen, others = (way.at_feed[way.moves.section[way.at_feed] == section] for way in (self, other))
-        own, lines = segments(self._curves(chosen), _TOLERANCE), segments(other._curves(others), _TOLERANCE)
+        chosen, reference_moves = (
+            sweep.at_feed[sweep.moves.section[sweep.at_feed] == section] for sweep in (self, reference)
+        )
+        pieces, lines = (
+            segments(self._curves(chosen), _TOLERANCE),
+            segments(reference._curves(reference_moves), _TOLERANCE),
+        )
         tree = shapely.STRtree(lines_of(lines.start, lines.end))
-        points = shapely.points(coordinates(own.end))
-        (at, _), far = tree.query_nearest(points, return_distance=True, all_matches=False)
+        points = shapely.points(coordinates(pieces.end))
+        (index, _), far = tree.query_nearest(points, return_distance=True, all_matches=False)
         worst = int(np.argmax(far))
-        return float(far[worst]), int(self.moves.row[chosen[own.move[at[worst]]]])
+        return float(far[worst]), int(self.moves.row[chosen[pieces.move[index[worst]]]])
 
     def _curves(self, chosen: np.ndarray) -> Curves:
         moves, turn = self.moves, self.turn[chosen]
@@ -107,8 +112,8 @@ def points_along(contour: Sequence[Piece], count: int = _POINTS) -> Points:
     whole = sum(piece.length for piece in contour) or 1.0
     result: list[complex] = []
     for piece in contour:
-        each = max(2, math.ceil(count * piece.length / whole))
-        result += [piece.at((number + 0.5) / each) for number in range(each)]
+        points_of_piece = max(2, math.ceil(count * piece.length / whole))
+        result += [piece.at((number + 0.5) / points_of_piece) for number in range(points_of_piece)]
     return np.array(result)
 
 

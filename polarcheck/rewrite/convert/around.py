@@ -109,9 +109,9 @@ class _Writer:
             raise RefusedError(self.refusals)
         heads = Heads(self.trace, self.target, self.texts)
         decisions = sorted((*self.decisions, *heads.decisions), key=lambda decision: decision.line)
-        before, behind = heads.before(self.translation.measures), heads.behind()
+        before, after = heads.before(self.translation.measures), heads.behind()
         decided = self.decided | self.translation.left_out
-        return Around(self.blocks, before, behind, heads.edits, decisions, decided)
+        return Around(self.blocks, before, after, heads.edits, decisions, decided)
 
     def _rows(self, block: int) -> Rows:
         return self._order[self._begins[block] : self._begins[block + 1]]
@@ -184,8 +184,8 @@ class _Writer:
         raise refused_at(self.trace, int(rows[0]), "it runs several times, and would be another block each time")
 
     def _is_same(self, first: Translated, row: int, in_steps: bool) -> bool:
-        other = self.translation.words(row, self.translation.words_of(row), in_steps)
-        return (other.words, other.behind, other.whole) == (first.words, first.behind, first.whole)
+        second = self.translation.words(row, self.translation.words_of(row), in_steps)
+        return (second.words, second.behind, second.whole) == (first.words, first.behind, first.whole)
 
     def _call(self, row: int, content: str) -> Translated | None:
         """A block that calls a subprogram or returns from it; None for any other."""

@@ -44,8 +44,8 @@ class AxisWords:
         if steps and not (self._has_letters and all(self.measures.letter(word.axis, True) for word in steps)):
             in_block = len(steps) == len(axes) and bool(self.target.codes("incremental"))
             if not (in_block and (in_steps or bool(self._no_move[row]))):
-                known = {} if self._no_move[row] else self._places(row, steps)
-                places = known or {}
+                destinations = {} if self._no_move[row] else self._places(row, steps)
+                places = destinations or {}
             if not places:
                 if not in_block:
                     result.whole = "distances and coordinates stand in one block, and where it begins is not known"
@@ -65,7 +65,7 @@ class AxisWords:
 
     def _places(self, row: int, steps: Sequence[AxisWord]) -> dict[int, str] | None:
         places = {word.index: self.measures.place(row, word.axis) for word in steps}
-        return None if None in places.values() else {index: place for index, place in places.items() if place}
+        return None if None in places.values() else {index: text for index, text in places.items() if text}
 
     def _computed(self, row: int, word: AxisWord) -> str:
         """A computed word stays as it is, where no value has to change."""

@@ -31,14 +31,14 @@ class BlockTexts:
         names = self.text.names
         self._named = set(names.block.tolist())
         self._words = set(words.block.tolist())
-        self._marks = {self._block_at(int(place)) for place in self.text.tape_marks}
-        others = (self.text.prose, self.text.outside, self.text.dots)
-        self._texts = {block for spans in others for block in spans.block.tolist()}
+        self._marks = {self._block_at(int(offset)) for offset in self.text.tape_marks}
+        other_spans = (self.text.prose, self.text.outside, self.text.dots)
+        self._texts = {block for spans in other_spans for block in spans.block.tolist()}
         is_n = words.address == ord("N")
         self._numbers = words.value[is_n], words.block[is_n]
 
-    def _block_at(self, place: int) -> int:
-        return int(np.searchsorted(self.text.blocks.start, place, side="right")) - 1
+    def _block_at(self, offset: int) -> int:
+        return int(np.searchsorted(self.text.blocks.start, offset, side="right")) - 1
 
     def line(self, block: int) -> int:
         """The line of a block in the original, from 1."""
@@ -64,10 +64,10 @@ class BlockTexts:
         """The block is text outside of the programs, or without words."""
         return block in self._texts or block not in self._words
 
-    def block_numbered(self, number: float, behind: int) -> int | None:
+    def block_numbered(self, number: float, after: int) -> int | None:
         """The first block with an N word behind a block; None where there is none."""
         values, blocks = self._numbers
-        hits = blocks[(values == number) & (blocks > behind)]
+        hits = blocks[(values == number) & (blocks > after)]
         return int(hits[0]) if len(hits) else None
 
     def comments(self, block: int) -> list[str]:
@@ -88,7 +88,10 @@ class BlockTexts:
         """What of a block is neither comment nor an executed word of this row."""
         run = self.trace.run
         low, high = stretch(run.row, row, row + 1)
-        spans = [(self._with_name(block, int(run.words.start[at])), int(run.words.end[at])) for at in range(low, high)]
+        spans = [
+            (self._with_name(block, int(run.words.start[index])), int(run.words.end[index]))
+            for index in range(low, high)
+        ]
         return " ".join(_HEAD.sub("", self._without_comments(block, spans), count=1).split())
 
     def _with_name(self, block: int, start: int) -> int:
@@ -96,13 +99,13 @@ class BlockTexts:
         before = self.text.source.excerpt(int(self.text.blocks.start[block]), start)
         return start - len(before) + len(before.rstrip(_LETTERS)) if before[-1:].isalpha() else start
 
-    def _without_comments(self, block: int, others: list[tuple[int, int]]) -> str:
-        at, end = int(self.text.blocks.start[block]), int(self.text.blocks.end[block])
+    def _without_comments(self, block: int, spans: list[tuple[int, int]]) -> str:
+        offset, end = int(self.text.blocks.start[block]), int(self.text.blocks.end[block])
         pieces = []
-        for first, last in sorted([*self._comments.get(block, []), *others]):
-            pieces.append(self.text.source.excerpt(at, first) if first > at else "")
-            at = max(at, last)
-        pieces.append(self.text.source.excerpt(at, end) if end > at else "")
+        for first, last in sorted([*self._comments.get(block, []), *spans]):
+            pieces.append(self.text.source.excerpt(offset, first) if first > offset else "")
+            offset = max(offset, last)
+        pieces.append(self.text.source.excerpt(offset, end) if end > offset else "")
         return " ".join(pieces)
 
     # ---- head and end ----

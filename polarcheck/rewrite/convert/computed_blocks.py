@@ -41,12 +41,12 @@ class ComputedBlocks:
 
     def has_computed_feed(self, row: int) -> bool:
         """F in force in a row is computed."""
-        place = int(self.trace.feedrate.feed_word[row])
-        if place < 0:
+        offset = int(self.trace.feedrate.feed_word[row])
+        if offset < 0:
             return False
         blocks = self.trace.text.blocks
-        block = int(blocks.start.searchsorted(place, side="right")) - 1
-        text = self.trace.text.source.excerpt(place, int(blocks.end[block]))
+        block = int(blocks.start.searchsorted(offset, side="right")) - 1
+        text = self.trace.text.source.excerpt(offset, int(blocks.end[block]))
         return bool(blocks.is_macro[block]) and not _PLAIN_FEED.match(text)
 
     def motion(self, row: int) -> str:

@@ -152,8 +152,8 @@ class _Writer:
 
     def _with_words(self, enter: int, leave: int) -> list[int]:
         """The rows of a section with executed words: a statement is none of them."""
-        first, behind = np.searchsorted(self.trace.run.row, (enter, leave + 1))
-        rows: list[int] = np.unique(self.trace.run.row[first:behind]).tolist()
+        first, until = np.searchsorted(self.trace.run.row, (enter, leave + 1))
+        rows: list[int] = np.unique(self.trace.run.row[first:until]).tolist()
         # The head of a subprogram is written with those of all programs.
         return [row for row in rows if not self.texts.has_program_number(int(self.trace.run.block[row]))]
 
@@ -213,15 +213,15 @@ class _Writer:
         trace = self.trace
         if (call := self._call(row)) is not None:
             return [NewBlock(tuple(call))]
-        geometry, others = self.words.divided(row, self.translation.words_of(row), row in (enter, leave))
-        words = self._translated(row, others)
+        geometry, remaining = self.words.divided(row, self.translation.words_of(row), row in (enter, leave))
+        words = self._translated(row, remaining)
         front = [word for word in words if word[:1].upper() == "G" and not self.words.is_dwell(row)]
-        behind = [word for word in words if word not in front]
+        back = [word for word in words if word not in front]
         if row == enter:
             point = complex(trace.path.end[row]) * turn
             angle = float(trace.path.c_angle[row]) * self.source.polar.c_sense * self.target.polar.c_sense
             new = pen.enter(point, float(trace.path.z[row]), 0.0 if math.isnan(angle) else angle)
-            return _without_empty(NewBlock(tuple(front)), *new, self.corners.before(row), NewBlock(tuple(behind)))
+            return _without_empty(NewBlock(tuple(front)), *new, self.corners.before(row), NewBlock(tuple(back)))
         if row == leave:
             restored = self.corners.behind(row), self._plane_behind(enter, leave)
             return _without_empty(NewBlock(tuple(words)), *pen.leave(), *restored)
@@ -231,8 +231,8 @@ class _Writer:
         else:
             moves = self._moves(row, pen, turn, codes)
         if not moves:
-            return [NewBlock((*codes, *behind))] if codes or behind else []
-        return [*moves[:-1], NewBlock((*moves[-1].words, *behind), moves[-1].comment)]
+            return [NewBlock((*codes, *back))] if codes or back else []
+        return [*moves[:-1], NewBlock((*moves[-1].words, *back), moves[-1].comment)]
 
     def _plane_behind(self, enter: int, leave: int) -> NewBlock:
         """The plane of before where the section selects one and arcs, cycles or compensation follow outside."""
@@ -247,9 +247,9 @@ class _Writer:
         ends = np.flatnonzero(trace.mode.enters | trace.blocks.starts)
         following = ends[ends > leave]
         until = int(following[0]) if len(following) else len(trace)
-        behind = slice(leave + 1, until)
-        needs = np.isin(trace.axes.motion[behind], (Motion.CW, Motion.CCW)) | trace.modal.in_cycle[behind]
-        needs |= trace.compensation.side[behind] != Side.OFF
+        rows = slice(leave + 1, until)
+        needs = np.isin(trace.axes.motion[rows], (Motion.CW, Motion.CCW)) | trace.modal.in_cycle[rows]
+        needs |= trace.compensation.side[rows] != Side.OFF
         return NewBlock((self.target.codes(key)[0],)) if needs.any() else NewBlock()
 
     def _moves(self, row: int, pen: Pen, turn: complex, codes: Sequence[str]) -> list[NewBlock]:
@@ -309,9 +309,9 @@ class _Writer:
         indices = self.translation.words_of(row)
         if self._call(row) is not None or not is_plain(self.trace.run, row):
             return None
-        _, others = self.words.divided(row, indices, is_switch=False)
+        _, remaining = self.words.divided(row, indices, is_switch=False)
         written = self.translation.measures.written
-        translated = {index: self._translated(row, [index]) for index in others}
+        translated = {index: self._translated(row, [index]) for index in remaining}
         if all(words == [written(index)] for index, words in translated.items()):
             return None
         words = [word for index in indices for word in translated.get(index, [written(index)])]

@@ -63,28 +63,28 @@ class CycleWords:
     def why_not(self, row: int) -> str:
         """Return why the arguments of a row do not mean the same on the other machine; empty where they do."""
         reason = self._why_no_cycle(row) or self._why_other_arguments(row)
-        at = int(self._cycle_word[row])
-        if reason or at < 0 or not bool(self.trace.modal.in_cycle[row]):
+        word = int(self._cycle_word[row])
+        if reason or word < 0 or not bool(self.trace.modal.in_cycle[row]):
             return reason
         # Without the block that calls it the cycle does not go on.
-        return self._why_other_arguments(int(self.trace.run.row[at]))
+        return self._why_other_arguments(int(self.trace.run.row[word]))
 
     def _why_no_cycle(self, row: int) -> str:
         """The code of the cycle in force has no counterpart."""
-        at = int(self._cycle_word[row])
-        if at < 0 or not bool(self.trace.modal.in_cycle[row]):
+        word = int(self._cycle_word[row])
+        if word < 0 or not bool(self.trace.modal.in_cycle[row]):
             return ""
-        meaning = self._g.meaning(int(code_numbers(self.trace.run.words.value[at : at + 1])[0]), has_words=True)
-        return f"{self.measures.written(at)}: {meaning.reason}" if meaning.reason else ""
+        meaning = self._g.meaning(int(code_numbers(self.trace.run.words.value[word : word + 1])[0]), has_words=True)
+        return f"{self.measures.written(word)}: {meaning.reason}" if meaning.reason else ""
 
     @cached_property
     def _cycle_word(self) -> Rows:
         """Per row: the last word with the code of a cycle; -1 before the first."""
         blocks = self.trace.blocks
         words = blocks.code_indices(*(code for key in _CYCLES for code in self.source.codes(key)))
-        at = np.full(len(self.trace), -1, np.int64)
-        at[self.trace.run.row[words]] = words
-        return fill_down(at, (at >= 0) | blocks.starts, -1).astype(np.int64)
+        word_of_row = np.full(len(self.trace), -1, np.int64)
+        word_of_row[self.trace.run.row[words]] = words
+        return fill_down(word_of_row, (word_of_row >= 0) | blocks.starts, -1).astype(np.int64)
 
     def _why_other_arguments(self, row: int) -> str:
         ours, theirs = self.source, self.target
@@ -112,8 +112,8 @@ class CycleWords:
             return False
         words = self.trace.run.words
         indices = range(*stretch(self.trace.run.row, row, row + 1))
-        others = (index for index in indices if chr(int(words.address[index]) % 128) not in "GMSTNO/")
+        arguments = (index for index in indices if chr(int(words.address[index]) % 128) not in "GMSTNO/")
         return all(
             "." in written or not written.strip("ABCDEFHIJKLPQRUVWXYZ0")
-            for written in map(self.measures.written, others)
+            for written in map(self.measures.written, arguments)
         )

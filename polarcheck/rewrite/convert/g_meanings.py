@@ -95,12 +95,12 @@ class GMeanings:
         self._keys: dict[int, tuple[str, int]] = {}
         self._with_words: dict[int, tuple[str, int]] = {}
         for key in _LISTS:
-            for place, word in enumerate(source.codes(key)):
-                self._keys.setdefault(code(word), (key, place))
+            for index, word in enumerate(source.codes(key)):
+                self._keys.setdefault(code(word), (key, index))
                 if key in _WITH_WORDS:
-                    self._with_words[code(word)] = (key, place)
-        for name, meant in source.control.motion_codes.items():
-            self._keys[code(name)] = self._keys[code(meant)]
+                    self._with_words[code(word)] = (key, index)
+        for name, equivalent in source.control.motion_codes.items():
+            self._keys[code(name)] = self._keys[code(equivalent)]
         self._has_same_codes = (
             source.control.known_codes == target.control.known_codes
             and source.control.g_code_system == target.control.g_code_system
@@ -121,7 +121,7 @@ class GMeanings:
     def meaning(self, number: int, has_words: bool = False) -> Meaning:
         """What a code, as a whole number (codes.code), is on the other machine."""
         word = spelled("G", number)
-        key, place = self._listed(number, has_words)
+        key, index = self._listed(number, has_words)
         if not key:
             if self._has_same_codes:
                 return Meaning((self.named(word),))
@@ -131,10 +131,10 @@ class GMeanings:
             return Meaning((self.named(word),), key=key)
         if key in _OF_ONE_MEANING and theirs:
             return Meaning((self.named(theirs[0]),), key=key)
-        if theirs[place : place + 1] == [word]:
+        if theirs[index : index + 1] == [word]:
             return Meaning((self.named(word),), key=key)
         if key in GCodeSystem.__struct_fields__ and len(theirs) == len(ours):
-            return Meaning((self.named(theirs[place]),), key=key)
+            return Meaning((self.named(theirs[index]),), key=key)
         if key in _ENDS and not self.target.codes(_ENDS[key]):
             return Meaning(note=f"it ends what {self.target.title} cannot begin", key=key)
         if key in _COMPARED:

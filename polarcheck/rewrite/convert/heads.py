@@ -51,12 +51,12 @@ class Heads:
     def _numbers_to_names(self) -> None:
         """O and a number of each program: comments, or the heads of an archive where there are several programs."""
         blocks = self.texts.numbered()
-        for place, block in enumerate(blocks):
+        for index, block in enumerate(blocks):
             content = self.texts.content(block)
             number = _NUMBER.search(content)
             heads = self.target.writing.archive_heads
             if len(blocks) > 1 and heads and number:
-                text = heads[0 if block in self._main or not place else 1].replace("#", number[1])
+                text = heads[0 if block in self._main or not index else 1].replace("#", number[1])
                 self._replace(block, text + self._comments(block))
             else:
                 self._replace(block, comment_text(content, self.target) + self._comments(block))
@@ -66,7 +66,7 @@ class Heads:
 
     def _marks(self) -> None:
         """% and names such as %_N_SHAFT_MPF."""
-        for place, block in enumerate(self.texts.marks()):
+        for index, block in enumerate(self.texts.marks()):
             content = self.texts.content(block)
             if content == _MARK:
                 if not self._takes_marks:
@@ -76,11 +76,11 @@ class Heads:
             name = number or next(iter(_NAME.findall(re.sub(r"^[%$]?_?N?_?", "", content))), content)
             head = next((head for head in self.target.writing.program_head if "O#" in head), "")
             if number and head:
-                texts = [*([_MARK] if self._takes_marks and not place else []), head.replace("#", number)]
+                texts = [*([_MARK] if self._takes_marks and not index else []), head.replace("#", number)]
                 self._replace(block, self._lines(block, texts))
                 continue
             remark = comment_text(name, self.target)
-            lead = [_MARK] if self._takes_marks and not place else []
+            lead = [_MARK] if self._takes_marks and not index else []
             self._replace(block, self._lines(block, [*lead, remark]))
             if head:
                 text = f"{content}: programs of {self.target.title} have a number: {head}"
@@ -127,8 +127,8 @@ class Heads:
 
 def _archive_pattern(head: str) -> re.Pattern[str]:
     """The head of a program in an archive, with its number as the group."""
-    before, _, behind = head.partition("#")
-    return re.compile(rf"{re.escape(before)}0*(\d{{1,9}}){re.escape(behind)}", re.IGNORECASE)
+    before, _, after = head.partition("#")
+    return re.compile(rf"{re.escape(before)}0*(\d{{1,9}}){re.escape(after)}", re.IGNORECASE)
 
 
 def head_words(trace: Trace, target: Machine, measures: Measures, row: int) -> list[str]:

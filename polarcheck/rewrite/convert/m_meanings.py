@@ -50,28 +50,28 @@ class MMeanings:
         codes = trace.machine.m_codes
         self._keys: dict[str, list[tuple[str, int]]] = {}
         for key in _LISTS:
-            for place, word in enumerate(getattr(codes, key)):
-                self._keys.setdefault(word, []).append((key, place))
+            for index, word in enumerate(getattr(codes, key)):
+                self._keys.setdefault(word, []).append((key, index))
 
     def meaning(self, row: int, number: int) -> Meaning:
         """What an M code of a row, as a whole number (codes.code), is on the other machine."""
         word = spelled("M", number)
-        listed, beside = self._listed(row, word)
+        listed, argument = self._listed(row, word)
         if not listed:
             if word in _OF_EVERY_LATHE:
                 return Meaning((word,))
             return Meaning(reason=f"the profile of {self.source.title} does not say what it does")
-        key, place = self._chosen(row, listed)
+        key, index = self._chosen(row, listed)
         theirs = getattr(self.target.m_codes, key)
-        if word in theirs and not beside:
+        if word in theirs and not argument:
             return Meaning((word,), key=key)
-        if key in _BY_SENSE and place >= len(theirs):
+        if key in _BY_SENSE and index >= len(theirs):
             theirs = []
         if not theirs:
             return Meaning(
                 reason=f"it {_TITLES[key]}, and the profile of {self.target.title} names no code for that", key=key
             )
-        return Meaning(tuple(theirs[place if key in _BY_SENSE else 0].split()), key=key)
+        return Meaning(tuple(theirs[index if key in _BY_SENSE else 0].split()), key=key)
 
     def word_beside(self, row: int, number: int) -> str:
         """The other word of a code such as M3 P12, where its row has it; empty without."""
@@ -79,9 +79,9 @@ class MMeanings:
 
     def _listed(self, row: int, word: str) -> tuple[list[tuple[str, int]], str]:
         for listed in self._keys:
-            first, _, other = listed.partition(" ")
-            if other and first == word and self.trace.blocks.word(other[0])[row] == float(other[1:]):
-                return self._keys[listed], other
+            first, _, argument = listed.partition(" ")
+            if argument and first == word and self.trace.blocks.word(argument[0])[row] == float(argument[1:]):
+                return self._keys[listed], argument
         return self._keys.get(word, []), ""
 
     def _chosen(self, row: int, listed: list[tuple[str, int]]) -> tuple[str, int]:
@@ -89,12 +89,12 @@ class MMeanings:
         keys = dict(listed)
         runs = row > 0 and bool(self.trace.modal.live_tool[row - 1])
         if "live_tool_off" in keys and len(keys) > 1:
-            others = [key for key in keys if key != "live_tool_off"]
-            key = "live_tool_off" if runs else others[0]
+            remaining = [key for key in keys if key != "live_tool_off"]
+            key = "live_tool_off" if runs else remaining[0]
             return key, keys[key]
-        key, place = listed[0]
+        key, index = listed[0]
         has_word = self.target.writing.live_tool_speed not in ("", "S")
         if key in _LIVE and self._turns_live_tool[row] and (has_word or getattr(self.target.m_codes, _LIVE[key])):
             # A live tool with a speed of its own has a start of its own, be it that no profile names it.
             key = _LIVE[key]
-        return key, place
+        return key, index

@@ -37,8 +37,8 @@ def rounded(value: Fraction, least: Fraction, digits: int = 0, has_point: bool =
     """
     count = round(value / least)
     most = max(0, ceil(-log10(least) - 1e-9))
-    whole, behind = divmod(round(abs(count * least) * 10**most), 10**most)  # of any length, which a float has not
-    rest = f"{behind:0{most}d}".rstrip("0").ljust(digits, "0")
+    whole, decimals = divmod(round(abs(count * least) * 10**most), 10**most)  # of any length, which a float has not
+    rest = f"{decimals:0{most}d}".rstrip("0").ljust(digits, "0")
     sign = "-" if count < 0 else ""
     if not rest:
         return f"{sign}{whole}{'.' if has_point and count else ''}"

@@ -39,8 +39,8 @@ class SectionWords:
         addresses = {"X", "U", "Z", "W", "F", "I", "J", "K", arcs.radius_word, *polar.axis_addresses, *centers}
         addresses |= {arcs.larger_arc_word[:1]} if arcs.larger_arc_word else set()
         self._addresses = {source.address_number(address) for address in addresses if address}
-        beside = {*"PQDE", *polar.words_beside_switch, polar.direction_word}
-        self._beside_switch = {source.address_number(word) for word in beside if len(word) == 1}
+        letters = {*"PQDE", *polar.words_beside_switch, polar.direction_word}
+        self._beside_switch = {source.address_number(word) for word in letters if len(word) == 1}
         self._virtual = set(trace.axes.virtual_words.tolist())
         self._dwells = trace.blocks.listed("dwell")
         self._switch_codes = {*numbers(polar.on), *numbers(polar.off), *numbers(polar.ended_by)}

@@ -70,9 +70,9 @@ class SpeedWords:
 
     def _last(self, row: int, is_live_word: bool) -> float:
         """The last speed up to a row: by S, or by the word of the live tool; NaN without one."""
-        words, at = self._by_word[is_live_word]
-        place = int(at.searchsorted(row, side="right")) - 1
-        return float(self.trace.run.words.value[words[place]]) if place >= 0 else math.nan
+        words, row_of_word = self._by_word[is_live_word]
+        index = int(row_of_word.searchsorted(row, side="right")) - 1
+        return float(self.trace.run.words.value[words[index]]) if index >= 0 else math.nan
 
     @cached_property
     def _by_word(self) -> tuple[tuple[Rows, Rows], tuple[Rows, Rows]]:
@@ -80,8 +80,8 @@ class SpeedWords:
         run = self.trace.run
         is_s = run.words.address == ord("S")
         is_limit = self.trace.blocks.listed("coordinate_setting")[run.row]
-        by_s, others = (np.flatnonzero(self._is_speed & ~is_limit & mask) for mask in (is_s, ~is_s))
-        return (by_s, run.row[by_s]), (others, run.row[others])
+        by_s, by_address = (np.flatnonzero(self._is_speed & ~is_limit & mask) for mask in (is_s, ~is_s))
+        return (by_s, run.row[by_s]), (by_address, run.row[by_address])
 
     def written(self, row: int, index: int) -> str:
         """

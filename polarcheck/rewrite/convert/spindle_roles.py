@@ -40,5 +40,5 @@ def _in_sections(trace: Trace, begins: Mask) -> Mask:
 def _next(live: Mask, starts: Mask) -> Mask:
     """Per row: the next start of a spindle from there on is that of the live tool."""
     rows = np.flatnonzero(starts)
-    place = np.searchsorted(rows, np.arange(len(starts)))
-    return np.append(live[rows], False)[place]
+    index = np.searchsorted(rows, np.arange(len(starts)))
+    return np.append(live[rows], False)[index]

@@ -175,10 +175,10 @@ class Translation:
         """A reference return of the C axis alone, for a machine that has no code for it and does without."""
         if not self.trace.blocks.listed("c_axis_reference")[row] or not self._needs_no_reference:
             return False
-        others = [index for index in indices if self._letter(index) != "G"]
+        axis_indices = [index for index in indices if self._letter(index) != "G"]
         codes = [self._code(index) for index in indices if self._letter(index) == "G"]
         keys = [self._g.key(number) for number in codes]
-        axes = [self.measures.axis_word(row, index) for index in others]
+        axes = [self.measures.axis_word(row, index) for index in axis_indices]
         is_alone = bool(axes) and all(word is not None and word.axis == "C" for word in axes)
         unknown = [not self._g.meaning(number).words for number in codes if self._g.key(number) == "reference_return"]
         return is_alone and any(unknown) and all(key in ("reference_return", *_OF_DISTANCE) for key in keys)
@@ -269,7 +269,7 @@ class Translation:
 
     def _g_word(self, row: int, index: int, result: Translated) -> None:
         number, written = self._code(index), self.measures.written(index)
-        has_words = any(self._letter(other) not in "GMTF" for other in self.words_of(row))
+        has_words = any(self._letter(word) not in "GMTF" for word in self.words_of(row))
         key = self._g.key(number, has_words)
         if number in self._x_switches:
             result.words += [written] if self.same_switches else []
@@ -344,7 +344,7 @@ class Translation:
         if self.tools.is_same:
             result.words.append(self.measures.written(index))
             return
-        low = min(other for other in self.words_of(row) if self._letter(other) in "TD")
+        low = min(word for word in self.words_of(row) if self._letter(word) in "TD")
         if index != low or not bool(self.trace.tools.calls_offset[row]):
             return
         call = self.tools.call(row)
@@ -377,8 +377,8 @@ class Translation:
     def _beside_m_code(self, row: int, letter: str) -> bool:
         """The other word of a code such as M3 P12, which goes with that code."""
         codes = (index for index in self.words_of(row) if self._letter(index) == "M")
-        beside = (self._m.word_beside(row, self._code(index)) for index in codes)
-        return any(word[:1] == letter for word in beside)
+        arguments = (self._m.word_beside(row, self._code(index)) for index in codes)
+        return any(word[:1] == letter for word in arguments)
 
     def _beside_x_switch(self, row: int) -> bool:
         codes = (index for index in self.words_of(row) if self._letter(index) == "G")

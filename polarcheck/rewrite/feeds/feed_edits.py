@@ -44,5 +44,7 @@ def with_feeds(title: str, data: bytes, runs: Sequence[Tables], encoding: str | 
     if new is None:
         return None
     origin = origins(text, source.read_source(new, title, encoding), edits.values()).tolist()
-    lowest, left = (sorted({line for table in words for line in getattr(table, name)}) for name in ("lowest", "left"))
-    return WithFeeds(new, difference(title, data, new, origin, encoding), lowest, left)
+    lowest, unchanged = (
+        sorted({line for table in words for line in getattr(table, name)}) for name in ("lowest", "left")
+    )
+    return WithFeeds(new, difference(title, data, new, origin, encoding), lowest, unchanged)

@@ -67,8 +67,8 @@ def _table(table: FeedTable) -> list[str]:
     widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
     return [
         "  ".join(
-            cell.ljust(width) if at in (1, 4) else cell.rjust(width)
-            for at, (cell, width) in enumerate(zip(line, widths, strict=True))
+            cell.ljust(width) if index in (1, 4) else cell.rjust(width)
+            for index, (cell, width) in enumerate(zip(line, widths, strict=True))
         ).rstrip()
         for line in lines
     ]
@@ -104,8 +104,8 @@ def _cost(total: FeedTotal, table: FeedTable) -> str:
     text = f"{total.time:.1f} s{' and what is not known' if total.unknown else ''}"
     text += f"; cutting {total.cutting:.1f} s, with this table {total.highest_cutting:.1f} s ({total.lost:+.1f} s)"
     if total.won:
-        at = f"F{_feed(total.one_feed, table)}" if total.one_feed is not None else "one F in each section"
-        text += f", with no more than {at} {total.one_feed_cutting:.1f} s ({total.won:.1f} s more than the table)"
+        limit = f"F{_feed(total.one_feed, table)}" if total.one_feed is not None else "one F in each section"
+        text += f", with no more than {limit} {total.one_feed_cutting:.1f} s ({total.won:.1f} s more than the table)"
     for gap in total.unknown:
         blocks = f"{gap.blocks} block{'s' * (gap.blocks > 1)}"
         remedy = _REMEDIES.get(gap.reason)
@@ -125,8 +125,8 @@ def _feed(value: float | None, table: FeedTable) -> str:
 def _number(value: float | None, digits: int) -> str:
     if value is None:
         return "-"
-    shown = f"{value:.{digits}f}"
-    return shown.rstrip("0").rstrip(".") if digits > 2 else shown
+    text = f"{value:.{digits}f}"
+    return text.rstrip("0").rstrip(".") if digits > 2 else text
 
 
 def curve(tables: Tables) -> Iterator[tuple[str | int | float | None, ...]]:
@@ -135,13 +135,23 @@ def curve(tables: Tables) -> Iterator[tuple[str | int | float | None, ...]]:
     runs: Dynamics = tables["dynamics"]
     feeds: HighestFeeds = tables["highest_feeds"]
     lowest, points = highest(trace, feeds), feed_curve(runs)
-    for at, row in enumerate(points.row.tolist()):
-        yield (*_moment(points, at, trace, row), rounded(lowest[row]), rounded(points.c_feed[at]), _channel(trace))
+    for index, row in enumerate(points.row.tolist()):
+        yield (
+            *_moment(points, index, trace, row),
+            rounded(lowest[row]),
+            rounded(points.c_feed[index]),
+            _channel(trace),
+        )
 
 
-def _moment(points: FeedCurve, at: int, trace: Trace, row: int) -> tuple[str | int | float | None, ...]:
-    place = int(trace.mode.section[row]), int(trace.blocks.line_in_file[row])
-    return rounded(points.time[at]), *place, rounded(trace.feedrate.programmed_feed[row]), rounded(points.feed[at])
+def _moment(points: FeedCurve, index: int, trace: Trace, row: int) -> tuple[str | int | float | None, ...]:
+    location = int(trace.mode.section[row]), int(trace.blocks.line_in_file[row])
+    return (
+        rounded(points.time[index]),
+        *location,
+        rounded(trace.feedrate.programmed_feed[row]),
+        rounded(points.feed[index]),
+    )
 
 
 def _channel(trace: Trace) -> str:

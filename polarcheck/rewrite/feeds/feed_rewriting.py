@@ -37,21 +37,21 @@ def feed_words(tables: Tables) -> FeedWords:
     """What to write into the program of one run."""
     trace: Trace = tables["trace"]
     feeds: HighestFeeds = tables["highest_feeds"]
-    asked = highest(trace, feeds)
-    lowered = feeds.must_be_lower & ~np.isnan(asked)
+    highest_feed = highest(trace, feeds)
+    lowered = feeds.must_be_lower & ~np.isnan(highest_feed)
     if not lowered.any():
         return FeedWords((), (), ())
     # As a number of F in force, whatever it is per: outside the mode it stays as it was.
-    wanted = np.where(lowered, asked, trace.feedrate.written_feed)
-    return _Plan(trace, wanted).words()
+    requested = np.where(lowered, highest_feed, trace.feedrate.written_feed)
+    return _Plan(trace, requested).words()
 
 
 class _Plan:
     """Which rows move at F or write it, with the F that each is to have [mm]; blocks stand for their runs."""
 
-    def __init__(self, trace: Trace, wanted: Floats) -> None:
+    def __init__(self, trace: Trace, requested: Floats) -> None:
         self.trace = trace
-        self.wanted = wanted
+        self.wanted = requested
         self.moving = takes_feed(trace.axes)
         self.writes = trace.blocks.has("F") & (trace.feedrate.feed_word == self._own_word)
         self.lowest: set[int] = set()
@@ -59,16 +59,16 @@ class _Plan:
         #: The F words of each row, and the first one at each place of the text.
         self.words_of_row: dict[int, list[int]] = {}
         self.word_at: dict[int, int] = {}
-        for index, row, place in self._feed_words():
+        for index, row, offset in self._feed_words():
             self.words_of_row.setdefault(row, []).append(index)
-            self.word_at.setdefault(place, index)
+            self.word_at.setdefault(offset, index)
 
     @property
     def _own_word(self) -> Rows:
         trace = self.trace
-        words, at = trace.blocks.word_indices("F"), np.full(len(trace), -2, np.int64)
-        at[trace.run.row[words]] = trace.run.words.start[words]
-        return at
+        words, start_of_word = trace.blocks.word_indices("F"), np.full(len(trace), -2, np.int64)
+        start_of_word[trace.run.row[words]] = trace.run.words.start[words]
+        return start_of_word
 
     def _feed_words(self) -> Iterator[tuple[int, int, int]]:
         """The index of each F word, its row and its place in the text."""
@@ -82,7 +82,7 @@ class _Plan:
         What cannot be written leaves the F in force to the blocks behind it, so that others may need one.
         """
         trace, block = self.trace, self.trace.run.block
-        left = set[int]()
+        unchanged = set[int]()
         for _ in range(_ROUNDS):
             written = np.isin(block, block[self._needs()]) & self.moving
             several = self._differ(np.flatnonzero(written))
@@ -93,9 +93,9 @@ class _Plan:
             edits = {row: self._edit(row) for row in rows[np.unique(block[rows], return_index=True)[1]].tolist()}
             fixed = [row for row, edit in edits.items() if edit is None]
             if not fixed:
-                made = {edit for edit in edits.values() if edit is not None}
-                return FeedWords(tuple(sorted(made)), tuple(sorted(self.lowest)), tuple(sorted(left)))
-            left |= {int(trace.blocks.line_in_file[row]) for row in fixed}
+                replacements = {edit for edit in edits.values() if edit is not None}
+                return FeedWords(tuple(sorted(replacements)), tuple(sorted(self.lowest)), tuple(sorted(unchanged)))
+            unchanged |= {int(trace.blocks.line_in_file[row]) for row in fixed}
             self.moving &= ~np.isin(block, block[fixed])
         raise TooHardError("F of too many blocks hangs on that of others")
 
@@ -106,23 +106,23 @@ class _Plan:
         starts = np.cumsum(self.trace.blocks.starts)[events]
         before = np.append(np.nan, after[:-1])
         before[1:][starts[1:] != starts[:-1]] = np.nan
-        own = self.writes[events]
-        asked = np.where(own, self.trace.feedrate.written_feed[events], before)
+        has_word = self.writes[events]
+        in_force = np.where(has_word, self.trace.feedrate.written_feed[events], before)
         needs = np.zeros(len(self.trace), bool)
-        needs[events] = self.moving[events] & (asked != after) & ~(np.isnan(asked) & np.isnan(after))
+        needs[events] = self.moving[events] & (in_force != after) & ~(np.isnan(in_force) & np.isnan(after))
         return needs
 
     def _differ(self, rows: Rows) -> Rows:
         """Of these rows the blocks whose runs are to have different F."""
         block = self.trace.run.block[rows]
         order = np.argsort(block, kind="stable")
-        block, wanted = block[order], self.wanted[rows[order]]
-        return np.unique(block[1:][(block[1:] == block[:-1]) & (wanted[1:] != wanted[:-1])])
+        block, requested = block[order], self.wanted[rows[order]]
+        return np.unique(block[1:][(block[1:] == block[:-1]) & (requested[1:] != requested[:-1])])
 
     def _take_lowest(self, blocks: Rows) -> None:
         """All runs of these blocks have the lowest F of any."""
-        for one in blocks.tolist():
-            rows = np.flatnonzero((self.trace.run.block == one) & self.moving)
+        for block in blocks.tolist():
+            rows = np.flatnonzero((self.trace.run.block == block) & self.moving)
             self.wanted[rows] = np.nanmin(self.wanted[rows])
             self.lowest.add(int(self.trace.blocks.line_in_file[rows[0]]))
 
@@ -132,19 +132,21 @@ class _Plan:
         source, block = trace.text.source, int(trace.run.block[row])
         of_others = int(source.line_starts[source.parts[0].first_line - 1]) if source.parts else len(source.code)
         is_own = int(trace.text.blocks.end[block]) <= of_others
-        own = self.words_of_row.get(row, [])
-        takes = is_plain(trace.run, row) or (_is_as_written(trace, row) and all(_is_number(trace, one) for one in own))
+        words = self.words_of_row.get(row, [])
+        takes = is_plain(trace.run, row) or (
+            _is_as_written(trace, row) and all(_is_number(trace, word) for word in words)
+        )
         if not is_own or not takes or not value > 0:
             return None
         text = self._text(row, value)
-        return in_place_of(trace.run, own[-1], text) if own else with_word(trace.run, row, text)
+        return in_place_of(trace.run, words[-1], text) if words else with_word(trace.run, row, text)
 
     def _text(self, row: int, value: float) -> str:
         """The F word: as it stands in the program, where it is the one that was in force."""
         trace = self.trace
-        found = self.word_at.get(int(trace.feedrate.feed_word[row]))
-        if value == trace.feedrate.written_feed[row] and found is not None and _is_number(trace, found):
-            return written_word(trace.run, found)
+        word = self.word_at.get(int(trace.feedrate.feed_word[row]))
+        if value == trace.feedrate.written_feed[row] and word is not None and _is_number(trace, word):
+            return written_word(trace.run, word)
         return f"F{feed_number(round(value / float(trace.lengths.feed_scale[row]), 6), bool(self.writes_points[row]))}"
 
 

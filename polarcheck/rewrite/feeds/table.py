@@ -133,9 +133,9 @@ def rounded_down(trace: Trace, feed: Floats, left_out: Mask) -> Floats:
         value = np.where((feed > 0) & np.isfinite(feed), feed / trace.lengths.feed_scale, np.nan)
         factor = 10.0 ** (_DIGITS - 1 - np.floor(np.log10(value)))
         whole = value * factor
-        found = np.where(left_out, np.ceil(whole - 1e-6) - 1, np.floor(whole + 1e-9)) / factor
-        is_whole = ~writes_points(trace.blocks, trace.lengths, trace.run) & (found >= LEAST_WHOLE)
-        return np.where(is_whole, np.floor(found), found) * trace.lengths.feed_scale
+        feeds = np.where(left_out, np.ceil(whole - 1e-6) - 1, np.floor(whole + 1e-9)) / factor
+        is_whole = ~writes_points(trace.blocks, trace.lengths, trace.run) & (feeds >= LEAST_WHOLE)
+        return np.where(is_whole, np.floor(feeds), feeds) * trace.lengths.feed_scale
 
 
 def highest(trace: Trace, feeds: HighestFeeds) -> Floats:
@@ -150,8 +150,8 @@ def feed_table(tables: Tables) -> FeedTable:
     trace: Trace = tables["trace"]
     feeds: HighestFeeds = tables["highest_feeds"]
     dynamics: Dynamics = tables["dynamics"]
-    found = _Columns(trace, feeds, dynamics)
-    sections = [found.total(number, enter) for number, enter in enumerate(trace.mode.sections.enter.tolist())]
+    columns = _Columns(trace, feeds, dynamics)
+    sections = [columns.total(number, enter) for number, enter in enumerate(trace.mode.sections.enter.tolist())]
     limits = trace.machine.limits
     inch = bool(len(trace) and np.all(trace.lengths.feed_units[feeds.cuts] == Units.INCH) and feeds.cuts.any())
     return FeedTable(
@@ -164,9 +164,9 @@ def feed_table(tables: Tables) -> FeedTable:
             x_acceleration=rounded(limits.x_acceleration),
             polar_feed=rounded(limits.polar_feed),
         ),
-        rows=found.rows(),
+        rows=columns.rows(),
         sections=sections,
-        program=found.whole(sections),
+        program=columns.whole(sections),
         channel=trace.text.source.channel or msgspec.UNSET,
     )
 
@@ -208,8 +208,8 @@ class _Columns:
         worst = rows[lowest[np.append(0, np.cumsum(runs)[:-1])]]
 
         def of_block(fold: np.ufunc, values: Floats) -> Floats:
-            found: Floats = fold.reduceat(values[rows[np.argsort(ordinal, kind="stable")]], starts)
-            return found
+            folded: Floats = fold.reduceat(values[rows[np.argsort(ordinal, kind="stable")]], starts)
+            return folded
 
         starts = np.append(0, np.cumsum(runs)[:-1])
         with np.errstate(all="ignore"):
@@ -225,18 +225,18 @@ class _Columns:
                 line=int(trace.blocks.line_in_file[row]),
                 block=_text(trace, row),
                 section=int(trace.mode.section[row]),
-                runs=int(runs[at]),
-                feed=rounded(feed[at]),
+                runs=int(runs[index]),
+                feed=rounded(feed[index]),
                 highest=rounded(self.highest[row]),
                 limited_by=str(self.names[row]),
-                allowed=rounded(allowed[at]),
-                c_feed=rounded(c_feed[at]),
-                time=rounded(time[at]),
-                highest_time=rounded(highest_time[at]),
+                allowed=rounded(allowed[index]),
+                c_feed=rounded(c_feed[index]),
+                time=rounded(time[index]),
+                highest_time=rounded(highest_time[index]),
                 chip_load=rounded(load[row]),
-                several=bool(several[at]),
+                several=bool(several[index]),
             )
-            for at, row in enumerate(worst.tolist())
+            for index, row in enumerate(worst.tolist())
         ]
 
     @property
@@ -248,27 +248,27 @@ class _Columns:
         trace = self.trace
         inside = np.arange(enter, trace.mode.sections.leave[number])
         today, best, highest = (column[inside] for column in (self.dynamics.time, self.highest_time, self.highest))
-        judged = self.feeds.cuts[inside] & ~np.isnan(best) & ~np.isnan(today)
+        is_comparable = self.feeds.cuts[inside] & ~np.isnan(best) & ~np.isnan(today)
         lowered = self.feeds.must_be_lower[inside] & ~np.isnan(highest)
-        one = float(highest[lowered].min()) if lowered.any() else np.nan
+        one_feed = float(highest[lowered].min()) if lowered.any() else np.nan
         with np.errstate(all="ignore"):
             # Time and F of a block are in inverse proportion.
             slow = best * np.where(best == 0, 1.0, np.minimum(highest, trace.feedrate.feed[inside]))
-            slow = np.where(best == 0, 0.0, slow / np.fmin(np.minimum(highest, trace.feedrate.feed[inside]), one))
-        cutting = tuple(float(column[judged].sum()) for column in (today, best, slow))
-        return _total(trace, self.dynamics.times(inside), enter, cutting, one)
+            slow = np.where(best == 0, 0.0, slow / np.fmin(np.minimum(highest, trace.feedrate.feed[inside]), one_feed))
+        cutting = tuple(float(column[is_comparable].sum()) for column in (today, best, slow))
+        return _total(trace, self.dynamics.times(inside), enter, cutting, one_feed)
 
     def whole(self, sections: list[FeedTotal]) -> FeedTotal:
         """What the program takes, blocks outside its sections included."""
         every = np.arange(len(self.trace))
         sums = tuple(
-            float(sum(getattr(one, name) for one in sections))
+            float(sum(getattr(section, name) for section in sections))
             for name in ("cutting", "highest_cutting", "one_feed_cutting")
         )
         return _total(self.trace, self.dynamics.times(every), 0, sums, np.nan)
 
 
-def _total(trace: Trace, times: Times, row: int, cutting: tuple[float, ...], one: float) -> FeedTotal:
+def _total(trace: Trace, times: Times, row: int, cutting: tuple[float, ...], one_feed: float) -> FeedTotal:
     today, best, slow = cutting
     return FeedTotal(
         line=int(trace.blocks.line_in_file[row]) if len(trace) else 1,
@@ -279,7 +279,7 @@ def _total(trace: Trace, times: Times, row: int, cutting: tuple[float, ...], one
         ],
         cutting=round(today, 6),
         highest_cutting=round(best, 6),
-        one_feed=rounded(one),
+        one_feed=rounded(one_feed),
         one_feed_cutting=round(slow, 6),
         lost=round(best - today, 6),
         won=round(slow - best, 6),

@@ -32,8 +32,8 @@ def difference(path: str, old: bytes, new: bytes, origin: Sequence[int], encodin
     before = {_OLD: 0, _NEW: 0}
     done = 0
     for first, end in _hunks(changed, len(marked)):
-        for sign, others in ((_OLD, _NEW), (_NEW, _OLD)):
-            before[sign] += sum(mark != others for mark, _ in marked[done:first])
+        for sign, opposite in ((_OLD, _NEW), (_NEW, _OLD)):
+            before[sign] += sum(mark != opposite for mark, _ in marked[done:first])
         hunk = marked[first:end]
         counts = {sign: sum(mark in (sign, _SAME) for mark, _ in hunk) for sign in (_OLD, _NEW)}
         lines.append("@@ -{} +{} @@".format(*(_span(before[sign], counts[sign]) for sign in (_OLD, _NEW))))
@@ -50,10 +50,10 @@ def _marked(old: list[str], new: list[str], origin: Sequence[int]) -> Iterator[_
     for number, line in enumerate(old, 1):
         now = from_line[number]
         if line in now:
-            at = now.index(line)
-            yield from ((_NEW, added) for added in now[:at])
+            index = now.index(line)
+            yield from ((_NEW, added) for added in now[:index])
             yield _SAME, line
-            yield from ((_NEW, added) for added in now[at + 1 :])
+            yield from ((_NEW, added) for added in now[index + 1 :])
         else:
             yield _OLD, line
             yield from ((_NEW, added) for added in now)

@@ -23,11 +23,12 @@ def _position(source: Source, edit: Edit, at_end: bool) -> int:
     return int(source.line_starts[line - 1]) + column - 1
 
 
-def overlap(spans: Iterable[Replace], others: Iterable[Replace]) -> bool:
+def overlap(spans: Iterable[Replace], rivals: Iterable[Replace]) -> bool:
     """Return True if edits touch the same characters or the same position; identical edits do not overlap."""
-    known = set(others)
+    accepted = set(rivals)
     return any(
-        span not in known and any(span[0] <= other[1] and other[0] <= span[1] for other in known) for span in spans
+        span not in accepted and any(span[0] <= second[1] and second[0] <= span[1] for second in accepted)
+        for span in spans
     )
 
 
@@ -43,20 +44,20 @@ def applied(source: Source, spans: Iterable[Replace]) -> bytes | None:
     if places is None:
         return None
     pieces: list[bytes] = []
-    at = 0
+    offset = 0
     try:
         for (first, last, _), (_, _, new) in zip(places, edits, strict=True):
-            pieces += [body[at:first], _encoded(new, source.encoding)]
-            at = last
+            pieces += [body[offset:first], _encoded(new, source.encoding)]
+            offset = last
     except UnicodeEncodeError:
         return None
-    return source.bom + b"".join(pieces) + body[at:]
+    return source.bom + b"".join(pieces) + body[offset:]
 
 
 def _in_bytes(source: Source, edits: Sequence[Replace]) -> list[Replace] | None:
     """Return edits by byte positions, for an encoding with several bytes per character; None if that is impossible."""
     text, encoding = source.text, source.encoding
-    ends = [place for start, end, _ in edits for place in (start, end)]
+    ends = [offset for start, end, _ in edits for offset in (start, end)]
     try:
         whole = "".encode(encoding)
         pieces = [_encoded(text[first:last], encoding) for first, last in pairwise([0, *ends, len(text)])]
@@ -84,6 +85,6 @@ def origins(before: Source, after: Source, spans: Iterable[Replace]) -> Rows:
     # The end of each edit in the result. Inserted text belongs to the line where the edit begins.
     until = np.array([end for _, end, _ in edits], np.int64) + grown[1:]
     passed = np.searchsorted(until, after.line_starts, side="right")
-    place = after.line_starts - grown[passed]
+    offset = after.line_starts - grown[passed]
     begin = np.array([start for start, _, _ in edits] + [len(before.code)], np.int64)[passed]
-    return np.asarray(np.searchsorted(before.line_starts, np.minimum(place, begin), side="right"))
+    return np.asarray(np.searchsorted(before.line_starts, np.minimum(offset, begin), side="right"))

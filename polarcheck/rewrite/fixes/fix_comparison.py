@@ -79,10 +79,10 @@ def _worse(before: FileReport, after: FileReport, rules: Collection[str]) -> str
     """Return a finding that is new, or that is still there after its fix; empty if there is none."""
     old, new = _by_rule(before), _by_rule(after)
     for rule, findings in new.items():
-        known = old.get(rule, [])
-        worse = any(_rank(now) > _rank(was) for now, was in zip(findings, known, strict=False))
-        if len(findings) > len(known) or worse:
-            messages = {(finding.block, finding.message) for finding in known}
+        old_findings = old.get(rule, [])
+        worse = any(_rank(now) > _rank(was) for now, was in zip(findings, old_findings, strict=False))
+        if len(findings) > len(old_findings) or worse:
+            messages = {(finding.block, finding.message) for finding in old_findings}
             added = (finding for finding in findings if (finding.block, finding.message) not in messages)
             first = next(added, findings[0])
             return f"the result would have {rule} in line {first.line}: {first.message}"
@@ -128,7 +128,7 @@ def _moves_otherwise(before: State, after: State, changes: Sequence[tuple[Collec
 
 def _in_sections(old: Tables, new: Tables, changes: Sequence[tuple[Collection[str], range]]) -> str:
     """Return the first difference in the moves of the tool center; empty if there is none."""
-    trace, other = old["trace"], new["trace"]
+    trace, new_trace = old["trace"], new["trace"]
     was, now = (_fixed_moves(tables, changes) for tables in (old, new))
     if len(was) != len(now) or len(was.entry) != len(now.entry):
         return "the tool would make other moves in the polar mode"
@@ -138,7 +138,7 @@ def _in_sections(old: Tables, new: Tables, changes: Sequence[tuple[Collection[st
     if not same.all() or not _alike(was.entry, now.entry).all():
         line = _line(trace, was, ~same)
         return f"the tool center would take another way{line}"
-    z = [_alike(*pair) for pair in zip(z_along(trace, was), z_along(other, now), strict=True)]
+    z = [_alike(*pair) for pair in zip(z_along(trace, was), z_along(new_trace, now), strict=True)]
     if (wrong := ~(z[0] & z[1]) & ~_may_change(trace, was, changes, Z)).any():
         return f"Z would move otherwise{_line(trace, was, wrong)}"
     if (wrong := ~_alike(was.feed, now.feed) & ~_may_change(trace, was, changes, FEED)).any():
@@ -154,8 +154,8 @@ def _fixed_moves(tables: Tables, changes: Sequence[tuple[Collection[str], range]
         if WAY in names:
             inside = (trace.blocks.line_in_file >= edited.start) & (trace.blocks.line_in_file < edited.stop)
             rows = np.unique(moves.row)
-            at = np.flatnonzero(inside[rows])
-            free = np.isin(moves.row, rows[np.union1d(at, np.maximum(at - 1, 0))])
+            changed = np.flatnonzero(inside[rows])
+            free = np.isin(moves.row, rows[np.union1d(changed, np.maximum(changed - 1, 0))])
             fixed = fixed[~free]
     return fixed
 
@@ -180,16 +180,16 @@ def _may_change(trace: Trace, moves: Moves, changes: Sequence[tuple[Collection[s
 
 def _outside(old: Tables, new: Tables) -> str:
     """Return the first difference in the moves outside the polar mode; empty if there is none."""
-    trace, other = old["trace"], new["trace"]
-    was, now = (np.flatnonzero(each.axes.moves & (each.mode.section < 0)) for each in (trace, other))
+    trace, new_trace = old["trace"], new["trace"]
+    was, now = (np.flatnonzero(revision.axes.moves & (revision.mode.section < 0)) for revision in (trace, new_trace))
     if len(was) != len(now):
         return "the axes would make other moves outside the polar mode"
     same = np.ones(len(was), bool)
     for was_at, now_at in (
-        (trace.axes.motion, other.axes.motion),
-        (trace.path.x, other.path.x),
-        (trace.path.z, other.path.z),
-        (trace.path.c_angle, other.path.c_angle),
+        (trace.axes.motion, new_trace.axes.motion),
+        (trace.path.x, new_trace.path.x),
+        (trace.path.z, new_trace.path.z),
+        (trace.path.c_angle, new_trace.path.c_angle),
     ):
         same &= _alike(was_at[was], now_at[now])
     if not same.all():
@@ -198,13 +198,13 @@ def _outside(old: Tables, new: Tables) -> str:
     return ""
 
 
-def _alike(values: Floats, others: Floats) -> Mask:
+def _alike(values: Floats, new_values: Floats) -> Mask:
     """Return a mask of the values that are equal, or unknown in both."""
-    unknown = np.isnan(values) & np.isnan(others)
+    unknown = np.isnan(values) & np.isnan(new_values)
     with np.errstate(invalid="ignore"):
-        return np.asarray(unknown | (values == others) | (np.abs(values - others) <= _SAME))
+        return np.asarray(unknown | (values == new_values) | (np.abs(values - new_values) <= _SAME))
 
 
 def _line(trace: Trace, moves: Moves, wrong: Mask) -> str:
-    at = np.flatnonzero(wrong)
-    return f" from line {int(trace.blocks.line_in_file[moves.row[at[0]]])} on" if len(at) else ""
+    indices = np.flatnonzero(wrong)
+    return f" from line {int(trace.blocks.line_in_file[moves.row[indices[0]]])} on" if len(indices) else ""

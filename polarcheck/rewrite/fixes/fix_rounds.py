@@ -115,11 +115,11 @@ def _fixed(
         if not candidates:
             break
         state = work.best(state, candidates) or state
-    left = sum(
+    remaining = sum(
         finding.fix is not None and not finding.fix.safe and not unsafe for finding in suppress(state.selected).findings
     )
     return Outcome(
-        state.source.data, work.fixed, list(work.refused.values()), left, work.origin.tolist(), not work.is_over
+        state.source.data, work.fixed, list(work.refused.values()), remaining, work.origin.tolist(), not work.is_over
     )
 
 
@@ -172,7 +172,7 @@ class _Work:
                 chosen.append(_Candidate(finding, fix, edits))
                 taken += edits
         # A fix that may change the tool path is tried alone.
-        plain = [each for each in chosen if WAY not in _changes(each)[0]]
+        plain = [candidate for candidate in chosen if WAY not in _changes(candidate)[0]]
         return plain or chosen[:1]
 
     def best(self, state: State, candidates: Sequence[_Candidate]) -> State | None:
@@ -183,14 +183,16 @@ class _Work:
             return None
         # Refused fixes are tried again, since the accepted ones may have removed the reason.
         self.refused = {}
-        self.fixed += [Fixed(each.finding.rule, self._line(each), each.fix.title) for each in accepted]
-        edits = [span for each in accepted for span in each.spans]
+        self.fixed += [
+            Fixed(candidate.finding.rule, self._line(candidate), candidate.fix.title) for candidate in accepted
+        ]
+        edits = [span for candidate in accepted for span in candidate.spans]
         self.origin = self.origin[origins(state.source, self.last.source, edits) - 1]
         return self.last
 
     def _accepted(self, state: State, accepted: list[_Candidate], candidates: Sequence[_Candidate]) -> list[_Candidate]:
         """Return the accepted fixes, and as many of the candidates as are accepted beside them."""
-        candidates = [each for each in candidates if not self._is_exhausted(each.finding.rule)]
+        candidates = [candidate for candidate in candidates if not self._is_exhausted(candidate.finding.rule)]
         if not candidates or self.is_over:
             return accepted
         after, reason = self._try(state, [*accepted, *candidates])
@@ -215,14 +217,14 @@ class _Work:
 
     def _try(self, state: State, candidates: Sequence[_Candidate]) -> tuple[State | None, str]:
         """Apply fixes and check the result; returns it, or None and the reason why it is refused."""
-        data = applied(state.source, [span for each in candidates for span in each.spans])
+        data = applied(state.source, [span for candidate in candidates for span in candidate.spans])
         if data is None:
             return None, f"its encoding, {state.source.encoding}, does not give all characters back as they are"
         self.checks += 1
         try:
             after = state_of(data, self.settings, self.path, self.encoding)
-            rules = {each.finding.rule for each in candidates}
-            reason = objection(state, after, rules, [_changes(each) for each in candidates])
+            rules = {candidate.finding.rule for candidate in candidates}
+            reason = objection(state, after, rules, [_changes(candidate) for candidate in candidates])
         except (SourceError, TooHardError) as error:
             return None, f"the result could not be judged: {error}"
         return (None, reason) if reason else (after, "")
@@ -230,9 +232,9 @@ class _Work:
 
 def _parts(candidates: Sequence[_Candidate]) -> list[list[_Candidate]]:
     """Split candidates by rule, those of a single rule into halves: refused fixes are often of one rule."""
-    rules = dict.fromkeys(each.finding.rule for each in candidates)
+    rules = dict.fromkeys(candidate.finding.rule for candidate in candidates)
     if len(rules) > 1:
-        return [[each for each in candidates if each.finding.rule == rule] for rule in rules]
+        return [[candidate for candidate in candidates if candidate.finding.rule == rule] for rule in rules]
     half = len(candidates) // 2
     return [list(candidates[:half]), list(candidates[half:])]
 

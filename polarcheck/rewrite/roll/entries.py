@@ -10,7 +10,7 @@ from polarcheck.foundation.arrays import Mask, Rows, stretch
 from polarcheck.foundation.states import FeedMode, Motion
 from polarcheck.rewrite.roll.following import Following
 from polarcheck.rewrite.roll.rollable import Stretch
-from polarcheck.rewrite.roll.ways import Way
+from polarcheck.rewrite.roll.ways import AxisMoves
 from polarcheck.rules.editing import is_plain, words_of
 
 #: C nearer to full turns than this is at 0 [deg].
@@ -38,7 +38,7 @@ class Entry(msgspec.Struct, frozen=True):
     c_word: int
 
 
-def entry_of(trace: Trace, each: Stretch, way: Way, following: Following) -> Entry | None:
+def entry_of(trace: Trace, candidate: Stretch, moves: AxisMoves, following: Following) -> Entry | None:
     """
     Return how a section is entered with C at 0; None where it begins there, or where that is not possible.
 
@@ -46,32 +46,35 @@ def entry_of(trace: Trace, each: Stretch, way: Way, following: Following) -> Ent
     of Z follow: there C turns at the X at which it stands.
     """
     path = trace.path
-    angle = float(path.c_angle_before[each.first])
+    angle = float(path.c_angle_before[candidate.first])
     turns = 360.0 * round(angle / 360)
     if trace.machine.polar.plane_is_fixed or abs(angle - turns) <= _AT_ZERO:
         return None
-    low = max(each.first - _MOST_ROWS, 0)
-    others = np.flatnonzero(~_leads_down(trace, np.arange(low, each.first)))
-    begin = low + int(others[-1]) + 1 if len(others) else low
-    highest = max(float(way.z.max()), float(way.z_before.max()))
-    moving = begin + np.flatnonzero(trace.axes.motion[begin : each.first] != Motion.NONE)
+    low = max(candidate.first - _MOST_ROWS, 0)
+    remaining = np.flatnonzero(~_leads_down(trace, np.arange(low, candidate.first)))
+    begin = low + int(remaining[-1]) + 1 if len(remaining) else low
+    highest = max(float(moves.z.max()), float(moves.z_before.max()))
+    moving = begin + np.flatnonzero(trace.axes.motion[begin : candidate.first] != Motion.NONE)
     above = moving[path.z_before[moving] > highest]
-    if not len(above) or path.x_before[each.first] < _NEAREST:
+    if not len(above) or path.x_before[candidate.first] < _NEAREST:
         return None
     first = int(above[-1])
-    behind = first - 1
-    before = int(following.moves.searchsorted(behind, "right")) - 1
+    entry_row = first - 1
+    before = int(following.moves.searchsorted(entry_row, "right")) - 1
     last = int(following.moves[before]) if before >= 0 else -1
     is_rapid = last >= 0 and trace.axes.motion[last] == Motion.RAPID and trace.mode.whole_section[last] < 0
-    if not (is_rapid and _goes_on(trace, behind, each.first)) or following.jump_targets[behind : each.first + 1].any():
+    if (
+        not (is_rapid and _goes_on(trace, entry_row, candidate.first))
+        or following.jump_targets[entry_row : candidate.first + 1].any()
+    ):
         return None
-    return Entry(behind, first, turns, _c_word(trace, behind))
+    return Entry(entry_row, first, turns, _c_word(trace, entry_row))
 
 
-def _goes_on(trace: Trace, behind: int, first: int) -> bool:
+def _goes_on(trace: Trace, entry_row: int, first: int) -> bool:
     """The rows stand on lines of their own, one behind the other, in one program."""
-    own = slice(behind, first + 1)
-    block, line, depth = trace.run.block[own], trace.blocks.line_in_file[own], trace.run.depth[own]
+    rows = slice(entry_row, first + 1)
+    block, line, depth = trace.run.block[rows], trace.blocks.line_in_file[rows], trace.run.depth[rows]
     return bool(np.all(np.diff(block) > 0) and line[1] > line[0] and np.all(depth == depth[0]))
 
 
@@ -105,6 +108,6 @@ def _c_word(trace: Trace, row: int) -> int:
     is_other = trace.modal.is_step(axis)[row] or trace.run.distance is not None
     if is_other or len(axis) > 1 or trace.axes.motion[row] != Motion.RAPID or not is_plain(run, row):
         return -1
-    own = [index for index in words_of(run, row) if run.words.address[index] == number]
+    c_words = [index for index in words_of(run, row) if run.words.address[index] == number]
     letters = {chr(int(run.words.address[index])) for index in words_of(run, row)}
-    return own[0] if len(own) == 1 and letters <= {axis, "X", "Z", "N", "G"} else -1
+    return c_words[0] if len(c_words) == 1 and letters <= {axis, "X", "Z", "N", "G"} else -1

@@ -45,12 +45,12 @@ class Following:
 
     def behind(self, row: int, rows: Rows) -> int:
         """The first of some rows behind a row, in the same program; the number of all rows where there is none."""
-        behind, end = (self._next(row, each) for each in (rows, self._starts))
-        return behind if behind < end else self._count
+        following, end = (self._next(row, candidates) for candidates in (rows, self._starts))
+        return following if following < end else self._count
 
     def _next(self, row: int, rows: Rows) -> int:
-        at = int(rows.searchsorted(row, "right"))
-        return int(rows[at]) if at < len(rows) else self._count
+        index = int(rows.searchsorted(row, "right"))
+        return int(rows[index]) if index < len(rows) else self._count
 
     def takes_over(self, row: int, users: Rows, setters: Rows) -> bool:
         """Whether a row that needs something comes before one that sets it, or sets it itself."""

@@ -52,10 +52,10 @@ def stretches(trace: Trace, following: Following) -> tuple[list[Stretch], list[R
     reasons = _reasons(trace, following)
     result: list[Stretch] = []
     refusals: list[Refusal] = []
-    for each in _candidates(trace):
-        reason = _first_reason(trace, each, reasons) or _reason_at_ends(trace, each, following)
+    for candidate in _candidates(trace):
+        reason = _first_reason(trace, candidate, reasons) or _reason_at_ends(trace, candidate, following)
         if reason is None:
-            result.append(each)
+            result.append(candidate)
         else:
             refusals.append(reason)
     return result, refusals
@@ -87,10 +87,14 @@ def _within(trace: Trace, begin: int, end: int) -> Iterator[Stretch]:
     # Where a stretch begins or ends, X beside Z alone is turning, or an approach.
     bounds = (turns | (moves_x & ~moves_z)) & mills[run]
     group = np.cumsum(parts)[run]
-    for own in np.split(rows, np.flatnonzero(np.diff(group)) + 1):
-        at = own[bounds[own - begin]]
-        if len(at) and turns[(chosen := slice(at[0] - begin, at[-1] + 1 - begin))].any() and moves_x[chosen].any():
-            first, last = int(at[0]), int(at[-1])
+    for rows_of_group in np.split(rows, np.flatnonzero(np.diff(group)) + 1):
+        ends = rows_of_group[bounds[rows_of_group - begin]]
+        if (
+            len(ends)
+            and turns[(chosen := slice(ends[0] - begin, ends[-1] + 1 - begin))].any()
+            and moves_x[chosen].any()
+        ):
+            first, last = int(ends[0]), int(ends[-1])
             yield Stretch(first, last, int(lines[first]), int(lines[last]))
 
 
@@ -104,10 +108,10 @@ def _belongs(trace: Trace) -> Mask:
     allowed = is_known[words.address]
     codes = code_set([code for key in _CODES for code in machine.codes(key)])
     allowed[blocks.g_words] = codes[blocks.g_codes]
-    others = blocks.with_words(~allowed)
+    has_other_words = blocks.with_words(~allowed)
     lines = (trace.axes.motion == Motion.LINE) & trace.modal.uses_axes & ~trace.modal.in_cycle
     none = trace.axes.motion == Motion.NONE
-    return np.asarray((lines | none) & ~others & (trace.mode.whole_section < 0) & ~trace.run.unknown)
+    return np.asarray((lines | none) & ~has_other_words & (trace.mode.whole_section < 0) & ~trace.run.unknown)
 
 
 def _jumps(trace: Trace) -> Mask:
@@ -128,8 +132,8 @@ def _reasons(trace: Trace, following: Following) -> list[tuple[Mask, str]]:
     moves = trace.axes.motion == Motion.LINE
     travels = path.moves_x | path.moves_c | path.moves_z
     on_sub_spindle = modal.on_sub_spindle & (trace.machine.polar.sub_spindle_plane != "as-main")
-    beside = path.moves_z & (path.moves_x | path.moves_c)
-    not_beside = beside & (trace.machine.polar.other_axes != "together")
+    with_z = path.moves_z & (path.moves_x | path.moves_c)
+    not_with_z = with_z & (trace.machine.polar.other_axes != "together")
     mode = feedrate.modal_feed_mode
     without_f = (mode == FeedMode.INVERSE_TIME) & ~trace.blocks.has("F")
     return [
@@ -145,13 +149,13 @@ def _reasons(trace: Trace, following: Following) -> list[tuple[Mask, str]]:
         (path.moves_c & np.isnan(path.c_turn), "C is not known where it begins: position it before, as C0"),
         (_unwinds(trace), _UNWINDS),
         (moves & np.isnan(path.z) & bool(np.isfinite(path.z).any()), "Z is not known where it begins"),
-        (beside & np.isnan(path.z_before), "Z is not known where it begins to move"),
+        (with_z & np.isnan(path.z_before), "Z is not known where it begins to move"),
         (np.nan_to_num(path.local_shift) != 0, "the origin is shifted off the center of C"),
         (travels & (mode == FeedMode.PER_REVOLUTION), "F is per revolution"),
         (travels & without_f, "F is missing, which inverse time has in every block"),
         (travels & ~(feedrate.written_feed > 0), "F is missing"),
-        (not_beside & path.moves_c & ~path.moves_x, _ON_CYLINDER),
-        (not_beside, f"Z moves beside X and C, with which it is not interpolated in the mode: {trace.machine.title}"),
+        (not_with_z & path.moves_c & ~path.moves_x, _ON_CYLINDER),
+        (not_with_z, f"Z moves beside X and C, with which it is not interpolated in the mode: {trace.machine.title}"),
     ]
 
 
@@ -159,10 +163,12 @@ def _unwinds(trace: Trace) -> Mask:
     """Rows in which C turns against the others by nearly a turn, where the shorter way would go on as they do."""
     turn = np.where(trace.path.moves_c & (trace.axes.motion == Motion.LINE), np.nan_to_num(trace.path.c_turn), 0.0)
     rows = np.flatnonzero(turn)
-    own, before = turn[rows][1:], turn[rows][:-1]
-    shorter = own - 360 * np.round(own / 360)
+    turns, before = turn[rows][1:], turn[rows][:-1]
+    shorter = turns - 360 * np.round(turns / 360)
     result = np.zeros(len(trace), bool)
-    result[rows[1:]] = (np.abs(own) > 180) & (np.abs(shorter) <= _STEP) & (shorter * before > 0) & (own * before < 0)
+    result[rows[1:]] = (
+        (np.abs(turns) > 180) & (np.abs(shorter) <= _STEP) & (shorter * before > 0) & (turns * before < 0)
+    )
     return result
 
 
@@ -172,39 +178,41 @@ def _is_computed(trace: Trace) -> Mask:
     words, code = run.words, trace.text.source.code
     letter = code[np.minimum(words.start, len(code) - 1)]
     letter = np.where((letter >= ord("a")) & (letter <= ord("z")), letter - 32, letter)
-    other = (words.address < 128) & (letter != words.address) & (letter != ord(":"))
+    named = (words.address < 128) & (letter != words.address) & (letter != ord(":"))
     source = trace.text.source
-    computed = trace.blocks.with_words(other) | trace.text.blocks.is_macro[run.block]
+    computed = trace.blocks.with_words(named) | trace.text.blocks.is_macro[run.block]
     if source.parts:
         computed |= trace.blocks.line >= source.parts[0].first_line
     return computed
 
 
-def _first_reason(trace: Trace, each: Stretch, reasons: list[tuple[Mask, str]]) -> Refusal | None:
-    own = slice(each.first, each.last + 1)
+def _first_reason(trace: Trace, candidate: Stretch, reasons: list[tuple[Mask, str]]) -> Refusal | None:
+    rows = slice(candidate.first, candidate.last + 1)
     for hits, text in reasons:
-        if hits[own].any():
-            row = each.first + int(np.argmax(hits[own]))
+        if hits[rows].any():
+            row = candidate.first + int(np.argmax(hits[rows]))
             return refusal_at(trace, row, text)
     path = trace.path
-    turning = path.moves_c[own]
-    round_cylinder = turning & path.moves_z[own] & ~path.moves_x[own]
+    turning = path.moves_c[rows]
+    round_cylinder = turning & path.moves_z[rows] & ~path.moves_x[rows]
     if np.count_nonzero(round_cylinder) > np.count_nonzero(turning) / 2:
-        return Refusal(each.line, _ON_CYLINDER)
+        return Refusal(candidate.line, _ON_CYLINDER)
     return None
 
 
-def _reason_at_ends(trace: Trace, each: Stretch, following: Following) -> Refusal | None:
+def _reason_at_ends(trace: Trace, candidate: Stretch, following: Following) -> Refusal | None:
     path = trace.path
-    if path.x_before[each.first] < _ZERO:
-        return Refusal(each.line, "X is not above zero where it begins, where the mode would be switched on")
-    if path.x[each.last] < -_ZERO:
-        return Refusal(each.last_line, "X is below zero where it ends: the mode would leave it above, and C turned")
-    behind = following.behind(each.last, following.turns)
-    if behind < len(trace) and path.moves_c[behind]:
+    if path.x_before[candidate.first] < _ZERO:
+        return Refusal(candidate.line, "X is not above zero where it begins, where the mode would be switched on")
+    if path.x[candidate.last] < -_ZERO:
+        return Refusal(
+            candidate.last_line, "X is below zero where it ends: the mode would leave it above, and C turned"
+        )
+    following_row = following.behind(candidate.last, following.turns)
+    if following_row < len(trace) and path.moves_c[following_row]:
         axis = trace.machine.polar.rotary_address
-        if not trace.blocks.has(axis)[behind] or trace.modal.is_step(axis)[behind]:
+        if not trace.blocks.has(axis)[following_row] or trace.modal.is_step(axis)[following_row]:
             return refusal_at(
-                trace, behind, "C is programmed in increments behind it, from an angle that rounding shifts"
+                trace, following_row, "C is programmed in increments behind it, from an angle that rounding shifts"
             )
     return None

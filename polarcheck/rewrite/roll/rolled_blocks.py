@@ -15,7 +15,7 @@ from polarcheck.rewrite.roll.entries import Entry
 from polarcheck.rewrite.roll.following import Following, x_factor
 from polarcheck.rewrite.roll.rollable import Stretch
 from polarcheck.rewrite.roll.rolled_elements import Element
-from polarcheck.rewrite.roll.ways import Way
+from polarcheck.rewrite.roll.ways import AxisMoves
 from polarcheck.rewrite.writing.new_blocks import NewBlock
 from polarcheck.rewrite.writing.outcome import Refusal, RefusedError
 from polarcheck.rewrite.writing.pen import Pen
@@ -100,20 +100,26 @@ class Writer:
     """
 
     def __init__(
-        self, trace: Trace, each: Stretch, way: Way, entry: Entry | None, style: Style, following: Following
+        self,
+        trace: Trace,
+        candidate: Stretch,
+        moves: AxisMoves,
+        entry: Entry | None,
+        style: Style,
+        following: Following,
     ) -> None:
-        self.trace, self.each, self.way, self.entry, self.following = trace, each, way, entry, following
-        self.pen = _pen(trace, each, style)
+        self.trace, self.each, self.way, self.entry, self.following = trace, candidate, moves, entry, following
+        self.pen = _pen(trace, candidate, style)
         run = trace.run
-        self.first = _with_feed_mode(trace, each.first) if entry is None else entry.behind + 1
-        own = slice(*stretch(run.row, self.first, each.last + 1))
-        rows = np.unique(run.row[own][run.words.address[own] != ord("N")])
+        self.first = _with_feed_mode(trace, candidate.first) if entry is None else entry.behind + 1
+        words = slice(*stretch(run.row, self.first, candidate.last + 1))
+        rows = np.unique(run.row[words][run.words.address[words] != ord("N")])
         self.replaced: dict[int, list[NewBlock]] = {block: [] for block in run.block[rows].tolist()}
         self.inserted: list[NewBlock] = []
         self.positions = ""
         # A plane that begins at the switch begins where the tool stands; the others stand still on the part.
         is_turned = entry is None and not trace.machine.polar.plane_is_fixed
-        self._turn = cmath.exp(1j * float(way.start_angle[0])) if is_turned else 1 + 0j
+        self._turn = cmath.exp(1j * float(moves.start_angle[0])) if is_turned else 1 + 0j
 
     @property
     def count(self) -> int:
@@ -126,9 +132,9 @@ class Writer:
 
         feeds: F of each element [mm/min]. Raises RefusedError where the machine has no words for an element.
         """
-        trace, pen, each = self.trace, self.pen, self.each
+        trace, pen, candidate = self.trace, self.pen, self.each
         if self.entry is None:
-            self._at(each.first).extend(self._entered())
+            self._at(candidate.first).extend(self._entered())
         else:
             self._enter_above(self.entry)
         lines = trace.blocks.line_in_file
@@ -143,10 +149,10 @@ class Writer:
             else:
                 blocks = pen.arc(end, element.center / self._turn, element.kind == Motion.CCW, element.z, feed)
             self._at(row).extend(blocks)
-        last = self._at(each.last)
+        last = self._at(candidate.last)
         last += self._in_case([block for block in pen.leave() if self._makes_of_x(block) in (None, self._is_radius)])
         is_line = elements[-1].kind in (Motion.LINE, Motion.NONE) and not trace.machine.control.motion_codes
-        last += restored(trace, self.following, each.last, pen, is_line=is_line)
+        last += restored(trace, self.following, candidate.last, pen, is_line=is_line)
 
     def _at(self, row: int) -> list[NewBlock]:
         return self.replaced[int(self.trace.run.block[row])]
@@ -211,10 +217,10 @@ class Writer:
         return [NewBlock(tuple(in_case(self.pen, word) for word in block.words)) for block in blocks]
 
 
-def _pen(trace: Trace, each: Stretch, style: Style) -> Pen:
+def _pen(trace: Trace, candidate: Stretch, style: Style) -> Pen:
     units = [np.broadcast_to(column, len(trace)) for column in (trace.lengths.units, trace.lengths.feed_units)]
-    pen = Pen(trace.machine, style, *(bool(column[each.first] == Units.INCH) for column in units))
-    pen.numbers.line = each.line
+    pen = Pen(trace.machine, style, *(bool(column[candidate.first] == Units.INCH) for column in units))
+    pen.numbers.line = candidate.line
     return pen
 
 
@@ -228,8 +234,8 @@ def _with_feed_mode(trace: Trace, row: int) -> int:
         letters = run.words.address[low:high].tolist()
         if letters.count(ord("G")) != 1 or not set(letters) <= {ord("G"), ord("N")} or not is_plain(run, row - 1):
             break
-        at = int(np.searchsorted(trace.blocks.g_words, low + letters.index(ord("G"))))
-        if not codes[trace.blocks.g_codes[at]]:
+        index = int(np.searchsorted(trace.blocks.g_words, low + letters.index(ord("G"))))
+        if not codes[trace.blocks.g_codes[index]]:
             break
         row -= 1
     return row

@@ -22,7 +22,7 @@ from polarcheck.rewrite.roll.rolled_blocks import Writer
 from polarcheck.rewrite.roll.rolled_elements import Fit
 from polarcheck.rewrite.roll.rolled_feeds import Feeds
 from polarcheck.rewrite.roll.slowing import Parts
-from polarcheck.rewrite.roll.ways import Way
+from polarcheck.rewrite.roll.ways import AxisMoves
 from polarcheck.rewrite.writing.original import Original
 from polarcheck.rewrite.writing.outcome import Refusal
 
@@ -40,7 +40,7 @@ class Section(msgspec.Struct, frozen=True):
     """
 
     stretch: Stretch
-    way: Way
+    way: AxisMoves
     fit: Fit
     feeds: Feeds
     parts: Parts
@@ -78,70 +78,70 @@ def measured_of(
     enters = stands_for[trace.mode.sections.enter].tolist()
     number_of = dict(zip(enters, range(len(enters)), strict=True))
     differences: list[Refusal] = []
-    places = ways = time = 0.0
+    places = away_of_path = time = 0.0
     lines = original.trace.blocks.line_in_file
-    for each in sections:
+    for section in sections:
         keep_time()
-        row = each.stretch.first if each.entry is None else each.entry.behind
+        row = section.stretch.first if section.entry is None else section.entry.behind
         number = number_of.get(int(lines[row]))
         if number is None:
-            differences.append(Refusal(each.stretch.line, "the section is not found in the result"))
+            differences.append(Refusal(section.stretch.line, "the section is not found in the result"))
             continue
         low, high = np.searchsorted(moves.section, (number, number + 1)).tolist()
-        own: Moves = moves[low:high]
-        of_line = stands_for[own.row]
-        away = _away(each, own, of_line, lines, turn_of(trace, number))
+        moves_of_section: Moves = moves[low:high]
+        of_line = stands_for[moves_of_section.row]
+        away = _away(section, moves_of_section, of_line, lines, turn_of(trace, number))
         at_ends = away[:, -1]
         worst = int(np.argmax(at_ends))
-        places, ways = max(places, float(at_ends[worst])), max(ways, float(away.max()))
+        places, away_of_path = max(places, float(at_ends[worst])), max(away_of_path, float(away.max()))
         if not at_ends[worst] <= tolerance:
-            line = int(lines[each.way.row[worst]])
+            line = int(lines[section.way.row[worst]])
             text = f"the path would be {at_ends[worst]:.4f} mm away from the end of this block"
             if np.isinf(at_ends[worst]):
                 text = "no move of the result leads to the end of this block"
             differences.append(Refusal(line, text))
-        behind = of_line >= each.stretch.line
-        differences += _feeds(each, own[behind], of_line[behind], trace)
-        time += float(np.nansum((own.length / own.feed)[behind])) * 60
+        in_section = of_line >= section.stretch.line
+        differences += _feeds(section, moves_of_section[in_section], of_line[in_section], trace)
+        time += float(np.nansum((moves_of_section.length / moves_of_section.feed)[in_section])) * 60
         time += 60 * sum(
-            float(each.way.rise[element.first]) / feed
-            for element, feed in zip(each.parts.elements, each.parts.feeds, strict=True)
+            float(section.way.rise[element.first]) / feed
+            for element, feed in zip(section.parts.elements, section.parts.feeds, strict=True)
             if element.kind == Motion.NONE
         )
-    return Measured(differences, places, ways, time)
+    return Measured(differences, places, away_of_path, time)
 
 
-def _feeds(each: Section, moves: Moves, of_line: Rows, trace: Trace) -> list[Refusal]:
+def _feeds(section: Section, moves: Moves, of_line: Rows, trace: Trace) -> list[Refusal]:
     """F of moves that none of the elements was to have."""
-    meant = np.sort(each.parts.feeds)
-    at = np.clip(np.searchsorted(meant, moves.feed), 1, max(len(meant) - 1, 1))
-    nearest = np.minimum(*(np.abs(moves.feed / meant[np.minimum(at - n, len(meant) - 1)] - 1) for n in (0, 1)))
+    intended = np.sort(section.parts.feeds)
+    index = np.clip(np.searchsorted(intended, moves.feed), 1, max(len(intended) - 1, 1))
+    nearest = np.minimum(*(np.abs(moves.feed / intended[np.minimum(index - n, len(intended) - 1)] - 1) for n in (0, 1)))
     per_minute = trace.feedrate.feed_mode[moves.row] == FeedMode.PER_MINUTE
     wrong = (moves.kind != Motion.RAPID) & ~((nearest <= _SAME_FEED) & per_minute)
     return [Refusal(int(line), "F of the result is not the one that was meant") for line in of_line[wrong][:1]]
 
 
-def _away(each: Section, moves: Moves, of_line: Rows, lines: Rows, turn: complex) -> Floats:
+def _away(section: Section, moves: Moves, of_line: Rows, lines: Rows, turn: complex) -> Floats:
     """
     How far each block on the plane is from the moves that stand for it [mm], at places along it, the last at its end.
 
     inf where no move stands for it.
     """
-    way = each.way
-    points = along(way.start_radius, way.radius, way.start_angle, way.angle, _PLACES)
-    away = np.repeat(np.where(way.length > ZERO, np.inf, 0.0)[:, None], points.shape[1], axis=1)
+    original = section.way
+    points = along(original.start_radius, original.radius, original.start_angle, original.angle, _PLACES)
+    away = np.repeat(np.where(original.length > ZERO, np.inf, 0.0)[:, None], points.shape[1], axis=1)
     start, end, center = moves.start * turn, moves.end * turn, moves.center * turn
     sweep = arc_sweep(start, end, np.where(np.isnan(center), 0, center), moves.kind)
     center = np.where(sweep == 0, NOWHERE, center)
-    for element in each.parts.elements:
-        line = int(lines[way.row[element.until - 1]])
-        own = slice(*stretch(of_line, line, line + 1))
-        if element.kind == Motion.NONE or own.start == own.stop:
+    for element in section.parts.elements:
+        line = int(lines[original.row[element.until - 1]])
+        of_element = slice(*stretch(of_line, line, line + 1))
+        if element.kind == Motion.NONE or of_element.start == of_element.stop:
             continue
         # A block at a joint lies beside the element before it, too.
-        first, until = max(element.first - 1, 0), min(element.until + 1, len(way))
-        place = points[first:until].ravel()
-        place = np.broadcast_to(place, (own.stop - own.start, len(place)))
-        far = distances(place, start[own], end[own], center[own], sweep[own]).min(axis=0)
+        first, until = max(element.first - 1, 0), min(element.until + 1, len(original))
+        samples = points[first:until].ravel()
+        samples = np.broadcast_to(samples, (of_element.stop - of_element.start, len(samples)))
+        far = distances(samples, start[of_element], end[of_element], center[of_element], sweep[of_element]).min(axis=0)
         away[first:until] = np.minimum(away[first:until], far.reshape(until - first, -1))
     return away

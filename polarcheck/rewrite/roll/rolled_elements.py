@@ -14,7 +14,7 @@ from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.fitted_curves.curves import fitted
 from polarcheck.geometry.fitted_curves.spirals import Samples, bows, counts, sampled
 from polarcheck.geometry.tolerances import CHORDS_OF_FILE, ZERO
-from polarcheck.rewrite.roll.ways import Way, runs_of
+from polarcheck.rewrite.roll.ways import AxisMoves, runs_of
 
 
 class Element(msgspec.Struct, frozen=True):
@@ -49,7 +49,7 @@ class Fit(msgspec.Struct, frozen=True):
 _NOWHERE = complex(math.nan, math.nan)
 
 
-def fit_of(way: Way, tolerance: float, reserve: float, noise: float) -> Fit:
+def fit_of(moves: AxisMoves, tolerance: float, reserve: float, noise: float) -> Fit:
     """
     Return the lines and arcs that pass the ends of all blocks within the tolerance [mm].
 
@@ -58,19 +58,19 @@ def fit_of(way: Way, tolerance: float, reserve: float, noise: float) -> Fit:
     """
     elements: list[Element] = []
     bow = 0.0
-    for begin, end, is_on_plane in runs_of(way):
+    for begin, end, is_on_plane in runs_of(moves):
         keep_time()
         if not is_on_plane:
-            point = complex(way.radius[begin] * np.exp(1j * way.angle[begin]))
-            z = float(way.z[begin])
+            point = complex(moves.radius[begin] * np.exp(1j * moves.angle[begin]))
+            z = float(moves.z[begin])
             elements.append(Element(Motion.NONE, point, point, _NOWHERE, z, begin, end))
             continue
         radius, angle, z_of = (
-            np.append(before[begin], behind[begin:end])
-            for before, behind in (
-                (way.start_radius, way.radius),
-                (way.start_angle, way.angle),
-                (way.z_before, way.z),
+            np.append(before[begin], ends[begin:end])
+            for before, ends in (
+                (moves.start_radius, moves.radius),
+                (moves.start_angle, moves.angle),
+                (moves.z_before, moves.z),
             )
         )
         if counts(radius, angle, tolerance).sum() > CHORDS_OF_FILE:
@@ -91,15 +91,15 @@ def _bow(samples: Samples, radius: Floats, angle: Floats) -> float:
 def _of_run(samples: Samples, first: int, tolerance: float, noise: float) -> list[Element]:
     curves = fitted(samples, tolerance, noise)
     elements = []
-    start, at = complex(samples.point[0]), 0
+    start, first_sample = complex(samples.point[0]), 0
     for last, end, center, kind in zip(
         curves.last.tolist(), curves.end.tolist(), curves.center.tolist(), curves.kind.tolist(), strict=True
     ):
-        z = samples.z[at : last + 1]
+        z = samples.z[first_sample : last + 1]
         moves_z = bool((np.abs(z - z[0]) > ZERO).any())
-        blocks = int(samples.block[at + 1]), int(samples.block[last]) + 1
+        blocks = int(samples.block[first_sample + 1]), int(samples.block[last]) + 1
         elements.append(
             Element(kind, start, end, center, float(z[-1]) if moves_z else None, first + blocks[0], first + blocks[1])
         )
-        start, at = end, last
+        start, first_sample = end, last
     return elements

@@ -12,7 +12,7 @@ from polarcheck.foundation.states import Motion
 from polarcheck.geometry.tolerances import ZERO
 from polarcheck.program.machines.machine import Machine
 from polarcheck.rewrite.roll.rolled_elements import Element
-from polarcheck.rewrite.roll.ways import Way
+from polarcheck.rewrite.roll.ways import AxisMoves
 
 #: C above this share of its limit counts as limited.
 _AT_LIMIT = 0.97
@@ -49,38 +49,38 @@ class Feeds(msgspec.Struct, frozen=True):
     c_rate: float
 
 
-def feeds_of(way: Way, elements: list[Element], machine: Machine, unit: float) -> Feeds:
+def feeds_of(moves: AxisMoves, elements: list[Element], machine: Machine, unit: float) -> Feeds:
     """
     Return F that was meant for each element; unit: mm per unit of length that F counts.
 
     It is the median by length of the speeds of the blocks where C was below its limit, one for all elements that were
     run alike; that of the whole way for an element along which the speed changed.
     """
-    on_plane = way.length > ZERO
-    length = np.hypot(way.length, way.rise) if machine.polar.feed_measures == "space" else way.length
-    length = np.where(on_plane, length, way.rise)
-    speed, rate = length / way.time, np.abs(way.turn) / way.time
+    on_plane = moves.length > ZERO
+    length = np.hypot(moves.length, moves.rise) if machine.polar.feed_measures == "space" else moves.length
+    length = np.where(on_plane, length, moves.rise)
+    speed, rate = length / moves.time, np.abs(moves.turn) / moves.time
     free = ~(rate > _AT_LIMIT * machine.limits.c_feed) | ~on_plane
-    own, even = _own(speed, length, free, elements)
-    plane = np.array([each.kind != Motion.NONE for each in elements], bool)
-    weight = np.array([length[each.first : each.until].sum() for each in elements])
+    speeds, even = _element_speeds(speed, length, free, elements)
+    plane = np.array([element.kind != Motion.NONE for element in elements], bool)
+    weight = np.array([length[element.first : element.until].sum() for element in elements])
     both = on_plane & free if (on_plane & free).any() else on_plane
     overall = _median(speed[both], length[both])
-    meant = np.where(plane, _grouped(own, weight, plane & even, overall), own)
-    written = [nice(feed, unit) if on else feed for feed, on in zip(meant.tolist(), plane.tolist(), strict=True)]
+    intended = np.where(plane, _grouped(speeds, weight, plane & even, overall), speeds)
+    written = [nice(feed, unit) if on else feed for feed, on in zip(intended.tolist(), plane.tolist(), strict=True)]
     low, high = _ends(speed[on_plane], length[on_plane])
-    ways: dict[float, float] = {}
+    lengths_by_feed: dict[float, float] = {}
     for feed, long, on in zip(written, weight.tolist(), plane.tolist(), strict=True):
         if on:
-            ways[feed] = ways.get(feed, 0.0) + long
+            lengths_by_feed[feed] = lengths_by_feed.get(feed, 0.0) + long
     return Feeds(
         of_element=written,
-        by_way=sorted(ways, key=lambda feed: -ways[feed]),
+        by_way=sorted(lengths_by_feed, key=lambda feed: -lengths_by_feed[feed]),
         slowest=low,
         fastest=high,
         is_even=bool(even[plane].all()),
         slowed=float(length[~free].sum() / length[on_plane].sum()),
-        c_rate=_limit_of(way, rate, length, on_plane),
+        c_rate=_limit_of(moves, rate, length, on_plane),
     )
 
 
@@ -94,43 +94,43 @@ def nice(feed: float, unit: float, *, down: bool = False) -> float:
     return max(count, 1) * step * unit
 
 
-def _limit_of(way: Way, rate: Floats, length: Floats, on_plane: Mask) -> float:
+def _limit_of(moves: AxisMoves, rate: Floats, length: Floats, on_plane: Mask) -> float:
     """The highest rate of C where it may be a limit: of some of the way, and F follows the speed; else inf."""
-    turns = on_plane & (np.abs(way.turn) >= _LEAST_TURN)
+    turns = on_plane & (np.abs(moves.turn) >= _LEAST_TURN)
     highest = float(rate[turns].max(initial=0.0))
     is_high = on_plane & (rate >= _HIGH * highest)
     # One F per minute in most blocks follows no speed.
-    _, counts = np.unique(way.feed[on_plane & ~np.isnan(way.feed)], return_counts=True)
-    follows = counts.max(initial=0) <= len(way) / 2
+    _, counts = np.unique(moves.feed[on_plane & ~np.isnan(moves.feed)], return_counts=True)
+    follows = counts.max(initial=0) <= len(moves) / 2
     return highest if follows and 0 < length[is_high].sum() <= _HIGH_WAY * length[on_plane].sum() else math.inf
 
 
-def _own(speed: Floats, length: Floats, free: Mask, elements: list[Element]) -> tuple[Floats, Mask]:
+def _element_speeds(speed: Floats, length: Floats, free: Mask, elements: list[Element]) -> tuple[Floats, Mask]:
     """The speed of each element, NaN where C was at its limit all the way; whether it was even."""
-    own, even = np.full(len(elements), np.nan), np.ones(len(elements), bool)
-    for index, each in enumerate(elements):
-        moves = slice(each.first, each.until)
+    speeds, even = np.full(len(elements), np.nan), np.ones(len(elements), bool)
+    for index, element in enumerate(elements):
+        moves = slice(element.first, element.until)
         values, weights = speed[moves][free[moves]], length[moves][free[moves]]
         if len(values):
-            own[index] = _median(values, weights)
-            others = np.abs(values / own[index] - 1) > _EVEN
-            even[index] = weights[others].sum() <= _UNEVEN_WAY * weights.sum()
-    return own, even
+            speeds[index] = _median(values, weights)
+            differs = np.abs(values / speeds[index] - 1) > _EVEN
+            even[index] = weights[differs].sum() <= _UNEVEN_WAY * weights.sum()
+    return speeds, even
 
 
-def _grouped(own: Floats, weight: Floats, even: Mask, overall: float) -> Floats:
+def _grouped(speeds: Floats, weight: Floats, even: Mask, overall: float) -> Floats:
     """One F for elements whose speeds are nearly the same; that of the whole way for those that have none."""
-    result = np.where(even & ~np.isnan(own), own, overall)
-    left = even & ~np.isnan(own)
+    result = np.where(even & ~np.isnan(speeds), speeds, overall)
+    remaining = even & ~np.isnan(speeds)
     center = overall
     for _ in range(_MOST):
-        alike = left & (np.abs(own / center - 1) <= _SAME)
+        alike = remaining & (np.abs(speeds / center - 1) <= _SAME)
         if alike.any():
-            result[alike] = _median(own[alike], weight[alike])
-            left &= ~alike
-        if not left.any():
+            result[alike] = _median(speeds[alike], weight[alike])
+            remaining &= ~alike
+        if not remaining.any():
             break
-        center = _median(own[left], weight[left])
+        center = _median(speeds[remaining], weight[remaining])
     return result
 
 
@@ -144,6 +144,6 @@ def _ends(values: Floats, weights: Floats) -> tuple[float, float]:
     """The values below and above which a twentieth of the weights is."""
     order = np.argsort(values)
     total = np.cumsum(weights[order])
-    at = np.searchsorted(total, [0.05 * total[-1], 0.95 * total[-1]])
-    low, high = values[order][np.minimum(at, len(values) - 1)].tolist()
+    indices = np.searchsorted(total, [0.05 * total[-1], 0.95 * total[-1]])
+    low, high = values[order][np.minimum(indices, len(values) - 1)].tolist()
     return low, high

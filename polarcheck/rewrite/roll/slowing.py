@@ -14,7 +14,7 @@ from polarcheck.geometry.plane import arc_sweep, quiet
 from polarcheck.program.machines.machine import Machine
 from polarcheck.rewrite.roll.rolled_elements import Element
 from polarcheck.rewrite.roll.rolled_feeds import Feeds, nice
-from polarcheck.rewrite.roll.ways import Way
+from polarcheck.rewrite.roll.ways import AxisMoves
 
 #: F is so much below what a limit allows: FANUC has F < L * R * pi / 180.
 _BELOW = 2e-3
@@ -44,7 +44,7 @@ class Parts(msgspec.Struct, frozen=True):
     by: str
 
 
-def parts_of(way: Way, elements: list[Element], feeds: Feeds, machine: Machine, unit: float) -> Parts:
+def parts_of(moves: AxisMoves, elements: list[Element], feeds: Feeds, machine: Machine, unit: float) -> Parts:
     """Return the elements with an F that keeps C and F within their limits."""
     limits = machine.limits
     highest_feed = limits.polar_feed if limits.polar_feed > 0 else math.inf
@@ -56,15 +56,15 @@ def parts_of(way: Way, elements: list[Element], feeds: Feeds, machine: Machine, 
     written: list[float] = []
     limited, is_by_feed = 0, True
     lowest = math.inf
-    for element, meant in zip(elements, feeds.of_element, strict=True):
-        feed = nice(highest_feed, unit, down=True) if meant > highest_feed else meant
+    for element, intended in zip(elements, feeds.of_element, strict=True):
+        feed = nice(highest_feed, unit, down=True) if intended > highest_feed else intended
         parts, lower = [element], [feed]
         allowed = _allowed(element, limit) if element.kind != Motion.NONE else math.inf
         if allowed * reserve < feed:
             if element.z is None and allowed < _ONE * feed:
-                parts = _divided(way, element, limit, feed)
+                parts = _divided(moves, element, limit, feed)
             lower = [_lower(feed, _allowed(part, limit), unit) for part in parts]
-        if min(lower) < meant:
+        if min(lower) < intended:
             limited += 1
             is_by_feed &= min(lower) >= feed
             lowest = min(lowest, *lower)
@@ -87,10 +87,10 @@ def _allowed(element: Element, limit: float) -> float:
     return float(rates.feed_allowed(start, end, center, np.array([element.kind], np.int16), limit)[0])
 
 
-def _divided(way: Way, element: Element, limit: float, feed: float) -> list[Element]:
+def _divided(moves: AxisMoves, element: Element, limit: float, feed: float) -> list[Element]:
     """The parts of an element from one F to the next lower one."""
     share = np.linspace(0, 1, _PLACES)
-    points = _at(element, share)
+    points = _points_at(element, share)
     allowed = _allowed_at(points, limit)
     lowest = max(float(allowed.min()), feed * 1e-3)
     count = min(math.ceil(math.log(feed / lowest) / -math.log(_STEP)), _MOST)
@@ -103,14 +103,14 @@ def _divided(way: Way, element: Element, limit: float, feed: float) -> list[Elem
     for cut in cuts[1:-1]:
         if cut - places[-1] >= least and _PLACES - 1 - cut >= least:
             places.append(cut)
-    return _parts(way, element, points[[*places, _PLACES - 1]])
+    return _parts(moves, element, points[[*places, _PLACES - 1]])
 
 
-def _parts(way: Way, element: Element, joints: Points) -> list[Element]:
+def _parts(moves: AxisMoves, element: Element, joints: Points) -> list[Element]:
     """An element parted at points on it; its blocks are those whose ends lie along each part."""
-    ends = way.radius[element.first : element.until] * np.exp(1j * way.angle[element.first : element.until])
-    place, at = _along(element, ends), _along(element, joints[1:-1])
-    until = [*(element.first + np.searchsorted(place, at, side="right")).tolist(), element.until]
+    ends = moves.radius[element.first : element.until] * np.exp(1j * moves.angle[element.first : element.until])
+    end_shares, joint_shares = _along(element, ends), _along(element, joints[1:-1])
+    until = [*(element.first + np.searchsorted(end_shares, joint_shares, side="right")).tolist(), element.until]
     parts = []
     first = element.first
     for number, last in enumerate(until):
@@ -134,7 +134,7 @@ def _sweep(element: Element) -> float:
     return float(arc_sweep(start, end, center, np.array([element.kind], np.int16))[0])
 
 
-def _at(element: Element, share: Floats) -> Points:
+def _points_at(element: Element, share: Floats) -> Points:
     if element.kind == Motion.LINE:
         return np.asarray(element.start + (element.end - element.start) * share, complex)
     return np.asarray(element.center + (element.start - element.center) * np.exp(1j * _sweep(element) * share))
@@ -143,8 +143,8 @@ def _at(element: Element, share: Floats) -> Points:
 def _along(element: Element, points: Points) -> Floats:
     """How far along an element points are, as a share that never falls."""
     if element.kind == Motion.LINE:
-        way = element.end - element.start
-        share = ((points - element.start) * way.conjugate()).real / abs(way) ** 2
+        chord = element.end - element.start
+        share = ((points - element.start) * chord.conjugate()).real / abs(chord) ** 2
     else:
         sweep = _sweep(element)
         turned = np.angle((points - element.center) / (element.start - element.center)) * math.copysign(1, sweep)

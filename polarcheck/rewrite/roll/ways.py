@@ -22,7 +22,7 @@ _HALF_TURN = 1e-4
 _SPOT = 1e-6
 
 
-class Way(Table, frozen=True):
+class AxisMoves(Table, frozen=True):
     """
     The moves of a stretch in their order; the tool is at radius[k] exp(i angle[k]) behind the move k.
 
@@ -52,32 +52,32 @@ def per_minute_rule(trace: Trace, stretches: list[Stretch], feed: str) -> str:
 
     Raises RefusedError where some block has F per minute and that is not known.
     """
-    rows = np.concatenate([np.arange(each.first, each.last + 1) for each in stretches])
+    rows = np.concatenate([np.arange(candidate.first, candidate.last + 1) for candidate in stretches])
     moving = rows[(trace.path.moves_c | trace.path.moves_x)[rows]]
     mode = trace.feedrate.modal_feed_mode[moving]
     if not (mode == FeedMode.PER_MINUTE).any():
         return ""
-    known = [rule for rule in trace.machine.feed.with_rotary if rule != INVERSE_TIME]
+    rules = [rule for rule in trace.machine.feed.with_rotary if rule != INVERSE_TIME]
     line = int(trace.blocks.line_in_file[moving[np.argmax(mode == FeedMode.PER_MINUTE)]])
     if feed == INVERSE_TIME:
         code = trace.machine.codes("feed_inverse_time")[0]
         raise RefusedError([Refusal(line, f"F is per minute here, and not inverse time: no {code} is in force")])
-    if not feed and not known:
+    if not feed and not rules:
         why = f"what F per minute is where X and C move together is not known of {trace.machine.title}"
         raise RefusedError([Refusal(line, f"{why}: feed.with_rotary of a machine file says it, or --feed for once")])
-    return feed or known[0]
+    return feed or rules[0]
 
 
-def way_of(trace: Trace, each: Stretch, rule: str) -> Way:
+def axis_moves(trace: Trace, candidate: Stretch, rule: str) -> AxisMoves:
     """Return the moves of a stretch, without blocks that move nothing; rule: what F per minute is."""
     path = trace.path
-    rows = each.rows(trace)
+    rows = candidate.rows(trace)
     rows = rows[(path.moves_x | path.moves_c | path.moves_z)[rows]]
     start_radius, radius = path.x_before[rows], path.x[rows]
     turn = np.where(path.moves_c[rows], path.c_turn[rows], 0.0)
     start = float(path.c_angle_before[rows[0]])
     if np.isnan(start):
-        raise RefusedError([Refusal(each.line, "C is not known where it begins: position it before, as C0")])
+        raise RefusedError([Refusal(candidate.line, "C is not known where it begins: position it before, as C0")])
     sense = path.c_axis.sense
     angle = np.radians(sense * (start + np.cumsum(turn)))
     start_angle = np.append(np.radians(sense * start), angle[:-1])
@@ -93,7 +93,7 @@ def way_of(trace: Trace, each: Stretch, rule: str) -> Way:
         along = np.abs(turn) + np.abs(step) > 0
         of_rule = block_times(rule or "per-minute", step, turn, rise, number, unit)
         time = np.where(per_minute, np.where(along, of_rule, rise / unit / number), time)
-    return Way(
+    return AxisMoves(
         row=rows,
         start_radius=start_radius,
         radius=radius,
@@ -112,36 +112,36 @@ def way_of(trace: Trace, each: Stretch, rule: str) -> Way:
 @quiet
 def _lengths(start: Floats, end: Floats, turn: Floats) -> Floats:
     """The way of spirals with r and the angle linear: the integral of hypot(r', r w') by eight points of Gauss."""
-    place, weight = np.polynomial.legendre.leggauss(8)
-    radius = start[:, None] + (end - start)[:, None] * (place + 1)[None, :] / 2
+    node, weight = np.polynomial.legendre.leggauss(8)
+    radius = start[:, None] + (end - start)[:, None] * (node + 1)[None, :] / 2
     return np.asarray(np.hypot((end - start)[:, None], radius * turn[:, None]) @ weight / 2)
 
 
-def runs_of(way: Way) -> Iterator[tuple[int, int, bool]]:
+def runs_of(moves: AxisMoves) -> Iterator[tuple[int, int, bool]]:
     """
     Yield the first move of each run, the one behind its last, and whether it moves on the plane.
 
     A run on the plane ends where Z moves alone, which is a run by itself, and where C turns on the spot at the center.
     """
-    on_plane, alone = way.length > ZERO, (way.length <= ZERO) & (way.rise > ZERO)
+    on_plane, alone = moves.length > ZERO, (moves.length <= ZERO) & (moves.rise > ZERO)
     kind = np.where(on_plane, 1, 0)
     begins = np.flatnonzero((np.diff(kind, prepend=-1) != 0) | ~on_plane)
-    for begin, end in zip(begins.tolist(), [*begins[1:].tolist(), len(way)], strict=True):
+    for begin, end in zip(begins.tolist(), [*begins[1:].tolist(), len(moves)], strict=True):
         if on_plane[begin] or alone[begin]:
             yield begin, end, bool(on_plane[begin])
 
 
-def through_center(way: Way) -> Way:
+def through_center(moves: AxisMoves) -> AxisMoves:
     """
     Return the way without turns of C by half a turn at the center: from there on X is of the other sign.
 
     A tool that comes to X0, turns C by 180 deg on the spot and goes on runs straight through the center.
     """
-    spot = (way.length <= _SPOT) & (way.rise <= ZERO)
+    spot = (moves.length <= _SPOT) & (moves.rise <= ZERO)
     if not spot.any():
-        return way
+        return moves
     # Only turns of half a turn count, the others end a run.
-    turn = np.where(spot, way.angle - way.start_angle, 0.0)
+    turn = np.where(spot, moves.angle - moves.start_angle, 0.0)
     halves = np.round(turn / np.pi)
     is_half = spot & (np.abs(turn - halves * np.pi) < _HALF_TURN)
     taken = np.cumsum(np.where(is_half, halves, 0.0))
@@ -149,10 +149,10 @@ def through_center(way: Way) -> Way:
     before = np.append(0.0, taken[:-1])
     sign_before = np.where(before % 2 == 0, 1.0, -1.0)
     changed = msgspec.structs.replace(
-        way,
-        radius=way.radius * sign,
-        start_radius=way.start_radius * sign_before,
-        angle=way.angle - taken * np.pi,
-        start_angle=way.start_angle - before * np.pi,
+        moves,
+        radius=moves.radius * sign,
+        start_radius=moves.start_radius * sign_before,
+        angle=moves.angle - taken * np.pi,
+        start_angle=moves.start_angle - before * np.pi,
     )
     return changed[~is_half]

@@ -29,9 +29,9 @@ def turns_of(trace: Trace, moves: Moves, spans: Spans, pieces: Pieces) -> Turns:
     """C of the machine, counted on from where it stands before the section."""
     sense, move = moves.c_axis.sense, spans.move[pieces.span]
     turn = sense * np.degrees(pieces.turn)
-    ways = spans[pieces.span]
-    leaves = _seen(pieces.start, ways.directions(pieces.first[:, None])[:, 0])
-    arrives = _seen(pieces.end, -ways.directions(pieces.last[:, None])[:, 0])
+    spans_of_pieces = spans[pieces.span]
+    leaves = _seen(pieces.start, spans_of_pieces.directions(pieces.first[:, None])[:, 0])
+    arrives = _seen(pieces.end, -spans_of_pieces.directions(pieces.last[:, None])[:, 0])
     jump = np.zeros(len(turn))
     jump[1:] = sense * np.degrees(angle_between(arrives[:-1], leaves[1:]))
     section = moves.section[move]
@@ -74,9 +74,9 @@ def depths_of(trace: Trace, moves: Moves, move: Rows, begin: Floats, end: Floats
     lost = np.isnan(z_from) & ~np.isnan(z_to)
     if lost.any():
         raise refused_at(trace, moves.row[np.argmax(lost)], "Z moves beside X and C from a place that is not known")
-    way = np.nan_to_num(z_to - z_from)
-    after = np.where(np.abs(way[move]) <= ZERO, np.nan, z_from[move] + way[move] * end)
-    return Depths(after, np.abs(way[move]) * (end - begin))
+    depth_change = np.nan_to_num(z_to - z_from)
+    after = np.where(np.abs(depth_change[move]) <= ZERO, np.nan, z_from[move] + depth_change[move] * end)
+    return Depths(after, np.abs(depth_change[move]) * (end - begin))
 
 
 #: Most blocks of a new program.
@@ -160,22 +160,22 @@ def steps_of(trace: Trace, moves: Moves, chord_error: float) -> Steps:
         is_rapid=is_rapid,
     )
     # Where C turns on the spot, a block of its own stands before the piece that it leads to.
-    at = np.flatnonzero(np.abs(c.jump) > c_step / 2)
+    jumps = np.flatnonzero(np.abs(c.jump) > c_step / 2)
     c_first = np.rint((c.after - c.turn - c.jump) / c_step)
-    none = np.zeros(len(at))
+    none = np.zeros(len(jumps))
     spots = msgspec.structs.replace(
-        runs[at],
-        move=np.full(len(at), -1),
-        x=x_before[at].astype(np.int64),
-        c=c_before[at].astype(np.int64),
+        runs[jumps],
+        move=np.full(len(jumps), -1),
+        x=x_before[jumps].astype(np.int64),
+        c=c_before[jumps].astype(np.int64),
         z=none * np.nan,
         rise=none,
         radius_step=none,
-        turn=(c_before - c_first)[at] * c_step,
+        turn=(c_before - c_first)[jumps] * c_step,
         length=none,
         time=none,
     )
-    order = np.argsort(np.append(np.arange(len(move)), at - 0.5), kind="stable")
+    order = np.argsort(np.append(np.arange(len(move)), jumps - 0.5), kind="stable")
     steps = Steps.concatenated((runs, spots))[order]
     steps = _without_nothing(steps, _passed_on(moves, steps, np.append(is_short[pieces.span], none > 0)[order]))
     return msgspec.structs.replace(steps, time=_times(steps, x_factor(trace) * trace.lengths.least_step))
@@ -213,9 +213,9 @@ def _times(steps: Steps, x_step: Floats) -> Floats:
     """
     x = steps.x * x_step[steps.row]
     largest = np.maximum(np.abs(x), np.abs(x - steps.radius_step))
-    way = np.hypot(steps.radius_step, largest * np.radians(steps.turn))
+    length = np.hypot(steps.radius_step, largest * np.radians(steps.turn))
     with np.errstate(divide="ignore", invalid="ignore"):
-        share = np.where(steps.length > 0, way / steps.length, 1.0)
+        share = np.where(steps.length > 0, length / steps.length, 1.0)
     return np.asarray(steps.time * np.fmax(share, 1.0))
 
 

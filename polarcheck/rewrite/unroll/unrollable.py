@@ -147,9 +147,9 @@ def _of_section(trace: Trace, section: Stretch) -> Iterator[Refusal]:
     blocks = trace.run.block[section.enter : section.leave + 1][depth == depth[0]]
     if blocks.min() < section.first or blocks.max() > section.last:
         yield refusal_at(trace, enter, "a jump leads out of the section")
-    behind = trace.run.block[section.leave + 1 :]
+    following = trace.run.block[section.leave + 1 :]
     outside = np.flatnonzero(trace.text.blocks.is_macro)
-    outside = outside[(outside > section.last) & np.isin(outside, behind)]
+    outside = outside[(outside > section.last) & np.isin(outside, following)]
     values = [value for value in trace.run.values if section.enter <= value.row <= section.leave]
     if values and len(outside):
         yield Refusal(_line_of_block(trace, int(outside[0])), "a variable that the section sets may be read here")

@@ -100,16 +100,16 @@ class Writer:
         moves_z = bool(trace.path.moves_z[row]) and low == high
         if low == high and not moves_z and not self._others.is_changed(row):
             return None
-        others = self._others.of_row(row)
+        remaining = self._others.of_row(row)
         if low == high and not moves_z:
-            return [NewBlock(tuple(others))] if others else []
+            return [NewBlock(tuple(remaining))] if remaining else []
         if moves_z:
-            return [self._alone(row, others)]
-        return [self._step(index, others if index == low else ()) for index in range(low, high)]
+            return [self._alone(row, remaining)]
+        return [self._step(index, remaining if index == low else ()) for index in range(low, high)]
 
     # ---- blocks ----
 
-    def _step(self, index: int, others: Sequence[str]) -> NewBlock:
+    def _step(self, index: int, remaining: Sequence[str]) -> NewBlock:
         steps, style = self.steps, self.style
         row = int(steps.row[index])
         numbers = self._numbers(row)
@@ -125,9 +125,9 @@ class Writer:
             words.append(self._word("Z", numbers.of_increments(int(z))))
         is_repeated = style.repeats_feed or self.feed_mode == FeedMode.INVERSE_TIME
         words.append(self._feed_word(numbers, float(self.feeds[index]), is_repeated))
-        return self._block(words, others)
+        return self._block(words, remaining)
 
-    def _alone(self, row: int, others: Sequence[str]) -> NewBlock:
+    def _alone(self, row: int, remaining: Sequence[str]) -> NewBlock:
         """Z alone, as in the mode."""
         trace, numbers = self.trace, self._numbers(row)
         is_rapid = bool(trace.axes.motion[row] == Motion.RAPID)
@@ -143,7 +143,7 @@ class Writer:
         if not is_rapid:
             feed = float(trace.feedrate.feed[row] / trace.lengths.feed_scale[row])
             words.append(self._feed_word(numbers, feed, self.style.repeats_feed))
-        return self._block(words, others)
+        return self._block(words, remaining)
 
     def _leaving(self, row: int) -> list[NewBlock]:
         """What the block that switches the mode off leaves in force: F and its mode, and coordinates or distances."""
@@ -169,9 +169,9 @@ class Writer:
                 return True
         return False
 
-    def _block(self, words: Sequence[str], others: Sequence[str] = ()) -> NewBlock:
+    def _block(self, words: Sequence[str], remaining: Sequence[str] = ()) -> NewBlock:
         written = (word.lower() if self.style.lower_case else word for word in words if word)
-        return NewBlock((*written, *others))
+        return NewBlock((*written, *remaining))
 
     # ---- words ----
 

@@ -183,8 +183,8 @@ def _within(trace: Trace, spans: Sequence[tuple[int, int]]) -> Mask:
     start = trace.text.blocks.end[trace.run.block]
     begins = np.array([begin for begin, _ in spans], np.int64)
     ends = np.array([end for _, end in spans], np.int64)
-    at = np.searchsorted(begins, start, side="left") - 1
-    return np.asarray((at >= 0) & (start <= ends[np.maximum(at, 0)]))
+    index = np.searchsorted(begins, start, side="left") - 1
+    return np.asarray((index >= 0) & (start <= ends[np.maximum(index, 0)]))
 
 
 class _Run:

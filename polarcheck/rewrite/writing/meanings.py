@@ -78,11 +78,11 @@ def other_speeds(old: Trace, new: Trace, left_out: Collection[int], origin: Sequ
             return  # S3= is not read there
     of_left_out = {number for number, line in enumerate(origin, 1) if line in left_out}
     speeds = _speeds(old, left_out), _speeds(new, of_left_out)
-    for (line, speed), (new_line, other) in itertools.zip_longest(*speeds, fillvalue=(0, 0.0)):
-        is_same = abs(speed - other) <= _SAME_SPEED
-        if not is_same and not (np.isnan(speed) and np.isnan(other)):
+    for (line, speed), (new_line, new_speed) in itertools.zip_longest(*speeds, fillvalue=(0, 0.0)):
+        is_same = abs(speed - new_speed) <= _SAME_SPEED
+        if not is_same and not (np.isnan(speed) and np.isnan(new_speed)):
             where = f" (line {new_line} of the result)" if new_line else ""
-            yield Refusal(line, f"the spindle speed {speed:g} would be {other:g}{where}")
+            yield Refusal(line, f"the spindle speed {speed:g} would be {new_speed:g}{where}")
             return
 
 
@@ -130,8 +130,8 @@ def _of_one_meaning(trace: Trace, listed_words: Collection[tuple[int, str]]) -> 
         runs = row > 0 and bool(trace.modal.live_tool[row - 1])
         if "scaling_off" in listed and "coordinate_setting" in listed:
             # G50 S2500 limits the speed, G50 alone ends scaling.
-            beside = _has_other_words(trace, row)
-            listed = [name for name in listed if name != ("scaling_off" if beside else "coordinate_setting")]
+            has_words = _has_other_words(trace, row)
+            listed = [name for name in listed if name != ("scaling_off" if has_words else "coordinate_setting")]
         if len(listed) > 1 and "live_tool_off" in listed:
             listed = ["live_tool_off"] if runs else [name for name in listed if name != "live_tool_off"]
         result |= {(index, _ANY_SPINDLE.get(name, name)) for name in listed}
@@ -145,24 +145,29 @@ def _has_other_words(trace: Trace, row: int) -> bool:
 
 def _paired(old: list[Order], new: list[Order]) -> tuple[list[tuple[Order, Order]], list[Order]]:
     """Orders that both have in the same order, and those of the old program that are left over."""
-    names = [[order.name for order in each] for each in (old, new)]
+    names = [[order.name for order in orders] for orders in (old, new)]
     # Equal ends are cut off: what is left is short.
-    head = next((at for at, (one, other) in enumerate(zip(*names, strict=False)) if one != other), min(map(len, names)))
+    head = next(
+        (index for index, (old_name, new_name) in enumerate(zip(*names, strict=False)) if old_name != new_name),
+        min(map(len, names)),
+    )
     most = min(map(len, names)) - head
     backwards = zip(reversed(names[0]), reversed(names[1]), strict=False)
-    tail = min(next((at for at, (one, other) in enumerate(backwards) if one != other), most), most)
+    tail = min(
+        next((index for index, (old_name, new_name) in enumerate(backwards) if old_name != new_name), most), most
+    )
     pairs = [*zip(old[:head], new[:head], strict=True)]
-    left, right = old[head : len(old) - tail], new[head : len(new) - tail]
+    removed, added = old[head : len(old) - tail], new[head : len(new) - tail]
     missing: list[Order] = []
-    if max(len(left), len(right)) > _PAIRED:
-        missing = left
+    if max(len(removed), len(added)) > _PAIRED:
+        missing = removed
     else:
         matcher = SequenceMatcher(None, names[0][head : len(old) - tail], names[1][head : len(new) - tail], False)
         for kind, low, high, new_low, new_high in matcher.get_opcodes():
             if kind == "equal":
-                pairs += zip(left[low:high], right[new_low:new_high], strict=True)
+                pairs += zip(removed[low:high], added[new_low:new_high], strict=True)
             else:
-                missing += left[low:high]
+                missing += removed[low:high]
     pairs += zip(old[len(old) - tail :], new[len(new) - tail :], strict=True)
     return pairs, missing
 

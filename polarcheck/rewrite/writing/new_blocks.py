@@ -158,8 +158,8 @@ class _Sequence:
     """N words for new blocks, between those of the original; blocks are asked for in their order."""
 
     def __init__(self, text: Text, style: Style) -> None:
-        own = (text.words.address == ord("N")) & (text.words.value < 1e9)
-        numbers = dict(zip(text.words.block[own].tolist(), text.words.value[own].tolist(), strict=True))
+        is_number = (text.words.address == ord("N")) & (text.words.value < 1e9)
+        numbers = dict(zip(text.words.block[is_number].tolist(), text.words.value[is_number].tolist(), strict=True))
         for index in np.flatnonzero(text.blocks.is_macro).tolist():
             statement = text.source.excerpt(int(text.blocks.start[index]), int(text.blocks.end[index]))
             if number := _NUMBER.match(statement.lstrip(_BLANK_OR_END + "/")):
@@ -184,12 +184,12 @@ class _Sequence:
 
         until: a later block, in the place of which and of those before it they stand, too.
         """
-        at = bisect_right(self.blocks, index)
-        if not self.is_on or count <= 0 or not at:
+        first = bisect_right(self.blocks, index)
+        if not self.is_on or count <= 0 or not first:
             return [""] * count
-        behind = bisect_right(self.blocks, index if until is None else until)
-        last = int(self.values[at - 1])
-        following = int(self.values[behind]) if behind < len(self.values) else last + self.step * (count + 1)
+        next_index = bisect_right(self.blocks, index if until is None else until)
+        last = int(self.values[first - 1])
+        following = int(self.values[next_index]) if next_index < len(self.values) else last + self.step * (count + 1)
         room = (following - last - 1) // count
         steps = (step for step in (self.step, 10, 5, 2, 1) if step <= room)
         step = next(
@@ -201,8 +201,8 @@ class _Sequence:
 def jump_numbers(text: Text) -> set[int]:
     """Return the numbers that may be targets of jumps and calls: those beside P and Q, and all in statements."""
     words, blocks = text.words, text.blocks
-    beside = np.isin(words.address, np.frombuffer(b"PQ", np.uint8)) & np.isfinite(words.value)
-    numbers = {int(value) for value in words.value[beside].tolist()}
+    is_target = np.isin(words.address, np.frombuffer(b"PQ", np.uint8)) & np.isfinite(words.value)
+    numbers = {int(value) for value in words.value[is_target].tolist()}
     for index in np.flatnonzero(blocks.is_macro).tolist():
         statement = text.source.excerpt(int(blocks.start[index]), int(blocks.end[index]))
         numbers.update(int(match) for match in _REFERENCE.findall(statement) if len(match) < 10)
@@ -225,7 +225,7 @@ def _edit(
     lead = begin - start
     head = _HEAD.match(bare, lead)
     labels = range(*stretch(text.labels.block, index, index + 1))
-    head_end = max([head.end() if head else lead, *(int(text.labels.end[at]) - start for at in labels)])
+    head_end = max([head.end() if head else lead, *(int(text.labels.end[label]) - start for label in labels)])
     kept = content[lead:head_end].strip()
     if is_without_skip:
         kept = _SKIP.sub("", kept).strip()

@@ -83,7 +83,9 @@ def _without_mode(stretch: Stretch, chord: float) -> PartPath:
     count = _counts(path, turn, sweep, stretch.rapid, chord)
     move = np.repeat(np.arange(len(path)), count)
     step = np.arange(len(move)) - np.repeat(np.cumsum(count) - count, count)
-    start, end = (_at(path, turn, sweep, move, share) for share in (step / count[move], (step + 1) / count[move]))
+    start, end = (
+        _points_at(path, turn, sweep, move, share) for share in (step / count[move], (step + 1) / count[move])
+    )
     return PartPath(
         start=start[0],
         end=end[0],
@@ -114,15 +116,15 @@ def _counts(path: SpacePath, turn: Floats, sweep: Floats, rapid: Mask, chord: fl
     return np.asarray(np.maximum(count, 1), np.int64)
 
 
-def _at(path: SpacePath, turn: Floats, sweep: Floats, move: Rows, share: Floats) -> tuple[Points, Floats]:
+def _points_at(path: SpacePath, turn: Floats, sweep: Floats, move: Rows, share: Floats) -> tuple[Points, Floats]:
     """Points on the part, and Z, at a share of moves."""
     keep_time()
     start, end = path.start[move], path.end[move]
-    place = start + (end - start) * share
+    point = start + (end - start) * share
     is_arc = sweep[move] != 0
     center = np.where(is_arc, path.center[move], 0)
-    place = np.where(is_arc, center + (start - center) * np.exp(1j * sweep[move] * share), place)
+    point = np.where(is_arc, center + (start - center) * np.exp(1j * sweep[move] * share), point)
     angle = np.radians(path.z_start[move]) + turn[move] * share
     ends = share == 1
-    place = np.where(ends, end, place)
-    return place.imag * np.exp(1j * angle), place.real
+    point = np.where(ends, end, point)
+    return point.imag * np.exp(1j * angle), point.real

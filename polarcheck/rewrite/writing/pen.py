@@ -36,7 +36,7 @@ class Pen:
         self.at = complex(math.nan, math.nan)
         self.z = math.nan
         control, polar, writing = machine.control, machine.polar, machine.writing
-        self._codes = {meant: written for written, meant in control.motion_codes.items()}
+        self._codes = {motion: written for written, motion in control.motion_codes.items()}
         pairs = [pair for word, pair in polar.virtual_axis_by_word.items() if word in writing.switch.split()]
         self.linear, self.virtual = machine.linear_address, pairs[0][0] if pairs else polar.virtual_axis
         if self.linear in ("", "Z"):
@@ -60,18 +60,18 @@ class Pen:
         """The F word that was written last; empty before the first."""
         return self._feed
 
-    def enter(self, at: complex, z: float = math.nan, direction: float = 0.0) -> list[NewBlock]:
+    def enter(self, point: complex, z: float = math.nan, direction: float = 0.0) -> list[NewBlock]:
         """
         The blocks that switch the mode on.
 
-        at: the point of the tool there. direction: C angle of the linear axis [deg], where a word of the switch has it.
+        point: that of the tool there. direction: C angle of the linear axis [deg], where a word of the switch has it.
         """
         writing, letter = self.machine.writing, self.machine.polar.direction_word
         switch = [
             letter + self.numbers.angle(direction) if direction and letter and word.startswith(letter) else word
             for word in writing.switch.split()
         ]
-        self.at, self.z = at, z
+        self.at, self.z = point, z
         self.forget()
         return [*self._blocks(writing.before), NewBlock(tuple(switch)), *self._blocks(writing.behind)]
 
@@ -85,18 +85,18 @@ class Pen:
         self._written = [None, None, None]
         self._motion = self._feed = ""
 
-    def go_on(self, at: complex, z: float, motion: str = "") -> None:
+    def go_on(self, point: complex, z: float, motion: str = "") -> None:
         """
         Go on behind blocks that somebody else has written: words that would repeat what is in force are left out.
 
-        at: the programmed point there [mm]; the words for it are known where it is the point written last, or whole
+        point: the programmed point there [mm]; the words for it are known where it is the point written last, or whole
         least increments. z: [mm]. motion: the code in force, as G1; empty where it has to be written.
         """
-        words: list[int | None] = self._written[:2] if abs(at - self.at) <= _SAME_POINT else [None, None]
+        words: list[int | None] = self._written[:2] if abs(point - self.at) <= _SAME_POINT else [None, None]
         self.forget()
-        self.at, self.z = at, z
-        if abs(at - self.written_point) <= _SAME_POINT:
-            words = list(self._rounded(at))
+        self.at, self.z = point, z
+        if abs(point - self.written_point) <= _SAME_POINT:
+            words = list(self._rounded(point))
         self._written[:2] = words
         self._motion = self._code(motion) if motion else ""
 
@@ -116,9 +116,9 @@ class Pen:
         writing = self.machine.writing
         if writing.rapid_in_mode:
             return self._straight("G0", end, z, None, codes)
-        wanted = self._wanted_feed
+        feed_before = self._wanted_feed
         blocks = self._straight("G1", end, z, writing.rapid_feed, codes)
-        self._wanted_feed = wanted
+        self._wanted_feed = feed_before
         return blocks
 
     def arc(
@@ -289,8 +289,8 @@ class Pen:
             self._motion = motion
         if text:
             self._feed = text
-        own = (*codes, *([motion] if motion and not left_out else []), *words, *([text] if has_feed else []))
-        return NewBlock(own)
+        all_words = (*codes, *([motion] if motion and not left_out else []), *words, *([text] if has_feed else []))
+        return NewBlock(all_words)
 
     def _code(self, code: str) -> str:
         return self.numbers.code(self._codes.get(code, code))

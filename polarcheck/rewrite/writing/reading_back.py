@@ -80,7 +80,9 @@ def read_back(
     Raises RefusedError where the new program cannot be run once, TooHardError.
     """
     new = read(original.path, data, settings)
-    old_side, new_side = (Revision(each.path, each.settings.name, [("", each.tables)]) for each in (original, new))
+    old_side, new_side = (
+        Revision(program.path, program.settings.name, [("", program.tables)]) for program in (original, new)
+    )
     tolerance = default_tolerance(old_side, new_side)
     left_out = _without_moves(new, origin, decided)
     result = compared(old_side, new_side, tolerance, left_out, is_rewritten=True)
@@ -125,7 +127,7 @@ def read_back_on_part(
     Raises RefusedError where a position of the original is not known, or the new program cannot be run once.
     """
     new = read(original.path, data, settings)
-    old_path, new_path = (path_on_part(each.tables, chord=chord) for each in (original, new))
+    old_path, new_path = (path_on_part(program.tables, chord=chord) for program in (original, new))
     if left_out:
         stands_for = np.array([0, *origin])[np.minimum(new.trace.blocks.line_in_file, len(origin))]
         old_path = old_path[~np.isin(original.trace.blocks.line_in_file[old_path.row], list(left_out))]
@@ -139,7 +141,7 @@ def read_back_on_part(
             break
     differences = []
     if largest > tolerance:
-        lines = [each.trace.blocks.line_in_file for each in (original, new)]
+        lines = [program.trace.blocks.line_in_file for program in (original, new)]
         line = new_line = 0
         if deviation.place is not None:
             line = int(lines[0][old_path.row[deviation.place.old_move]])
@@ -178,14 +180,14 @@ def _of_comparison(
     origin: Sequence[int],
 ) -> Iterator[Refusal]:
     for section in result.sections:
-        for each in section.differences:
-            is_rapid = rapid_as_line and each.what == "feed" and each.old == "rapid traverse"
-            if not is_rapid and each.what not in other_states:
-                yield _refusal(each, section)
-    for each in result.outside:
-        of_line = each.old_line or (_line(origin, each.new_line) if each.new_line else 0)
-        if each.what != "order" or of_line not in decided:
-            yield _refusal(each)
+        for difference in section.differences:
+            is_rapid = rapid_as_line and difference.what == "feed" and difference.old == "rapid traverse"
+            if not is_rapid and difference.what not in other_states:
+                yield _refusal(difference, section)
+    for difference in result.outside:
+        of_line = difference.old_line or (_line(origin, difference.new_line) if difference.new_line else 0)
+        if difference.what != "order" or of_line not in decided:
+            yield _refusal(difference)
     for reason in result.not_compared:
         if reason.matters:
             yield Refusal(0, f"not comparable: {reason.reason}")
@@ -210,15 +212,15 @@ def _times(result: Comparison) -> Iterator[Refusal]:
 def _errors(original: Original, new: Original, origin: Sequence[int]) -> Iterator[tuple[Rule, Refusal]]:
     """Errors of a check that the original does not have, with their rules."""
     rules = load_all()
-    before, after = (_errors_of(each) for each in (original, new))
-    known = Counter(finding.rule for finding in before)
+    before, after = (_errors_of(of_program) for of_program in (original, new))
+    counts_before = Counter(finding.rule for finding in before)
     lines = {(finding.rule, finding.line) for finding in before}
     of_rule: dict[str, list[Finding]] = {}
     for finding in after:
         of_rule.setdefault(finding.rule, []).append(finding)
     for rule, findings in of_rule.items():
-        added = [each for each in findings if (rule, _line(origin, each.line)) not in lines]
-        for finding in added[: max(len(findings) - known[rule], 0)]:
+        added = [of_program for of_program in findings if (rule, _line(origin, of_program.line)) not in lines]
+        for finding in added[: max(len(findings) - counts_before[rule], 0)]:
             text = f"{finding.rule} in line {finding.line} of the result: {finding.message}"
             yield rules[rule], Refusal(_line(origin, finding.line), text)
 
@@ -230,5 +232,5 @@ def _line(origin: Sequence[int], line: int) -> int:
 def _errors_of(program: Original) -> list[Finding]:
     settings = program.settings
     report = check_runs([("", program.tables)], list(load_all().values()), settings.severities, settings.inline)
-    findings = [each for finding in report.findings for each in (finding, *finding.follows)]
+    findings = [flattened for finding in report.findings for flattened in (finding, *finding.follows)]
     return [finding for finding in findings if SEVERITIES[finding.severity] >= Severity.ERROR]

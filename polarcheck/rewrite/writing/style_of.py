@@ -109,8 +109,8 @@ def _is_usual(mask: Mask, otherwise: bool) -> bool:
 
 def _leading_zero(text: Text) -> bool:
     words, code = text.words, text.source.code
-    own = _of(text, _LENGTHS + "F")
-    small = own[(np.abs(words.value[own]) < 1) & (words.decimals[own] > 0)]
+    lengths = _of(text, _LENGTHS + "F")
+    small = lengths[(np.abs(words.value[lengths]) < 1) & (words.decimals[lengths] > 0)]
     first = np.minimum(words.start[small] + 1, len(code) - 1)
     signed = np.isin(code[first], np.frombuffer(b"+-=", np.uint8))
     return not len(small) or bool(np.mean(code[np.minimum(first + signed, len(code) - 1)] != ord(".")) > _MOST)
@@ -119,18 +119,18 @@ def _leading_zero(text: Text) -> bool:
 def _numbers(text: Text) -> tuple[Literal["none", "some", "all"], int, int]:
     """Which blocks have N words, the usual step, the least digits."""
     words = text.words
-    own = _of(text, "N")
-    if not len(own):
+    numbers = _of(text, "N")
+    if not len(numbers):
         return "none", PLAIN.number_step, PLAIN.number_digits
     # Blocks of words alone: heads of programs and macro statements may lack a number everywhere.
-    others = np.unique(words.block[~np.isin(words.address, np.frombuffer(b"NO/", np.uint8))])
-    share = float(np.mean(np.isin(others, words.block[own]))) if len(others) else 1.0
-    steps = np.diff(words.value[own])
+    blocks = np.unique(words.block[~np.isin(words.address, np.frombuffer(b"NO/", np.uint8))])
+    share = float(np.mean(np.isin(blocks, words.block[numbers]))) if len(blocks) else 1.0
+    steps = np.diff(words.value[numbers])
     steps = steps[(steps > 0) & (steps <= 1000)]
     values, counts = np.unique(steps, return_counts=True)
     step = int(values[np.argmax(counts)]) if len(values) else PLAIN.number_step
-    padded = text.source.code[np.minimum(words.start[own] + 1, len(text.source.code) - 1)] == ord("0")
-    digits = int(words.digits[own].max()) if np.mean(padded) > 0.05 else 1
+    padded = text.source.code[np.minimum(words.start[numbers] + 1, len(text.source.code) - 1)] == ord("0")
+    digits = int(words.digits[numbers].max()) if np.mean(padded) > 0.05 else 1
     return ("all" if share > _MOST else "some"), max(step, 1), digits
 
 

@@ -17,9 +17,9 @@ _SAME = 1e-6
 def changed_words(old: Trace, new: Trace) -> Iterator[Refusal]:
     """Yield the first M, S or T word, but for calls and returns, that the new program does not have in its place."""
     before, after = _words(old), _words(new)
-    for (line, word), (_, other) in zip(before, after, strict=False):
-        if word != other:
-            yield Refusal(line, f"{word} would be {other}")
+    for (line, word), (_, new_word) in zip(before, after, strict=False):
+        if word != new_word:
+            yield Refusal(line, f"{word} would be {new_word}")
             return
     if len(before) != len(after):
         line = before[len(after)][0] if len(before) > len(after) else 0
@@ -51,10 +51,12 @@ def changed_outside(old: Trace, new: Trace) -> Iterator[Refusal]:
         if differs.any():
             row = int(rows[0][np.argmax(differs)])
             yield refusal_at(old, row, f"{name} would be another one there")
-    for number, (depth, other) in enumerate(zip(_depths(old), _depths(new), strict=False)):
-        if abs(depth - other) > _SAME:
+    for number, (depth, new_depth) in enumerate(zip(_depths(old), _depths(new), strict=False)):
+        if abs(depth - new_depth) > _SAME:
             yield refusal_at(
-                old, old.mode.sections.enter[number], f"the depth of the section was Z{depth:g} and would be Z{other:g}"
+                old,
+                old.mode.sections.enter[number],
+                f"the depth of the section was Z{depth:g} and would be Z{new_depth:g}",
             )
 
 
@@ -62,6 +64,6 @@ def _depths(trace: Trace) -> Floats:
     """The least Z of each section [mm]; NaN where none is known."""
     section, z = trace.mode.section, trace.path.z
     depths = np.full(len(trace.mode.sections), np.inf)
-    known = (section >= 0) & ~np.isnan(z)
-    np.minimum.at(depths, section[known], z[known])
+    is_known = (section >= 0) & ~np.isnan(z)
+    np.minimum.at(depths, section[is_known], z[is_known])
     return np.where(np.isinf(depths), np.nan, depths)

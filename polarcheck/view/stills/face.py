@@ -172,9 +172,9 @@ def _formatter(factor: float, digits: int) -> Callable[[float, int | None], str]
 
 def _step(span: float, count: int) -> float:
     """Return a round distance of ticks, of which about `count` lie in a span."""
-    wanted = max(span, 1e-9) / count
-    power = 10.0 ** np.floor(np.log10(wanted))
-    return float(min((step * power for step in _STEPS), key=lambda step: abs(np.log(step / wanted))))
+    requested = max(span, 1e-9) / count
+    power = 10.0 ** np.floor(np.log10(requested))
+    return float(min((step * power for step in _STEPS), key=lambda step: abs(np.log(step / requested))))
 
 
 # ---- what is drawn ----
@@ -184,12 +184,12 @@ def _area(rings: Iterable[Sequence[tuple[float, float]]]) -> Path:
     """Return rings as one area; the outside runs counterclockwise and the holes run clockwise."""
     points: list[tuple[float, float]] = []
     codes: list[int] = []
-    for place, ring in enumerate(rings):
+    for index, ring in enumerate(rings):
         if len(ring) < 3:
             continue
-        way = ring if (_turn(ring) > 0) == (place == 0) else ring[::-1]
-        points += [*way, way[0]]
-        codes += [int(Path.MOVETO), *[int(Path.LINETO)] * (len(way) - 1), int(Path.CLOSEPOLY)]
+        path = ring if (_turn(ring) > 0) == (index == 0) else ring[::-1]
+        points += [*path, path[0]]
+        codes += [int(Path.MOVETO), *[int(Path.LINETO)] * (len(path) - 1), int(Path.CLOSEPOLY)]
     return Path(points or np.zeros((0, 2)), codes or None)
 
 
@@ -239,9 +239,9 @@ def _stretches(section: SectionPicture) -> Iterator[tuple[str, str, list[tuple[f
     colors = coloring(section).moves
     line: list[tuple[float, float]] = []
     style = ("", "")
-    for place in range(1, len(tool.x)):
-        x, c, move = tool.x[place], tool.c[place], tool.move[place]
-        before_x, before_c = tool.x[place - 1], tool.c[place - 1]
+    for index in range(1, len(tool.x)):
+        x, c, move = tool.x[index], tool.c[index], tool.move[index]
+        before_x, before_c = tool.x[index - 1], tool.c[index - 1]
         if x is None or c is None or move is None or before_x is None or before_c is None:
             continue
         now = "cut" if moves.role[move] == "corner" else moves.role[move], colors[move]
@@ -265,21 +265,23 @@ def _draw_mark(axes: Axes, mark: Mark) -> None:
 def _ends(section: SectionPicture) -> list[tuple[float, float]]:
     """Return the first and the last point of the path; nothing if it is not known."""
     path = section.tool if section.tool.x else section.programmed
-    known = [(x, c) for x, c in zip(path.x, path.c, strict=True) if x is not None and c is not None]
-    return [known[0], known[-1]] if known else []
+    points = [(x, c) for x, c in zip(path.x, path.c, strict=True) if x is not None and c is not None]
+    return [points[0], points[-1]] if points else []
 
 
 def _draw_ends(axes: Axes, section: SectionPicture) -> None:
-    for place, (text, marker, down) in zip(_ends(section), (("start", "o", 4), ("end", "s", -9)), strict=False):
-        axes.plot(*place, marker=marker, markersize=5, markerfacecolor="none", markeredgecolor=INK, zorder=7)
-        axes.annotate(text, place, (4, down), textcoords="offset points", fontsize=7, color=INK, zorder=8)
+    for point, (text, marker, down) in zip(_ends(section), (("start", "o", 4), ("end", "s", -9)), strict=False):
+        axes.plot(*point, marker=marker, markersize=5, markerfacecolor="none", markeredgecolor=INK, zorder=7)
+        axes.annotate(text, point, (4, down), textcoords="offset points", fontsize=7, color=INK, zorder=8)
 
 
 def _draw_labels(axes: Axes, window: Window, entries: Sequence[Entry], ends: Sequence[tuple[float, float]]) -> None:
     """Draw a cross at each place of a finding, and its number beside it, away from the middle."""
-    shown = [entry._replace(places=[place for place in entry.places if _is_within(place, window)]) for entry in entries]
+    visible = [
+        entry._replace(places=[point for point in entry.places if _is_within(point, window)]) for entry in entries
+    ]
     middle = complex(window.x0 + window.x1, window.c0 + window.c1) / 2
-    for (x, c), text, kind in labels(shown, 4.0 * window.scale):
+    for (x, c), text, kind in labels(visible, 4.0 * window.scale):
         color = SEVERITIES.get(kind, LEFT)
         away = complex(x, c) - middle
         away = away / abs(away) if abs(away) > 2 * window.scale else complex(0.7, 0.7)
@@ -294,8 +296,8 @@ def _draw_labels(axes: Axes, window: Window, entries: Sequence[Entry], ends: Seq
         )  # fmt: skip
 
 
-def _is_within(place: tuple[float, float], window: Window) -> bool:
-    return window.x0 <= place[0] <= window.x1 and window.c0 <= place[1] <= window.c1
+def _is_within(point: tuple[float, float], window: Window) -> bool:
+    return window.x0 <= point[0] <= window.x1 and window.c0 <= point[1] <= window.c1
 
 
 def _column(values: Iterable[float | None]) -> list[float]:

@@ -52,10 +52,10 @@ def entries(section: SectionPicture, findings: Sequence[FindingPicture]) -> tupl
 
 def outside(findings: Sequence[FindingPicture]) -> tuple[list[Entry], int]:
     """Return the entries of findings that no section shows, and how many more there are."""
-    found, more = [finding for finding in findings if finding.section is None and not finding.silenced], 0
-    found.sort(key=_gravest_first)
-    found, more = found[:_MOST], max(len(found) - _MOST, 0)
-    return [_of_finding(finding)._replace(places=()) for finding in found], more
+    drawn, more = [finding for finding in findings if finding.section is None and not finding.silenced], 0
+    drawn.sort(key=_gravest_first)
+    drawn, more = drawn[:_MOST], max(len(drawn) - _MOST, 0)
+    return [_of_finding(finding)._replace(places=()) for finding in drawn], more
 
 
 def labels(listed: Sequence[Entry], apart: float) -> Iterator[tuple[Point, str, str]]:
@@ -66,18 +66,18 @@ def labels(listed: Sequence[Entry], apart: float) -> Iterator[tuple[Point, str, 
     """
     groups: list[tuple[Point, list[Entry]]] = []
     for entry in listed:
-        for place in entry.places:
-            group = next((members for at, members in groups if _distance(at, place) < apart), None)
+        for point in entry.places:
+            group = next((members for center, members in groups if _distance(center, point) < apart), None)
             if group is None:
-                groups.append((place, [entry]))
+                groups.append((point, [entry]))
             elif entry not in group:
                 group.append(entry)
-    for place, members in groups:
-        yield place, _as_ranges([entry.number for entry in members]), members[0].kind
+    for point, members in groups:
+        yield point, _as_ranges([entry.number for entry in members]), members[0].kind
 
 
-def _distance(one: Point, other: Point) -> float:
-    return abs(complex(*one) - complex(*other))
+def _distance(first: Point, second: Point) -> float:
+    return abs(complex(*first) - complex(*second))
 
 
 def _as_ranges(numbers: Sequence[int]) -> str:
@@ -103,9 +103,9 @@ def _of_finding(finding: FindingPicture) -> Entry:
 
 
 def _lines(lines: Sequence[int]) -> str:
-    shown = ", ".join(map(str, lines[:8]))
+    text = ", ".join(map(str, lines[:8]))
     noun = "line" if len(lines) == 1 else "lines"
-    return f"{noun} {shown}" + (f" and {len(lines) - 8} more" if len(lines) > 8 else "")
+    return f"{noun} {text}" + (f" and {len(lines) - 8} more" if len(lines) > 8 else "")
 
 
 def _of_mark(mark: Mark) -> Entry:
@@ -117,6 +117,6 @@ def _is_reported(mark: Mark, findings: Sequence[FindingPicture]) -> bool:
     """Return True if one of the findings is about this mark: at its place, or in both of its blocks."""
     return any(
         (len(mark.lines) > 1 and {finding.line, *finding.also} >= set(mark.lines))
-        or any(_distance(place, mark.place) <= mark.depth for place in finding.places)
+        or any(_distance(point, mark.place) <= mark.depth for point in finding.places)
         for finding in findings
     )

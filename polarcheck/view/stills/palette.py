@@ -70,10 +70,10 @@ def coloring(section: SectionPicture) -> Coloring:
 
 def round_bounds(values: Iterable[float | None]) -> list[float]:
     """Return the bounds of at most 8 classes: each value if there are few, else round, on a logarithmic scale."""
-    known = sorted({float(f"{value:.4g}") for value in values if value is not None})
-    if len(known) <= len(SHADES):
-        return known
-    low, high = max(known[0], known[-1] / 1e4), known[-1]
+    ordered = sorted({float(f"{value:.4g}") for value in values if value is not None})
+    if len(ordered) <= len(SHADES):
+        return ordered
+    low, high = max(ordered[0], ordered[-1] / 1e4), ordered[-1]
     decades = range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1)
     between = [bound for decade in decades for digit in (1, 2, 5) if low < (bound := digit * 10.0**decade) < high]
     every = math.ceil((len(between) + 1) / len(SHADES))
@@ -84,4 +84,4 @@ def _shades(count: int) -> list[str]:
     """Return colors from light to dark, so many."""
     if count < 2:
         return [SHADES[-3]] * count
-    return [SHADES[round(place * (len(SHADES) - 1) / (count - 1))] for place in range(count)]
+    return [SHADES[round(index * (len(SHADES) - 1) / (count - 1))] for index in range(count)]

@@ -46,8 +46,8 @@ _POINTS = 72 / 25.4
 
 def printable(text: str) -> str:
     """Return text without control characters and without characters that the font lacks."""
-    known = _glyphs(False)
-    return "".join(sign if ord(sign) in known else _LACKING for sign in visible(text.replace("\t", " ")))
+    glyphs = _glyphs(False)
+    return "".join(sign if ord(sign) in glyphs else _LACKING for sign in visible(text.replace("\t", " ")))
 
 
 @cache
@@ -97,11 +97,11 @@ def _words(text: str, room: float, bold: bool) -> Iterator[str]:
     """Yield the words; one that is wider than a line is broken."""
     for word in text.split():
         begin, used = 0, 0.0
-        for place, sign in enumerate(word):
+        for index, sign in enumerate(word):
             used += _advance(sign, bold)
             if used > room:
-                yield word[begin:place]
-                begin, used = place, _advance(sign, bold)
+                yield word[begin:index]
+                begin, used = index, _advance(sign, bold)
         yield word[begin:]
 
 
@@ -183,9 +183,9 @@ class _Sheet:
         height = size * _LINE
 
         def draw(figure: Figure, top: float, total: float) -> None:
-            for place, line in enumerate(lines):
+            for index, line in enumerate(lines):
                 figure.text(
-                    (_MARGIN + indent) / WIDTH, (top - place * height) / total, line, size=size, color=color,
+                    (_MARGIN + indent) / WIDTH, (top - index * height) / total, line, size=size, color=color,
                     weight="bold" if bold else "normal", va="top", ha="left",
                 )  # fmt: skip
 
@@ -217,10 +217,10 @@ def _add_head(sheet: _Sheet, picture: Picture) -> None:
 
 def _add_rest(sheet: _Sheet, picture: Picture, numbers: Sequence[int]) -> None:
     """Add what no section shows."""
-    found, more = outside(picture.findings)
-    if found:
+    outside_findings, more = outside(picture.findings)
+    if outside_findings:
         sheet.text("Outside the polar sections", 8, bold=True)
-        for entry in found:
+        for entry in outside_findings:
             _add_entry(sheet, entry, "")
         _add_more(sheet, more)
     for reason in picture.not_evaluated[:5]:
@@ -231,8 +231,8 @@ def _add_rest(sheet: _Sheet, picture: Picture, numbers: Sequence[int]) -> None:
     if not picture.sections:
         sheet.text("No polar section is drawn.", 8)
     elif len(numbers) < len(picture.sections):
-        shown = ", ".join(map(str, numbers))
-        sheet.text(f"Drawn: section {shown} of {len(picture.sections)}.", 7)
+        numbers_drawn = ", ".join(map(str, numbers))
+        sheet.text(f"Drawn: section {numbers_drawn} of {len(picture.sections)}.", 7)
 
 
 def _add_more(sheet: _Sheet, more: int) -> None:
@@ -326,17 +326,17 @@ def _window(middle: tuple[float, float], across: float, tall: float, scale: floa
 def _draw_section(
     figure: Figure, section: SectionPicture, frame: _Frame, listed: Sequence[Entry], top: float, total: float
 ) -> None:
-    left, across = _MARGIN + _LEFT, WIDTH - 2 * _MARGIN - _LEFT - _RIGHT
-    place = (left / WIDTH, (top - 1.5 - frame.height) / total, across / WIDTH, frame.height / total)
-    draw_face(figure.add_axes(place), section, frame.window, listed, small=False)
+    from_left, across = _MARGIN + _LEFT, WIDTH - 2 * _MARGIN - _LEFT - _RIGHT
+    area = (from_left / WIDTH, (top - 1.5 - frame.height) / total, across / WIDTH, frame.height / total)
+    draw_face(figure.add_axes(area), section, frame.window, listed, small=False)
     key = coloring(section)
     if key.bounds:
-        _draw_colors(figure, key, ((left + across + 2.5) / WIDTH, place[1], 2.5 / WIDTH, place[3]))
+        _draw_colors(figure, key, ((from_left + across + 2.5) / WIDTH, area[1], 2.5 / WIDTH, area[3]))
 
 
-def _draw_colors(figure: Figure, key: Coloring, place: tuple[float, float, float, float]) -> None:
+def _draw_colors(figure: Figure, key: Coloring, area: tuple[float, float, float, float]) -> None:
     """Draw the key of the colors of the path."""
-    axes = figure.add_axes(place)
+    axes = figure.add_axes(area)
     colors = [*key.shades, *([ABOVE] if key.has_limit else [])]
     axes.set_xlim(0, 1)
     axes.set_ylim(0, len(colors))
@@ -369,16 +369,16 @@ def _add_details(sheet: _Sheet, section: SectionPicture, frame: _Frame, listed: 
     window = frame.window
     small = _SMALL * (window.c1 - window.c0)
     details: list[tuple[str, Window]] = []
-    shown: set[str] = set()
+    rules: set[str] = set()
     for entry in listed:
         if entry.span is None or not 0 < entry.span < small or not entry.places or len(details) == _DETAILS:
             continue
-        if entry.rule and entry.rule in shown:
+        if entry.rule and entry.rule in rules:
             continue  # others of the rule look alike
         near = _window(entry.places[0], _DETAIL, _DETAIL, entry.span / _DETAIL)
-        if any(abs(near.x0 - other.x0) + abs(near.c0 - other.c0) < near.x1 - near.x0 for _, other in details):
+        if any(abs(near.x0 - detail.x0) + abs(near.c0 - detail.c0) < near.x1 - near.x0 for _, detail in details):
             continue
-        shown.add(entry.rule)
+        rules.add(entry.rule)
         details.append((f"{entry.number}, enlarged {window.scale / near.scale:.3g} times", near))
     if details:
         sheet.add(_DETAIL + 9, lambda figure, top, total: _draw_details(figure, section, listed, details, top, total))
@@ -388,8 +388,8 @@ def _draw_details(
     figure: Figure, section: SectionPicture, listed: Sequence[Entry], details: Sequence[tuple[str, Window]],
     top: float, total: float,
 ) -> None:  # fmt: skip
-    for place, (title, window) in enumerate(details):
-        left = _MARGIN + 8 + place * (_DETAIL + 8)
-        axes = figure.add_axes((left / WIDTH, (top - 4 - _DETAIL) / total, _DETAIL / WIDTH, _DETAIL / total))
+    for index, (title, window) in enumerate(details):
+        from_left = _MARGIN + 8 + index * (_DETAIL + 8)
+        axes = figure.add_axes((from_left / WIDTH, (top - 4 - _DETAIL) / total, _DETAIL / WIDTH, _DETAIL / total))
         draw_face(axes, section, window, listed, small=True)
         axes.set_title(title, fontsize=7.5, pad=2, color=CENTER)
