@@ -39,7 +39,7 @@ OF_ROOM = {
 OF_TABLE = {
     **dict.fromkeys(("tool_center", "moves", "ramps", "trial", "travel"), "tool path"),
     **dict.fromkeys(("dynamics", "feed_curve", "highest_feeds", "feed_ranges"), "tool path"),
-    **dict.fromkeys(("overcuts", "slots", "uncompensated_cuts", "fitting", "finished"), "faces"),
+    **dict.fromkeys(("overcuts", "slots", "uncompensated_cuts", "fitting_radius", "finished"), "faces"),
     **dict.fromkeys(("coverage", "mirrored"), "faces"),
 }
 #: Calls lead through fewer functions of libraries, one in the other, than this.

@@ -135,7 +135,7 @@ def test_called_programs_are_sent() -> None:
 
     assert through(Executor(acts), tasks, 1) == expected
     sent = cluster.pack(tasks[0].settings)
-    assert sorted(cluster.library.contents("gone")) == ["O0100.nc", "O0200"]
+    assert sorted(cluster.called_programs.contents("gone")) == ["O0100.nc", "O0200"]
     assert len(sent) < 100_000
 
 

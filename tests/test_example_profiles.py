@@ -37,6 +37,7 @@ def test_each_run_draws_the_same_examples_unless_new_ones_are_asked_for(tmp_path
     """Hypothesis itself chooses by CI in the environment; the profiles of conftest.py mean the same there."""
     (tmp_path / "pytest.ini").write_text("[pytest]\n")
     (tmp_path / "conftest.py").write_bytes(Path(__file__).with_name("conftest.py").read_bytes())
+    (tmp_path / "cases.py").write_bytes(Path(__file__).with_name("cases.py").read_bytes())
     (tmp_path / "test_drawn.py").write_text(TEST)
     environment = {name: value for name, value in os.environ.items() if name != "CI"} | ({"CI": "true"} if ci else {})
     first, second = (drawn_examples(tmp_path, environment=environment) for _ in range(2))
