@@ -8,13 +8,13 @@ from collections.abc import Iterable, Iterator
 from typing import Final, NamedTuple
 
 from polarcheck.program.execution.custom_macro import KEYWORD
-from polarcheck.program.execution.flow_keywords import KEYWORDS
+from polarcheck.program.execution.flow_keywords import KEYWORDS, SEARCHES, TYPES
 from polarcheck.program.execution.high_level import is_custom_macro
 from polarcheck.program.execution.high_level_tokens import GRAMMAR, tokens_of
 from polarcheck.program.execution.listing import Listing
-from polarcheck.program.execution.macro_tokens import NAMES, NUMBER, Characters
+from polarcheck.program.execution.macro_tokens import TOKEN, Characters, is_operator
 from polarcheck.program.execution.programs import block_text
-from polarcheck.program.execution.task_values import NO_VALUES, SYSTEM, Values
+from polarcheck.program.execution.task_values import FLOW, NO_VALUES, SEQUENCE_NAME, SYSTEM, Values
 from polarcheck.program.execution.task_values import is_function as is_task_function
 
 #: The most tokens of a block.
@@ -54,13 +54,9 @@ def tokens(listing: Listing, block: int, text: str | None = None) -> list[Token]
 
 # ---- custom macro ----
 
-_OPERATORS: Final = "EQ|NE|GT|GE|LT|LE|AND|AN|XOR|XO|OR|MOD"
-_CUSTOM: Final = re.compile(
-    rf"(?P<system>#_[A-Z0-9_]+)|(?P<variable>#[0-9]+)|(?P<number>[-+]?(?:{NUMBER}))|(?P<function>(?:{'|'.join(NAMES)})(?=\[))"
-    rf"|(?P<operator>{_OPERATORS}|[-+*/=])|(?P<keyword>{KEYWORD.pattern})|(?P<address>,?[A-Z]|:)|(?P<sign>[#\[\]])"
-    r"|(?P<name><[^>]*>)"
-)
-_OPERANDS: Final = ("variable", "number", "system")
+#: What stands in a block besides expressions.
+_WORD: Final = re.compile(rf"(?P<keyword>{KEYWORD.pattern})|(?P<address>,?[A-Z]|:)|(?P<name><[^>]*>)")
+_VALUES: Final = ("variable", "number", "system", "]")
 
 
 @functools.lru_cache(20_000)
@@ -73,30 +69,34 @@ def _custom_macro_tokens(block: str) -> Iterator[Token]:
     characters = Characters.of_block(block)
     text, places, position, last, count = characters.text, characters.places, 0, "", 0
     while position < len(text) and count < _MOST:
-        match = _CUSTOM.match(text, position)
-        if match is None:
-            position += 1
-            continue
-        kind, end = match.lastgroup or "", match.end()
-        if kind == "operator" and match[0].isalpha() and last not in _OPERANDS and last != "]":
-            # A word such as M0 in a block that has no expression before it.
-            keyword = KEYWORD.match(text, position)
-            kind, end = ("keyword", keyword.end()) if keyword else ("address", position + 1)
-        elif kind == "number" and match[0][0] in "+-" and last in (*_OPERANDS, "]"):
-            kind, end = "operator", position + 1
-        start, after = places[position], places[end - 1] + 1
-        if match[0] == "#":
-            yield Token("computed", "#", start, after)
-        elif kind != "sign":
-            yield Token(kind, text[position:end], start, after)
-        last = text[end - 1 : end] if kind == "sign" else kind
-        position, count = end, count + 1
+        kind, end = _kind_in_custom_macro(text, position, last in _VALUES)
+        if kind:
+            if kind not in ("[", "]"):
+                yield Token(kind, text[position:end], places[position], places[end - 1] + 1)
+            last, count = kind, count + 1
+        position = end
+
+
+def _kind_in_custom_macro(text: str, start: int, follows_value: bool) -> tuple[str, int]:
+    """Return the kind and the end of a token; a bracket is its own kind, and "" stands for no token."""
+    match = TOKEN.match(text, start)
+    kind, end = (match.lastgroup or "", match.end()) if match else ("", start)
+    written = text[start:end]
+    if kind == "name":
+        # A word such as M0 begins like an operator where no value stands before it.
+        kind = "function" if text.startswith("[", end) else "operator" if follows_value and is_operator(written) else ""
+    elif kind == "sign":
+        number = TOKEN.match(text, end) if written in "+-" and not follows_value else None
+        if number is not None and number["number"]:
+            return "number", number.end()
+        kind = {"#": "computed", "[": "[", "]": "]", ",": ""}.get(written, "operator")
+    if kind:
+        return kind, end
+    match = _WORD.match(text, start)
+    return (match.lastgroup or "", match.end()) if match else ("", start + 1)
 
 
 # ---- a high-level language ----
-
-#: Behind these words stands the name of a label.
-_LEADING: Final = ("GOTO", "GOTOF", "GOTOB", "GOTOC")
 
 
 def _high_level(block: str, listing: Listing) -> Iterator[Token]:
@@ -110,7 +110,7 @@ def _high_level(block: str, listing: Listing) -> Iterator[Token]:
         last, following = lexed[index - 1] if index else None, lexed[index + 1]
         if token.kind == "name":
             kind = _kind_of_name(token.text, following.text, listing)
-            is_led_to = last is not None and kind == "name" and last.text in _LEADING
+            is_led_to = last is not None and kind == "name" and last.text in SEARCHES
             yield Token("target" if is_led_to else kind, *token[1:])
         elif token.kind == "letter":
             is_value = last is not None and (
@@ -141,7 +141,7 @@ def _kind_of_name(name: str, following: str, listing: Listing) -> str:
         return "label"
     if listing.names.is_declared(name):
         return "variable"
-    if name in KEYWORDS or name in ("TO", "OF", "DEFAULT", "REAL", "INT", "BOOL", "CHAR", "STRING", "AXIS", "FRAME"):
+    if name in KEYWORDS or name in TYPES or name in ("TO", "OF", "DEFAULT"):
         return "keyword"
     if name in GRAMMAR.operators or name in GRAMMAR.prefixes:
         return "operator"
@@ -151,9 +151,6 @@ def _kind_of_name(name: str, following: str, listing: Listing) -> str:
 
 
 # ---- user tasks ----
-
-_FLOW: Final = ("IF", "GOTO", "CALL", "MODIN", "MODOUT", "RTS", "NOEX")
-_SEQUENCE_NAME: Final = re.compile(r"N[A-Z][A-Z0-9]{0,3}")
 
 
 def _user_task(block: str, listing: Listing) -> Iterator[Token]:
@@ -186,7 +183,7 @@ def _user_task(block: str, listing: Listing) -> Iterator[Token]:
 
 
 def _kind_of_task(name: str, listing: Listing, is_target: bool, in_value: bool) -> str:
-    if name in _FLOW:
+    if name in (*FLOW, "NOEX"):
         return "keyword"
     if SYSTEM.fullmatch(name):
         return "system"
@@ -200,4 +197,4 @@ def _kind_of_task(name: str, listing: Listing, is_target: bool, in_value: bool) 
         return "address" if name in listing.macro.named_words else "variable"
     if in_value:
         return "variable"
-    return "target" if _SEQUENCE_NAME.fullmatch(name) else "name"
+    return "target" if SEQUENCE_NAME.fullmatch(name) else "name"

@@ -29,10 +29,11 @@ from polarcheck.program.execution.run import begins_program, is_code
 from polarcheck.program.execution.statement import Kind as StatementKind
 from polarcheck.program.execution.statement import Statement, Word
 from polarcheck.program.machines.macro_keys import Macro
+from polarcheck.program.reading.language_blocks import SEQUENCE_NAME
 
 _NUMBER_LIMIT = 1e15
 _DIGITS = re.compile(r"\d+")
-_SEQUENCE_NAME = re.compile(r"(?<![A-Z0-9_$])N(?!OEX(?![A-Z0-9]))[A-Z][A-Z0-9]{0,3}+(?![A-Z0-9_.=\[])", re.IGNORECASE)
+_SEQUENCE_NAME = re.compile(SEQUENCE_NAME, re.IGNORECASE)
 #: Programs of so many repeats: the last digits of P are the number.
 _REPEATED = 10_000
 

@@ -19,13 +19,14 @@ from polarcheck.editor.structure.uses import Owner, Use, Uses
 from polarcheck.editor.structure.workspace import Workspace
 from polarcheck.foundation.errors import PolarcheckError
 from polarcheck.program.execution.macro import ARGUMENTS, VariableKind
+from polarcheck.program.execution.macro_tokens import in_capitals
+from polarcheck.program.execution.task_values import SEQUENCE_NAME
 from polarcheck.program.reading.excerpt import shortened, visible
 
 #: The longest new name that a message shows [characters].
 _SHOWN = 40
 #: A number with or without its letter, a label of a user task, and any other name.
 _TYPED = re.compile(r"(N|#|O|R|VC?)?\s{0,4}([0-9]{1,8})", re.IGNORECASE | re.ASCII)
-_TASK_LABEL = re.compile(r"N[A-Z][A-Z0-9]{0,3}", re.IGNORECASE | re.ASCII)
 _NAME = re.compile(r"[A-Z_][A-Z_][A-Z0-9_]{0,30}", re.IGNORECASE | re.ASCII)
 _KINDS = {
     VariableKind.LOCAL: "local",
@@ -124,9 +125,8 @@ class _Renaming:
         return self._digits("N", "N100")
 
     def _label(self) -> int | str:
-        language = self.use.owner.mentions.listing.macro.language
-        if not (_TASK_LABEL if language == "user-task" else _NAME).fullmatch(self.new):
-            is_task = language == "user-task"
+        is_task = self.use.owner.mentions.listing.macro.language == "user-task"
+        if not (SEQUENCE_NAME if is_task else _NAME).fullmatch(in_capitals(self.new)):
             raise self._wrong("N and up to four letters and digits, as NLAP1" if is_task else "a name, as ENDE")
         return self.new.upper()
 

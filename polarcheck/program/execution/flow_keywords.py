@@ -14,7 +14,8 @@ from polarcheck.program.execution.programs import Search
 from polarcheck.program.execution.spoken_block import SpokenBlock
 from polarcheck.program.execution.statement import Kind, Parameter, Statement, Word
 
-_SEARCHES: Final = {
+#: Where each jump looks for its label.
+SEARCHES: Final = {
     "GOTO": Search.ROUND,
     "GOTOF": Search.FORWARD,
     "GOTOB": Search.BACKWARD,
@@ -24,7 +25,7 @@ _SEARCHES: Final = {
 _NAMES: Final = ("name", "letter")
 _SCOPES: Final = {"NCK", "CHAN", "SYNR", "SYNW", "SYNRW", "VAR"}
 #: Types of variables, and the value before the first assignment.
-_TYPES: Final = {
+TYPES: Final = {
     "REAL": 0.0,
     "INT": 0.0,
     "BOOL": 0.0,
@@ -42,7 +43,7 @@ def end_of(block: SpokenBlock) -> int:
 
 def _jump(block: SpokenBlock, kind: Kind, first: Token, condition: Expression | None = None) -> None:
     """GOTOF and its like with what they name; the keyword is the next token."""
-    search = _SEARCHES[block.token.text]
+    search = SEARCHES[block.token.text]
     block.at += 1
     token = block.token
     statement = Statement(kind, first.start, token.end, condition=condition, search=search)
@@ -77,7 +78,7 @@ def _structure(
 
 def _if(block: SpokenBlock, first: Token) -> None:
     condition = block.expression()
-    if block.token.text in _SEARCHES:
+    if block.token.text in SEARCHES:
         _jump(block, Kind.IF_GOTO, first, condition)
     else:
         _structure(block, first, condition)
@@ -147,7 +148,7 @@ def _case(block: SpokenBlock, first: Token) -> None:
                 return
             steps = (*selector.steps, *label.steps, Step("EQ", 0.0, begin.start, label.end))
             condition = Expression(steps, begin.start, label.end)
-        if block.token.text not in _SEARCHES:
+        if block.token.text not in SEARCHES:
             block.leave_rest(first)
             return
         _jump(block, Kind.GOTO if condition is None else Kind.IF_GOTO, begin, condition)
@@ -158,7 +159,7 @@ def _type(block: SpokenBlock) -> str:
     while block.token.text in _SCOPES:
         block.at += 1
     name = block.token.text
-    if name not in _TYPES:
+    if name not in TYPES:
         return ""
     block.at += 1
     block.arguments()
@@ -179,7 +180,7 @@ def _define(block: SpokenBlock, first: Token) -> None:
                 block.at = len(block.tokens) - 1
         else:
             block.names.declare(token.text)
-            value = None if block.take_sign("=") else constant(_TYPES[kind], token.start, token.end)
+            value = None if block.take_sign("=") else constant(TYPES[kind], token.start, token.end)
             block.assign(block.variable(token), token, value)
         if not block.take_sign(","):
             break
@@ -309,7 +310,7 @@ def _pass_over(block: SpokenBlock, first: Token) -> None:
 
 #: What reads each keyword, behind it.
 KEYWORDS: Final[Mapping[str, Callable[[SpokenBlock, Token], None]]] = {
-    **dict.fromkeys(_SEARCHES, _goto),
+    **dict.fromkeys(SEARCHES, _goto),
     "IF": _if,
     **dict.fromkeys(("ELSE", "ENDIF", "ENDWHILE", "ENDFOR", "LOOP", "ENDLOOP"), _structure),
     **dict.fromkeys(("WHILE", "UNTIL"), _with_condition),

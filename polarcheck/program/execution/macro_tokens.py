@@ -45,11 +45,15 @@ GRAMMAR: Final = Grammar(
 )
 # The control takes the first two letters of a name for the whole; POW has no short form, since PO is POPEN.
 _SHORT: Final = {name[:2]: name for name in [*_FUNCTION_NAMES, "AND", "XOR"] if name not in ("POW", _WHOLE)}
-#: Functions and operators of letters, also in their short forms, the longer first.
-NAMES: Final = sorted(
+# Functions and operators of letters, also in their short forms, the longer first.
+_NAMES: Final = sorted(
     [*_FUNCTION_NAMES, *(name for name in GRAMMAR.operators if name.isalpha()), *_SHORT], key=len, reverse=True
 )
-_TOKEN: Final = re.compile(rf"({NUMBER})|#([0-9]+)|(#_[A-Z0-9_]+)|({'|'.join(NAMES)})|([-+*/,#\[\]])")
+#: A token of an expression; name: a function or an operator of letters.
+TOKEN: Final = re.compile(
+    rf"(?P<number>{NUMBER})|(?P<variable>#[0-9]+)|(?P<system>#_[A-Z0-9_]+)|(?P<name>{'|'.join(_NAMES)})"
+    r"|(?P<sign>[-+*/,=#\[\]])"
+)
 
 _CAPITALS: Final = {ord(letter): ord(letter) - 32 for letter in "abcdefghijklmnopqrstuvwxyz"}
 
@@ -57,6 +61,11 @@ _CAPITALS: Final = {ord(letter): ord(letter) - 32 for letter in "abcdefghijklmno
 def in_capitals(text: str) -> str:
     """The text with the letters a to z in capitals; its length does not change, which upper() does not promise."""
     return text.translate(_CAPITALS)
+
+
+def is_operator(name: str) -> bool:
+    """Return True for the characters of an operator, also in a short form: `AN` is AND."""
+    return _SHORT.get(name, name) in GRAMMAR.operators
 
 
 class Characters:
@@ -109,13 +118,13 @@ class MacroLexer:
         return self.characters.span(start, end)
 
     def operand(self) -> Operand:
-        start, match = self.at, _TOKEN.match(self.text, self.at)
+        start, match = self.at, TOKEN.match(self.text, self.at)
         number, variable, system_variable, name, sign = match.groups() if match else (None,) * 5
         self.at = match.end() if match else start
         function = _SHORT.get(name or "", name)
         if number or variable:
             kind = "variable" if variable else "number"
-            return Operand(kind, "", float(number or variable or 0), start, self.at)
+            return Operand(kind, "", float(number or (variable or "")[1:] or 0), start, self.at)
         if sign in ("+", "-"):
             return Operand("prefix", sign, 0.0, start, self.at)
         if system_variable:
@@ -140,7 +149,7 @@ class MacroLexer:
         return next((i for i in range(start + 1, self.at) if places[i] != places[i - 1] + 1), self.at)
 
     def following(self) -> Following:
-        match = _TOKEN.match(self.text, self.at)
+        match = TOKEN.match(self.text, self.at)
         if match is None:
             return Following("", self.at, self.at)
         return Following(_SHORT.get(match[0], match[0]), self.at, match.end())

@@ -42,8 +42,11 @@ _FUNCTIONS: Final = {
 }
 #: Functions whose value is not known: DROUND rounds to the unit of the machine, NOT depends on the bits of a number.
 _NOT_CALCULATED: Final = frozenset(("NOT", "DROUND", "DFIX", "DFUP"))
+#: Statements of the flow.
+FLOW: Final = ("IF", "GOTO", "CALL", "MODIN", "MODOUT", "RTS")
 #: Names that are neither variables nor functions.
-NO_VALUES: Final = _COMPARISONS | {*_JOINS, "MOD", "IF", "GOTO", "CALL", "MODIN", "MODOUT", "RTS", "NOEX"}
+NO_VALUES: Final = _COMPARISONS | {*_JOINS, "MOD", *FLOW, "NOEX"}
+SEQUENCE_NAME: Final = re.compile(r"N[A-Z][A-Z0-9]{0,3}")
 #: VZOFX, VTOFX[5]: a variable of the system.
 SYSTEM: Final = re.compile(r"V(?!C[0-9])[A-Z][A-Z0-9]*+")
 

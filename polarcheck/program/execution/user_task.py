@@ -16,13 +16,12 @@ from msgspec.structs import replace
 
 from polarcheck.program.execution.macro_tokens import Characters
 from polarcheck.program.execution.statement import Kind, Statement
-from polarcheck.program.execution.task_values import MOST, SYSTEM, UNKNOWN, Piece, Token, Values
+from polarcheck.program.execution.task_values import FLOW, MOST, SEQUENCE_NAME, SYSTEM, UNKNOWN, Piece, Token, Values
 from polarcheck.program.execution.variable_names import Names
 from polarcheck.program.machines.machine import Machine
 
 #: Zero offset, zero shift and tool offset of Z: they move nothing on the polar plane.
 _OF_Z: Final = re.compile(r"V(?:ZOF|ZSH|TOF)Z")
-_SEQUENCE_NAME: Final = re.compile(r"N[A-Z][A-Z0-9]{0,3}")
 #: What shifts or offsets an axis: zero offset, zero shift, tool offset, nose radius. Other values of the control, as
 #: those of the load monitor or of outputs, move nothing.
 _OF_POSITION: Final = re.compile(r"V(?:ZOF|ZSH|TOF|ETF|NSR)[A-Z0-9]*+")
@@ -112,7 +111,7 @@ class _Block(Values):
             elif token.kind == "letter" and token.text == "N" and following.kind == "number":
                 self.at += 2
                 self.head.put("N" + following.text, token.start, following.end)
-            elif token.text == "NOEX" or (token.kind == "name" and _SEQUENCE_NAME.fullmatch(token.text)):
+            elif token.text == "NOEX" or (token.kind == "name" and SEQUENCE_NAME.fullmatch(token.text)):
                 self.at += 1
             else:
                 return
@@ -129,7 +128,7 @@ class _Block(Values):
         elif token.kind != "name":
             self.at += 1
             self.leave(first, moves=True)
-        elif token.text in ("IF", "GOTO", "CALL", "MODIN", "MODOUT", "RTS") and self.flow is None:
+        elif token.text in FLOW and self.flow is None:
             self.at += 1
             known = {"IF": self.after_if, "GOTO": self.go_to, "CALL": self.call, "MODIN": self.call}
             known.get(token.text, self.returning)(first)
@@ -147,7 +146,7 @@ class _Block(Values):
         else:
             self.at += 1
             # Behind G85 and its like it names the contour, which is passed over as other turning is.
-            if not _SEQUENCE_NAME.fullmatch(token.text):
+            if not SEQUENCE_NAME.fullmatch(token.text):
                 self.leave(first, moves=True)
 
     # ---- words and assignments ----

@@ -79,7 +79,8 @@ _HEAD_OF_FILE = re.compile(rb"[ \t\r\0]*+\$[^%\n]*+%[ \t\r\0]*+")
 _CONTINUATION = re.compile(rb"\n[ \t\r\0]*+\$(?![^%\n]*+%)")
 _PROGRAM = re.compile(rb"[ \t\r\0]*+(O[A-Z][A-Z0-9]{0,15}+)[ \t\r\0]*+")
 #: A sequence name: N and up to four letters and digits. NOEX runs a block without stopping at it.
-_SEQUENCE_NAME = re.compile(rb"(?<![A-Z0-9_$])N(?!OEX(?![A-Z0-9]))[A-Z][A-Z0-9]{0,3}+(?![A-Z0-9_.=\[])")
+SEQUENCE_NAME = r"(?<![A-Z0-9_$])N(?!OEX(?![A-Z0-9]))[A-Z][A-Z0-9]{0,3}+(?![A-Z0-9_.=\[])"
+_SEQUENCE_NAME = re.compile(SEQUENCE_NAME.encode())
 _BEFORE_LABEL = re.compile(rb"[ \t\r\0]*+(?:/[ \t]*+\d?+[ \t\r\0]*+)?+")
 #: An opening parenthesis of arguments: behind a name or a sign. _NEAR: how far before it is looked [characters].
 _BEFORE_ARGUMENTS = re.compile(
