@@ -152,8 +152,8 @@ def sections_of_two_channels() -> Picture:
 
 
 @pytest.fixture(scope="module")
-def use(browser: Any, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Opened]:
-    """A page with two programs, opened once; a test leaves behind it what it finds."""
+def opened_once(browser: Any, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Opened]:
+    """A page with two programs, opened once."""
     file = tmp_path_factory.mktemp("page") / "use.html"
     text = page(
         [sections_of_two_channels(), picture(hexagon(), source=["N1", "N2"], source_lines=2)], plotly.get_plotlyjs()
@@ -167,6 +167,14 @@ def use(browser: Any, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Open
     assert opened.said == []
     assert {name.partition("#")[0] for name in opened.asked} == {file.as_uri()}
     opened.page.close()
+
+
+@pytest.fixture
+def use(opened_once: Opened) -> Opened:
+    """The page with line 2 chosen, whichever test ran before; a test leaves behind it what else it finds."""
+    opened_once.page.evaluate("location.hash = '#p0L2'")
+    opened_once.page.locator("#p0 .lines .is-chosen[data-line='2']").wait_for()
+    return opened_once
 
 
 def window(use: Opened) -> list[float]:
@@ -196,6 +204,10 @@ def click(use: Opened, x: float, c: float) -> None:
 
 def test_a_link_leads_to_its_line_and_follows_what_is_chosen(use: Opened) -> None:
     page = use.page
+    address = page.url.partition("#")[0]
+    page.goto("about:blank")
+    page.goto(f"{address}#L4")
+    page.wait_for_selector(".face .main-svg")
     assert chosen_line(use) == "4"
     assert use.fact("line", "#p0 .chosen").startswith("4")
     page.keyboard.press("ArrowRight")
@@ -209,6 +221,21 @@ def test_a_link_leads_to_its_line_and_follows_what_is_chosen(use: Opened) -> Non
     page.keyboard.press("Escape")
     page.evaluate("location.hash = '#p0L1'")
     page.locator("#p0 .lines .is-chosen[data-line='1']").wait_for()
+
+
+def test_a_new_address_is_followed_while_the_last_one_is_to_be_written(use: Opened) -> None:
+    use.page.wait_for_url("**#p0L2")
+    use.page.wait_for_timeout(400)  # until nothing is to be written
+    use.page.evaluate(
+        "() => { const write = window.setTimeout;"
+        " window.setTimeout = (run, time) => time === 150 ? (window.writeNow = run) && 1 : write(run, time);"
+        " location.hash = '#p0L5'; }"
+    )
+    use.page.locator("#p0 .lines .is-chosen[data-line='5']").wait_for()
+    use.page.evaluate("() => { location.hash = '#p0L7'; window.writeNow(); }")
+    use.page.locator("#p0 .lines .is-chosen[data-line='7']").wait_for()
+    use.page.reload()
+    use.page.wait_for_selector(".face .main-svg")
 
 
 def test_the_source_of_many_lines_is_chosen_and_found(use: Opened) -> None:

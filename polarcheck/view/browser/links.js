@@ -33,8 +33,10 @@ function placeOfLink(pictures, hash) {
 /** The address follows what is chosen, and leads back to it. shown: shows the place of a program. */
 function linked(pictures, state, shown) {
   let timer = null;
+  let read = "";
 
   function go() {
+    read = location.hash;
     const place = placeOfLink(pictures, location.hash);
     if (place !== null) {
       state.choose(place);
@@ -45,9 +47,12 @@ function linked(pictures, state, shown) {
   function write() {
     timer = null;
     const link = linkOf(pictures, state.chosen);
-    if (link !== location.hash && (link || LINK.test(location.hash))) {
+    // An address that has just changed is not read yet: its own event follows, and must find it.
+    const isRead = read === location.hash;
+    if (isRead && link !== location.hash && (link || LINK.test(location.hash))) {
       try {
         history.replaceState(null, "", link || `${location.pathname}${location.search}`);
+        read = location.hash;
       } catch {
         // A page within another one, as in an editor, may have no address that could change.
       }
