@@ -210,7 +210,7 @@ def _feed_change(mine: ToolPath, theirs: ToolPath, tolerance: float) -> tuple[in
     """
     Return the line of the first move with another F than the golden trace has there, and both F; None without any.
 
-    Both paths are the same: the way from their beginning says which moves belong to each other.
+    Both paths are the same: moves at the same distance from the start belong together.
     """
     ends = [np.cumsum(_lengths(path)) for path in (mine, theirs)]
     if not len(ends[0]) or not len(ends[1]):

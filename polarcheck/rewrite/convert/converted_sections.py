@@ -159,9 +159,10 @@ class _Writer:
 
     def _targets(self, rows: Sequence[int]) -> set[int]:
         """
-        Blocks that do not always follow the same one: the first of a subprogram or of a loop, and those behind them.
+        Return the blocks that do not always follow the same block: the first of a subprogram or of a loop, and those
+        after it.
 
-        What they write may not rest on what was in force before.
+        What is written for them must not depend on the state before them.
         """
         block, depth = self.trace.run.block, self.trace.run.depth
         return {

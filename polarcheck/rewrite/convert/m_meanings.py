@@ -11,7 +11,7 @@ from polarcheck.program.machines.m_codes import OF_EVERY_LATHE, MCodes
 from polarcheck.program.machines.machine import Machine
 from polarcheck.rewrite.convert.g_meanings import Meaning
 
-#: Lists whose codes differ by the way the spindle turns, in this order.
+#: Lists whose codes differ by the direction of the spindle, in this order.
 _BY_SENSE = ("live_tool_on", "spindle_on", "sub_spindle_on")
 #: M codes with one meaning on every lathe.
 _OF_EVERY_LATHE = frozenset(expanded(OF_EVERY_LATHE))

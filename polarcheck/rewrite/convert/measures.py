@@ -62,7 +62,7 @@ class Measures:
         return is_inch if is_usual or self._codes["inch" if is_inch else "mm"] else not is_inch
 
     def unit_ratio(self, row: int, of_feed: bool = False) -> Fraction:
-        """What a length, or F, of a row is multiplied by on the way to the units of the new program."""
+        """Return the factor from a length, or F, of a row to the units of the new program."""
         units = self.trace.lengths.feed_units if of_feed else self.trace.lengths.units
         ratio = _MM_PER_INCH if units[row] == Units.INCH else Fraction(1)
         return ratio / _MM_PER_INCH if self.writes_inch(row) else ratio

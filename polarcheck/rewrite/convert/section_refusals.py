@@ -21,8 +21,8 @@ class SectionFeeds:
     """
     The feeds of a program on another machine.
 
-    moves: of the tool center. One machine measures F along the plane, another along the way in space; one at the tool
-    center, another at the contour (polar.feed_measures, codes of feed_at_contour).
+    moves: moves of the tool center. One machine measures F on the plane, another along the path in space; one at the
+    tool center, another at the contour (polar.feed_measures, codes of feed_at_contour).
     """
 
     def __init__(self, trace: Trace, moves: Moves, target: Machine) -> None:

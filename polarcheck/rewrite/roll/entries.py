@@ -1,4 +1,4 @@
-"""Where a section is entered: C at 0 above the part, so that its coordinates are those of the drawing."""
+"""Finds where a section is entered above the part, with C at 0, so that its coordinates are those of the drawing."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from polarcheck.rewrite.roll.rollable import Stretch
 from polarcheck.rewrite.roll.ways import AxisMoves
 from polarcheck.rules.editing import is_plain, words_of
 
-#: C nearer to full turns than this is at 0 [deg].
+#: C counts as 0 within this distance of a full turn [deg].
 _AT_ZERO = 1e-9
-#: Nearer to the center than this C is not turned at the X at which the tool stands [mm].
+#: The least X, as a radius, at which C may be turned back to the angle of the stretch [mm].
 _NEAREST = 0.5
 #: Lists of G codes that may stand between the positioning and the stretch.
 _CODES = ("rapid", "line", "feed_inverse_time", "feed_per_minute", "absolute")
-#: So far before the stretch the positioning is looked for.
+#: The most rows before the stretch that are searched for the positioning.
 _MOST_ROWS = 30
 
 
@@ -27,9 +27,10 @@ class Entry(msgspec.Struct, frozen=True):
     """
     A section that is entered above the part, with C at full turns.
 
-    behind: the row behind which the mode is switched on. first: the first of the rows of Z alone that lead down to the
-    stretch, in the mode. turns: C at the entry [deg]. c_word: the word of C of the row `behind`, which becomes that; -1
-    where C is positioned by a block of its own.
+    behind: the row after which the mode is switched on.
+    first: the first of the rows of only Z, within the mode, that lead down to the stretch.
+    turns: C at the entry [deg].
+    c_word: the C word of row `behind`, which gets that angle; -1 if a new block positions C.
     """
 
     behind: int
@@ -40,10 +41,10 @@ class Entry(msgspec.Struct, frozen=True):
 
 def entry_of(trace: Trace, candidate: Stretch, moves: AxisMoves, following: Following) -> Entry | None:
     """
-    Return how a section is entered with C at 0; None where it begins there, or where that is not possible.
+    Return how a section can be entered with C at 0; None if it starts there, or cannot.
 
-    This is possible if the tool is positioned in rapid traverse above all that it cuts in the stretch, and only moves
-    of Z follow: there C turns at the X at which it stands.
+    It can if the tool is positioned in rapid traverse above everything that the stretch cuts, and only moves of Z
+    follow: C turns at that X, above the part.
     """
     path = trace.path
     angle = float(path.c_angle_before[candidate.first])
@@ -72,14 +73,14 @@ def entry_of(trace: Trace, candidate: Stretch, moves: AxisMoves, following: Foll
 
 
 def _goes_on(trace: Trace, entry_row: int, first: int) -> bool:
-    """The rows stand on lines of their own, one behind the other, in one program."""
+    """Return True if the rows stand on their own lines, in ascending order, in one program."""
     rows = slice(entry_row, first + 1)
     block, line, depth = trace.run.block[rows], trace.blocks.line_in_file[rows], trace.run.depth[rows]
     return bool(np.all(np.diff(block) > 0) and line[1] > line[0] and np.all(depth == depth[0]))
 
 
 def _leads_down(trace: Trace, rows: Rows) -> Mask:
-    """Which of these rows have Z alone, or only say how what follows moves."""
+    """Return a mask of the rows that have only Z, or only codes for the following moves."""
     return np.array([_is_of_z(trace, row) for row in rows.tolist()], bool)
 
 
@@ -101,7 +102,7 @@ def _is_of_z(trace: Trace, row: int) -> bool:
 
 
 def _c_word(trace: Trace, row: int) -> int:
-    """The word of C of a row where it may be another number; -1 where it may not."""
+    """Return the index of the C word of a row if its number may be replaced; otherwise -1."""
     run, machine = trace.run, trace.machine
     axis = machine.polar.rotary_address
     number = machine.address_number(axis)

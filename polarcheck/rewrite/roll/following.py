@@ -1,4 +1,4 @@
-"""What the blocks behind a row build on, looked up for many rows."""
+"""Rows by what they contain, to look up what the blocks after a row depend on."""
 
 from __future__ import annotations
 
@@ -13,11 +13,12 @@ from polarcheck.rewrite.writing.new_blocks import jump_numbers
 
 class Following:
     """
-    Rows of a program by what they have, in order.
+    The rows of a program by what they contain, in order.
 
     moves, turns, on_plane, at_feed, arcs: rows that move; that move C; X or C; at feed; along an arc or in a cycle.
-    motion, plane, feed_mode: with a code of that group. feed: with F.
-    jump_targets: rows with an N word whose number stands in a statement, or beside P or Q: something may lead there.
+    motion, plane, feed_mode: rows with a code of that group.
+    feed: rows with F.
+    jump_targets: True for a row with an N word whose number stands in a statement, or beside P or Q.
     """
 
     def __init__(self, trace: Trace) -> None:
@@ -44,7 +45,7 @@ class Following:
         self.jump_targets = _jump_targets(trace)
 
     def behind(self, row: int, rows: Rows) -> int:
-        """The first of some rows behind a row, in the same program; the number of all rows where there is none."""
+        """Return the first of some rows after a row, in the same program; the number of all rows if there is none."""
         following, end = (self._next(row, candidates) for candidates in (rows, self._starts))
         return following if following < end else self._count
 
@@ -53,7 +54,7 @@ class Following:
         return int(rows[index]) if index < len(rows) else self._count
 
     def takes_over(self, row: int, users: Rows, setters: Rows) -> bool:
-        """Whether a row that needs something comes before one that sets it, or sets it itself."""
+        """Return True if after this row a user of a state comes before the next setter of that state."""
         return self.behind(row, users) < self.behind(row, setters)
 
 

@@ -1,4 +1,4 @@
-"""Where a program mills by plain moves of X and C, and why some of it cannot become a polar section."""
+"""Finds stretches milled by plain moves of X and C, and why some of them cannot become a polar section."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from polarcheck.program.machines.code_tables import code_set
 from polarcheck.rewrite.roll.following import Following
 from polarcheck.rewrite.writing.outcome import Refusal, refusal_at
 
-#: Fewer blocks of X and C are left as they are: the blocks of a section around them would be as many.
+#: The least blocks of X and C in a stretch: for fewer, the section would need as many blocks of its own.
 LEAST = 8
 #: Lists of G codes that may stand in a block of a stretch: what they say is in the moves, or does not matter there.
 _CODES = ("line", "feed_inverse_time", "feed_per_minute", "absolute")
-#: A radius is not below zero by less [mm].
+#: A radius within this distance of zero counts as zero [mm].
 _ZERO = 1e-6
-#: A block that goes on as those before it turns C by no more [deg].
+#: The most that C turns in one block of a contour [deg].
 _STEP = 30.0
 _UNWINDS = (
     "C turns back by nearly a turn here: on a lathe that takes the shorter way, --set control.rotary_rolls_over=true "
@@ -48,7 +48,7 @@ class Stretch(msgspec.Struct, frozen=True):
 
 
 def stretches(trace: Trace, following: Following) -> tuple[list[Stretch], list[Refusal]]:
-    """Return the stretches that can become sections, and for the others why they cannot."""
+    """Return the stretches that can become sections, and the reasons why the others cannot."""
     reasons = _reasons(trace, following)
     result: list[Stretch] = []
     refusals: list[Refusal] = []
@@ -99,7 +99,10 @@ def _within(trace: Trace, begin: int, end: int) -> Iterator[Stretch]:
 
 
 def _belongs(trace: Trace) -> Mask:
-    """Rows outside of the mode with words of a straight move at feed and no others; those without words break none."""
+    """
+    Return a mask of the rows outside the mode that may be in a stretch: straight moves at feed without other words, and
+    rows that do not move.
+    """
     blocks, machine, words = trace.blocks, trace.machine, trace.run.words
     rotary = machine.polar.rotary_words
     names = [name for name in ("N", "X", "U", "Z", "W", "F", *rotary) if name]
@@ -160,7 +163,10 @@ def _reasons(trace: Trace, following: Following) -> list[tuple[Mask, str]]:
 
 
 def _unwinds(trace: Trace) -> Mask:
-    """Rows in which C turns against the others by nearly a turn, where the shorter way would go on as they do."""
+    """
+    Return a mask of the rows in which C turns back by nearly a full turn, where the shorter way would continue the
+    previous turn.
+    """
     turn = np.where(trace.path.moves_c & (trace.axes.motion == Motion.LINE), np.nan_to_num(trace.path.c_turn), 0.0)
     rows = np.flatnonzero(turn)
     turns, before = turn[rows][1:], turn[rows][:-1]

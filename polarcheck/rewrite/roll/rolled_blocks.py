@@ -32,10 +32,12 @@ _FEED_CODES = {
 
 def restored(trace: Trace, following: Following, last: int, pen: Pen, *, is_line: bool) -> list[NewBlock]:
     """
-    Return a block with the plane, what F is, G1, X and F, each where the blocks behind the section build on it.
+    Return a block with the plane, the mode of F, G1, X and F, each only if the blocks after the section depend on it.
 
-    last: the last row of the stretch. is_line: G1 is in force behind the section. X stands where it stood, but the
-    control counts it otherwise in the mode: it is written before anything builds on it.
+    last: the last row of the stretch.
+    is_line: G1 is in force after the section.
+
+    X is where it was, but in the mode the control counts it differently: it is written before any block depends on it.
     """
     mode = FeedMode(int(trace.feedrate.modal_feed_mode[last]))
     takes_motion = not is_line and following.takes_over(last, following.moves, following.motion)
@@ -94,9 +96,10 @@ class Writer:
     """
     Writes the section of a stretch.
 
-    first: the first row whose block is replaced. replaced: what stands in the place of each block. inserted: what
-    stands behind the block of the entry; none without an entry. positions: the word of C there, as it becomes; empty
-    where it stays.
+    first: the first row whose block is replaced.
+    replaced: the new blocks by the index of the block that they replace.
+    inserted: the new blocks after the block of the entry; empty without an entry.
+    positions: the new C word of that block; empty if it stays.
     """
 
     def __init__(
@@ -225,7 +228,10 @@ def _pen(trace: Trace, candidate: Stretch, style: Style) -> Pen:
 
 
 def _with_feed_mode(trace: Trace, row: int) -> int:
-    """The first of the rows right before one that say nothing but that F is inverse time."""
+    """
+    Return the first of the rows directly before a row that only switch to inverse time; the row itself if there are
+    none.
+    """
     run, codes = trace.run, code_set(trace.machine.codes("feed_inverse_time"))
     while row and not trace.blocks.starts[row - 1] and run.block[row - 1] < run.block[row]:
         if run.depth[row - 1] != run.depth[row]:

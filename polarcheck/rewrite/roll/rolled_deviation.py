@@ -1,4 +1,4 @@
-"""The sections of the new program, read back: how far they are from the blocks that they stand for, F, and the time."""
+"""Reads the sections of the new program back: their distance from the original blocks, their F, and their time."""
 
 from __future__ import annotations
 
@@ -54,8 +54,10 @@ class Measured(msgspec.Struct, frozen=True):
     """
     What was read back.
 
-    places: how far ends of blocks are from the new path at most [mm]; way: how far the ways between them are, which
-    bow. time: of the new blocks at feed [s].
+    differences: the reasons why the new program must not be written.
+    places: the largest distance of the ends of blocks from the new path [mm].
+    way: the largest distance of the paths between these ends, which bow, from the new path [mm].
+    time: time of the new blocks at feed [s].
     """
 
     differences: list[Refusal]
@@ -112,7 +114,7 @@ def measured_of(
 
 
 def _feeds(section: Section, moves: Moves, of_line: Rows, trace: Trace) -> list[Refusal]:
-    """F of moves that none of the elements was to have."""
+    """Return a refusal if a move has an F that is not one of the intended ones."""
     intended = np.sort(section.parts.feeds)
     index = np.clip(np.searchsorted(intended, moves.feed), 1, max(len(intended) - 1, 1))
     nearest = np.minimum(*(np.abs(moves.feed / intended[np.minimum(index - n, len(intended) - 1)] - 1) for n in (0, 1)))
@@ -123,9 +125,10 @@ def _feeds(section: Section, moves: Moves, of_line: Rows, trace: Trace) -> list[
 
 def _away(section: Section, moves: Moves, of_line: Rows, lines: Rows, turn: complex) -> Floats:
     """
-    How far each block on the plane is from the moves that stand for it [mm], at places along it, the last at its end.
+    Return the distance of each block on the plane from the moves that replace it [mm], at points along it, the last at
+    its end.
 
-    inf where no move stands for it.
+    inf if no move replaces it.
     """
     original = section.way
     points = along(original.start_radius, original.radius, original.start_angle, original.angle, _PLACES)

@@ -19,10 +19,12 @@ from polarcheck.rewrite.roll.ways import AxisMoves, runs_of
 
 class Element(msgspec.Struct, frozen=True):
     """
-    A line or an arc on the part, or Z alone.
+    A line or an arc on the part, or a move of only Z.
 
-    kind: Motion; NONE for Z alone. start, end, center: in the frame of the part [mm], center NaN but for arcs.
-    z: depth at its end [mm], where Z moves; else None. first, until: its moves in the way, until excluded.
+    kind: Motion; NONE for only Z.
+    start, end, center: in the frame of the part [mm]; center NaN unless it is an arc.
+    z: depth at its end [mm]; None if Z does not move.
+    first, until: first and end of the moves that it replaces.
     """
 
     kind: int
@@ -36,10 +38,10 @@ class Element(msgspec.Struct, frozen=True):
 
 class Fit(msgspec.Struct, frozen=True):
     """
-    What a stretch becomes.
+    The lines and arcs that replace a stretch.
 
-    elements: in order. bow: how far a block that stands for them bows from the straight way between its ends at most
-    [mm].
+    elements: in order.
+    bow: the largest distance of a replaced block from the straight line between its ends [mm].
     """
 
     elements: list[Element]
@@ -51,10 +53,11 @@ _NOWHERE = complex(math.nan, math.nan)
 
 def fit_of(moves: AxisMoves, tolerance: float, reserve: float, noise: float) -> Fit:
     """
-    Return the lines and arcs that pass the ends of all blocks within the tolerance [mm].
+    Return lines and arcs that pass the ends of all blocks within the tolerance [mm].
 
-    reserve: what of it is left for rounding the new words [mm]. noise: by how much the words of the blocks are rounded
-    [mm]. Raises TooHardError for a way that takes too many samples.
+    reserve: the part of the tolerance that is kept for rounding the new words [mm].
+    noise: the rounding of the words of the blocks [mm].
+    Raises TooHardError for a path that needs too many samples.
     """
     elements: list[Element] = []
     bow = 0.0

@@ -29,17 +29,18 @@ from polarcheck.rules.editing import in_place_of
 
 #: How often the program is written again without what differed when it was read back.
 _TRIALS = 5
-#: The rule of ways through the center.
+#: The rule of paths through the center.
 _THROUGH_CENTER = "path-through-center"
 #: Feeds that a note names.
 _LISTED = 5
-#: Less than this share of the way that C slowed down is not told.
+#: The share of the path on which C was at its limit is noted above this value.
 _MOST_SLOWED = 0.02
 #: C nearer to full turns than this is at 0 [deg].
 _AT_ZERO = 1e-9
 #: How far rounding can move a point and a center together, in steps of the new words.
 _ROUNDING = 1.7
-#: Share of the tolerance by which chords may leave the way where it is compared as a whole, and what that adds to it.
+#: When whole paths are compared: the distance of chords from a path, as a share of the tolerance, and the factor that
+#: makes up for it.
 _CHORD, _OF_CHORDS = 0.02, 1.1
 
 
@@ -136,7 +137,7 @@ def _section(
 
 
 def _require_off_center(original: Original, moves: AxisMoves, fit: Fit, step: float) -> None:
-    """Raise RefusedError for a way through the center of C, where a check of the result would find an error."""
+    """Raise RefusedError for a path through the center of C if a check of the result would report an error."""
     severities = {**original.settings.machine.severities, **original.settings.severities}
     if severities.get(_THROUGH_CENTER, "error") != "error":
         return
@@ -168,7 +169,7 @@ def _written(
                 edits.append(in_place_of(run, section.entry.c_word, section.text.positions))
     data, origin = with_edits(original, sorted(edits))
     chord = _CHORD * tolerance
-    # The ends of blocks are measured by themselves; here the order of the whole way counts.
+    # The ends of blocks are measured by themselves; here the order of the whole path counts.
     bow = max(section.fit.bow for section in sections)
     allowed = _OF_CHORDS * (tolerance + bow) + _ROUNDING * float(np.max(original.trace.lengths.least_step))
     return (

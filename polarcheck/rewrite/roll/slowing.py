@@ -16,15 +16,15 @@ from polarcheck.rewrite.roll.rolled_elements import Element
 from polarcheck.rewrite.roll.rolled_feeds import Feeds, nice
 from polarcheck.rewrite.roll.ways import AxisMoves
 
-#: F is so much below what a limit allows: FANUC has F < L * R * pi / 180.
+#: F stays below what a limit allows by this share: FANUC has F < L * R * pi / 180.
 _BELOW = 2e-3
-#: C may turn by this share faster than it did in the plain moves, where its limit is not known.
+#: If the limit of C is not known, C may turn by this share faster than in the plain moves.
 _FASTER = 0.1
-#: From one F to the next lower one, and the most of them.
+#: The ratio of one F to the next higher one, and the most steps.
 _STEP, _MOST = 0.7, 6
-#: An element is not divided for an F that is not lower than this share of its own.
+#: An element is divided only for an F below this share of its own.
 _ONE = 0.9
-#: Places at which an element is looked at, and the shortest part of it [mm].
+#: The number of points sampled along an element, and the shortest part of it [mm].
 _PLACES, _SHORTEST = 2001, 0.05
 
 
@@ -49,7 +49,7 @@ def parts_of(moves: AxisMoves, elements: list[Element], feeds: Feeds, machine: M
     limits = machine.limits
     highest_feed = limits.polar_feed if limits.polar_feed > 0 else math.inf
     by = "limit" if limits.c_feed > 0 else "before"
-    # A control that slows down by itself takes F for the rest of the way.
+    # A control that slows down by itself uses F on the rest of the path.
     limit = math.inf if limits.automatic_override else limits.c_feed if limits.c_feed > 0 else feeds.c_rate
     reserve = 1.0 if by == "limit" else 1.0 + _FASTER
     result: list[Element] = []
@@ -74,7 +74,7 @@ def parts_of(moves: AxisMoves, elements: list[Element], feeds: Feeds, machine: M
 
 
 def _lower(feed: float, allowed: float, unit: float) -> float:
-    """F where C allows so much [mm/min]; F itself through the center, where C allows none."""
+    """Return F lowered to what C allows [mm/min]; F itself if C allows more, or nothing, as through the center."""
     below = allowed * (1 - _BELOW)
     return nice(below, unit, down=True) if 0 < below < feed else feed
 
@@ -107,7 +107,7 @@ def _divided(moves: AxisMoves, element: Element, limit: float, feed: float) -> l
 
 
 def _parts(moves: AxisMoves, element: Element, joints: Points) -> list[Element]:
-    """An element parted at points on it; its blocks are those whose ends lie along each part."""
+    """Divide an element at points on it; each part gets the blocks whose ends lie along it."""
     ends = moves.radius[element.first : element.until] * np.exp(1j * moves.angle[element.first : element.until])
     end_shares, joint_shares = _along(element, ends), _along(element, joints[1:-1])
     until = [*(element.first + np.searchsorted(end_shares, joint_shares, side="right")).tolist(), element.until]
@@ -123,7 +123,7 @@ def _parts(moves: AxisMoves, element: Element, joints: Points) -> list[Element]:
 
 @quiet
 def _allowed_at(points: Points, limit: float) -> Floats:
-    """The highest F at points along a way at which C keeps its limit [mm/min]."""
+    """Return the highest F at points along a path for C to keep its limit [mm/min]."""
     step = np.gradient(points)
     turn = np.abs((np.conj(points) * step).imag) / np.abs(step) / np.abs(points) ** 2
     return np.asarray(np.where(turn > 0, limit / np.degrees(turn), np.inf))

@@ -63,7 +63,7 @@ def _seen(point: Points, direction: Points) -> Points:
 
 
 class Depths(Table, frozen=True):
-    """Per piece Z after it [mm], NaN where it does not move, and its way."""
+    """Z after each piece [mm], NaN if it does not move, and the distance that Z travels in it [mm]."""
 
     after: Floats
     way: Floats
@@ -83,7 +83,8 @@ def depths_of(trace: Trace, moves: Moves, move: Rows, begin: Floats, end: Floats
 MOST = 1_000_000
 #: Largest turn of C in one block [deg]; where C reaches an angle the shorter way, it must be less than half a turn.
 _HALF, _ROLLING = 180.0, 120.0
-#: A path that comes so near to the center goes through it, where no increment says more [mm].
+#: A path nearer to the center than half the increment of X counts as through the center; that increment is at least
+#: this [mm].
 _NOTHING = 1e-6
 
 
@@ -91,14 +92,18 @@ class Steps(Table, frozen=True):
     """
     One element per new block of X and C, in order.
 
-    row: the row of the trace that it stands for. move: the move of the tool center, -1 where C turns on the spot.
-    x: the X word in least increments. c: C after the block in least increments, counted on over full turns.
-    z: the Z word in least increments, NaN where Z does not move. rise: way of Z [mm].
-    radius_step: way of X as a radius [mm]; turn: way of C [deg]; both as they are rounded.
-    length: way of the tool center on the plane [mm].
-    time: with which the tool is nowhere faster than the F of the section [s].
-    is_rapid: in the mode it was rapid traverse; its F is that of the machine for positioning, since G0 would not keep
-    the path: X and C need not arrive together.
+    row: the row of the trace that it replaces.
+    move: the move of the tool center; -1 if C turns on the spot.
+    x: the X word in least increments.
+    c: C after the block in least increments, counted on over full turns.
+    z: the Z word in least increments; NaN if Z does not move.
+    rise: distance that Z travels [mm].
+    radius_step: travel of X as a radius, as rounded [mm].
+    turn: turn of C, as rounded [deg].
+    length: length of the tool center path on the plane [mm].
+    time: the shortest time in which the tool is nowhere faster than the F of the section [s].
+    is_rapid: rapid traverse in the mode. Its F is that of the machine for positioning: G0 would not keep the path,
+    since X and C need not arrive together.
     """
 
     row: Rows
@@ -183,9 +188,10 @@ def steps_of(trace: Trace, moves: Moves, chord_error: float) -> Steps:
 
 def _chord_errors(trace: Trace, moves: Moves, spans: Spans, x_step: Floats, chord_error: float) -> tuple[Floats, Mask]:
     """
-    What rounding leaves of the chord error of each span [mm], and whether it is too short for a block of its own.
+    Return the part of the chord error that rounding leaves for each span [mm], and True for spans too short for their
+    own block.
 
-    Raises RefusedError where rounding takes more than half of it.
+    Raises RefusedError if rounding takes more than half of the chord error.
     """
     farthest = np.maximum(np.abs(spans.start), np.abs(spans.end))
     c_way = np.radians(trace.machine.control.least_increment) * farthest
@@ -199,17 +205,17 @@ def _chord_errors(trace: Trace, moves: Moves, spans: Spans, x_step: Floats, chor
         )
     # Spans of about a least increment, as rounding leaves them between others: no block is worth its time for them.
     is_short = spans.length <= np.minimum(np.maximum(x_step[spans.move], c_way), chord_error / 4)
-    # The block that takes over the way of a short span may leave its own path by that, too.
+    # The block that takes over the path of a short span may leave its own path by that, too.
     taken = np.append(0.0, np.where(is_short, spans.length, 0.0))[: len(spans)]
     return chord_error - rounding - taken, np.asarray(is_short)
 
 
 def _times(steps: Steps, x_step: Floats) -> Floats:
     """
-    The time of each block [s] in which the tool is nowhere faster than F.
+    Return the time of each block [s] in which the tool is nowhere faster than F.
 
-    X and C move evenly, so that the tool is fastest where it is farthest from the center: sqrt(dr^2 + (r dC)^2) / time
-    with the larger r of both ends. Where that is more than the way on the path, the block takes longer.
+    X and C move at constant rates, so the tool is fastest where it is farthest from the center: sqrt(dr^2 + (r dC)^2) /
+    time with the larger r of both ends. If that is more than the length of the path, the block takes longer.
     """
     x = steps.x * x_step[steps.row]
     largest = np.maximum(np.abs(x), np.abs(x - steps.radius_step))
@@ -220,7 +226,9 @@ def _times(steps: Steps, x_step: Floats) -> Floats:
 
 
 def _passed_on(moves: Moves, steps: Steps, is_short: Mask) -> Mask:
-    """Short blocks whose way the next block of the section can take over, which is not short."""
+    """
+    Return a mask of the short blocks whose path the next block of the section can take over; that one is not short.
+    """
     following, last = np.append(steps.move[1:], -1), np.append(is_short[1:], True)
     same = (steps.move >= 0) & (following >= 0) & (moves.section[following] == moves.section[steps.move])
     same &= np.append(steps.is_rapid[1:], True) == steps.is_rapid
@@ -229,9 +237,10 @@ def _passed_on(moves: Moves, steps: Steps, is_short: Mask) -> Mask:
 
 def _without_nothing(steps: Steps, is_short: Mask) -> Steps:
     """
-    Without blocks that rounding leaves without a way, and without short ones: the next block has their way and time.
+    Remove short blocks, and blocks in which nothing moves after rounding; the next block takes over their path and
+    time.
 
-    Those behind the last block with a way count in that.
+    Blocks after the last one that moves count in that one.
     """
     has_way = ((steps.radius_step != 0) | (steps.turn != 0) | ~np.isnan(steps.z)) & ~is_short
     count = int(np.count_nonzero(has_way))

@@ -84,7 +84,7 @@ def _skipped_moves(trace: Trace, section: Stretch) -> list[int]:
 
 
 def _subprograms_left_out(trace: Trace, sections: Sequence[Stretch]) -> list[tuple[int, int]]:
-    """The first and last blocks of programs of this file that run in sections alone, where those are written out."""
+    """Return the first and last blocks of the programs in this file that run only in sections that are written out."""
     if all(section.runs_in_order for section in sections):
         return []
     run, text = trace.run, trace.text

@@ -1,4 +1,4 @@
-"""Where polar sections stand in the text, and why some cannot be written as plain moves."""
+"""Finds the polar sections in the text, and why some cannot be written as plain moves."""
 
 from __future__ import annotations
 
@@ -26,9 +26,11 @@ class Stretch(msgspec.Struct, frozen=True):
     """
     A polar section in the text.
 
-    number: of the section. enter, leave: the rows that switch the mode on and off. first, last: their blocks.
-    runs_in_order: each of its blocks runs once, one after the other, so that blocks can be replaced one by one; else
-    what runs is written in the order in which it runs.
+    number: number of the section.
+    enter, leave: the rows that switch the mode on and off.
+    first, last: their blocks.
+    runs_in_order: each of its blocks runs once, in the order of the text, so that blocks can be replaced one by one.
+    Otherwise the executed blocks are written in the order in which they run.
     """
 
     number: int
@@ -40,7 +42,7 @@ class Stretch(msgspec.Struct, frozen=True):
 
 
 def stretches(trace: Trace) -> list[Stretch]:
-    """The polar sections; of one that runs several times each time."""
+    """Return the polar sections; one that runs several times is returned for each run."""
     result = []
     sections = trace.mode.sections
     for section, (enter, leave) in enumerate(zip(sections.enter.tolist(), sections.leave.tolist(), strict=True)):
@@ -55,7 +57,7 @@ def stretches(trace: Trace) -> list[Stretch]:
 
 
 def refusals(tables: Tables, sections: list[Stretch]) -> list[Refusal]:
-    """Why these sections cannot be unrolled, each reason once a line."""
+    """Return the reasons why sections cannot be unrolled, each once per line."""
     trace: Trace = tables["trace"]
     reasons = [refusal_at(trace, row, text) for row, text in _of_rows(tables)]
     for section in sections:
@@ -64,7 +66,7 @@ def refusals(tables: Tables, sections: list[Stretch]) -> list[Refusal]:
 
 
 def _of_rows(tables: Tables) -> Iterator[tuple[int, str]]:
-    """Rows that cannot be unrolled, the first of each reason in a section."""
+    """Yield rows that cannot be unrolled and the reasons; of each reason the first row in a section."""
     trace: Trace = tables["trace"]
     center: ToolCenter = tables["tool_center"]
     moves, mode, path = center.moves, trace.mode, trace.path

@@ -1,4 +1,4 @@
-"""What the new program does, read back: how far the tool center is from its path, and how fast C and X move."""
+"""Reads the new program back: how far the tool center is from its path, and how fast C and X move."""
 
 from __future__ import annotations
 
@@ -158,7 +158,7 @@ def _too_fast(old: Trace, run: _Run, steps: Steps) -> Iterator[str]:
 
 
 def _wound_up(old: Trace, run: _Run, steps: Steps) -> Iterator[str]:
-    """Sections behind which C stands some turns away from where they began."""
+    """Yield a note if C ends a section full turns away from where it started."""
     if old.machine.control.rotary_rolls_over or not len(run.c):
         return
     section = old.mode.whole_section[steps.row]
@@ -188,7 +188,7 @@ def _within(trace: Trace, spans: Sequence[tuple[int, int]]) -> Mask:
 
 
 class _Run:
-    """The blocks of X and C of the new program as the control runs them: way and time of each."""
+    """The blocks of X and C of the new program as the control runs them, with the distances and the time of each."""
 
     def __init__(self, trace: Trace, rows: Rows, method: str) -> None:
         path = trace.path
@@ -211,7 +211,7 @@ class _Run:
 
 
 def _places(old: Trace, run: _Run, steps: Steps) -> Iterator[Refusal]:
-    """Blocks that do not lead where they were meant to."""
+    """Yield a refusal for the first block that does not end at its intended position."""
     scale = (x_factor(old) * old.lengths.least_step)[steps.row]
     differs = ~(np.abs(run.x - steps.x * scale) <= _SAME) | ~(np.abs(run.turn - steps.turn) <= _SAME)
     z = steps.z * old.lengths.least_step[steps.row]
@@ -222,7 +222,10 @@ def _places(old: Trace, run: _Run, steps: Steps) -> Iterator[Refusal]:
 
 
 def _distance(old: Trace, moves: Moves, run: _Run, steps: Steps) -> Floats:
-    """How far the tool center is from its path in each block [mm], by the place where C is, not by its division."""
+    """
+    Return the largest distance of the tool center from its path in each block [mm], computed from the actual C, not
+    from the division.
+    """
     runs = np.flatnonzero(steps.move >= 0)
     distance = np.zeros(len(steps))
     of_move = steps.move[runs]

@@ -1,4 +1,4 @@
-"""F of blocks in which X and C move together outside of the mode, so that the tool runs as fast as it did in it."""
+"""Computes F for blocks in which X and C move together outside the mode, so that the tool is as fast as in the mode."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from polarcheck.rewrite.unroll.axis_blocks import Steps, x_factor
 from polarcheck.rewrite.writing.outcome import Refusal, RefusedError, refusal_at
 from polarcheck.rewrite.writing.rotary_feed import block_feeds
 
-#: What --feed may be: what F is, and stepwise: as the machine has it per minute, with an F for several blocks.
+#: Values of --feed: the meanings of F; and stepwise, per minute as on the machine, with one F for several blocks.
 FEEDS = (*WITH_ROTARY, "stepwise")
 #: F of several blocks is lower than that of any of them by no more than this share.
 _STEP = 0.1
@@ -28,9 +28,9 @@ _DIGITS = 5
 
 def chosen(trace: Trace, feed: str) -> str:
     """
-    What F is to be; feed: as the option says, empty for what the machine has.
+    Return the meaning of F; feed: value of the option, empty for that of the machine.
 
-    Raises RefusedError where that is not known.
+    Raises RefusedError if it is not known.
     """
     of_machine: Sequence[str] = trace.machine.feed.with_rotary
     per_minute = [name for name in of_machine if name != "inverse-time"]
@@ -46,7 +46,7 @@ def chosen(trace: Trace, feed: str) -> str:
 
 
 def method_of(trace: Trace, feed: str) -> str:
-    """What F is, of WITH_ROTARY."""
+    """Return the meaning of F, one of WITH_ROTARY."""
     if feed != "stepwise":
         return feed
     return next(name for name in trace.machine.feed.with_rotary if name != "inverse-time")
@@ -89,7 +89,7 @@ def _rounded(feed: Floats) -> Floats:
 
 
 def _stepwise(feed: Floats, steps: Steps) -> Floats:
-    """An F for as many blocks as it is the lowest of and no more than a tenth below any of them."""
+    """Give runs of blocks their lowest F, as long as that is no more than a tenth below any of them."""
     values = feed.tolist()
     begin = 0
     while begin < len(values):

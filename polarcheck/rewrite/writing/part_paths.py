@@ -1,7 +1,7 @@
 """
-The way of the tool on the part, in the polar mode and without it.
+The path of the tool on the part, in the polar mode and without it.
 
-How far two of them are apart, however blocks divide them, is `geometry.comparison.paths.path_deviation(old, new, ...)`.
+`path_deviation` of geometry/comparison is the distance of two such paths, however blocks divide them.
 """
 
 from __future__ import annotations
@@ -26,15 +26,17 @@ CHORD = 1e-4
 
 class PartPath(SpacePath, frozen=True):
     """
-    Moves of the tool center in the frame of the part, in the order in which they are run: a SpacePath, whose point x is
-    that of C0.
+    Moves of the tool center in the frame of the part, in the order in which they run: a SpacePath whose x axis points
+    to C0.
 
-    row: int[n], rows of the trace. rapid: bool[n], rapid traverse. feed_mode: int16[n], FeedMode. feed: float64[n], F
-    in force [mm per min or revolution], NaN without one.
+    row: int[n], rows of the trace.
+    rapid: bool[n], rapid traverse.
+    feed_mode: int16[n], FeedMode.
+    feed: float64[n], F in force [mm per min or revolution], NaN without one.
 
-    A block that moves X and C outside of the mode is several moves: chords of its true path, which is a piece of a
-    spiral, since both axes move at even speeds. A move in rapid traverse is straight: only its ends
-    count, since its axes need not arrive together.
+    A block that moves X and C outside the mode is several moves: chords of its true path, a piece of a spiral, since
+    both axes move at constant rates. A move in rapid traverse is straight: only its ends count, since its axes need not
+    arrive together.
     """
 
     row: Rows
@@ -45,11 +47,11 @@ class PartPath(SpacePath, frozen=True):
 
 def path_on_part(tables: Tables, first: int = 0, until: int | None = None, chord: float = CHORD) -> PartPath:
     """
-    Return the way of the tool on the part in the rows from `first` up to, not including, `until`.
+    Return the path of the tool on the part in the rows from `first` up to `until`, not included.
 
-    chord: how far chords may leave the true path of a move of X and C [mm].
+    chord: the largest distance of chords from the true path of a move of X and C [mm].
 
-    Raises RefusedError where R or a position is not known, with the line; TooHardError for too many chords.
+    Raises RefusedError with the line where R or a position is not known; TooHardError for too many chords.
     """
     trace: Trace = tables["trace"]
     until = len(trace) if until is None else until

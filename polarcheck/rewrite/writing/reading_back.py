@@ -1,4 +1,4 @@
-"""The new program read as its control would, and compared with the original before anything is written."""
+"""Reads the new program as its control would, and compares it with the original before anything is written."""
 
 from __future__ import annotations
 
@@ -38,11 +38,13 @@ _LISTED = 20
 
 class ReadBack(msgspec.Struct, frozen=True):
     """
-    What the new program does beside the original.
+    The new program compared with the original.
 
-    new: the program as it is read. differences: what differs, with lines of the original; none where it may be written.
-    deviation: the largest distance of the tool center paths [mm]. open_orders: errors about spindles, the C axis or
-    tools, which somebody has to decide. notes: what could not be compared and does not matter.
+    new: the program as it is read.
+    differences: what differs, with lines of the original; empty if the new program may be written.
+    deviation: the largest distance of the tool center paths [mm].
+    open_orders: errors about spindles, the C axis or tools, which the user has to decide.
+    notes: what could not be compared and does not matter.
     """
 
     new: Original
@@ -112,17 +114,21 @@ def read_back_on_part(
 ) -> ReadBack:
     """
     Compare a program whose sections have another form with the original: with the mode or without it, compensated or
-    not, divided into moves otherwise.
+    not, divided into moves differently.
 
-    Compared are the way of the tool on the part in and outside of sections, with Z and its order, what codes mean, and
-    the findings of a check. F is the caller's to compare. The deviation holds that of chords in the place of the true
-    path of X and C.
+    Compared are the path of the tool on the part inside and outside sections, with Z and its order, the meaning of
+    codes, and the findings of a check. The caller compares F. The deviation includes that of chords from the true path
+    of X and C.
 
-    settings: of the new program. origin: for each of its lines the line in the original, from 1. tolerance: how far the
-    ways may be apart [mm]. chord: how far chords may leave the true path [mm]. left_out: lines of the original that
-    position the tool otherwise in the new program; where it goes from there on is compared. noted: groups of rules
-    whose errors are notes: they judge states that the new program has from the original, in the mode alone. finer:
-    tolerances that are tried before, ascending [mm]: the deviation is measured up to the one that the ways keep.
+    settings: of the new program.
+    origin: for each of its lines the line in the original, from 1.
+    tolerance: the largest distance of the paths [mm].
+    chord: the largest distance of chords from the true path [mm].
+    left_out: lines of the original that position the tool differently in the new program; the moves after them are
+    compared.
+    noted: groups of rules whose errors are notes: they are about states of the original that matter only in the mode.
+    finer: ascending tolerances that are tried first [mm]: the deviation is measured up to the first one that the paths
+    keep.
 
     Raises RefusedError where a position of the original is not known, or the new program cannot be run once.
     """
@@ -200,7 +206,7 @@ def _refusal(difference: Difference, section: SectionPair | None = None) -> Refu
 
 
 def _times(result: Comparison) -> Iterator[Refusal]:
-    """Sections that would take another time: F along an arc, or beside Z, means something else."""
+    """Yield sections whose time would change, as where F along an arc, or beside Z, has another meaning."""
     for section in result.sections:
         if section.old is None or section.new is None:
             continue

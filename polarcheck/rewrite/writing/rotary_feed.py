@@ -17,10 +17,14 @@ def block_times(
     rule: str, radius_step: Floats, turn: Floats, rise: Floats, feed: Floats, unit: Floats | float = 1.0
 ) -> Floats:
     """
-    How long blocks take [min].
+    Return the time of blocks [min].
 
-    rule: one of feed_keys.WITH_ROTARY. radius_step: way of X as a radius [mm]. turn: of C [deg]. rise: way of Z [mm].
-    feed: F as written. unit: mm per unit of length that F counts.
+    rule: one of feed_keys.WITH_ROTARY.
+    radius_step: travel of X as a radius [mm].
+    turn: turn of C [deg].
+    rise: travel of Z [mm].
+    feed: F as written.
+    unit: mm per unit of length that F counts.
     """
     if rule == INVERSE_TIME:
         return np.asarray(1 / feed)
@@ -39,7 +43,7 @@ def block_feeds(
 
 def _counted(rule: str, radius_step: Floats, turn: Floats, rise: Floats, unit: Floats | float) -> Floats:
     """
-    The way that F per minute counts.
+    Return the length that F per minute counts.
 
     FANUC has lengths and degrees as one vector: G91 G1 X20. B40. F300. takes sqrt(20^2 + 40^2) / 300 min (operator's
     manuals, G01, from knowledge).
