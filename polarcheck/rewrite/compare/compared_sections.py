@@ -1,4 +1,4 @@
-"""A part of a program that is compared at once: its path, its feeds, and what it orders on the way."""
+"""The unit of a comparison, a polar section or the blocks between two of them: its path, its feeds and its orders."""
 
 from __future__ import annotations
 
@@ -18,23 +18,30 @@ from polarcheck.geometry.comparison.polyline import SpacePath
 from polarcheck.rewrite.compare.orders import Step, special_rows
 from polarcheck.rules.wording.offsets import called_tool, to_give
 
-#: Outside sections C is compared up to this angle [deg], whatever the tolerance of lengths is.
+#: The tolerance of C outside sections [deg], independent of the tolerance of lengths.
 ANGLE = 0.001
-#: Angles that are below a full turn by less are 0 [deg].
+#: Angles less than this below a full turn count as 0 [deg].
 _NEAR_TURN = 0.01
 NOWHERE = complex("nan+nanj")
 
 
 class Stretch(msgspec.Struct, frozen=True):
     """
-    A polar section, or what lies between two of them.
+    A polar section, or the blocks between two sections.
 
-    section: its number, -1 outside. rows: of the trace.
-    path: inside a section plane points on the part with Z; outside Z + 1j*X, with C in the place of Z. row: of each
-    move. rapid: moves in rapid traverse. feed_mode: FeedMode of each move. feed: F [mm per min or revolution].
-    steps: what is ordered beside the moves. knows_z: Z is written anywhere; outside always True.
-    c_scale: outside sections what stands for a degree of C in the path. is_rewritten: C counts at feed alone there.
-    needs: why the path is not known; empty where it is. as_programmed: the path is the programmed one, for want of R.
+    section: number of the section, -1 outside.
+    rows: rows of the trace.
+    path: inside a section plane points on the part, with Z; outside Z + 1j*X, with C in the place of Z.
+    row: row of each move.
+    rapid: True for a move in rapid traverse.
+    feed_mode: FeedMode of each move.
+    feed: F of each move [mm per min or revolution].
+    steps: the orders beside the moves.
+    knows_z: Z is written anywhere; always True outside.
+    c_scale: outside sections the length that stands for one degree of C in the path.
+    is_rewritten: C is compared at feed only.
+    needs: why the path is not known; empty if it is.
+    as_programmed: why the path is the programmed one, as R is missing; empty if it is that of the tool center.
     """
 
     section: int
@@ -58,8 +65,8 @@ def of_sections(
     """
     Return the polar sections in order.
 
-    is_feed_on_plane: F is that with which the tool center moves on the plane, and not the one that is programmed: they
-    differ where F is along the contour, or along X, C and Z.
+    is_feed_on_plane: compare the speed of the tool center on the plane instead of the programmed F. They differ where F
+    is along the contour, or along X, C and Z.
     """
     if not len(trace.mode.sections):
         return []
@@ -121,7 +128,7 @@ def _stretch(
 
 
 def _with_z_alone(trace: Trace, moves: Moves) -> Moves:
-    """The moves, and between them the blocks that move Z alone: ways of no length on the plane."""
+    """Return the moves with the blocks that move only Z between them, as moves of no length on the plane."""
     alone = np.flatnonzero((trace.mode.section >= 0) & trace.path.moves_z & ~trace.path.travels)
     alone = alone[~np.isin(alone, moves.row)]
     if not len(alone):
@@ -158,14 +165,14 @@ def _with_z_alone(trace: Trace, moves: Moves) -> Moves:
 
 
 def turn_of(trace: Trace, section: int) -> complex:
-    """The direction of the x of a section on the part; 1 where C at its beginning is not known."""
+    """Return the direction of the x axis of a section on the part; 1 if C at the start of the section is not known."""
     if not trace.path.knows_section_entry[section]:
         return 1 + 0j
     return complex(np.exp(1j * np.radians(trace.path.c_axis.sense * trace.path.section_entry[section])))
 
 
 def _turned(trace: Trace, moves: Moves, section: int) -> tuple[SpacePath, bool]:
-    """The path in the frame of the part, and whether Z is known; else it is 0."""
+    """Return the path in the frame of the part, and True if Z is known; otherwise Z is 0."""
     turn = turn_of(trace, section)
     z_from, z_to = z_along(trace, moves)
     knows_z = not len(moves) or not (np.isnan(z_from).all() and np.isnan(z_to).all())
@@ -176,10 +183,11 @@ def _turned(trace: Trace, moves: Moves, section: int) -> tuple[SpacePath, bool]:
 
 class Rewritten(msgspec.Struct, frozen=True):
     """
-    How a program is compared with the one for another control that is made of it.
+    How a program is compared with its rewritten version for another control.
 
-    left_out: lines of the file whose moves and orders outside of sections do not count; moves behind them follow on.
-    angle: what C may differ by behind a section [deg].
+    left_out: lines of the file whose moves and orders outside sections do not count; the moves after them continue from
+    there.
+    angle: tolerance of C after a section [deg].
     """
 
     left_out: Collection[int] = ()
@@ -190,10 +198,10 @@ def outside(
     trace: Trace, tolerance: float, steps: Sequence[Step], first: int, until: int, rewritten: Rewritten | None = None
 ) -> Stretch:
     """
-    Return what lies outside of sections between two rows.
+    Return what lies outside sections between two rows.
 
-    tolerance: of lengths [mm]; C is scaled so that ANGLE, or that of `rewritten`, is as much. until: the row behind the
-    last.
+    tolerance: of lengths [mm]; C is scaled so that ANGLE, or the angle of `rewritten`, counts as much.
+    until: the row after the last one.
     """
     rows = np.arange(first, until)
     rows = rows[trace.mode.section[rows] < 0]
@@ -239,7 +247,10 @@ def outside(
 
 
 def _without_unknown(start: Floats, end: Floats) -> tuple[Floats, Floats]:
-    """An axis that is not known yet stands where it is first known; one that never is stands at 0."""
+    """
+    Fill unknown positions of an axis with its next known one, those after the last with the last; all with 0 if none is
+    known.
+    """
     values = np.column_stack((start, end)).ravel()
     known_rows = np.flatnonzero(~np.isnan(values))
     if not len(known_rows):
@@ -251,9 +262,9 @@ def _without_unknown(start: Floats, end: Floats) -> tuple[Floats, Floats]:
 
 def _following_on(here: float, start: Floats, end: Floats) -> tuple[Floats, Floats]:
     """
-    Each move begins where the one before has ended; an axis that it does not name stands where it was named last.
+    Let each move begin where the previous one ends, and an axis that it does not name stay at its last named position.
 
-    here: where the axis stands before all of them; NaN where that is not known.
+    here: position of the axis before the first move; NaN if it is not known.
     """
     known_rows = np.flatnonzero(~np.isnan(end))
     if len(known_rows):
@@ -264,9 +275,9 @@ def _following_on(here: float, start: Floats, end: Floats) -> tuple[Floats, Floa
 
 def _at_feed_alone(trace: Trace, row: Rows, left_out: Mask, start: Floats, end: Floats) -> tuple[Floats, Floats]:
     """
-    C within a turn; where several moves in rapid traverse follow each other, all of them have that of the last.
+    Return C within one turn; in a run of moves in rapid traverse all have the C of the last.
 
-    Which of them turns C, and over how many full turns, is a matter of the control.
+    Which of these moves turns C, and over how many full turns, depends on the control.
     """
     sense = trace.path.c_axis.sense
     begin = (sense * start + _NEAR_TURN) % 360 - _NEAR_TURN
@@ -284,7 +295,10 @@ def _at_feed_alone(trace: Trace, row: Rows, left_out: Mask, start: Floats, end: 
 
 
 def _continuous(start: Floats, end: Floats, turn: Floats) -> tuple[Floats, Floats]:
-    """C as it turns: where it rolls over, an angle is reached the shorter way, and 360 deg more are the same place."""
+    """
+    Return C as it turns: where it rolls over, it takes the shorter way to an angle, and 360 deg more are the same
+    position.
+    """
     end = np.where(np.isnan(turn), end, start + turn)
     jump = start - np.append(start[:1], end[:-1])
     turns = 360 * np.cumsum(np.round(jump / 360))
@@ -292,7 +306,10 @@ def _continuous(start: Floats, end: Floats, turn: Floats) -> tuple[Floats, Float
 
 
 def _centers(trace: Trace, row: Rows, start: Points, end: Points, kind: States) -> Points:
-    """Centers of arcs in the plane of X and Z, by their radius or by I and K; NaN for lines, and without either."""
+    """
+    Return the centers of arcs in the plane of X and Z, from I and K or from the radius; NaN for lines and without
+    either.
+    """
     addresses = ("I", "K", trace.machine.arcs.radius_word)
     i, k, radius = (trace.lengths.length_of(address)[row] for address in addresses)
     is_arc = (kind == Motion.CW) | (kind == Motion.CCW)

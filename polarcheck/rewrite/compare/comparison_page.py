@@ -75,7 +75,7 @@ def _headline(comparison: Comparison, sizes: Sizes) -> str:
 
 
 def _kinds(comparison: Comparison) -> list[str]:
-    """What differs, each kind once."""
+    """Return the kinds of differences, each once."""
     differing = [
         *comparison.outside,
         *(difference for section in comparison.sections for difference in section.differences),
@@ -85,7 +85,7 @@ def _kinds(comparison: Comparison) -> list[str]:
 
 
 def _fine(value: float, sizes: Sizes) -> str:
-    """A deviation with a digit more than a program has."""
+    """Return a deviation with one digit more than the program has."""
     return f"{value / 25.4:.5f}" if sizes.inch else f"{value:.4f}"
 
 

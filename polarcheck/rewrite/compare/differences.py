@@ -1,4 +1,4 @@
-"""What differs between two stretches: path, depth, feeds, and orders on the way."""
+"""What differs between two stretches: path, depth, feeds, and orders along the path."""
 
 from __future__ import annotations
 
@@ -21,24 +21,24 @@ from polarcheck.rules.quantity import Quantity, in_row, rounded
 
 #: F that differ by no more than this share are the same: mm and inch are rounded otherwise.
 _SAME_FEED = 1e-3
-#: So many kinds of change of F, and of orders, stand in a list.
+#: The most changes of F, and of orders, in a list.
 _LISTED = 20
-#: More orders than this, behind those that are equal at both ends, are not paired.
+#: The most orders that are paired, not counting those that are equal at both ends.
 _PAIRED = 2000
 
 
 class Part(msgspec.Struct, frozen=True):
-    """A stretch, and the program that it is of."""
+    """A stretch and its program."""
 
     trace: Trace
     stretch: Stretch
 
     def line(self, row: int) -> int:
-        """The line of a row in the file."""
+        """Return the line of a row in the file."""
         return int(self.trace.blocks.line_in_file[row])
 
     def quantity(self, value: float, row: int) -> Quantity:
-        """A value of a row as its program would write it."""
+        """Return a value of a row in the units of its program."""
         return in_row(value, self.trace.lengths, row)
 
 
@@ -89,7 +89,7 @@ def _of_path(old: Part, new: Part, deviation: PathDeviation) -> Difference:
 
 
 def _largest(old: Part, deviation: PathDeviation) -> float:
-    """The deviation as a length [mm]: outside of sections that of C is none."""
+    """Return the deviation as a length [mm]; outside sections the share of C in it does not count."""
     location = deviation.place
     if old.stretch.section >= 0 or location is None:
         return deviation.largest
@@ -103,7 +103,11 @@ def length_of(part: Part, deviation: PathDeviation | None) -> float:
 
 
 def _location(part: Part, row: int, point: complex, third: float) -> str:
-    """`X60 C5 Z-2` in the units of the program; outside of sections Z and X are the point, and C is the third."""
+    """
+    Return the point in the units of the program, as `X60 C5 Z-2`.
+
+    third: the third coordinate of the path: Z in a section; outside, where the point is Z + 1j*X, the scaled C.
+    """
     trace, section = part.trace, part.stretch.section
     if section >= 0:
         point = point / turn_of(trace, section)
@@ -143,7 +147,9 @@ def _of_depth(old: Part, new: Part, tolerance: float) -> Iterator[Difference]:
 
 
 def _feeds_along(old: Part, new: Part, tolerance: float) -> Iterator[Difference]:
-    """Where F differs along one path; changes of one F into one other are one difference."""
+    """
+    Yield where F differs along the common path; all changes from one value to the same other value are one difference.
+    """
     distances = [_distances(part.stretch) for part in (old, new)]
     totals = [float(distance.sum()) for distance in distances]
     if min(totals) <= ZERO:
@@ -201,7 +207,7 @@ def _feed(part: Part, move: int) -> str:
 
 
 def _feeds_apart(old: Part, new: Part) -> Iterator[Difference]:
-    """The F of two paths that are not the same: each once."""
+    """Yield a difference if two differing paths do not have the same values of F; each value counts once."""
     feeds = [list(dict.fromkeys(_feed(part, move) for move in _changes_of_feed(part.stretch))) for part in (old, new)]
     if sorted(feeds[0]) != sorted(feeds[1]):
         texts = [", ".join(feeds_of_part[:_LISTED]) or "none" for feeds_of_part in feeds]
@@ -270,7 +276,7 @@ def _changed_orders(old: Part, new: Part, removed: Sequence[Step], added: Sequen
 def _of_pair(
     old: Part, step: Step, new: Part, new_step: Step, tolerance: float, is_same_path: bool
 ) -> Difference | None:
-    """Orders of the same words: their values, and where they stand on the path."""
+    """Return the difference of two orders with the same words: in their values, or in their position on the path."""
     lines = old.line(step.row), new.line(new_step.row)
     for value, after in zip(step.values, new_step.values, strict=True):
         if abs(value - after) > tolerance or np.isnan(value) != np.isnan(after):
@@ -289,7 +295,7 @@ def _of_pair(
 
 
 def _where(part: Part, row: int) -> tuple[float, float, float]:
-    """Where the tool stands before a row, in the coordinates of the path; NaN where it is not known."""
+    """Return the position of the tool before a row, in the coordinates of the path; NaN if it is not known."""
     path = part.trace.path
     z = float(path.z[row - 1]) if row and not part.trace.blocks.starts[row] else np.nan
     if part.stretch.section >= 0:

@@ -24,16 +24,19 @@ _NAMES = {
     "speed": "S",
     "plane": "the plane",
 }
-#: Angles nearer than this [deg] are one.
+#: Angles that differ by less are equal [deg].
 _SAME_ANGLE = 1e-3
 
 
 class Entry(NamedTuple):
     """
-    State of a section.
+    The state at the start of a section; NaN or empty if it is not known.
 
-    tool: tool and offset as they are called. radius: R with which it is compensated, or that is in force [mm].
-    c_angle: [deg], from 0 to 360. speed: S as written. plane: as G17. NaN or empty where it is not known.
+    tool: tool and offset as the program calls them.
+    radius: R of the compensation, or the one in force [mm].
+    c_angle: from 0 to 360 [deg].
+    speed: S as written.
+    plane: code of the plane, as G17.
     """
 
     tool: str
@@ -68,7 +71,7 @@ def _runs(on: bool) -> str:
 
 
 def entry_differences(old: Part, new: Part, *, is_same_machine: bool, tolerance: float) -> Iterator[Difference]:
-    """Yield what differs at the beginning of two sections; across machines what means the same on both."""
+    """Yield what differs at the start of two sections; across machines only states that mean the same on both."""
     before, after = (entry_of(part.trace, part.stretch.section) for part in (old, new))
     lines = [part.line(int(part.trace.mode.sections.enter[part.stretch.section])) for part in (old, new)]
     machine_specific = {"tool", "plane", *_of_one_machine(old, new)}
@@ -101,7 +104,7 @@ def entry_differences(old: Part, new: Part, *, is_same_machine: bool, tolerance:
 
 
 def _of_one_machine(old: Part, new: Part) -> Iterator[str]:
-    """States that one of two machines does not have, or whose codes its profile does not name."""
+    """Yield the states that only one of two machines has, or whose codes its profile does not name."""
     traces = old.trace, new.trace
     for what, codes in (("live_tool", "live_tool_on"), ("spindle", "spindle_on")):
         if not all(getattr(trace.machine.m_codes, codes) for trace in traces):

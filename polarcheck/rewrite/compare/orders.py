@@ -1,4 +1,4 @@
-"""What a program orders beside its moves: tools, speeds, M codes, cycles, dwells, in the order in which they run."""
+"""The orders of a program beside its moves: tools, speeds, M codes, cycles, dwells, in the order in which they run."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from polarcheck.foundation.states import MM_PER_INCH, FeedMode, Units
 from polarcheck.program.machines.axis_table import FIRST_NAMED
 from polarcheck.program.machines.code_tables import code_set
 
-#: Words that plain moves are written with, and those that only name blocks.
+#: Words of plain moves, and words that only name blocks.
 _OF_MOVES = ("X", "Z", "U", "W", "I", "J", "K", "R", "F", "N", "O", "/")
 _FEED_MODES: dict[int, str] = {FeedMode.PER_MINUTE: " mm/min", FeedMode.PER_REVOLUTION: " mm/rev"}
 #: Words beside the code of a call: the program or block, how often, where from.
@@ -28,7 +28,7 @@ _OF_STATES = (
 )
 #: M codes that mean the same on every lathe, and whose effect no table of states shows.
 _EVERYWHERE = ("M0", "M1", "M7", "M8", "M9")
-#: M codes that are compared across machines otherwise, or that end programs.
+#: M codes that are compared across machines in another way, or that end programs.
 _COMPARED_OTHERWISE = ("M2", "M3", "M4", "M5", "M30")
 
 
@@ -36,8 +36,10 @@ class Step(NamedTuple):
     """
     An order beside the moves.
 
-    row: of the trace. tokens: its codes, and the addresses of its values. values: the numbers of these, lengths in mm
-    and radii. text: as it is shown.
+    row: row of the trace.
+    tokens: its codes, and the addresses of its values.
+    values: the numbers at these addresses; lengths in mm, X as a radius.
+    text: as it is reported.
     """
 
     row: int
@@ -47,13 +49,16 @@ class Step(NamedTuple):
 
 
 def speed_in_force(trace: Trace) -> Floats:
-    """The last S of each row as written, without the limit beside G50; NaN before the first."""
+    """Return the last S up to each row as written, ignoring limits beside G50; NaN before the first."""
     written = trace.blocks.has("S") & ~trace.modal.sets_coordinates
     return fill_down(np.where(written, trace.blocks.word("S"), np.nan), written | trace.blocks.starts, np.nan)
 
 
 def special_rows(trace: Trace) -> Mask:
-    """Rows whose axis words are no end of a plain move: cycles, references, shifts, dwells, blocks not executed."""
+    """
+    Return a mask of the rows whose axis words are not the end of a plain move: cycles, references, shifts, dwells,
+    blocks that are not executed.
+    """
     modal = trace.modal
     with_other_words = trace.blocks.listed("machine_coordinates", "repetitive_cycle") | modal.sets_coordinates
     return np.asarray(~modal.uses_axes | modal.in_cycle | with_other_words)
@@ -63,14 +68,14 @@ def steps(trace: Trace, *, is_same_machine: bool) -> list[Step]:
     """
     Return the orders of a program in the order in which they run.
 
-    is_same_machine: the other revision is for the same machine. Else only M codes count that mean the same on every
-    lathe, since which others a contour needs is a matter of the lathe.
+    is_same_machine: both revisions are for the same machine. Otherwise only M codes count that mean the same on every
+    lathe: which others a contour needs depends on the lathe.
     """
     return list(filter(None, map(_Reader(trace, is_same_machine).step, _rows(trace, is_same_machine).tolist())))
 
 
 def not_comparable(trace: Trace) -> list[str]:
-    """The M codes of a program that are not compared with those of another lathe."""
+    """Return the M codes of a program that cannot be compared with those of another lathe."""
     macro = trace.machine.macro
     comparable = {*_EVERYWHERE, *_COMPARED_OTHERWISE, *macro.subprogram_calls, *macro.program_returns}
     written = dict.fromkeys(f"M{value:g}" for value in trace.run.words.value[trace.blocks.m_words].tolist())
@@ -78,7 +83,7 @@ def not_comparable(trace: Trace) -> list[str]:
 
 
 def _rows(trace: Trace, is_same_machine: bool) -> Rows:
-    """Rows that may order something beside their moves."""
+    """Return the rows that may order something beside their moves."""
     blocks, row = trace.blocks, trace.run.row
     turns_side = _turns_side(trace)
     if not is_same_machine:
@@ -95,21 +100,27 @@ def _words_of_moves(trace: Trace) -> set[str]:
 
 
 def _sets_state(trace: Trace) -> Mask:
-    """Per G word: it is of a list whose state is compared otherwise."""
+    """Return a mask of the G words whose state is compared elsewhere."""
     words = [word for key in _OF_STATES for word in trace.machine.codes(key)]
     words += [*trace.machine.polar.on, *trace.machine.polar.off]
     return code_set([word for word in words if word.startswith("G") and " " not in word])[trace.blocks.g_codes]
 
 
 def _turns_side(trace: Trace) -> Mask:
-    """Rows that begin or end compensation where the path does not show it: outside of sections, and without R."""
+    """
+    Return a mask of the rows that start or end compensation where the path does not show it: outside sections, or with
+    R unknown.
+    """
     side = trace.compensation.side
     is_hidden = (trace.mode.section < 0) | np.isnan(trace.compensation.radius_of_move)
     return np.asarray((side != before(side, trace.blocks.starts, 40)) & is_hidden)
 
 
 def _of_calls(trace: Trace) -> Mask:
-    """Words that call and return: what they call stands in their place, with the arguments of macros in it."""
+    """
+    Return a mask of the words that call and return; the called blocks, with macro arguments filled in, are compared
+    instead.
+    """
     blocks, macro, row = trace.blocks, trace.machine.macro, trace.run.row
     plain = (*macro.subprogram_calls, *macro.local_calls, *macro.program_returns)
     of_macros = (*macro.macro_calls, *macro.modal_macro_calls, *macro.modal_macro_calls_each_block)
@@ -119,7 +130,7 @@ def _of_calls(trace: Trace) -> Mask:
 
 
 class _Reader:
-    """Reads the orders of rows one after the other."""
+    """Reads the orders of rows in sequence."""
 
     def __init__(self, trace: Trace, is_same_machine: bool) -> None:
         self._trace = trace
@@ -132,7 +143,7 @@ class _Reader:
         self._in_force: dict[str, float] = {}
 
     def step(self, row: int) -> Step | None:
-        """The step of a row; None where it orders nothing that was not in force."""
+        """Return the order of a row; None if it orders nothing that is not in force already."""
         low, high = np.searchsorted(self._trace.run.row, (row, row + 1)).tolist()
         parts = [part for index in range(low, high) if (part := self._part(row, index)) is not None]
         if parts and self._is_same_machine and self._trace.modal.in_cycle[row]:
@@ -146,7 +157,7 @@ class _Reader:
         return Step(row, tokens, tuple(value for value in values if value is not None), " ".join(texts))
 
     def _part(self, row: int, index: int) -> tuple[str, float | None, str] | None:
-        """Token, value and text of a word; None for one that is compared elsewhere."""
+        """Return token, value and text of a word; None for a word that is compared elsewhere."""
         words, is_special = self._trace.run.words, bool(self._special[row])
         name, value = self._address(int(words.address[index])), float(words.value[index])
         text = f"{name}{value:.10g}"
@@ -169,14 +180,16 @@ class _Reader:
         return (name, self._length(name, row, value), text) if is_special or name not in self._of_moves else None
 
     def _feed(self, row: int) -> tuple[str, float | None, str]:
-        """F in force in a cycle, wherever it is written [mm per min or per revolution]."""
+        """
+        Return token, value and text of the F in force in a cycle, wherever it is written [mm per min or revolution].
+        """
         feedrate = self._trace.feedrate
         feed = float(np.nan_to_num(feedrate.feed_number[row]))
         mode = _FEED_MODES.get(int(feedrate.feed_mode[row]), "")
         return f"F{mode}", feed, f"F{feed:.10g}{mode}"
 
     def _length(self, name: str, row: int, value: float) -> float:
-        """A word of a cycle as a length [mm, X as a radius], where it may be one."""
+        """Return the value of a word of a cycle, converted if it may be a length [mm, X as a radius]."""
         trace = self._trace
         if name not in _LENGTHS:
             return value
@@ -186,7 +199,7 @@ class _Reader:
         return length * float(trace.lengths.x_factor[row]) if name in ("X", "U") else length
 
     def _address(self, number: int) -> str:
-        """A letter, a letter behind a comma as `,R`, or the name of an axis."""
+        """Return the address with this number: a letter, a letter after a comma as `,R`, or the name of an axis."""
         if number < FIRST_NAMED:
             return f",{chr(number).upper()}" if chr(number).islower() else chr(number)
         control = self._trace.machine.control

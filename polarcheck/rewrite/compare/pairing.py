@@ -1,4 +1,4 @@
-"""Which polar sections of two revisions belong together: by what they do, not by their number."""
+"""Pairs the polar sections of two revisions by what they do, not by their number."""
 
 from __future__ import annotations
 
@@ -10,18 +10,18 @@ from polarcheck.foundation.arrays import Floats, Rows
 from polarcheck.geometry.comparison.anchors import longest_rise
 from polarcheck.rewrite.compare.compared_sections import Stretch
 
-#: Sections whose sizes differ by more than this share of them are not the same one, unless nothing else is left.
+#: Sections that differ by more than this share of their size are not paired, unless no other section remains.
 _LIKE = 0.25
-#: So many pairs of sections are looked at; beyond that they are taken by their number.
+#: The most pairs of sections that are compared; with more pairs, sections are paired by number.
 _PAIRS = 1_000_000
 
 
 def paired(old: Sequence[Stretch], new: Sequence[Stretch]) -> tuple[Rows, Rows]:
     """
-    Return for each old section the new one that belongs to it, -1 for none; and the old ones that are in their order.
+    Return for each old section its new partner, -1 for none; and the paired old sections whose order has not changed.
 
-    The most alike are paired first. Those that are left over between two pairs are taken in order, if both revisions
-    have as many.
+    The most similar sections are paired first. Sections that remain between two pairs are paired in order if both
+    revisions have the same number of them.
     """
     partner = np.full(len(old), -1)
     if len(old) == len(new) and _alike(old, new):
@@ -43,7 +43,10 @@ def _alike(old: Sequence[Stretch], new: Sequence[Stretch]) -> bool:
 
 
 def _features(sections: Sequence[Stretch]) -> Floats:
-    """Per section [mm]: where it begins, the box that it fills on the part, its lowest Z; for one without moves 0."""
+    """
+    Return a row of lengths per section [mm]: the box that its cuts fill on the part, its first point, its lowest Z, a
+    quarter of its length; 0 without moves.
+    """
     rows = []
     for section in sections:
         is_known = section.path.is_known
@@ -63,7 +66,7 @@ def _apart(first: Floats, second: Floats) -> Floats:
 
 
 def _size(features: Floats) -> Floats:
-    """A length by which differences of a section are judged [mm]."""
+    """Return the size of each section, against which its differences are measured [mm]."""
     return np.asarray(np.maximum(np.abs(features[..., :4]).max(axis=-1), 1.0))
 
 
@@ -80,13 +83,13 @@ def _pair_most_alike(partner: Rows, old: Floats, new: Floats) -> None:
 
 
 def _in_order(partner: Rows) -> Rows:
-    """The old sections with a partner that come in the same order in both revisions."""
+    """Return the old sections with a partner that have the same order in both revisions."""
     paired = np.flatnonzero(partner >= 0)
     return paired[longest_rise(partner[paired])]
 
 
 def _pair_left_over(partner: Rows, ordered: Rows, count: int) -> None:
-    """Between two pairs, those without a partner belong together if there are as many of both."""
+    """Pair the remaining sections between two pairs if both revisions have the same number of them there."""
     free = np.ones(count, bool)
     free[partner[partner >= 0]] = False
     bounds = zip(

@@ -1,4 +1,7 @@
-"""Two revisions of a program compared: section by section, what lies between them, and what could not be compared."""
+"""
+Compares two revisions of a program section by section, compares the blocks between sections, and lists what was not
+compared.
+"""
 
 from __future__ import annotations
 
@@ -67,7 +70,7 @@ def _columns(text: Text) -> Iterator[NDArray[np.generic]]:
 
 
 def _spans(text: Text, spans: Blocks | Spans) -> list[bytes]:
-    """The characters of spans without spaces, in upper case."""
+    """Return the characters of spans without spaces, in upper case."""
     bounds = zip(spans.start.tolist(), spans.end.tolist(), strict=True)
     return [b"".join(text.source.code[start:end].tobytes().split()).upper() for start, end in bounds]
 
@@ -81,7 +84,9 @@ class Revision(NamedTuple):
     """
     One of the two files.
 
-    path: as it is shown. machine: its name. runs: of all channels and states of block skip.
+    path: as it is reported.
+    machine: name of its machine.
+    runs: the runs of all channels and states of block skip.
     """
 
     path: str
@@ -90,7 +95,7 @@ class Revision(NamedTuple):
 
     @property
     def trace(self) -> Trace:
-        """The first run."""
+        """The trace of the first run."""
         trace: Trace = self.runs[0][1]["trace"]
         return trace
 
@@ -107,10 +112,10 @@ def compared(
     """
     Compare two revisions.
 
-    tolerance: lengths that differ by no more are the same [mm]. left_out: lines of the old file whose moves and orders
-    outside of sections are not compared. is_rewritten: the new program is the old one for another control. Of sections
-    the speed of the tool center on the plane is compared then, and not F as it is programmed; behind them C is the same
-    up to what rounding of the last point comes to.
+    tolerance: lengths that differ by no more are the same [mm].
+    left_out: lines of the old file whose moves and orders outside sections are not compared.
+    is_rewritten: the new program is the old one for another control. Then sections are compared by the speed of the
+    tool center on the plane, not by the programmed F; after a section C may differ by the rounding of the last point.
     """
     is_same_machine = old.trace.machine == new.trace.machine
     runs = [_Runs(*pair, tolerance, is_same_machine, left_out, is_rewritten) for pair in _pairs_of_runs(old, new)]
@@ -148,7 +153,7 @@ def compared(
 
 
 def _once(items: Sequence[Item]) -> list[Item]:
-    """What both states of block skip have in common stands once."""
+    """Return the items without duplicates: both states of block skip often give the same ones."""
     return list({msgspec.json.encode(item): item for item in items}.values())
 
 
@@ -158,7 +163,7 @@ def _program(revision: Revision) -> Program:
 
 
 def _pairs_of_runs(old: Revision, new: Revision) -> Iterator[tuple[Tables, Tables]]:
-    """Runs of one channel and one state of block skip; a file without / has one run for both states."""
+    """Yield pairs of runs of the same channel and state of block skip; a file without / has one run for both states."""
     channels = [_by_channel(revision) for revision in (old, new)]
     names = list(dict.fromkeys([*channels[0], *channels[1]]))
     for name in names:
@@ -176,7 +181,7 @@ def _by_channel(revision: Revision) -> dict[str, dict[str, Tables]]:
 
 
 class _Runs:
-    """One run of each revision, compared."""
+    """Compares one run of each revision."""
 
     def __init__(
         self,
@@ -207,7 +212,7 @@ class _Runs:
 
     @property
     def is_broken_off(self) -> bool:
-        """A bound has ended one of the runs."""
+        """True if one of the runs ended at a bound."""
         return any(len(tables["faults"].is_bound) and tables["faults"].is_bound.any() for tables in self._tables)
 
     def _missing(self) -> Iterator[NotCompared]:
@@ -288,7 +293,7 @@ class _Runs:
         return SectionPair(side, new_side, change, largest, deviation is None or deviation.is_exact, differences)
 
     def _measured(self, old: Part, new: Part) -> tuple[str, PathDeviation | None, list[Difference]]:
-        """Why two parts were not compared, or how far their paths are apart and what differs."""
+        """Return why two parts were not compared, or the deviation of their paths and their differences."""
         try:
             deviation = deviation_of(old, new, self._tolerance)
         except TooHardError as error:
@@ -318,7 +323,7 @@ class _Runs:
     # ---- between sections ----
 
     def outside(self) -> list[Difference]:
-        """Return what differs between the sections that both revisions have in the same order."""
+        """Return the differences between those sections that have the same order in both revisions."""
         differences: list[Difference] = []
         partners: Rows = self._partner[self._ordered]
         for (low, high), (new_low, new_high) in zip(
@@ -340,7 +345,7 @@ class _Runs:
         return differences
 
     def _rewritten(self, row: int) -> Rewritten | None:
-        """How moves are compared behind the section that ends above a row of the old program."""
+        """Return how to compare the moves that begin with a row of the old program, after a section."""
         if not self._is_rewritten:
             return None
         trace = self._traces[0]
@@ -356,7 +361,7 @@ class _Runs:
 
 
 def _left_open(old: Part, new: Part) -> Iterator[Difference]:
-    """A section that is no longer left, or is left now."""
+    """Yield a difference if only one of the revisions switches the polar mode off after the section."""
     is_left = [bool(part.trace.mode.sections.left[part.stretch.section]) for part in (old, new)]
     if is_left[0] != is_left[1]:
         lines = [part.line(int(part.trace.mode.sections.enter[part.stretch.section])) for part in (old, new)]
@@ -367,7 +372,7 @@ def _left_open(old: Part, new: Part) -> Iterator[Difference]:
 
 
 def _turned_to(old: Part, new: Part) -> Part:
-    """The new part with C by full turns nearer to the old one: where C stands behind a section counts its turns."""
+    """Return the new part with C shifted by full turns towards the old one: the C after a section counts its turns."""
     paths = old.stretch.path, new.stretch.path
     if not len(paths[0]) or not len(paths[1]):
         return new
@@ -378,7 +383,7 @@ def _turned_to(old: Part, new: Part) -> Part:
 
 
 def _gaps(trace: Trace, sections: Rows) -> list[tuple[int, int]]:
-    """First row and end of what lies before, between and behind some sections."""
+    """Return the first row and the end of each range before, between and after sections."""
     enter, last = trace.mode.sections.enter[sections], trace.mode.sections.last[sections]
     return list(zip([0, *(last + 1).tolist()], [*enter.tolist(), len(trace)], strict=True))
 
