@@ -1,4 +1,7 @@
-"""Where a section of a tool center path may run along a contour: paths that close, and others with ways to them."""
+"""
+Finds where a section of a tool center path may run along a contour: on closed paths, and on open ones with moves to and
+from them.
+"""
 
 from __future__ import annotations
 
@@ -22,9 +25,9 @@ from polarcheck.rewrite.compensate.sides import Swept, points_along, standing_sh
 
 #: A line that turns by more at its end leads to what follows [rad].
 _CORNER = math.radians(60)
-#: Moves at the end of a path among which one leads to it.
+#: A lead-in or lead-out is looked for among this many moves at each end of a path.
 _MOVES_OF_LEAD = 3
-#: Least share of a wall that is in the bar: where it is farther out than the path, and elsewhere.
+#: The least share of a wall that must lie in the bar: farther out than the path, and elsewhere.
 _WALL, _LEAST = 0.5, 1e-9
 
 
@@ -32,7 +35,8 @@ class Candidate(msgspec.Struct, frozen=True):
     """
     A contour before its side is known.
 
-    first, last: numbers of moves. low, high: of its run.
+    first, last: numbers of its moves.
+    low, high: first and end of the moves of its run.
     ring: None for a path that does not close.
     part_sides: possible distances to the part, to the left of the path [mm]; below 0 to the right.
     fallback_sides: distances on sides where only a share of the wall remains standing.
@@ -48,11 +52,14 @@ class Candidate(msgspec.Struct, frozen=True):
 
     @property
     def is_single_move(self) -> bool:
-        """Nothing leads to its only move and away from it, so that it may itself lead to a place."""
+        """
+        True for an open path of a single move that is its whole run: it may itself be a lead, since no move leads to
+        it.
+        """
         return self.ring is None and self.first == self.low == self.last == self.high - 1
 
     def is_inside(self, aside: float) -> bool:
-        """The part would be within the ring."""
+        """Return True if the part would be inside the ring."""
         return self.ring is not None and self.ring.area * aside > 0
 
 
@@ -60,16 +67,17 @@ def candidates_of(trace: Trace, section: Section, swept: Swept, side: str) -> li
     """
     Return the paths of a section that may have a contour beside them, in order.
 
-    side: where it is given, both sides of a path are taken as far as there is a contour; else those that stand.
+    side: if it is given, both sides of a path count wherever there is a contour; otherwise only sides where a wall
+    remains standing.
     """
     spans = _at_depth(trace, section.moves)
     rings = [ring for span in spans for ring in _rings(section, swept, span, bool(side))]
-    # Beside contours that close, other ways only lead to them.
+    # If contours close, the other paths only lead to them.
     return rings or [path for span in spans for path in _open(section, swept, span, bool(side))]
 
 
 def _at_depth(trace: Trace, moves: Sequence[Move]) -> list[tuple[int, int]]:
-    """The runs of moves at feed without those at their beginnings that are above the face."""
+    """Return the runs of moves at feed, without moves above the face at their start."""
     in_air = above_the_face(trace)
     result = []
     for low, high in runs(trace, moves):
@@ -111,7 +119,7 @@ def _open(section: Section, swept: Swept, run: tuple[int, int], any_side: bool) 
 def _candidate(
     section: Section, swept: Swept, run: tuple[int, int], span: tuple[int, int], ring: Ring | None, any_side: bool
 ) -> Candidate:
-    """A candidate with the sides on which the part may be; any_side: all on which there is a contour."""
+    """Return a candidate with the sides on which the part may be; any_side: all sides on which there is a contour."""
     path = [section.moves[number].piece for number in range(span[0], span[1] + 1)]
     whole = _from_middle(path) if ring is not None and not ring.aside else path
     both = (ring.aside,) if ring is not None and ring.aside else (section.radius, -section.radius)
@@ -132,22 +140,22 @@ def _candidate(
 
 
 def _middle(path: Sequence[Piece]) -> float:
-    """How far a path is from the center of C, on average [mm]."""
+    """Return the mean distance of a path from the center of C [mm]."""
     return float(np.abs(points_along(path)).mean())
 
 
 def _from_middle(path: Sequence[Piece]) -> list[Piece]:
-    """A closed path from the middle of its first piece."""
+    """Return a closed path that starts in the middle of its first piece."""
     first, middle = path[0], path[0].at(0.5)
     return [first.replaced(start=middle), *path[1:], first.replaced(end=middle)]
 
 
 def _open_spans(section: Section, low: int, high: int) -> list[tuple[int, int]]:
     """
-    The moves of a run that are contours which do not close: for each the first and the last.
+    Return the first and the last move of each open contour in a run.
 
-    Where the bar is known, moves outside of it lead to a contour or away from it. So do, without it, the first and the
-    last move of the section, and lines that come from farther out, or leave for there, at a corner.
+    With a known bar, moves outside it lead to a contour or away from it. Without a bar, leads are the first and the
+    last move of the section, and lines that come from farther out, or leave outward, at a corner.
     """
     pieces = [move.piece for move in section.moves[low:high]]
     leads = [_is_in_air(section, piece) for piece in pieces]
@@ -170,7 +178,10 @@ def _open_spans(section: Section, low: int, high: int) -> list[tuple[int, int]]:
 
 
 def _has_leads(section: Section, pieces: Sequence[Piece]) -> bool:
-    """A path begins with a line that leads to it, and ends with one that leads away; moves before may go aside."""
+    """
+    Return True if a path starts with a line that leads to it and ends with one that leads away; moves aside may precede
+    them.
+    """
     backwards = [_back(piece) for piece in reversed(pieces)]
     return all(
         any(_comes_from_outside(section, *pair) for pair in pairwise(path[:_MOVES_OF_LEAD]))
@@ -179,7 +190,7 @@ def _has_leads(section: Section, pieces: Sequence[Piece]) -> bool:
 
 
 def _comes_from_outside(section: Section, piece: Piece, following: Piece) -> bool:
-    """A line comes R and more nearer to the center of C, to a corner."""
+    """Return True for a line that approaches the center of C by at least R and ends at a corner."""
     nearer = abs(piece.start) - abs(piece.end) >= section.radius
     turn = cmath.phase(following.leaving / (piece.arriving or 1.0)) if piece.center is None else 0.0
     return nearer and abs(turn) >= _CORNER

@@ -1,4 +1,4 @@
-"""Contours with G41 or G42 written out as paths of the tool center, for a control without compensation in the mode."""
+"""Writes contours with G41 or G42 as paths of the tool center, for a control without compensation in the polar mode."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from polarcheck.rewrite.writing.style_of import style_of
 from polarcheck.rewrite.writing.unchanged import changed_outside, changed_words
 from polarcheck.rules.wording.offsets import called_tool, to_give
 
-#: What rounding to the least increment and chords may shift the path by, in least increments.
+#: The most by which rounding and chords may shift the path, in least increments.
 _INCREMENTS = 1.5
 
 
@@ -31,7 +31,7 @@ def centered(original: Original) -> Outcome:
     """
     Return the program with the path of the tool center in the place of its contours, without G41, G42 and G40.
 
-    The result is read back: its tool center runs as that of the original does.
+    The result is read back and checked: its tool center must run on the path of the original.
     Raises RefusedError where a path is not known or the control would object to it; TooHardError.
     """
     trace = original.trace
@@ -99,7 +99,10 @@ def _require_path(trace: Trace, tool_center: ToolCenter, compensated: Mask) -> N
 
 
 def _strokes(trace: Trace, moves: Moves, compensated: Mask) -> Strokes:
-    """The moves of all rows whose path is another than the programmed one, and rows with codes that are left out."""
+    """
+    Return the new moves of the rows whose path differs from the programmed one, and empty entries for rows whose codes
+    are left out.
+    """
     writes = trace.compensation.writes_side | trace.compensation.writes_cancel
     result: dict[int, list[Stroke]] = {row: [] for row in np.flatnonzero(writes & compensated).tolist()}
     changed = np.zeros(len(trace), bool)
@@ -114,7 +117,9 @@ def _strokes(trace: Trace, moves: Moves, compensated: Mask) -> Strokes:
 
 
 def _without_short(moves: Sequence[Move], shortest: float) -> list[Move]:
-    """Moves without the lines between two others that are shorter [mm], as at corners that are all but smooth."""
+    """
+    Return the moves without lines between two others that are shorter than this [mm], as at almost smooth corners.
+    """
     result: list[Move] = []
     for move, following in zip(moves, [*moves[1:], None], strict=True):
         piece = move.piece
@@ -127,7 +132,7 @@ def _without_short(moves: Sequence[Move], shortest: float) -> list[Move]:
 
 
 def _cutters(trace: Trace, sections: list[int]) -> Iterator[tuple[int, str, str]]:
-    """Each section with its tool, as it is called, and R in the units of the program."""
+    """Yield the number of each section, its tool as the program calls it, and R in the units of the program."""
     for section in sections:
         rows = np.flatnonzero((trace.mode.section == section) & trace.compensation.compensates & trace.path.travels)
         if not len(rows):

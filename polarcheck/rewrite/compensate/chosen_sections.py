@@ -1,4 +1,4 @@
-"""The polar sections that compensation is put into, or taken out of, and R of their cutters."""
+"""The polar sections that get or lose compensation, with R of their cutters."""
 
 from __future__ import annotations
 
@@ -21,8 +21,10 @@ class Section(msgspec.Struct, frozen=True):
     """
     A section that programs the path of the tool center.
 
-    number: of the section. moves: of it, in order. radius: R of its cutter [mm]. bar: diameter beyond which there is no
-    material [mm]; NaN where it is not known.
+    number: number of the section.
+    moves: its moves in order.
+    radius: R of its cutter [mm].
+    bar: diameter beyond which there is no material [mm]; NaN if it is not known.
     """
 
     number: int
@@ -92,7 +94,7 @@ def _require_control(trace: Trace, section: int) -> None:
 
 
 def _radius(trace: Trace, section: int) -> float:
-    """R of the tool offset in force in a section [mm]. Raises RefusedError where it is not known."""
+    """Return R of the tool offset in force in a section [mm]. Raises RefusedError where it is not known."""
     rows = np.flatnonzero((trace.mode.section == section) & trace.path.travels)
     row = int(rows[0])
     if not trace.tools.offset_number[row]:

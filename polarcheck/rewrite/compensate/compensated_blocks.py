@@ -1,4 +1,4 @@
-"""Blocks of polar sections with other moves in them: what else stands in them stays."""
+"""Writes other moves into blocks of polar sections and keeps the remaining words of these blocks."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from polarcheck.rewrite.writing.pen import Pen
 from polarcheck.rewrite.writing.style import Style
 from polarcheck.rules.editing import is_head, is_plain, words_of, written_word
 
-#: Modal groups that the new moves say themselves.
+#: Modal groups whose codes are written with the new moves.
 _GROUPS = ("motion", "side", "distance")
 _CODES = {0: "G1", 1: "G3", -1: "G2"}
 #: A word with a number, also of an address with several letters, as CR=5.
@@ -32,7 +32,9 @@ class Stroke(msgspec.Struct, frozen=True):
     """
     A move of the new program.
 
-    piece: its way. codes: in front of it, as G41. z: depth at its end [mm]; None where Z does not move.
+    piece: its line or arc.
+    codes: the codes before it, as G41.
+    z: depth at its end [mm]; None if Z does not move.
     """
 
     piece: Piece
@@ -40,16 +42,16 @@ class Stroke(msgspec.Struct, frozen=True):
     z: float | None = None
 
 
-#: The rows that are rewritten, in order, with their new moves; a row without any keeps what else stands in it.
+#: The rewritten rows in order, with their new moves; a row without moves keeps its other words.
 Strokes = Mapping[int, Sequence[Stroke]]
 
 
 def new_blocks(trace: Trace, strokes: Strokes, style: Style) -> dict[int, list[NewBlock]]:
     """
-    Return the new blocks of a program, by the blocks in whose place they stand.
+    Return the new blocks of a program by the index of the block that they replace.
 
     Raises RefusedError for blocks that cannot be rewritten: with macro expressions, in frames, or run several times
-    with other moves.
+    with different moves.
     """
     writer = _Writer(trace, style)
     rows = sorted(strokes)
@@ -61,7 +63,7 @@ def new_blocks(trace: Trace, strokes: Strokes, style: Style) -> dict[int, list[N
 
 
 class _Writer:
-    """Writes groups of rows that follow one another."""
+    """Writes groups of consecutive rows."""
 
     def __init__(self, trace: Trace, style: Style) -> None:
         self.trace, self.style = trace, style
@@ -70,7 +72,7 @@ class _Writer:
         self.sets_motion = trace.modal.sets("motion")
         block = trace.run.block
         self.runs_again = np.bincount(block)[block] > 1
-        #: The last row of the group before, and the code of its last move.
+        #: The last row of the previous group, and the code of its last move.
         self.last, self.motion = -1, ""
         self.pens = {
             units: Pen(trace.machine, style, units == Units.INCH)
@@ -78,7 +80,7 @@ class _Writer:
         }
 
     def write(self, group: Sequence[int], strokes: Strokes) -> None:
-        """Write rows that follow one another."""
+        """Write consecutive rows."""
         trace, first, last = self.trace, group[0], group[-1]
         pen = self.pens[int(trace.lengths.units[first])]
         start = next((stroke.piece.start for row in group for stroke in strokes[row]), complex(trace.path.start[first]))
@@ -121,7 +123,7 @@ class _Writer:
         return self.last >= 0 and bool(section[self.last] == section[first])
 
     def _motion_before(self, first: int) -> str:
-        """The code of motion in force before a group; empty where the group begins with a code of its own."""
+        """Return the code of motion in force before a group; empty if the group starts with its own code."""
         trace = self.trace
         if self.sets_motion[first] or not first or trace.run.starts[first]:
             return ""
@@ -131,7 +133,7 @@ class _Writer:
         return _STATES.get(int(trace.modal.state("motion")[first - 1]), "")
 
     def _steps(self, row: int) -> tuple[str, ...]:
-        """The code that makes words coordinates where those in force are distances."""
+        """Return the code for absolute coordinates if incremental distances are in force."""
         trace = self.trace
         in_force = trace.modal.incremental[row] or (row > 0 and trace.modal.incremental[row - 1])
         return (trace.machine.codes("absolute")[0],) if in_force else ()
@@ -144,7 +146,7 @@ class _Writer:
         return pen.arc(end, piece.center + shift, piece.turning > 0, stroke.z, codes=codes)
 
     def _with_others(self, row: int, moves: list[NewBlock]) -> list[NewBlock]:
-        """The moves with the other words of the block: G codes in front of the first of them, the rest behind it."""
+        """Return the moves with the other words of the block: G codes before the first move, the rest after it."""
         run = self.trace.run
         front: list[str] = []
         back: list[str] = []
@@ -164,7 +166,9 @@ class _Writer:
             raise refused_at(self.trace, row, "the block runs several times, and would move otherwise each time")
 
     def _say_motion_behind(self, row: int, code: str, pen: Pen) -> None:
-        """Say the code of the next move where it is in force from before the rewritten rows, and is another now."""
+        """
+        Write the code of the next move if that move took it over from before the rewritten rows and it has changed.
+        """
         trace = self.trace
         for following in range(row + 1, len(trace)):
             if self.sets_motion[following] or trace.run.starts[following]:
@@ -178,7 +182,7 @@ class _Writer:
                 return
 
     def require_once(self, rows: Sequence[int]) -> None:
-        """Raise RefusedError where a block that is rewritten runs in other rows, too."""
+        """Raise RefusedError if a rewritten block also runs in other rows."""
         block = self.trace.run.block
         is_other_run = np.isin(block, block[list(rows)])
         is_other_run[list(rows)] = False
@@ -201,7 +205,7 @@ class _Writer:
 
 
 def _said_by_moves(trace: Trace) -> Mask:
-    """Words that the new moves say: coordinates, arcs, codes of motion and of compensation; per executed word."""
+    """Return a mask of the words that the new moves replace: coordinates, arcs, codes of motion and of compensation."""
     blocks, machine = trace.blocks, trace.machine
     rotary = machine.polar.rotary_words
     words = blocks.word_indices("X", "U", "Z", "W", "I", "J", "K", *rotary, machine.arcs.radius_word)
@@ -215,7 +219,11 @@ def _said_by_moves(trace: Trace) -> Mask:
 
 
 def _with_feed(blocks: list[NewBlock], feed: str) -> tuple[list[NewBlock], str]:
-    """The blocks of a row with the F of a row above that is left without a move; and F that is still to be written."""
+    """
+    Return the blocks of a row with the pending F of an earlier row, and the F that is still pending.
+
+    The F of a row that is left without a move is pending until the next row with blocks.
+    """
     feed_word = next((word for block in blocks for word in block.words if word[:1].upper() == "F"), "")
     if len(blocks) == 1 and blocks[0].words == (feed_word,):
         return [], feed_word

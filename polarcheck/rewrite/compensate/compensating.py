@@ -1,4 +1,4 @@
-"""Paths of the tool center written as contours of the part with G41 or G42."""
+"""Writes paths of the tool center as contours of the part with G41 or G42."""
 
 from __future__ import annotations
 
@@ -28,14 +28,14 @@ from polarcheck.rewrite.writing.outcome import Figure, Outcome, RefusedError, re
 from polarcheck.rewrite.writing.style_of import style_of
 from polarcheck.rules.wording.offsets import called_tool
 
-#: A ramp at one depth in the place of a stretch that goes down by less [mm].
+#: A ramp stays at one depth if the move that it replaces descends by no more than this [mm].
 _SAME_DEPTH = 0.01
 
 __all__ = ["SIDES", "Compensating", "centered", "compensated"]
 
 
 class Compensating(msgspec.Struct, frozen=True):
-    """side: one of SIDES where the program does not say on which side of its paths the part is; else empty."""
+    """side: one of SIDES if the program does not say on which side of its paths the part is; empty otherwise."""
 
     side: str = ""
 
@@ -44,9 +44,10 @@ def compensated(original: Original, options: Compensating = Compensating()) -> O
     """
     Return the program with G41 or G42 and the contour of the part in the place of the paths of the tool center.
 
-    R of the cutter is that of its tool offset in the job. The result is read back: the part is the same.
-    Raises RefusedError where a section has no contour, the side of the part or R is not known, or the control would not
-    make the same part; TooHardError.
+    R of the cutter comes from its tool offset in the job. The result is read back and checked: the part must be the
+    same.
+    Raises RefusedError where a section has no contour, the side of the part or R is not known, or the control would
+    make another part; TooHardError.
     """
     trace = original.trace
     moves: Moves = original.tables["tool_center"].moves
@@ -79,7 +80,7 @@ def _written(
     chosen: Sequence[Sequence[tuple[Candidate, Contour]]],
     by_moves: bool,
 ) -> tuple[bytes, list[int], list[CompensatedContour], Proof]:
-    """The new program, read back. by_moves: moves to a contour and away from it become ramps."""
+    """Return the new program, read back. by_moves: moves to and from a contour become its ramps."""
     trace, machine = original.trace, original.settings.machine
     contours = [ramped for pair in zip(sections, chosen, strict=True) for ramped in _ramped(trace, *pair, by_moves)]
     style = style_of(trace)
@@ -91,7 +92,7 @@ def _written(
 def _ramped(
     trace: Trace, section: Section, chosen: Sequence[tuple[Candidate, Contour]], by_moves: bool
 ) -> list[CompensatedContour]:
-    """The contours of a section with their ramps."""
+    """Return the contours of a section with their ramps."""
     result: list[CompensatedContour] = []
     free = 0
     for index, (candidate, contour) in enumerate(chosen):
@@ -112,7 +113,7 @@ def _ramped(
 
 
 def _strokes(trace: Trace, contours: Sequence[CompensatedContour], machine: Machine) -> dict[int, list[Stroke]]:
-    """The new moves of all contours, by the rows in whose place they stand."""
+    """Return the new moves of all contours by the row that they replace."""
     result: dict[int, list[Stroke]] = {}
     for contour in contours:
         moves, ramped = contour.section.moves, contour.ramped
@@ -147,7 +148,7 @@ def _strokes(trace: Trace, contours: Sequence[CompensatedContour], machine: Mach
 
 
 def _span(contour: CompensatedContour) -> tuple[int, int]:
-    """The numbers of the moves of a contour, with the arcs that lead to it and away from it."""
+    """Return the first move of a contour and the end of its moves, its lead arcs included."""
     numbers = [piece.move for piece in contour.ramped.contour]
     return min(contour.path.first, *numbers), max(contour.path.last, *numbers) + 1
 
@@ -158,9 +159,9 @@ def _depth(move: Move) -> float | None:
 
 def _require_level(trace: Trace, move: Move, rest: Piece | None = None) -> None:
     """
-    Raise RefusedError for a move that is left out, or whose beginning is a ramp, and goes down.
+    Raise RefusedError if Z moves in a move that is left out, or whose start becomes a ramp.
 
-    rest: what of the contour is left beside it; it goes down by as much on a way that is shorter by all but nothing.
+    rest: what remains of the contour beside the move. The descent of the part that is left out must be negligible.
     """
     share = 1.0
     if rest is not None and move.piece.sweep:
@@ -170,7 +171,7 @@ def _require_level(trace: Trace, move: Move, rest: Piece | None = None) -> None:
 
 
 def _notes(trace: Trace, contours: Sequence[CompensatedContour]) -> list[str]:
-    """What to enter in the offset table, and on which side of which contours the tool is."""
+    """Return a note for each tool: the R to enter in its offset."""
     result = []
     for contour in contours:
         row = contour.section.moves[contour.path.first].row

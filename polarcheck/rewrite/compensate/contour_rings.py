@@ -1,4 +1,4 @@
-"""Contours in a run of moves: stretches of a path that come back to where they began, beside ways in and out."""
+"""Finds closed contours in a run of moves: stretches of a path that return to their start, between leads in and out."""
 
 from __future__ import annotations
 
@@ -12,24 +12,24 @@ import msgspec
 from polarcheck.foundation.time_limit import keep_time
 from polarcheck.rewrite.compensate.pieces import Piece
 
-#: Moves behind the beginning of a ring, or before its end, within which a ring without them is looked for; and moves
-#: behind the one before, from whose middle a ring may begin.
+#: The most moves of a lead: a smaller ring is looked for after dropping up to this many moves at the start or end of a
+#: ring; and a ring may start in the middle of a move only this close after the previous ring.
 _LEADS = 8
-#: The share of the way of a ring that one without its first and last moves must have.
+#: The least share of the length of a ring that remains without its leads.
 _MOST_OF = 0.5
-#: A ring encloses more than this share of the square of its way.
+#: A ring encloses more than this share of the square of its length.
 _FLAT = 1e-6
-#: Directions that differ by less are one [rad].
+#: Directions that differ by no more are equal [rad].
 _SAME_WAY = 0.02
 
 
 class Ring(msgspec.Struct, frozen=True):
     """
-    A stretch of moves that closes.
+    A closed stretch of moves.
 
-    first, last: numbers of moves in the run, both included. aside: 0 where the path itself closes; else that its
-    parallel at this distance to the left does [mm]. area: enclosed, above 0 counterclockwise [mm2]; of several turns
-    their sum.
+    first, last: numbers of its moves in the run, both included.
+    aside: 0 if the path itself closes; otherwise the distance to the left of the parallel that closes [mm].
+    area: the enclosed area, above 0 counterclockwise [mm2]; the sum of several turns.
     """
 
     first: int
@@ -40,10 +40,11 @@ class Ring(msgspec.Struct, frozen=True):
 
 def rings_of(path: Sequence[Piece], radius: float, tolerance: float) -> list[Ring]:
     """
-    Return the rings of a run of pieces that join, in order.
+    Return the rings in a run of connected pieces, in order.
 
-    radius: R of the cutter [mm]: where a contour begins and ends at a corner, paths with R beside it do not close.
-    tolerance: points nearer than this are one [mm].
+    radius: R of the cutter [mm]. Where a contour starts at a corner, the path at R beside it does not close, but its
+    parallel does.
+    tolerance: points nearer than this are equal [mm].
     """
     search = _Search(path, radius, tolerance)
     result: list[Ring] = []
@@ -61,7 +62,7 @@ def rings_of(path: Sequence[Piece], radius: float, tolerance: float) -> list[Rin
 
 
 class _Search:
-    """Looks for rings in a run of pieces."""
+    """Finds rings in a run of pieces."""
 
     def __init__(self, path: Sequence[Piece], radius: float, tolerance: float) -> None:
         self.path, self.tolerance = path, tolerance
@@ -73,7 +74,7 @@ class _Search:
         self.starts = [[piece.start + 1j * aside * piece.leaving for piece in path] for aside in self.offsets]
         self.ends = [[piece.end + 1j * aside * piece.arriving for piece in path] for aside in self.offsets]
         self.ending: list[dict[tuple[int, int], list[int]]] = []
-        #: Beside arcs that are too small a parallel is none.
+        #: False where an arc is too small for a parallel.
         self.is_there = [[piece.radius - piece.turning * aside > tolerance for piece in path] for aside in self.offsets]
         for ends, is_there in zip(self.ends, self.is_there, strict=True):
             cells: dict[tuple[int, int], list[int]] = {}
@@ -87,7 +88,10 @@ class _Search:
         return math.floor(point.real / size), math.floor(point.imag / size)
 
     def ring_from(self, first: int, may_overlap: bool) -> Ring | None:
-        """The ring that begins with a piece; None where none does. may_overlap: it may begin within its last piece."""
+        """
+        Return the ring that starts with a piece; None if there is none. may_overlap: it may start within its last
+        piece.
+        """
         ring = self._closed(first, len(self.path) - 1)
         ring = ring or (self._overlapping(first) if may_overlap else None)
         if ring is None or self._has_leads(ring):
@@ -95,14 +99,16 @@ class _Search:
         return self._with_overlap(ring)
 
     def comes_back(self, before: Ring, ring: Ring) -> bool:
-        """A short way that begins where a ring has ended: out, and back for another pass."""
+        """Return True for a short loop right after a ring: out, and back for another pass."""
         lengths = [
             self.length[ring_compared.last + 1] - self.length[ring_compared.first] for ring_compared in (before, ring)
         ]
         return ring.first == before.last + 1 and lengths[1] < _MOST_OF * lengths[0]
 
     def _closed(self, first: int, most: int) -> Ring | None:
-        """The shortest ring from the start of a piece up to another, of the path or of one of its parallels."""
+        """
+        Return the shortest ring from the start of a piece up to another piece, on the path or on one of its parallels.
+        """
         rings = (self._closed_parallel(which, first, most) for which in range(len(self.offsets)))
         return min((ring for ring in rings if ring is not None), key=lambda ring: ring.last, default=None)
 
@@ -127,7 +133,7 @@ class _Search:
         return Ring(first, last, aside, area) if abs(area) > _FLAT * length**2 else None
 
     def _overlapping(self, first: int) -> Ring | None:
-        """A ring whose end runs on along its first piece, from the middle of which it has begun."""
+        """Return a ring that starts in the middle of its last piece and ends along its first one."""
         start, along = self.path[first].start, self.path[first].leaving
         for last in range(len(self.path) - 1, first, -1):
             piece = self.path[last]
@@ -147,11 +153,14 @@ class _Search:
         return None
 
     def _has_leads(self, ring: Ring) -> bool:
-        """The rings within it, without moves that lead to them and away from them, are the contours."""
+        """Return True if the contours are smaller rings within this one, and its remaining moves are leads."""
         return any(self._leads_to_rings(ring, first) for first in range(ring.first + 1, ring.first + _LEADS + 1))
 
     def _leads_to_rings(self, ring: Ring, first: int) -> bool:
-        """From this move on rings follow one another, and other moves of the ring are not run again within them."""
+        """
+        Return True if from this move on rings follow one another, and no other move of the ring repeats a move of
+        theirs.
+        """
         inner: list[Ring] = []
         index = lead_start = first
         # A ring that closes where the whole does is one only if the moves before it close as well.
@@ -174,7 +183,7 @@ class _Search:
         return all(_key(self.path[number], self.tolerance) not in keys for number in leads)
 
     def _with_overlap(self, ring: Ring) -> Ring:
-        """The ring with the moves behind it that run along its first ones again."""
+        """Return the ring with the moves after it that run along its first moves again."""
         first, last = ring.first, ring.last
         while last + 1 < len(self.path) and first < ring.last:
             piece, again = self.path[first], self.path[last + 1]
@@ -192,20 +201,20 @@ class _Search:
 
 
 def _same_center(first: Piece, second: Piece, tolerance: float) -> bool:
-    """Two lines, or two arcs about one center."""
+    """Return True for two lines, or two arcs with the same center."""
     if first.center is None or second.center is None:
         return first.center is second.center
     return abs(first.center - second.center) <= tolerance
 
 
 def _angle(arc: Piece, point: complex) -> float:
-    """The angle from the start of an arc to a point of its circle as it turns [rad]."""
+    """Return the angle from the start of an arc to a point on its circle, in the direction of the arc [rad]."""
     center = 0j if arc.center is None else arc.center
     return (arc.turning * cmath.phase((arc.start - center).conjugate() * (point - center))) % math.tau
 
 
 def _area(piece: Piece, origin: complex) -> float:
-    """The signed area between a piece and a point [mm2]."""
+    """Return the signed area between a piece and a point [mm2]."""
     start, end = piece.start - origin, piece.end - origin
     area = (start.conjugate() * end).imag / 2
     if piece.center is None:
@@ -214,7 +223,7 @@ def _area(piece: Piece, origin: complex) -> float:
 
 
 def _key(piece: Piece, tolerance: float) -> tuple[int, ...]:
-    """A cell of a grid: the same for most pieces that run along one way, forward; not across the border of a cell."""
+    """Return a grid cell that equal pieces usually share; pieces on both sides of a cell border get different ones."""
     size = 4 * tolerance
     points = (piece.start, piece.end, piece.at(0.5))
     return tuple(round(value / size) for point in points for value in (point.real, point.imag))

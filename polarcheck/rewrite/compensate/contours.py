@@ -1,4 +1,4 @@
-"""The contours that sections of tool center paths run along, and on which side of the path each has the part."""
+"""Finds the contours that tool center paths run along, and the side of the path on which each part lies."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ from polarcheck.rewrite.compensate.section_moves import Move
 from polarcheck.rewrite.compensate.sides import Swept, points_along
 from polarcheck.rewrite.writing.outcome import Refusal, RefusedError, refusal_at, refused_at
 
-#: On which side of all paths the cutter is, seen along them: left is G41, right is G42; or where their parts are.
+#: The side of the cutter, the same for all paths: left is G41, right is G42; or the side of the parts.
 SIDES = ("left", "right", "part-inside", "part-outside")
-#: Passes round one part have sizes within this factor.
+#: The sizes of passes round the same part differ by no more than this factor.
 _SAME_SIZE = 2.0
 
 #: The contours of a section, in order.
@@ -30,7 +30,9 @@ class _Path(msgspec.Struct, frozen=True):
     """
     A candidate and its section.
 
-    frame: of the part. center: of the ring, in that frame [mm]. size: its largest distance from there [mm].
+    frame: frame of the part.
+    center: center of the ring in that frame [mm].
+    size: its largest distance from the center [mm].
     """
 
     section: Section
@@ -40,7 +42,7 @@ class _Path(msgspec.Struct, frozen=True):
     size: float
 
     def is_about_part_of(self, second: _Path) -> bool:
-        """Both may be passes round one part."""
+        """Return True if both may be passes round the same part."""
         near = abs(self.center - second.center) <= max(self.section.radius, second.section.radius)
         sizes = self.size <= _SAME_SIZE * second.size and second.size <= _SAME_SIZE * self.size
         return self.frame == second.frame and near and sizes
@@ -50,8 +52,8 @@ def contours_of(trace: Trace, sections: Sequence[Section], swept: Swept, side: s
     """
     Return the contours of each section.
 
-    side: one of SIDES where the program does not say on which side the part is; empty to see what the program says.
-    Raises RefusedError where there is none, or its side is not known.
+    side: one of SIDES if the program does not determine the side of the part; empty to take it from the program.
+    Raises RefusedError where there is no contour, or its side is not known.
     """
     paths = [list(_paths(trace, section, swept, side)) for section in sections]
     rings = [path for section_paths in paths for path in section_paths if path.candidate.ring is not None]
@@ -72,7 +74,7 @@ def contours_of(trace: Trace, sections: Sequence[Section], swept: Swept, side: s
 
 
 def _paths(trace: Trace, section: Section, swept: Swept, side: str) -> Iterator[_Path]:
-    """The candidates of a section. Raises RefusedError where there is none."""
+    """Yield the candidates of a section. Raises RefusedError where there is none."""
     candidates = candidates_of(trace, section, swept, side)
     if not candidates:
         text = "nothing of its path is a contour: it does not close, and has no moves to it and away from it"
@@ -89,7 +91,7 @@ def _paths(trace: Trace, section: Section, swept: Swept, side: str) -> Iterator[
 def _joined(
     trace: Trace, moves: Sequence[Move], candidates: Sequence[Candidate], part_sides: Sequence[float]
 ) -> list[tuple[Candidate, Contour]]:
-    """The contours; turns that follow one another at several depths are one."""
+    """Return the contours; consecutive turns of a ring at several depths are one contour."""
     result: list[tuple[Candidate, Contour]] = []
     for candidate, aside in zip(candidates, part_sides, strict=True):
         closed = candidate.ring is not None and not candidate.ring.aside and _comes_back(moves, candidate)
@@ -103,7 +105,10 @@ def _joined(
 
 
 def _goes_on(trace: Trace, moves: Sequence[Move], before: Contour, contour: Contour) -> bool:
-    """A ring begins where the one above it has ended, with so few blocks between them that compensation stays on."""
+    """
+    Return True if a ring starts where the previous one ends, with so few blocks between them that compensation stays
+    on.
+    """
     last, first = moves[before.last], moves[contour.first]
     between = range(last.row + 1, first.row)
     stops = trace.blocks.codes(*trace.machine.m_codes.stops_reading_ahead)
@@ -127,10 +132,10 @@ def _comes_back(moves: Sequence[Move], candidate: Candidate) -> bool:
 
 def _aside(path: _Path, unambiguous: Sequence[_Path]) -> float:
     """
-    The distance of the contour to the left of a path [mm]; 0 where its side is not known.
+    Return the distance of the contour to the left of a path [mm]; 0 if its side is not known.
 
-    Passes round one part have it on the same side. Where the side of a ring is ambiguous, rings round the same part
-    decide, then those of the section, then those of the program.
+    All passes round the same part have it on the same side. If the side of a ring is ambiguous, rings round the same
+    part decide, then the other rings of the section, then those of the program.
     """
     candidate, radius = path.candidate, path.section.radius
     if candidate.ring is None:
@@ -165,7 +170,9 @@ def _ambiguous(trace: Trace, path: _Path) -> Refusal:
 
 
 def _given(trace: Trace, path: _Path, side: str) -> float:
-    """The distance to the left of a path [mm] by --side. Raises RefusedError where no contour is there."""
+    """
+    Return the distance to the left of a path [mm] that --side asks for. Raises RefusedError where there is no contour.
+    """
     section, candidate = path.section, path.candidate
     row = section.moves[candidate.first].row
     if side in ("left", "right"):

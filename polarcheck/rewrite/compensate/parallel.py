@@ -1,9 +1,9 @@
 """
-The contour beside a path of the tool center: parallel to it at R, its corners where the control rounds them.
+The contour beside a path of the tool center: parallel to it at distance R, with the corners that the control rounds.
 
-Where the tool turns on the inner side of a corner the contour has a corner, too, from which the control finds that of
-the path again. On the outer side the parallels cross: what lies behind the crossing bounds no part. An arc of the path
-with R about a corner of the part leaves that corner alone, and so does a line across it.
+On the inner side of a corner of the path, the contour has a corner, too, from which the control computes the corner of
+the path again. On the outer side the parallels cross, and what lies beyond the crossing is no part of the contour. An
+arc of the path with radius R about a corner of the part adds only that corner, and so does a line across it.
 """
 
 from __future__ import annotations
@@ -17,16 +17,17 @@ import msgspec
 from polarcheck.foundation.errors import PolarcheckError
 from polarcheck.rewrite.compensate.pieces import Piece, meeting_points, moved_aside
 
-#: Ends of parallels that are so near meet [mm], and an arc so small is a corner: points are written in thousandths.
+#: Ends of parallels within this distance meet, and an arc with no larger radius is a corner [mm]: points are written in
+#: thousandths.
 NEAR = 0.003
-#: A shorter stretch between two corners is one corner [mm].
+#: A stretch between two corners that is not longer than this is part of the corner [mm].
 _LEAST = 2e-3
-#: What a line across the gap at a corner may turn the path of the tool center aside [mm].
+#: The most by which a line across the gap at a corner may shift the path of the tool center [mm].
 _ASIDE = 5e-4
 
 
 class NoContourError(PolarcheckError):
-    """A path beside which there is no contour. move: the number of its move."""
+    """A path without a contour beside it. move: number of the move at fault."""
 
     def __init__(self, move: int, reason: str) -> None:
         super().__init__(reason)
@@ -34,13 +35,13 @@ class NoContourError(PolarcheckError):
 
 
 class _Parallel(msgspec.Struct, frozen=True):
-    """A parallel as it lies beside its move, and where the contour comes to it."""
+    """The parallel of a move, and the point where the contour joins it."""
 
     whole: Piece
     begins: complex
 
     def remains(self, until: complex) -> bool:
-        """More than the last digit is left of it from where the contour comes to it up to a point of it."""
+        """Return True if more than the last digit of it remains between the joint and another point on it."""
         whole = self.whole
         if whole.center is None:
             return ((until - self.begins) * whole.leaving.conjugate()).real > _LEAST
@@ -53,11 +54,11 @@ class _Parallel(msgspec.Struct, frozen=True):
 
 def contour_beside(path: Sequence[Piece], aside: float) -> list[Piece]:
     """
-    Return the contour `aside` [mm] to the left of a path; to the right where that is negative.
+    Return the contour `aside` [mm] to the left of a path; to the right if that is negative.
 
-    path: pieces that join. The contour begins and ends perpendicularly beside the ends of the path. Each of its pieces
-    has the number of the move that it is parallel to; moves that bound no part have none.
-    Raises NoContourError where two parallels do not meet, or nothing is left.
+    path: connected pieces. The contour starts and ends perpendicularly beside the ends of the path. Each of its pieces
+    has the number of its parallel move; a move that adds nothing to the contour has no piece.
+    Raises NoContourError where two parallels do not meet, or nothing remains.
     """
     contour: list[_Parallel] = []
     for piece in path:
@@ -73,7 +74,7 @@ def contour_beside(path: Sequence[Piece], aside: float) -> list[Piece]:
 
 
 def _join(contour: list[_Parallel], following: Piece, aside: float) -> None:
-    """Put a parallel behind the others; those that are used up by a corner go."""
+    """Append a parallel to the contour, and remove previous ones of which a corner leaves nothing."""
     while contour:
         before = contour[-1]
         joint = _joint(before.whole, following)
@@ -94,13 +95,13 @@ def _join(contour: list[_Parallel], following: Piece, aside: float) -> None:
 
 
 def _leaves_gap(before: Piece, following: Piece) -> bool:
-    """The second parallel begins ahead of the end of the first, at the inner side of a corner."""
+    """Return True if the second parallel starts ahead of the end of the first, on the inner side of a corner."""
     onward = before.arriving + following.leaving
     return ((following.start - before.end) * onward.conjugate()).real > 0
 
 
 def _joint(before: Piece, following: Piece) -> complex | None:
-    """Where two parallels meet, beyond their ends, too; None where they do not."""
+    """Return the point where two parallels, extended if necessary, meet; None if they do not."""
     middle = (before.end + following.start) / 2
     apart = abs(before.end - following.start)
     has_arc = before.center is not None or following.center is not None

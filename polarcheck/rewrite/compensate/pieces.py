@@ -1,4 +1,4 @@
-"""Lines and arcs of the polar plane one by one; plane points are complex, x + 1j*c [mm, radius]."""
+"""Lines and arcs on the polar plane; plane points are complex, x + 1j*c [mm, radius]."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import msgspec
 
 from polarcheck.geometry.tolerances import ZERO
 
-#: Lines whose directions differ by less meet nowhere [rad].
+#: Lines whose directions differ by no more are parallel [rad].
 _PARALLEL = 1e-12
 
 
@@ -17,8 +17,11 @@ class Piece(msgspec.Struct, frozen=True):
     """
     A line or an arc.
 
-    start, end: plane points [mm]. center: of an arc; None for a line. turning: 1 counterclockwise, -1 clockwise, 0 for
-    a line. is_full: a full circle. move: the number of the move that it comes from.
+    start, end: plane points [mm].
+    center: center of an arc; None for a line.
+    turning: 1 counterclockwise, -1 clockwise, 0 for a line.
+    is_full: True for a full circle.
+    move: number of the move that it comes from.
     """
 
     start: complex
@@ -63,11 +66,11 @@ class Piece(msgspec.Struct, frozen=True):
 
     @property
     def length(self) -> float:
-        """[mm]."""
+        """Its length [mm]."""
         return abs(self.end - self.start) if self.center is None else self.radius * self.sweep
 
     def at(self, share: float) -> complex:
-        """The point at a share of the piece, 0 to 1; on an arc whose end is off the circle on a spiral."""
+        """Return the point at a share of the piece, 0 to 1; on a spiral if the end of an arc is off its circle."""
         if self.center is None:
             return self.start + share * (self.end - self.start)
         first, last = self.start - self.center, abs(self.end - self.center)
@@ -75,7 +78,7 @@ class Piece(msgspec.Struct, frozen=True):
         return self.center + spoke * cmath.exp(1j * self.turning * self.sweep * share)
 
     def replaced(self, start: complex | None = None, end: complex | None = None) -> Piece:
-        """The piece with another start or end on the same line or circle."""
+        """Return the piece with another start or end on the same line or circle."""
         piece = msgspec.structs.replace(
             self, start=self.start if start is None else start, end=self.end if end is None else end
         )
@@ -84,9 +87,7 @@ class Piece(msgspec.Struct, frozen=True):
 
 
 def moved_aside(piece: Piece, aside: float) -> Piece | None:
-    """
-    Return the piece parallel to itself, `aside` [mm] to its left; None for an arc of which nothing is left there.
-    """
+    """Return the parallel of the piece, `aside` [mm] to its left; None for an arc that would vanish."""
     start, end = piece.start + 1j * aside * piece.leaving, piece.end + 1j * aside * piece.arriving
     if piece.center is not None and piece.radius - piece.turning * aside <= ZERO:
         return None
@@ -94,7 +95,7 @@ def moved_aside(piece: Piece, aside: float) -> Piece | None:
 
 
 def meeting_points(first: Piece, second: Piece) -> list[complex]:
-    """Return where the lines or circles of two pieces meet, beyond their ends, too: none, one or two points."""
+    """Return the points where the lines or circles of two pieces, extended, meet: none, one or two."""
     if first.center is None:
         return _of_lines(first, second) if second.center is None else _of_line(first, second.center, second.radius)
     if second.center is None:
@@ -117,7 +118,7 @@ def _cross(first: complex, second: complex) -> float:
 
 
 def _of_line(line: Piece, center: complex, radius: float) -> list[complex]:
-    """Where a line meets a circle."""
+    """Return the points where a line meets a circle."""
     along = line.leaving
     foot = line.start + along * ((center - line.start) * along.conjugate()).real
     square = radius**2 - abs(foot - center) ** 2

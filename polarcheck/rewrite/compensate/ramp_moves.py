@@ -1,8 +1,8 @@
 """
-Where cutter compensation begins and ends along a contour: start-up and offset cancel, each no shorter than R.
+Where cutter compensation starts and ends along a contour: start-up and offset cancel, each no shorter than R.
 
-Compensation is built up in the move that leads to the contour. Where no move does, the start-up runs along the first
-stretch of the contour. The path of the tool center stays the programmed one in both cases.
+Compensation is built up in the move that leads to the contour. Without such a move, the start-up runs along the first
+stretch of the contour. In both cases the path of the tool center stays the programmed one.
 """
 
 from __future__ import annotations
@@ -18,15 +18,15 @@ from polarcheck.rewrite.compensate.parallel import NEAR, NoContourError, contour
 from polarcheck.rewrite.compensate.pieces import Piece
 from polarcheck.rewrite.compensate.section_moves import Move
 
-#: A ramp is longer than R by this [mm], so that no rounding makes it shorter.
+#: A ramp is longer than R by this [mm], so that rounding cannot make it shorter than R.
 _RESERVE = 0.0021
-#: What a stretch for a ramp may leave the path by [mm].
+#: The largest deviation of a ramp from the path [mm].
 _ASIDE = 5e-4
-#: Largest deviation of a ramp from an arc where R and the reserve need a longer one [mm].
+#: The largest deviation of a ramp from an arc if only a longer ramp satisfies R and the reserve [mm].
 _MOST_ASIDE = 0.002
 #: A ramp takes no more than this share of a path.
 _MOST_OF_PATH = 0.4
-#: Moves that turn less are smooth [rad]; and those of a lead, whose ends are rounded as well.
+#: The largest turn between smooth moves [rad]; the same for a lead, whose ends are rounded as well.
 _SMOOTH, _SMOOTH_LEAD = 5e-3, 0.02
 
 
@@ -34,8 +34,9 @@ class Contour(msgspec.Struct, frozen=True):
     """
     A contour in a list of moves.
 
-    first, last: numbers of its moves, both included. aside: of the contour to the left of the path [mm]; below 0 to
-    the right. closed: the path comes back to its beginning at the end of its last move.
+    first, last: numbers of its moves, both included.
+    aside: distance of the contour to the left of the path [mm]; below 0 to the right.
+    closed: the last move of the path ends at the start of the first.
     """
 
     first: int
@@ -48,9 +49,10 @@ class Ramped(msgspec.Struct, frozen=True):
     """
     A contour with its ramps.
 
-    contour: its pieces as programmed, each with the number of the move in whose place it stands.
-    enters: the move that becomes the start-up; -1 where a new one leads from the path to the contour.
-    leaves: the move that becomes the offset cancel; -1 where a new one leads back to the path, to `back`.
+    contour: its pieces as programmed, each with the number of the move that it replaces.
+    enters: the move that becomes the start-up; -1 if a new move leads from the path to the contour.
+    leaves: the move that becomes the offset cancel; -1 if a new move leads back to the path, to `back`.
+    back: the end of that new move [mm].
     """
 
     contour: list[Piece]
@@ -61,8 +63,10 @@ class Ramped(msgspec.Struct, frozen=True):
 
 def with_ramps(moves: Sequence[Move], contour: Contour, low: int, high: int) -> Ramped:
     """
-    Return a contour with its ramps. low, high: the moves from `low` up to `high` (exclusive) are of the same run and of
-    no other contour. Raises NoContourError where there is none, or no room for a ramp.
+    Return a contour with its ramps.
+
+    low, high: first and end of the moves that belong to the same run and to no other contour.
+    Raises NoContourError where there is no contour, or no room for a ramp.
     """
     path = [moves[number].piece for number in range(contour.first, contour.last + 1)]
     if contour.closed and _turn(path[-1], path[0]) < _SMOOTH:
@@ -78,7 +82,7 @@ def with_ramps(moves: Sequence[Move], contour: Contour, low: int, high: int) -> 
 
 
 def _with_leads(moves: Sequence[Move], contour: Contour, ring: list[Piece], low: int, high: int) -> Ramped:
-    """A contour that begins and ends in one line; its leads may be arcs, which are compensated as well."""
+    """Return a contour that closes smoothly, with its leads; these may be arcs, which are compensated as well."""
     aside = contour.aside
     arcs_in = _arcs(moves, range(contour.first - 1, low - 1, -1), ring[0].start, ring[0].leaving, aside)
     path = [*reversed(arcs_in), *ring]
@@ -95,7 +99,7 @@ def _with_leads(moves: Sequence[Move], contour: Contour, ring: list[Piece], low:
 
 
 def _past_its_beginning(contour: Contour, ring: list[Piece], enters: int) -> Ramped:
-    """A ring whose contour runs on along its beginning, from where a new move leads back to the path."""
+    """Return a ring that continues along its start, from where a new move leads back to the path."""
     radius = abs(contour.aside)
     turn = cmath.phase(ring[0].leaving / ring[-1].arriving)
     # At an outer corner the contour begins where its parallels have crossed.
@@ -109,7 +113,7 @@ def _past_its_beginning(contour: Contour, ring: list[Piece], enters: int) -> Ram
 
 
 def _open(contour: Contour, path: list[Piece], enters: int, leaves: int) -> Ramped:
-    """A path whose ramps are moves before and behind it, or its first and its last stretch."""
+    """Return a path whose ramps are the moves before and after it, or else its first and its last stretch."""
     radius, back = abs(contour.aside), path[-1].end
     if enters < 0:
         path = _rest_after(path, _stretch(path, radius))
@@ -124,7 +128,7 @@ def _turn(before: Piece, after: Piece) -> float:
 
 
 def _arcs(moves: Sequence[Move], numbers: Sequence[int], point: complex, along: complex, aside: float) -> list[Piece]:
-    """The arcs that lead to a contour, or away from it, without a corner; the nearest first."""
+    """Return the arcs that lead smoothly to a contour, or away from it; the nearest first."""
     result: list[Piece] = []
     for number in numbers:
         move, piece = moves[number], moves[number].piece
@@ -139,7 +143,9 @@ def _arcs(moves: Sequence[Move], numbers: Sequence[int], point: complex, along: 
 
 
 def _host(moves: Sequence[Move], number: int, low: int, high: int, point: complex, along: complex, aside: float) -> int:
-    """The number of a straight move that is long enough for a ramp between its far end and the contour; else -1."""
+    """
+    Return the number of a straight move if it is long enough for a ramp from its far end to the contour; otherwise -1.
+    """
     if not low <= number < high:
         return -1
     move, arc_end = moves[number], point + 1j * aside * along
@@ -153,9 +159,9 @@ def _host(moves: Sequence[Move], number: int, low: int, high: int, point: comple
 
 def _stretch(path: Sequence[Piece], radius: float, corner: float = 0.0) -> float:
     """
-    The length of the first stretch of a path that makes a ramp [mm], along a line all but straight.
+    Return the length of the first, almost straight stretch of a path that makes a ramp [mm].
 
-    corner: what of it lies before the contour begins [mm].
+    corner: the length of that stretch before the contour starts [mm].
     """
     whole = sum(piece.length for piece in path)
     least = math.sqrt((radius + _RESERVE) ** 2 - radius**2)
@@ -167,7 +173,7 @@ def _stretch(path: Sequence[Piece], radius: float, corner: float = 0.0) -> float
 
 
 def _leaves_by(path: Sequence[Piece]) -> float:
-    """The largest distance of a path from the line between its ends [mm]."""
+    """Return the largest distance of a path from the line between its ends [mm]."""
     start, chord = path[0].start, path[-1].end - path[0].start
     along = chord / (abs(chord) or 1.0)
     points = [point for piece in path for point in (piece.at(0.5), piece.end)]
@@ -175,7 +181,7 @@ def _leaves_by(path: Sequence[Piece]) -> float:
 
 
 def _beginning(path: Sequence[Piece], stretch: float) -> list[Piece]:
-    """The first stretch of a path [mm]."""
+    """Return the first stretch of a path. stretch: its length [mm]."""
     result: list[Piece] = []
     for piece in path:
         if piece.length >= stretch:
@@ -186,7 +192,7 @@ def _beginning(path: Sequence[Piece], stretch: float) -> list[Piece]:
 
 
 def _rest_after(path: Sequence[Piece], stretch: float) -> list[Piece]:
-    """A path without its first stretch [mm]."""
+    """Return a path without its first stretch. stretch: its length [mm]."""
     for number, piece in enumerate(path):
         if piece.length > stretch + ZERO:
             return [piece.replaced(start=piece.at(stretch / piece.length)), *path[number + 1 :]]

@@ -1,4 +1,4 @@
-"""A program with G41 or G42 read back: the part is the one that the path of the tool center has made."""
+"""Reads a program with G41 or G42 back and proves that the part is the one of the tool center path."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ from polarcheck.rewrite.writing.outcome import Refusal, RefusedError, refused_at
 from polarcheck.rewrite.writing.reading_back import read_back_on_part
 from polarcheck.rewrite.writing.unchanged import changed_outside, changed_words
 
-#: Points of each contour that are looked at, and those near its corners, as shares of its pieces.
+#: The number of points compared along each contour, and the points near corners, as shares of a piece.
 _POINTS, _NEAR_CORNERS = 400, (0.0, 0.02, 0.1, 0.9, 0.98)
-#: What a wall may differ by: least increments, and the chords of arcs [mm].
+#: Tolerance of a wall: in least increments, and for the chords of arcs [mm].
 _INCREMENTS, _CHORDS = 2.0, 5e-4
-#: The tool center goes round an acute corner up to this far from the path, in R.
+#: The largest distance of the tool center from the path at an acute corner, in R.
 _FARTHEST = 3.0
-#: The tool center goes round corners up to this far from arcs with R about them, in R: the square root of 2, less 1.
+#: The largest distance of the tool center from an arc with R about a corner, in R: the square root of 2, less 1.
 _AT_CORNERS = 0.42
 #: Smaller distances that are tried first, in R.
 _FINER = (0.003, 0.15, 0.45, 0.9)
@@ -36,7 +36,7 @@ class CompensatedContour(msgspec.Struct, frozen=True):
     """
     A contour of a section with its ramps.
 
-    path: the moves of the tool center that it is beside.
+    path: the moves of the tool center beside the contour.
     """
 
     section: Section
@@ -46,9 +46,10 @@ class CompensatedContour(msgspec.Struct, frozen=True):
 
 class Proof(NamedTuple):
     """
-    What differs [mm].
+    The differences that were measured.
 
-    part: of the walls. path: of the way of the tool center.
+    part: the largest difference of the walls [mm].
+    path: the largest distance of the tool center from its path [mm].
     """
 
     part: float
@@ -59,10 +60,11 @@ def require_same_part(
     original: Original, swept: Swept, data: bytes, origin: Sequence[int], contours: Sequence[CompensatedContour]
 ) -> Proof:
     """
-    Return what the part and the way of the tool center differ by, with G41 and G42 and without.
+    Return the differences of the part and of the tool center path between the programs with and without G41 and G42.
 
-    swept: what the cutters of the original clear. origin: for each line of the new program that of the original.
-    Raises RefusedError where the walls along a contour would be others, or the control would object; TooHardError.
+    swept: what the cutters of the original clear.
+    origin: for each line of the new program the line of the original.
+    Raises RefusedError where the walls along a contour would differ, or the control would object; TooHardError.
     """
     trace = original.trace
     radius = max(contour.section.radius for contour in contours)
@@ -105,7 +107,7 @@ def _text(was: Floats, becomes: Floats, worst: int) -> str:
 
 
 def _points(contour: Sequence[Piece]) -> tuple[list[int], Points]:
-    """Points along a contour, more of them near its corners, and the number of the move of each."""
+    """Return points along a contour, more of them near its corners, and the number of the move of each."""
     whole = sum(piece.length for piece in contour) or 1.0
     numbers: list[int] = []
     points: list[complex] = []

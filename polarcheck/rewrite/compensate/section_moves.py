@@ -1,4 +1,4 @@
-"""The moves of polar sections one by one, for the functions that follow a path from corner to corner."""
+"""The single moves of polar sections, for functions that follow a path from corner to corner."""
 
 from __future__ import annotations
 
@@ -20,8 +20,10 @@ class Move(msgspec.Struct, frozen=True):
     """
     A move on the polar plane.
 
-    row: of the trace. piece: its way; piece.move is the number of the move in its list. begins, ends: Z [mm], NaN where
-    it is not known. feeds: at feed, not in rapid traverse.
+    row: row of the trace.
+    piece: its line or arc; piece.move is the number of the move in its list.
+    begins, ends: Z before and after it [mm]; NaN if it is not known.
+    feeds: True at feed, False in rapid traverse.
     """
 
     row: int
@@ -32,7 +34,7 @@ class Move(msgspec.Struct, frozen=True):
 
     @property
     def is_level(self) -> bool:
-        """Z does not move."""
+        """True if Z does not move."""
         return not abs(self.ends - self.begins) > ZERO
 
 
@@ -53,7 +55,7 @@ def of_section(trace: Trace, moves: Moves, section: int) -> list[Move]:
 
 
 def runs(trace: Trace, moves: Sequence[Move]) -> list[tuple[int, int]]:
-    """Return the first move and the one behind the last of each run of moves between which Z does not move alone."""
+    """Return the first move and the end of each run of connected moves at feed, without moves of only Z in between."""
     alone = np.cumsum(trace.path.moves_z & ~trace.path.travels)
     result: list[tuple[int, int]] = []
     for number, move in enumerate(moves):
