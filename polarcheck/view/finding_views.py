@@ -132,9 +132,9 @@ class Spots:
         elif rule is not None and rule.subject in _OF_CONTOUR:
             where = Where.CONTOUR
         span = self._span(finding, rows[0], where) if rows else None
-        return Spot(rows, self._known(finding, rule, rows), also, where, span)
+        return Spot(rows, self._known_points(finding, rule, rows), also, where, span)
 
-    def _known(self, finding: Finding, rule: Rule | None, rows: Sequence[int]) -> list[complex]:
+    def _known_points(self, finding: Finding, rule: Rule | None, rows: Sequence[int]) -> list[complex]:
         """Return the points that the values of a finding give, and the rule gives for its other rows [mm]."""
         x, c = finding.values.get("plane_x"), finding.values.get("plane_c")
         if not isinstance(x, float | int) or not isinstance(c, float | int):

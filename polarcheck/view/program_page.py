@@ -14,13 +14,13 @@ from polarcheck.view.run_drawing import drawn, split
 
 
 def program_page(
-    report: FileReport, runs: Sequence[tuple[str, Tables]], background: Background, beside: str = "", sources: str = ""
+    report: FileReport, runs: Sequence[tuple[str, Tables]], background: Background, script: str = "", sources: str = ""
 ) -> str:
     """
     Return the page of a program: HTML that needs no network, or with an address that loads plotly from there.
 
-    runs: as the check has run the program. beside, sources: the address of plotly, and the sources of scripts that the
-    policy of the page allows.
+    runs: as the check has run the program.
+    script, sources: the address of plotly, and the sources of scripts that the policy of the page allows.
 
     Raises TooHardError where the drawing takes too long.
     """
@@ -28,4 +28,4 @@ def program_page(
     if drawing is not None:
         background = background._replace(drawn={report.path: drawing})
     plot = page_data.picture(report, background)
-    return page([plot], script_path=beside, sources=sources) if beside else page([plot], library())
+    return page([plot], script_path=script, sources=sources) if script else page([plot], library())

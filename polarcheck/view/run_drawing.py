@@ -143,13 +143,13 @@ class _Section(NamedTuple):
 
 def _spots(report: FileReport, runs: Sequence[Spots]) -> dict[Key, tuple[int, Spot]]:
     """Return for each finding the number of its run, and its place there."""
-    found: dict[Key, tuple[int, Spot]] = {}
+    by_key: dict[Key, tuple[int, Spot]] = {}
     for finding in with_followers([*report.findings, *report.silenced]):
         key = key_of(finding)
         of_channel = [number for number, spots in enumerate(runs) if key[3] in ("", spots.channel)]
         run = next((number for number in of_channel if runs[number].has(finding)), next(iter(of_channel), 0))
-        found.setdefault(key, (run, runs[run].of(finding)))
-    return found
+        by_key.setdefault(key, (run, runs[run].of(finding)))
+    return by_key
 
 
 def _location(run: int, spot: Spot, sections: Sequence[_Section]) -> FindingLocation:
@@ -161,14 +161,12 @@ def _location(run: int, spot: Spot, sections: Sequence[_Section]) -> FindingLoca
     row = spot.rows[0]
     number = face.nearest_section(row)
     index_shown = index_by_number.get(
-        number, index_by_number[min(index_by_number, key=lambda row_or_point: abs(row_or_point - number))]
+        number, index_by_number[min(index_by_number, key=lambda section_number: abs(section_number - number))]
     )
     picture, listed = sections[index_shown].picture, sections[index_shown].listed
-    known = [*spot.known, *(face.place(row_or_point, spot.where) for row_or_point in spot.rows[len(spot.known) :])]
+    positions = [*spot.known, *(face.place(row, spot.where) for row in spot.rows[len(spot.known) :])]
     points = dict.fromkeys(
-        (round(row_or_point.real, LENGTH), round(row_or_point.imag, LENGTH))
-        for row_or_point in known
-        if cmath.isfinite(row_or_point)
+        (round(point.real, LENGTH), round(point.imag, LENGTH)) for point in positions if cmath.isfinite(point)
     )
     move = int(np.searchsorted(listed, face.move(row, spot.where)))
     wide = max(picture.frame[2] - picture.frame[0], picture.frame[3] - picture.frame[1])

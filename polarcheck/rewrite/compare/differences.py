@@ -210,7 +210,7 @@ def _feeds_apart(old: Part, new: Part) -> Iterator[Difference]:
     """Yield a difference if two differing paths do not have the same values of F; each value counts once."""
     feeds = [list(dict.fromkeys(_feed(part, move) for move in _changes_of_feed(part.stretch))) for part in (old, new)]
     if sorted(feeds[0]) != sorted(feeds[1]):
-        texts = [", ".join(feeds_of_part[:_LISTED]) or "none" for feeds_of_part in feeds]
+        texts = [", ".join(values[:_LISTED]) or "none" for values in feeds]
         yield Difference("feed", f"F was {texts[0]} and is {texts[1]}", texts[0], texts[1])
 
 
@@ -254,7 +254,7 @@ def _orders(old: Part, new: Part, tolerance: float, is_same_path: bool) -> Itera
         difference = _of_pair(old, step, new, new_step, tolerance, is_same_path)
         if difference is not None:
             differences.append(difference)
-    differences.sort(key=lambda difference_found: difference_found.old_line or difference_found.new_line or 0)
+    differences.sort(key=lambda change: change.old_line or change.new_line or 0)
     yield from differences[:_LISTED]
     if len(differences) > _LISTED:
         yield Difference("order", f"and {len(differences) - _LISTED} other orders")

@@ -100,9 +100,7 @@ class _Search:
 
     def comes_back(self, before: Ring, ring: Ring) -> bool:
         """Return True for a short loop right after a ring: out, and back for another pass."""
-        lengths = [
-            self.length[ring_compared.last + 1] - self.length[ring_compared.first] for ring_compared in (before, ring)
-        ]
+        lengths = [self.length[stretch.last + 1] - self.length[stretch.first] for stretch in (before, ring)]
         return ring.first == before.last + 1 and lengths[1] < _MOST_OF * lengths[0]
 
     def _closed(self, first: int, most: int) -> Ring | None:

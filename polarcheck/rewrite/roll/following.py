@@ -46,7 +46,7 @@ class Following:
 
     def behind(self, row: int, rows: Rows) -> int:
         """Return the first of some rows after a row, in the same program; the number of all rows if there is none."""
-        following, end = (self._next(row, candidates) for candidates in (rows, self._starts))
+        following, end = (self._next(row, ascending) for ascending in (rows, self._starts))
         return following if following < end else self._count
 
     def _next(self, row: int, rows: Rows) -> int:

@@ -137,7 +137,7 @@ class Writer:
         """
         trace, pen, candidate = self.trace, self.pen, self.each
         if self.entry is None:
-            self._at(candidate.first).extend(self._entered())
+            self._blocks_of(candidate.first).extend(self._entered())
         else:
             self._enter_above(self.entry)
         lines = trace.blocks.line_in_file
@@ -151,13 +151,13 @@ class Writer:
                 blocks = pen.line(end, element.z, feed)
             else:
                 blocks = pen.arc(end, element.center / self._turn, element.kind == Motion.CCW, element.z, feed)
-            self._at(row).extend(blocks)
-        last = self._at(candidate.last)
+            self._blocks_of(row).extend(blocks)
+        last = self._blocks_of(candidate.last)
         last += self._in_case([block for block in pen.leave() if self._makes_of_x(block) in (None, self._is_radius)])
         is_line = elements[-1].kind in (Motion.LINE, Motion.NONE) and not trace.machine.control.motion_codes
         last += restored(trace, self.following, candidate.last, pen, is_line=is_line)
 
-    def _at(self, row: int) -> list[NewBlock]:
+    def _blocks_of(self, row: int) -> list[NewBlock]:
         return self.replaced[int(self.trace.run.block[row])]
 
     # ---- the mode ----
@@ -192,7 +192,7 @@ class Writer:
             pen.numbers.line = int(trace.blocks.line_in_file[row])
             z, feed = float(trace.path.z[row]), float(trace.feedrate.written_feed[row])
             is_rapid = trace.axes.motion[row] == Motion.RAPID
-            self._at(row).extend(pen.rapid(z=z) if is_rapid else pen.line(None, z, feed))
+            self._blocks_of(row).extend(pen.rapid(z=z) if is_rapid else pen.line(None, z, feed))
 
     def _per_minute(self, row: int) -> list[NewBlock]:
         """The code of F per minute where it is not in force before a row."""

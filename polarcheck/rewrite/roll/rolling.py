@@ -81,9 +81,9 @@ def rolled(original: Original, options: Rolling) -> Outcome:
     rule = per_minute_rule(trace, candidates, options.feed)
     style = style_of(trace)
     sections: list[Section] = []
-    for section in candidates:
+    for candidate in candidates:
         try:
-            sections.append(_section(original, following, section, rule, options, style))
+            sections.append(_section(original, following, candidate, rule, options, style))
         except RefusedError as error:
             refusals += error.refusals
     for _ in range(_TRIALS):
@@ -95,7 +95,7 @@ def rolled(original: Original, options: Rolling) -> Outcome:
         if not differences:
             notes = [
                 *_notes(original, sections, rule, options),
-                *(f"{section}" for section in result.notes),
+                *(f"{note}" for note in result.notes),
                 *_refusal_notes(refusals),
             ]
             return Outcome(data, origin, [], _figures(sections, measured), notes)

@@ -116,7 +116,7 @@ def _spans(trace: Trace, sections: Collection[tuple[int, int]], edits: Sequence[
     starts = np.array([start for start, _, _ in edits] or [0])
     grown = np.cumsum([0, *(len(text) - (end - start) for start, end, text in edits)])
 
-    def place(position: int) -> int:
+    def moved(position: int) -> int:
         return int(position + grown[np.searchsorted(starts, position)]) if edits else position
 
-    return [(place(int(blocks.start[first])), place(int(blocks.end[last]))) for first, last in sorted(sections)]
+    return [(moved(int(blocks.start[first])), moved(int(blocks.end[last]))) for first, last in sorted(sections)]

@@ -250,8 +250,8 @@ def _comments(text: Text, index: int, content: str) -> tuple[list[str], str]:
     """The comments in a block without their signs, and the block with blanks in their places."""
     start = int(text.blocks.start[index])
     comments, bare = [], content
-    for at in range(*stretch(text.comments.block, index, index + 1)):
-        first, last = int(text.comments.start[at]) - start, int(text.comments.end[at]) - start
+    for number in range(*stretch(text.comments.block, index, index + 1)):
+        first, last = int(text.comments.start[number]) - start, int(text.comments.end[number]) - start
         comment = content[first:last]
         is_closed = comment.startswith("(") and comment.endswith(")")
         comments.append(comment[1:-1] if is_closed else comment[1:].strip())

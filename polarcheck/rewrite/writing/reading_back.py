@@ -218,14 +218,14 @@ def _times(result: Comparison) -> Iterator[Refusal]:
 def _errors(original: Original, new: Original, origin: Sequence[int]) -> Iterator[tuple[Rule, Refusal]]:
     """Errors of a check that the original does not have, with their rules."""
     rules = load_all()
-    before, after = (_errors_of(of_program) for of_program in (original, new))
+    before, after = (_errors_of(program) for program in (original, new))
     counts_before = Counter(finding.rule for finding in before)
     lines = {(finding.rule, finding.line) for finding in before}
     of_rule: dict[str, list[Finding]] = {}
     for finding in after:
         of_rule.setdefault(finding.rule, []).append(finding)
     for rule, findings in of_rule.items():
-        added = [of_program for of_program in findings if (rule, _line(origin, of_program.line)) not in lines]
+        added = [finding for finding in findings if (rule, _line(origin, finding.line)) not in lines]
         for finding in added[: max(len(findings) - counts_before[rule], 0)]:
             text = f"{finding.rule} in line {finding.line} of the result: {finding.message}"
             yield rules[rule], Refusal(_line(origin, finding.line), text)

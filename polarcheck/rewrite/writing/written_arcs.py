@@ -101,7 +101,7 @@ def _deviation(arc: Arc, start: complex, end: complex, center: complex, step: fl
         return math.inf
     growth = abs(end - center) - abs(start - center)
     written = Arc(start, center, sweep, growth)
-    meant = ((share, arc.radius + arc.growth * share) for share in (0.25, 0.5, 0.75))
-    between = max(abs(abs(written.at(share) - arc.center) - radius) for share, radius in meant)
+    intended = ((share, arc.radius + arc.growth * share) for share in (0.25, 0.5, 0.75))
+    between = max(abs(abs(written.at(share) - arc.center) - radius) for share, radius in intended)
     # The control compares the radii at both ends.
     return between + abs(growth - arc.growth)
