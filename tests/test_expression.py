@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from typing import Any
 
 import pytest
@@ -13,6 +14,10 @@ from macro_values import Variables, expression, same, value, variables
 
 from polarcheck.program.execution.arithmetic import UNKNOWN, Arithmetic, round_to
 from polarcheck.program.execution.expression import decide, evaluate
+from polarcheck.program.execution.high_level_tokens import HIGH_LEVEL
+from polarcheck.program.execution.language_tokens import Tokens
+from polarcheck.program.execution.task_tokens import USER_TASK
+from polarcheck.program.execution.variable_names import Names
 
 WIDE = Arithmetic(largest=1e308)
 
@@ -351,3 +356,45 @@ def test_rounding_errors_are_no_faults() -> None:
 def test_ambiguous(text: str, at: str | None) -> None:
     place = expression(text).mixed
     assert (place and text[place[0] : place[1]]) == at
+
+
+HIGH_LEVEL_WORDS = {"[": "(", "]": ")", "#": "R", "FIX": "TRUNC", "EQ": "==", "NE": "<>", "GT": ">", "LE": "<="}
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("1+2*3-8/4", 5),
+        ("-[2+3]*-4+1", 21),
+        ("17 MOD 5*2", 4),
+        ("2*17 MOD 5", 4),
+        ("10-4-3", 3),
+        ("SIN[30]+COS[60]*TAN[45]", 1),
+        ("SQRT[ABS[-16]]", 4),
+        ("ROUND[2.5]+FIX[-2.7]", 1),
+        ("ASIN[.5]+ACOS[.5]", 90),
+        ("#1*2-#3", 2 * 1001 - 1003),
+        ("[1+1 EQ 2] AND [3*2 GT 5]", 1),
+        ("[1+1 NE 2] OR [3 LE 2]", 0),
+        ("[1 EQ 1] XOR [3 GT 2]", 0),
+    ],
+)
+def test_the_same_expression_has_one_value_in_each_language(text: str, expected: float) -> None:
+    """Variables hold 1000 more than their number."""
+    spelled_out = re.sub("|".join(map(re.escape, HIGH_LEVEL_WORDS)), lambda word: HIGH_LEVEL_WORDS[word[0]], text)
+    high_level = Tokens(spelled_out, HIGH_LEVEL, Names(), 20, 1000)
+    user_task = Tokens(text.replace("#", "VC").replace("XOR", "EOR"), USER_TASK, Names(), 20, 1000)
+    for read in (expression(text), high_level.expression(), user_task.expression()):
+        assert read is not None
+        value, fault = evaluate(read, Numbered())
+        assert (value, fault) == (pytest.approx(expected), None)
+
+
+class Numbered:
+    """Variables that hold 1000 more than their number, by which R1 and #1 are the same."""
+
+    def exists(self, number: float) -> bool:
+        return True
+
+    def value(self, number: float) -> float:
+        return number % 1000 + 1000

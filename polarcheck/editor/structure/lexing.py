@@ -10,12 +10,12 @@ from typing import Final, NamedTuple
 from polarcheck.program.execution.custom_macro import KEYWORD
 from polarcheck.program.execution.flow_keywords import KEYWORDS, SEARCHES, TYPES
 from polarcheck.program.execution.high_level import is_custom_macro
-from polarcheck.program.execution.high_level_tokens import GRAMMAR, tokens_of
+from polarcheck.program.execution.high_level_tokens import GRAMMAR, HIGH_LEVEL
 from polarcheck.program.execution.listing import Listing
 from polarcheck.program.execution.macro_tokens import TOKEN, Characters, is_operator
 from polarcheck.program.execution.programs import block_text
-from polarcheck.program.execution.task_values import FLOW, NO_VALUES, SEQUENCE_NAME, SYSTEM, Values
-from polarcheck.program.execution.task_values import is_function as is_task_function
+from polarcheck.program.execution.task_tokens import FLOW, SEQUENCE_NAME, SYSTEM, USER_TASK
+from polarcheck.program.execution.task_tokens import GRAMMAR as TASK_GRAMMAR
 
 #: The most tokens of a block.
 _MOST: Final = 5_000
@@ -100,7 +100,7 @@ def _kind_in_custom_macro(text: str, start: int, follows_value: bool) -> tuple[s
 
 
 def _high_level(block: str, listing: Listing) -> Iterator[Token]:
-    lexed = tokens_of(block, _MOST)
+    lexed = HIGH_LEVEL.tokens_of(block, _MOST)
     letter = listing.macro.parameter_letter
     skips = 0
     for index, token in enumerate(lexed[:-1]):
@@ -154,23 +154,22 @@ def _kind_of_name(name: str, following: str, listing: Listing) -> str:
 
 
 def _user_task(block: str, listing: Listing) -> Iterator[Token]:
-    lexed = Values(block, listing.names).tokens[:_MOST]
+    lexed = USER_TASK.tokens_of(block, _MOST)
     skips = depth = 0
     is_head = True
-    for index, token in enumerate(lexed):
+    for index, token in enumerate(lexed[:-1]):
         if skips:
             skips -= 1
             continue
-        last = lexed[index - 1] if index else None
-        following = lexed[index + 1] if index + 1 < len(lexed) else None
-        is_target = following is not None and following.text == "="
+        last, following = lexed[index - 1] if index else None, lexed[index + 1]
+        is_target = following.text == "="
         if token.kind == "sign":
             depth += {"[": 1, "]": -1}.get(token.text, 0)
             if token.text not in "[],":
                 yield Token("operator", token.text, token.start, token.end)
         elif token.kind == "number":
             yield Token("number", token.text, token.start, token.end)
-        elif token.kind == "letter" and token.text == "V" and following is not None and following.kind == "number":
+        elif token.kind == "letter" and token.text == "V" and following.kind == "number":
             skips = 1
             yield Token("variable", f"V{following.text}", token.start, following.end)
         elif token.kind == "letter":
@@ -183,13 +182,13 @@ def _user_task(block: str, listing: Listing) -> Iterator[Token]:
 
 
 def _kind_of_task(name: str, listing: Listing, is_target: bool, in_value: bool) -> str:
-    if name in (*FLOW, "NOEX"):
+    if name in FLOW:
         return "keyword"
     if SYSTEM.fullmatch(name):
         return "system"
-    if name in NO_VALUES:
+    if name in TASK_GRAMMAR.operators:
         return "operator"
-    if in_value and is_task_function(name):
+    if in_value and name in TASK_GRAMMAR.functions:
         return "function"
     if name.startswith("VC") and name[2:].isdigit():
         return "variable"

@@ -20,7 +20,7 @@ from polarcheck.editor.structure.workspace import Workspace
 from polarcheck.foundation.errors import PolarcheckError
 from polarcheck.program.execution.macro import ARGUMENTS, VariableKind
 from polarcheck.program.execution.macro_tokens import in_capitals
-from polarcheck.program.execution.task_values import SEQUENCE_NAME
+from polarcheck.program.execution.task_tokens import SEQUENCE_NAME
 from polarcheck.program.reading.excerpt import shortened, visible
 
 #: The longest new name that a message shows [characters].

@@ -137,7 +137,6 @@ _OPERATIONS: Final[Mapping[str, Callable[..., float | FaultKind]]] = {
     "SQRT": lambda a: math.sqrt(max(a, 0.0)) if a >= -_NOISE else "negative-square-root",
     "ABS": abs,
     "FIX": lambda a: float(math.trunc(a)),
-    "@ROUND": lambda a: round_to(a, 1),
     "FUP": lambda a: float(math.ceil(a) if a > 0 else math.floor(a)),
     "LN": lambda a: math.log(a) if a > 0 else "logarithm-not-positive",
     "EXP": math.exp,
@@ -153,7 +152,7 @@ _OPERATIONS: Final[Mapping[str, Callable[..., float | FaultKind]]] = {
     "B_NOT": lambda a: float(~int(round_to(a, 1))),
     "JOIN": lambda a, b: UNKNOWN,  # strings are not followed
     "ADP": lambda a: UNKNOWN,  # it asks whether an argument of the call was written with a point
-    "NAMED": lambda a: UNKNOWN,  # a system variable by its name
+    "NAMED": lambda a: UNKNOWN,  # a system variable by its name, or a function that is not calculated
 }
 
 

@@ -52,19 +52,18 @@ _ALONE: Final[dict[str, FaultKind]] = {"[": "format", "]": "missing-open-bracket
 
 
 class _Reader:
-    """Reads one block, empty where it is read as other characters. at: index of the next; fault: the first so far."""
+    """Reads one block. at: index of the next character; fault: the first so far."""
 
     def __init__(
         self,
         block: str,
-        characters: Characters,
         calls: frozenset[str],
         loops: int,
         levels: int,
         size: int,
         names: Collection[str],
     ) -> None:
-        self.block, self.characters = block, characters
+        self.block, self.characters = block, Characters.of_block(block)
         self.text, self.at = self.characters.text, 0
         self.calls, self.loops, self.levels, self.size = calls, loops, levels, size
         self.names, self.has_equal = sorted(names, key=len, reverse=True), "=" in self.text
@@ -336,7 +335,7 @@ class _Reader:
 
 
 def read_statement(
-    block: str | Characters,
+    block: str,
     *,
     calls: frozenset[str],
     loops: int,
@@ -345,12 +344,10 @@ def read_statement(
     names: Collection[str] = (),
 ) -> Statement:
     """
-    Read one block, given without comments, or what it is read as; blanks and small letters are allowed anywhere.
+    Read one block, given without comments; blanks and small letters are allowed anywhere.
 
     calls: the codes that call a program or return from one, in the spelling of `Word.code`. loops: the highest number
     of DO and END. levels: of brackets, in each expression. size: bound of words, and of the steps of an expression.
     names: of axes that are written with =, beside those of a letter and a number.
     """
-    characters = block if isinstance(block, Characters) else Characters.of_block(block)
-    written = "" if isinstance(block, Characters) else block
-    return _Reader(written, characters, calls, loops, levels, size, names).block_statement()
+    return _Reader(block, calls, loops, levels, size, names).block_statement()

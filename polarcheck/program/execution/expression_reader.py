@@ -7,68 +7,16 @@ turns infix tokens into the postfix steps of an Expression, without recursion, i
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Final, NamedTuple, Protocol
-
-import msgspec
 
 from polarcheck.program.execution.arithmetic import OPERAND_COUNTS
 from polarcheck.program.execution.expression import Expression, Fault, Step
+from polarcheck.program.execution.grammar import JOIN_OFFSET, Function, Grammar, Operator
 from polarcheck.program.execution.kinds import FaultKind
 
 #: Steps of conditions, and the steps that combine two conditions where the operator also combines numbers.
 _COMPARISONS: Final = frozenset(("EQ", "NE", "GT", "LT", "GE", "LE"))
 _LOGICAL: Final = {"AND": "BOTH", "OR": "EITHER", "XOR": "ONE"}
-
-
-class Operator(NamedTuple):
-    """
-    An operator of a language.
-
-    precedence: the operator with the higher one is calculated first.
-    step: its step in the calculation.
-    family: a bit for operators of equal nature, for Grammar.doubtful; 0 for none.
-    """
-
-    precedence: int
-    step: str
-    family: int = 0
-
-
-class Function(msgspec.Struct, frozen=True):
-    """
-    A function with its opening bracket, or a bracket alone.
-
-    steps: the steps behind the arguments, by the number of arguments; a number in it is a constant.
-    closing: the closing bracket.
-    again: the characters that open a bracket for the second argument, as in ATAN[1]/[2]; "" where none do.
-    """
-
-    steps: Mapping[int, tuple[str | float, ...]]
-    closing: str
-    again: str = ""
-
-
-class Grammar(msgspec.Struct, frozen=True):
-    """
-    What differs between the languages of expressions.
-
-    operators: those between two values, by their characters.
-    prefixes: those before a value, by their characters; None where it does nothing, as +.
-    functions: what opens a bracket, by Operand.text.
-    doubtful: sums of families whose precedence is in doubt where they stand together without brackets.
-    checks_conditions: a condition is not a number, nor the reverse.
-    repeats_prefixes: more than one prefix may stand before a value.
-    takes_any_comma: a comma too many is a fault of the whole bracket, not of the comma.
-    """
-
-    operators: Mapping[str, Operator]
-    prefixes: Mapping[str, Operator | None]
-    functions: Mapping[str, Function]
-    doubtful: frozenset[int] = frozenset()
-    checks_conditions: bool = False
-    repeats_prefixes: bool = False
-    takes_any_comma: bool = False
 
 
 class Operand(NamedTuple):
@@ -144,12 +92,14 @@ class _Bracket:
     outside: count of operators that wait outside of it.
     arguments: count so far.
     families: of the operators in its present argument.
+    join: the last AND, OR or XOR between numbers in it; None where there is none.
     """
 
-    __slots__ = ("arguments", "families", "function", "outside", "start")
+    __slots__ = ("arguments", "families", "function", "join", "outside", "start")
 
     def __init__(self, function: Function, start: int, outside: int, arguments: int = 1) -> None:
         self.function, self.start, self.outside, self.arguments, self.families = function, start, outside, arguments, 0
+        self.join: Following | None = None
 
 
 _WHOLE: Final = Function({1: ()}, "")
@@ -222,20 +172,21 @@ class _Reader:
 
     def read_value(self) -> None:
         """Read prefixes and opening brackets up to and with a number or a variable."""
-        has_prefix = False
+        has_sign = False
         while True:
             kind, text, number, start, end = self.lexer.operand()
             self.end = end
             if kind == "prefix":
-                if has_prefix and not self.grammar.repeats_prefixes:
+                is_repeatable = text in self.grammar.repeatable
+                if has_sign and not is_repeatable:
                     raise Unreadable(self.fault("format", start, end))
-                has_prefix = True
+                has_sign = not is_repeatable
                 operator = self.grammar.prefixes[text]
                 if operator is not None:
                     self.waiting.append((operator, start, end))
             elif kind == "open":
                 self.open(self.grammar.functions[text], start, end)
-                has_prefix = False
+                has_sign = False
             else:
                 self.add("number", number, start, end)
                 if kind == "variable":
@@ -265,17 +216,31 @@ class _Reader:
             ):
                 lexer.pass_over(token)
                 self.add_waiting(0)
-                bracket.arguments, bracket.families = bracket.arguments + 1, 0
+                bracket.arguments, bracket.families, bracket.join = bracket.arguments + 1, 0, None
                 return True
             else:
                 raise Unreadable(lexer.unclosed(bracket.start, token))
 
     def add_operator(self, operator: Operator, token: Following, bracket: _Bracket) -> None:
+        if self.grammar.compares_first:
+            operator = self.with_comparisons(operator, token, bracket)
         self.add_waiting(operator.precedence)
         self.waiting.append((operator, token.start, token.end))
         bracket.families = bracket.families | operator.family if operator.family else 0
         if self.mixed is None and any(bracket.families & doubt == doubt for doubt in self.grammar.doubtful):
             self.mixed = self.lexer.span(token.start, token.end)
+
+    def with_comparisons(self, operator: Operator, token: Following, bracket: _Bracket) -> Operator:
+        """The operator, below all others where it joins a comparison with the next one."""
+        if operator.step in _COMPARISONS and bracket.join is not None:
+            raise Unreadable(self.fault("format", bracket.join.start, bracket.join.end))
+        if operator.step not in _LOGICAL:
+            return operator
+        compares = any(waiting.step in _COMPARISONS for waiting, _, _ in self.waiting[bracket.outside :])
+        if compares or self.conditions[-1]:
+            return Operator(operator.precedence - JOIN_OFFSET, operator.step)
+        bracket.join = token
+        return operator
 
 
 def read_expression(

@@ -9,7 +9,7 @@ from msgspec.structs import replace
 
 from polarcheck.program.execution.arithmetic import UNKNOWN
 from polarcheck.program.execution.expression import Expression, Step, constant
-from polarcheck.program.execution.high_level_tokens import Token
+from polarcheck.program.execution.language_tokens import Token
 from polarcheck.program.execution.programs import Search
 from polarcheck.program.execution.spoken_block import SpokenBlock
 from polarcheck.program.execution.statement import Kind, Parameter, Statement, Word
@@ -34,11 +34,6 @@ TYPES: Final = {
     "AXIS": UNKNOWN,
     "FRAME": UNKNOWN,
 }
-
-
-def end_of(block: SpokenBlock) -> int:
-    """The end of the token before the next one."""
-    return block.tokens[max(block.at - 1, 0)].end
 
 
 def _jump(block: SpokenBlock, kind: Kind, first: Token, condition: Expression | None = None) -> None:
@@ -72,7 +67,7 @@ def _structure(
     block: SpokenBlock, first: Token, condition: Expression | None = None, **more: Expression | None
 ) -> None:
     block.add(
-        Statement(Kind.STRUCTURE, first.start, end_of(block), structure=first.text, condition=condition, **more)  # type: ignore[arg-type]
+        Statement(Kind.STRUCTURE, first.start, block.last_end, structure=first.text, condition=condition, **more)  # type: ignore[arg-type]
     )
 
 
@@ -127,7 +122,7 @@ def _repeat(block: SpokenBlock, first: Token) -> None:
         block.leave_rest(first)
         return
     until = labels[-1] if len(labels) > 1 or first.text == "REPEATB" else ""
-    block.add(Statement(Kind.REPEAT, first.start, end_of(block), label=labels[0], until=until, value=times))
+    block.add(Statement(Kind.REPEAT, first.start, block.last_end, label=labels[0], until=until, value=times))
 
 
 def _case(block: SpokenBlock, first: Token) -> None:
@@ -206,7 +201,7 @@ def _procedure(block: SpokenBlock, first: Token) -> None:
             block.take_sign(",")
         if not block.take_sign(")"):
             block.leave_rest(first)
-    block.add(Statement(Kind.PROCEDURE, first.start, end_of(block), parameters=tuple(parameters)))
+    block.add(Statement(Kind.PROCEDURE, first.start, block.last_end, parameters=tuple(parameters)))
 
 
 def call_by_name(block: SpokenBlock, name: str, first: Token) -> None:
@@ -220,7 +215,7 @@ def call_by_name(block: SpokenBlock, name: str, first: Token) -> None:
                 break
         if not block.take_sign(")"):
             block.wrong("missing-close-bracket", first, block.token)
-    span = first.start, end_of(block)
+    span = first.start, block.last_end
     words = [Word("<", Expression((), *span), name, *span)]
     if block.token.text == "P":
         token = block.token
@@ -256,7 +251,7 @@ def _call_block(block: SpokenBlock, first: Token) -> None:
         block.leave_rest(first)
         return
     block.at += 4
-    block.add(Statement(Kind.REPEAT, first.start, end_of(block), label=names[0].text, until=names[2].text))
+    block.add(Statement(Kind.REPEAT, first.start, block.last_end, label=names[0].text, until=names[2].text))
 
 
 def _return(block: SpokenBlock, first: Token) -> None:

@@ -7,10 +7,11 @@ from collections.abc import Callable
 from typing import Final
 
 from polarcheck.program.execution.expression import Expression, constant
-from polarcheck.program.execution.flow_keywords import KEYWORDS, call_by_name, end_of
-from polarcheck.program.execution.high_level_tokens import Token
+from polarcheck.program.execution.flow_keywords import KEYWORDS, call_by_name
+from polarcheck.program.execution.high_level_tokens import HIGH_LEVEL
+from polarcheck.program.execution.language_tokens import Token
 from polarcheck.program.execution.spoken_block import SpokenBlock
-from polarcheck.program.execution.statement import Number, Statement, Word, whole
+from polarcheck.program.execution.statement import Statement, Word
 from polarcheck.program.execution.variable_names import Names
 from polarcheck.program.machines.machine import Machine
 
@@ -31,7 +32,7 @@ def read_high_level(block: str, machine: Machine, names: Names, read_macro: Call
     """
     if is_custom_macro(block):
         return read_macro(block)
-    return _Reader(block, machine, names).read_block()
+    return _Reader(block, HIGH_LEVEL, machine, names).read_block()
 
 
 def is_custom_macro(block: str) -> bool:
@@ -59,19 +60,14 @@ class _Reader(SpokenBlock):
 
     def head(self) -> None:
         """Block skip, sequence number and label."""
-        while True:
-            token, following = self.token, self.tokens[min(self.at + 1, len(self.tokens) - 1)]
-            if token.text == "/" and token.kind == "sign":
-                has_level = following.text.isdigit() and following.start == token.end
-                self.skips.append(Number(int(following.text[:9]) if has_level else 1, token.start, following.end))
-                self.at += 1 + has_level
-            elif token.text in ("N", ":") and following.text.isdigit() and not self.is_sign("=", 2):
-                self.sequence_number = Number(whole(following.text), token.start, following.end)
-                self.at += 2
-            elif token.kind == "name" and self.is_sign(":", 1):
-                self.at += 2
-            else:
-                return
+        while self.take_skip() or self.take_sequence_number("N:") or self.take_label():
+            pass
+
+    def take_label(self) -> bool:
+        """Pass over a label if it comes next."""
+        is_label = self.token.kind == "name" and self.is_sign(":", 1)
+        self.at += 2 * is_label
+        return is_label
 
     # ---- an address of one letter ----
 
@@ -174,7 +170,7 @@ class _Reader(SpokenBlock):
         given = self.arguments()
         if given == "" or given.isdigit():
             number = float(given or 1)
-            self.words.append(Word("@", constant(number, first.start, end_of(self)), None, first.start, end_of(self)))
+            self.words.append(Word("@", constant(number, first.start, self.last_end), None, first.start, self.last_end))
 
     def native(self, code: str, first: Token) -> None:
         """A word that stands for a code; what stands in its parentheses may choose another set of data."""

@@ -94,7 +94,7 @@ class Listing:
             return read_high_level(text, self.machine, self.names, read_macro)
         from polarcheck.program.execution.user_task import read_user_task  # few files need it
 
-        return read_user_task(text, self.machine, self.names, read_macro)
+        return read_user_task(text, self.machine, self.names)
 
     def turns_at(self, block: int) -> bool:
         """Return True if the flow can turn at a block."""

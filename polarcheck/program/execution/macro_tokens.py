@@ -12,24 +12,22 @@ from typing import Final
 
 from polarcheck.program.execution.arithmetic import UNKNOWN
 from polarcheck.program.execution.expression import Fault
-from polarcheck.program.execution.expression_reader import Following, Function, Grammar, Operand, Operator, Unreadable
+from polarcheck.program.execution.expression_reader import Following, Operand, Unreadable
+from polarcheck.program.execution.grammar import AND, DOUBTFUL, OR, PRODUCT, SUM, Function, Grammar, Operator
 from polarcheck.program.execution.kinds import FaultKind
 
 NUMBER: Final = r"[0-9]++\.?+[0-9]*+|\.[0-9]++"
-#: No program writes @ROUND: it is ROUND of languages other than custom macro, which rounds to whole numbers anywhere.
-_WHOLE: Final = "@ROUND"
 _FUNCTION_NAMES: Final = (
     *("SIN", "COS", "TAN", "ASIN", "ACOS", "ATAN", "SQRT", "ABS", "ROUND", "FIX", "FUP", "LN", "EXP", "BIN", "BCD"),
-    *("POW", "ADP", _WHOLE),
+    *("POW", "ADP"),
 )
-_SUM, _PRODUCT, _OR, _AND = 1, 2, 4, 8
 GRAMMAR: Final = Grammar(
     operators={
         **{name: Operator(1, name) for name in ("EQ", "NE", "GT", "LT", "GE", "LE")},
-        **{sign: Operator(2, sign, _SUM) for sign in "+-"},
-        **{name: Operator(2, name, _OR) for name in ("OR", "XOR")},
-        **{name: Operator(3, name, _PRODUCT) for name in ("*", "/", "MOD")},
-        "AND": Operator(3, "AND", _AND),
+        **{sign: Operator(2, sign, SUM) for sign in "+-"},
+        **{name: Operator(2, name, OR) for name in ("OR", "XOR")},
+        **{name: Operator(3, name, PRODUCT) for name in ("*", "/", "MOD")},
+        "AND": Operator(3, "AND", AND),
     },
     prefixes={"+": None, "-": Operator(4, "NEGATE")},
     functions={
@@ -40,11 +38,11 @@ GRAMMAR: Final = Grammar(
         "#_": Function({1: ("NAMED",)}, "]"),
         "": Function({1: ()}, "]"),
     },
-    doubtful=frozenset((_AND | _PRODUCT, _AND | _SUM, _OR | _SUM)),
+    doubtful=DOUBTFUL,
     checks_conditions=True,
 )
 # The control takes the first two letters of a name for the whole; POW has no short form, since PO is POPEN.
-_SHORT: Final = {name[:2]: name for name in [*_FUNCTION_NAMES, "AND", "XOR"] if name not in ("POW", _WHOLE)}
+_SHORT: Final = {name[:2]: name for name in [*_FUNCTION_NAMES, "AND", "XOR"] if name != "POW"}
 # Functions and operators of letters, also in their short forms, the longer first.
 _NAMES: Final = sorted(
     [*_FUNCTION_NAMES, *(name for name in GRAMMAR.operators if name.isalpha()), *_SHORT], key=len, reverse=True

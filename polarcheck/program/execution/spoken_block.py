@@ -1,18 +1,18 @@
-"""A block of a high-level language while it is read: what has been found of it so far, and the statement it becomes."""
+"""A block of a language with names while it is read: what has been found of it so far, and its statement."""
 
 from __future__ import annotations
 
 import functools
 import re
 from collections.abc import Mapping
-from typing import Final
+from typing import ClassVar, Final
 
 from msgspec.structs import replace
 
 from polarcheck.foundation.states import Distance
 from polarcheck.program.execution.expression import Expression, constant
-from polarcheck.program.execution.high_level_tokens import Token, Tokens
-from polarcheck.program.execution.statement import Kind, Number, Statement, Unread, Word
+from polarcheck.program.execution.language_tokens import Language, Token, Tokens
+from polarcheck.program.execution.statement import Kind, Number, Statement, Unread, Word, whole
 from polarcheck.program.execution.variable_names import Names
 from polarcheck.program.machines.machine import Machine
 from polarcheck.program.reading.excerpt import shortened
@@ -35,11 +35,14 @@ class SpokenBlock(Tokens):
     """
     The tokens of one block, and the parts of its statement so far.
 
+    nothing: the kind of a block in which no part was found.
     words: NC words. before, after: what is done before and behind the move of the words. unread: what is not simulated.
     """
 
-    def __init__(self, block: str, machine: Machine, names: Names) -> None:
-        super().__init__(block, names, _SIZE)
+    nothing: ClassVar[Kind] = Kind.OUTPUT
+
+    def __init__(self, block: str, language: Language, machine: Machine, names: Names, levels: int = _SIZE) -> None:
+        super().__init__(block, language, names, levels, _SIZE)
         self.block, self.machine = block, machine
         self.words: list[Word] = []
         self.before: list[Statement] = []
@@ -50,6 +53,27 @@ class SpokenBlock(Tokens):
         self.first = self.token
         if len(self.tokens) > _SIZE:
             self.wrong("too-long", self.tokens[0], self.tokens[-1])
+
+    # ---- the head ----
+
+    def take_skip(self) -> bool:
+        """Pass over a block skip, with its level, if it comes next."""
+        token, following = self.token, self.token_ahead(1)
+        if not self.is_sign("/"):
+            return False
+        has_level = following.text.isdigit() and following.start == token.end
+        self.at += 1 + has_level
+        self.skips.append(Number(int(following.text[:9]) if has_level else 1, token.start, self.last_end))
+        return True
+
+    def take_sequence_number(self, letters: str) -> bool:
+        """Pass over a sequence number with one of the letters if it comes next."""
+        token, following = self.token, self.token_ahead(1)
+        if not token.text or token.text not in letters or not following.text.isdigit() or self.is_sign("=", 2):
+            return False
+        self.sequence_number = Number(whole(following.text), token.start, following.end)
+        self.at += 2
+        return True
 
     # ---- what is found ----
 
@@ -64,7 +88,7 @@ class SpokenBlock(Tokens):
             call = next((word.code for word in self.words if word.code in calls), "")
             parts.append(Statement(Kind.CALL if call else Kind.NC, *span, words=tuple(self.words), call=call))
         parts += self.after
-        main, *more = parts or [Statement(Kind.OUTPUT, *span)]
+        main, *more = parts or [Statement(self.nothing, *span)]
         return replace(
             main,
             sequence_number=self.sequence_number,

@@ -1,7 +1,7 @@
 """
 Statements of user tasks: VC1=5, X=VC1, CALL O1234 DIA=20, IF [VC1 EQ 1] NEND.
 
-Each part of a block is read as what custom macro writes for it: an assignment, words, and one statement of the flow.
+A block is assignments, words and one statement of the flow, carried out in this order wherever they stand.
 Sources: public notes on the manuals of OSP-P200L, 5238-E, and OSP-P300L (source 71138944758): IF and GOTO
 with a sequence name or number, CALL with variables, RTS, MODIN; VC1 from the OSP-E100M.
 """
@@ -9,16 +9,25 @@ with a sequence name or number, CALL with variables, RTS, MODIN; VC1 from the OS
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
 from typing import Final
 
 from msgspec.structs import replace
 
-from polarcheck.program.execution.macro_tokens import Characters
-from polarcheck.program.execution.statement import Kind, Statement
-from polarcheck.program.execution.task_values import FLOW, MOST, SEQUENCE_NAME, SYSTEM, UNKNOWN, Piece, Token, Values
-from polarcheck.program.execution.variable_names import Names
+from polarcheck.program.execution.expression import Expression, Fault, Step, constant
+from polarcheck.program.execution.language_tokens import Token
+from polarcheck.program.execution.spoken_block import SpokenBlock
+from polarcheck.program.execution.statement import Kind, Statement, Unread, Word
+from polarcheck.program.execution.task_tokens import (
+    FLOW,
+    SEQUENCE_NAME,
+    SYSTEM,
+    USER_TASK,
+    common_variable,
+    named_variable,
+)
+from polarcheck.program.execution.variable_names import FIRST_VARIABLE, Names
 from polarcheck.program.machines.machine import Machine
+from polarcheck.program.reading.excerpt import shortened
 
 #: Zero offset, zero shift and tool offset of Z: they move nothing on the polar plane.
 _OF_Z: Final = re.compile(r"V(?:ZOF|ZSH|TOF)Z")
@@ -27,303 +36,237 @@ _OF_Z: Final = re.compile(r"V(?:ZOF|ZSH|TOF)Z")
 _OF_POSITION: Final = re.compile(r"V(?:ZOF|ZSH|TOF|ETF|NSR)[A-Z0-9]*+")
 #: Input and output of data, and what a schedule program has.
 _NO_MOVE: Final = frozenset(("GET", "PUT", "READ", "WRITE", "PSELECT", "LPRINT"))
+#: How much of what is not simulated a message names [characters].
+_NAMED: Final = 60
 
 
-def read_user_task(
-    block: str, machine: Machine, names: Names, read_macro: Callable[[Characters], Statement]
-) -> Statement:
+def read_user_task(block: str, machine: Machine, names: Names) -> Statement:
     """
     Read a block and its statements.
 
-    machine: has the codes and axes. names: the names of variables and tools so far. read_macro: reads custom macro.
+    machine: has the codes and axes. names: the names of variables and tools so far.
     """
-    return _Block(block, machine, names, read_macro).statement()
+    return _Block(block, machine, names).read_block()
 
 
-class Rewriting:
-    """The characters of a block rewritten as custom macro, each with the index of the one that it stands for."""
+class _Block(SpokenBlock):
+    """One block while it is read. Assignments are done before its words, the flow behind them."""
 
-    def __init__(self) -> None:
-        self._text: list[str] = []
-        self._places: list[int] = []
+    nothing = Kind.NC
 
-    def put(self, text: str, start: int, end: int) -> None:
-        """Add text that stands for the characters from start to end of the block."""
-        visible = [index for index in range(len(text)) if not text[index].isspace()]
-        self._text += [text[index].upper() for index in visible]
-        self._places += [min(start + index, max(end - 1, start)) for index in visible]
+    def __init__(self, block: str, machine: Machine, names: Names) -> None:
+        super().__init__(block, USER_TASK, machine, names, machine.macro.bracket_levels)
+        larger = machine.arcs.larger_arc_word
+        self.is_larger_arc = bool(larger) and any(token.text == larger for token in self.tokens)
 
-    def before(self, other: Rewriting) -> Characters:
-        """These characters, and those of the other rewriting behind them."""
-        return Characters("".join((*self._text, *other._text)), [*self._places, *other._places])
-
-
-class _Block(Values):
-    """One block while it is read."""
-
-    def __init__(
-        self, block: str, machine: Machine, names: Names, read_macro: Callable[[Characters], Statement]
-    ) -> None:
-        super().__init__(block, names)
-        self.macro, self.read_macro = machine.macro, read_macro
-        self.arcs = machine.arcs
-        self.is_larger_arc = any(token.text == self.arcs.larger_arc_word for token in self.tokens)
-        self.head = Rewriting()
-        self.assignments: list[Statement] = []
-        self.words = Rewriting()
-        self.has_words = False
-        self.flow: Statement | None = None
-
-    # ---- the block ----
-
-    def statement(self) -> Statement:
-        """All parts of the block, in the order in which they are carried out."""
-        if not self.tokens:
-            return Statement(Kind.NC, 0, 0)
-        if len(self.tokens) > MOST:
-            self.at = len(self.tokens)
-            self.leave(0, moves=True)
-        self.heads()
-        while self.at < len(self.tokens):
+    def read_block(self) -> Statement:
+        self.head()
+        self.first = self.token
+        while self.token.kind != "end":
             self.part()
-        if any(unread.moves for unread in self.unread) or not (self.assignments or self.has_words or self.flow):
-            self.has_words = True
-        parts = list(self.assignments)
-        if self.has_words:
-            parts.append(self.read_as(self.words))
-        if self.flow is not None:
-            parts.append(self.flow)
-        return replace(parts[0], more=tuple(parts[1:]), unread=tuple(self.unread))
+        return self.statement()
 
-    def read_as(self, rewriting: Rewriting) -> Statement:
-        """What custom macro reads, with block skip and sequence number before it."""
-        return self.read_macro(self.head.before(rewriting))
-
-    def heads(self) -> None:
+    def head(self) -> None:
         """Block skip, and a sequence number or name; NOEX only keeps the block from being stopped at."""
-        while self.at < len(self.tokens):
-            token, following = self.peek(), self.peek(1)
-            if self.is_sign("/"):
-                self.at += 1
-                self.head.put("/", token.start, token.end)
-                if following.kind == "number" and following.start == token.end and len(following.text) == 1:
-                    self.put_token(self.head, self.take())
-            elif token.kind == "letter" and token.text == "N" and following.kind == "number":
-                self.at += 2
-                self.head.put("N" + following.text, token.start, following.end)
-            elif token.text == "NOEX" or (token.kind == "name" and SEQUENCE_NAME.fullmatch(token.text)):
-                self.at += 1
-            else:
-                return
+        while self.take_skip() or self.take_sequence_number("N") or self.is_named_head():
+            pass
 
-    @staticmethod
-    def put_token(rewriting: Rewriting, token: Token) -> None:
-        rewriting.put(token.text, token.start, token.end)
+    def is_named_head(self) -> bool:
+        """Pass over a sequence name or NOEX if it is the next token."""
+        token = self.token
+        is_head = token.text == "NOEX" or (token.kind == "name" and bool(SEQUENCE_NAME.fullmatch(token.text)))
+        self.at += is_head
+        return is_head
+
+    def leave(self, first: Token, *, moves: bool, matters: bool = True) -> None:
+        """Name the tokens from the first to the next one as not simulated."""
+        end = max(self.last_end, first.end)
+        shown = shortened(" ".join(self.block[first.start : end].split()), _NAMED)
+        self.unread.append(Unread(shown, first.start, end, moves, matters))
+
+    def leave_rest(self, first: Token) -> None:
+        """Name all from a token on as not simulated."""
+        self.at = len(self.tokens) - 1
+        self.leave(first, moves=True)
 
     def part(self) -> None:
         """One assignment, one word, or one statement of the flow."""
-        first, token = self.at, self.peek()
-        if token.kind == "letter":
-            self.word_or_variable()
-        elif token.kind != "name":
-            self.at += 1
+        first = self.token
+        self.at += 1
+        if first.kind == "letter":
+            self.letter(first)
+        elif first.kind != "name":
             self.leave(first, moves=True)
-        elif token.text in FLOW and self.flow is None:
-            self.at += 1
-            known = {"IF": self.after_if, "GOTO": self.go_to, "CALL": self.call, "MODIN": self.call}
-            known.get(token.text, self.returning)(first)
-        elif token.text == self.arcs.larger_arc_word:
-            self.at += 1
-        elif token.text in _NO_MOVE:
-            self.at = len(self.tokens)
+        elif first.text in FLOW and first.text != "NOEX" and not self.after:
+            self.flow(first)
+        elif first.text == self.machine.arcs.larger_arc_word:
+            pass
+        elif first.text in _NO_MOVE:
+            self.at = len(self.tokens) - 1
             self.leave(first, moves=False)
-        elif self.macro.statements.get(token.text) == "none":
-            self.at = len(self.tokens)
-        elif SYSTEM.fullmatch(token.text):
-            self.system_assignment()
-        elif self.is_sign("=", 1):
-            self.named()
-        else:
-            self.at += 1
-            # Behind G85 and its like it names the contour, which is passed over as other turning is.
-            if not SEQUENCE_NAME.fullmatch(token.text):
-                self.leave(first, moves=True)
+        elif self.effect(first.text) == "none":
+            self.at = len(self.tokens) - 1
+        elif SYSTEM.fullmatch(first.text):
+            self.system_variable(first)
+        elif self.take_sign("="):
+            self.named(first)
+        # Behind G85 and its like a name is that of the contour, which is passed over as other turning is.
+        elif not SEQUENCE_NAME.fullmatch(first.text):
+            self.leave(first, moves=True)
 
     # ---- words and assignments ----
 
-    def word_or_variable(self) -> None:
+    def task_expression(self, *, condition: bool = False) -> Expression | None:
+        """Read an expression; None where none begins, which is no fault, or where it cannot be calculated."""
+        begin = self.at
+        value = self.expression() if self.begins_value() else None
+        if value is None or value.condition == condition:
+            return value
+        is_single = self.at == begin + 1 + (self.tokens[begin].kind == "letter")
+        if condition and is_single:  # the variable has a value
+            place = value.start, value.end
+            steps = (*value.steps, Step("number", 0.0, *place), Step("#", 0.0, *place), Step("NE", 0.0, *place))
+            return replace(value, steps=steps, condition=True)
+        self.fault = self.fault or Fault("if-format" if condition else "format", value.start, value.end)
+        return None
+
+    def letter(self, first: Token) -> None:
         """X10., X=VC1+2, X[VC1], or V1=5."""
-        first, letter, following = self.at, self.take(), self.peek()
-        if letter.text == "V" and following.kind == "number" and self.is_sign("=", 1):
-            self.at += 1
-            variable = self.variable_number("V", following)
-            self.at += 1
-            self.assign(variable, first)
-            return
-        if self.is_sign("="):
-            self.at += 1
-            self.computed(letter.text, first)
-        elif self.is_sign("["):
-            self.computed(letter.text, first)
-        elif (sign := self.sign_of_number()) is not None:
-            number = self.take()
-            if self.is_larger_arc and letter.text == self.arcs.radius_word:
+        is_signed = self.token.text in ("-", "+")
+        number = self.token_ahead(is_signed)
+        if first.text == "V" and self.token.kind == "number" and self.is_sign("=", 1):
+            self.at += 2
+            self.assign_task(common_variable(number.text), first, number)
+        elif self.is_sign("[") or self.take_sign("="):
+            self.computed(first.text, first)
+        elif number.kind == "number":
+            sign = self.token.text if is_signed else ""
+            self.at += 1 + is_signed
+            if self.is_larger_arc and first.text == self.machine.arcs.radius_word:
                 sign = "-"
-            self.put_token(self.words, letter)
-            self.words.put(sign + number.text, number.start - len(sign), number.end)
-            self.has_words = True
+            self.add_number(first.text, sign + number.text, first, number)
         else:
             self.leave(first, moves=True)
 
-    def sign_of_number(self) -> str | None:
-        """Take the sign of a number that stands here; None where none does."""
-        if self.peek().kind == "number":
-            return ""
-        if (self.is_sign("-") or self.is_sign("+")) and self.peek(1).kind == "number":
-            return self.take().text
-        return None
-
-    def computed(self, address: str, first: int) -> None:
+    def computed(self, address: str, first: Token) -> None:
         """A word whose value is an expression, which comes next; address: empty where nothing of it is checked."""
-        pieces = self.expression()
-        if pieces is None:
+        if not self.begins_value():
             self.leave(first, moves=bool(address))
-        elif address:
-            start = self.tokens[first].start
-            is_turned = self.is_larger_arc and address == self.arcs.radius_word
-            self.words.put(f"{address}[" + "-[" * is_turned, start, start + 1)
-            self.put_pieces(self.words, pieces)
-            self.words.put("]" * (1 + is_turned), self.tokens[self.at - 1].end - 1, self.tokens[self.at - 1].end)
-            self.has_words = True
+            return
+        value = self.task_expression()
+        if value is not None and address:
+            if self.is_larger_arc and address == self.machine.arcs.radius_word:
+                value = replace(value, steps=(*value.steps, Step("NEGATE", 0.0, value.start, value.end)))
+            self.words.append(Word(address, value, None, first.start, value.end))
 
-    @staticmethod
-    def put_pieces(rewriting: Rewriting, pieces: Sequence[Piece]) -> None:
-        for piece in pieces:
-            rewriting.put(*piece)
-
-    def named(self) -> None:
-        """SB=2000, a word of two letters, or DIA=20, a local variable."""
-        first, name = self.at, self.take()
-        self.at += 1  # =
-        if name.text in self.macro.named_words:
-            self.computed(self.macro.named_words[name.text], first)
+    def named(self, first: Token) -> None:
+        """SB=2000, a word of two letters, or DIA=20, a local variable; behind the =."""
+        words = self.machine.macro.named_words
+        if first.text in words:
+            self.computed(words[first.text], first)
         else:
-            number = self.variable_number(name.text) if name.text.startswith("VC") else None
-            self.assign(self.names.variable(name.text) if number is None else number, first)
+            self.assign_task(named_variable(first.text, self.names), first, first)
 
-    def assign(self, number: int | None, first: int) -> None:
+    def assign_task(self, number: int | None, first: Token, last: Token) -> None:
         """An assignment, whose value comes next, to the variable of a number."""
-        pieces = self.expression()
-        if pieces is None or number is None:
+        begins, value = self.begins_value(), self.task_expression()
+        if number is None or not begins:
             self.leave(first, moves=False)
             return
-        start = self.tokens[first].start
-        rewriting = Rewriting()
-        rewriting.put(f"#{number}=", start, pieces[0][1] or start + 1)
-        self.put_pieces(rewriting, pieces)
-        self.assignments.append(self.read_as(rewriting))
+        target = constant(float(number), first.start, last.end)
+        self.before.append(Statement(Kind.ASSIGN, first.start, self.last_end, target=target, value=value))
 
-    def system_assignment(self) -> None:
+    def system_variable(self, first: Token) -> None:
         """VZOFX=10.: a value of the control, as an origin or an offset, set by the program."""
-        first, name = self.at, self.take()
-        self.index_of()
-        if self.is_sign("="):
-            self.at += 1
-            self.expression()
-        of_z = _OF_Z.fullmatch(name.text) is not None
-        if _OF_POSITION.fullmatch(name.text):
-            self.leave(first, moves=not of_z, matters=not of_z)
-
-    def index_of(self) -> list[Piece]:
-        """Take the brackets behind the name of a system variable; what is in them, or nothing."""
-        if not self.is_sign("["):
-            return []
-        return self.expression(one=True) or []
+        if self.is_sign("["):
+            self.skip_brackets()
+        if self.take_sign("="):
+            self.task_expression()
+        is_of_z = _OF_Z.fullmatch(first.text) is not None
+        if _OF_POSITION.fullmatch(first.text):
+            self.leave(first, moves=not is_of_z, matters=not is_of_z)
 
     # ---- the flow ----
 
-    def after_if(self, first: int) -> None:
+    def flow(self, first: Token) -> None:
+        macro = self.machine.macro
+        match first.text:
+            case "IF":
+                self.after_if(first)
+            case "GOTO":
+                self.jump(Kind.GOTO, first, None)
+            case "CALL":
+                self.call(macro.subprogram_calls[0], first)
+            case "MODIN":
+                self.call(macro.modal_macro_calls[0], first)
+            case "MODOUT":
+                self.add_call(macro.modal_macro_cancel[0], first)
+            case _:
+                self.add_call(macro.program_returns[0], first)
+
+    def after_if(self, first: Token) -> None:
         """IF [VC1 EQ 1] NEND, IF [..] GOTO N10, or IF ABC NEND: the variable has a value."""
-        begin = self.at
-        pieces = self.expression()
-        if pieces is None:
-            self.at = len(self.tokens)
-            self.leave(first, moves=True)
+        if not self.begins_value():
+            self.leave_rest(first)
             return
-        if self.at == begin + 1 or (self.at == begin + 2 and self.tokens[begin].kind == "letter"):
-            pieces = [*pieces, ("NE#0", pieces[-1][1], pieces[-1][2])]
-        if self.peek().text == "GOTO":
-            self.at += 1
-        rewriting = Rewriting()
-        start, end = self.tokens[first].start, self.tokens[first].end
-        rewriting.put("IF", start, end)
-        rewriting.put("[", pieces[0][1], pieces[0][2])
-        self.put_pieces(rewriting, pieces)
-        rewriting.put("]GOTO", pieces[-1][1], pieces[-1][2])
-        self.jump(rewriting, first)
+        condition = self.task_expression(condition=True)
+        if self.token.kind == "end" and self.fault is not None:
+            self.after.append(Statement(Kind.IF_THEN, first.start, self.last_end))
+            return
+        self.at += self.token.text == "GOTO"
+        self.jump(Kind.IF_GOTO, first, condition)
 
-    def go_to(self, first: int) -> None:
-        rewriting = Rewriting()
-        self.put_token(rewriting, self.tokens[first])
-        self.jump(rewriting, first)
-
-    def jump(self, rewriting: Rewriting, first: int) -> None:
-        """The sequence number or name to go to, behind what has been put."""
-        token, following, label = self.peek(), self.peek(1), ""
-        if token.kind == "letter" and token.text == "N" and following.kind == "number":
-            self.at += 2
-            rewriting.put(following.text, following.start, following.end)
-        elif token.kind == "number":
-            self.put_token(rewriting, self.take())
-        elif token.kind == "name" and token.text.startswith("N"):
-            label = self.take().text
-            rewriting.put("1", token.start, token.end)
+    def jump(self, kind: Kind, first: Token, condition: Expression | None) -> None:
+        """The sequence number or name to go to, which comes next."""
+        self.at += self.token.text == "N"
+        target = self.token
+        self.at += 1
+        statement = Statement(kind, first.start, target.end, condition=condition)
+        if target.kind == "number":
+            jump = constant(float(target.text), target.start, target.end)
+            self.after.append(replace(statement, jump=jump))
+        elif target.kind == "name" and target.text[0] == "N":
+            self.after.append(replace(statement, label=target.text))
         else:
-            self.at = len(self.tokens)
-            self.leave(first, moves=True)
-            return
-        statement = self.read_as(rewriting)
-        if label:
-            statement = replace(statement, label=label, jump=None, end=max(statement.end, token.end))
-        self.flow = statement
+            self.leave_rest(first)
 
-    def call(self, first: int) -> None:
+    def call(self, code: str, first: Token) -> None:
         """CALL O1234 Q3 DIA=20, MODIN O1234: the program, how often, and the local variables that it is given."""
-        token, following = self.peek(), self.peek(1)
-        is_modal = self.tokens[first].text == "MODIN"
-        code = (self.macro.modal_macro_calls if is_modal else self.macro.subprogram_calls)[0]
-        rewriting = Rewriting()
-        rewriting.put(code, self.tokens[first].start, self.tokens[first].end)
-        if token.kind == "letter" and token.text == "O" and following.kind == "number":
+        token, number = self.token, self.token_ahead(1)
+        if token.text == "O" and number.kind == "number":
+            value = constant(float(number.text), number.start, number.end)
+            program = Word("P", value, number.text, token.start, number.end)
             self.at += 2
-            rewriting.put("P" + following.text, token.start, following.end)
-        elif token.kind == "name" and token.text.startswith("O"):
+        elif token.kind == "name" and token.text[0] == "O":
+            program = Word("<", Expression((), token.start, token.end), token.text, token.start, token.end)
             self.at += 1
-            rewriting.put(f"<{token.text}>", token.start, token.end)
         else:
-            self.at = len(self.tokens)
-            self.leave(first, moves=True)
+            self.leave_rest(first)
             return
-        if self.peek().kind == "letter" and self.peek().text == "Q" and self.peek(1).kind == "number":
-            letter, number = self.take(), self.take()
-            rewriting.put("L" + number.text, letter.start, number.end)
-        before = len(self.assignments)
-        while self.at < len(self.tokens) and self.is_assignment():
+        words = [program]
+        letter, number = self.token, self.token_ahead(1)
+        if letter.text == "Q" and number.kind == "number":
+            value = constant(float(number.text), number.start, number.end)
+            words.append(Word("L", value, number.text, letter.start, number.end))
+            self.at += 2
+        before = len(self.before)
+        while self.is_assignment():
             self.part()
-        targets = [statement.target for statement in self.assignments[before:] if statement.target is not None]
-        numbers = [int(target.steps[0].number) for target in targets if target.steps[0].number > UNKNOWN]
-        self.flow = replace(self.read_as(rewriting), assigned=tuple(numbers))
+        targets = [part.target.steps[0].number for part in self.before[before:] if part.target is not None]
+        assigned = tuple(int(number) for number in targets if number >= FIRST_VARIABLE)
+        self.add_call(code, first, *words, assigned=assigned)
 
     def is_assignment(self) -> bool:
-        token = self.peek()
+        """True where V1= or a name with its = comes next."""
+        token = self.token
         if token.kind == "letter":
-            return token.text == "V" and self.peek(1).kind == "number" and self.is_sign("=", 2)
+            return token.text == "V" and self.token_ahead(1).kind == "number" and self.is_sign("=", 2)
         return token.kind == "name" and self.is_sign("=", 1)
 
-    def returning(self, first: int) -> None:
-        """RTS and MODOUT."""
-        is_return = self.tokens[first].text == "RTS"
-        rewriting = Rewriting()
-        code = (self.macro.program_returns if is_return else self.macro.modal_macro_cancel)[0]
-        rewriting.put(code, self.tokens[first].start, self.tokens[first].end)
-        self.flow = self.read_as(rewriting)
+    def add_call(self, code: str, first: Token, *words: Word, assigned: tuple[int, ...] = ()) -> None:
+        """What calls, returns or ends a modal call, as the code of the profile for it."""
+        value = constant(float(code[1:]), first.start, first.end)
+        calling = Word(code[0], value, code[1:], first.start, first.end)
+        end = words[-1].end if words else first.end
+        call = Statement(Kind.CALL, first.start, end, words=(calling, *words), call=code, assigned=assigned)
+        self.after.append(call)

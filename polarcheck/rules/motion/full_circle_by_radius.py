@@ -78,5 +78,5 @@ def _words(run: Run, row: int) -> list[str]:
 
     from polarcheck.rules.wording.written import executed_word
 
-    at = range(*np.searchsorted(run.row, (row, row + 1)).tolist())
-    return [executed_word(run, index) for index in at if chr(int(run.words.address[index])) != "N"]
+    end = range(*np.searchsorted(run.row, (row, row + 1)).tolist())
+    return [executed_word(run, index) for index in end if chr(int(run.words.address[index])) != "N"]
