@@ -9,10 +9,9 @@ from collections.abc import Callable
 import pytest
 from cases import looped
 
-from polarcheck.columns.words.bar_comments import bar_in
-from polarcheck.columns.words.part_comments import depth_in, shape_in
+from polarcheck.columns.words.comment_reader import bar_in, depth_in, shape_in
+from polarcheck.columns.words.comments import named_tool
 from polarcheck.columns.words.radius_comments import radius_in
-from polarcheck.columns.words.tool_numbers import named_tool
 
 COUNT = 60
 CUTTERS = (

@@ -21,7 +21,7 @@ from polarcheck.errors import UsageError
 from programs import report_of
 
 from polarcheck.checking import survey
-from polarcheck.columns.words import bar_comments, called_comments, comment_lengths, part_comments
+from polarcheck.columns.words import comment_patterns, comment_reader
 from polarcheck.editor.structure import mentions, workspace
 from polarcheck.editor.words import completions
 from polarcheck.program.execution import called_programs, spoken_block
@@ -84,10 +84,13 @@ def build_every_pattern() -> None:
     report_of("O1\nG0 X1.\n#1=1\nO2\nM30\n", "fanuc")
     importlib.reload(completions)
     # The words without a size: all patterns are tried, and none is found.
-    part_comments.shape_in("HEX SQ OCT PENT FLATS BOSS AF", False)
-    part_comments.depth_in("DEPTH DEEP", False)
+    comment_reader.shape_in("HEX SQ OCT PENT FLATS BOSS AF", False)
+    comment_reader.depth_in("DEPTH DEEP", False)
     for bar in ("BAR", "HEX BAR", "BAR DIA 28"):
-        bar_comments.bar_in(bar, False)
+        comment_reader.bar_in(bar, False)
+    for cutter in ("X", "R5", "CUTTER D12 10 MILL"):
+        comment_reader.cutter_radius(cutter, False)
+    comment_reader.speaks_of_tool("T7 DRILL")
     report_of("(BAR DIA 28)\nT0101\nG98 G0 X60. Z2. C0\nG12.1\nG1 X50. F200\nG13.1", "fanuc")
 
 
@@ -132,18 +135,15 @@ def test_no_pattern_costs_more_than_the_length_of_its_text(part: int) -> None:
     assert not {name: said for name, said in slow.items() if said}
 
 
-#: Modules whose patterns see comments of at most comment_lengths.LONGEST characters.
-OF_SHORT_TEXTS = tuple(
-    f"polarcheck.columns.words.{name}:"
-    for name in ("bar_comments", "called_comments", "comment_lengths", "cutter_comments", "part_comments")
-)
+#: A module whose patterns see comments of at most comment_patterns.LONGEST characters.
+OF_SHORT_TEXTS = "polarcheck.columns.words.comment_reader:"
 
 
 def test_a_long_comment_is_not_searched() -> None:
     long = "BAR DIA 28 " * 40
-    assert len(long) > comment_lengths.LONGEST
-    assert comment_lengths.plain_text(long) == ""
-    assert not called_comments.speaks_of_tool(f"T7 END MILL {long}")
+    assert len(long) > comment_patterns.LONGEST
+    assert comment_reader.plain_text(long) == ""
+    assert not comment_reader.speaks_of_tool(f"T7 END MILL {long}")
 
 
 #: Patterns that once stood in the package, and shapes known for what they cost.

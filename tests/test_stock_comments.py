@@ -8,7 +8,7 @@ import pytest
 from cases import looped
 from programs import tables_of
 
-from polarcheck.columns.words.bar_comments import bar_in
+from polarcheck.columns.words.comment_reader import bar_in
 from polarcheck.columns.words.stock_comments import StockComments
 
 
@@ -22,6 +22,7 @@ from polarcheck.columns.words.stock_comments import StockComments
         ("1.25 BAR", True, 31.75),
         ("28MM BAR", False, 28),
         ("BAR D=28.", False, 28),
+        ("BAR D=28.5.", False, 28.5),
         ("BAR DIA 28MM X 100", False, 28),
         ('BAR DIA 1-1/4"', False, 31.75),
         ("BAR 12,5", False, 12.5),

@@ -61,6 +61,7 @@ TABLES = {
     "mode": Maker("polarcheck.columns.modes.mode:PolarMode", SECTION),
     "lengths": Maker("polarcheck.columns.path.lengths:Lengths"),
     "path": Maker("polarcheck.columns.path.path:ProgrammedPath"),
+    "comments": Maker("polarcheck.columns.words.comments:Comments"),
     "offsets": Maker("polarcheck.columns.modes.offsets:ToolOffsets"),
     "compensation": Maker("polarcheck.columns.path.compensation:CutterCompensation"),
     "feedrate": Maker("polarcheck.columns.feed.feedrate:Feedrate"),

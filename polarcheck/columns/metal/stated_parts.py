@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -11,20 +11,18 @@ from polarcheck.columns.filling import last_row
 from polarcheck.columns.metal.bar import Bar
 from polarcheck.columns.metal.finished import Finished
 from polarcheck.columns.trace import Trace
-from polarcheck.columns.words.comment_lengths import comments_with
-from polarcheck.columns.words.part_comments import Size, depth_in, shape_in
+from polarcheck.columns.words.comment_patterns import PART_DEPTH, PART_SIZE
+from polarcheck.columns.words.comment_reader import StatedShape, depth_in, shape_in
+from polarcheck.columns.words.comments import Comments, named_tool
 from polarcheck.columns.words.stock_comments import StockComments
-from polarcheck.columns.words.tool_numbers import named_tool
 from polarcheck.foundation.arrays import Columns, Floats, Mask, Rows, cached_property, different, is_among
-from polarcheck.foundation.states import Motion, Units
+from polarcheck.foundation.states import Motion
 from polarcheck.geometry.shapes.shape import POLYGONS
 
 if TYPE_CHECKING:
     from polarcheck.geometry.shapes.shape import Shape
 
-#: One of these stands in each comment that states a shape, a size or a depth.
-_WORDS = ("HEX", "SQ", "OCT", "PENT", "FLATS", "BOSS", "AF", "A/F", "A.F", "SW", "KANT", "KT", "DEEP", "DEPTH")
-#: Tolerance of a size in a comment: sizes of drawings are rounded, and have tolerances [mm].
+#: What is made may differ from a comment by so much: sizes of drawings are rounded, and have tolerances [mm].
 _SIZE_TOLERANCE, _SIZE_SHARE = 0.25, 0.01
 _DEPTH_TOLERANCE, _DEPTH_SHARE = 0.3, 0.02
 #: A program with more sections than this is not held against its comments.
@@ -33,32 +31,23 @@ _MOST_SECTIONS = 100
 
 class PartComment(NamedTuple):
     """
-    A comment, and the sections that it speaks of.
+    What a comment states, where, and the sections that it speaks of.
 
-    comment: its number in text.comments. size: None where it states none. depth: [mm], NaN where it states none.
+    comment: its number in text.comments.
+    row: of its block, or the first one below it.
+    tool: that it names, -1 for none.
+    size: None where it states none.
+    depth: [mm], NaN where it states none.
     of_size, of_depth: numbers of the sections; another comment nearer to a section takes its place.
-    """
-
-    comment: int
-    size: Size | None
-    depth: float
-    of_size: list[int]
-    of_depth: list[int]
-
-
-class _Statement(NamedTuple):
-    """
-    A statement of a comment, with its location.
-
-    comment: its number. row: of its block, or the first one below it. tool: that it names, -1 for none. size, depth: as
-    in PartComment.
     """
 
     comment: int
     row: int
     tool: int
-    size: Size | None
+    size: StatedShape | None
     depth: float
+    of_size: Sequence[int] = ()
+    of_depth: Sequence[int] = ()
 
 
 class Contradiction(NamedTuple):
@@ -86,6 +75,7 @@ class PartComments(Columns, frozen=True):
     """Statements of comments on the part; contours are computed only where a comment needs them."""
 
     trace: Trace
+    comments: Comments
     finished: Finished
     stock_comments: StockComments
     bar: Bar
@@ -98,7 +88,7 @@ class PartComments(Columns, frozen=True):
         Raises TooHardError where the contours cannot be computed.
         """
         hits: dict[int, Contradiction] = {}
-        for comment in self.comments:
+        for comment in self.part_comments:
             for hit in (*self._sizes(comment), *self._depths(comment)):
                 hits.setdefault(hit.row, hit)
         for hit in self._bars():
@@ -123,41 +113,28 @@ class PartComments(Columns, frozen=True):
     # ---- which sections a comment speaks of ----
 
     @cached_property
-    def comments(self) -> list[PartComment]:
+    def part_comments(self) -> list[PartComment]:
         """The comments that speak of sections, in the order of the file."""
         sections = self.trace.mode.sections
-        if not 0 < len(sections) <= _MOST_SECTIONS or not len(self.trace.text.comments):
+        if not 0 < len(sections) <= _MOST_SECTIONS or not len(self.comments):
             return []
         statements = [*self._statements()]
         of_size = self._nearest([statement for statement in statements if statement.size is not None])
         of_depth = self._nearest([statement for statement in statements if not np.isnan(statement.depth)])
         return [
-            PartComment(
-                statement.comment,
-                statement.size,
-                statement.depth,
-                of_size.get(statement.comment, []),
-                of_depth.get(statement.comment, []),
-            )
+            statement._replace(of_size=of_size.get(statement.comment, []), of_depth=of_depth.get(statement.comment, []))
             for statement in statements
         ]
 
-    def _statements(self) -> Iterator[_Statement]:
-        text, rows = self.trace.text, self.trace.blocks.row_of_block
-        for number, comment in comments_with(text, _WORDS):
-            block = int(text.comments.block[number])
-            below = np.flatnonzero(rows[block:] >= 0)
-            if not len(below):
-                continue
-            row = int(rows[block + int(below[0])])
-            last = int(np.flatnonzero(self.trace.blocks.program == self.trace.blocks.program[row])[-1])
-            in_inch = bool(self.trace.lengths.units[last] == Units.INCH)
-            size, depth = shape_in(comment, in_inch), depth_in(comment, in_inch)
-            if size is not None or depth is not None:
-                tool = named_tool(comment.strip("();% "))
-                yield _Statement(number, row, -1 if tool is None else tool, size, np.nan if depth is None else depth)
+    def _statements(self) -> Iterator[PartComment]:
+        """What comments state, without the sections."""
+        for number, written, row, is_behind, in_inch in self.comments.with_words((*PART_SIZE.words, *PART_DEPTH.words)):
+            size, depth = shape_in(written, in_inch), depth_in(written, in_inch)
+            if not is_behind and (size is not None or depth is not None):
+                tool = named_tool(written)
+                yield PartComment(number, row, -1 if tool is None else tool, size, np.nan if depth is None else depth)
 
-    def _nearest(self, statements: list[_Statement]) -> dict[int, list[int]]:
+    def _nearest(self, statements: list[PartComment]) -> dict[int, list[int]]:
         """By comment the sections that have no nearer one."""
         of_comment: dict[int, list[int]] = {}
         for section in range(len(self.trace.mode.sections)) if statements else []:
@@ -167,7 +144,7 @@ class PartComments(Columns, frozen=True):
                 of_comment.setdefault(comment, []).append(section)
         return of_comment
 
-    def _nearness(self, section: int, statement: _Statement) -> int:
+    def _nearness(self, section: int, statement: PartComment) -> int:
         """
         How near a comment is to a section: more for a later one from the call of its tool to its end, 0 for a line of a
         list of tools, -1 for one that does not speak of it.
@@ -302,7 +279,7 @@ class PartComments(Columns, frozen=True):
         yield from hits[:1]
 
 
-def _fits(size: Size, shape: Shape) -> bool:
+def _fits(size: StatedShape, shape: Shape) -> bool:
     """A shape has this size, in whatever way it is measured, and is no other regular polygon."""
     if size.shape in POLYGONS.values() and _is_regular_polygon(shape) and shape.name != size.shape:
         return False
@@ -327,7 +304,7 @@ def _values(shape: Shape, is_across_flats: bool) -> Iterator[float]:
         yield values["across_flats"] / float(np.cos(np.pi / values["sides"]))
 
 
-def _comparable(size: Size, shapes: list[Shape]) -> list[tuple[Shape, float]]:
+def _comparable(size: StatedShape, shapes: list[Shape]) -> list[tuple[Shape, float]]:
     """The shapes of which the comment can speak, with their sizes."""
     if size.shape == "boss":
         return [(shape, shape.values["diameter"]) for shape in shapes if shape.name == "circle" and not shape.inside]

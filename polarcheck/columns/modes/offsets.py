@@ -23,13 +23,13 @@ from polarcheck.columns.modes.offset_settings import (
 )
 from polarcheck.columns.modes.tools import CalledTools
 from polarcheck.columns.path.lengths import Lengths
-from polarcheck.columns.words.radius_comments import Called, Found, radii
+from polarcheck.columns.words.comments import Comments
+from polarcheck.columns.words.radius_comments import StatedRadius, radii
 from polarcheck.foundation.arrays import Columns, Floats, Mask, Rows, cached_property, computed, is_uniform, repeated
 from polarcheck.program.execution.run import NO_VARIABLE, Run
 from polarcheck.program.machines.job import Job
 from polarcheck.program.machines.machine import Machine
 from polarcheck.program.machines.offset_calls import place_in
-from polarcheck.program.reading.words import Text
 
 #: R of no cutter: it is a length, which mills give in the same words [mm].
 _LONGEST = 100.0
@@ -48,15 +48,10 @@ class _Set(NamedTuple):
     value: Floats
 
 
-#: A longer number calls nothing.
-_LARGEST_T = 1e15
-
-
 class ToolOffsets(Columns, frozen=True):
     """The contents of the tool offset in force."""
 
     run: Run
-    text: Text
     machine: Machine
     job: Job
     blocks: ExecutedBlocks
@@ -64,6 +59,7 @@ class ToolOffsets(Columns, frozen=True):
     tools: CalledTools
     mode: PolarMode
     lengths: Lengths
+    comments: Comments
 
     @cached_property
     def radius_of_offset(self) -> Floats:
@@ -166,19 +162,12 @@ class ToolOffsets(Columns, frozen=True):
         return self._offset_column({number: comment.radius for number, comment in self.radii_from_comments.items()})
 
     @cached_property
-    def radii_in_comments(self) -> dict[int, Found]:
+    def radii_in_comments(self) -> dict[int, StatedRadius]:
         """R by offset number as comments give it."""
-
-        tools = self.tools
-        rows = np.flatnonzero(tools.calls_offset)
-        in_inch = self.lengths.scale[rows] != 1.0
-        number = np.abs(np.nan_to_num(self.blocks.word("T")[rows]))
-        word = np.where(number < _LARGEST_T, number, 0).astype(np.int64)
-        called = Called(self.run.block[rows], tools.offset_number[rows], tools.tool[rows], word, in_inch)
-        return radii(self.text, called)
+        return radii(self.comments, self.tools)
 
     @cached_property
-    def radii_from_comments(self) -> dict[int, Found]:
+    def radii_from_comments(self) -> dict[int, StatedRadius]:
         """R by offset number as comments give it, if they are to count."""
         return self.radii_in_comments if self.job.radius_from_comments else {}
 

@@ -1,21 +1,20 @@
-"""The cutter radius as the comments of a program state it: `3/4 DIA. CUTTER`, `D=12.`, `R0.25`."""
+"""The cutter radius of each offset as the comments of a program state it: `3/4 DIA. CUTTER`, `D=12.`, `R0.25`."""
 
 from __future__ import annotations
 
 import re
-from typing import NamedTuple
 
 import msgspec
 import numpy as np
 
-from polarcheck.columns.words.tool_numbers import named_tool
-from polarcheck.foundation.arrays import Mask, Rows
-from polarcheck.program.reading.words import Text
+from polarcheck.columns.modes.tools import CalledTools
+from polarcheck.columns.words.comments import Comments, named_tool
 
-_DIGIT = re.compile(r"\d")
+#: A longer number calls nothing.
+_LARGEST_T = 1e15
 
 
-class Found(msgspec.Struct, frozen=True):
+class StatedRadius(msgspec.Struct, frozen=True):
     """A radius [mm] that a comment gives to an offset, and the comment."""
 
     radius: float
@@ -28,67 +27,46 @@ def radius_in(comment: str, inch: bool) -> float | None:
 
     inch: the unit of the program, unless the comment says its own.
     """
-    if not _DIGIT.search(comment):
+    if not re.search(r"\d", comment):
         return None
     # Imported late: its patterns take longer to compile than the check of a small file, and few comments have digits.
-    from polarcheck.columns.words.cutter_comments import cutter_radius
+    from polarcheck.columns.words.comment_reader import cutter_radius
 
     return cutter_radius(comment, inch)
 
 
-class Called(NamedTuple):
-    """
-    The rows with a T word, one element each.
-
-    block: in the text. offset_number, tool: that are called. word: the number that T has, 808 for T0808. inch: the
-    program's unit.
-    """
-
-    block: Rows
-    offset_number: Rows
-    tool: Rows
-    word: Rows
-    inch: Mask
-
-
-def _candidates(text: Text, called: Called) -> Mask:
-    """The comments beside a T word, and those that begin as an entry of a list of tools may."""
-    comments, code = text.comments, text.source.code
-    first = code[np.minimum(comments.start + 1, len(code) - 1)]
-    is_word = ((first >= ord("A")) & (first <= ord("Z"))) | ((first >= ord("a")) & (first <= ord("z")))
-    is_digit = (first >= ord("0")) & (first <= ord("9"))
-    near = np.concatenate((called.block - 1, called.block, called.block + 1))
-    is_of_tool = np.isin(first, list(b"Tt")) | ~(is_word | is_digit)
-    return np.asarray(np.isin(comments.block, near) | is_of_tool)
-
-
-def radii(text: Text, called: Called) -> dict[int, Found]:
+def radii(comments: Comments, tools: CalledTools) -> dict[int, StatedRadius]:
     """
     What the comments say of each offset number: in the block of its T word, in a comment alone on the line before or
     after it, or in a list of tools at the head (`(T8 D=12. CR=0. - FLAT END MILL)`).
     """
-    if not len(text.comments):
+    if not len(comments):
         return {}
+    rows = np.flatnonzero(tools.calls_offset)
+    called = comments.run.block[rows]
     of_block: dict[int, list[str]] = {}
     of_tool: dict[int, str] = {}
-    comments, chosen = text.comments, _candidates(text, called)
-    for start, end, block in zip(comments.start[chosen], comments.end[chosen], comments.block[chosen], strict=True):
-        comment = text.source.excerpt(int(start), int(end)).strip("();% ")
-        of_block.setdefault(int(block), []).append(comment)
+    block_of_comment = comments.text.comments.block
+    is_near = np.isin(block_of_comment, np.concatenate((called - 1, called, called + 1)))
+    for number in np.flatnonzero(is_near | comments.may_name_tool).tolist():
+        comment = comments.written(number).strip("();% ")
+        of_block.setdefault(int(block_of_comment[number]), []).append(comment)
         named = named_tool(comment)
         if named is not None:
             of_tool.setdefault(named, comment)
-    beside = np.concatenate((called.block - 1, called.block + 1))
-    filled = set(beside[np.isin(beside, text.words.block)].tolist())
-    found: dict[int, Found] = {}
-    rows = zip(*(column.tolist() for column in called), strict=True)
-    for block, offset, tool, word, inch in rows:
+    beside = np.concatenate((called - 1, called + 1))
+    filled = set(beside[np.isin(beside, comments.text.words.block)].tolist())
+    number_of_word = np.abs(np.nan_to_num(comments.blocks.word("T")[rows]))
+    words = np.where(number_of_word < _LARGEST_T, number_of_word, 0).astype(np.int64)
+    columns = (called, tools.offset_number[rows], tools.tool[rows], words, comments.lengths.scale[rows] != 1.0)
+    stated: dict[int, StatedRadius] = {}
+    for block, offset, tool, word, in_inch in zip(*(column.tolist() for column in columns), strict=True):
         near = list(of_block.get(block, []))
         near += [c for other in (block - 1, block + 1) if other not in filled for c in of_block.get(other, [])]
         near = [comment for comment in near if named_tool(comment) in (None, tool, word)]
         near += [of_tool[number] for number in (tool, word) if number in of_tool]
         for comment in near:
-            radius = radius_in(comment, inch)
-            if offset and radius is not None and offset not in found:
-                found[offset] = Found(radius, comment)
-    return found
+            radius = radius_in(comment, in_inch)
+            if offset and radius is not None and offset not in stated:
+                stated[offset] = StatedRadius(radius, comment)
+    return stated

@@ -7,13 +7,11 @@ from typing import NamedTuple
 import numpy as np
 
 from polarcheck.columns.modes.executed_blocks import ExecutedBlocks
-from polarcheck.columns.path.lengths import Lengths
-from polarcheck.columns.words.bar_comments import WORDS, bar_in
-from polarcheck.columns.words.comment_lengths import comments_with
+from polarcheck.columns.words.comment_patterns import BAR
+from polarcheck.columns.words.comment_reader import bar_in
+from polarcheck.columns.words.comments import Comments
 from polarcheck.foundation.arrays import Columns, Floats, Rows, cached_property, repeated
-from polarcheck.foundation.states import Units
 from polarcheck.program.execution.run import Run
-from polarcheck.program.reading.words import Text
 
 
 class StockComment(NamedTuple):
@@ -39,24 +37,20 @@ class StockComments(Columns, frozen=True):
     """The bars that comments state: a column for each, with a value per executed block, which its program shares."""
 
     run: Run
-    text: Text
     blocks: ExecutedBlocks
-    lengths: Lengths
+    comments: Comments
 
     @cached_property
     def stated(self) -> list[StockComment]:
         """The comments that state a bar, in the order of the file."""
-        if not len(self.run) or not len(self.text.comments):
-            return []
-        found = []
-        for number, comment in comments_with(self.text, WORDS):
-            block = int(self.text.comments.block[number])
-            row = self._row_of(block)
-            bar = bar_in(comment, bool(self.lengths.units[self._row_of_units(row)] == Units.INCH))
+        text, stated = self.comments.text, []
+        for comment in self.comments.with_words(BAR.words) if len(self.run) else ():
+            bar = bar_in(comment.written, comment.in_inch)
             if bar is not None:
-                line, program = int(self.text.blocks.line[block]), int(self.blocks.program[row])
-                found.append(StockComment(program, number, line, *bar, comment.strip()))
-        return found
+                line = int(text.blocks.line[text.comments.block[comment.number]])
+                program = int(self.blocks.program[comment.row])
+                stated.append(StockComment(program, comment.number, line, *bar, comment.written.strip()))
+        return stated
 
     @cached_property
     def of_program(self) -> dict[int, StockComment]:
@@ -96,15 +90,3 @@ class StockComments(Columns, frozen=True):
         for program, size in of_program.items():
             column[self.blocks.program == program] = size
         return column
-
-    def _row_of(self, block: int) -> int:
-        """The row that the block of a comment belongs to: its own, or the first one below it in the file."""
-        rows = self.blocks.row_of_block
-        below = np.flatnonzero(rows[block:] >= 0)
-        if len(below):
-            return int(rows[block + below[0]])
-        return int(rows[np.flatnonzero(rows >= 0)[-1]])
-
-    def _row_of_units(self, row: int) -> int:
-        """The last row of the program of this one: a comment at its head stands above G20 and G21."""
-        return int(np.flatnonzero(self.blocks.program == self.blocks.program[row])[-1])

@@ -6,19 +6,18 @@ import numpy as np
 
 from polarcheck.columns.modes.executed_blocks import ExecutedBlocks
 from polarcheck.columns.modes.tools import CalledTools
-from polarcheck.columns.words.tool_numbers import named_tool
+from polarcheck.columns.words.comments import Comments, named_tool
 from polarcheck.foundation.arrays import Columns, Mask, Rows, cached_property
 from polarcheck.program.execution.run import Run
-from polarcheck.program.reading.words import Text
 
 
 class ToolComments(Columns, frozen=True):
     """The comments beside the words that call tools, one value per row."""
 
     run: Run
-    text: Text
     blocks: ExecutedBlocks
     tools: CalledTools
+    comments: Comments
 
     @property
     def named_tool(self) -> Rows:
@@ -34,7 +33,7 @@ class ToolComments(Columns, frozen=True):
     def _beside(self) -> tuple[Rows, Rows]:
         comment, named = np.full(len(self.run), -1, np.int64), np.full(len(self.run), -1, np.int64)
         calls = np.flatnonzero(self.tools.calls_tool & (self.tools.tool > 0) & ~self.run.unknown)
-        if not len(calls) or not len(self.text.comments):
+        if not len(calls) or not len(self.comments):
             return comment, named
         of_block = self._comments_of_block(self.run.block[calls])
         if not of_block:
@@ -59,26 +58,22 @@ class ToolComments(Columns, frozen=True):
 
     def _comments_of_block(self, calls: Rows) -> dict[int, tuple[int, int]]:
         """By block the comment there that speaks of a tool, and the number of that: of the blocks beside calls."""
-        comments, code = self.text.comments, self.text.source.code
+        comments = self.comments
+        block = comments.text.comments.block
         # Two blocks off stand the neighbors of a comment, by which a list of tools is seen.
-        is_near = np.zeros(len(self.text.blocks) + 4, bool)
+        is_near = np.zeros(len(comments.text.blocks) + 4, bool)
         for step in range(5):
             is_near[calls + step] = True
-        first = code[np.minimum(comments.start + 1, len(code) - 1)]
-        upper = first & 0xDF
-        begins = (upper == ord("T")) | (upper < ord("A")) | (upper > ord("Z"))
         of_block: dict[int, tuple[int, int]] = {}
-        for number in np.flatnonzero(begins & is_near[comments.block + 2]).tolist():
-            comment = self.text.source.excerpt(int(comments.start[number]), int(comments.end[number]))
-            tool = named_tool(comment.strip("();% "))
+        for number in np.flatnonzero(comments.may_name_tool & is_near[block + 2]).tolist():
+            comment = comments.written(number)
+            tool = named_tool(comment)
             if tool is None:
                 continue
-            from polarcheck.columns.words.called_comments import (
-                speaks_of_tool,  # imported late, as most files need none
-            )
+            from polarcheck.columns.words.comment_reader import speaks_of_tool  # imported late: most files need none
 
             if speaks_of_tool(comment):
-                of_block.setdefault(int(comments.block[number]), (number, tool))
+                of_block.setdefault(int(block[number]), (number, tool))
         return of_block
 
     def _stands_alone(self, block: int, of_block: dict[int, tuple[int, int]]) -> bool:
@@ -90,12 +85,14 @@ class ToolComments(Columns, frozen=True):
 
     @cached_property
     def _has_words(self) -> Mask:
-        mask = self.text.blocks.is_macro.copy()
-        mask[self.text.words.block] = True
+        text = self.comments.text
+        mask = text.blocks.is_macro.copy()
+        mask[text.words.block] = True
         return mask
 
     @cached_property
     def _calls_tool(self) -> Mask:
-        mask = np.zeros(len(self.text.blocks), bool)
-        mask[self.text.words.block[self.text.words.address == ord("T")]] = True
+        text = self.comments.text
+        mask = np.zeros(len(text.blocks), bool)
+        mask[text.words.block[text.words.address == ord("T")]] = True
         return mask
