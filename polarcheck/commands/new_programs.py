@@ -22,16 +22,16 @@ _FOLDER_ENDS = ("/", os.sep)
 
 class Wanted(NamedTuple):
     """
-    The options on what becomes of new programs.
+    The options that say where new programs go.
 
     out: their file, or a folder; None for standard output.
-    force: existing files are replaced.
-    in_place: they replace the originals.
-    backup: the originals stay as FILE.orig.
-    diff: what would change is shown, and nothing is written.
+    force: replace existing files.
+    in_place: replace the originals.
+    backup: keep the originals as FILE.orig.
+    diff: show what would change, and write nothing.
     form: text or json.
     color: auto, always or never.
-    quiet: only what somebody has to do is said.
+    quiet: say only what somebody has to do.
     """
 
     out: str | None
@@ -83,14 +83,14 @@ def refuse(request: Wanted, paths: Sequence[str]) -> None:
 
 def outputs(request: Wanted, tasks: Sequence[Task], paths: Sequence[str]) -> Mapping[str, Path]:
     """
-    Return the file of each new program by the place of its task; empty without -o.
+    Return the file of each new program, by `task.place`; empty without -o.
 
-    Programs of a folder have the same path in the folder that -o names.
+    A program keeps its path below its folder, in the folder that -o names.
 
-    paths: the arguments, from which the tasks come.
+    paths: the arguments that the tasks come from.
 
-    Raises OutputError or UsageError, before anything is computed, for a file that is there already or that the run
-    reads, and for one file for several programs.
+    Raises OutputError or UsageError, before anything is computed, if a file exists or is read by the run, or if two
+    programs would go to one file.
     """
     from polarcheck.commands.overwriting import folders_of, refuse_input
     from polarcheck.program.reading import files
@@ -112,10 +112,10 @@ def outputs(request: Wanted, tasks: Sequence[Task], paths: Sequence[str]) -> Map
             if files.is_standard_input(task.place):
                 raise UsageError(f"-o {out}: a folder; name the file, or give --stdin-filename")
             output /= _name_in_folder(task.place, paths)
-        named = f"-o {files.display_path(str(output))}"
+        title = f"-o {files.display_path(str(output))}"
         if output in by_task.values():
-            raise UsageError(f"{named}: two programs would be written to this file")
-        refuse_input(output, named, folders)
+            raise UsageError(f"{title}: two programs would be written to this file")
+        refuse_input(output, title, folders)
         if not request.force:
             _refuse_existing(output)
         by_task[task.place] = output
@@ -152,21 +152,21 @@ def write(request: Wanted, task: Task, old: bytes, new: bytes, output: Path | No
         return None
 
     def refuse_new(written: Path) -> None:
-        """Raise OutputError if somebody else has written the file meanwhile."""
+        """Raise OutputError if the file has appeared meanwhile."""
         if not request.force:
             _refuse_existing(output)
 
     try:
         output.parent.mkdir(parents=True, exist_ok=True)
     except (OSError, ValueError) as error:
-        said = getattr(error, "strerror", None) or error
-        raise OutputError(f"{files.display_path(str(output.parent))}: {said}") from None
+        reason = getattr(error, "strerror", None) or error
+        raise OutputError(f"{files.display_path(str(output.parent))}: {reason}") from None
     files.write(output, new, refuse_new)
     return files.display_path(str(output))
 
 
 def print_program(data: bytes, path: str, encoding: str | None) -> None:
-    """Write a program to standard output: its bytes, but to a terminal no character that controls it."""
+    """Write a program to standard output: its bytes; on a terminal its text without control characters."""
     from polarcheck.program.reading.excerpt import visible
     from polarcheck.program.reading.source import read_source
 

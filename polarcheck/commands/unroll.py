@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from polarcheck.checking.settings import Settings
     from polarcheck.rewrite.writing.rewritten_program import Work
 
-#: Those of polarcheck.rewrite.unroll.unrolled_feeds, which is imported late.
+#: The choices that polarcheck.rewrite.unroll.unrolled_feeds knows; it is imported late.
 _FEEDS = ("inverse-time", "per-minute", "per-minute-c", "per-minute-diameter", "stepwise")
 
 

@@ -18,7 +18,7 @@ from polarcheck.program.machines.part_keys import Part
 
 
 class Deviations(Columns, frozen=True):
-    """Columns of one trace, one value per row: the largest differences of the part; and all comparisons."""
+    """Columns of one trace, one value per row: the largest deviation of each part; and all comparisons."""
 
     trace: Trace
     overcuts: Overcuts
@@ -28,7 +28,7 @@ class Deviations(Columns, frozen=True):
 
     @property
     def parts(self) -> tuple[Part, ...]:
-        """What the job asks for."""
+        """The parts that the job asks for."""
         return tuple(self.nominal_parts.job.part)
 
     @property
@@ -38,7 +38,7 @@ class Deviations(Columns, frozen=True):
 
     @cached_property
     def crosses(self) -> Mask:
-        """Rows of loops that cross themselves too often to have a part."""
+        """Rows of loops that cross themselves too often for a part to be computed."""
         return self.overcuts.skipped.rows(self.overcuts.loop, SkipReason.CROSSES)
 
     @cached_property
@@ -54,7 +54,7 @@ class Deviations(Columns, frozen=True):
         return [result._replace(fit=self._fit(result)) if result.differs else result for result in results]
 
     def _fit(self, result: Comparison) -> Fit | None:
-        """The change with which the part would agree, or nearly agree; None if there is none."""
+        """The change that would make the part agree, or nearly agree; None if there is none."""
         if result.target is None:
             from polarcheck.parts.metal_fit import metal_fit  # imported late: most programs agree
 
@@ -63,7 +63,7 @@ class Deviations(Columns, frozen=True):
 
     @cached_property
     def _worst(self) -> dict[int, Comparison]:
-        """The comparison with the largest difference of each row, by row."""
+        """The comparison with the largest difference, by row."""
         worst: dict[int, Comparison] = {}
         for result in self.comparisons:
             if result.differs and (
@@ -74,14 +74,14 @@ class Deviations(Columns, frozen=True):
 
     @cached_property
     def differs(self) -> Mask:
-        """Rows where the difference of a part is largest."""
+        """Rows at which the largest difference of a part lies."""
         column = np.zeros(len(self.trace), bool)
         column[list(self._worst)] = True
         return column
 
     @cached_property
     def largest(self) -> Floats:
-        """The largest difference in such a row [mm], 0 elsewhere."""
+        """The largest difference [mm] in the rows of `differs`, 0 elsewhere."""
         column = np.zeros(len(self.trace))
         for row, result in self._worst.items():
             column[row] = result.difference.largest
@@ -89,18 +89,18 @@ class Deviations(Columns, frozen=True):
 
     @cached_property
     def tolerance(self) -> Floats:
-        """The tolerance in such a row [mm], NaN elsewhere."""
+        """The tolerance [mm] in the rows of `differs`, NaN elsewhere."""
         column = np.full(len(self.trace), np.nan)
         for row, result in self._worst.items():
             column[row] = result.tolerance
         return column
 
     def of_row(self, row: int) -> Comparison:
-        """The comparison that is reported in a row that differs."""
+        """The comparison reported in a row of `differs`."""
         return self._worst[row]
 
     def missing(self) -> Iterator[tuple[int, str]]:
-        """Parts that nothing was compared with, each with the reason; none where walls are tangled."""
+        """Parts that nothing was compared with, each by number with the reason; none if a loop is in `crosses`."""
         count = len(self.trace.mode.sections)
         if not count or self.crosses.any():
             return

@@ -24,7 +24,7 @@ _GUTTER = 6
 _NARROWEST = 60
 #: With more files than this, passing files are counted, not listed, and "not evaluated" stands once after all files.
 _LISTED = 10
-#: With more files than this, the report leaves out what the verdicts rest on.
+#: With more files than this, the report does not say what the verdicts rest on.
 _RESTING = 3
 #: How many places are listed for each reason for "not evaluated".
 _PLACES = 3
@@ -33,7 +33,7 @@ _SENTENCE_END = re.compile(r"(?<!\be\.g\.)(?<!\bi\.e\.)(?<!\bp\.)(?<=[.?!])\s+(?
 
 class _Page(NamedTuple):
     """
-    How to write.
+    The page that lines are written for.
 
     columns: the width [characters].
     color: write in color.
@@ -68,18 +68,18 @@ def text(report: Report, background: Background) -> str:
 
 
 def text_pieces(report: Report, background: Background) -> Iterator[str]:
-    """Yield the same text file by file."""
+    """Yield the text of `text` file by file."""
     return of_each(_parts(background, len(report.files) <= _LISTED), report, background)
 
 
 def text_parts(background: Background) -> Parts:
-    """Return how the report is written while many files are being checked."""
+    """Return the functions that write the report while many files are being checked."""
     return _parts(background, False)
 
 
 def _parts(background: Background, are_listed: bool) -> Parts:
     """
-    Return how the report is written.
+    Return the functions that write the report of a file, and its end.
 
     are_listed: "not evaluated" stands after the findings of each file, not once after all files.
     """
@@ -87,39 +87,39 @@ def _parts(background: Background, are_listed: bool) -> Parts:
     explained: dict[str, None] = {}
 
     def of_file(file: FileReport, lines: Mapping[int, str]) -> str:
-        lines_shown = list[str]()
+        output = list[str]()
         for finding in file.findings:
             rule = background.rules.get(finding.rule)
-            lines_shown += _finding(finding, file, lines, rule, finding.rule not in explained, page)
-            lines_shown += _following(finding, background.following, page)
-            lines_shown.append("")
+            output += _finding(finding, file, lines, rule, finding.rule not in explained, page)
+            output += _following(finding, background.following, page)
+            output.append("")
             explained[finding.rule] = None
         if are_listed and not background.quiet:
-            lines_shown += _not_evaluated([file], page)
-        lines_shown += _part(file, page)
+            output += _not_evaluated([file], page)
+        output += _part(file, page)
         if background.silenced:
-            lines_shown += _silenced(file, page)
-        lines_shown += _views(file, page, background.dots)
-        return without_commands("".join(line + "\n" for line in lines_shown))
+            output += _silenced(file, page)
+        output += _views(file, page, background.dots)
+        return without_commands("".join(line + "\n" for line in output))
 
     def end(report: Report) -> str:
-        lines_shown = list[str]()
+        output = list[str]()
         if not background.quiet and report.files:
-            lines_shown += [] if are_listed else _not_evaluated(report.files, page)
-            lines_shown += [*_verdicts(report, page), "", *settings_lines(report), summary(report, background.fixed)]
+            output += [] if are_listed else _not_evaluated(report.files, page)
+            output += [*_verdicts(report, page), "", *settings_lines(report), summary(report, background.fixed)]
             explained_rule = next((rule for rule in explained if rule in background.rules), None)
-            lines_shown += (
+            output += (
                 [page.paint("aside", f"More about a rule: polarcheck explain {explained_rule}")]
                 if explained_rule
                 else []
             )
-        return without_commands("".join(line + "\n" for line in lines_shown))
+        return without_commands("".join(line + "\n" for line in output))
 
     return Parts(of_file, end)
 
 
 def _views(file: FileReport, page: _Page, dots: bool) -> Iterator[str]:
-    """Yield the paths of each section, if they were requested."""
+    """Yield the drawings of the paths of each section, if they were requested."""
     for view in getattr(file, "views", ()):
         yield from view.lines(page.columns, dots=dots, paint=page.paint, path=file.path)
 
@@ -216,7 +216,7 @@ class _Reason:
     What was not evaluated for one reason.
 
     rules: the names of the rules, in order.
-    places: the number of blocks of each of the first places (path and channel).
+    places: for each of the first places (path and channel) its number of blocks.
     more: the number of further places.
     """
 
@@ -244,20 +244,20 @@ def _not_evaluated(files: Iterable[FileReport], page: _Page) -> Iterator[str]:
     reasons: dict[str, _Reason] = {}
     for file in files:
         groups: dict[str, list[NotEvaluated]] = {}
-        for missing in (entry for entry in file.not_evaluated if entry.matters):
+        for missing in (each for each in file.not_evaluated if each.matters):
             groups.setdefault(missing.reason, []).append(missing)
         for reason, group in groups.items():
             reasons.setdefault(reason, _Reason()).add(file, group)
-    for reason, gap in reasons.items():
+    for reason, entry in reasons.items():
         yield from page.heading("not evaluated", reason)
-        for location, blocks in gap.places.items():
+        for location, blocks in entry.places.items():
             yield from page.labelled("at", f"{location}, {counted(blocks, 'block')}")
-        if gap.more:
-            yield from page.labelled("", f"and in {counted(gap.more, 'more file')}")
-        if not gap.rules.keys() - {DESELECTED}:
+        if entry.more:
+            yield from page.labelled("", f"and in {counted(entry.more, 'more file')}")
+        if not entry.rules.keys() - {DESELECTED}:
             yield ""
             continue
-        yield from page.labelled("rule" if len(gap.rules) == 1 else "rules", ", ".join(gap.rules))
+        yield from page.labelled("rule" if len(entry.rules) == 1 else "rules", ", ".join(entry.rules))
         yield ""
 
 
@@ -330,7 +330,7 @@ def summary(report: Report, fixed: int = 0) -> str:
 
 
 def severities(number: Mapping[str, int]) -> str:
-    """`2 errors, 1 note`."""
+    """Return numbers in words: `2 errors, 1 note`."""
     return (
         ", ".join(counted(number[severity], severity) for severity in SEVERITIES if number[severity]) or "no findings"
     )

@@ -1,4 +1,4 @@
-"""The largest R with which a loop that is cut into would be whole, for the message that says what to write."""
+"""The largest R with which the cutter would not cut into a loop, for the message that names it."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Columns, Floats, Mask, cached_property
 from polarcheck.foundation.time_limit import keep_time
 
-#: Share of R of a cutter that fits everywhere; relative accuracy of the result; most steps of the bisection.
+#: A cutter of this share of R counts as fitting everywhere; relative accuracy of the result; most trials.
 _SMALL, _NEAR, _TRIALS = 1 / 16, 0.01, 9
-#: More rows than this are not run again and again.
+#: Beyond this number of rows no trials are run.
 _MANY = 20_000
 
 
@@ -26,13 +26,14 @@ class Fitting(Columns, frozen=True):
     since: Since
 
     def _worst(self, values: Floats) -> Floats:
-        """The largest of these values in the loop of each row."""
+        """The largest of these values in the loop of each row, for each row."""
         loop = self.since.compensation
         worst = np.zeros(int(loop.max(initial=0)) + 1)
         np.maximum.at(worst, loop, values)
         return worst[loop]
 
     def _any(self, rows: Mask) -> Mask:
+        """True in all rows of a loop that has one of these rows."""
         return self._worst(rows.astype(float)) > 0
 
     @cached_property
@@ -42,12 +43,13 @@ class Fitting(Columns, frozen=True):
         return cut_into & (np.count_nonzero(cut_into) <= _MANY)
 
     def _trial(self, radius: Floats) -> Trial:
+        """The tool center path of the candidates with another R, its sign unchanged."""
         signed = radius * np.sign(self.trace.compensation.radius)
         return Trial(self.trace, OtherRadius(self._candidates, self.since.compensation, signed))
 
     @cached_property
     def never(self) -> Mask:
-        """Rows of loops that any cutter cuts into, so that a point of the contour is wrong."""
+        """Rows of loops that even a very small cutter cuts into: a point of the contour is wrong."""
         cut = np.zeros(len(self.trace), bool)
         if self._candidates.any():
             cut[self._trial(np.abs(self.trace.compensation.radius) * _SMALL).cuts.row] = True
@@ -55,14 +57,14 @@ class Fitting(Columns, frozen=True):
 
     @cached_property
     def radius(self) -> Floats:
-        """The largest R that leaves the loop of the row whole [mm]; NaN where there is none, or it is not known."""
+        """The largest R that does not cut into the loop of the row [mm]; NaN if there is none, or it is not known."""
         programmed = np.abs(self.trace.compensation.radius)
         searched = self._candidates & ~self.never
         low, high = np.where(searched, 0.0, np.nan), programmed
         if not searched.any():
             return low
         depth = self.overcuts.depth
-        tried = programmed - self._worst(depth) / 2  # between parallel walls that is it
+        tried = programmed - self._worst(depth) / 2  # exact between parallel walls
         for _ in range(_TRIALS):
             keep_time()
             trial = self._trial(tried)

@@ -17,6 +17,7 @@ from polarcheck.program.machines.code_tables import code, modal_tables
 from polarcheck.program.machines.job import Job
 from polarcheck.program.machines.machine import Machine
 
+#: The state of a group before the program selects one.
 _BEFORE = {"motion": Motion.NONE, "side": Side.OFF, "feed_mode": FeedMode.PER_MINUTE, "distance": Distance.ABSOLUTE}
 
 
@@ -38,6 +39,7 @@ class ModalStates(Lookups):
 
     @cached_property
     def _modal(self) -> tuple[tuple[str, ...], NDArray[np.uint8], States]:
+        """The names of the groups; by code the number of its group (from 1), and the state that it sets."""
         return modal_tables(self.machine)
 
     def state(self, group: str) -> States:
@@ -54,6 +56,7 @@ class ModalStates(Lookups):
         return self._column(f"sets {group}", lambda: self._filled(group)[1])
 
     def _filled(self, group: str) -> tuple[States, Mask]:
+        """The state of a group in each row, and the rows that set it."""
         names, group_of, state_of = self._modal
         written = np.zeros(len(self.run), bool)
         values = self._at_power_on(group)
@@ -63,7 +66,7 @@ class ModalStates(Lookups):
             values[rows] = state_of[self.blocks.g_codes[chosen]]
             written[rows] = True
         if group == "speed":
-            # Where G94 is of one group with G96 it has the feed mode for its own state, and ends this one.
+            # Where G94 and G96 share a group, G94 sets the feed mode and ends constant surface speed.
             ended = self.blocks.listed("constant_surface_speed_ended_by") & ~written
             values[ended] = 0
             written |= ended
@@ -73,7 +76,7 @@ class ModalStates(Lookups):
         return state.astype(np.int16), written
 
     def _at_power_on(self, group: str) -> States:
-        """The state that holds before a program has selected one, per row; of an excerpt it is what is usual."""
+        """The state before the program selects one, per row; the usual one for an excerpt, else the machine's."""
         states = np.full(len(self.run), _BEFORE.get(group, 0), np.int16)
         power_on = getattr(self.machine.power_on, group, "")
         if power_on:
@@ -82,31 +85,31 @@ class ModalStates(Lookups):
 
     @cached_property
     def written_units(self) -> States:
-        """Units.INCH or Units.MM as written; where the program does not say, those of the job or the machine."""
+        """Units.INCH or Units.MM as the program says; where it does not, as the job or the machine says."""
         assumed = self.job.program_units or self.machine.control.units
         default = Units.INCH if assumed == "inch" else Units.MM
         return computed(lambda state: np.where(state == 0, default, state).astype(np.int16), self.state("units"))
 
     @cached_property
     def motion_word(self) -> Rows:
-        """Where in the file the code of motion in force is written, its first character; -1 before the first."""
+        """First character in the file of the motion code in force; -1 before the first such code."""
         words = self.blocks.code_indices(*(code for key in STATES["motion"] for code in self.machine.codes(key)))
         start = np.full(len(self.run), -1, np.int64)
         start[self.run.row[words]] = self.run.words.start[words]
         return fill_down(start, self.sets("motion") | self.blocks.starts, -1)
 
     def switched(self, on: list[str], off: list[str], spindle: str = "") -> Mask:
-        """The state that M codes switch, in each row after its own; spindle: its speed of 0 (S1=0) stops it."""
+        """True while M codes have something on, after the codes of the row; a speed of 0 (S1=0) stops the spindle."""
         return self._column(
             f"switched {on} {off} {spindle}",
             lambda: happened(self.blocks.codes(*on), self._stops(self.blocks.codes(*off), spindle)),
         )
 
     def _stops(self, by_code: Mask, spindle: str) -> Mask:
-        """Rows with a code that stops a spindle, with its speed of 0, and where a program starts."""
+        """Rows that stop a spindle, by a code or by a speed of 0, and rows where a program starts."""
         ends = by_code | self.blocks.starts
-        for name, of_spindle in self.machine.control.spindle_words.items():
-            if of_spindle == spindle:
+        for name, owner in self.machine.control.spindle_words.items():
+            if owner == spindle:
                 ends = ends | (self.blocks.word(name) == 0)
         return ends
 
@@ -122,7 +125,7 @@ class ModalStates(Lookups):
 
     @cached_property
     def main_is_master(self) -> Mask:
-        """The main spindle is that of M3, M4, M5 and S: SETMS(3) makes another one that."""
+        """M3, M4, M5 and S mean the main spindle; SETMS(3) makes them mean another one."""
         number = self.blocks.word("@")
         if not self.machine.macro.master_spindle_word or np.isnan(number).all():
             return np.ones(len(self.run), bool)
@@ -150,7 +153,7 @@ class ModalStates(Lookups):
 
     @cached_property
     def presets_x(self) -> Mask:
-        """X is that of the work offset again: what G52 and G50 (G92) have moved is taken back."""
+        """The row takes back what G52 and G50 (G92) have shifted X by: the work offset alone counts."""
         return np.asarray(self.blocks.listed("coordinate_preset") & self.blocks.has("X", "U"))
 
     @cached_property
@@ -178,7 +181,7 @@ class ModalStates(Lookups):
         return np.asarray(self.state("distance") == Distance.INCREMENTAL)
 
     def is_step(self, address: str) -> Mask:
-        """True where the word of an address is a distance, by G91 or as the word itself says: X=IC(10)."""
+        """True where the word of an address is an increment, by G91 or as the word itself says: X=IC(10)."""
         distance = self.blocks.distance(address)
         return (
             self.incremental

@@ -51,7 +51,7 @@ class Spindles:
     @cached_property
     def on_sub_spindle(self) -> Mask:
         """
-        The sub-spindle is the C axis: in a section that which was so at its G12.1.
+        The sub-spindle is the C axis; throughout a section, the state at its G12.1 counts.
 
         Where both spindles are engaged, it is the one that was engaged last (LinearAxis.on_sub_spindle).
         """
@@ -73,7 +73,7 @@ class Spindles:
         """
         The C axis is known to be clamped: a code has clamped it, and none has released it since.
 
-        What becomes of a clamp when the spindle is engaged or disengaged, or in blocks of unknown effect, is not known.
+        After the spindle is engaged or disengaged, or a block of unknown effect, the clamp is no longer known.
         """
         codes, ends = self._codes, self.trace.blocks.starts | self.trace.run.unknown
         main, sub = (
@@ -102,18 +102,18 @@ class Spindles:
 
     @cached_property
     def runs(self) -> Mask:
-        """The spindle whose C axis it is runs as a spindle; on many lathes M3 and M4 start the live tool, too."""
+        """The spindle that has the C axis runs as a spindle; on many lathes M3 and M4 start the live tool, too."""
         sub = self.trace.modal.switched(self._codes.sub_spindle_on, self._codes.sub_spindle_off, "sub")
         return np.where(self.on_sub_spindle, sub, self.trace.modal.spindle)
 
     @property
     def are_no_live_tool(self) -> Mask:
-        """The codes that start and stop that spindle are known to be none of the live tool, which has its own."""
+        """The codes that start and stop the spindle of the C axis do not start the live tool, which has its own."""
         return self.on_sub_spindle | bool(self._codes.live_tool_on)
 
     @cached_property
     def words(self) -> Mask:
-        """Per executed word: a code of the spindle whose C axis it is, or of that axis, and not of the live tool."""
+        """Per executed word: a code of the spindle that has the C axis, or of that axis, not of the live tool."""
         trace, codes = self.trace, self._codes
         of_main = (
             *codes.spindle_on,
@@ -124,12 +124,12 @@ class Spindles:
         )
         of_sub = (*codes.sub_spindle_on, *codes.sub_spindle_off, *codes.sub_c_axis_on, *codes.sub_c_axis_off)
         main, sub, live = (
-            trace.blocks.words_at(trace.blocks.code_indices(*of_one))
-            for of_one in (of_main, of_sub, (*codes.live_tool_on, *codes.live_tool_off))
+            trace.blocks.words_at(trace.blocks.code_indices(*listed))
+            for listed in (of_main, of_sub, (*codes.live_tool_on, *codes.live_tool_off))
         )
         return np.where(self.on_sub_spindle[trace.run.row], sub, main) & ~live
 
     @cached_property
     def has_code(self) -> Mask:
-        """Rows with such a code."""
+        """Rows with a code of `words`."""
         return self.trace.blocks.with_words(self.words)

@@ -1,4 +1,4 @@
-"""Marks in settings files: what keeps programs from being checked."""
+"""Marks in settings files the faults that keep programs from being checked."""
 
 from __future__ import annotations
 
@@ -14,19 +14,20 @@ if TYPE_CHECKING:
 
 def register(server: Server) -> None:
     """Register the feature."""
+    #: By program (URI): the settings file at fault and the mark in it. Several programs may share one.
     marks: dict[str, tuple[str, types.Diagnostic]] = {}
 
     def publish(uri: str) -> None:
-        published: list[types.Diagnostic] = []
+        diagnostics: list[types.Diagnostic] = []
         for file, mark in marks.values():
-            if file == uri and mark not in published:
-                published.append(mark)
-        server.text_document_publish_diagnostics(types.PublishDiagnosticsParams(uri, published))
+            if file == uri and mark not in diagnostics:
+                diagnostics.append(mark)
+        server.text_document_publish_diagnostics(types.PublishDiagnosticsParams(uri, diagnostics))
 
-    def update(document: str, mark: tuple[str, types.Diagnostic] | None) -> None:
-        before = marks.pop(document, None)
+    def update(program: str, mark: tuple[str, types.Diagnostic] | None) -> None:
+        before = marks.pop(program, None)
         if mark is not None:
-            marks[document] = mark
+            marks[program] = mark
         if mark != before:
             for uri in {file for file, _ in filter(None, (before, mark))}:
                 publish(uri)

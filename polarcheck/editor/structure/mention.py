@@ -19,9 +19,9 @@ class Kind(enum.Enum):
 
 class Role(enum.Enum):
     """
-    What a place does with it.
+    What a mention does with the name.
 
-    DEFINES: it stands here. ASSIGNS: a variable takes a value. REFERS: it is used.
+    DEFINES: the N number, label or program stands here. ASSIGNS: a variable takes a value. REFERS: it is used.
     """
 
     DEFINES = enum.auto()
@@ -30,7 +30,7 @@ class Role(enum.Enum):
 
 
 class Into(enum.Enum):
-    """In which program the N number of a reference is looked for: its own, that of the caller, or the called one."""
+    """The program in which a referred N number stands: the one of the reference, its caller, or the one it calls."""
 
     OWN = enum.auto()
     CALLER = enum.auto()
@@ -41,16 +41,16 @@ class Mention(NamedTuple):
     """
     A place that names something.
 
-    kind, role: what it names, and what it does.
-    keys: number or name in capitals; of programs each key by which it can be called.
-    written: as it is written.
-    block: of the listing.
+    kind, role: what it names, and what it does with the name.
+    keys: the number, or the name in capitals; of a program all keys by which it can be called.
+    written: the text as written.
+    block: the number of the block in the listing.
     start, end: the characters of the number or name, end exclusive.
     begin: where the word around it begins, for the cursor.
-    into: the program of an N number.
-    called: the program that the block calls, if the N number is in that.
-    code: what calls a program: M98, G65.
-    has_repeats: P has the repeats before the last four digits.
+    into: the program in which an N number stands.
+    called: the program that the block calls, if the N number stands in that one.
+    code: the code that calls a program: M98, G65.
+    has_repeats: the digits of P before the last four are the number of repeats.
     """
 
     kind: Kind
@@ -84,7 +84,7 @@ class Mention(NamedTuple):
 
 
 class Computed(NamedTuple):
-    """A block that names something by a value: which one is not known."""
+    """A block that names something by a computed value, so that the name is not known."""
 
     kind: Kind
     block: int

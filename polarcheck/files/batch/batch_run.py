@@ -1,4 +1,4 @@
-"""A run over programs: which they are, with the settings of each, who checks them, and from where reports name them."""
+"""A run over programs: which programs with which settings, which processes check them, and the root of their paths."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 #: Processes are started once they save more time than this [s]. A fork, as on Linux, costs little; a spawned process
 #: loads the libraries again.
 _COST = 0.1 if sys.platform == "linux" else 1.5
-#: If the next file has this size, they are started at once [bytes].
+#: If the next file is at least this large, processes are started at once [bytes].
 _WORTH_PROCESSES = 200_000
 
 
@@ -28,7 +28,7 @@ class Planned(NamedTuple):
     tasks: the programs, with the settings of each.
     failures: a line for each folder that cannot be read.
     doubts: a line for each path or setting that may not say what was meant.
-    nothing: why nothing is checked, where folders have programs that are excluded or have other endings.
+    nothing: reasons why nothing is checked: all programs of the folders are excluded or have other endings.
     """
 
     tasks: list[Task]
@@ -49,12 +49,12 @@ def planned(
     """
     Return the programs of files and folders.
 
-    Where all programs of the folders are excluded or have other endings, that is a failure: nothing was checked.
+    If all programs of the folders are excluded or have other endings, nothing is checked, which is a failure.
 
-    extensions: endings of the programs in folders; empty for those that the job files name, else the usual ones.
-    force_exclude: skip excluded files even if they are named; nothing need be left.
-    named: the file that standard input is judged as, as an argument of tasks.plan.
-    skipped: takes what the walks did not read.
+    extensions: endings of programs in folders; if empty, those of the job files or else the usual ones.
+    force_exclude: skip excluded files even if they are named; none may remain, without a failure.
+    named: keyword arguments of tasks.plan that say which file standard input stands for.
+    skipped: a list to which entries that the walks did not read are added.
 
     Raises a PolarcheckError for settings that cannot be used.
     """
@@ -90,7 +90,7 @@ def outcomes(
     Yield a generator of the outcomes, in the order of the tasks; no worker is left at the end of the block.
 
     most: bytes of a program.
-    workers: processes, 0 for as many as pay.
+    workers: number of processes; 0 for as many as save time.
     cluster: address of a scheduler.
 
     Raises ClusterError if the cluster cannot be used.
@@ -108,7 +108,7 @@ def outcomes(
         elif workers:
             outcomes = _by_processes(tasks, most, workers)
         else:
-            outcomes = _as_it_pays(tasks, most, cores())
+            outcomes = _with_processes_if_faster(tasks, most, cores())
         yield stack.enter_context(contextlib.closing(outcomes))
 
 
@@ -119,13 +119,13 @@ def cores() -> int:
     return os.cpu_count() or 1
 
 
-def _as_it_pays(tasks: Sequence[Task], most: int, count: int) -> Generator[Outcome, None, None]:
+def _with_processes_if_faster(tasks: Sequence[Task], most: int, count: int) -> Generator[Outcome, None, None]:
     """Yield outcomes from this process, then from `count` worker processes once they save more than they cost."""
     from polarcheck.files.batch.tasks import forget, outcome
 
     begun = time.monotonic()
     for number, task in enumerate(tasks):
-        if count > 1 and _pays(tasks[number:], number, time.monotonic() - begun, count):
+        if count > 1 and _saves_time(tasks[number:], number, time.monotonic() - begun, count):
             yield from _by_processes(tasks[number:], most, count)
             return
         if number:
@@ -133,15 +133,15 @@ def _as_it_pays(tasks: Sequence[Task], most: int, count: int) -> Generator[Outco
         yield outcome(task, most)
 
 
-def _pays(left: Sequence[Task], done: int, seconds: float, count: int) -> bool:
-    """Return True if processes should be started; seconds: the time of the finished files."""
-    if len(left) == 1:
+def _saves_time(remaining: Sequence[Task], done: int, seconds: float, count: int) -> bool:
+    """Return True if processes save time. done, seconds: number of finished files, and the time they took."""
+    if len(remaining) == 1:
         return False
     from polarcheck.program.reading import files
 
     # The first file counts twice, since forked processes inherit what it has loaded.
-    saved = seconds / (done + 1) * len(left) * (1 - 1 / min(count, len(left)))
-    return saved > _COST or files.size(left[0].path) >= _WORTH_PROCESSES
+    saved = seconds / (done + 1) * len(remaining) * (1 - 1 / min(count, len(remaining)))
+    return saved > _COST or files.size(remaining[0].path) >= _WORTH_PROCESSES
 
 
 def _by_processes(tasks: Sequence[Task], most: int, count: int) -> Generator[Outcome, None, None]:

@@ -1,8 +1,8 @@
 """
-`--cluster`: the workers of a scheduler of dask.distributed, by its address.
+`--cluster`: files checked by the workers of a dask.distributed scheduler, given by its address.
 
-They may share no file with this machine. So the programs are read here and sent as bytes, together with the settings
-and the programs that they may call, which are sent once to each worker.
+The workers may have no file in common with this machine. So the programs are read here and sent as bytes. The settings
+and the programs that may be called are sent once to each worker.
 """
 
 from __future__ import annotations
@@ -36,20 +36,20 @@ from polarcheck.foundation.version import __version__
 from polarcheck.program.execution import called_programs
 from polarcheck.program.reading import files
 
-#: Limits of one submission: each takes some milliseconds on a cluster [files, bytes].
+#: Limits of one submission, each of which costs some milliseconds on a cluster [files, bytes].
 _MOST, _MOST_BYTES = 100, 5_000_000
-#: Settings that a worker remembers.
+#: Number of settings that a worker remembers.
 _REMEMBERED = 64
-#: Limit of the programs that may be called, of one job [bytes].
+#: Limit of all subprograms that a job may call [bytes].
 _MOST_CALLED = 200_000_000
 #: Time without an outcome after which the scheduler is asked whether it still answers [s].
 _QUIET = 5.0
-#: Time to accept a connection, and to have a worker [s].
+#: Longest wait for a connection, and for a first worker [s].
 _PATIENCE = 5
-#: Time to shake hands, to answer a question, and to cancel; the client itself waits for some answers for ever [s].
+#: Longest wait for a handshake or an answer, and for a cancellation; the client alone might wait for ever [s].
 _LONGEST = 10
 _TO_CANCEL = 5.0
-#: What the client raises where the scheduler does not answer any more; TimeoutError is an OSError.
+#: Exceptions of the client if the scheduler no longer answers; TimeoutError is an OSError.
 _NO_ANSWER = (OSError, RuntimeError, CancelledError)
 _ADDRESS = re.compile(r"(?:tcp|tls)://(?:\[([0-9A-Fa-f:]+)\]|([^/:\s]+)):([0-9]{1,5})/?", re.ASCII)
 Value = TypeVar("Value")
@@ -78,7 +78,7 @@ def workers(address: str, tasks: Sequence[Task], most: int) -> Iterator[Cluster]
             raise ClusterError(
                 f"--cluster {address}: the scheduler has no workers; `dask worker {address} --nthreads 1` starts one"
             ) from None
-        # Two files of the same bytes are still two.
+        # pure=False: two files with the same bytes are checked and reported separately.
         executor = client.get_executor(pure=False)
         yield Cluster(tasks, executor, max(count, 1), most, f"the cluster at {address}", ask)
 
@@ -110,7 +110,7 @@ def _client(address: str) -> Iterator[Any]:
         except (OSError, ImportError, RuntimeError) as error:
             reason = str(error).partition("\n")[0] or type(error).__name__
             raise ClusterError(f"--cluster {address}: what answers there is no scheduler: {reason}") from None
-        except Exception:  # from garbage the client reads anything: a length beyond all memory, a failed assertion
+        except Exception:  # garbage from the port can raise anything: MemoryError, AssertionError
             raise ClusterError(f"--cluster {address}: what answers there is no scheduler") from None
         try:
             yield client
@@ -120,7 +120,7 @@ def _client(address: str) -> Iterator[Any]:
 
 
 def _verify_port(address: str) -> None:
-    """Raises ClusterError where nothing answers: the client would take many times as long to find out."""
+    """Raises ClusterError where nothing listens on the port; the client would take many times as long to find out."""
     match = _ADDRESS.fullmatch(address)
     if match is None:
         raise ClusterError(f"--cluster {address}: expected tcp://HOST:PORT, as the scheduler shows it when it starts")
@@ -133,9 +133,9 @@ def _verify_port(address: str) -> None:
 
 def in_time(function: Callable[[], Value], seconds: float) -> Value:
     """
-    Call a function that may never return: its value or exception, or TimeoutError after this time.
+    Call a function that may never return. Returns its value or raises its exception, or TimeoutError after this time.
 
-    The thread of a call that has not returned is left behind.
+    A call that has not returned by then goes on in its thread.
     """
     future: Future[Value] = Future()
 
@@ -144,7 +144,7 @@ def in_time(function: Callable[[], Value], seconds: float) -> Value:
             future.set_result(function())
         except Exception as error:
             future.set_exception(error)
-        except BaseException:  # that of asyncio where a loop ends, which would pass all handlers of the caller
+        except BaseException:  # asyncio.CancelledError, for which callers have no handler
             future.set_exception(CancelledError())
 
     threading.Thread(target=run, daemon=True).start()
@@ -160,7 +160,7 @@ class Batch(msgspec.Struct, frozen=True):
 
     version: of polarcheck.
     items: path, key of the settings and bytes of each file.
-    settings: by key, as `pack` makes them: those that the worker may not have yet.
+    settings: packed settings by key, only those that the worker may not have yet.
     """
 
     version: str
@@ -197,8 +197,8 @@ class Cluster:
         ask: Callable[[], None] = lambda: None,
     ) -> None:
         """
-        count: workers. most: bytes of a file. name: of the cluster, in messages. ask: raises one of _NO_ANSWER where
-        the cluster does not answer any more.
+        count: number of workers. most: bytes of a file. name: the cluster in messages. ask: raises one of _NO_ANSWER
+        if the scheduler no longer answers.
         """
         self.count, self.patience = count, _QUIET
         self.death: tuple[type[Exception], ...] = (Exception,)  # executors of a cluster have exceptions of their own
@@ -209,7 +209,7 @@ class Cluster:
         self._times_sent = Counter[str]()
 
     def submit(self, numbers: list[int], alone: bool) -> Future[Answer]:
-        """Read files and send them. Raises ClusterError where too many subprograms belong to them."""
+        """Read files and send them. Raises ClusterError where subprograms are too large, or nothing is accepted."""
         items, settings = [], {}
         for number in numbers:
             task = self._tasks[number]
@@ -314,7 +314,7 @@ class _Remembered:
         self._known: OrderedDict[str, tuple[Settings, Path | None]] = OrderedDict()
 
     def __call__(self, key: str, content: bytes | None = None) -> Settings | None:
-        """Settings by their key; content: as they were sent."""
+        """The settings of a key, None if unknown; content: the packed settings, to remember them first."""
         if key not in self._known and content is not None:
             self._known[key] = _unpacked(content)
             while len(self._known) > _REMEMBERED:
@@ -330,7 +330,7 @@ _REMEMBER = _Remembered()
 
 
 def _unpacked(content: bytes) -> tuple[Settings, Path | None]:
-    # A cluster runs what it is sent anyway: whoever may send it settings may send it programs of Python.
+    # Safe enough: whoever may send settings to a cluster may run any Python code on it.
     settings, folders = pickle.loads(zlib.decompress(content))  # noqa: S301
     if not folders:
         return settings, None

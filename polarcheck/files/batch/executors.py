@@ -38,18 +38,18 @@ _AHEAD = 3
 _MOST_WAITING = 2000
 #: Files above this size are checked one at a time: each takes 40 times its size of memory, or more [bytes].
 _LARGE = 8_000_000
-#: Windows waits for no more handles at once.
+#: Windows cannot wait for more handles at once [processes].
 _MOST_ON_WINDOWS = 61
-#: Workers look at this interval whether their parent process lives, where the system does not tell them [s].
+#: Interval at which a worker looks whether its parent process lives, where the system does not report it [s].
 _PARENT_INTERVAL = 2.0
 
 
 class Workers(Protocol):
     """
-    Those who check files, behind an executor.
+    The workers that check files, behind an executor.
 
     count: number of workers.
-    most_files, most_bytes: what one submission holds at most.
+    most_files, most_bytes: limits of one submission.
     large: size above which files are checked one at a time [bytes].
     patience: seconds without an outcome after which `verify` is called.
     death: exceptions of a future whose worker has died, or has no memory left to send its result.
@@ -145,7 +145,7 @@ class _Schedule:
             yield from self._ready()
 
     def in_this_process(self) -> Iterator[Outcome]:
-        """The remaining outcomes where no process can be started; files that may have killed one are left alone."""
+        """The remaining outcomes if no process can be started; a file that may have killed one is not checked again."""
         while self._futures:
             self._wait()
         for number in self._again:
@@ -162,7 +162,7 @@ class _Schedule:
                 self._take(self._finished.get_nowait())
 
     def rest(self) -> Iterator[Outcome]:
-        """The outcomes that are there, in order, without those that are missing between them."""
+        """The outcomes that have come, in order; those missing between them are skipped."""
         for number in sorted(self._outcomes):
             self.count += 1
             yield self._outcomes.pop(number)
@@ -271,15 +271,15 @@ class Sent(msgspec.Struct, frozen=True):
     """
     An outcome on its way from another process.
 
-    outcome: the outcome; its exception loses the traceback on the way.
-    traceback: the text of that.
+    outcome: the outcome; pickling its exception loses the traceback.
+    traceback: the traceback as text.
     """
 
     outcome: Outcome
     traceback: str = ""
 
     def unpacked(self) -> Outcome:
-        """The outcome itself."""
+        """The outcome, with the traceback as the cause of its exception."""
         if self.outcome.bug is not None:
             self.outcome.bug.__cause__ = FromWorkerError(self.traceback)
         return self.outcome
@@ -296,7 +296,7 @@ def packed(result: Outcome) -> Sent:
     lines = "".join(traceback.format_exception(bug))
     try:
         pickle.loads(pickle.dumps(bug))  # noqa: S301  written in this line
-    except Exception:  # some exceptions cannot be made again from their arguments
+    except Exception:  # some exceptions cannot be unpickled
         plain = RuntimeError(f"{type(bug).__name__}: {bug}")
         for note in getattr(bug, "__notes__", ()):
             plain.add_note(note)
@@ -308,7 +308,7 @@ def packed(result: Outcome) -> Sent:
 
 
 def start_method() -> str:
-    """How processes are started: fork where that is safe, since a forked process has all libraries loaded already."""
+    """How processes are started: fork where that is safe, since a forked process has its libraries loaded already."""
     return "fork" if sys.platform == "linux" else "spawn"
 
 
@@ -344,13 +344,13 @@ class Processes:
             return self._executor.submit(function, *arguments)
 
     def _start(self, alone: bool) -> None:
-        """Start a pool, with fewer processes where the system gives no more; one of them has answered by then."""
+        """Start a pool and wait for a first answer; halve the number of processes while the system refuses them."""
         count = 1 if alone else self.count
         while True:
             self.close()
             self._is_alone, self._others, self._processes = alone, set(multiprocessing.active_children()), set()
-            given = (self._tasks, self._most, count)
-            self._executor = ProcessPoolExecutor(count, multiprocessing.get_context(self._method), _begin, given)
+            arguments = (self._tasks, self._most, count)
+            self._executor = ProcessPoolExecutor(count, multiprocessing.get_context(self._method), _begin, arguments)
             try:
                 self._submitted(os.getpid).result()
                 self._look_for_processes()
@@ -366,7 +366,7 @@ class Processes:
         return [sent.unpacked() for sent in future.result()]
 
     def verify(self) -> None:
-        """Raises BrokenProcessPool where a process has died and the pool cannot notice: it waits for half a result."""
+        """Raises BrokenProcessPool where a process has died unnoticed: its pool waits for the rest of a result."""
         if not all(process.is_alive() for process in self._processes):
             self.close()
             raise BrokenProcessPool
@@ -377,7 +377,7 @@ class Processes:
         self._processes |= set(multiprocessing.active_children()) - self._others
 
     def close(self) -> None:
-        """Kill all processes: they write no files, and hold nothing that must be given back."""
+        """Kill all processes: they write no files, and hold nothing that must be released."""
         executor = self._executor
         if executor is None:
             return
@@ -396,7 +396,7 @@ class Processes:
 
 @contextlib.contextmanager
 def _signals_blocked() -> Iterator[None]:
-    """Have signals wait: one that reaches a forked process before it ignores them would print a traceback."""
+    """Delay signals: one that reaches a forked process before it ignores them would print a traceback."""
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return
@@ -434,7 +434,7 @@ def _end_with_parent() -> None:
     """End this process when its parent is gone; the executor would leave it waiting for work."""
     parent = multiprocessing.parent_process()
     assert parent is not None
-    # Forked processes hold each other's sentinels open; the number of the parent changes on these systems.
+    # Forked processes hold each other's sentinels open, but where there is fork, getppid changes with the parent.
     number = os.getppid()
     while os.getppid() == number and not connection.wait([parent.sentinel], _PARENT_INTERVAL):
         pass
@@ -452,9 +452,9 @@ def _check(numbers: list[int]) -> list[Sent]:
 
 
 def by_processes(tasks: Sequence[Task], most: int, count: int) -> Generator[Outcome, None, None]:
-    """The outcomes by so many processes, in order."""
+    """The outcomes of `count` worker processes, in the order of the tasks."""
     if start_method() == "fork":
-        # A module that is loaded before the fork is not loaded by each process.
+        # Loaded before the fork, a module need not be loaded by each process.
         for maker in tables.TABLES.values():
             importlib.import_module(maker.module)
     return outcomes(tasks, Processes(tasks, min(count, len(tasks)), most), most)

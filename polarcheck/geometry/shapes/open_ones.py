@@ -10,7 +10,7 @@ from polarcheck.foundation.arrays import Floats, Points, Rows
 from polarcheck.geometry.shapes.shape import SAME, SAME_DIRECTION, Shape, each_flat, off_axis, polygon_name, turned_by
 from polarcheck.geometry.shapes.side_rings import Ring
 
-#: Walls that are nearer to parallel than this are so [rad].
+#: Walls within this angle count as parallel [rad].
 _PARALLEL = 5 * SAME_DIRECTION
 
 
@@ -25,12 +25,12 @@ def flats_of(rings: Sequence[Ring]) -> list[Shape]:
 
 
 def bound_one_piece(rings: Sequence[Ring], bar: float) -> bool:
-    """All walls, within the bar, lie within those that are flats: one piece stands. bar: diameter [mm], NaN unknown."""
+    """True if no wall reaches, within the bar, beyond a flat: one piece stands. bar: diameter [mm], NaN if unknown."""
     normal, out, _ = _walls(rings)
     for ring in rings:
         points = np.array([ring.start[0], ring.end[0]])
         if not np.isnan(bar):
-            # Where it leaves the bar.
+            # Cut the wall off where it leaves the bar.
             along = points[1] - points[0]
             along /= abs(along)
             ends = (points * along.conjugate()).real
@@ -43,12 +43,12 @@ def bound_one_piece(rings: Sequence[Ring], bar: float) -> bool:
 
 
 def _walls(rings: Sequence[Ring]) -> tuple[Points, Floats, list[tuple[Points, Floats]]]:
-    """The normals of flats and their distances from the axis, each wall once; and those of the walls of each slot."""
+    """Normals of the flats, their distances from the axis, each wall once; then the same for the pair of each slot."""
     normal = np.array([ring.normal[0] for ring in rings])
     out = np.array([float(((ring.start[0] + ring.end[0]) / 2 * ring.normal[0].conjugate()).real) for ring in rings])
-    # A wall that another one interrupts is one flat.
-    again = (np.abs(np.angle(normal[:, None] * normal.conj())) <= _PARALLEL) & (np.abs(out[:, None] - out) <= SAME)
-    first = np.argmax(again, axis=1) == np.arange(len(rings))
+    # Two pieces of one interrupted wall are one flat.
+    is_same = (np.abs(np.angle(normal[:, None] * normal.conj())) <= _PARALLEL) & (np.abs(out[:, None] - out) <= SAME)
+    first = np.argmax(is_same, axis=1) == np.arange(len(rings))
     normal, out, slots = normal[first], out[first], []
     while (pair := _facing(normal, out)) is not None:
         slots.append((normal[pair], out[pair]))
@@ -69,6 +69,7 @@ def _facing(normal: Points, out: Floats) -> Rows | None:
 
 
 def _flats(normal: Points, out: Floats, row: int) -> Shape:
+    """The shape of walls by their normals and distances: a polygon if they are even and equal, else flats."""
     count = len(out)
     order = np.argsort(np.angle(normal * normal[0].conjugate()) % (2 * np.pi - _PARALLEL), kind="stable")
     normal, out = normal[order], out[order]
@@ -89,19 +90,20 @@ def _flats(normal: Points, out: Floats, row: int) -> Shape:
 
 
 def _sizes(normal: Points, out: Floats) -> dict[str, float]:
+    """The values of flats at uneven distances: the least and the most, and those of each flat."""
     sizes = {} if np.ptp(out) <= 2 * SAME else {"least": float(out.min()), "most": float(out.max())}
     return sizes | each_flat(normal, out)
 
 
 def _slot(normal: complex, out: Floats, row: int) -> Shape:
-    """A slot right through; its walls face each other."""
+    """A slot through the whole bar, by the normal of its first wall and the distances of both."""
     middle = normal * complex(out[0] - out[1]) / 2
     values = {"width": -float(out.sum()), "turned": turned_by(1j * normal, 2), **off_axis(middle)}
     return Shape("slot", True, values, row=row, is_open=True)
 
 
 def _joined_flats(ring: Ring, normal: complex, out: Floats) -> Shape | None:
-    """Two flats that are cut in one way, with an arc from one to the other that goes round the bar."""
+    """Two flats cut in one path, with an arc round the bar from one to the other."""
     if ring.is_line[1] or ring.sweep[1] < 0:
         return None
     values = {"flats": 2.0, "apart": float(out.sum()), "turned": turned_by(normal, 2), "joined": float(ring.radius[1])}
@@ -110,7 +112,7 @@ def _joined_flats(ring: Ring, normal: complex, out: Floats) -> Shape | None:
 
 
 def keyway_of(ring: Ring) -> Shape | None:
-    """A slot that is open at one end: two parallel walls and what ends them; or two flats and what joins them."""
+    """A slot open at one end, of two parallel walls and a bottom; or two flats and the arc that joins them."""
     if ring.closed or len(ring) != 3 or not ring.is_line[[0, 2]].all():
         return None
     normal = ring.normal
@@ -118,7 +120,7 @@ def keyway_of(ring: Ring) -> Shape | None:
         return None
     out = ((ring.start + ring.end) / 2 * normal.conj()).real[[0, 2]]
     width = -float(out.sum())
-    # The way in, along the walls to the bottom.
+    # The direction into the slot, along its first wall.
     along = complex(ring.end[0] - ring.start[0])
     along /= abs(along)
     if width <= 0:

@@ -16,7 +16,7 @@ from polarcheck.program.machines.profiles import MERGED, Profile, load
 from polarcheck.program.reading.excerpt import visible
 from polarcheck.rules.rule import load_all
 
-#: The keys that a shop may want to set, by table, each with an example for an unknown value.
+#: The keys that a shop may want to set, by table, each with an example for when its value is unknown, or None.
 _QUESTIONS: dict[str, dict[str, Any]] = {
     "limits": {
         "c_feed": 3600,
@@ -58,7 +58,7 @@ _QUESTIONS: dict[str, dict[str, Any]] = {
         "program_end": ["M2", "M30"],
         "stops_reading_ahead": ["M0", "M1"],
     },
-    # The answer is the first code of a list of the machine.
+    # Each names a list of G codes; the example is the first code in it.
     "power_on": {
         "motion": "rapid",
         "plane": "plane_zx",
@@ -105,8 +105,8 @@ _HEADS = {
     "power_on": "G codes that are in force when a program begins and selects none",
     "polar": 'Lists of codes may say what differs from the inherited one, + or - before each code: ["+G93", "-G80"].',
 }
-#: What a setter knows without a manual of the builder: table, question, and the keys that answer it. The first question
-#: is the control, which the file inherits from.
+#: What a setter knows without the builder's manual: table, question, and the keys that answer it. They are numbered
+#: from 2: question 1 is the control, from which the file inherits.
 _SHORT: tuple[tuple[str, str, tuple[str, ...]], ...] = (
     (
         "control",
@@ -164,7 +164,7 @@ def text(name: str, inherits: str) -> str:
         *_questions(profile),
         *_doubtful(profile),
         *_parameters(profile),
-        *_of_rules(profile),
+        *_alarms_and_severities(profile),
         "",
         *_prose(_TOOLS),
     ]
@@ -203,7 +203,7 @@ def short_text(name: str, inherits: str) -> str:
 
 
 def _example(profile: Profile, group: str, key: str, answer: Any) -> Any:
-    """The value of the machine or, where that is not known, an example."""
+    """Return the value of the machine or, where that is not known, the example `answer`."""
     if group == "power_on":
         answer = next(iter(profile.machine.codes(answer)), "")
     value = getattr(getattr(profile.written, group), key)
@@ -212,6 +212,7 @@ def _example(profile: Profile, group: str, key: str, answer: Any) -> Any:
 
 
 def _questions(profile: Profile) -> Iterator[str]:
+    """Yield the tables of _QUESTIONS, with the doubts about what the profile says."""
     for group, keys in _QUESTIONS.items():
         yield from ("", f"[{group}]", *_prose(_HEADS.get(group, "")))
         table = getattr(profile.written, group)
@@ -226,7 +227,7 @@ def _questions(profile: Profile) -> Iterator[str]:
         yield from _in_doubt(profile, group, set(keys))
 
 
-def _of_rules(profile: Profile) -> Iterator[str]:
+def _alarms_and_severities(profile: Profile) -> Iterator[str]:
     """Yield the alarm and the severity of each rule, as they are without this file."""
     rules, machine = load_all(), profile.machine
     yield from ("", "[alarms]", *_prose("what the control shows, by rule; empty where it shows nothing"))
@@ -266,7 +267,7 @@ def _in_doubt(profile: Profile, group: str, listed: set[str]) -> Iterator[str]:
 
 
 def _answer(key: str, value: Any, meaning: str) -> Iterator[str]:
-    """Yield a key and its value, commented out, with its meaning behind it or, if that is too long, above it."""
+    """Yield a key and its value, commented out, with its meaning behind it or, if that makes it too long, above."""
     first, *further = _lines(f"#{_toml_key(key)} = {_toml(value)}")
     if further:
         yield from (f"# {meaning}", first, *further)
@@ -301,7 +302,7 @@ def _parameters(profile: Profile) -> Iterator[str]:
 
 
 def _present(profile: Profile, meaning: Meaning) -> str:
-    """Return the value of a parameter that matches the profile; empty if that is no single number."""
+    """Return the value that a parameter has on the machine; empty if that is not a number or letter."""
     group, _, key = meaning.key.partition(".")
     value = getattr(getattr(profile.machine, group, None), key, None) if key else None
     if meaning.is_letter:

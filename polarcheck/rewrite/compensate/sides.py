@@ -1,4 +1,4 @@
-"""On which side of a path of the tool center the part is: by what else the cutter takes away there."""
+"""On which side of a tool center path the part is: what the cutters clear on either side decides it."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from polarcheck.foundation.arrays import Floats, Points, Rows
 from polarcheck.geometry.segments import Curves, segments
 from polarcheck.rewrite.compensate.pieces import Piece
 
-#: Sagitta of the chords of paths [mm], and what a cutter must cut into a wall to take it away.
+#: Sagitta of the chords of paths [mm]; a point deeper than this within a cleared area is taken away [mm].
 _TOLERANCE, _DEEP = 1e-3, 0.01
-#: Points that differ by less are one [mm].
+#: Points nearer together than this are one [mm].
 _SAME_PLACE = 1e-6
-#: Points of a contour that are looked at.
+#: Number of points of a contour that are tested.
 _POINTS = 400
 
 
@@ -25,14 +25,16 @@ class Swept:
     """
     What cutters clear at feed, in the frame of the part.
 
-    trace, moves: of the tool center. radius: R of each move [mm]; NaN where it is not known.
+    moves: the moves of the tool center. radius: R of each move [mm]; NaN where it is not known. frame, turn: per move
+    the number of its frame, and the unit complex number that turns its points into it. top: the higher Z of its ends
+    [mm]. at_feed: the moves at feed with known R. usable: those of them that no deeper move repeats.
     """
 
     def __init__(self, trace: Trace, moves: Moves, radius: Floats) -> None:
         is_known = trace.path.knows_section_entry[moves.section]
         entry = np.where(is_known, moves.entry[moves.section], 0.0)
         self.turn = np.exp(1j * np.radians(entry))
-        #: A section at whose beginning C is not known is alone in its frame.
+        #: Sections share frame -1; one that begins at an unknown C has a frame of its own.
         self.frame = np.where(is_known, -1, moves.section)
         begins, ends = z_along(trace, moves)
         self.top = np.fmax(begins, ends)
@@ -42,7 +44,7 @@ class Swept:
         self.usable = self._deepest(self.at_feed)
 
     def _deepest(self, usable: Rows) -> Rows:
-        """The deepest of moves along one way with one R, which clears what the others do."""
+        """The deepest of moves along the same path with the same R: it clears what the others clear."""
         moves, turn = self.moves[usable], self.turn[usable]
         points = (
             np.concatenate([moves.start * turn, moves.end * turn, np.nan_to_num(moves.center * turn)]) / _SAME_PLACE
@@ -54,15 +56,15 @@ class Swept:
         return np.sort(usable[order[np.append(True, is_other)]]) if len(usable) else usable
 
     def frame_of(self, section: int) -> tuple[int, complex]:
-        """The frame of the part in a section, and the number by which its points come into it."""
+        """The number of the frame of a section, and the factor that turns its points into that frame."""
         first_move = int(np.argmax(self.moves.section == section))
         return int(self.frame[first_move]), complex(self.turn[first_move])
 
     def distance(self, points: Points, section: int, z: float) -> Floats:
         """
-        How far points at a depth are from all paths there [mm], beyond R of their cutters; below 0 they are cleared.
+        Distance of points from the nearest cutter on all paths [mm]; below 0 the point is cleared.
 
-        points: on the plane of a section [mm]. A path clears all depths at which it runs and those above.
+        points: on the plane of a section [mm], at the depth z. A path clears the depth at which it runs and all above.
         """
         import shapely  # type: ignore[import-untyped]
 
@@ -72,17 +74,17 @@ class Swept:
         in_reach = ~(self.top > z + _TOLERANCE) | (math.isnan(z) & (self.moves.section == section))
         chosen = self.usable[((self.frame == frame) & in_reach)[self.usable]]
         distance = np.full(len(points), np.inf)
-        places = shapely.points(coordinates(points * turn))
+        geometries = shapely.points(coordinates(points * turn))
         for size in np.unique(self.radius[chosen]).tolist():
             with_size = chosen[self.radius[chosen] == size]
             chords = segments(self._curves(with_size), _TOLERANCE)
             tree = shapely.STRtree(lines_of(chords.start, chords.end))
-            (index, _), far = tree.query_nearest(places, return_distance=True, all_matches=False)
+            (index, _), far = tree.query_nearest(geometries, return_distance=True, all_matches=False)
             distance[index] = np.minimum(distance[index], far - size)
         return distance
 
     def farthest_from(self, reference: Swept, section: int) -> tuple[float, int]:
-        """How far the tool center in a section leaves its path in another program at most [mm], and in which row."""
+        """The largest distance of the tool center in a section from its path in another program [mm], and the row."""
         import shapely
 
         from polarcheck.geometry.polygons.faces import coordinates, lines_of
@@ -101,6 +103,7 @@ class Swept:
         return float(far[worst]), int(self.moves.row[chosen[pieces.move[index[worst]]]])
 
     def _curves(self, chosen: np.ndarray) -> Curves:
+        """The chosen moves as curves in their frame."""
         moves, turn = self.moves, self.turn[chosen]
         center = np.where(np.isnan(moves.center[chosen]), np.nan, moves.center[chosen] * turn)
         start, end = moves.start[chosen] * turn, moves.end[chosen] * turn
@@ -108,7 +111,7 @@ class Swept:
 
 
 def points_along(contour: Sequence[Piece], count: int = _POINTS) -> Points:
-    """Return points along a contour, some on each of its pieces, without its corners."""
+    """Return about `count` points along a contour, at least two inside each piece, none at a corner."""
     whole = sum(piece.length for piece in contour) or 1.0
     result: list[complex] = []
     for piece in contour:
@@ -119,7 +122,7 @@ def points_along(contour: Sequence[Piece], count: int = _POINTS) -> Points:
 
 def standing_share(swept: Swept, contour: Sequence[Piece], section: int, z: float, bar: float) -> float:
     """
-    Return the share of a contour that lies in the bar, where nothing takes a point of it away; else 0.
+    Return the share of a contour that lies in the bar; 0 if anything takes a point of that share away.
 
     bar: diameter beyond which there is no material [mm]; NaN where it is not known.
     """

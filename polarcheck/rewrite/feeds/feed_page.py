@@ -19,6 +19,7 @@ from polarcheck.rules.tables import Tables
 
 #: The longest text of a block in the table [characters].
 _BLOCK = 36
+#: The columns of the curve.
 _CURVE = ("time", "section", "line", "feed", "true_feed", "highest", "c_feed", "channel")
 #: What to do about an unknown time.
 _REMEDIES = {
@@ -101,6 +102,7 @@ def _totals(table: FeedTable) -> Iterator[str]:
 
 
 def _cost(total: FeedTotal, table: FeedTable) -> str:
+    """Return the times of a section or program, what the table would change, and why a time is not known."""
     text = f"{total.time:.1f} s{' and what is not known' if total.unknown else ''}"
     text += f"; cutting {total.cutting:.1f} s, with this table {total.highest_cutting:.1f} s ({total.lost:+.1f} s)"
     if total.won:
@@ -114,6 +116,7 @@ def _cost(total: FeedTotal, table: FeedTable) -> str:
 
 
 def _scale(table: FeedTable) -> float:
+    """Return mm per unit of length of the program."""
     return MM_PER_INCH if table.units == "inch" else 1.0
 
 
@@ -130,7 +133,7 @@ def _number(value: float | None, digits: int) -> str:
 
 
 def curve(tables: Tables) -> Iterator[tuple[str | int | float | None, ...]]:
-    """Yield the curve of one run, a row for each point in time; [s], [mm/min], [deg/min]."""
+    """Yield the curve of one run, a row of _CURVE for each point in time; [s], [mm/min], [deg/min]."""
     trace: Trace = tables["trace"]
     runs: Dynamics = tables["dynamics"]
     feeds: HighestFeeds = tables["highest_feeds"]
@@ -145,6 +148,7 @@ def curve(tables: Tables) -> Iterator[tuple[str | int | float | None, ...]]:
 
 
 def _moment(points: FeedCurve, index: int, trace: Trace, row: int) -> tuple[str | int | float | None, ...]:
+    """The first five values of a row of the curve."""
     location = int(trace.mode.section[row]), int(trace.blocks.line_in_file[row])
     return (
         rounded(points.time[index]),
@@ -159,7 +163,7 @@ def _channel(trace: Trace) -> str:
 
 
 def as_csv(tables: list[Tables]) -> Iterator[str]:
-    """Yield the curves of a file, with a head."""
+    """Yield the curves of a file as CSV, with a line of column names."""
     buffer = io.StringIO()
     writer = csv.writer(buffer, lineterminator="\n")
     writer.writerow(_CURVE)

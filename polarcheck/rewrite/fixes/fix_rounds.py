@@ -22,7 +22,7 @@ MOST_CHECKS = 200
 #: After this many refused fixes of a rule, no more fixes of that rule are tried in the program.
 MOST_REFUSED = 20
 
-#: Removes findings from a report that must not be fixed, since a baseline suppresses them.
+#: Removes from a report the findings that must not be fixed, since a baseline suppresses them.
 Suppress = Callable[[FileReport], FileReport]
 
 
@@ -50,9 +50,9 @@ class Outcome(msgspec.Struct, frozen=True):
     """
     A program with its fixes.
 
-    data: the bytes.
+    data: the program, as bytes.
     fixed, refused: the fixes that were applied, and those that were not.
-    left: the number of unsafe fixes that were not requested.
+    left: the number of unsafe fixes that remain, since they were not requested.
     origin: for each line of the result its line in the original file (from 1).
     is_whole: there was time for all fixes.
     """
@@ -98,8 +98,8 @@ def with_fixes(
     suppress: removes findings that must not be fixed from a report.
 
     A fix that would cause another finding, or another tool path than it declares, is refused. Fixes that overlap are
-    applied in successive rounds. All of it has the time limit of one check; further fixes wait for the next run. Raises
-    what state_of raises for the original program.
+    applied in successive rounds. All rounds share the time limit of one check; further fixes wait for the next run.
+    Raises what state_of raises for the original program.
     """
     with time_limit(seconds_for(len(data), settings.job.run.max_seconds)):
         return _fixed(data, settings, path, encoding, unsafe, suppress)
@@ -129,7 +129,7 @@ class _Work:
 
     fixed: the fixes applied so far.
     refused: the fixes refused since the last one that was applied.
-    last: the program with the fixes accepted in this round.
+    last: the program with the fixes accepted in this round; None before the first.
     checks: the number of checks so far.
     origin: for each line of the present program its line in the original file (from 1).
     """
@@ -191,7 +191,7 @@ class _Work:
         return self.last
 
     def _accepted(self, state: State, accepted: list[_Candidate], candidates: Sequence[_Candidate]) -> list[_Candidate]:
-        """Return the accepted fixes, and as many of the candidates as are accepted beside them."""
+        """Return the accepted fixes and as many of the candidates as possible: refused together, they are split."""
         candidates = [candidate for candidate in candidates if not self._is_exhausted(candidate.finding.rule)]
         if not candidates or self.is_over:
             return accepted
@@ -231,7 +231,7 @@ class _Work:
 
 
 def _parts(candidates: Sequence[_Candidate]) -> list[list[_Candidate]]:
-    """Split candidates by rule, those of a single rule into halves: refused fixes are often of one rule."""
+    """Split candidates by rule, or in two if all are of one rule: refused fixes are often of the same rule."""
     rules = dict.fromkeys(candidate.finding.rule for candidate in candidates)
     if len(rules) > 1:
         return [[candidate for candidate in candidates if candidate.finding.rule == rule] for rule in rules]

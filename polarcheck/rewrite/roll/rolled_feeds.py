@@ -14,19 +14,20 @@ from polarcheck.program.machines.machine import Machine
 from polarcheck.rewrite.roll.rolled_elements import Element
 from polarcheck.rewrite.roll.ways import AxisMoves
 
-#: C above this share of its limit counts as limited.
+#: C faster than this share of its limit counts as limited.
 _AT_LIMIT = 0.97
-#: Speeds that differ by less than this share are one F.
+#: Speeds that differ by at most this share get one F.
 _SAME = 0.04
-#: Speeds that spread by more than this share in more than this share of an element were not meant to be one.
+#: The speed of an element is uneven if it is off its median by more than the first on more than the second share of
+#: its length.
 _EVEN, _UNEVEN_WAY = 0.15, 0.1
-#: F is written with so many digits.
+#: Significant digits of F.
 _DIGITS = 3
-#: No more different F than this are looked for.
+#: The most different F of a stretch.
 _MOST = 20
-#: C counts as limited by the CAM where it is above this share of its highest rate, on at most this share of the way.
+#: The CAM seems to have limited C if C is above the first share of its highest rate on at most the second of the path.
 _HIGH, _HIGH_WAY = 0.9, 0.3
-#: Turns of C from which on its rate is not that of rounding [deg].
+#: For smaller turns of C its rate is only rounding [deg].
 _LEAST_TURN = 0.02
 
 
@@ -34,9 +35,11 @@ class Feeds(msgspec.Struct, frozen=True):
     """
     F of the elements of a stretch.
 
-    of_element: what was meant [mm/min]. by_way: those on the plane without repetition, that of the longest way first.
-    slowest, fastest: of the tool along its way, but for a twentieth at each end [mm/min].
-    is_even: the tool ran at even speed along each element. slowed: the share of the way on which C was at its limit.
+    of_element: the intended F of each element [mm/min].
+    by_way: the distinct F of elements on the plane, that of the longest path first [mm/min].
+    slowest, fastest: speeds of the tool, without the slowest and the fastest twentieth of its path [mm/min].
+    is_even: the tool ran at even speed along each element.
+    slowed: the share of the path on which C was at its limit.
     c_rate: the rate that the CAM seems to have limited C to [deg/min]; inf if none.
     """
 
@@ -51,10 +54,10 @@ class Feeds(msgspec.Struct, frozen=True):
 
 def feeds_of(moves: AxisMoves, elements: list[Element], machine: Machine, unit: float) -> Feeds:
     """
-    Return F that was meant for each element; unit: mm per unit of length that F counts.
+    Return the intended F of each element; unit: mm per unit of length that F counts.
 
-    It is the median by length of the speeds of the blocks where C was below its limit, one for all elements that were
-    run alike; that of the whole way for an element along which the speed changed.
+    It is the median, by length, of the speeds of the blocks where C was below its limit. Elements with nearly the same
+    speed get one F, an element along which the speed changed that of the whole path.
     """
     on_plane = moves.length > ZERO
     length = np.hypot(moves.length, moves.rise) if machine.polar.feed_measures == "space" else moves.length
@@ -95,18 +98,18 @@ def nice(feed: float, unit: float, *, down: bool = False) -> float:
 
 
 def _limit_of(moves: AxisMoves, rate: Floats, length: Floats, on_plane: Mask) -> float:
-    """The highest rate of C where it may be a limit: of some of the way, and F follows the speed; else inf."""
+    """The highest rate of C if the CAM may have limited C to it: reached on a part of the path, F varies; else inf."""
     turns = on_plane & (np.abs(moves.turn) >= _LEAST_TURN)
     highest = float(rate[turns].max(initial=0.0))
     is_high = on_plane & (rate >= _HIGH * highest)
-    # One F per minute in most blocks follows no speed.
+    # If most blocks have the same F per minute, F does not follow the speed.
     _, counts = np.unique(moves.feed[on_plane & ~np.isnan(moves.feed)], return_counts=True)
     follows = counts.max(initial=0) <= len(moves) / 2
     return highest if follows and 0 < length[is_high].sum() <= _HIGH_WAY * length[on_plane].sum() else math.inf
 
 
 def _element_speeds(speed: Floats, length: Floats, free: Mask, elements: list[Element]) -> tuple[Floats, Mask]:
-    """The speed of each element, NaN where C was at its limit all the way; whether it was even."""
+    """The median speed of each element, NaN where C was at its limit all along; a mask of even speeds."""
     speeds, even = np.full(len(elements), np.nan), np.ones(len(elements), bool)
     for index, element in enumerate(elements):
         moves = slice(element.first, element.until)
@@ -119,7 +122,7 @@ def _element_speeds(speed: Floats, length: Floats, free: Mask, elements: list[El
 
 
 def _grouped(speeds: Floats, weight: Floats, even: Mask, overall: float) -> Floats:
-    """One F for elements whose speeds are nearly the same; that of the whole way for those that have none."""
+    """One F for elements with nearly the same speed; `overall` for uneven ones and those without a speed."""
     result = np.where(even & ~np.isnan(speeds), speeds, overall)
     remaining = even & ~np.isnan(speeds)
     center = overall
@@ -135,13 +138,14 @@ def _grouped(speeds: Floats, weight: Floats, even: Mask, overall: float) -> Floa
 
 
 def _median(values: Floats, weights: Floats) -> float:
+    """The weighted median."""
     order = np.argsort(values)
     total = np.cumsum(weights[order])
     return float(values[order][np.searchsorted(total, total[-1] / 2)])
 
 
 def _ends(values: Floats, weights: Floats) -> tuple[float, float]:
-    """The values below and above which a twentieth of the weights is."""
+    """The values below which, and above which, a twentieth of the weight lies."""
     order = np.argsort(values)
     total = np.cumsum(weights[order])
     indices = np.searchsorted(total, [0.05 * total[-1], 0.95 * total[-1]])

@@ -1,4 +1,4 @@
-"""The way of a stretch as the machine runs it: radii, angles, depths and times of its blocks."""
+"""The path of a stretch as the machine runs it: radii, angles, depths and times of its blocks."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from polarcheck.rewrite.roll.rollable import Stretch
 from polarcheck.rewrite.writing.outcome import Refusal, RefusedError
 from polarcheck.rewrite.writing.rotary_feed import INVERSE_TIME, block_times
 
-#: Half a turn of C on the spot is one up to this [rad].
+#: A turn of C on the spot within this of half turns counts as half turns [rad].
 _HALF_TURN = 1e-4
 #: Nearer to the center than this, C turns on the spot [mm].
 _SPOT = 1e-6
@@ -24,12 +24,14 @@ _SPOT = 1e-6
 
 class AxisMoves(Table, frozen=True):
     """
-    The moves of a stretch in their order; the tool is at radius[k] exp(i angle[k]) behind the move k.
+    The moves of a stretch in order; after move k the tool is at radius[k] exp(i angle[k]).
 
-    row: of the trace. start_radius, radius: X as a radius before and behind it, of either sign [mm].
-    start_angle, angle: of the tool on the part [rad], counted on. z_before, z: [mm], 0 where it is not known.
-    length: way on the plane [mm]. rise: way of Z [mm]. turn: of C [deg]. time: [min]. feed: F per minute as it is
-    written, NaN for inverse time.
+    row: the row of the trace.
+    start_radius, radius: X as a radius before and after the move, of either sign [mm].
+    start_angle, angle: direction of the tool on the part before and after it, not reduced to one turn [rad].
+    z_before, z: Z before and after it [mm], 0 where it is not known.
+    length: distance on the plane [mm]. rise: distance along Z [mm]. turn: turn of C [deg]. time: [min].
+    feed: F per minute as written, NaN for inverse time.
     """
 
     row: Rows
@@ -48,9 +50,9 @@ class AxisMoves(Table, frozen=True):
 
 def per_minute_rule(trace: Trace, stretches: list[Stretch], feed: str) -> str:
     """
-    Return what F per minute is in blocks of X and C; feed: as the option says, empty for what the machine has.
+    Return what F per minute means in blocks of X and C; empty if no block has F per minute.
 
-    Raises RefusedError where some block has F per minute and that is not known.
+    feed: the option; empty for what the machine has. Raises RefusedError if the meaning is needed and not known.
     """
     rows = np.concatenate([np.arange(candidate.first, candidate.last + 1) for candidate in stretches])
     moving = rows[(trace.path.moves_c | trace.path.moves_x)[rows]]
@@ -69,7 +71,7 @@ def per_minute_rule(trace: Trace, stretches: list[Stretch], feed: str) -> str:
 
 
 def axis_moves(trace: Trace, candidate: Stretch, rule: str) -> AxisMoves:
-    """Return the moves of a stretch, without blocks that move nothing; rule: what F per minute is."""
+    """Return the moves of a stretch, without blocks that move nothing; rule: what F per minute means."""
     path = trace.path
     rows = candidate.rows(trace)
     rows = rows[(path.moves_x | path.moves_c | path.moves_z)[rows]]
@@ -111,7 +113,7 @@ def axis_moves(trace: Trace, candidate: Stretch, rule: str) -> AxisMoves:
 
 @quiet
 def _lengths(start: Floats, end: Floats, turn: Floats) -> Floats:
-    """The way of spirals with r and the angle linear: the integral of hypot(r', r w') by eight points of Gauss."""
+    """Lengths of spirals of linear r and angle w: the integral of hypot(r', r w'), by Gauss with eight points."""
     node, weight = np.polynomial.legendre.leggauss(8)
     radius = start[:, None] + (end - start)[:, None] * (node + 1)[None, :] / 2
     return np.asarray(np.hypot((end - start)[:, None], radius * turn[:, None]) @ weight / 2)
@@ -119,9 +121,9 @@ def _lengths(start: Floats, end: Floats, turn: Floats) -> Floats:
 
 def runs_of(moves: AxisMoves) -> Iterator[tuple[int, int, bool]]:
     """
-    Yield the first move of each run, the one behind its last, and whether it moves on the plane.
+    Yield each run of moves: its first move, the one after its last, and True if it moves on the plane.
 
-    A run on the plane ends where Z moves alone, which is a run by itself, and where C turns on the spot at the center.
+    A run on the plane ends at a move of Z alone, which is a run by itself, and where C turns on the spot at the center.
     """
     on_plane, alone = moves.length > ZERO, (moves.length <= ZERO) & (moves.rise > ZERO)
     kind = np.where(on_plane, 1, 0)
@@ -133,14 +135,14 @@ def runs_of(moves: AxisMoves) -> Iterator[tuple[int, int, bool]]:
 
 def through_center(moves: AxisMoves) -> AxisMoves:
     """
-    Return the way without turns of C by half a turn at the center: from there on X is of the other sign.
+    Return the way without half turns of C at the center; from each of them on, X has the opposite sign.
 
     A tool that comes to X0, turns C by 180 deg on the spot and goes on runs straight through the center.
     """
     spot = (moves.length <= _SPOT) & (moves.rise <= ZERO)
     if not spot.any():
         return moves
-    # Only turns of half a turn count, the others end a run.
+    # Only half turns are taken out; other turns on the spot end a run.
     turn = np.where(spot, moves.angle - moves.start_angle, 0.0)
     halves = np.round(turn / np.pi)
     is_half = spot & (np.abs(turn - halves * np.pi) < _HALF_TURN)

@@ -1,4 +1,4 @@
-"""The words of a section that stay where the mode is gone: M codes, dwells, and what else does not move the tool."""
+"""The words of a section that stay without the mode: M codes, dwells, and all else that does not move the tool."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from polarcheck.program.machines.code_tables import NO_CODE, code_set
 from polarcheck.rewrite.writing.outcome import refused_at
 from polarcheck.rules.editing import is_head, is_plain, words_of, written_word
 
-#: Lists of G codes that mean nothing without the mode, or that the new blocks say themselves.
+#: Lists of G codes to drop: they mean nothing without the mode, or the new blocks write their own.
 _DROPPED = (
     "rapid", "line", "arc_clockwise", "arc_counterclockwise", "plane_xy", "plane_zx", "plane_yz", "compensation_off",
     "compensation_left", "compensation_right", "corner_by_arc", "corner_by_intersection", "feed_inverse_time",
@@ -26,8 +26,8 @@ _UNTOUCHED = ("dwell",)
 _COMPUTED = "a word of this block cannot be written without the statement around it"
 
 
-class Others:
-    """The words of the blocks of sections beside those of moves, of compensation and of the mode."""
+class RemainingWords:
+    """The words of sections that are written again: all but those of moves, of compensation and of the mode."""
 
     def __init__(self, trace: Trace) -> None:
         self.trace = trace
@@ -47,13 +47,13 @@ class Others:
         calls = [*macro.subprogram_calls, *macro.macro_calls, *macro.program_returns]
         indices = trace.blocks.code_indices(*calls)
         self._of_call = trace.blocks.words_at(indices)
-        # A program that is repeated returns to its own beginning: the depth stays.
+        # A return to the beginning of the same program keeps the depth: its code marks it.
         depth = trace.run.depth
         self._hands_over = np.append(depth[1:] != depth[:-1], False)[: len(trace)]
         self._hands_over[trace.run.row[indices]] = True
 
     def is_changed(self, row: int) -> bool:
-        """Something of the row does not stay."""
+        """True if some word of the row does not stay."""
         if self._hands_over[row]:
             return True
         if self._untouched[row]:
@@ -62,9 +62,9 @@ class Others:
 
     def of_row(self, row: int) -> list[str]:
         """
-        The words of a row that stay, as they are written.
+        The words of a row that stay, as written.
 
-        Raises RefusedError for a word whose value a statement computes, where it is no code.
+        Raises RefusedError for a word, other than a code, whose value a statement computes.
         """
         run = self.trace.run
         plain, hands_over = is_plain(run, row), self._hands_over[row]
@@ -78,7 +78,7 @@ class Others:
             letter = chr(int(run.words.address[index]))
             if self._is_dropped(index) or (letter == "D" and self._beside_offset[row]):
                 continue
-            # What stands beside the switch, or hands over to a program, has no meaning without it.
+            # Words beside a switch of the mode, or of a call, mean nothing without it; codes, S and T stay.
             if (self._switches[row] or hands_over) and (letter not in "GMST" or self._of_call[index]):
                 continue
             texts.append(written_word(run, index) if plain else self._computed(row, index))
@@ -91,7 +91,7 @@ class Others:
         return address in self._dropped_addresses
 
     def _computed(self, row: int, index: int) -> str:
-        """A code whose value a statement computes."""
+        """The text of a code whose value a statement computes. Raises RefusedError for other words."""
         words = self.trace.run.words
         letter, value = chr(int(words.address[index])), float(words.value[index])
         if letter not in "GMST" or not math.isfinite(value):

@@ -12,7 +12,7 @@ from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Floats, Mask, cached_property, stretch
 from polarcheck.foundation.states import Distance, FeedMode, Motion, Units
 from polarcheck.rewrite.unroll.axis_blocks import Steps
-from polarcheck.rewrite.unroll.remaining_words import Others
+from polarcheck.rewrite.unroll.remaining_words import RemainingWords
 from polarcheck.rewrite.unroll.unrollable import Stretch
 from polarcheck.rewrite.writing.new_blocks import NewBlock, comments_of
 from polarcheck.rewrite.writing.outcome import refused_at
@@ -39,7 +39,7 @@ class Writer:
 
     def __init__(self, trace: Trace, steps: Steps, feeds: Floats, feed_mode: FeedMode, style: Style) -> None:
         self.trace, self.steps, self.feeds, self.feed_mode, self.style = trace, steps, feeds, feed_mode, style
-        self._others = Others(trace)
+        self._remaining = RemainingWords(trace)
         self._by_units = {
             units: Numbers(trace.machine, style, units == Units.INCH)
             for units in np.unique(trace.lengths.units[trace.mode.section >= 0]).tolist()
@@ -82,7 +82,7 @@ class Writer:
             block = int(self.trace.run.block[row])
             blocks = self._row(row, section)
             if blocks is None:
-                words = self._others.of_row(row)
+                words = self._remaining.of_row(row)
                 blocks = [NewBlock(tuple(words))] if words else []
             comment = "" if block in seen else " ".join(comments_of(self.trace.text, block))
             if comment:
@@ -98,9 +98,9 @@ class Writer:
             return self._leaving(row)
         low, high = stretch(self.steps.row, row, row + 1)
         moves_z = bool(trace.path.moves_z[row]) and low == high
-        if low == high and not moves_z and not self._others.is_changed(row):
+        if low == high and not moves_z and not self._remaining.is_changed(row):
             return None
-        remaining = self._others.of_row(row)
+        remaining = self._remaining.of_row(row)
         if low == high and not moves_z:
             return [NewBlock(tuple(remaining))] if remaining else []
         if moves_z:
@@ -156,7 +156,7 @@ class Writer:
         motion = int(trace.modal.state("motion")[row])
         if motion in _MOTIONS and self._is_motion_taken_over(row):
             words.append(self._motion_word(row, _MOTIONS[motion]))
-        words = [word for word in (*words, *self._others.of_row(row)) if word]
+        words = [word for word in (*words, *self._remaining.of_row(row)) if word]
         return [self._block(words)] if words else []
 
     def _is_motion_taken_over(self, row: int) -> bool:

@@ -22,8 +22,8 @@ def cancel_on_arc(path: ProgrammedPath, compensation: CutterCompensation) -> Mas
     """
     Cutter compensation cancelled on an arc.
 
-    G40 takes effect with the next move, and that must be a straight one: the control stops with an alarm at G2 or G3.
-    Finish the arc with compensation, and cancel in G1.
+    G40 takes effect with the next move, which must be straight: the control stops with an alarm at G2 or G3. Finish the
+    arc with compensation, and cancel in G1.
 
     Source: FANUC B-63324EN/03, p. 402; alarm 034; builder's guide to G12.1.
 

@@ -25,14 +25,14 @@ def part_differs_from_drawing(deviations: Deviations) -> Mask:
     """
     Part that is not the one of the drawing.
 
-    What the program makes differs from what the job asks for by more than its tolerance, 0.02 mm unless that or
-    --tolerance says another one. The drawing (--drawing, or drawing in a [[part]]) has its origin on the spindle
-    axis, and its x runs towards C0 as a radius; a [[part]] may also give a shape with its numbers. Contours in offset
-    mode are measured to the drawing and back. Then the metal that the cutters clear, in all sections and at each depth,
-    is laid over the part: metal that should be gone and still stands, as a wall that is never milled, and metal that is
-    cut away where the part must stand. C at G12.1 is added to each section. The block that is named is the one that
-    comes nearest to the largest difference. Where the part would fit if it were turned, mirrored, shifted, in other
-    units, or had X as a diameter, that is said as well. Correct the coordinates, or the drawing.
+    The machined part differs from the part of the job by more than the tolerance: 0.02 mm, unless the job or
+    --tolerance gives another one. The drawing (--drawing, or drawing in a [[part]]) has its origin on the spindle axis,
+    and its x runs towards C0 as a radius; a [[part]] may also give a shape with its dimensions. Contours in offset mode
+    are measured to the drawing and back. Then the metal that the cutters clear, in all sections and at each depth, is
+    compared with the part. Two things count: metal that should be gone and still stands, as a wall that is never
+    milled, and metal that is cut away where the part must stand. C at G12.1 is added to each section. The finding names
+    the block nearest to the largest difference. It also says if the part would fit turned, mirrored, shifted, in other
+    units, or with X as a diameter. Correct the coordinates, or the drawing.
 
     Source: B-62764EN/01, p. 51-53 (X as a diameter, C as a length, and C0 where the mode begins).
 
@@ -84,7 +84,7 @@ def part_differs_from_drawing(deviations: Deviations) -> Mask:
         G40 X80. C5.
         G13.1
     """
-    # Compares nothing: each part has a tolerance of its own, and a pocket in the place of a boss differs by no length.
+    # Compares nothing: each part has its own tolerance, and a pocket in the place of a boss differs by no length.
     return deviations.differs
 
 
@@ -92,15 +92,15 @@ def details(hit: Hit, deviations: Deviations) -> Details:
     from polarcheck.rules.wording.drawing import deviation
     from polarcheck.rules.wording.written import short
 
-    one = deviations.of_row(hit.row)
-    is_compared = one.is_made and not one.is_other_way_round
+    result = deviations.of_row(hit.row)
+    is_compared = result.is_made and not result.is_other_way_round
     return {
-        "drawing": short(one.title),
+        "drawing": short(result.title),
         "largest": deviations.largest[hit.row],
         "tolerance": deviations.tolerance[hit.row],
-        "too_much": one.difference.proud if is_compared else None,
-        "cut_away": one.difference.deep if is_compared else None,
-        "deviation": deviation(deviations.trace, one),
+        "too_much": result.difference.proud if is_compared else None,
+        "cut_away": result.difference.deep if is_compared else None,
+        "deviation": deviation(deviations.trace, result),
     }
 
 

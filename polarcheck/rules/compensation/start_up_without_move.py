@@ -32,9 +32,10 @@ def start_up_without_move(ramps: Ramps) -> Mask:
     """
     Compensation begun in a block without a move on the plane.
 
-    G41 or G42 alone, or beside Z, builds up nothing yet: the next move on the plane is the start-up, whatever it was
-    meant for, and needs the length of one. Who reads the program does not see it. Write G41 or G42 into the G1 that
-    moves the tool onto the part: `G1 G41 X1.75 F7.`. Under a fault of that start-up this is listed with it.
+    G41 or G42 alone, or with a move of Z only, does not start compensation yet: the next move on the plane is the
+    start-up, whatever its purpose, and must be as long as a start-up. A reader of the program does not see this. Write
+    G41 or G42 into the G1 that moves the tool onto the part: `G1 G41 X1.75 F7.`. If that start-up has a fault, this
+    finding is listed under it.
 
     Source: builder's guide to G12.1, cutter compensation function.
 
@@ -73,7 +74,7 @@ def start_up_without_move(ramps: Ramps) -> Mask:
         G40 X2.15 F60.
         G13.1
     """
-    # Compares nothing: which move comes next hangs on the rows below.
+    # Compares nothing: the start-up is a later row, which the table searches for.
     return ramps.start_up_later
 
 

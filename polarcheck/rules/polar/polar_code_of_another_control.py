@@ -23,12 +23,11 @@ def polar_code_of_another_control(other_mode: OtherMode) -> Hits:
 
     The codes that switch the polar mode differ from control to control: G12.1, G112, G137, TRANSMIT, G16 XC. A control
     that does not know the code stops at it or, worse, takes it for something else, and turns C by degrees where a
-    length is meant. Nothing of such a section is looked at here. Write the codes of this
-    lathe and, where the section has another second axis or another X, its words; or check the program with the machine
-    that it is for. Standing alone, without the code that ends the mode and without a move of the second
-    axis at feed behind it, a G code may be a macro of the builder and is a warning; a word as TRANSMIT is none. G101
-    and G105, the polar maps of one builder, are macros of so many others that nothing is said without both. One finding
-    stands for the program.
+    length is intended. The section itself is not checked. Write the codes of this lathe and, if the section has
+    another second axis or another X, its words; or check the program with the machine that it is for. A G code without
+    the code that ends the mode, and without a later move of the second axis at feed, may be a macro of the builder: it
+    is a warning. A word such as TRANSMIT cannot be a macro. G101 and G105, the polar maps of one builder, are macros of
+    so many others that they are reported only with both signs. There is one finding per program.
 
     Source: FANUC B-62764EN/01, p. 51; Haas codes, G112; Okuma OSP-P300 post, G137; Siemens manual, TRANSMIT;
     public posts for Hurco TMX8 and Fagor 8055i-TC.
@@ -113,7 +112,7 @@ def polar_code_of_another_control(other_mode: OtherMode) -> Hits:
         G112 X24. Z-8. L4. F1.5
         M30
     """
-    # Compares nothing: what the code is for shows in the blocks behind it, which the table looks at.
+    # Compares nothing: the blocks after the code show what it is for, and the table looks at them.
     may_be_macro = other_mode.may_be_macro
     return graded(error=other_mode.is_meant, warning=may_be_macro, at=other_mode.words, undecided=may_be_macro)
 
@@ -131,9 +130,9 @@ def details(hit: Hit, other_mode: OtherMode, machine: Machine, job: Job) -> Deta
 
 def _instead(hit: Hit, other_mode: OtherMode, machine: Machine, job: Job) -> str:
     """
-    What is to be written for the code of another control: `write G112 for G12.1, G113 for G13.1 and Y for C`.
+    The remedy: `write G112 for G12.1, G113 for G13.1 and Y for C`.
 
-    Where nobody has chosen the machine, the machines that know the code: `check it with --machine fanuc or gsk-988`.
+    If the machine is only the default, it names those that know the code: `check it with --machine fanuc or gsk-988`.
     """
     from polarcheck.program.machines.own_language import shown
     from polarcheck.rules.other_machine import NAMED

@@ -32,11 +32,11 @@ def polar_switch_unknown(switch_slips: SwitchSlips, run: Run, row: int, at: list
         G13.1
     """
     slip = switch_slips.slips[row]
-    rows = [one for one in (row, slip.answer) if one >= 0]
-    if slip.is_of_builder or not all(is_plain(run, one) for one in rows):
+    rows = [each for each in (row, slip.answer) if each >= 0]
+    if slip.is_of_builder or not all(is_plain(run, each) for each in rows):
         return None
     words = [index for index in switch_slips.words.nonzero()[0].tolist() if run.row[index] in rows]
     edits = [in_place_of(run, index, switch_slips.meant_in(int(run.row[index]))) for index in words]
     names = ", ".join(written_word(run, index) for index in words)
-    meant = ", ".join(text for *_, text in edits)
-    return Mended(f"Write {meant} for {names}", False, tuple(edits))
+    codes = ", ".join(text for *_, text in edits)
+    return Mended(f"Write {codes} for {names}", False, tuple(edits))

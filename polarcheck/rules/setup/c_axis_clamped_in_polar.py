@@ -23,7 +23,7 @@ def c_axis_clamped_in_polar(spindles: Spindles) -> Mask:
 
     The brake holds the spindle for drilling. In the polar mode C turns with every move: against the brake the drive
     stops with an alarm for excess error, or the contour is cut with a C axis that lags behind. Release the brake before
-    G12.1. Nothing is said where the machine profile names no code that clamps.
+    G12.1. The rule is silent if the machine profile names no code that clamps.
 
     Source: C-axis clamp and unclamp codes of turning centers, as public posts for Mazak and Okuma write them.
 

@@ -11,10 +11,11 @@ if TYPE_CHECKING:
     from polarcheck.program.reading.words import Text
     from polarcheck.rules.hit import Details, Hit
 
-#: Of a text so much is looked at for its first words [characters].
+#: The first words are looked for in this much of a text [characters], and in as many texts.
 _LOOKED_AT = 200
+#: Characters that frame a text and are no part of it.
 _LINES = " \t-|=:*#"
-#: Beside so many blocks, text is no remark but a column.
+#: In this many blocks or more, text is a copied column, not a comment.
 _DESCRIPTION = 5
 
 
@@ -30,10 +31,11 @@ def text_without_parentheses(written: Written) -> Hits:
     """
     Text for people that stands in no parentheses.
 
-    Manuals print a program as a table: the blocks, and beside them what they do. Who copies both columns, or types a
-    title or a remark without parentheses, gives the control words to read: each letter is an address, and it stops at
-    the first that has no number, or worse, takes one that has. All such text in a file is one finding. The program is
-    judged as if it stood in parentheses. Words of macro statements and of controls' own languages are no such text.
+    Manuals print a program as a table: the blocks, and beside them what they do. If both columns are copied, or a
+    title or comment is typed without parentheses, the control reads the text as words: each letter is an address. It
+    stops at the first letter without a number or, worse, executes one that has a number. All such text in a file is one
+    finding. The program is checked as if the text stood in parentheses. Words of macro statements and of controls' own
+    languages are not such text.
 
     Source: FANUC B-63524EN/01, p. 649 (a comment stands between control-out and control-in); alarms 004 to 010.
 
@@ -78,12 +80,12 @@ def text_without_parentheses(written: Written) -> Hits:
 def details(hit: Hit, text: Text, written: Written) -> Details:
     from polarcheck.rules.wording.written import short
 
-    places = zip(text.prose.start[hit.index :].tolist(), text.prose.end[hit.index :].tolist(), strict=True)
+    spans = zip(text.prose.start[hit.index :].tolist(), text.prose.end[hit.index :].tolist(), strict=True)
     texts = (
         re.sub(r"</?\w[^<>\n]*+>", " ", text.source.excerpt(start, min(end, start + _LOOKED_AT))).strip(_LINES)
-        for start, end in itertools.islice(places, _LOOKED_AT)
+        for start, end in itertools.islice(spans, _LOOKED_AT)
     )
-    first = short(next((one for one in texts if re.search(r"[^\W\d_]{2}", one)), ""))
+    first = short(next((each for each in texts if re.search(r"[^\W\d_]{2}", each)), ""))
     count = int(written.prose_count[hit.index])
     where = f" in {count} blocks, first" if count > 1 else ":"
     what = "a description copied with the program: " if count >= _DESCRIPTION else ""

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from polarcheck.program.reading.words import Words
     from polarcheck.rules.hit import Details, Hit
 
-#: From here on controls have few codes of their own, and programs call macros of the builder (parameter 6050).
+#: From this number on few codes belong to the control; programs call macros of the builder (parameter 6050).
 OWN_CODES_END = 100
 
 
@@ -32,7 +32,7 @@ def unknown_code(
 
     The control stops at a G code that it does not know, or whose option it lacks. From G100 on it may be a macro of the
     builder, called by a code that a parameter sets, and is a warning: add it to `known_codes` of a machine profile of
-    your own. It is a note where the whole list of a control was not at hand. Each code is reported once, at its first
+    your own. It is a note if the list of codes of the control is not complete. Each code is reported once, at its first
     place.
 
     Source: FANUC alarm 010.
@@ -86,7 +86,7 @@ def details(hit: Hit, written: Written) -> Details:
 
 
 def _or_known(hit: Hit) -> str:
-    """Where to add a code that the lathe has, be it a macro of its builder; nothing for what can only be a slip."""
+    """Where to add a code that the lathe does have, such as a builder's macro; empty if it can only be a slip."""
     from polarcheck.program.machines.machine import OwnMachine
     from polarcheck.rules.remedies import place
 
