@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import functools
+import re
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -301,3 +302,22 @@ def test_no_control_is_named_in_code() -> None:
                 named = [name for name in controls if name in node.value.lower()]
                 is_default = path.name == "profiles.py" and node.value == "fanuc"
                 assert not named or is_default, (path.name, node.value)
+
+
+def test_the_modules_of_the_document_exist() -> None:
+    text = (PACKAGE.parent / "docs" / "architecture.md").read_text("utf-8")
+    paths = {path.relative_to(PACKAGE).as_posix() for path in PACKAGE.rglob("*.py")}
+
+    def missing(text: str, room: str) -> list[str]:
+        """The modules that text names and that are neither in the room nor at the path that it gives."""
+        named = re.findall(r"`(?:polarcheck/)?((?:\w+/)*\w+\.py)`", text.replace("`tests/", "`#"))
+        return [
+            name
+            for name in named
+            if name not in paths and not any(f"/{path}".endswith(f"/{name}") and room in path for path in paths)
+        ]
+
+    assert missing(text, "") == []
+    rooms = re.findall(r"^\| `((?:\w+/)+)` \|(.*)$", text, re.MULTILINE)
+    assert len(rooms) > len(ORDER) - 3
+    assert [(room, missing(row, room)) for room, row in rooms if missing(row, room)] == []
