@@ -25,7 +25,7 @@ from polarcheck.files.batch import cluster, executors
 from polarcheck.files.batch import tasks as batch
 from polarcheck.files.batch.cluster import Answer, Batch, Cluster, check_batch
 
-pytestmark = [pytest.mark.ci, pytest.mark.usefixtures("own_folder")]
+pytestmark = [pytest.mark.nightly, pytest.mark.usefixtures("own_folder")]
 
 CLUSTER = """
 import sys

@@ -11,7 +11,7 @@ from drawn_contour_slips import SLIPS
 from drawn_contours import Drawn, contour
 from programs import report_of
 
-pytestmark = pytest.mark.ci
+pytestmark = pytest.mark.nightly
 
 SEEDS = range(36)
 #: What a drawn contour may come near by chance: the center of C.

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-pytestmark = pytest.mark.ci
+pytestmark = pytest.mark.nightly
 
 TEST = """
 from hypothesis import given, strategies as st

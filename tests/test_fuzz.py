@@ -33,7 +33,7 @@ from test_every_machine import HANDS
 
 from polarcheck.rewrite.writing.outcome import Decision, Figure, Outcome
 
-pytestmark = pytest.mark.ci
+pytestmark = pytest.mark.nightly
 
 
 not_on_windows = pytest.mark.skipif(sys.platform == "win32", reason="no bound on the time or memory of a process")

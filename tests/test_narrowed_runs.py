@@ -20,7 +20,7 @@ from test_cli import call
 from test_diff_base import git
 
 pytestmark = [
-    pytest.mark.ci,
+    pytest.mark.nightly,
     pytest.mark.usefixtures("own_folder"),
     pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such links"),
 ]

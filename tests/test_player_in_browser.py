@@ -21,7 +21,7 @@ plotly = pytest.importorskip("plotly.offline")
 CHROMIUM = shutil.which("chromium")
 ARGUMENTS = ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking"]
 pytestmark = [
-    pytest.mark.ci,
+    pytest.mark.nightly,
     pytest.mark.skipif(CHROMIUM is None, reason="there is no chromium here"),
     pytest.mark.xdist_group("browser"),
 ]

@@ -47,9 +47,7 @@ def compensate(original: Original) -> Outcome:
     return compensated(original, Compensating())
 
 
-@pytest.mark.one_in(2)
-@pytest.mark.ci
-@pytest.mark.one_in(1)
+@pytest.mark.nightly
 @pytest.mark.parametrize("start", range(8))
 def test_programs_of_setters_are_rewritten(start: int) -> None:
     """Each is read back by its command: what is written is right; most are written."""

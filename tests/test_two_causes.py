@@ -14,7 +14,7 @@ from drawn_sections import Section
 from drawn_slips import SLIPS, Slip, gives_two_findings, loops, pairs, planted, rules_of, sound_sections
 from programs import report_of
 
-pytestmark = pytest.mark.ci
+pytestmark = pytest.mark.nightly
 
 #: Two of each family, on all controls.
 DRAWN = sound_sections(12, 1)

@@ -17,7 +17,7 @@ from polarcheck.view.page import page
 plotly = pytest.importorskip("plotly.offline")
 pytest.importorskip("axe_playwright_python")
 pytestmark = [
-    pytest.mark.ci,
+    pytest.mark.nightly,
     pytest.mark.skipif(CHROMIUM is None, reason="there is no chromium here"),
     pytest.mark.xdist_group("browser"),
 ]
