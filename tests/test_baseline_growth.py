@@ -209,7 +209,7 @@ WITHOUT_SIZE = {
     *("second-axis-never-programmed", "wrong-axis-address-in-polar"),
     *("c-angle-unknown-at-entry", "c-axis-clamped-in-polar", "c-axis-not-engaged", "c-axis-not-referenced"),
     *("flat-end-mill-at-od", "live-tool-never-stopped", "live-tool-without-speed", "main-spindle-running-at-entry"),
-    *("no-tool-offset-at-entry", "spindle-code-in-polar", "x-unknown-at-entry"),
+    *("no-tool-offset-at-entry", "spindle-code-in-polar", "variable-never-set", "x-unknown-at-entry"),
 }
 
 

@@ -20,17 +20,19 @@ from polarcheck.checking.not_followed import (
     on_cylinder,
     on_sub_spindle,
 )
-from polarcheck.checking.not_known import cause_of, of_variables, why
+from polarcheck.checking.not_known import cause_of, is_argument, of_variables, value_not_known, why
 from polarcheck.columns.contour.skipped_loops import SkipReason
 from polarcheck.columns.filling import before
 from polarcheck.columns.trace import Trace
 from polarcheck.columns.words.macro_faults import ENDLESS_LOOP, Faults, reason_of
+from polarcheck.columns.words.unknown_words import UnknownWords
 from polarcheck.foundation.arrays import Floats, Mask, Rows
 from polarcheck.foundation.errors import TooHardError
 from polarcheck.foundation.finding import Finding, NotEvaluated, Undecided
 from polarcheck.geometry.tolerances import CHORDS, CROSSINGS, FARTHEST
 from polarcheck.program.execution.run import Remark
 from polarcheck.program.machines.machine import Machine, OwnMachine
+from polarcheck.program.reading.excerpt import shortened
 from polarcheck.rules.remedies import option_or_place, place, unlisted_codes
 from polarcheck.rules.rule import Rule
 from polarcheck.rules.tables import Tables, called
@@ -42,6 +44,8 @@ _ExtraReasons: TypeAlias = Callable[[Tables, Rule], Iterator["Missing"]]
 #: Missing.kind of an extra reason; it sorts after the columns that the rule needs.
 SAID = 1000
 
+#: Characters of a word that is quoted.
+_LONGEST = 40
 #: Contours listed individually; the bound keeps the report of a hostile file short.
 NAMED = 20
 
@@ -147,6 +151,8 @@ def unexecuted(tables: Tables) -> Iterator[NotEvaluated]:
     )
     for (reason, matters), count in remarks.items():
         yield NotEvaluated(rule="all", reason=reason, blocks=count, matters=matters)
+    for value in unknown_values(tables):
+        yield NotEvaluated(rule="all", reason=value.reason, blocks=value.blocks, matters=value.matters)
     for reason, count in (
         *axes_not_followed(trace),
         *names_not_known(trace),
@@ -162,6 +168,52 @@ def unexecuted(tables: Tables) -> Iterator[NotEvaluated]:
     ):
         if count:
             yield NotEvaluated(rule="all", reason=reason, blocks=count)
+
+
+class UnknownValue(NamedTuple):
+    """
+    What rests on a variable without a value.
+
+    line: of the first word that rests on it. reason: names the word, the variable, and what to give. blocks: with such
+    words. matters: a polar section rests on it.
+    """
+
+    line: int
+    reason: str
+    blocks: int
+    matters: bool
+
+
+def unknown_values(tables: Tables) -> Iterator[UnknownValue]:
+    """
+    Yield an entry for each variable without a value on which sections rest, and one for all others together.
+
+    Arguments on which no section rests are left out: a subprogram that nothing calls has no value for any of them.
+    """
+    words: UnknownWords = tables["unknown_words"]
+    trace: Trace = tables["trace"]
+    causes: dict[int | None, list[int]] = {}
+    others: dict[int | None, list[int]] = {}
+    for index, matters in zip(words.index.tolist(), words.matters.tolist(), strict=True):
+        variable = trace.run.unknown_words[index]
+        if matters:
+            causes.setdefault(variable, []).append(index)
+        elif variable is None or not is_argument(trace.machine, variable):
+            others.setdefault(variable, []).append(index)
+    for variable, indices in causes.items():
+        yield _unknown_value(trace, [variable], indices, matters=True)
+    if others:
+        yield _unknown_value(
+            trace, [*others], [index for indices in others.values() for index in indices], matters=False
+        )
+
+
+def _unknown_value(trace: Trace, variables: list[int | None], indices: list[int], matters: bool) -> UnknownValue:
+    first, rows = indices[0], trace.run.row[indices]
+    written = trace.text.source.excerpt(int(trace.run.words.start[first]), int(trace.run.words.end[first]))
+    line = int(trace.blocks.line[rows[0]])
+    word = f"{shortened(written, _LONGEST)} of line {line}"
+    return UnknownValue(line, value_not_known(trace, variables, word), len(set(rows.tolist())), matters)
 
 
 def frames_not_simulated(trace: Trace, tables: Tables) -> Iterator[tuple[str, int]]:

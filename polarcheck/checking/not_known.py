@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Rows
+from polarcheck.program.execution.variable_names import FIRST_VARIABLE
 from polarcheck.program.machines.machine import Machine
 from polarcheck.rules.places import block_in_line
 from polarcheck.rules.tables import Tables
@@ -27,6 +28,8 @@ _OF_VARIABLES = "give its variables as [run.variables] in polarcheck.toml, or wr
 _OF_NAMED = "give its variables a value in the program, or write the number"
 #: Causes, beside the offset numbers, for which a move is not known.
 _DEPTH, _POSITION, _NO_FEED, _FEED_OF_SPINDLE = -4, -3, -2, -1
+#: Variables that are named; more are counted.
+_LISTED = 4
 #: Characters of a block that is quoted; more is cut off.
 _BLOCK_LENGTH = 40
 
@@ -65,6 +68,30 @@ def _of_move(tables: Tables, row: int) -> str:
     return _position(tables, row) if cause == _POSITION else _feed(tables, row)
 
 
+def value_not_known(trace: Trace, variables: Sequence[int | None], word: str) -> str:
+    """
+    Why the value of a word is not known, and what to give.
+
+    variables: on which the word, and further words, rest; None for what has no number.
+    """
+    macro, (variable, *more) = trace.machine.macro, variables
+    if variable is None or macro.language != "custom-macro":
+        others = f", nor that of {len(more)} more" if more else ""
+        return f"the value of {word} is not known{others}: {of_variables(trace.machine)}"
+    if is_argument(trace.machine, variable):
+        return f"#{variable} has no value for {word}: it is an argument; check the program that calls this one"
+    if not more:
+        return f"#{variable} has no value for {word}: give [run.variables] {variable} = ..., or write the number"
+    names = [f"#{number}" for number in variables if number is not None]
+    listed = ", ".join(names[:_LISTED]) + (f" and {len(names) - _LISTED} more" if len(names) > _LISTED else "")
+    return f"{listed} have no value, as for {word}: give them in [run.variables]"
+
+
+def is_argument(machine: Machine, variable: int) -> bool:
+    """True for a local variable, and for one that has a name, where it has no value: a call would give it one."""
+    return variable >= FIRST_VARIABLE or any(first <= variable <= last for first, last in machine.macro.local_variables)
+
+
 def of_variables(machine: Machine) -> str:
     """The remedy where a value is not known."""
     return _OF_VARIABLES if machine.macro.language == "custom-macro" else _OF_NAMED
@@ -76,6 +103,8 @@ def _no_offset(what: str, key: str, of_program: Callable[[Trace], Rows] | None =
     def reason(tables: Tables, row: int) -> str:
         trace: Trace = tables["trace"]
         number = int(trace.tools.offset_number[row])
+        if trace.tools.is_unknown[row]:
+            return f"no {what}: which tool offset is in force is not known; {of_variables(trace.machine)}"
         if not number:
             how = example(trace.machine)
             return f"no {what}: no tool offset is in force; call one before the polar mode, as in {how}"
@@ -102,6 +131,13 @@ def _position(tables: Tables, row: int) -> str:
     trace: Trace = tables["trace"]
     if trace.path.frames is not None and not trace.path.frames.is_known[row]:
         return "the position is not known: the frame in force is not simulated"
+    section = trace.mode.section == trace.mode.section[row]
+    unknown = np.flatnonzero(trace.path.shape_is_unknown & section)
+    if len(unknown) and not np.isnan(trace.path.start[row] + trace.path.end[row]):
+        # A corner hangs on the block behind it.
+        nearest = int(unknown[min(int(np.searchsorted(unknown, row)), len(unknown) - 1)])
+        block = block_and_line(trace, nearest)
+        return f"the way is not known: {block} leaves open how the tool goes; {of_variables(trace.machine)}"
     open_ends = np.flatnonzero(trace.mode.in_polar & np.isnan(trace.path.end) & ~np.isnan(trace.path.start))
     at_or_before = open_ends[open_ends <= row]
     if not np.isnan(trace.path.end[row]) and (open_ends > row).any():
@@ -139,6 +175,10 @@ def _origin(tables: Tables, row: int) -> str:
 
 def _feed(tables: Tables, row: int) -> str:
     trace: Trace = tables["trace"]
+    written = np.flatnonzero(trace.blocks.has("F")[: row + 1])
+    if len(written) and trace.blocks.is_unknown("F")[written[-1]]:
+        block = block_and_line(trace, int(written[-1]))
+        return f"the feed is not known: F in {block} rests on a variable; {of_variables(trace.machine)}"
     if trace.feedrate.per_minute[row]:
         return "the feed is not known: no F is in force; write one before the cutting move"
     codes = " or ".join(trace.machine.codes("feed_per_minute"))

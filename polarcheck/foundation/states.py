@@ -10,6 +10,7 @@ MM_PER_INCH = 25.4
 class Motion(enum.IntEnum):
     """The motion that a block makes of its axis words."""
 
+    UNKNOWN = -2
     NONE = -1
     RAPID = 0
     LINE = 1

@@ -118,6 +118,8 @@ FAULTS_OF_CONTOUR: Final = (
     "slot-narrower-than-cutter",
     "start-up-sweeps-contour",
     "uncompensated-cut-into-part",
+    "vacant-variable",
+    "variable-never-set",
     "wrong-axis-address-in-polar",
     "z-with-plane-axis",
 )

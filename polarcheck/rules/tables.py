@@ -120,6 +120,7 @@ TABLES = {
     "unpointed": Maker("polarcheck.columns.words.unpointed:Unpointed"),
     "stock_comments": Maker("polarcheck.columns.words.stock_comments:StockComments"),
     "tool_comments": Maker("polarcheck.columns.words.tool_comments:ToolComments", COMMENT),
+    "unknown_words": Maker("polarcheck.columns.words.unknown_words:UnknownWords"),
     "written": Maker("polarcheck.columns.words.written:Written"),
     "dialect": Maker("polarcheck.columns.words.dialect:Dialect"),
     "faults": Maker("polarcheck.columns.words.macro_faults:Faults"),

@@ -99,6 +99,18 @@ class ExecutedBlocks(Lookups):
         mask.flags.writeable = False
         return mask
 
+    @cached_property
+    def unknown_words(self) -> Rows:
+        """The words whose value is not known since a variable has none, in order."""
+        return np.array(sorted(self.run.unknown_words), np.int64)
+
+    def is_unknown(self, *addresses: str) -> Mask:
+        """True where the row has a word of any of the addresses, and its value is not known."""
+        if not len(self.unknown_words):
+            return self.nowhere
+        words = self.word_indices(*addresses)
+        return self.with_words(words[np.isin(words, self.unknown_words)])
+
     def with_words(self, words: Rows | Mask) -> Mask:
         """Per row: whether it has one of these executed words, given by indices or as a mask."""
         words = np.flatnonzero(words) if words.dtype == np.bool_ else words

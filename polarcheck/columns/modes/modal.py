@@ -71,6 +71,9 @@ class ModalStates(Lookups):
             values[ended] = 0
             written |= ended
         state = fill_down(values, written | self.blocks.starts, _BEFORE.get(group, 0))
+        if group == "motion" and self.blocks.is_unknown("G").any():
+            values = np.where(self.blocks.is_unknown("G"), Motion.UNKNOWN, values).astype(np.int16)
+            written = written | self.blocks.is_unknown("G")
         self._columns[f"sets {group}"] = written
         self._columns[f"state {group}"] = state
         return state.astype(np.int16), written
@@ -82,6 +85,16 @@ class ModalStates(Lookups):
         if power_on:
             states[self.blocks.whole_program] = self._modal[2][code(power_on)]
         return states
+
+    @cached_property
+    def is_unknown(self) -> Mask:
+        """The state of some group is not known: a code at or above the row is not, and none has set the group since."""
+        unknown = self.blocks.is_unknown("G")
+        if not unknown.any():
+            return unknown
+        groups = ("units", "distance", "side", "feed_mode", "plane")
+        is_open = [happened(unknown, self.sets(group) | self.blocks.starts) for group in groups]
+        return np.asarray(np.logical_or.reduce([*is_open, self.state("motion") == Motion.UNKNOWN]))
 
     @cached_property
     def written_units(self) -> States:

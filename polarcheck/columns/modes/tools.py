@@ -98,6 +98,12 @@ class CalledTools(Columns, frozen=True):
         return before(self.tool_called, self.blocks.starts, 0)
 
     @cached_property
+    def is_unknown(self) -> Mask:
+        """The word that has called the tool or the edge in force has no known value."""
+        unknown = (self.blocks.is_unknown("T") & self.calls_tool) | (self.blocks.is_unknown("D") & self.calls_edge)
+        return happened(unknown, (self.calls_offset & ~unknown) | self.blocks.starts) if unknown.any() else unknown
+
+    @cached_property
     def has_called_tool(self) -> Mask:
         """A tool or its offset has been called in the row or above it in its program."""
         return happened(self.calls_offset, self.blocks.starts)

@@ -34,12 +34,14 @@ class Arcs(Columns, frozen=True):
     @cached_property
     def by_radius(self) -> Mask:
         """Arcs with R."""
-        return np.asarray(self.trace.path.is_arc & self.trace.blocks.has(self.trace.machine.arcs.radius_word))
+        arcs = self.trace.path.is_arc & ~self.trace.path.shape_is_unknown
+        return np.asarray(arcs & self.trace.blocks.has(self.trace.machine.arcs.radius_word))
 
     @cached_property
     def by_center(self) -> Mask:
         """Arcs with I or J and without R, which would count before them (B-62754EN/01 p. 67)."""
-        return np.asarray(self.trace.path.is_arc & self.trace.axes.has_center & ~self.by_radius)
+        arcs = self.trace.path.is_arc & ~self.trace.path.shape_is_unknown
+        return np.asarray(arcs & self.trace.axes.has_center & ~self.by_radius)
 
     @cached_property
     def has_word_of_other_plane(self) -> Mask:
@@ -160,7 +162,7 @@ class Arcs(Columns, frozen=True):
     def _misses_circle(self) -> Mask:
         """Arcs whose center or radius is missing, of another plane, or does not fit their ends."""
         trace, tolerance = self.trace, self.trace.machine.arcs.tolerance
-        no_center = ~self.by_radius & ~self.by_center & ~self.ends_at_start
+        no_center = ~self.by_radius & ~self.by_center & ~self.ends_at_start & ~trace.path.shape_is_unknown
         return np.asarray(
             (trace.path.is_arc & (no_center | self.has_word_of_other_plane))
             | (self.start_radius <= ROUNDING)

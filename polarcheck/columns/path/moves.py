@@ -188,7 +188,7 @@ def any_in_row(hit: Mask, moves: Moves, count: int) -> Mask:
 def programmed_moves(trace: Trace) -> Moves:
     """The programmed path: one move per row that moves on the polar plane."""
     row = np.flatnonzero(trace.path.on_plane)
-    kind, start, end, center = _kind(trace, row), trace.path.start[row], trace.path.end[row], trace.path.center[row]
+    kind, (start, end), center = _kind(trace, row), _ends(trace, row), trace.path.center[row]
     return Moves(
         row=row,
         section=trace.mode.section[row],
@@ -208,20 +208,32 @@ def programmed_moves(trace: Trace) -> Moves:
     )
 
 
+def _ends(trace: Trace, row: Rows) -> tuple[Points, Points]:
+    """Start and end of the move in each row; NaN where the way between them is not known."""
+    unknown = trace.path.shape_is_unknown
+    start, end = trace.path.start[row], trace.path.end[row]
+    if not unknown.any():
+        return start, end
+    nowhere = complex("nan+nanj")
+    return np.where(unknown[row], nowhere, start), np.where(unknown[row], nowhere, end)
+
+
 def _kind(trace: Trace, row: Rows) -> States:
     """Motion of each move; an arc whose center is not known is followed along its chord."""
     kind = trace.axes.motion[row]
-    return np.where(trace.path.is_arc[row] & np.isnan(trace.path.center[row]), Motion.LINE, kind).astype(np.int16)
+    along_chord = (trace.path.is_arc[row] & np.isnan(trace.path.center[row])) | (kind == Motion.UNKNOWN)
+    return np.where(along_chord, Motion.LINE, kind).astype(np.int16)
 
 
 def compensation_path(trace: Trace, row: Rows) -> offset_path.Path:
     """Some rows as cutter compensation takes them."""
+    start, end = _ends(trace, row)
     return offset_path.Path(
         section=trace.mode.section[row],
         motion=_kind(trace, row),
         moves=trace.axes.moves_plane[row],
-        start=trace.path.start[row],
-        end=trace.path.end[row],
+        start=start,
+        end=end,
         center=trace.path.center[row],
         side=trace.compensation.side[row],
         side_written=trace.compensation.writes_side[row],

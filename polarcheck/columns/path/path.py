@@ -359,7 +359,23 @@ class ProgrammedPath(Columns, frozen=True):
         radius = self.lengths.length_of(self.machine.arcs.radius_word)[arcs]
         by_radius = polar.center_from_radius(start, end, radius, kind, np.inf)
         center[arcs] = np.where(np.isnan(radius), by_center, by_radius)
+        center[self.shape_is_unknown] = NOWHERE
         return center
+
+    @cached_property
+    def shape_is_unknown(self) -> Mask:
+        """
+        Moves on the polar plane of which the way from start to end is not known.
+
+        The radius or the center of an arc rests on a variable without a value, or a modal code does.
+        """
+        if not len(self.blocks.unknown_words):
+            return self.blocks.nowhere
+        radius = self.machine.arcs.radius_word
+        center = self.axes.of_linear_axis(lambda axis: self.blocks.is_unknown(*self.axes.center_words_along(axis)))
+        of_arc = np.where(self.blocks.has(radius), self.blocks.is_unknown(radius), center)
+        moves = self.mode.in_polar & self.axes.moves_plane
+        return np.asarray((self.is_arc & of_arc) | (moves & self.modal.is_unknown))
 
     @cached_property
     def is_arc(self) -> Mask:

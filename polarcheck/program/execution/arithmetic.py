@@ -19,6 +19,34 @@ from polarcheck.program.execution.kinds import FaultKind
 
 Value: TypeAlias = float | None
 UNKNOWN: Final = math.nan
+#: NaN, too: the value of what has a fault, which is reported.
+FAULTY: Final = float("nan")
+
+
+class Unknown(float):
+    """
+    NaN, as the value of a variable that has none; what is calculated with it stays this value.
+
+    variable: None where the value of something else is not known, as of a name of the control.
+    """
+
+    variable: int | None
+
+    def __new__(cls, variable: int | None) -> Unknown:
+        value = super().__new__(cls, UNKNOWN)
+        value.variable = variable
+        return value
+
+
+class FromVacant(float):
+    """A value that is calculated with a vacant variable, which counts as 0 there."""
+
+    variable: int
+
+    def __new__(cls, value: float, variable: int) -> FromVacant:
+        result = super().__new__(cls, value)
+        result.variable = variable
+        return result
 
 
 class Arithmetic(msgspec.Struct, frozen=True):

@@ -8,7 +8,7 @@ from collections.abc import Set as AbstractSet
 
 import numpy as np
 
-from polarcheck.program.execution.arithmetic import UNKNOWN
+from polarcheck.program.execution.arithmetic import UNKNOWN, FromVacant, Unknown
 from polarcheck.program.execution.branches import execute_structure, is_true, is_unknown, leave_parts, repeat_part
 from polarcheck.program.execution.called_programs import Shelf
 from polarcheck.program.execution.calls import enter_program, execute_call, leave_program, modal_call
@@ -298,6 +298,8 @@ def _execute_words(state: State, statement: Statement, block: int) -> int:
     words = _computed_words(state, statement, block)
     if state.rows.add_computed(block, words, state.depth):
         raise Stop
+    if any(word.address in ("G", "M") and value != value for word, value in words):
+        state.rows.mark_unknown()
     modal = modal_call(state)
     if modal is not None and state.rows.moves(words):
         return enter_program(state, modal.program, block + 1, modal.repeats, modal.arguments)
@@ -321,6 +323,10 @@ def _computed_words(state: State, statement: Statement, block: int) -> list[tupl
         if value is None:
             state.add_fault("word-vacant", block, word)
             continue
+        if value is UNKNOWN:
+            value = Unknown(None)
+        if isinstance(value, FromVacant) and not state.variables.belongs_to_program(value.variable):
+            value = float(value)
         words.append((word, value))
     return words
 

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import Any
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any, TypeVar
 
 import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
 from polarcheck.foundation.arrays import Mask, Rows, different, is_among, stretch
+from polarcheck.program.execution.arithmetic import FromVacant, Unknown
 from polarcheck.program.execution.run import Assigned, FlowFault, Remark, Run, ValueSet, is_code
 from polarcheck.program.execution.statement import Statement, Word
 from polarcheck.program.machines.axis_table import AXIS_LETTERS
@@ -18,6 +20,10 @@ from polarcheck.program.reading.words import Blocks, Text, Words
 
 #: Rows kept of a program that was broken off, beside as many as the file has blocks: enough turns to judge its loop.
 _KEPT_ROWS = 10_000
+#: #112=, and #[#101+1]= that may be any variable.
+_ASSIGNS = re.compile(rb"#\s*0*(\d{1,9})\s*=")
+_ASSIGNS_ANY = re.compile(rb"#\s*\[[^=\n]*\]\s*=")
+Kind = TypeVar("Kind", Unknown, FromVacant)
 #: Values of variables that are noted.
 _MOST_VALUES = 20_000
 #: No variable has a larger number, names included.
@@ -199,7 +205,29 @@ class ExecutedRows:
             names or {},
             broken_off if self.broken_off else None,
             self.values,
+            {position: value.variable for position, value in self._values_of(index, Unknown)},
+            self._never_set(index),
         )
+
+    def _never_set(self, index: Rows) -> dict[int, int]:
+        """The executed words that are calculated with a vacant variable to which no block of the file gives a value."""
+        vacant = {position: value.variable for position, value in self._values_of(index, FromVacant)}
+        if not vacant or self.machine.macro.language != "custom-macro":
+            return {}
+        code = self.text.source.code.tobytes()
+        if _ASSIGNS_ANY.search(code):
+            return {}
+        assigned = {int(digits) for digits in _ASSIGNS.findall(code)}
+        return {position: variable for position, variable in vacant.items() if variable not in assigned}
+
+    def _values_of(self, index: Rows, kind: type[Kind]) -> Iterator[tuple[int, Kind]]:
+        """The computed values of a kind, each with the number of its executed word; index: as in _distance."""
+        first, is_chosen = len(self.text.words), [isinstance(value, kind) for _, _, value in self.computed]
+        if any(is_chosen):
+            for position in np.flatnonzero(np.append(np.zeros(first, bool), is_chosen)[index]).tolist():
+                value = self.computed[index[position] - first][2]
+                if isinstance(value, kind):
+                    yield position, value
 
     def _mask_of(self, rows: Sequence[int]) -> Mask:
         mask = np.zeros(self.count, bool)

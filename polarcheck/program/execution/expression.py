@@ -14,7 +14,15 @@ from typing import Final, NamedTuple, Protocol
 
 import msgspec
 
-from polarcheck.program.execution.arithmetic import OPERAND_COUNTS, UNKNOWN, Arithmetic, Value, calculate
+from polarcheck.program.execution.arithmetic import (
+    FAULTY,
+    OPERAND_COUNTS,
+    UNKNOWN,
+    Arithmetic,
+    FromVacant,
+    Value,
+    calculate,
+)
 from polarcheck.program.execution.kinds import FaultKind
 
 DEFAULT: Final = Arithmetic()
@@ -90,6 +98,7 @@ def evaluate(
     """
     stack: list[Value] = []
     fault: Fault | None = None
+    vacant = 0
     for name, number, start, end in expression.steps:
         count = OPERAND_COUNTS.get(name, 1)
         operands = stack[len(stack) - count :]
@@ -100,16 +109,29 @@ def evaluate(
         elif name == "#":
             variable = operands[0] or 0.0
             if variable != variable:
-                result = UNKNOWN
+                result = variable
             else:
                 result = variables.value(variable) if variables.exists(variable) else "variable-number"
+                vacant = round(variable) if result is None else vacant
         else:
             result = calculate(name, operands, arithmetic, increment)
+            if result != result:
+                result = next((operand for operand in operands if operand != operand), UNKNOWN)
+            elif isinstance(result, float):
+                result = _with_vacant(result, operands, vacant)
         if isinstance(result, str):
             fault = fault or Fault(result, start, end, (operands[0] or 0.0) if operands else None)
-            result = UNKNOWN
+            result = FAULTY
         stack.append(result)
     return stack[-1], fault
+
+
+def _with_vacant(result: float, operands: list[Value], vacant: int) -> float:
+    """The result of a step with the vacant variable among its operands; vacant: the one read last."""
+    for operand in operands:
+        if operand is None or isinstance(operand, FromVacant):
+            return FromVacant(result, vacant if operand is None else operand.variable)
+    return result
 
 
 def decide(

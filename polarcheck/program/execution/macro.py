@@ -14,7 +14,7 @@ from typing import Final
 import msgspec
 from msgspec.structs import replace
 
-from polarcheck.program.execution.arithmetic import UNKNOWN, Arithmetic, Value, round_to
+from polarcheck.program.execution.arithmetic import FAULTY, UNKNOWN, Arithmetic, FromVacant, Unknown, Value, round_to
 from polarcheck.program.execution.expression import DEFAULT, Fault, evaluate
 from polarcheck.program.execution.kinds import FaultKind
 from polarcheck.program.execution.programs import ProgramName
@@ -82,7 +82,11 @@ class Variables:
         return self.kind(number) is not VariableKind.NONE
 
     def value(self, number: float) -> Value:
-        """The value of a variable that exists."""
+        """The value of a variable that exists; one that is not known names the variable that it rests on."""
+        value = self._held(number)
+        return Unknown(_whole(number)) if value is UNKNOWN else value
+
+    def _held(self, number: float) -> Value:
         whole, kind = _whole(number), self.kind(number)
         if kind is VariableKind.LOCAL:
             unassigned = UNKNOWN if whole >= FIRST_VARIABLE else self._levels[-1].unassigned
@@ -105,6 +109,10 @@ class Variables:
             return "read-only"
         (self._levels[-1].values if kind is VariableKind.LOCAL else self._shared)[_whole(number)] = value
         return None
+
+    def belongs_to_program(self, number: int) -> bool:
+        """Return True for a common variable, and for a local one of the main program: it is no argument of a call."""
+        return number > 0 and (self.kind(number) is VariableKind.COMMON or not self.depth)
 
     def enter(self, arguments: Mapping[int, Value]) -> None:
         """A macro call: new local variables, vacant but for the arguments."""
@@ -151,7 +159,7 @@ def assign(statement: Statement, variables: Variables, arithmetic: Arithmetic = 
 
     #2=#1 copies vacancy. A value that cannot be read is unknown. A variable by name has no number and is let go.
     """
-    value: Value = UNKNOWN
+    value: Value = FAULTY
     fault: Fault | None = None
     if statement.value is not None:
         value, fault = evaluate(statement.value, variables, arithmetic)
@@ -205,14 +213,15 @@ def word_value(
         return None, None
     if [step.name for step in steps[-2:]] == ["#", "NEGATE"]:
         value, fault = evaluate(replace(word.value, steps=steps[:-1]), variables, arithmetic, increment)
-        value = None if value is None else 0.0 - value
+        value = value if value is None or value != value else 0.0 - value
     else:
         value, fault = evaluate(word.value, variables, arithmetic, increment)
     if value is not None and abs(value) > _LARGEST_WORD:
         return UNKNOWN, fault
     if value is None or value != value or word.written is not None:
         return value, fault
-    return round_to(value, increment), fault
+    rounded = round_to(value, increment)
+    return (FromVacant(rounded, value.variable) if isinstance(value, FromVacant) else rounded), fault
 
 
 #: Argument specification I: the local variable of each address. G L N O P are none.
@@ -267,7 +276,8 @@ def assign_arguments(
         value, fault = evaluate(word.value, variables, arithmetic)
         faults.append(fault)
         if value is not None:
-            values[number] = value if word.has_point else value * (increments or {}).get(address, 1.0)
+            is_counted = word.has_point or value != value
+            values[number] = value if is_counted else value * (increments or {}).get(address, 1.0)
     return Arguments(values, sets, next(filter(None, faults), None))
 
 

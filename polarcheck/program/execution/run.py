@@ -100,7 +100,9 @@ class Run(msgspec.Struct, frozen=True):
     of an offset that it assigns, with its value. distance: per word what it says of itself (modal.Distance), 0 where it
     says nothing; None where no word does. names: of tools that T calls by name, by the number that stands for them.
     broken_off: rows at which a bound of the check has ended a program; None where it has ended none. values: the
-    values that variables have got, in order, up to a bound.
+    values that variables have got, in order, up to a bound. unknown_words: executed word of unknown value -> the
+    variable without a value that it rests on, None where it is not known which. never_set: executed word -> the vacant
+    variable that its value is calculated with, and that no block of the file sets.
     """
 
     text: Text
@@ -117,6 +119,8 @@ class Run(msgspec.Struct, frozen=True):
     names: Mapping[int, str] = {}
     broken_off: Mask | None = None
     values: Sequence[ValueSet] = ()
+    unknown_words: Mapping[int, int | None] = {}
+    never_set: Mapping[int, int] = {}
 
     def __len__(self) -> int:
         return len(self.block)

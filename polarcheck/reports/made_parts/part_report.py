@@ -141,14 +141,17 @@ def _by_section(trace: Trace, tables: Tables) -> list[MadeShape]:
 
 def _missing(trace: Trace, section: int) -> str:
     """The reason why the contour of a section is incomplete: the line of the first block with an unknown end."""
-    mills = np.where(
-        trace.mode.anywhere_in_section(trace.compensation.compensates), trace.compensation.compensates, trace.path.cuts
-    )
-    rows = np.flatnonzero((trace.mode.section == section) & mills & trace.path.on_plane & np.isnan(trace.path.end))
+    compensates = trace.compensation.compensates
+    mills = np.where(trace.mode.anywhere_in_section(compensates), compensates, trace.path.cuts)
+    mills |= trace.path.shape_is_unknown
+    is_lost = np.isnan(trace.path.end)
+    is_unknown = is_lost | trace.path.shape_is_unknown
+    rows = np.flatnonzero((trace.mode.section == section) & mills & trace.path.on_plane & is_unknown)
     if not len(rows):
         return ""
+    what = "X or C" if is_lost[rows[0]] else "the way"
     line = int(trace.blocks.line_in_file[rows[0]])
-    return f"X or C of line {line} is not known: the contour is told without what is milled there"
+    return f"{what} of line {line} is not known: the contour is told without what is milled there"
 
 
 def _replaced_needs(entry: MadeShape, missing: str) -> MadeShape:

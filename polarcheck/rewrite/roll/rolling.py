@@ -77,7 +77,7 @@ def rolled(original: Original, options: Rolling) -> Outcome:
     candidates, refusals = stretches(trace, following)
     if not candidates:
         nothing = f"nothing to roll: no {LEAST} blocks one behind the other move X and C at feed without the mode"
-        raise RefusedError(refusals or [Refusal(0, nothing)])
+        raise RefusedError([*(refusals or [Refusal(0, nothing)]), *original.unknown])
     rule = per_minute_rule(trace, candidates, options.feed)
     style = style_of(trace)
     sections: list[Section] = []
@@ -104,7 +104,7 @@ def rolled(original: Original, options: Rolling) -> Outcome:
             raise RefusedError(differences)
         refusals += differences
         sections = [section for section in sections if section not in wrong]
-    raise RefusedError(sorted(set(refusals)))
+    raise RefusedError(sorted({*refusals, *original.unknown}))
 
 
 def _section(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import msgspec
 
 from polarcheck.checking import check
+from polarcheck.checking.not_evaluated import unknown_values
 from polarcheck.checking.settings import Settings
 from polarcheck.columns.trace import Trace
 from polarcheck.rewrite.writing.outcome import Refusal, RefusedError
@@ -29,13 +30,20 @@ class Original(msgspec.Struct, frozen=True):
         trace: Trace = self.tables["trace"]
         return trace
 
+    @property
+    def unknown(self) -> list[Refusal]:
+        """The variables without a value, those on which sections rest before the others."""
+        values = sorted(unknown_values(self.tables), key=lambda value: not value.matters)
+        return [Refusal(value.line, value.reason) for value in values]
+
 
 def read(path: str, data: bytes, settings: Settings) -> Original:
     """
     Read a program with its settings.
 
     Raises SourceError, TooHardError; RefusedError for a file with several channels, which wait for each other, and for
-    one that runs otherwise with block skip, since one result cannot be both.
+    one that runs otherwise with block skip, since one result cannot be both; and where a section rests on a variable
+    without a value.
     """
     runs = check.read(data, settings.machine, settings.job, path, settings.encoding)
     if len({tables["text"].source.channel for _, tables in runs}) > 1:
@@ -44,4 +52,8 @@ def read(path: str, data: bytes, settings: Settings) -> Original:
         raise RefusedError(
             [Refusal(0, "it runs otherwise with block skip than without: choose with --block-skip on or off")]
         )
-    return Original(path, data, settings, runs[0][1])
+    tables = runs[0][1]
+    original = Original(path, data, settings, tables)
+    if any(value.matters for value in unknown_values(tables)):
+        raise RefusedError(original.unknown)
+    return original

@@ -54,7 +54,7 @@ def offset_number_missing(blocks: ExecutedBlocks, tools: CalledTools, compensati
     """
     # Before an excerpt the tool may have been called.
     called_here = tools.has_called_tool | blocks.whole_program
-    return compensation.starts_up & (tools.offset_number == 0) & called_here
+    return compensation.starts_up & (tools.offset_number == 0) & ~tools.is_unknown & called_here
 
 
 def details(hit: Hit) -> Details:

@@ -28,7 +28,9 @@ if TYPE_CHECKING:
             "contour-at-two-depths",
             "start-up-off-contour",
         ),
+        "block": ("vacant-variable",),
         "section": (
+            "variable-never-set",
             "diameter-radius-mixed",
             "second-axis-never-programmed",
             "linear-axis-never-programmed",

@@ -59,7 +59,7 @@ def arc_without_center(path: ProgrammedPath, arcs: Arcs) -> Mask:
         G13.1
     """
     has_center = arcs.by_radius | arcs.by_center | arcs.has_word_of_other_plane
-    return path.is_arc & ~has_center & ~arcs.ends_at_start
+    return path.is_arc & ~has_center & ~arcs.ends_at_start & ~path.shape_is_unknown
 
 
 def details(hit: Hit, machine: Machine) -> Details:

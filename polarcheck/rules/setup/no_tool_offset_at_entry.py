@@ -66,5 +66,5 @@ def no_tool_offset_at_entry(
     """
     # Where compensation begins without one in the section, offset-number-missing says it better.
     compensated = mode.in_polar & (compensation.side != Side.OFF) & (tools.offset_number == 0)
-    missing = mode.enters & (tools.tool_offset_number == 0) & entry.expects_offset
+    missing = mode.enters & (tools.tool_offset_number == 0) & ~tools.is_unknown & entry.expects_offset
     return missing & mode.nowhere_in_section(compensated)

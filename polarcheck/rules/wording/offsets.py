@@ -17,6 +17,8 @@ _BARE_ARGUMENT = re.compile(r"[A-Za-z0-9_./+-]+")
 
 def called_tool(tools: CalledTools, row: int) -> str:
     """The tool and the offset in force, as the program calls them: T0808, or `T MILL_8 edge 1`."""
+    if tools.is_unknown[row]:
+        return "the tool called"
     number = int(tools.offset_number[row])
     tool = int(tools.tool[row])
     if not tools.has_edges[row]:
@@ -59,6 +61,8 @@ def option(tools: CalledTools, row: int, key: str) -> str:
 def to_give(tools: CalledTools, machine: Machine, row: int, key: str) -> str:
     """What to give where a value of the offset in force is not known."""
     number = int(tools.offset_number[row])
+    if tools.is_unknown[row]:
+        return "give its number in the program, or its variable a value in [run.variables]"
     if not number or not tools.offset_key(number):
         return f"call {example(machine)} before it"
     name = str(key_of(tools, number))
