@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 from cases import looped
+from hexagon_program import CONTROLS, CUTTER, hexagon
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from programs import job_of, machine_of, report_of, said
@@ -272,14 +273,35 @@ MIRRORED = "T0101\nG98 G0 X100. C0\nG12.1\nG1 G41 X40. F200{}\nC20.\nX-40.\nC-20
 
 
 @pytest.mark.ci
-def test_what_follows_from_a_finding_that_is_allowed_stands_alone() -> None:
+def test_what_follows_from_a_finding_that_is_allowed_is_silenced_with_it() -> None:
     plain = report_of(MIRRORED.format(""), "fanuc", "1:radius=4")
     (cause,) = (one for one in plain.findings if one.rule == "side-of-compensation-mirrored")
     assert [one.rule for one in cause.follows] == ["start-up-sweeps-contour"]
     allowed = f" (POLARCHECK ALLOW {cause.rule.upper()} {REASON})"
     found = report_of(MIRRORED.format(allowed), "fanuc", "1:radius=4")
-    assert [(one.rule, one.follows) for one in found.silenced] == [(cause.rule, [])]
-    assert "start-up-sweeps-contour" in [rule for _, rule in said(found)]
+    assert [(one.rule, [follower.rule for follower in one.follows]) for one in found.silenced] == [
+        (cause.rule, ["start-up-sweeps-contour"])
+    ]
+    assert said(found) == []
+
+
+ROUNDED = (
+    "X36. C0 F150/C12./G3 X24. C18. R6./G1 X-24./G3 X-36. C12. R6./G1 C-12./G3 X-24. C-18. R6./G1 X24./"
+    "G3 X36. C-12. R6./G1 C0"
+)
+
+
+@looped("control", CONTROLS)
+def test_a_move_that_was_tried_and_what_follows_from_it_fail_no_file(control: str) -> None:
+    """A square of 36 mm with corners of R6; one of its moves is in rapid traverse, and the setter answers for it."""
+    hex_corners = "X36. C0 F150/C10.392/X0 C20.785/X-36. C10.392/C-10.392/X0 C-20.785/X36. C-10.392/C0"
+    square = hexagon((hex_corners, ROUNDED))
+    assert report_of(square, control, CUTTER).verdict == "pass"
+    rapid = square.replace("C12.", "G0 C12. (POLARCHECK ALLOW RAPID-IN-POLAR TRIED)", 1)
+    report = report_of(rapid, control, CUTTER)
+    assert (report.verdict, [one.rule for one in report.findings if one.severity != "note"]) == ("pass", [])
+    (silenced,) = report.silenced
+    assert silenced.rule == "rapid-in-polar"
 
 
 def test_what_follows_can_be_allowed_and_raises_no_severity() -> None:

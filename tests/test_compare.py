@@ -306,7 +306,30 @@ def test_unknown_angle_and_depth() -> None:
     known = changed(("G28 H0\n", ""))
     no_angle = changed(("Z2. C0", "Z2."), program=known)
     assert comparison(known, no_angle).verdict == NOT_COMPARED
-    assert comparison(no_angle, changed(("C8.660", "C8.6602"), program=no_angle)).verdict == SAME_METAL
+    unknown_in_both = comparison(no_angle, changed(("C8.660", "C8.6602"), program=no_angle))
+    assert unknown_in_both.verdict == NOT_COMPARED
+    assert "C at its beginning is not known in either" in text(unknown_in_both)
+
+
+def test_a_point_that_is_lost_is_a_difference() -> None:
+    for old, new in (("C8.660", "C8660"), ("X30.", "X30"), ("Z-5.", "Z-5")):
+        result = comparison(HEXAGON, changed((old, new)))
+        assert result.verdict == DIFFERS
+        assert f"{old} has become {new}: without a decimal point the new one" in text(result)
+    assert comparison(changed(("C8.660", "C8660")), changed(("C8.660", "C8660"), ("F300", "F310"))).verdict == DIFFERS
+
+
+def test_functions_of_other_spindles_are_orders(tmp_path: Path) -> None:
+    program = "G18 G90\nS2=796 M2=3\nSPOS=0\nG0 X60 Z2\nTRANSMIT\nG1 X28 Y0 F200\nZ-4\nX-28\nTRAFOOF\nM30\n"
+    file, other = tmp_path / "a.mpf", tmp_path / "b.mpf"
+    file.write_text(program)
+    for old, new in (("S2=796", "S2=3000"), ("M2=3", "M2=4"), (" M2=3", ""), ("S2=796 M2=3\n", "")):
+        other.write_text(program.replace(old, new))
+        result = CliRunner().invoke(
+            main, ["compare", "--machine", "siemens-transmit", "--no-config", str(file), str(other)]
+        )
+        assert result.exit_code == 1
+        assert "differs in orders" in result.output
 
 
 def test_words_that_nobody_can_read_are_no_verdict() -> None:

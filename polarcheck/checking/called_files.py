@@ -12,7 +12,7 @@ import numpy as np
 
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Rows
-from polarcheck.foundation.finding import Finding, Silenced
+from polarcheck.foundation.finding import Finding
 
 #: Turns a finding at a block of the calling file into its reported form: that block may allow it.
 Answered = Callable[[Finding, int], Finding]
@@ -57,8 +57,7 @@ def in_the_file(
     """
     Findings in a called program that lies in another file are shown at the block that calls it.
 
-    What its text alone has wrong is left to a check of that file; what follows from that is shown for itself, as is
-    what follows from a finding that the calling block allows.
+    What its text alone has wrong is left to a check of that file; what follows from that is shown for itself.
     """
     if not trace.text.source.parts:
         return list(findings)
@@ -67,9 +66,7 @@ def in_the_file(
         following = in_the_file(finding.follows, trace, answered, rows)
         row = (rows or {}).get((finding.rule, finding.line, finding.column))
         reported = _not_suppressed(finding, trace, answered, row)
-        if reported is not None and isinstance(reported, Silenced):
-            collected += [msgspec.structs.replace(reported, follows=[]), *following]
-        elif reported is None:
+        if reported is None:
             collected += following
         else:
             collected.append(msgspec.structs.replace(reported, follows=following))

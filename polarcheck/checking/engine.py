@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import bisect
-import contextlib
 from collections.abc import Iterable, Mapping
 from itertools import islice
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -95,7 +94,6 @@ class Engine:
         self._columns_seen: dict[str, int] = {}
         self._constant_masks: dict[tuple[int, bool], Mask] = {}
         self._listed_by_rule: dict[str, Listed | None] = {}
-        self._in_progress: set[str] = set()
         self.heads = program_heads(self.trace)
         self.rows_in_calls: dict[tuple[str, int, int], int] = {}
 
@@ -174,7 +172,6 @@ class Engine:
     def _all_listed(self) -> dict[str, Listed] | None:
         """List the findings of each rule; None if a rule was given up, since findings may have followed from it."""
         self._listed_by_rule.clear()
-        self._in_progress.clear()
         listed = {}
         for rule in self.rules.values():
             try:
@@ -208,9 +205,7 @@ class Engine:
         index = np.flatnonzero(hits.mask)
         if not len(index):
             return None
-        self._in_progress.add(rule.name)
         cause, element = self._causes(rule, index)
-        self._in_progress.remove(rule.name)
         finding = np.zeros(len(index), np.int64)
         silent = np.zeros(len(index), bool)
         findings: list[Finding] = []
@@ -251,17 +246,6 @@ class Engine:
     def _allowed(self, finding: Finding, element: Place) -> Finding:
         return finding if self.allows is None else allowed(finding, self.allows.reason(finding.rule, element.block))
 
-    def _reported(self, rule: Rule, index: Rows) -> Rows:
-        """Hits that are reported: those that no allow comment silences."""
-        if self.allows is None or not len(index) or not self.allows.names(rule.name):
-            return index
-        if rule.name not in self._in_progress:
-            with contextlib.suppress(TooHardError):  # _all_listed gives the rule up later
-                listed = self._listed(rule)
-                return index if listed is None else listed.index[~listed.silent]
-        # The causes of this rule are being looked up already (a cycle), so judge each element without merging.
-        return index[~self.allows.silenced(rule.name, places.blocks(rule.over, self.tables)[index])]
-
     @cached_property
     def _names(self) -> list[str]:
         return list(self.rules)
@@ -274,7 +258,7 @@ class Engine:
         cause: the index of the causing rule in `_names`, -1 for none.
         element: the element that the causing rule hit, -1 for none.
 
-        Only a reported hit is a cause: a rule that is not run explains nothing to the reader.
+        A hit that an allow comment silences is a cause, too: what follows from it is silenced with it.
         """
         cause, element = np.full(len(index), -1), np.full(len(index), -1)
         may_follow = self.hits(rule).follows
@@ -283,7 +267,7 @@ class Engine:
                 if name not in self.rules:
                     continue
                 rule_of_cause = self.rules[name]
-                other_hits = self._reported(rule_of_cause, np.flatnonzero(self.hits(rule_of_cause).mask))
+                other_hits = np.flatnonzero(self.hits(rule_of_cause).mask)
                 if not len(other_hits):
                     continue
                 try:

@@ -123,6 +123,9 @@ class _Reader(SpokenBlock):
             self.add_word(native, first)
         elif (effect := self.effect(f"{name}=")) is not None or first.text in _FUNCTIONS:
             effect = effect or self.effect(f"{first.text}n=") or "path"
+            if effect == "none":
+                self.add_word(f"{name}=", first)
+                return
             self.pass_over_value()
             self.leave_unread(f"{name}=", first, effect, number)
         else:

@@ -14,8 +14,10 @@ AXIS_LETTERS = "ABCHUVWXYZ"
 FIRST_NAMED = 128
 #: The same for the name of an axis that is in no list, and for a name that no axis has, as R1.
 NOT_NAMED, NO_AXIS = 255, 254
+#: The same for a function of a spindle by its number, as S2= and M2=: it moves nothing.
+OF_SPINDLE = 253
 #: Most names that can be in it.
-MOST_NAMED = NO_AXIS - FIRST_NAMED
+MOST_NAMED = OF_SPINDLE - FIRST_NAMED
 #: The addresses of all of them.
 AXES = (*INCREMENTS, *INCREMENTS.values())
 #: Names of axes by their kind.
@@ -27,7 +29,7 @@ def address_number(address: str, names: Sequence[str]) -> int:
     What a table of words has for an address: the character of a letter, in lower case where a comma stands before it;
     a number above all characters for the name of an axis.
 
-    names: of axes, in order; NOT_NAMED or NO_AXIS stands for one that is not among them.
+    names: of axes, in order; NOT_NAMED or NO_AXIS stands for one that is not among them, OF_SPINDLE for one with its =.
     """
     if len(address) == 1:
         return ord(address)
@@ -35,6 +37,8 @@ def address_number(address: str, names: Sequence[str]) -> int:
         return ord(address[1].lower())
     if address in names:
         return FIRST_NAMED + names.index(address)
+    if address[-1] == "=":
+        return OF_SPINDLE
     return NOT_NAMED if address[0] in AXIS_LETTERS else NO_AXIS
 
 

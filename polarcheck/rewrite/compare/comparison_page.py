@@ -25,7 +25,15 @@ from polarcheck.rules.wording.part import Sizes
 #: Times and rates that differ by less than this share are shown as one.
 _SHOWN = 0.005
 #: Kinds of differences, in the order of the headline; all others are states.
-_KINDS = {"section": "sections", "path": "path", "depth": "depth", "feed": "feed", "order": "orders", "place": "orders"}
+_KINDS = {
+    "section": "sections",
+    "path": "path",
+    "depth": "depth",
+    "feed": "feed",
+    "point": "points",
+    "order": "orders",
+    "place": "orders",
+}
 _STYLES = {DIFFERS: "fail", NOT_COMPARED: "unverified", SAME_METAL: "pass", SAME_WORDS: "pass"}
 
 

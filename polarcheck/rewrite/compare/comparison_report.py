@@ -13,6 +13,7 @@ COMPARED = (
     "the path of the tool center in sections on the part, with Z",
     "the moves outside of sections: X, Z, C, and arcs in their plane",
     "rapid traverse and F along the paths",
+    "where a coordinate has a decimal point in one revision alone",
     "the state at the beginning of sections: tool, offset, R, C, spindle, live tool, S, plane",
     "tools, S, M codes, cycles, dwells and other G codes in their order, and where they stand on the path",
 )
@@ -26,8 +27,8 @@ class Difference(msgspec.Struct, frozen=True):
     """
     Something that differs.
 
-    what: path, depth, feed, order, place, section, or a state: tool, offset, radius, c_angle, spindle, live_tool,
-    speed, plane.
+    what: path, depth, feed, point, order, place, section, or a state: tool, offset, radius, c_angle, spindle,
+    live_tool, speed, plane.
     old, new: its values, null where there is none; unit: mm, mm/min, mm/rev, deg, rev/min, empty for words.
     old_line, new_line: lines of the files, null where there is none. way: over this length [mm], null for none.
     """

@@ -10,8 +10,9 @@ from polarcheck.columns.filling import before, fill_down
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Floats, Mask, Rows
 from polarcheck.foundation.states import MM_PER_INCH, FeedMode, Units
-from polarcheck.program.machines.axis_table import FIRST_NAMED
+from polarcheck.program.machines.axis_table import FIRST_NAMED, OF_SPINDLE
 from polarcheck.program.machines.code_tables import code_set
+from polarcheck.rules.wording.written import executed_word
 
 #: Words of plain moves, and words that only name blocks.
 _OF_MOVES = ("X", "Z", "U", "W", "I", "J", "K", "R", "F", "N", "O", "/")
@@ -173,6 +174,9 @@ class _Reader:
                     return None
                 self._in_force[name] = value
             return name, value, text
+        if words.address[index] == OF_SPINDLE:
+            written = executed_word(self._trace.run, index)
+            return f"{written.partition('=')[0]}=", value, written
         if name in ("N", "O", "/") or (name == "F" and self._trace.modal.in_cycle[row]):
             return None
         if name == "G":

@@ -41,6 +41,7 @@ from polarcheck.rewrite.compare.orders import not_comparable, steps
 from polarcheck.rewrite.compare.pairing import paired
 from polarcheck.rules.quantity import rounded
 from polarcheck.rules.tables import Tables
+from polarcheck.rules.wording.written import executed_word
 
 
 def has_same_words(old: Trace, new: Trace) -> bool:
@@ -283,7 +284,12 @@ class _Runs:
         elif old.stretch.as_programmed:
             reason = f"section of line {side.line}: {old.stretch.as_programmed}: compared as programmed, for any R"
             self.not_compared.append(NotCompared(reason, matters=False))
-        differences = [*differences, *state]
+        if not why:
+            self.not_compared += [
+                NotCompared(f"section of line {side.line}: {reason}", matters=not self._is_rewritten)
+                for reason in _not_known_in_both(old, new)
+            ]
+        differences = [*differences, *_points(old, new), *state]
         change = "changed" if differences else "not compared" if why else "same"
         if number not in self._ordered:
             change = "moved"
@@ -339,7 +345,7 @@ class _Runs:
             )
             if not why:
                 why, _, differing = self._measured(old, new)
-                differences += differing
+                differences += [*differing, *_points(old, new)]
             if why:
                 self.not_compared.append(NotCompared(f"outside of sections: {why}"))
         return differences
@@ -358,6 +364,47 @@ class _Runs:
         if rewritten is not None and side:
             rewritten = Rewritten((), rewritten.angle)
         return Part(trace, outside(trace, self._tolerance, self._steps[side], first, until, rewritten))
+
+
+def _not_known_in_both(old: Part, new: Part) -> Iterator[str]:
+    """Yield what neither of two sections says of the part: the angle or the depth at which the metal goes."""
+    if not old.trace.path.knows_section_entry[old.stretch.section]:
+        yield "C at its beginning is not known in either: at which angle of the part it mills is not compared"
+    if not old.stretch.knows_z:
+        yield "Z is not known in either: how deep it mills is not compared"
+
+
+def _points(old: Part, new: Part) -> Iterator[Difference]:
+    """Yield a difference where a number has no decimal point, and has one in the other revision."""
+    if old.trace.machine != new.trace.machine:
+        return
+    words = [_coordinates(part) for part in (old, new)]
+    lacks = [part.trace.coordinates.is_unpointed[indices] for part, indices in zip((old, new), words, strict=True)]
+    differs = lacks[0] != lacks[1] if len(words[0]) == len(words[1]) else np.zeros(0, bool)
+    if not differs.any():
+        return
+    first = int(np.argmax(differs))
+    texts = [
+        executed_word(part.trace.run, int(indices[first])) for part, indices in zip((old, new), words, strict=True)
+    ]
+    lines = [
+        part.line(int(part.trace.run.row[indices[first]])) for part, indices in zip((old, new), words, strict=True)
+    ]
+    without = "old" if lacks[0][first] else "new"
+    text = f"{texts[0]} has become {texts[1]}: without a decimal point the {without} one counts least increments"
+    yield Difference("point", text, texts[0], texts[1], "", lines[0], lines[1])
+
+
+def _coordinates(part: Part) -> Rows:
+    """Return the coordinates among the executed words of a part."""
+    trace = part.trace
+    low, high = (
+        np.searchsorted(trace.run.row, [part.stretch.rows[0], part.stretch.rows[-1] + 1])
+        if len(part.stretch.rows)
+        else (0, 0)
+    )
+    indices = np.arange(low, high)[trace.coordinates.is_coordinate[low:high]]
+    return indices[np.isin(trace.run.row[indices], part.stretch.rows)]
 
 
 def _left_open(old: Part, new: Part) -> Iterator[Difference]:
