@@ -275,9 +275,13 @@ def paths_of(function: str, paths: PathName | Iterable[PathName]) -> list[str]:
     Raises UsageError for what is no path.
     """
     listed: Iterable[Any] = [paths] if isinstance(paths, str | os.PathLike | bytes) else paths
-    if not isinstance(listed, Iterable) or isinstance(listed, Mapping):
+    try:
+        each = iter(listed)  # an array without dimensions is Iterable, too
+    except TypeError:
+        each = None
+    if each is None or isinstance(listed, Mapping):
         raise UsageError(f"{function}: expected {_A_PATH}, found {short(paths)}")
-    return [path_of(function, path) for path in listed]
+    return [path_of(function, path) for path in each]
 
 
 _A_PATH = "the path of a program or folder"

@@ -36,10 +36,10 @@ class Coordinates(Lookups):
 
     @cached_property
     def is_coordinate(self) -> Mask:
-        """Per word: the end, the center or the radius of a move, or the infeed beside G12.1."""
+        """Per word: the end, the center or the radius of a move, a chamfer or corner, or the infeed beside G12.1."""
         words = self.run.words
         mode = self.machine.polar
-        is_length = is_among(words.address, [*b"XYZUVWIJKR", *map(self.machine.address_number, mode.axis_addresses)])
+        is_length = is_among(words.address, [*b"XYZUVWIJKRrc", *map(self.machine.address_number, mode.axis_addresses)])
         is_offset_number = (words.address == ord("H")) & self.blocks.numbers_by_h[self.run.row]
         moves = self.modal.uses_axes & ~self.modal.in_cycle
         is_axis_word = np.asarray(is_length & ~is_offset_number & moves[self.run.row])

@@ -31,8 +31,19 @@ class UnknownWords(Columns, frozen=True):
     @cached_property
     def index(self) -> Rows:
         """The number of the executed word, ascending."""
-        words = self.trace.blocks.unknown_words
-        return np.asarray(words[self.trace.run.words.address[words] != NO_AXIS])
+        trace, words = self.trace, self.trace.blocks.unknown_words
+        address = trace.run.words.address[words]
+        # What data input sets is not known of the offset, and is told where that is needed; but for the origin.
+        is_data = trace.blocks.listed("data_input")[trace.run.row[words]] & ~self._sets_origin[words]
+        return np.asarray(words[(address != NO_AXIS) & ~is_data])
+
+    @cached_property
+    def _sets_origin(self) -> Mask:
+        """Per executed word: X of data input of a work offset."""
+        trace = self.trace
+        kinds = (0, *trace.machine.g_codes.data_input_work_offset)
+        rows = trace.blocks.listed("data_input") & np.isin(np.nan_to_num(trace.blocks.word("L")), kinds)
+        return np.asarray(rows[trace.run.row] & trace.blocks.words_at(trace.blocks.word_indices("X", "U")))
 
     @cached_property
     def row(self) -> Rows:
@@ -50,11 +61,8 @@ class UnknownWords(Columns, frozen=True):
         is_position = trace.modal.uses_axes[row] & ~is_among(address, self._numbers(*_HARMLESS))
         # An unknown code may be any code, and leave anything in force.
         is_code = is_among(address, self._numbers("G", "M"))
-        sets_origin = trace.blocks.listed("data_input") & np.isin(
-            np.nan_to_num(trace.blocks.word("L")), (0, *trace.machine.g_codes.data_input_work_offset)
-        )
-        is_shift = sets_origin[row] & is_among(address, self._numbers("X", "U"))
-        matters = (in_section[row] & is_position) | ((is_code | is_shift) & self._is_ahead_of_section[row])
+        lasts = is_code | self._sets_origin[self.index]
+        matters = (in_section[row] & is_position) | (lasts & self._is_ahead_of_section[row])
         lasting = [np.zeros(0, np.int64)]
         polar = trace.machine.polar
         positions = trace.modal.uses_axes | trace.blocks.listed("machine_coordinates")

@@ -30,24 +30,43 @@ class Unpointed(Columns, frozen=True):
     def _none(self) -> Rows:
         return repeated(np.int64(0), len(self.trace.text.words))
 
-    @cached_property
+    @property
     def slips(self) -> Rows:
         """
         The numbers without a point of other programs, each by itself.
 
-        It is the coordinates of polar sections and of the blocks that position X and C for them, elsewhere only those
-        that are large; in inch the F of the mode; R of a tool offset that G10 sets. Where more than half of the
-        coordinates of a section are without, that is one habit, reported at the first of them, and at the first large
-        one, which is read otherwise. Beside a number that cannot be read nothing is: what the others mean is open, too.
+        It is the coordinates of polar sections and of the blocks that position X and C for them; in inch the F of the
+        mode; R of a tool offset that G10 sets. Where more than half of the coordinates of a section are without, that
+        is one habit, reported at the first of them, and at the first large one, which is read otherwise. Those
+        elsewhere are reported one by one if they are large, and else by one of them for the program, which is one of a
+        section where there is one. Beside a number that cannot be read nothing is: what the others mean is open, too.
         """
+        elsewhere = self._elsewhere
+        if not elsewhere:
+            return self._in_sections
+        reported = self._in_sections.copy()
+        for index, words in elsewhere.items():
+            reported[index] += len(words)
+        return reported
+
+    @cached_property
+    def _is_slip(self) -> Mask:
+        """Per executed word: not of a program in least increments, nor beside a number that cannot be read."""
+        slips = ~self.trace.coordinates.in_increments[self.trace.run.row]
+        if self.trace.run.words.fault.any():
+            unreadable = self.trace.blocks.with_words(self.trace.run.words.is_unreadable)
+            slips &= ~unreadable[self.trace.run.row]
+        return np.asarray(slips)
+
+    @cached_property
+    def _in_sections(self) -> Rows:
+        """The same without the small ones outside of sections."""
         trace, words = self.trace, self.trace.run.words
         if not len(trace.mode.sections) or trace.machine.control.number_without_point == "whole-unit":
             return self._none
         count, section = len(trace.mode.sections), self._sections
         reported = np.zeros(len(trace.text.words), np.int64)
-        slips = ~trace.coordinates.in_increments[trace.run.row]
-        if words.fault.any():
-            slips &= ~trace.blocks.with_words(words.is_unreadable)[trace.run.row]
+        slips = self._is_slip
         inch_feed = (words.address == ord("F")) & ~words.has_point & (words.value > 0) & slips
         inch_feed &= ((trace.lengths.feed_units == Units.INCH) & (trace.feedrate.feed_mode == FeedMode.PER_MINUTE))[
             trace.run.row
@@ -76,13 +95,13 @@ class Unpointed(Columns, frozen=True):
         executed = np.flatnonzero(trace.run.words.start == start)
         if not self.slips[index] or not len(executed) or trace.coordinates.is_large_unpointed[executed].any():
             return []
-        if self.slips[index] == 1:
-            return [index]
+        elsewhere = self._elsewhere.get(index, [])
+        if self._in_sections[index] <= 1:
+            return sorted({index, *elsewhere})
         own = self._sections == self._sections[trace.run.row[executed[0]]]
         words = trace.coordinates.is_unpointed & ~trace.coordinates.is_large_unpointed & own[trace.run.row]
         at, _ = self._in_file(np.flatnonzero(words))
-        found: list[int] = different(at).tolist()
-        return found
+        return different(np.append(at, elsewhere).astype(np.int64)).tolist()  # type: ignore[no-any-return]
 
     @cached_property
     def _radii_of_offsets(self) -> Mask:
@@ -128,6 +147,29 @@ class Unpointed(Columns, frozen=True):
         is_first[np.unique(own, return_index=True)[1]] = True
         shown = is_first | ~as_one[own]
         np.maximum.at(reported, at[shown], count[own[shown]])
+
+    @cached_property
+    def _elsewhere(self) -> dict[int, list[int]]:
+        """The small numbers outside of sections by the one word of each program that is reported for them."""
+        trace = self.trace
+        if not len(trace.mode.sections) or not trace.coordinates.is_unpointed.any():
+            return {}
+        program = trace.blocks.program
+        has_section = np.isin(program, program[trace.mode.sections.enter])
+        words = self._is_slip & trace.coordinates.is_unpointed & ~trace.coordinates.is_large_unpointed
+        outside = np.where(has_section & (self._sections < 0), program, -1)
+        index, own = trace.coordinates.written_once(words, outside)
+        at, found = self._in_file(index)
+        of_program: dict[int, list[int]] = {}
+        for number, word in zip(own[found].tolist(), at.tolist(), strict=True):
+            of_program.setdefault(number, []).append(word)
+        reported = np.flatnonzero(self._in_sections)
+        program_of_word = program[trace.blocks.row_of_block[trace.text.words.block[reported]]]
+        result = {}
+        for number, words_of_program in of_program.items():
+            first = reported[program_of_word == number]
+            result[int(first[0]) if len(first) else min(words_of_program)] = words_of_program
+        return result
 
     def _in_file(self, index: Rows) -> tuple[Rows, Mask]:
         """Where executed words stand among the words of the file, and which do: those of macro statements do not."""

@@ -21,8 +21,8 @@ from polarcheck.program.reading.words import Blocks, Text, Words
 #: Rows kept of a program that was broken off, beside as many as the file has blocks: enough turns to judge its loop.
 _KEPT_ROWS = 10_000
 #: #112=, and #[#101+1]= that may be any variable.
-_ASSIGNS = re.compile(rb"#\s*0*(\d{1,9})\s*=")
-_ASSIGNS_ANY = re.compile(rb"#\s*\[[^=\n]*\]\s*=")
+_ASSIGNS = re.compile(rb"#[ \t]*+0*+(\d{1,9}+)[ \t]*+=")
+_ASSIGNS_ANY = re.compile(rb"\][ \t]*+=")
 Kind = TypeVar("Kind", Unknown, FromVacant)
 #: Values of variables that are noted.
 _MOST_VALUES = 20_000

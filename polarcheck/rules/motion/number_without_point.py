@@ -27,9 +27,9 @@ def number_without_point(unpointed: Unpointed) -> Hits:
     Length without a decimal point.
 
     A number without a point counts least increments: C20 is 0.020 mm, in inch 0.0020 inch. With parameter 3401#0
-    DPI = 1 it is 20 mm instead, so that one program cuts two shapes on two lathes. Write the point. Before G12.1 the
-    blocks that position X and C are looked at, elsewhere numbers of 1000 or more. A section with more such numbers than
-    others is reported once, and a number of 1000 or more in it.
+    DPI = 1 it is 20 mm instead, so that one program cuts two shapes on two lathes. Write the point. A section with more
+    such numbers than others is reported once, and a number of 1000 or more in it. Those outside of the polar sections
+    of a program are reported together, at the first of them, or at the first in a section.
 
     What is meant is taken from the program. Most are written with points: there C20 is judged as 20 mm, and only a
     number of 1000 or more as the control takes it, since no lathe moves a meter. A program that writes most of its
@@ -119,7 +119,7 @@ def number_without_point(unpointed: Unpointed) -> Hits:
 def details(hit: Hit, unpointed: Unpointed) -> Details:
     count = int(unpointed.in_increments[hit.index])
     more = int(unpointed.slips[hit.index]) - 1
-    others = f"; {more} more coordinates of this section have none" if more > 0 else ""
+    others = f"; {more} more {'coordinate has' if more == 1 else 'coordinates have'} none" if more > 0 else ""
     if count:
         others = f"; the whole program is read in least increments, {count} of its coordinates have no point"
     return {"count": count or more + 1, "taken_as": _taken_as(hit, others)}
