@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
@@ -17,7 +18,8 @@ class Depth(NamedTuple):
     """
     What sections make at one Z.
 
-    sections: their numbers. z: [mm], NaN where it is not known. radius: R of the cutter [mm], NaN if not known. shapes:
+    sections: their numbers. z: [mm], NaN where it is not known. bottom: the deepest Z of a floor that slopes [mm], NaN
+    of one that does not. radius: R of the cutter [mm], NaN if not known. shapes:
     in the frame of the part; where C is not known at the beginning of the section, as it writes them. needs: as in
     MadeShape. polygon: what is left there, within what is known of it (shapely, mm), or, where is_cleared, what is
     cleared; None where depths are not compared by it. swept: what the cutter clears, where the path is that of the
@@ -32,6 +34,7 @@ class Depth(NamedTuple):
     polygon: Any = None
     is_cleared: bool = False
     swept: Any = None
+    bottom: float = math.nan
 
 
 def put_together(joined: Depth, single: Sequence[Depth]) -> Iterator[Depth]:

@@ -10,7 +10,12 @@ import numpy as np
 from polarcheck.columns.contour.overcuts import Overcuts, level_of
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Columns, Mask, Rows, cached_property
+from polarcheck.foundation.states import Motion
+from polarcheck.geometry import plane, polar
+from polarcheck.geometry.tolerances import CORNER, ROUNDING
 
+#: Decimals of points of the same wall [mm].
+_SAME_WALL = 3
 Turned = TypeVar("Turned", "Curves", "Outline")
 
 if TYPE_CHECKING:
@@ -23,7 +28,8 @@ class Level(NamedTuple):
     """
     The part that the contours at one Z of one section leave standing.
 
-    section: its number, of several the first. z: [mm], NaN where it is not known. radius: |R| of the cutter, the
+    section: its number, of several the first. z: the deepest at which the whole wall is cut [mm], NaN where it is not
+    known. bottom: the deepest of all [mm], below z where the floor slopes. radius: |R| of the cutter, the
     largest [mm]. polygon: what stands (shapely, mm, x and c as its x and y), with chords for arcs; empty where nothing
     does. open: the polygon ends somewhere beyond the walls, where the part is unknown. gap: width of the gap that was
     closed [mm], 0 for none. tangled: the walls cross so often that they are no contour. outline: the programmed edges
@@ -45,6 +51,7 @@ class Level(NamedTuple):
     left: Mask
     sections: tuple[int, ...]
     angle: float
+    bottom: float
 
 
 class Finished(Columns, frozen=True):
@@ -182,20 +189,50 @@ class Finished(Columns, frozen=True):
 
         of_group, shift = parts.group == number, parts.pitch * number
         row = int(walls.row[chosen[0]])
+        outline = outline_of(parts.start[of_group] - shift, parts.end[of_group] - shift, parts.move[of_group], walls)
+        z, bottom = self._depths(walls[chosen], outline)
         return Level(
             section=int(self.trace.mode.section[row]),
-            z=float(self.trace.path.z[row]),
+            z=z,
             radius=float(radius[number]),
             polygon=shapely.transform(parts.polygon[number], lambda points: points - [shift, 0.0]),
             open=bool(parts.open[number]),
             gap=float(max(parts.gap[number], parts.beside[number])),
             tangled=bool(parts.tangled[number]),
-            outline=outline_of(parts.start[of_group] - shift, parts.end[of_group] - shift, parts.move[of_group], walls),
+            outline=outline,
             walls=walls[chosen],
             left=left[chosen],
             sections=(int(self.trace.mode.section[row]),),
             angle=0.0,
+            bottom=bottom,
         )
+
+    def _depths(self, walls: Curves, outline: Outline) -> tuple[float, float]:
+        """
+        The deepest Z at which the whole wall is cut, and the deepest of all [mm].
+
+        A helix cuts the wall down to where its last turn begins, and down to its end where it closes on that depth.
+        """
+        z_before, z = self.trace.path.z_before[walls.row], self.trace.path.z[walls.row]
+        first, bottom = float(z[0]), float(np.min(z))
+        is_level = bool(np.all(np.abs(np.append(z, z_before) - first) <= ROUNDING))
+        if is_level or np.isnan(np.append(z, z_before)).any() or not len(outline):
+            return first, first
+        highest = np.fmax(z_before, z)
+        length = polar.length(walls.start, walls.end, walls.center, walls.kind)
+        whole = polar.length(outline.start, outline.end, outline.center, outline.kind).sum()
+        if length[highest <= bottom + ROUNDING].sum() >= whole - CORNER:
+            return bottom, bottom
+        # The same wall in another turn, be it run the other way.
+        ends = np.sort_complex(np.stack([walls.start, walls.end], axis=1).round(_SAME_WALL))
+        sweep = plane.arc_sweep(walls.start, walls.end, walls.center, walls.kind)
+        of_arc = walls.center + (walls.start - walls.center) * np.exp(0.5j * sweep)
+        middle = np.where(walls.kind == Motion.LINE, (walls.start + walls.end) / 2, of_arc).round(_SAME_WALL)
+        _, wall = np.unique(np.column_stack([ends, middle]), axis=0, return_inverse=True)
+        wall = wall.ravel()
+        cut_to = np.full(int(wall.max()) + 1, np.inf)
+        np.minimum.at(cut_to, wall, highest)
+        return float(np.max(cut_to[wall[np.isin(walls.row, outline.row)]], initial=bottom)), bottom
 
 
 def turned_columns(table: Turned, turn: complex) -> Turned:
