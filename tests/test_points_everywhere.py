@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import re
 
 from cases import looped
 from hexagon_program import CUTTER, hexagon
@@ -51,3 +52,22 @@ def test_whole_millimeters_need_no_point() -> None:
 
 
 WHOLE = {"control": {"number_without_point": "whole-unit"}}
+
+
+def counting(step: float) -> str:
+    """The hexagon in counts of a step [mm], without a decimal point."""
+    return re.sub(r"(?<=[XZC])-?\d+\.\d*", lambda number: f"{float(number[0]) / step:.0f}", hexagon())
+
+
+@looped("control", ["gsk-988", "fanuc-30i", "mazak-eia"])
+def test_a_contour_of_meters_names_the_unit_that_makes_it_small(control: str) -> None:
+    """56 mm in counts of 1 um or of 10 um; in whole millimeters, with or without points, nothing is said."""
+    for step, size in ((0.001, "in units of 1 um it is 56 mm"), (0.01, "in units of 10 um it is 56 mm")):
+        report = report_of(counting(step), control, CUTTER, changes=WHOLE)
+        told = [finding.message for finding in report.findings if finding.rule == "number-without-point"]
+        assert len(told) == 1
+        assert size in told[0]
+        assert "feed-implausible" not in {finding.rule for finding in report.findings}
+    for plain in (hexagon(), counting(1.0)):
+        report = report_of(plain, control, CUTTER, changes=WHOLE)
+        assert "number-without-point" not in {finding.rule for finding in report.findings}

@@ -8,6 +8,7 @@ from polarcheck.columns.path.coordinates import MEANT_IN_INCREMENTS
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Columns, Mask, Rows, cached_property, different, repeated
 from polarcheck.foundation.states import FeedMode, Units
+from polarcheck.program.reading.numbers import NumberFault
 
 
 class Unpointed(Columns, frozen=True):
@@ -25,6 +26,36 @@ class Unpointed(Columns, frozen=True):
         words = trace.coordinates.is_unpointed & trace.coordinates.in_increments[trace.run.row]
         self._add(reported, words, trace.blocks.program, np.ones(int(trace.blocks.program[-1]) + 1, bool))
         return reported
+
+    @cached_property
+    def in_meters(self) -> Rows:
+        """
+        The first coordinate without a point in the sections of each program that are meters wide, for all of them.
+
+        Of a control that reads whole units. Most of the coordinates are so large that least increments were meant.
+        """
+        trace, words = self.trace, self.trace.run.words
+        if not len(trace.mode.sections) or trace.machine.control.number_without_point != "whole-unit":
+            return self._none
+        is_length = trace.coordinates.is_coordinate & ~words.has_point & (words.fault == NumberFault.NONE)
+        value = np.abs(np.nan_to_num(words.value))
+        program = np.where(trace.mode.section >= 0, trace.blocks.program, -1)
+        count = int(trace.blocks.program[-1]) + 1
+        written, large = (
+            np.bincount(trace.coordinates.written_once(is_length & chosen, program)[1], minlength=count)
+            for chosen in (value != 0, value >= MEANT_IN_INCREMENTS)
+        )
+        is_wide = (large > 1) & (2 * large > written)
+        reported = np.zeros(len(trace.text.words), np.int64)
+        group = np.where((program >= 0) & np.append(is_wide, False)[program], program, -1)
+        self._add(reported, is_length & (value >= MEANT_IN_INCREMENTS), group, np.ones(count, bool))
+        return reported
+
+    @property
+    def is_in_meters(self) -> Mask:
+        """Rows of the programs whose sections are meters wide."""
+        words = self.trace.text.words.block[self.in_meters > 0]
+        return self.trace.blocks.anywhere_in_program(np.isin(self.trace.run.block, words))
 
     @property
     def _none(self) -> Rows:

@@ -6,6 +6,7 @@ from polarcheck.rules.rule import WARNING, Hits, rule
 
 if TYPE_CHECKING:
     from polarcheck.columns.feed.programmed_feeds import Feeds
+    from polarcheck.columns.words.unpointed import Unpointed
     from polarcheck.rules.hit import Details, Hit
 
 
@@ -19,9 +20,10 @@ if TYPE_CHECKING:
     follows={
         "block": ("feed-missing-in-polar", "feed-lost-from-per-revolution"),
         "section": ("code-not-allowed-in-polar",),
+        "program": ("number-without-point",),
     },
 )
-def feed_implausible(feeds: Feeds) -> Hits:
+def feed_implausible(feeds: Feeds, unpointed: Unpointed) -> Hits:
     """
     F with which a block takes hours.
 
@@ -63,7 +65,7 @@ def feed_implausible(feeds: Feeds) -> Hits:
         G13.1
     """
     # Compares nothing: how long a block takes is a formula.
-    return Hits(feeds.takes_too_long, worst=feeds.block_time)
+    return Hits(feeds.takes_too_long, worst=feeds.block_time, follows={"program": unpointed.is_in_meters})
 
 
 def details(hit: Hit, feeds: Feeds) -> Details:

@@ -31,6 +31,9 @@ def number_without_point(unpointed: Unpointed) -> Hits:
     such numbers than others is reported once, and a number of 1000 or more in it. Those outside of the polar sections
     of a program are reported together, at the first of them, or at the first in a section.
 
+    A control that reads whole units makes a contour of many meters of numbers that were meant in least increments: this
+    is reported once in a program, with the parameter that makes it as small as it was meant.
+
     What is meant is taken from the program. Most are written with points: there C20 is judged as 20 mm, and only a
     number of 1000 or more as the control takes it, since no lathe moves a meter. A program that writes most of its
     coordinates without a point, throughout or in the mode, and most of those as 1000 or more, is written in least
@@ -105,6 +108,15 @@ def number_without_point(unpointed: Unpointed) -> Hits:
         X-40.
         G13.1
 
+    Bad, set control.number_without_point="whole-unit":
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X40000 F200    (expect: number-without-point)
+        C20000
+        X-40000
+        G13.1
+
     Good, set control.number_without_point="whole-unit":
 
         G98 G0 X60 C0
@@ -113,16 +125,36 @@ def number_without_point(unpointed: Unpointed) -> Hits:
         C20
         G13.1
     """
-    return graded(warning=unpointed.slips > 0, note=unpointed.in_increments > 0)
+    return graded(warning=(unpointed.slips > 0) | (unpointed.in_meters > 0), note=unpointed.in_increments > 0)
 
 
 def details(hit: Hit, unpointed: Unpointed) -> Details:
+    if meters := int(unpointed.in_meters[hit.index]):
+        return {"count": meters, "taken_as": _in_meters(hit, meters)}
     count = int(unpointed.in_increments[hit.index])
     more = int(unpointed.slips[hit.index]) - 1
     others = f"; {more} more {'coordinate has' if more == 1 else 'coordinates have'} none" if more > 0 else ""
     if count:
         others = f"; the whole program is read in least increments, {count} of its coordinates have no point"
     return {"count": count or more + 1, "taken_as": _taken_as(hit, others)}
+
+
+def _in_meters(hit: Hit, count: int) -> str:
+    """What a word is that a control reads in whole units, and by which setting of it the section is of usual size."""
+    from polarcheck.rules.remedies import place
+
+    value = abs(float(hit.trace.text.words.value[hit.index]))
+    unit = "inch" if hit.trace.lengths.units[hit.row] == Units.INCH else "mm"
+    steps = ("0.0001 inch", 1e-4), ("0.001 inch", 1e-3)
+    by_unit = "; ".join(
+        f"in units of {name} it is {value * step:g} {unit}"
+        for name, step in (steps if unit == "inch" else (("1 um", 1e-3), ("10 um", 1e-2)))
+    )
+    setting = place(hit.trace.machine, "control.number_without_point")
+    others = f", and {count - 1} more are as large" if count > 1 else ""
+    return (
+        f"{value:g} {unit}{others}: {by_unit}; if a parameter of the control says so, set {setting} to least-increment"
+    )
 
 
 def _taken_as(hit: Hit, others: str) -> str:
