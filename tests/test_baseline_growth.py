@@ -46,7 +46,7 @@ def through_inch(z: str, feed: str) -> str:
 def in_steps(z: str, feed: str) -> str:
     """The same in increments of Z."""
     return (
-        f"O4\nT0101\nG98 G0 X60. C0 Z2.\nG1 W{float(z) - 2:g} F{feed}\nG12.1\nG1 X-40.\nC10.\nX60.\nG13.1\n"
+        f"O4\nT0101\nG98 G0 X60. C0 Z2.\nG1 W{float(z) - 2:.1f} F{feed}\nG12.1\nG1 X-40.\nC10.\nX60.\nG13.1\n"
         "G0 Z50.\nM30\n"
     )
 
