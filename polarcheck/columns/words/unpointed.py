@@ -54,8 +54,11 @@ class Unpointed(Columns, frozen=True):
     @property
     def is_in_meters(self) -> Mask:
         """Rows of the programs whose sections are meters wide."""
-        words = self.trace.text.words.block[self.in_meters > 0]
-        return self.trace.blocks.anywhere_in_program(np.isin(self.trace.run.block, words))
+        reported = np.flatnonzero(self.in_meters)
+        if not len(reported):
+            return self.trace.blocks.nowhere
+        blocks = self.trace.text.words.block[reported]
+        return self.trace.blocks.anywhere_in_program(np.isin(self.trace.run.block, blocks))
 
     @property
     def _none(self) -> Rows:
