@@ -71,9 +71,10 @@ class ModalStates(Lookups):
             values[ended] = 0
             written |= ended
         state = fill_down(values, written | self.blocks.starts, _BEFORE.get(group, 0))
-        if group == "motion" and self.blocks.is_unknown("G").any():
-            values = np.where(self.blocks.is_unknown("G"), Motion.UNKNOWN, values).astype(np.int16)
-            written = written | self.blocks.is_unknown("G")
+        unknown = self.blocks.is_unknown("G")
+        if group == "motion" and unknown.any():
+            values[unknown] = Motion.UNKNOWN
+            written |= unknown
         self._columns[f"sets {group}"] = written
         self._columns[f"state {group}"] = state
         return state.astype(np.int16), written

@@ -124,6 +124,13 @@ class PolarMode(Columns, frozen=True):
         """Between a G12.1 and its G13.1, neither included."""
         return (self.section >= 0) & ~self.enters
 
+    @cached_property
+    def comes_before_section(self) -> Mask:
+        """Rows above a section of the same program, its G12.1 included."""
+        ahead = np.searchsorted(self.sections.enter, np.arange(len(self.run)))
+        program = np.append(self.blocks.program[self.sections.enter], -1)[ahead]
+        return np.asarray(program == self.blocks.program)
+
     def given_in_section(self, rows: Mask) -> Mask:
         """True from the first of these rows to the end of its section."""
         return np.asarray(happened(rows & self.in_polar, self.enters) & self.in_polar)

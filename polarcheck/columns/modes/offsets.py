@@ -256,11 +256,7 @@ class ToolOffsets(Columns, frozen=True):
         data = blocks.listed("data_input") & number_is_unknown & blocks.has("R", "C", "Q", "X", "U")
         sets = data & (self.mode.section < 0)
         sets[[row for row, assigned in self.run.assigned.items() if assigned.variable == NO_VARIABLE]] = True
-        if not sets.any():
-            return sets
-        ahead = np.searchsorted(self.mode.sections.enter, np.arange(len(self.run)))
-        program = np.append(self.blocks.program[self.mode.sections.enter], -1)[ahead]
-        return np.asarray(sets & (program == self.blocks.program))
+        return np.asarray(sets & self.mode.comes_before_section) if sets.any() else sets
 
     def row_of_unknown_setting(self, number: int, row: int, key: str) -> int:
         """The last row, down to this one, that sets R or the nose type of an offset to what is not known; -1: none."""

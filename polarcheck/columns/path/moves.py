@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from polarcheck.columns.filling import before
+from polarcheck.columns.path.path import NOWHERE
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, States, Table, cached_property, is_among
 from polarcheck.foundation.states import ArcFeed, Motion
@@ -214,8 +215,7 @@ def _ends(trace: Trace, row: Rows) -> tuple[Points, Points]:
     start, end = trace.path.start[row], trace.path.end[row]
     if not unknown.any():
         return start, end
-    nowhere = complex("nan+nanj")
-    return np.where(unknown[row], nowhere, start), np.where(unknown[row], nowhere, end)
+    return np.where(unknown[row], NOWHERE, start), np.where(unknown[row], NOWHERE, end)
 
 
 def _kind(trace: Trace, row: Rows) -> States:

@@ -33,7 +33,7 @@ class UnknownWords(Columns, frozen=True):
         """The number of the executed word, ascending."""
         trace, words = self.trace, self.trace.blocks.unknown_words
         address = trace.run.words.address[words]
-        # What data input sets is not known of the offset, and is told where that is needed; but for the origin.
+        # The rules that need an offset say that it is not known; nothing else says it of the origin.
         is_data = trace.blocks.listed("data_input")[trace.run.row[words]] & ~self._sets_origin[words]
         return np.asarray(words[(address != NO_AXIS) & ~is_data])
 
@@ -62,7 +62,7 @@ class UnknownWords(Columns, frozen=True):
         # An unknown code may be any code, and leave anything in force.
         is_code = is_among(address, self._numbers("G", "M"))
         lasts = is_code | self._sets_origin[self.index]
-        matters = (in_section[row] & is_position) | (lasts & self._is_ahead_of_section[row])
+        matters = (in_section[row] & is_position) | (lasts & (in_section | trace.mode.comes_before_section)[row])
         lasting = [np.zeros(0, np.int64)]
         polar = trace.machine.polar
         positions = trace.modal.uses_axes | trace.blocks.listed("machine_coordinates")
@@ -77,13 +77,6 @@ class UnknownWords(Columns, frozen=True):
 
     def _numbers(self, *addresses: str) -> list[int]:
         return [self.trace.machine.address_number(address) for address in addresses]
-
-    @cached_property
-    def _is_ahead_of_section(self) -> Mask:
-        """Rows of sections, and rows above a section of the same program."""
-        enter, program = self.trace.mode.sections.enter, self.trace.blocks.program
-        ahead = np.searchsorted(enter, np.arange(len(self.trace)))
-        return np.asarray((np.append(program[enter], -1)[ahead] == program) | (self.trace.mode.section >= 0))
 
     def _lasting(self, addresses: tuple[str, ...], rows: Mask, where: Mask) -> Rows:
         """

@@ -14,14 +14,14 @@ from polarcheck.foundation.arrays import Mask, Rows, different, is_among, stretc
 from polarcheck.program.execution.arithmetic import FromVacant, Unknown
 from polarcheck.program.execution.run import Assigned, FlowFault, Remark, Run, ValueSet, is_code
 from polarcheck.program.execution.statement import Statement, Word
+from polarcheck.program.execution.variable_names import ASSIGNED
 from polarcheck.program.machines.axis_table import AXIS_LETTERS
 from polarcheck.program.machines.machine import Machine
 from polarcheck.program.reading.words import Blocks, Text, Words
 
 #: Rows kept of a program that was broken off, beside as many as the file has blocks: enough turns to judge its loop.
 _KEPT_ROWS = 10_000
-#: #112=, and #[#101+1]= that may be any variable.
-_ASSIGNS = re.compile(rb"#[ \t]*+0*+(\d{1,9}+)[ \t]*+=")
+#: #[#101+1]= may set any variable.
 _ASSIGNS_ANY = re.compile(rb"\][ \t]*+=")
 Kind = TypeVar("Kind", Unknown, FromVacant)
 #: Values of variables that are noted.
@@ -217,7 +217,7 @@ class ExecutedRows:
         code = self.text.source.code.tobytes()
         if _ASSIGNS_ANY.search(code):
             return {}
-        assigned = {int(digits) for digits in _ASSIGNS.findall(code)}
+        assigned = {int(digits) for digits in ASSIGNED.findall(code)}
         return {position: variable for position, variable in vacant.items() if variable not in assigned}
 
     def _values_of(self, index: Rows, kind: type[Kind]) -> Iterator[tuple[int, Kind]]:

@@ -15,6 +15,7 @@ import numpy as np
 from polarcheck.program.execution.arithmetic import UNKNOWN
 from polarcheck.program.execution.programs import block_text, needs_flow, read_text
 from polarcheck.program.execution.run import Beside, Run, straight
+from polarcheck.program.execution.variable_names import ASSIGNED
 from polarcheck.program.machines.job import Job
 from polarcheck.program.machines.machine import Machine
 from polarcheck.program.reading.channel_texts import channels
@@ -23,8 +24,6 @@ from polarcheck.program.reading.words import Text
 
 #: What stands in a channel for the text of the others.
 _BLANK = 32
-#: An assignment of a variable by its number.
-_ASSIGNED = re.compile(rb"#[ \t]*+(\d{1,6})[ \t]*+=")
 
 
 def runs(source: Source, machine: Machine, job: Job) -> list[tuple[str, Run]]:
@@ -101,7 +100,7 @@ def _without_values(job: Job, machine: Machine, texts: Iterable[Text]) -> Job:
     assigned = {
         number: UNKNOWN
         for text in texts
-        for number in (int(digits) for digits in set(_ASSIGNED.findall(text.source.code.tobytes())))
+        for number in (int(digits) for digits in set(ASSIGNED.findall(text.source.code.tobytes())))
         if any(first <= number <= last for first, last in common)
     }
     if not assigned:

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import re
 from typing import Final
 
+#: #112=: the number of a variable that custom macro sets, in the bytes of a text.
+ASSIGNED: Final = re.compile(rb"#[ \t]*+(\d{1,6})[ \t]*+=")
 #: Variables that have a name stand above all that have a number.
 FIRST_VARIABLE: Final = 20_000_000
 #: The number of R0 among the variables: parameters that every program shares.

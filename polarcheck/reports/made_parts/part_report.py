@@ -89,15 +89,15 @@ def in_one_line(tables: Tables) -> str:
 
 
 def _deepest(group: Sequence[Depth], sizes: Sizes) -> str:
-    depths = [depth for depth in group if not np.isnan(depth.z)]
-    if not depths:
-        return "to Z not known"
-    deepest = min(depths, key=lambda depth: depth.z)
-    return f"to Z{sizes(deepest.z)}{_floor(deepest, sizes)}"
+    depths = [depth.z for depth in group if not np.isnan(depth.z)]
+    return f"to Z{sizes(min(depths))}{_floor(group, sizes)}" if depths else "to Z not known"
 
 
-def _floor(depth: Depth, sizes: Sizes) -> str:
-    return "" if np.isnan(depth.bottom) else f", the floor slopes to Z{sizes(depth.bottom)}"
+def _floor(group: Sequence[Depth], sizes: Sizes) -> str:
+    """Where the floor of the deepest of these depths ends, if it slopes."""
+    deepest = min((depth for depth in group if not np.isnan(depth.z)), key=lambda depth: depth.z, default=None)
+    is_sloped = deepest is not None and not np.isnan(deepest.bottom)
+    return f", the floor slopes to Z{sizes(deepest.bottom)}" if deepest is not None and is_sloped else ""
 
 
 def depths_of(tables: Tables) -> list[Depth]:
@@ -242,35 +242,18 @@ def _of_levels(
 
 def _of_level(trace: Trace, level: Level) -> Depth:
     why = "its contour crosses itself too often to say what it makes" if level.tangled else None
-    return Depth(
-        level.sections,
-        level.z,
-        level.radius,
-        shapes_of_level(trace, level),
-        why,
-        known_of(level),
-        bottom=_bottom(level),
-    )
-
-
-def _bottom(level: Level) -> float:
-    """The deepest Z of a floor that slopes [mm], NaN of one that does not."""
-    return level.bottom if level.bottom < level.z - ROUNDING else np.nan
+    return _depth(trace, level, level.radius, why)
 
 
 def _of_meant_level(trace: Trace, level: Level) -> Depth:
     row = int(level.walls.row[0])
     why = f"R of {called_tool(trace.tools, row)} is not known, so whether the tool makes it was not looked at"
-    needs = f"{why}: {to_give(trace.tools, trace.machine, row, 'radius')}"
-    return Depth(
-        level.sections,
-        level.z,
-        np.nan,
-        shapes_of_level(trace, level),
-        needs,
-        known_of(level),
-        bottom=_bottom(level),
-    )
+    return _depth(trace, level, np.nan, f"{why}: {to_give(trace.tools, trace.machine, row, 'radius')}")
+
+
+def _depth(trace: Trace, level: Level, radius: float, needs: str | None) -> Depth:
+    shapes, bottom = shapes_of_level(trace, level), level.bottom if level.bottom < level.z - ROUNDING else np.nan
+    return Depth(level.sections, level.z, radius, shapes, needs, known_of(level), bottom=bottom)
 
 
 def _ribs_and_strips(tables: Tables) -> list[tuple[int, LeftStanding]]:
@@ -317,7 +300,7 @@ def _entry(trace: Trace, group: Sequence[Depth], shape: Shape) -> MadeShape:
     odd = [OddSide(line=int(trace.blocks.line_in_file[side.row]), size=round(side.size, 6)) for side in shape.odd]
     texts = [
         _words(trace, shape, first),
-        _depths_in_words(depths_known, sizes) + _floor(min(group, key=lambda depth: np.nan_to_num(depth.z)), sizes),
+        _depths_in_words(depths_known, sizes) + _floor(group, sizes),
         *_sections_in_words(trace, first, sections),
     ]
     return MadeShape(

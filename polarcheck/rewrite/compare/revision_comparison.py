@@ -379,32 +379,28 @@ def _points(old: Part, new: Part) -> Iterator[Difference]:
     if old.trace.machine != new.trace.machine:
         return
     words = [_coordinates(part) for part in (old, new)]
-    lacks = [part.trace.coordinates.is_unpointed[indices] for part, indices in zip((old, new), words, strict=True)]
-    differs = lacks[0] != lacks[1] if len(words[0]) == len(words[1]) else np.zeros(0, bool)
-    if not differs.any():
+    if len(words[0]) != len(words[1]):
         return
-    first = int(np.argmax(differs))
-    texts = [
-        executed_word(part.trace.run, int(indices[first])) for part, indices in zip((old, new), words, strict=True)
-    ]
-    lines = [
-        part.line(int(part.trace.run.row[indices[first]])) for part, indices in zip((old, new), words, strict=True)
-    ]
-    without = "old" if lacks[0][first] else "new"
+    lacks = [part.trace.coordinates.is_unpointed[indices] for part, indices in zip((old, new), words, strict=True)]
+    differs = np.flatnonzero(lacks[0] != lacks[1])
+    if not len(differs):
+        return
+    before, after = (int(indices[differs[0]]) for indices in words)
+    texts = executed_word(old.trace.run, before), executed_word(new.trace.run, after)
+    lines = old.line(int(old.trace.run.row[before])), new.line(int(new.trace.run.row[after]))
+    without = "old" if lacks[0][differs[0]] else "new"
     text = f"{texts[0]} has become {texts[1]}: without a decimal point the {without} one counts least increments"
-    yield Difference("point", text, texts[0], texts[1], "", lines[0], lines[1])
+    yield Difference("point", text, *texts, "", *lines)
 
 
 def _coordinates(part: Part) -> Rows:
     """Return the coordinates among the executed words of a part."""
-    trace = part.trace
-    low, high = (
-        np.searchsorted(trace.run.row, [part.stretch.rows[0], part.stretch.rows[-1] + 1])
-        if len(part.stretch.rows)
-        else (0, 0)
-    )
+    trace, rows = part.trace, part.stretch.rows
+    if not len(rows):
+        return rows
+    low, high = np.searchsorted(trace.run.row, (rows[0], rows[-1] + 1))
     indices = np.arange(low, high)[trace.coordinates.is_coordinate[low:high]]
-    return indices[np.isin(trace.run.row[indices], part.stretch.rows)]
+    return indices[np.isin(trace.run.row[indices], rows)]
 
 
 def _left_open(old: Part, new: Part) -> Iterator[Difference]:
