@@ -57,7 +57,7 @@ def rewritten(program: bytes, line: int, new: str, target: str = "fanuc", machin
         (b"G0 X1.\nN20 X2.\nX3.\n", 2, "none", b"G0 X1.\nX3.\n"),
         (b"G0 X1.\nN20 X2. (HERE)\nX3.\n", 2, "none", b"G0 X1.\nN20 (HERE)\nX3.\n"),
         (b"G0 X1.\nN20 X2.\nX3.\nM99 P20\n", 2, "none", b"G0 X1.\nN20\nX3.\nM99 P20\n"),
-        (b"G0 X1.\nN20 X2.\nX3.\nIF[#500GT1]GOTO20\n", 2, "none", b"G0 X1.\nN20\nX3.\nIF[#500GT1]GOTO20\n"),
+        (b"G0 X1.\nN20 X2.\nX3.\nIF[#100GT1]GOTO20\n", 2, "none", b"G0 X1.\nN20\nX3.\nIF[#100GT1]GOTO20\n"),
         (b"G0 X1.;X2.;X3.\n", 1, "none", b"X2.;X3.\n"),
     ],
 )  # fmt: skip

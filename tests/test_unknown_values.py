@@ -37,6 +37,31 @@ UNKNOWN = {
     "work offset": ("G28 H0", "G10 L2 P1 X#500/G28 H0"),
     "calculated": ("C20.785", "C[#500*2+1.]"),
     "copied": ("X0 C20.785", "#7=#500/#8=#7+1./X0 C#8"),
+    "G in the place of G42": ("G42 X36. C0 F150", "G#500 X36. C0 F150"),
+    "G in the place of G12.1": ("/G12.1/", "/G#500/"),
+    "G in the place of G13.1": ("/G13.1/", "/G#500/"),
+    "which work offset": ("G28 H0", "G10 L2 P#500 X1./G28 H0"),
+    "X of the tool": ("G28 H0", "G10 P1 X#500/G28 H0"),
+}
+#: Only controls with these system variables.
+OF_VARIABLES = {
+    "X of the tool by its variable": ("G28 H0", "#2001=#500/G28 H0"),
+    "X of the external offset": ("G28 H0", "#5201=#500/G28 H0"),
+}
+#: Behind the section, or of no weight for a check; but they may be other metal.
+BEHIND = {
+    "G50": ("G0 X100. Z50.", "G50 Z#501/G1 X30. F100/G0 X100. Z50."),
+    "C": ("G0 X100. Z50.", "G0 X40. Z1. C#501/G1 Z-5. F100/G0 X100. Z50."),
+    "R of an arc": ("G0 X100. Z50.", "G0 X40. Z1./G2 X30. Z-5. R#501 F100/G0 X100. Z50."),
+    "G": ("G0 X100. Z50.", "G#501 X30./G0 X100. Z50."),
+    "T": ("G0 X100. Z50.", "G0 X100. Z50./T#501/G0 X40. Z1."),
+    "B": ("G0 X100. Z50.", "G1 B#501 F100/G0 X100. Z50."),
+    "an offset": ("G0 X100. Z50.", "G10 P1 Z#501/G0 X100. Z50."),
+    "rotation": ("G0 X100. Z50.", "G68 X0 Z0 R#501/G1 X30. F100/G0 X100. Z50."),
+    "a cycle": ("G0 X100. Z50.", "G90 X30. Z-5. R#501 F100/G0 X100. Z50."),
+    "the number of a work offset": ("G28 H0", "G54.1 P#501/G28 H0"),
+    "calculated": ("G0 X100. Z50.", "#7=#501+1./G1 X#7 F100/G0 X100. Z50."),
+    "S": ("S3000", "S#501"),
 }
 #: No section rests on these.
 HARMLESS = {
@@ -131,6 +156,72 @@ def test_no_rewriter_writes(name: str, tmp_path: Path) -> None:
     result = CliRunner().invoke(main, [*by_machine, file])
     assert (result.exit_code, result.stdout) == (2, "")
     assert re.search(r"#500 has no value for \S+ of line \d+: give \[run\.variables\] 500 = \.\.\.", result.stderr)
+
+
+@looped("name", OF_VARIABLES)
+def test_what_a_system_variable_is_set_to(name: str) -> None:
+    report = report_of(hexagon(OF_VARIABLES[name]), "fanuc-30i", CUTTER)
+    assert (report.verdict, [finding.rule for finding in report.findings]) == ("unverified", [])
+    assert any("#500 has no value for #" in entry.reason for entry in report.not_evaluated if entry.matters)
+
+
+def test_a_system_variable_of_another_tool_has_no_weight() -> None:
+    report = report_of(hexagon(("G28 H0", "#2002=#500/G28 H0")), "fanuc-30i", CUTTER)
+    assert report.verdict == "pass"
+
+
+@pytest.mark.ci
+@looped("name", [*BEHIND, *OF_VARIABLES])
+def test_no_comparison_says_the_same_of_two_variables(name: str, tmp_path: Path) -> None:
+    program = hexagon({**BEHIND, **OF_VARIABLES}[name])
+    old, same = write(tmp_path, "old", program), write(tmp_path, "same", program.replace("M30", "M30 (END)"))
+    new = write(tmp_path, "new", program.replace("#50", "#51"))
+    result = CliRunner().invoke(main, ["compare", *OPTIONS, old, new])
+    assert result.exit_code == 2
+    assert "not compared, because old: #50" in result.stdout
+    assert "the same but for block numbers" in CliRunner().invoke(main, ["compare", *OPTIONS, old, same]).stdout
+
+
+@pytest.mark.ci
+@looped("name", [name for name in BEHIND if name != "calculated"])
+def test_the_same_variable_is_the_same_value(name: str, tmp_path: Path) -> None:
+    """A statement that no value rests on, and that only one of both has, changes nothing."""
+    program = hexagon(BEHIND[name])
+    old, new = write(tmp_path, "old", program), write(tmp_path, "new", program.replace("M30", "#3=1.\nM30"))
+    result = CliRunner().invoke(main, ["compare", *OPTIONS, old, new])
+    assert (result.exit_code, "the same metal" in result.stdout) == (0, True)
+
+
+@pytest.mark.ci
+def test_a_comparison_tells_what_a_system_variable_is_set_to(tmp_path: Path) -> None:
+    files = [write(tmp_path, x, hexagon(("G28 H0", f"#5221={x}./G28 H0"))) for x in "12"]
+    result = CliRunner().invoke(main, ["compare", *OPTIONS, *files])
+    assert (result.exit_code, "#5221=1 has become #5221=2" in result.stdout) == (1, True)
+
+
+@pytest.mark.ci
+@looped("word", ["H#501", "F#501", "C[#501]"])
+def test_a_number_of_a_variable_is_no_number(word: str, tmp_path: Path) -> None:
+    block = {"H": "G28 H#501", "F": "G1 X58. F#501", "C": "G0 C[#501]"}[word[0]]
+    file = write(tmp_path, "a", hexagon(("G28 H0", f"{block}/G28 H0")))
+    options = ["convert", "--from", "fanuc-30i", "--to", "haas-lathe", "--tool", CUTTER, "--no-config"]
+    result = CliRunner().invoke(main, [*options, file])
+    assert word in result.stdout if result.exit_code < 2 else not result.stdout
+
+
+@pytest.mark.ci
+def test_no_rewriter_writes_one_branch(tmp_path: Path) -> None:
+    file = write(tmp_path, "a", hexagon(("G28 H0", "IF[#501GT0]GOTO9/N9G28 H0")))
+    for command in (["unroll", *OPTIONS], ["compensate", "--center", *OPTIONS]):
+        result = CliRunner().invoke(main, [*command, file])
+        assert (result.exit_code, result.stdout) == (2, "")
+        assert ":5: the condition depends on a value that is not known" in result.stderr
+
+
+def test_a_parameter_of_siemens_is_named() -> None:
+    program = "R2=R1+5\nT1 D1\nTRANS Z=R1\nG0 G90 G94 G40 X60 Z2 C0\nTRANSMIT\nG1 X20 Y0 F100\nTRAFOOF\nM30\n"
+    reasons = [entry.reason for entry in report_of(program, "siemens-transmit", CUTTER).not_evaluated]
+    assert any("Z=R1 of line 3" in reason for reason in reasons)
 
 
 def test_a_variable_that_nothing_sets_is_told_once() -> None:

@@ -112,7 +112,12 @@ class Engine:
     def _evaluated(self, rule: Rule) -> Hits:
         if not self.tables.may_hold(rule.parameters):
             return Hits(np.zeros(0, np.bool_))
-        return self._shared_if_empty(rule.hits(self.tables))
+        hits = rule.hits(self.tables)
+        behind = self.trace.modal.behind_unknown_code
+        if not rule.of_text and behind.any() and hits.mask.any():
+            rows = places.rows(rule.over, self.tables)
+            hits = msgspec.structs.replace(hits, mask=hits.mask & ~((rows >= 0) & behind[rows]))
+        return self._shared_if_empty(hits)
 
     def _shared_if_empty(self, hits: Hits) -> Hits:
         """Replace hits that are all False by a shared empty object: their values are not needed."""

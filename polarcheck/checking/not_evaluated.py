@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import NamedTuple, TypeAlias
 
 import numpy as np
@@ -25,7 +25,7 @@ from polarcheck.columns.contour.skipped_loops import SkipReason
 from polarcheck.columns.filling import before
 from polarcheck.columns.trace import Trace
 from polarcheck.columns.words.macro_faults import ENDLESS_LOOP, Faults, reason_of
-from polarcheck.columns.words.unknown_words import UnknownWords
+from polarcheck.columns.words.unknown_words import UnknownItem, UnknownWords
 from polarcheck.foundation.arrays import Floats, Mask, Rows
 from polarcheck.foundation.errors import TooHardError
 from polarcheck.foundation.finding import Finding, NotEvaluated, Undecided
@@ -192,28 +192,29 @@ def unknown_values(tables: Tables) -> Iterator[UnknownValue]:
     """
     words: UnknownWords = tables["unknown_words"]
     trace: Trace = tables["trace"]
-    causes: dict[int | None, list[int]] = {}
-    others: dict[int | None, list[int]] = {}
-    for index, matters in zip(words.index.tolist(), words.matters.tolist(), strict=True):
-        variable = trace.run.unknown_words[index]
-        if matters:
-            causes.setdefault(variable, []).append(index)
-        elif variable is None or not is_argument(trace.machine, variable):
-            others.setdefault(variable, []).append(index)
-    for variable, indices in causes.items():
-        yield _unknown_value(trace, [variable], indices, matters=True)
+    causes: dict[int | None, list[UnknownItem]] = {}
+    others: dict[int | None, list[UnknownItem]] = {}
+    for item in words.items:
+        if item.matters:
+            causes.setdefault(item.variable, []).append(item)
+        elif not item.is_data and (item.variable is None or not is_argument(trace.machine, item.variable)):
+            others.setdefault(item.variable, []).append(item)
+    for variable, items in causes.items():
+        yield unknown_value(trace, [variable], items, matters=True)
     if others:
-        yield _unknown_value(
-            trace, [*others], [index for indices in others.values() for index in indices], matters=False
-        )
+        yield unknown_value(trace, [*others], [item for items in others.values() for item in items], matters=False)
 
 
-def _unknown_value(trace: Trace, variables: list[int | None], indices: list[int], matters: bool) -> UnknownValue:
-    first, rows = indices[0], trace.run.row[indices]
-    written = trace.text.source.excerpt(int(trace.run.words.start[first]), int(trace.run.words.end[first]))
-    line = int(trace.blocks.line[rows[0]])
+def unknown_value(
+    trace: Trace, variables: Sequence[int | None], items: Sequence[UnknownItem], *, matters: bool
+) -> UnknownValue:
+    """Return the entry for items that rest on these variables."""
+    first = items[0]
+    written = " ".join(trace.text.source.excerpt(first.start, first.end).split())
+    line = int(trace.blocks.line[first.row])
     word = f"{shortened(written, _LONGEST)} of line {line}"
-    return UnknownValue(line, value_not_known(trace, variables, word), len(set(rows.tolist())), matters)
+    blocks = len({item.row for item in items})
+    return UnknownValue(line, value_not_known(trace, variables, word), blocks, matters)
 
 
 def frames_not_simulated(trace: Trace, tables: Tables) -> Iterator[tuple[str, int]]:
@@ -238,8 +239,8 @@ def frames_not_simulated(trace: Trace, tables: Tables) -> Iterator[tuple[str, in
 
 
 def offsets_not_known(trace: Trace) -> tuple[str, int]:
-    """Return a reason and a block count for blocks that set an offset, or possibly one, of unknown number."""
-    rows = np.flatnonzero(trace.offsets.sets_unknown_offset)
+    """Return a reason and a block count for blocks that set a variable of unknown number, which may be an offset."""
+    rows = np.flatnonzero(trace.offsets.sets_unknown_offset & ~trace.blocks.is_unknown("P"))
     if not len(rows):
         return "", 0
     setting = f"which offset {block_and_line(trace, int(rows[0]))} sets is not known"

@@ -9,7 +9,7 @@ import numpy as np
 
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Rows
-from polarcheck.program.execution.variable_names import FIRST_VARIABLE
+from polarcheck.program.execution.variable_names import FIRST_PARAMETER, FIRST_VARIABLE
 from polarcheck.program.machines.machine import Machine
 from polarcheck.rules.places import block_in_line
 from polarcheck.rules.tables import Tables
@@ -89,7 +89,8 @@ def value_not_known(trace: Trace, variables: Sequence[int | None], word: str) ->
 
 def is_argument(machine: Machine, variable: int) -> bool:
     """True for a local variable, and for one that has a name, where it has no value: a call would give it one."""
-    return variable >= FIRST_VARIABLE or any(first <= variable <= last for first, last in machine.macro.local_variables)
+    is_local = any(first <= variable <= last for first, last in machine.macro.local_variables)
+    return FIRST_VARIABLE <= variable < FIRST_PARAMETER or is_local
 
 
 def of_variables(machine: Machine) -> str:

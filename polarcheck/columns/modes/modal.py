@@ -88,6 +88,12 @@ class ModalStates(Lookups):
         return states
 
     @cached_property
+    def behind_unknown_code(self) -> Mask:
+        """True from the first G word of unknown value to the end of its program: it may be any code."""
+        unknown = self.blocks.is_unknown("G")
+        return happened(unknown, self.blocks.starts) if unknown.any() else unknown
+
+    @cached_property
     def is_unknown(self) -> Mask:
         """The state of some group is not known: a code at or above the row is not, and none has set the group since."""
         unknown = self.blocks.is_unknown("G")

@@ -53,7 +53,7 @@ class PolarMode(Columns, frozen=True):
             rapid=self.blocks.listed("rapid"),
             cuts=cutting & self.axes.programs_virtual_axis,
             moves=(cutting | in_rapid) & self.axes.moves_plane,
-            returns=self._returns,
+            returns=self._returns | self.blocks.is_unknown("G"),
             broken_off=np.zeros(len(self.run), bool) if self.run.broken_off is None else self.run.broken_off,
             rapid_stands=rapid_stands,
         )
@@ -127,8 +127,20 @@ class PolarMode(Columns, frozen=True):
     @cached_property
     def comes_before_section(self) -> Mask:
         """Rows above a section of the same program, its G12.1 included."""
-        ahead = np.searchsorted(self.sections.enter, np.arange(len(self.run)))
-        program = np.append(self.blocks.program[self.sections.enter], -1)[ahead]
+        return self._comes_before(self.sections.enter)
+
+    @cached_property
+    def comes_before_open_end(self) -> Mask:
+        """Rows above a contour with the virtual axis that no switch begins, and a switch ends."""
+        ends = self._comes_before(np.flatnonzero(self.axes.ends_mode & (self.section < 0)))
+        cutting = is_among(self.axes.motion, (Motion.LINE, Motion.CW, Motion.CCW))
+        contours = cutting & self.axes.programs_virtual_axis & (self.section < 0)
+        return self._comes_before(np.flatnonzero(contours & ends))
+
+    def _comes_before(self, rows: Rows) -> Mask:
+        """Rows at or above one of these, ascending, of the same program."""
+        ahead = np.searchsorted(rows, np.arange(len(self.run)))
+        program = np.append(self.blocks.program[rows], -1)[ahead]
         return np.asarray(program == self.blocks.program)
 
     def given_in_section(self, rows: Mask) -> Mask:

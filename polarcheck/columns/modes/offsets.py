@@ -125,6 +125,13 @@ class ToolOffsets(Columns, frozen=True):
                 sizes[called[self._is_used(called, np.full(len(called), number))][:1]] = True
         return sizes
 
+    @cached_property
+    def x_set_to_unknown(self) -> Rows:
+        """The rows that set X of an offset, in force in a section of the program, to a value that is not known."""
+        settings = self.offset_settings
+        unknown = settings.of((settings.kind >= X) & np.isnan(settings.value))
+        return np.unique(unknown.row[self._is_used(unknown.row, unknown.number)])
+
     def _is_used(self, rows: Rows, numbers: Rows) -> Mask:
         """True for offsets, named in some rows, that are in force in the polar mode of the same program."""
         inside, most = self.mode.in_polar | self.mode.enters, self.tools.offset_count

@@ -80,6 +80,7 @@ class Origin(Columns, frozen=True):
         trace = self.trace
         kinds = trace.machine.g_codes.data_input_work_offset
         rows = np.flatnonzero(trace.blocks.listed("data_input") & trace.blocks.has("X", "U") & (trace.mode.section < 0))
+        rows = rows[~trace.blocks.is_unknown("P")[rows]]
         kind, p = trace.blocks.word("L")[rows], np.minimum(np.nan_to_num(trace.blocks.word("P")[rows]), _LONGEST)
         # Without L a lathe takes P0 as the work shift; other numbers are tool offsets.
         is_shift = np.isnan(kind) & (p == 0)
@@ -112,6 +113,11 @@ class Origin(Columns, frozen=True):
             if number is not None and trace.mode.section[row] < 0:
                 settings.append((row, number, X, assigned.value * float(trace.lengths.scale[row]), assigned.is_step))
         return of_list(settings)
+
+    @cached_property
+    def set_to_unknown(self) -> Rows:
+        """The rows that set X of a work offset to a value that is not known."""
+        return np.unique(self._settings.row[np.isnan(self._settings.value)])
 
     def _x_of(self, number: float) -> tuple[Floats, Rows]:
         """X of a work offset in each row, NaN where it is not known, and the row that has set it; -1 where none has."""

@@ -1,16 +1,38 @@
-"""The words whose value rests on variables that have none: on unknown ones, and on vacant ones that nothing sets."""
+"""What rests on variables without a value: words and settings of offsets; unknown variables, and vacant ones."""
 
 from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
 
 import numpy as np
 
 from polarcheck.columns.filling import fill_down
+from polarcheck.columns.modes.origin import Origin
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Columns, Mask, Rows, cached_property, is_among
+from polarcheck.program.execution.arithmetic import Unknown
+from polarcheck.program.execution.run import NO_VARIABLE
 from polarcheck.program.machines.axis_table import INCREMENTS, NO_AXIS
 
 #: What these say changes no metal that a check follows: speeds, dwells and repeats, numbers of blocks and programs.
 _HARMLESS = tuple("SPNO/")
+
+
+class UnknownItem(NamedTuple):
+    """
+    A word of unknown value, or a block that sets an offset to one.
+
+    row: of the trace. start, end: its characters. variable: that it rests on; None where it is not known which.
+    matters: a polar section rests on it. is_data: the rules that need the offset say that it is not known.
+    """
+
+    row: int
+    start: int
+    end: int
+    variable: int | None
+    matters: bool
+    is_data: bool
 
 
 class UnknownWords(Columns, frozen=True):
@@ -31,11 +53,37 @@ class UnknownWords(Columns, frozen=True):
     @cached_property
     def index(self) -> Rows:
         """The number of the executed word, ascending."""
-        trace, words = self.trace, self.trace.blocks.unknown_words
-        address = trace.run.words.address[words]
-        # The rules that need an offset say that it is not known; nothing else says it of the origin.
-        is_data = trace.blocks.listed("data_input")[trace.run.row[words]] & ~self._sets_origin[words]
-        return np.asarray(words[(address != NO_AXIS) & ~is_data])
+        words = self.trace.blocks.unknown_words
+        return np.asarray(words[self.trace.run.words.address[words] != NO_AXIS])
+
+    @cached_property
+    def items(self) -> list[UnknownItem]:
+        """All of them, in order."""
+        if not self.trace.run.unknown_words and not self.trace.run.assigned:
+            return []
+        return sorted([*self._words(), *self._settings()], key=lambda item: (item.row, item.start))
+
+    def _words(self) -> Iterator[UnknownItem]:
+        trace, words = self.trace, self.trace.run.words
+        # The rules that need an offset say that it is not known; nothing else says it of where X0 lies.
+        is_data = trace.blocks.listed("data_input") & ~self._sets_tool
+        for index, row, matters in zip(self.index.tolist(), self.row.tolist(), self.matters.tolist(), strict=True):
+            variable = trace.run.unknown_words[index]
+            of_data = bool(is_data[row]) and not self._sets_origin[index]
+            yield UnknownItem(row, int(words.start[index]), int(words.end[index]), variable, matters, of_data)
+
+    def _settings(self) -> Iterator[UnknownItem]:
+        trace, blocks = self.trace, self.trace.text.blocks
+        of_origin = set(Origin(trace).set_to_unknown.tolist())
+        shifts_tool = set(trace.offsets.x_set_to_unknown.tolist())
+        for row, assigned in trace.run.assigned.items():
+            if assigned.value == assigned.value or assigned.variable == NO_VARIABLE:
+                continue
+            matters = row in shifts_tool or (row in of_origin and bool(trace.mode.comes_before_section[row]))
+            variable = assigned.value.variable if isinstance(assigned.value, Unknown) else None
+            block = int(trace.run.block[row])
+            start, end = int(blocks.start[block]), int(blocks.end[block])
+            yield UnknownItem(row, start, end, variable, matters, not matters)
 
     @cached_property
     def _sets_origin(self) -> Mask:
@@ -44,6 +92,14 @@ class UnknownWords(Columns, frozen=True):
         kinds = (0, *trace.machine.g_codes.data_input_work_offset)
         rows = trace.blocks.listed("data_input") & np.isin(np.nan_to_num(trace.blocks.word("L")), kinds)
         return np.asarray(rows[trace.run.row] & trace.blocks.words_at(trace.blocks.word_indices("X", "U")))
+
+    @cached_property
+    def _sets_tool(self) -> Mask:
+        """Per row: data input of X of an offset that is in force in a section, or of an offset that may be any."""
+        trace = self.trace
+        of_number = trace.offsets.sets_unknown_offset & trace.blocks.is_unknown("P")
+        sets = of_number | trace.blocks.mask_of(trace.offsets.x_set_to_unknown)
+        return np.asarray(sets & trace.blocks.listed("data_input"))
 
     @cached_property
     def row(self) -> Rows:
@@ -55,13 +111,14 @@ class UnknownWords(Columns, frozen=True):
         """True for a word that stands in a polar section, that leads to one, or that is in force in one."""
         trace, row = self.trace, self.row
         in_section = trace.mode.section >= 0
-        if not in_section.any():
-            return np.zeros(len(row), bool)
         address = trace.run.words.address[self.index]
+        if not in_section.any():
+            # An unknown G may begin the contour that a G13.1 ends.
+            return np.asarray(is_among(address, self._numbers("G")) & trace.mode.comes_before_open_end[row])
         is_position = trace.modal.uses_axes[row] & ~is_among(address, self._numbers(*_HARMLESS))
         # An unknown code may be any code, and leave anything in force.
         is_code = is_among(address, self._numbers("G", "M"))
-        lasts = is_code | self._sets_origin[self.index]
+        lasts = is_code | self._sets_origin[self.index] | self._sets_tool[row]
         matters = (in_section[row] & is_position) | (lasts & (in_section | trace.mode.comes_before_section)[row])
         lasting = [np.zeros(0, np.int64)]
         polar = trace.machine.polar

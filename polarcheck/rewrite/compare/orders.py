@@ -92,7 +92,8 @@ def _rows(trace: Trace, is_same_machine: bool) -> Rows:
     usual = [trace.machine.address_number(name) for name in (*_words_of_moves(trace), "G") if name]
     unusual = ~np.isin(trace.run.words.address, usual)
     unusual[blocks.g_words[~_sets_state(trace)]] = True
-    return np.unique(np.concatenate([row[unusual], np.flatnonzero(special_rows(trace) | turns_side)]))
+    settings = np.array(list(trace.run.assigned), np.int64)
+    return np.unique(np.concatenate([row[unusual], settings, np.flatnonzero(special_rows(trace) | turns_side)]))
 
 
 def _words_of_moves(trace: Trace) -> set[str]:
@@ -149,6 +150,9 @@ class _Reader:
         parts = [part for index in range(low, high) if (part := self._part(row, index)) is not None]
         if parts and self._is_same_machine and self._trace.modal.in_cycle[row]:
             parts.append(self._feed(row))
+        if (assigned := self._trace.run.assigned.get(row)) is not None:
+            name = f"{assigned.name}={'+' * assigned.is_step}"
+            parts.append((name, assigned.value, f"{name}{assigned.value:.10g}"))
         if self._turns_side[row]:
             side = f"G{int(self._trace.compensation.side[row])}"
             parts.insert(0, (side, None, side))

@@ -6,6 +6,8 @@ compared.
 from __future__ import annotations
 
 import math
+import re
+from collections import Counter
 from collections.abc import Collection, Iterator, Sequence
 from typing import NamedTuple, TypeVar
 
@@ -13,9 +15,10 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from polarcheck.checking.not_evaluated import bounds_not_reported, unexecuted
+from polarcheck.checking.not_evaluated import bounds_not_reported, unexecuted, unknown_value
 from polarcheck.checking.polar_sections import polar_sections
 from polarcheck.columns.trace import Trace
+from polarcheck.columns.words.unknown_words import UnknownItem
 from polarcheck.foundation.arrays import Rows
 from polarcheck.foundation.errors import TooHardError
 from polarcheck.foundation.finding import PolarSection
@@ -76,6 +79,8 @@ def _spans(text: Text, spans: Blocks | Spans) -> list[bytes]:
     return [b"".join(text.source.code[start:end].tobytes().split()).upper() for start, end in bounds]
 
 
+#: What stands before the value of a word; nothing before `#2001=`.
+_ADDRESS = re.compile(r"^,?[A-Z]+(?:[0-9]*=)?")
 Item = TypeVar("Item")
 #: A run of a file as checking.check.read gives it: the state of block skip, and its tables.
 Run = tuple[str, Tables]
@@ -122,9 +127,8 @@ def compared(
     runs = [_Runs(*pair, tolerance, is_same_machine, left_out, is_rewritten) for pair in _pairs_of_runs(old, new)]
     sections = [section for run in runs for section in run.sections()]
     between = [difference for run in runs for difference in run.outside()]
-    missing = sorted(
-        dict.fromkeys(reason for run in runs for reason in run.not_compared), key=lambda reason: not reason.matters
-    )
+    reasons = sorted((reason for run in runs for reason in run.not_compared), key=lambda reason: not reason.matters)
+    missing = list({reason.reason: reason for reason in reversed(reasons)}.values())[::-1]
     same_words = is_same_machine and old.trace.job == new.trace.job and has_same_words(old.trace, new.trace)
     differs = bool(between) or any(section.change not in ("same", "not compared") for section in sections)
     verdict = SAME_METAL
@@ -224,6 +228,7 @@ class _Runs:
             if unreadable:
                 count = "a word" if unreadable == 1 else f"{unreadable} words"
                 yield NotCompared(f"{name}: {count} that the control cannot read: polarcheck check names them")
+        yield from self._other_unknown_values()
         if self._is_same_machine:
             return
         yield NotCompared("the machines differ: tool numbers, planes and G codes are not compared", matters=False)
@@ -232,6 +237,39 @@ class _Runs:
             if codes:
                 reason = f"{name}: {', '.join(codes)}: what another lathe needs in their place is not compared"
                 yield NotCompared(reason, matters=False)
+
+    def _other_unknown_values(self) -> Iterator[NotCompared]:
+        """
+        Yield an entry for the values of each program that are not known, and that the other may have otherwise.
+
+        They are the same where all statements are, where a variable that has no value stands there itself, and where a
+        rewriter has kept what is written.
+        """
+        texts = [trace.text for trace in self._traces]
+        statements = [_spans(text, text.blocks[text.blocks.is_macro]) for text in texts]
+        if self._is_same_machine and statements[0] == statements[1]:
+            return
+        items = [self._unknown_items(0), self._unknown_items(1)]
+        written = [Counter(text for text, _ in of_side) for of_side in items]
+        for name, trace, of_side in zip(("old", "new"), self._traces, items, strict=True):
+            unlike = [
+                item
+                for text, item in of_side
+                if written[0][text] != written[1][text] or not (self._is_rewritten or text == f"#{item.variable}")
+            ]
+            if unlike:
+                value = unknown_value(trace, [unlike[0].variable], unlike, matters=True)
+                yield NotCompared(f"{name}: {value.reason}")
+
+    def _unknown_items(self, side: int) -> list[tuple[str, UnknownItem]]:
+        """Return the values of a program that are not known, each as it is written behind its address."""
+        trace, left_out = self._traces[side], () if side else self._left_out
+        excerpt, line = trace.text.source.excerpt, trace.blocks.line_in_file
+        return [
+            (_ADDRESS.sub("", "".join(excerpt(item.start, item.end).split()).upper()), item)
+            for item in self._tables[side]["unknown_words"].items
+            if int(line[item.row]) not in left_out
+        ]
 
     # ---- sections ----
 

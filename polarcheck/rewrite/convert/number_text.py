@@ -8,7 +8,7 @@ from math import ceil, log10
 
 #: A word with a plain number, as X-1.5, X=20, Z=IC(5) and SB=2000; what stands before the number, and the number.
 _CONSTANT = re.compile(
-    r"(?:[^-+.\d=()]++(?:\d++=|=)?|=)?(?:(?:AC|IC|DC|ACP|ACN)\()?([-+]?(?:\d++\.?\d*+|\.\d++))\)?", re.IGNORECASE
+    r"(?:[^-+.\d=()#]++(?:\d++=|=)?|=)?(?:(?:AC|IC|DC|ACP|ACN)\()?([-+]?(?:\d++\.?\d*+|\.\d++))\)?", re.IGNORECASE
 )
 
 

@@ -8,6 +8,7 @@ from polarcheck.checking import check
 from polarcheck.checking.not_evaluated import unknown_values
 from polarcheck.checking.settings import Settings
 from polarcheck.columns.trace import Trace
+from polarcheck.columns.words.macro_faults import reason_of
 from polarcheck.rewrite.writing.outcome import Refusal, RefusedError
 from polarcheck.rules.tables import Tables
 
@@ -43,7 +44,7 @@ def read(path: str, data: bytes, settings: Settings) -> Original:
 
     Raises SourceError, TooHardError; RefusedError for a file with several channels, which wait for each other, and for
     one that runs otherwise with block skip, since one result cannot be both; and where a section rests on a variable
-    without a value.
+    without a value, or a condition does, so that nobody knows which blocks run.
     """
     runs = check.read(data, settings.machine, settings.job, path, settings.encoding)
     if len({tables["text"].source.channel for _, tables in runs}) > 1:
@@ -56,4 +57,8 @@ def read(path: str, data: bytes, settings: Settings) -> Original:
     original = Original(path, data, settings, tables)
     if any(value.matters for value in unknown_values(tables)):
         raise RefusedError(original.unknown)
+    machine, lines = settings.machine, tables["text"].blocks.line
+    branches = [remark for remark in original.trace.run.remarks if remark.kind == "condition-unknown"]
+    if branches:
+        raise RefusedError([Refusal(int(lines[remark.block]), reason_of(remark, machine)) for remark in branches])
     return original
