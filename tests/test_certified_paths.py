@@ -12,7 +12,7 @@ import pytest
 from cases import looped
 
 from polarcheck.geometry.comparison import polyline
-from polarcheck.rewrite.certify.golden import GoldenMove
+from polarcheck.rewrite.certify.golden import GoldenMove, GoldenTrace
 from polarcheck.rewrite.certify.near_path import with_golden, with_other
 from polarcheck.rewrite.certify.tool_path import tool_path
 
@@ -51,7 +51,8 @@ def path(*moves: Move) -> Any:
 
 
 def golden(ours: list[Move], before: list[Move]) -> list[str]:
-    return with_golden(path(*ours), path(*before), TOLERANCE, "a.jsonl").reasons
+    traces = [GoldenTrace(msgspec.convert(moves, list[GoldenMove])) for moves in (ours, before)]
+    return with_golden(*traces, 1, TOLERANCE, "a.jsonl").reasons
 
 
 def other(ours: list[Move], theirs: list[Move]) -> tuple[list[str], list[str]]:

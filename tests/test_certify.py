@@ -140,6 +140,43 @@ def test_another_path_fails(example: Path, file: str, before: str, after: str, s
 
 @pytest.mark.ci
 @pytest.mark.parametrize(
+    ("before", "after", "said"),
+    [
+        ("M13", "M14", "line 7: G97 S3000 M13 has become G97 S3000 M14 against golden/contour.jsonl"),
+        ("S3000", "S3100", "line 7: G97 S3000 M13 has become G97 S3100 M13 against golden/contour.jsonl"),
+        ("G28 H0\n", "", "G28 H0 is missing against golden/contour.jsonl"),
+        ("G28 H0\n", "G28 H0\nM8\n", "line 7: M8 is added against golden/contour.jsonl"),
+        ("G12.1\n", "G4 X.5\nG12.1\n", "line 9: G4 X0.5 is added against golden/contour.jsonl"),
+    ],
+)
+def test_other_orders_fail(example: Path, before: str, after: str, said: str) -> None:
+    edit(CONTOUR, before, after)
+    assert said in reasons("contour/lathe-7")
+
+
+@pytest.mark.ci
+def test_an_order_elsewhere_on_the_path_fails(example: Path) -> None:
+    edit(CONTOUR, "F1000.000\n", "F1000.000\nM8\n")
+    assert certify(example, "--update", "--case", "contour/lathe-7").exit_code == 0
+    edit(CONTOUR, "M8\nG1 Z-3.000 F300.000\n", "G1 Z-3.000 F300.000\nM8\n")
+    assert reasons("contour/lathe-7") == [
+        "line 12: M8 stands elsewhere on the path against golden/contour.jsonl",
+    ]
+
+
+@pytest.mark.ci
+def test_a_golden_trace_without_orders_is_one_of_the_path(example: Path) -> None:
+    golden = Path("golden/contour.jsonl")
+    lines = golden.read_text("utf-8").splitlines(keepends=True)
+    golden.write_text("".join(line for line in lines if '"order"' not in line), "utf-8")
+    edit(CONTOUR, "M13", "M14")
+    (case,) = json.loads(certify(example, "--case", "contour/lathe-7", "--format", "json").stdout)["cases"]
+    assert (case["state"], case["reasons"]) == ("pass", [])
+    assert case["remarks"] == ["golden/contour.jsonl holds no orders, such as M codes and speeds: --update adds them"]
+
+
+@pytest.mark.ci
+@pytest.mark.parametrize(
     ("turned", "said"),
     [("C235.0", "section 2: it is turned by 5.000 deg against indexing/lathe-7"), ("C240.0", "line 25: 2.793 mm from")],
 )

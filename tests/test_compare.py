@@ -352,7 +352,6 @@ def test_lists_are_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
     orders = "".join(f"M{code}\n" for code in (60, 61, 62))
     between = changed(("G28 H0", "M71\nG28 H0"), ("G97", "M72\nG97"), ("G0 X70.", "G4 P1\nG0 X70."))
     assert "and 1 other orders" in text(comparison(HEXAGON, between))
-    monkeypatch.setattr(differences, "_PAIRED", 2)
     assert "0 orders have become 3 others" in text(comparison(HEXAGON, changed(("G28 H0", f"{orders}G28 H0"))))
     assert "and 1 other changes of F" in text(
         comparison(HEXAGON, changed(("F1500\nZ-5.", "F1400\nZ-5."), ("F300", "F301"), ("F200", "F201")))

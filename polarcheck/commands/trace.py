@@ -89,6 +89,12 @@ def trace(
         items: Iterator[Any] = chain.from_iterable(
             executed.moves(*of_run, which) if which else executed.rows(*of_run) for of_run in paths
         )
+        if golden and which and form == "jsonl":
+            from polarcheck.rewrite.certify.golden import lines, orders_of
+
+            orders = chain.from_iterable(orders_of(trace_of_run) for trace_of_run, _ in paths)
+            _show_all(line.encode() for line in lines(items, orders))
+            return status
         items = trace_report.without_lines(items) if golden else items
         if form == "json":
             machine = program.settings.machine_id

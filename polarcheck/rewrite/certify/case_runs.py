@@ -17,6 +17,7 @@ from polarcheck.program.reading import files
 from polarcheck.reports.pages import executed
 from polarcheck.reports.pages.executed import Move
 from polarcheck.rewrite.certify import quoting
+from polarcheck.rewrite.certify.golden import GoldenOrder, GoldenTrace, orders_of
 from polarcheck.rewrite.certify.loading import Loaded
 
 
@@ -26,6 +27,7 @@ class CaseRun(msgspec.Struct, frozen=True):
 
     report: None where it could not be checked; failure then says why.
     moves: of the paths that were asked for, by name (tool, programmed), channel by channel.
+    orders: beside the moves, where any were asked for.
     sense: 1 where C of the machine grows with the angle on the plane, -1 where it falls.
     unknown: the radii that are not known, in one line; empty if none is.
     bug: an internal error.
@@ -36,11 +38,16 @@ class CaseRun(msgspec.Struct, frozen=True):
     report: FileReport | None = None
     failure: str = ""
     moves: Mapping[str, Sequence[Move]] = {}
+    orders: Sequence[GoldenOrder] = ()
     sense: int = 1
     unknown: str = ""
     bug: Exception | None = None
     outside: Sequence[str] = ()
     size: int = 0
+
+    def golden_trace(self, path: str) -> GoldenTrace:
+        """The moves of a path, and the orders, as a golden trace holds them. path: its name, tool or programmed."""
+        return GoldenTrace(self.moves[path], self.orders)
 
 
 def run(path: str, settings: Settings, most: int, paths: Collection[str], loaded: Loaded) -> CaseRun:
@@ -88,6 +95,7 @@ def _executed(report: FileReport, path: str, settings: Settings, data: bytes, pa
     if job.run.block_skip == "both":  # a path has a single state, as that of `trace`
         job = msgspec.structs.replace(job, run=msgspec.structs.replace(job.run, block_skip="off"))
     moves: dict[str, list[Move]] = {name: [] for name in paths}
+    orders: list[GoldenOrder] = []
     unknown: list[str] = []
     sense = 1
     with time_limit(seconds_for(len(data), job.run.max_seconds)):
@@ -95,6 +103,7 @@ def _executed(report: FileReport, path: str, settings: Settings, data: bytes, pa
             trace, tool_center = tables["trace"], tables["tool_center"]
             for name in paths:
                 moves[name] += executed.moves(trace, tool_center, name)
+            orders += orders_of(trace)
             unknown.append(executed.without_radius(trace, tool_center))
             sense = tool_center.moves.c_axis.sense
-    return CaseRun(report, "", moves, sense, "; ".join(filter(None, unknown)), size=len(data))
+    return CaseRun(report, "", moves, orders, sense, "; ".join(filter(None, unknown)), size=len(data))

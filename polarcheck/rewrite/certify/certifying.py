@@ -199,12 +199,12 @@ def _golden(loaded: Loaded, case: Case, of_case: CaseRun) -> _Compared:
         compared = near_path.Comparison(None, [f"there is no golden trace {title} yet; --update writes it"], [])
     else:
         try:
-            before = tool_path(golden.read(file), of_case.sense)
+            before = golden.read(file)
         except CertificateError as error:
             compared = near_path.Comparison(None, [str(error)], [])
         else:
-            ours = path_of_run(of_case, loaded.path_of(case))
-            compared = near_path.with_golden(ours, before, tolerance, title)
+            ours = of_case.golden_trace(loaded.path_of(case))
+            compared = near_path.with_golden(ours, before, of_case.sense, tolerance, title)
         outside = loaded.outside([file])
         if compared.reasons and (of_case.outside or outside):
             compared = _without_text(compared, title, outside)

@@ -1,12 +1,19 @@
-"""Golden traces: the moves of the tool center as `trace --path tool --format jsonl --golden` writes them."""
+"""
+Golden traces: the moves of the tool center and the orders beside them, a line each, as
+`trace --path tool --format jsonl --golden` writes them.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
 import msgspec
+import numpy as np
+from msgspec import UNSET, UnsetType
 
+from polarcheck.columns.filling import before
+from polarcheck.columns.trace import Trace
 from polarcheck.foundation import bounded
 from polarcheck.foundation.decoding import json_decoder
 from polarcheck.foundation.errors import CertificateError
@@ -14,9 +21,15 @@ from polarcheck.program.reading import files
 from polarcheck.reports.pages import executed
 from polarcheck.reports.pages.executed import Move
 from polarcheck.reports.pages.trace_report import without_lines
+from polarcheck.rewrite.compare.orders import Step, aligned, change_of, has_same_values, steps
+from polarcheck.rules.quantity import rounded
 
 #: Of a golden trace [bytes]: 200,000 moves take 90 MB.
 _LARGEST = 100_000_000
+#: How a line begins that holds an order.
+_ORDER = b'{"order":'
+#: Further orders that differ than this are not listed.
+_LISTED = 20
 _Pair = tuple[float | None, float | None]
 
 
@@ -35,26 +48,119 @@ class GoldenMove(msgspec.Struct, frozen=True):
     channel: str = ""
 
 
-def lines(moves: Iterable[Move]) -> Iterator[str]:
-    """Yield a line for each move, without the line of its block, which renumbering and comments change."""
-    return executed.as_jsonl(without_lines(iter(moves)))
+class GoldenOrder(msgspec.Struct, frozen=True):
+    """
+    What a block orders beside its moves: tools, speeds, M codes, references, dwells, cycles.
+
+    order: as it is reported. tokens: its codes, and the addresses of its values. values: lengths in mm, X as a radius;
+    null is not known. section: the number of the section, from 0 in each channel. at: where the tool stands in it,
+    x, c and Z [mm]. before: the section that an order outside comes before; behind the last one their number. channel:
+    as that of a move. line: of the block, absent in a golden trace.
+    """
+
+    order: str
+    tokens: list[str]
+    values: list[float | None]
+    section: int | UnsetType = UNSET
+    at: list[float | None] | UnsetType = UNSET
+    before: int | UnsetType = UNSET
+    channel: str | UnsetType = UNSET
+    line: int | UnsetType = UNSET
+
+    def step(self, number: int) -> Step:
+        """Return the order in the form in which orders are compared; the section is one of its words."""
+        place = f"{self.channel or ''} {self.section} {self.before}"
+        values = tuple(np.nan if value is None else value for value in self.values)
+        return Step(number, (place, *self.tokens), values, self.order)
 
 
-def read(path: Path) -> list[GoldenMove]:
+class GoldenTrace(msgspec.Struct, frozen=True):
+    """The moves of a path, and the orders beside them."""
+
+    moves: Sequence[Move] | Sequence[GoldenMove] = ()
+    orders: Sequence[GoldenOrder] = ()
+
+
+def orders_of(trace: Trace) -> Iterator[GoldenOrder]:
+    """Yield the orders of a channel in the order in which they run, with their lines."""
+    channel, z_before = trace.text.source.channel, before(trace.path.z, trace.blocks.starts, np.nan)
+    for step in steps(trace, is_same_machine=True):
+        section = int(trace.mode.section[step.row])
+        begun = int(np.searchsorted(trace.mode.sections.enter, step.row, side="right"))
+        point, z = trace.path.start[step.row], float(z_before[step.row])
+        yield GoldenOrder(
+            order=step.text,
+            tokens=[*step.tokens],
+            values=[rounded(value) for value in step.values],
+            section=section if section >= 0 else UNSET,
+            at=[rounded(point.real), rounded(point.imag), rounded(z)] if section >= 0 else UNSET,
+            before=UNSET if section >= 0 else begun,
+            channel=channel or UNSET,
+            line=int(trace.blocks.line_in_file[step.row]),
+        )
+
+
+def changed_orders(ours: GoldenTrace, golden: GoldenTrace, tolerance: float, title: str) -> Iterator[str]:
+    """
+    Yield what differs between the orders of a program and those of its golden trace, each in one line.
+
+    tolerance: of lengths [mm]. title: of the golden trace.
+    """
+    pairs, changes = aligned(
+        [order.step(number) for number, order in enumerate(golden.orders)],
+        [order.step(number) for number, order in enumerate(ours.orders)],
+    )
+    found: list[tuple[int, str]] = []
+    for removed, added in changes:
+        was, is_now = (", ".join(step.text for step in steps[:_LISTED]) for steps in (removed, added))
+        change = f"{was} stands between other moves" if was == is_now else change_of(was, is_now)
+        found.append((ours.orders[added[0].row].line or 0 if added else 0, change))
+    for old, step in pairs:
+        of_golden, order = golden.orders[old.row], ours.orders[step.row]
+        if not has_same_values(old, step, tolerance):
+            found.append((order.line or 0, change_of(old.text, step.text)))
+        elif _distance(order, of_golden) > 2 * tolerance:
+            found.append((order.line or 0, f"{step.text} stands elsewhere on the path"))
+    for line, text in sorted(found)[:_LISTED]:
+        yield f"{f'line {line}: ' if line else ''}{text} against {title}"
+    if len(found) > _LISTED:
+        yield f"and {len(found) - _LISTED} other orders"
+
+
+def _distance(order: GoldenOrder, other: GoldenOrder) -> float:
+    """Return how far apart two orders of sections stand on the path [mm]; 0 where it is not known."""
+    pairs = zip(order.at or (), other.at or (), strict=False)
+    return max((abs(a - b) for a, b in pairs if a is not None and b is not None), default=0.0)
+
+
+def lines(moves: Iterable[Move], orders: Iterable[GoldenOrder]) -> Iterator[str]:
+    """Yield a line for each move and order, without the line of its block, which renumbering and comments change."""
+    yield from executed.as_jsonl(without_lines(iter(moves)))
+    for order in orders:
+        yield msgspec.json.encode(msgspec.structs.replace(order, line=UNSET)).decode() + "\n"
+
+
+def read(path: Path) -> GoldenTrace:
     """Read a golden trace. Raises CertificateError, which names file and line."""
     title = files.display_path(str(path))
     try:
         data = bounded.read_file(path, _LARGEST, "no golden trace is")
     except OSError as error:
         raise CertificateError(f"{title}: {error.strerror or error}") from None
-    decoder = json_decoder(GoldenMove)
+    of_moves, of_orders = json_decoder(GoldenMove), json_decoder(GoldenOrder)
     moves: list[GoldenMove] = []
+    orders: list[GoldenOrder] = []
     for number, line in enumerate(data.splitlines(), 1):
+        is_order = line.startswith(_ORDER)
         try:
-            moves.append(decoder.decode(line))
+            if is_order:
+                orders.append(of_orders.decode(line))
+            else:
+                moves.append(of_moves.decode(line))
         except (msgspec.DecodeError, UnicodeDecodeError) as error:
-            raise CertificateError(f"{title}:{number}: expected a move of a golden trace: {error}") from None
-    return moves
+            what = "an order" if is_order else "a move"
+            raise CertificateError(f"{title}:{number}: expected {what} of a golden trace: {error}") from None
+    return GoldenTrace(moves, orders)
 
 
 def is_golden(path: Path) -> bool:

@@ -13,7 +13,8 @@ from polarcheck.foundation.errors import TooHardError
 from polarcheck.geometry.comparison.path_deviation import PathDeviation, path_deviation
 from polarcheck.geometry.polar import length
 from polarcheck.reports import counted
-from polarcheck.rewrite.certify.tool_path import ToolPath
+from polarcheck.rewrite.certify.golden import GoldenTrace, changed_orders
+from polarcheck.rewrite.certify.tool_path import ToolPath, tool_path
 
 #: F differs if it does so by more than this share: digits that a trace rounds away are no change.
 _SAME_FEED = 1e-6
@@ -34,12 +35,17 @@ class Comparison(NamedTuple):
     remarks: list[str]
 
 
-def with_golden(ours: ToolPath, golden: ToolPath, tolerance: float, title: str) -> Comparison:
+def with_golden(
+    our_trace: GoldenTrace, golden_trace: GoldenTrace, sense: int, tolerance: float, title: str
+) -> Comparison:
     """
-    Compare a path with its golden trace: points and Z within the tolerance, C at the beginning of each section, F.
+    Compare a path with its golden trace: points and Z within the tolerance, C at the beginning of each section, F; and
+    the orders beside the moves.
 
-    tolerance: [mm]. title: of the golden trace, for the reasons.
+    sense: 1 where C of the machine grows with the angle on the plane, -1 where it falls. tolerance: [mm]. title: of the
+    golden trace, for the reasons.
     """
+    ours, golden = tool_path(our_trace.moves, sense), tool_path(golden_trace.moves, sense)
 
     def turned_by(number: int, mine: ToolPath, theirs: ToolPath) -> tuple[float, str]:
         ours_at, other_at = float(mine.turned[number]), float(theirs.turned[number])
@@ -54,14 +60,17 @@ def with_golden(ours: ToolPath, golden: ToolPath, tolerance: float, title: str) 
         return 0.0, ""
 
     comparison = _compared(ours, golden, tolerance, title, turned_by)
-    if comparison.reasons or comparison.deviation is None:
-        return comparison
-    for number in range(len(ours.turned)):
-        mine, theirs = ours.of_section(number), golden.of_section(number)
-        change = _feed_change(mine, theirs, tolerance)
-        if change is not None:
-            line, now, before = change
-            comparison.reasons.append(f"line {line}: F is {_feed(now)}, in {title} {_feed(before)}")
+    if not comparison.reasons and comparison.deviation is not None:
+        for number in range(len(ours.turned)):
+            mine, theirs = ours.of_section(number), golden.of_section(number)
+            change = _feed_change(mine, theirs, tolerance)
+            if change is not None:
+                line, now, before = change
+                comparison.reasons.append(f"line {line}: F is {_feed(now)}, in {title} {_feed(before)}")
+    if not golden_trace.orders and our_trace.orders:
+        comparison.remarks.append(f"{title} holds no orders, such as M codes and speeds: --update adds them")
+    elif comparison.deviation is not None or not comparison.reasons:
+        comparison.reasons.extend(changed_orders(our_trace, golden_trace, tolerance, title))
     return comparison
 
 

@@ -7,9 +7,8 @@ from collections.abc import Iterator, Mapping
 from polarcheck.foundation.errors import CertificateError, OutputError
 from polarcheck.program.reading import files
 from polarcheck.rewrite.certify import expectations, golden, near_path
-from polarcheck.rewrite.certify.certifying import Certified, path_of_run
+from polarcheck.rewrite.certify.certifying import Certified
 from polarcheck.rewrite.certify.loading import Loaded
-from polarcheck.rewrite.certify.tool_path import tool_path
 
 
 def updates(loaded: Loaded, certified: Mapping[str, Certified], names: frozenset[str]) -> Iterator[tuple[str, bool]]:
@@ -58,7 +57,7 @@ def _updated(loaded: Loaded, entry: Certified) -> tuple[str, bool]:
         reasons.append(f"its path is not that of {entry.result.same_path.reference}")
     if reasons:
         return f"{title}: not written, {entry.case.title} fails: {reasons[0]}", False
-    text = "".join(golden.lines(entry.run.moves[loaded.path_of(entry.case)]))
+    text = "".join(golden.lines(entry.run.moves[loaded.path_of(entry.case)], entry.run.orders))
     is_new = not path.exists()
     if not is_new and path.read_text("utf-8") == text:
         return f"{title}: unchanged", True
@@ -73,9 +72,12 @@ def _updated(loaded: Loaded, entry: Certified) -> tuple[str, bool]:
 
 def _change(loaded: Loaded, entry: Certified) -> str:
     """Return what a new golden trace changes, in one line."""
-    before = tool_path(golden.read(loaded.beside(entry.case.golden or "")), entry.run.sense)
-    ours = path_of_run(entry.run, loaded.path_of(entry.case))
-    compared = near_path.with_golden(ours, before, loaded.tolerance(entry.case), "the golden trace before")
+    before, ours = (
+        golden.read(loaded.beside(entry.case.golden or "")),
+        entry.run.golden_trace(loaded.path_of(entry.case)),
+    )
+    tolerance = loaded.tolerance(entry.case)
+    compared = near_path.with_golden(ours, before, entry.run.sense, tolerance, "the golden trace before")
     deviation = compared.deviation
     if compared.reasons:
         largest = f"largest deviation {deviation:.3f} mm; " if deviation is not None else ""

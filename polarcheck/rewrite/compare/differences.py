@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from difflib import SequenceMatcher
 
 import msgspec
 import numpy as np
@@ -16,15 +15,13 @@ from polarcheck.geometry.comparison.path_deviation import PathDeviation, path_de
 from polarcheck.geometry.tolerances import ZERO
 from polarcheck.rewrite.compare.compared_sections import Stretch, turn_of
 from polarcheck.rewrite.compare.comparison_report import Difference
-from polarcheck.rewrite.compare.orders import Step
+from polarcheck.rewrite.compare.orders import Step, aligned, change_of, has_same_values
 from polarcheck.rules.quantity import Quantity, in_row, rounded
 
 #: F that differ by no more than this share are the same: mm and inch are rounded otherwise.
 _SAME_FEED = 1e-3
 #: The most changes of F, and of orders, in a list.
 _LISTED = 20
-#: The most orders that are paired, not counting those that are equal at both ends.
-_PAIRED = 2000
 
 
 class Part(msgspec.Struct, frozen=True):
@@ -226,30 +223,8 @@ def _changes_of_feed(stretch: Stretch) -> list[int]:
 
 
 def _orders(old: Part, new: Part, tolerance: float, is_same_path: bool) -> Iterator[Difference]:
-    before, after = list(old.stretch.steps), list(new.stretch.steps)
-    # Equal ends are cut off: what is left is short.
-    head = 0
-    while head < min(len(before), len(after)) and before[head].tokens == after[head].tokens:
-        head += 1
-    tail = 0
-    while tail < min(len(before), len(after)) - head and before[-1 - tail].tokens == after[-1 - tail].tokens:
-        tail += 1
-    pairs = [*zip(before[:head], after[:head], strict=True)]
-    if tail:
-        pairs += zip(before[-tail:], after[-tail:], strict=True)
-    removed, added = before[head : len(before) - tail], after[head : len(after) - tail]
-    differences: list[Difference] = []
-    if max(len(removed), len(added)) > _PAIRED:
-        differences.append(Difference("order", f"{len(removed)} orders have become {len(added)} others"))
-    else:
-        matcher = SequenceMatcher(
-            None, [step.tokens for step in removed], [step.tokens for step in added], autojunk=False
-        )
-        for kind, low, high, new_low, new_high in matcher.get_opcodes():
-            if kind == "equal":
-                pairs += zip(removed[low:high], added[new_low:new_high], strict=True)
-            else:
-                differences.append(_changed_orders(old, new, removed[low:high], added[new_low:new_high]))
+    pairs, changes = aligned(list(old.stretch.steps), list(new.stretch.steps))
+    differences = [_changed_orders(old, new, removed, added) for removed, added in changes]
     for step, new_step in pairs:
         difference = _of_pair(old, step, new, new_step, tolerance, is_same_path)
         if difference is not None:
@@ -261,16 +236,12 @@ def _orders(old: Part, new: Part, tolerance: float, is_same_path: bool) -> Itera
 
 
 def _changed_orders(old: Part, new: Part, removed: Sequence[Step], added: Sequence[Step]) -> Difference:
-    was, is_now = (", ".join(step.text for step in steps[:_LISTED]) for steps in (removed, added))
-    if not added:
-        text = f"{was} is missing"
-    elif not removed:
-        text = f"{is_now} is added"
-    else:
-        text = f"{was} has become {is_now}"
+    if max(len(removed), len(added)) > _LISTED:
+        return Difference("order", f"{len(removed)} orders have become {len(added)} others")
+    was, is_now = (", ".join(step.text for step in steps) for steps in (removed, added))
     old_line = old.line(removed[0].row) if removed else None
     new_line = new.line(added[0].row) if added else None
-    return Difference("order", text, was or None, is_now or None, "", old_line, new_line)
+    return Difference("order", change_of(was, is_now), was or None, is_now or None, "", old_line, new_line)
 
 
 def _of_pair(
@@ -278,9 +249,8 @@ def _of_pair(
 ) -> Difference | None:
     """Return the difference of two orders with the same words: in their values, or in their position on the path."""
     lines = old.line(step.row), new.line(new_step.row)
-    for value, after in zip(step.values, new_step.values, strict=True):
-        if abs(value - after) > tolerance or np.isnan(value) != np.isnan(after):
-            return Difference("order", f"{step.text} has become {new_step.text}", step.text, new_step.text, "", *lines)
+    if not has_same_values(step, new_step, tolerance):
+        return Difference("order", change_of(step.text, new_step.text), step.text, new_step.text, "", *lines)
     if not is_same_path:
         return None
     here, there = _where(old, step.row), _where(new, new_step.row)
