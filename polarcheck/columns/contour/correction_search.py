@@ -96,7 +96,10 @@ class _Search:
         point = each_once(self.loop.point, self.tolerance)
         if len(point) < _CORNERS - 1:
             return None
-        places = missing_places(point, self.tolerance)
+        # The ends of leads are no corners, and where leads cross is one.
+        rings = (ring.corner for ring in islice(self.loop.rings, 1))
+        found = [missing_places(points, self.tolerance) for points in (point, point[1:-1], *rings)]
+        places = each_once(np.concatenate(found), self.tolerance)
         ends = np.append(self.loop.point[:_ENDS], self.loop.point[-_ENDS:])
         trials = [*self._fitting(self._of_words(np.append(places, ends))), *self._fitting(self._of_steps())]
         if not trials and len(places):

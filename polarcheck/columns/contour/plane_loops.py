@@ -19,7 +19,7 @@ from polarcheck.geometry.regularity.symmetry import Symmetry, symmetry_of
 #: what each loop takes beside them.
 _FEWEST, _MOST, _WORK, _WORK_OF_LOOP = 4, 64, 60_000, 300
 #: Edges that are as long as another one, as a share of all, where a contour may be regular; and what is as long [mm].
-_ALIKE, _AS_LONG = 0.4, 0.02
+_ALIKE, _AS_LONG = 0.25, 0.02
 #: Least and greatest distance that counts as the same place [mm], in halves of the last digit.
 _SAME, _SAME_AT_MOST, _DIGITS = 0.01, 0.03, 5
 #: Readings of X by which a contour may be regular: as it is, and as the other of diameter and radius.

@@ -53,7 +53,27 @@ class SameCircle(Columns, frozen=True):
         passes, arcs = self.passes, self.arcs
         is_circle = ~(arcs.is_no_circle | arcs.ends_at_start)[passes.row] & ~np.isnan(passes.center)
         corner = np.nan_to_num(np.fmax(*(np.abs(turn) for turn in passes.turns))) > _CORNER
-        return np.asarray(passes.is_arc & is_circle & corner)
+        return np.asarray(passes.is_arc & is_circle & corner & ~self._runs_back)
+
+    @cached_property
+    def _runs_back(self) -> Mask:
+        """Per move: an arc that its section runs the other way, too, as a slot that is milled to and fro."""
+        passes = self.passes
+        section = self.trace.mode.section[passes.row]
+        both = np.zeros(len(passes.row), bool)
+        arcs = np.flatnonzero(passes.is_arc & ~np.isnan(passes.center))
+        ends = np.stack([passes.start[arcs], passes.end[arcs]], axis=1)
+        is_back = passes.motion[arcs] == Motion.CW
+        # Of an arc and of the same one run back, these are one.
+        way = np.where(is_back[:, None], ends[:, ::-1], ends)
+        columns = np.column_stack([way.view(np.float64), passes.center[arcs].real, passes.center[arcs].imag])
+        keys = np.column_stack([np.round(columns / _SAME), section[arcs]])
+        _, number = np.unique(keys, axis=0, return_inverse=True)
+        number = number.ravel()
+        count = int(number.max(initial=-1)) + 1
+        runs = [np.bincount(number[is_back == back], minlength=count) > 0 for back in (False, True)]
+        both[arcs] = (runs[0] & runs[1])[number]
+        return both
 
     @cached_property
     def leaves_circle(self) -> IntendedArcs:

@@ -56,7 +56,35 @@ def rings_in(point: Points, bulge: Floats) -> Iterator[Ring]:
         if count == _MOST_RINGS:
             return
     if not count:
-        yield from _overlapping(point, bulge)
+        ring = next(_overlapping(point, bulge), None) or _crossed(point, bulge)
+        if ring is not None:
+            yield ring
+
+
+def _crossed(point: Points, bulge: Floats) -> Ring | None:
+    """
+    The ring of a path whose first blocks cross its last ones; None where none do.
+
+    A lead that begins on the extension of a side, and one that leaves on that of another, are cut off where they cross,
+    as the cutter does.
+    """
+    count = len(bulge)
+    pairs = ((first, last) for first in range(_LEADS) for last in range(count - 1, count - 1 - _LEADS, -1))
+    for first, last in sorted(pairs, key=lambda pair: pair[0] + count - pair[1]):
+        if last - first < _FEWEST - 1 or bulge[first] or bulge[last]:
+            continue
+        into, out = point[first + 1] - point[first], point[last + 1] - point[last]
+        across = (into.conjugate() * out).imag
+        if abs(across) <= _SAME * max(abs(into), abs(out)):
+            continue
+        between = point[last] - point[first]
+        shares = (between.conjugate() * out).imag / across, (between.conjugate() * into).imag / across
+        slack = _SAME / abs(into), _SAME / abs(out)
+        if all(-least <= share <= 1 + least for share, least in zip(shares, slack, strict=True)):
+            corner = np.append(point[first] + shares[0] * into, point[first + 1 : last + 1])
+            kept = np.abs(corner - np.roll(corner, -1)) > _SAME
+            return _simplified(corner[kept], np.append(0.0, bulge[first + 1 : last + 1])[kept])
+    return None
 
 
 def _overlapping(point: Points, bulge: Floats) -> Iterator[Ring]:

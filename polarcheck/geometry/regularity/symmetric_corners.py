@@ -14,6 +14,8 @@ _PARTS = (2, 3, 5, 7, 11, 13)
 _MIRRORS = (1 + 0j, -1 + 0j, 1j, -1j)
 #: Least number, and least share, of points with an image among them for a symmetry to be intended.
 _LEAST, _SHARE = 3, 0.45
+#: Corners of a regular polygon about the center, and how many of them may be elsewhere.
+_FEWEST_SIDES, _MOST_SIDES, _MISSING = 5, 36, 2
 #: Guesses nearer to each other than this agree [mm].
 _NEAR = 0.05
 
@@ -24,8 +26,26 @@ def missing_places(point: Points, tolerance: float) -> Points:
 
     point: complex128[n] [mm], each once. tolerance [mm].
     """
-    places: list[Points] = [image[_is_lonely(image, point, tolerance)] for image in _images(point, tolerance)]
+    images = [*_images(point, tolerance), *_polygons(point, tolerance)]
+    places: list[Points] = [image[_is_lonely(image, point, tolerance)] for image in images]
     return _each_once(np.concatenate([np.zeros(0, np.complex128), *places]), tolerance)
+
+
+def _polygons(point: Points, tolerance: float) -> Iterator[Points]:
+    """The corners of the regular polygons about the center that most points are corners of, all but two at least."""
+    far = np.abs(point)
+    for radius in _each_once(far + 0j, tolerance).real:
+        corner = point[(np.abs(far - radius) <= tolerance) & (far > _NEAR)]
+        for sides in range(_FEWEST_SIDES, _MOST_SIDES + 1):
+            if len(corner) < sides - _MISSING:
+                break
+            turn = np.exp(2j * np.pi * np.arange(sides) / sides)
+            for first in corner[: _MISSING + 1]:
+                polygon: Points = first * turn
+                count = np.count_nonzero(~_is_lonely(polygon, point, tolerance))
+                if sides - _MISSING <= count < sides:
+                    yield polygon
+                    break
 
 
 def each_once(point: Points, tolerance: float) -> Points:
