@@ -90,7 +90,7 @@ def test_what_is_told_of_paths(name: str) -> None:
 def test_a_side_that_is_off_is_told() -> None:
     """Of the square path one side is 0.05 mm farther out, and so is the side of what stands."""
     found = texts(SQUARE.replace("C-10.", "C-10.05"))
-    assert found[0].startswith("square, not quite regular, 3 sides of 12.000, one of 12.100 (line "), found
+    assert found[0].startswith("4 flats, 3 at 6.000, one at 6.050 (line "), found
 
 
 def test_what_runs_out_of_the_bar_is_open() -> None:

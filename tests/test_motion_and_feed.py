@@ -102,7 +102,7 @@ def test_helical_arcs_are_errors_where_the_builder_forbids_them() -> None:
         ("G98 G0 X60. C5\nG12.1\n", ["C5 has no decimal point: the control takes it as 0.005 deg"]),
         (
             "G98 G0 X60. C0\nG12.1\nG1 C1 F200\nX40\nX50.5 C3\n",
-            ["C1 has no decimal point: the control takes it as 0.001 mm; 2 more coordinates have none"],
+            ["C1 has no decimal point: the control takes it as 0.001 mm; 2 more numbers have none"],
         ),
         (
             "G98 G0 X60000 C0\nG12.1\nG1 C1000 F200\n",

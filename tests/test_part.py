@@ -88,7 +88,7 @@ def test_a_side_that_is_off_is_told_with_its_line() -> None:
     # One side 0.05 further out; its neighbours keep their lines.
     body = HEXAGON.replace("X30. F200\nC8.660", "X30.1 F200\nC8.631").replace("X30. C-8.660\nC0", "X30.1 C-8.631\nC0")
     (found,) = made(body, "8:radius=4")
-    assert found.text.startswith("hexagon, not quite regular, 5 sides of 30.000, one of 30.100 (line ")
+    assert found.text.startswith("6 flats, 5 at 15.000, one at 15.050 (line ")
     assert [(odd.line, odd.size) for odd in found.odd] == [(6, pytest.approx(30.1, abs=0.001))]
 
 

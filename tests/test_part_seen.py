@@ -305,7 +305,7 @@ def test_passes_of_the_path_of_the_tool_that_differ() -> None:
     ways = ("\n".join(f"X{2 * point.real:.3f} C{point.imag:.3f}" for point in way) for way in (off, corners))
     head = "G21 G98 G40 T0808\nG0 X90. Z2. C0\nG12.1\nG1 X80. C0 F300\n"
     boss = head + "".join(f"Z-{number}.\n{way}\n" for number, way in enumerate(ways, 1)) + "X90.\nZ2.\nG13.1\nM30\n"
-    told = [shape.text for shape in made(boss, "8:radius=4") if shape.shape == "hexagon"]
+    told = [shape.text for shape in made(boss, "8:radius=4") if shape.shape in ("hexagon", "polygon")]
     assert len(told) == 2
     assert "cuts up to 1.98" in told[0]
     assert " deeper than at Z-2.000" in told[0]

@@ -36,7 +36,7 @@ def test_each_is_looked_at_and_they_are_one_finding(control: str, name: str) -> 
     ]
     assert [finding.rule for finding in found] == ["number-without-point"]
     assert found[0].message.startswith(f"{word} has no decimal point")
-    assert ("more coordinate" in found[0].message) == (more > 0)
+    assert ("more number" in found[0].message) == (more > 0)
     assert found[0].values["count"] == 1 + more
 
 

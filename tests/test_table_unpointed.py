@@ -27,22 +27,27 @@ def counts(program: str, column: str, **changes: Any) -> dict[str, int]:
     ("program", "expected"),
     [
         (POINTED, {}),
-        # in the mode each by itself, while others have their points
+        # in the mode
         (HEAD + "G1 X40. F200\nC5\nX-40.\nC-5\nX30.\nG13.1\n", {"5 C5": 1, "7 C-5": 1}),
-        # a section in which most have none: the first, for all
-        (HEAD + "G1 X40 F200\nC5\nX-40\nC-5\nX30.\nG13.1\n", {"4 X40": 4}),
+        (HEAD + "G1 X40 F200\nC5\nX-40\nX30.\nG13.1\n", {"4 X40": 1, "5 C5": 1, "6 X-40": 1}),
         (HEAD + "G1 X40 F200\nC5\nX-40.\nC-5.\nG13.1\n", {"4 X40": 1, "5 C5": 1}),
-        # blocks that position X and C for the section, and the others with the first of them
-        ("G98 G0 X70 Z50\nX60 Z5.\nC5\nM8\nG12.1\nG1 X40. C3. F200\nC8.\nG13.1\nG0 X70\n", {"2 X60": 4, "3 C5": 1}),
+        # blocks that position X and C for the section, and the others
+        (
+            "G98 G0 X70 Z50\nX60 Z5.\nC5\nM8\nG12.1\nG1 X40. C3. F200\nC8.\nG13.1\nG0 X70\n",
+            {"1 X70": 1, "1 Z50": 1, "2 X60": 1, "3 C5": 1, "9 X70": 1},
+        ),
         ("G12.1\nG1 X40. C3. F200\nC8.\nG13.1\nG0 X70\n", {"5 X70": 1}),
-        ("G0 Z5\nW-2\nX7.\nG12.1\nG1 X40. C3. F200\nC8.\nG13.1\nG4 P5\nG0 X70\nZ0\n", {"1 Z5": 3}),
+        (
+            "G0 Z5\nW-2\nX7.\nG12.1\nG1 X40. C3. F200\nC8.\nG13.1\nG4 P5\nG0 X70\nZ0\n",
+            {"1 Z5": 1, "2 W-2": 1, "9 X70": 1},
+        ),
         # beside a number that cannot be read nothing is
         (HEAD + "G1 X40. F200\nX3O.5.O C5\nC8 X--5.\nC6\nG13.1\n", {"7 C6": 1}),
         # 0 is 0
         (HEAD + "G1 X0 C10. F200\nC-10.\nX60.\nG13.1\n", {}),
-        # a large one is reported wherever it stands, and beside a habit
-        ("G0 Z1000\nZ999\n" + POINTED + "G0 U-2000\n", {"1 Z1000": 2, "9 U-2000": 1}),
-        (HEAD + "G1 X40 F200\nC5\nZ1000\nX-40\nC-5\nZ5\nG13.1\n", {"4 X40": 5, "6 Z1000": 1}),
+        # large ones
+        ("G0 Z1000\nZ999\n" + POINTED + "G0 U-2000\n", {"1 Z1000": 1, "2 Z999": 1, "9 U-2000": 1}),
+        (HEAD + "G1 X40. F200\nC5\nZ1000\nX-40.\nG13.1\n", {"5 C5": 1, "6 Z1000": 1}),
         # but for programs without a section
         ("G0 X60. Z1000\nX50.\n", {}),
         ("O1\nG0 X60. Z1000\nM30\nO2\n" + POINTED + "M30\n", {}),

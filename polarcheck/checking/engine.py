@@ -310,6 +310,8 @@ class Engine:
         group = block
         if rule.once:
             key = places.span_of(rule.once, rule.over, self.tables)[index]
+            if rule.over == "words":
+                key = np.where(self._silenced(rule, index), -1, key)  # a silenced word stands for no other
             key = np.where(key < 0, -1 - np.arange(len(index)), key)  # elements outside every span are not grouped
             _, first, group = np.unique(key, return_index=True, return_inverse=True)
             if rule.over in ("rows", "sections"):

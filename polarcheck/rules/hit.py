@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any, TypeAlias
 
 from polarcheck.columns.trace import Trace
+from polarcheck.foundation.arrays import Mask
 from polarcheck.program.machines.code_tables import code_numbers, spelled
 from polarcheck.rules.places import Place
 from polarcheck.rules.quantity import Quantity, in_row
@@ -13,8 +14,8 @@ from polarcheck.rules.wording.written import code_of, executed_word, short
 
 #: Names of a message, and what stands for them at one hit.
 Details: TypeAlias = dict[str, Any]
-#: More words of a block are counted, not listed.
-_LISTED = 6
+#: More words of a block are counted, not listed; and more lines that are like another one.
+_LISTED, _LINES = 6, 4
 
 
 class Hit:
@@ -57,6 +58,18 @@ class Hit:
     def line(self, row: int) -> int:
         """The line of a row."""
         return int(self.trace.blocks.line[row])
+
+    def likewise(self, rows: Mask) -> str:
+        """`; likewise in lines 26 and 41`: where else in the program these rows are, in other lines than this one."""
+        blocks = self.trace.blocks
+        same_program = blocks.program == blocks.program[self.row]
+        own = self.line(self.row)
+        lines = [line for line in dict.fromkeys(blocks.line[rows & same_program].tolist()) if line != own]
+        if not lines:
+            return ""
+        names = [*map(str, lines[:_LINES]), *([f"{len(lines) - _LINES} more"] if len(lines) > _LINES else [])]
+        listed = f"{', '.join(names[:-1])} and {names[-1]}" if len(names) > 1 else names[0]
+        return f"; likewise in line{'s' if len(lines) > 1 else ''} {listed}"
 
     @property
     def radius(self) -> float:

@@ -13,7 +13,7 @@ from polarcheck.columns.contour.plane_loops import PlaneLoop
 from polarcheck.columns.trace import Trace
 from polarcheck.columns.words.slips import Slip, plain_number, slip_of
 from polarcheck.foundation.arrays import Floats, Points, cached_property
-from polarcheck.geometry.regularity.symmetric_corners import each_once, missing_places
+from polarcheck.geometry.regularity.symmetric_corners import each_once, is_lonely, missing_places, regular_polygons
 from polarcheck.geometry.regularity.symmetry import Symmetry
 from polarcheck.program.machines.axis_table import INCREMENTS
 
@@ -25,6 +25,8 @@ _HALF_TURN = 2
 _GAIN, _GAIN_IF_UNSURE = 4, 5
 #: From so many corners on a shape that repeats itself in turns and mirrors is meant, be it that its sides are parallel.
 _MANY_CORNERS = 8
+#: From so many corners on, one that is off the regular polygon of all the others is a mistake, whatever was written.
+_ODD_OF = 6
 #: Corrections that are tried for one loop; ends of a path where it may close; blocks between which one may be missing.
 _MOST_TRIALS, _ENDS, _GAPS = 80, 3, 3
 #: Halves of the last digit by which a number may differ from that of another block.
@@ -102,6 +104,8 @@ class _Search:
         places = each_once(np.concatenate(found), self.tolerance)
         ends = np.append(self.loop.point[:_ENDS], self.loop.point[-_ENDS:])
         trials = [*self._fitting(self._of_words(np.append(places, ends))), *self._fitting(self._of_steps())]
+        if not trials:
+            trials = [*self._fitting(self._of_odd_corner())]
         if not trials and len(places):
             trials = [*self._fitting(self._of_blocks(places))]
         return min(trials, key=lambda trial: trial[:2])[2] if trials else None
@@ -207,6 +211,40 @@ class _Search:
                     if key not in tried:
                         tried.add(key)
                         yield from self._changed(axis, begin, shift)
+
+    def _of_odd_corner(self) -> Iterator[_Trial]:
+        """The words of the one corner that is elsewhere than on the regular polygon of all the others."""
+        point, axes, tolerance = self.loop.point, self._axes, self.tolerance
+        for ring in islice(self.loop.rings, 1):
+            if ring.bulge.any() or len(ring) < _ODD_OF:
+                continue
+            for polygon in regular_polygons(ring.corner, tolerance, missing=1):
+                place = polygon[is_lonely(polygon, ring.corner, tolerance)]
+                odd = ring.corner[is_lonely(ring.corner, polygon, tolerance)]
+                if len(place) != 1 or len(odd) != 1:
+                    continue
+                for corner in np.flatnonzero(np.abs(point - odd[0]) <= tolerance).tolist():
+                    away = [(complex(place[0] - point[corner]) / axis.direction).real for axis in axes]
+                    words = [
+                        (axis, axis.word[corner], shift)
+                        for axis, shift in zip(axes, away, strict=True)
+                        if abs(shift) > tolerance
+                    ]
+                    if all(word >= 0 and not axis.is_step[corner] for axis, word, _ in words):
+                        yield self._elsewhere(corner, complex(place[0]), words)
+
+    def _elsewhere(self, corner: int, place: complex, words: list[tuple[_Axis, int, float]]) -> _Trial:
+        """The block with other words, and what follows it with them."""
+        values, moved, texts = self.trace.run.words.value, self.loop.point.copy(), []
+        for axis, word, shift in words:
+            end = corner + 1
+            while end < len(axis.word) and axis.word[end] < 0:
+                end += 1
+            moved[corner:end] += shift * axis.direction
+            value, step = float(values[word]) + shift / axis.scale[corner], 2 * self.tolerance / axis.scale[corner]
+            texts.append(f"{axis.address}{self._as_elsewhere(axis, value, step)}")
+        slip = Slip(" ".join(texts), "its corner alone is off the polygon of the others", False)
+        return _Trial(corner, words[0][1] if len(words) == 1 else -1, slip, moved, self.loop)
 
     def _changed(self, axis: _Axis, begin: int, shift: float) -> Iterator[_Trial]:
         """The word of a block so that its point moves by as much; nothing where no slip explains it."""

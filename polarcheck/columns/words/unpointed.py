@@ -6,13 +6,13 @@ import numpy as np
 
 from polarcheck.columns.path.coordinates import MEANT_IN_INCREMENTS
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Columns, Mask, Rows, cached_property, different, repeated
+from polarcheck.foundation.arrays import Columns, Floats, Mask, Rows, cached_property, repeated
 from polarcheck.foundation.states import FeedMode, Units
 from polarcheck.program.reading.numbers import NumberFault
 
 
 class Unpointed(Columns, frozen=True):
-    """Columns over the words of the file: for how many numbers without a point each is reported, 0 where it is not."""
+    """Columns over the words of the file: which numbers lack a point, and for how many others one of them stands."""
 
     trace: Trace
 
@@ -24,7 +24,7 @@ class Unpointed(Columns, frozen=True):
             return self._none
         reported = np.zeros(len(trace.text.words), np.int64)
         words = trace.coordinates.is_unpointed & trace.coordinates.in_increments[trace.run.row]
-        self._add(reported, words, trace.blocks.program, np.ones(int(trace.blocks.program[-1]) + 1, bool))
+        self._add(reported, words, trace.blocks.program)
         return reported
 
     @cached_property
@@ -48,7 +48,7 @@ class Unpointed(Columns, frozen=True):
         is_wide = (large > 1) & (2 * large > written)
         reported = np.zeros(len(trace.text.words), np.int64)
         group = np.where((program >= 0) & np.append(is_wide, False)[program], program, -1)
-        self._add(reported, is_length & (value >= MEANT_IN_INCREMENTS), group, np.ones(count, bool))
+        self._add(reported, is_length & (value >= MEANT_IN_INCREMENTS), group)
         return reported
 
     @property
@@ -64,24 +64,55 @@ class Unpointed(Columns, frozen=True):
     def _none(self) -> Rows:
         return repeated(np.int64(0), len(self.trace.text.words))
 
-    @property
-    def slips(self) -> Rows:
+    @cached_property
+    def slips(self) -> Mask:
         """
-        The numbers without a point of other programs, each by itself.
+        The numbers without a point of programs with polar sections that are not written in least increments.
 
-        It is the coordinates of polar sections and of the blocks that position X and C for them; in inch the F of the
-        mode; R of a tool offset that G10 sets. Where more than half of the coordinates of a section are without, that
-        is one habit, reported at the first of them, and at the first large one, which is read otherwise. Those
-        elsewhere are reported one by one if they are large, and else by one of them for the program, which is one of a
-        section where there is one. Beside a number that cannot be read nothing is: what the others mean is open, too.
+        It is the coordinates in and outside of the sections; in inch the F of the mode; R of a tool offset that G10
+        sets. Beside a number that cannot be read nothing is: what the others mean is open, too.
         """
-        elsewhere = self._elsewhere
-        if not elsewhere:
-            return self._in_sections
-        reported = self._in_sections.copy()
-        for index, words in elsewhere.items():
-            reported[index] += len(words)
-        return reported
+        mask = np.zeros(len(self.trace.text.words), bool)
+        mask[self._in_file(np.flatnonzero(self._coordinates | self._feeds | self._radii_of_offsets))[0]] = True
+        return mask
+
+    @cached_property
+    def rank(self) -> Floats:
+        """How well a number of `slips` stands for the others: a small coordinate of a section best."""
+        at_words = (
+            self._coordinates,
+            ~self.trace.coordinates.is_large_unpointed,
+            self._sections[self.trace.run.row] >= 0,
+        )
+        rank = np.zeros(len(self.trace.text.words))
+        for words in (at_words[0], at_words[0] & at_words[1], at_words[0] & at_words[2]):
+            at, _ = self._in_file(np.flatnonzero(words))
+            rank[np.unique(at)] += 1
+        return rank
+
+    def of_program(self, index: int) -> Rows:
+        """The words of the file among `slips` that belong to the program of one of them."""
+        row = self.trace.blocks.row_of_block[self.trace.text.words.block]
+        program = np.where(row >= 0, self.trace.blocks.program[row], -1)
+        return np.flatnonzero(self.slips & (program == program[index]))
+
+    def stands_for(self, index: int) -> list[int]:
+        """
+        The words of the file that lack nothing but their point, for which a reported one stands: all of its kind in the
+        program. None where it is large, so that least increments may be meant.
+        """
+        if not self.slips[index] or self._is_large[index]:
+            return []
+        words = self.trace.text.words
+        is_feed = words.address == ord("F")
+        same = self.of_program(index)
+        return same[(is_feed[same] == is_feed[index]) & ~self._is_large[same]].tolist()
+
+    @cached_property
+    def _is_large(self) -> Mask:
+        mask = np.zeros(len(self.trace.text.words), bool)
+        mask[self._in_file(np.flatnonzero(self.trace.coordinates.is_large_unpointed))[0]] = True
+        return mask
 
     @cached_property
     def _is_slip(self) -> Mask:
@@ -93,49 +124,27 @@ class Unpointed(Columns, frozen=True):
         return np.asarray(slips)
 
     @cached_property
-    def _in_sections(self) -> Rows:
-        """The same without the small ones outside of sections."""
-        trace, words = self.trace, self.trace.run.words
+    def _is_judged(self) -> Mask:
+        """Per executed word: of a program with polar sections, on a control that reads least increments."""
+        trace = self.trace
         if not len(trace.mode.sections) or trace.machine.control.number_without_point == "whole-unit":
-            return self._none
-        count, section = len(trace.mode.sections), self._sections
-        reported = np.zeros(len(trace.text.words), np.int64)
-        slips = self._is_slip
-        inch_feed = (words.address == ord("F")) & ~words.has_point & (words.value > 0) & slips
-        inch_feed &= ((trace.lengths.feed_units == Units.INCH) & (trace.feedrate.feed_mode == FeedMode.PER_MINUTE))[
-            trace.run.row
-        ]
-        self._add(reported, inch_feed, section, np.zeros(count, bool))
-        self._add(
-            reported,
-            slips & self._radii_of_offsets,
-            trace.blocks.program,
-            np.zeros(int(trace.blocks.program[-1]) + 1, bool),
-        )
-        if trace.coordinates.is_unpointed.any():
-            large, is_habit = trace.coordinates.is_large_unpointed, trace.coordinates.writes_no_points(section, count)
-            has_section = np.isin(trace.blocks.program, trace.blocks.program[trace.mode.sections.enter])
-            section_or_rest = np.where(has_section & (section < 0), count, section)
-            self._add(reported, slips & trace.coordinates.is_unpointed & ~large, section, is_habit)
-            self._add(reported, slips & large, section_or_rest, np.append(is_habit, False))
-        return reported if reported.any() else self._none
+            return trace.blocks.no_words
+        has_section = np.isin(trace.blocks.program, trace.blocks.program[trace.mode.sections.enter])
+        return np.asarray(self._is_slip & has_section[trace.run.row])
 
-    def stands_for(self, index: int) -> list[int]:
-        """
-        The words of the file that lack nothing but their point, for which a reported one stands; none where it is
-        large, so that least increments may be meant, or its program is written in them.
-        """
-        trace, start = self.trace, self.trace.text.words.start[index]
-        executed = np.flatnonzero(trace.run.words.start == start)
-        if not self.slips[index] or not len(executed) or trace.coordinates.is_large_unpointed[executed].any():
-            return []
-        elsewhere = self._elsewhere.get(index, [])
-        if self._in_sections[index] <= 1:
-            return sorted({index, *elsewhere})
-        own = self._sections == self._sections[trace.run.row[executed[0]]]
-        words = trace.coordinates.is_unpointed & ~trace.coordinates.is_large_unpointed & own[trace.run.row]
-        at, _ = self._in_file(np.flatnonzero(words))
-        return different(np.append(at, elsewhere).astype(np.int64)).tolist()  # type: ignore[no-any-return]
+    @cached_property
+    def _coordinates(self) -> Mask:
+        return np.asarray(self._is_judged & self.trace.coordinates.is_unpointed)
+
+    @cached_property
+    def _feeds(self) -> Mask:
+        """Per executed word: F of the mode in inch."""
+        trace, words = self.trace, self.trace.run.words
+        is_inch = (trace.lengths.feed_units == Units.INCH) & (trace.feedrate.feed_mode == FeedMode.PER_MINUTE)
+        rows = is_inch & (self._sections >= 0)
+        return np.asarray(
+            self._is_judged & (words.address == ord("F")) & ~words.has_point & (words.value > 0) & rows[trace.run.row]
+        )
 
     @cached_property
     def _radii_of_offsets(self) -> Mask:
@@ -150,7 +159,8 @@ class Unpointed(Columns, frozen=True):
             & (trace.blocks.word("P") > 0)
         )
         is_small = ~words.has_point & (words.value != 0) & (np.abs(words.value) < MEANT_IN_INCREMENTS)
-        return np.asarray(trace.blocks.words_at(trace.blocks.word_indices("R")) & is_small & sets[trace.run.row])
+        radii = trace.blocks.words_at(trace.blocks.word_indices("R")) & is_small & sets[trace.run.row]
+        return np.asarray(self._is_judged & radii)
 
     @cached_property
     def _sections(self) -> Rows:
@@ -171,39 +181,13 @@ class Unpointed(Columns, frozen=True):
             column[last[own]] = np.flatnonzero(own)
         return column
 
-    def _add(self, reported: Rows, words: Mask, group: Rows, as_one: Mask) -> None:
-        """Report executed words, those of a group of rows that counts as one at its first word, for all of them."""
+    def _add(self, reported: Rows, words: Mask, group: Rows) -> None:
+        """Report the first executed word of each group of rows, for all of them."""
         index, own = self.trace.coordinates.written_once(words, group)
-        count = np.where(as_one, np.bincount(own, minlength=len(as_one)), 1)
+        count = np.bincount(own)
         at, found = self._in_file(index)
-        own = own[found]
-        is_first = np.zeros(len(own), bool)
-        is_first[np.unique(own, return_index=True)[1]] = True
-        shown = is_first | ~as_one[own]
-        np.maximum.at(reported, at[shown], count[own[shown]])
-
-    @cached_property
-    def _elsewhere(self) -> dict[int, list[int]]:
-        """The small numbers outside of sections by the one word of each program that is reported for them."""
-        trace = self.trace
-        if not len(trace.mode.sections) or not trace.coordinates.is_unpointed.any():
-            return {}
-        program = trace.blocks.program
-        has_section = np.isin(program, program[trace.mode.sections.enter])
-        words = self._is_slip & trace.coordinates.is_unpointed & ~trace.coordinates.is_large_unpointed
-        outside = np.where(has_section & (self._sections < 0), program, -1)
-        index, own = trace.coordinates.written_once(words, outside)
-        at, found = self._in_file(index)
-        of_program: dict[int, list[int]] = {}
-        for number, word in zip(own[found].tolist(), at.tolist(), strict=True):
-            of_program.setdefault(number, []).append(word)
-        reported = np.flatnonzero(self._in_sections)
-        program_of_word = program[trace.blocks.row_of_block[trace.text.words.block[reported]]]
-        result = {}
-        for number, words_of_program in of_program.items():
-            first = reported[program_of_word == number]
-            result[int(first[0]) if len(first) else min(words_of_program)] = words_of_program
-        return result
+        own, first = np.unique(own[found], return_index=True)
+        np.maximum.at(reported, at[first], count[own])
 
     def _in_file(self, index: Rows) -> tuple[Rows, Mask]:
         """Where executed words stand among the words of the file, and which do: those of macro statements do not."""

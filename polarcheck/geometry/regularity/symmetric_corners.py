@@ -26,25 +26,26 @@ def missing_places(point: Points, tolerance: float) -> Points:
 
     point: complex128[n] [mm], each once. tolerance [mm].
     """
-    images = [*_images(point, tolerance), *_polygons(point, tolerance)]
-    places: list[Points] = [image[_is_lonely(image, point, tolerance)] for image in images]
+    images = [*_images(point, tolerance), *regular_polygons(point, tolerance, _MISSING)]
+    places: list[Points] = [image[is_lonely(image, point, tolerance)] for image in images]
     return _each_once(np.concatenate([np.zeros(0, np.complex128), *places]), tolerance)
 
 
-def _polygons(point: Points, tolerance: float) -> Iterator[Points]:
-    """The corners of the regular polygons about the center that most points are corners of, all but two at least."""
+def regular_polygons(point: Points, tolerance: float, missing: int) -> Iterator[Points]:
+    """The corners of the regular polygons about the center that points are corners of, all but so many at least."""
     far = np.abs(point)
     for radius in _each_once(far + 0j, tolerance).real:
         corner = point[(np.abs(far - radius) <= tolerance) & (far > _NEAR)]
         for sides in range(_FEWEST_SIDES, _MOST_SIDES + 1):
-            if len(corner) < sides - _MISSING:
+            if len(corner) < sides - missing:
                 break
             turn = np.exp(2j * np.pi * np.arange(sides) / sides)
-            for first in corner[: _MISSING + 1]:
-                polygon: Points = first * turn
-                count = np.count_nonzero(~_is_lonely(polygon, point, tolerance))
-                if sides - _MISSING <= count < sides:
-                    yield polygon
+            for first in corner[: missing + 1]:
+                nearest = np.argmin(np.abs((first * turn)[:, None] - point), axis=1)
+                there = ~is_lonely(first * turn, point, tolerance)
+                if sides - missing <= np.count_nonzero(there) < sides:
+                    # All corners say where it lies: each of them is rounded.
+                    yield np.mean(point[nearest[there]] * turn[there].conj()) * turn
                     break
 
 
@@ -60,7 +61,8 @@ def _each_once(point: Points, tolerance: float) -> Points:
     return np.asarray(point[np.argmax(near, axis=1) == np.arange(len(point))])
 
 
-def _is_lonely(image: Points, point: Points, tolerance: float) -> Mask:
+def is_lonely(image: Points, point: Points, tolerance: float) -> Mask:
+    """The images in which there is none of the points."""
     return np.asarray(np.abs(image[:, None] - point).min(axis=1) > 2 * tolerance)
 
 
@@ -85,7 +87,7 @@ def _images(point: Points, tolerance: float) -> Iterator[Points]:
 
 
 def _fits(image: Points, point: Points, tolerance: float) -> bool:
-    count = len(point) - int(np.count_nonzero(_is_lonely(image, point, tolerance)))
+    count = len(point) - int(np.count_nonzero(is_lonely(image, point, tolerance)))
     return count >= max(_LEAST, _SHARE * len(point)) and count < len(point)
 
 

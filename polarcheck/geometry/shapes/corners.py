@@ -61,6 +61,11 @@ class Sides:
 
         turned: direction of the side behind which corner_1 lies [deg], NaN for corners without numbers.
         """
+        if self.radius.any() and self.chamfer.any():
+            values = {"corner_radius": float(self.radius.max()), "corner_chamfer": float(self.chamfer.max())}
+            counts = {"round": np.count_nonzero(self.radius), "chamfered": np.count_nonzero(self.chamfer)}
+            counts["sharp"] = len(self) - sum(counts.values())
+            return values | {"corner_least": 0.0} | {f"corners_{name}": float(count) for name, count in counts.items()}
         for name, size in (("corner_radius", self.radius), ("corner_chamfer", self.chamfer)):
             if not size.any():
                 continue
@@ -101,17 +106,18 @@ def _distance(ring: Ring, side: int, point: complex) -> float:
 
 def without_chamfers(sides: Sides) -> Sides | None:
     """The sides without those that chamfer the corner between two longer ones; None where there are none."""
-    if len(sides) < 6 or sides.radius.any():
+    if len(sides) < 5:
         return None
     length, turn = np.abs(sides.end - sides.start), sides.turn
     shorter = length < _CHAMFER * np.minimum(np.roll(length, 1), np.roll(length, -1))
-    chamfers = shorter & (np.abs(turn - np.roll(turn, 1)) < _EVEN)
+    is_sharp = (sides.radius == 0) & (np.roll(sides.radius, 1) == 0)
+    chamfers = shorter & is_sharp & (np.abs(turn - np.roll(turn, 1)) < _EVEN)
     kept = np.flatnonzero(~chamfers)
     if not chamfers.any() or len(kept) < 3 or (chamfers & np.roll(chamfers, 1)).any():
         return None
     leg: Floats = length / (2 * np.cos(np.abs(turn)))
     chamfer = np.where(np.roll(chamfers, -1), np.roll(leg, -1), 0.0)[kept]
-    return Sides(sides.start[kept], sides.end[kept], sides.row[kept], np.zeros(len(kept)), chamfer)
+    return Sides(sides.start[kept], sides.end[kept], sides.row[kept], sides.radius[kept], chamfer)
 
 
 def is_at(values: Floats, size: float) -> Mask:

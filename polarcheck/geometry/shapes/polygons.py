@@ -173,7 +173,7 @@ def _uneven(ring: Ring, sides: Sides) -> Shape | None:
         values |= {"least": float(across.min()), "most": float(across.max())}
     mixed, rows = _mixed(sides)
     values |= {**extents_of(ring), "area": ring.area, **mixed}
-    name = polygon_name(count) if count > 4 else "polygon"
+    name = polygon_name(count) if count > 4 and mixed else "polygon"
     return Shape(name, ring.inside, values, (), int(sides.row[0]), False, mixed=rows)
 
 

@@ -46,7 +46,7 @@ class Shape(NamedTuple):
     sides, flats, keyways, distance (of a flat or a bottom from the axis), apart (of parallel flats, of the circles of a
     cam), corner_radius or corner_chamfer, and corner_least where corners differ, corner_1, corner_2 and so on of each,
     counterclockwise from the side that has the direction turned; radius, radius_small (of a cam, of the end of a slot);
-    joined (R of the arc between two flats);
+    joined (R of the arc between two flats); corners_round, corners_chamfered, corners_sharp, how many, of both kinds;
     turned (the direction of the first side's normal or of the length); distance_1, turned_1 and so on, of the flats
     where they are uneven; center_x, center_c, where it is off the axis;
     x_least, x_most, c_least, c_most, area, inside_radius of contours; least, most where sides differ;

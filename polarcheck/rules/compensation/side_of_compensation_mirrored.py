@@ -15,11 +15,12 @@ if TYPE_CHECKING:
 @rule(
     WARNING,
     "{side_in_force} has the cutter on the wrong side: both ramps come through the part, on the other side the whole "
-    "contour is free; {remedy}{or_other_sense}",
+    "contour is free; {remedy}{or_other_sense}{likewise}",
     values=("code", "radius"),
     worse=("radius",),
     gouges=True,
     at=("compensation_left", "compensation_right"),
+    once="program",
     doubts=(("compensation", "compensation"),),
 )
 def side_of_compensation_mirrored(mirrored: Mirrored) -> Mask:
@@ -81,7 +82,7 @@ def side_of_compensation_mirrored(mirrored: Mirrored) -> Mask:
     return mirrored.is_mirrored
 
 
-def details(hit: Hit, compensation: CutterCompensation) -> Details:
+def details(hit: Hit, compensation: CutterCompensation, mirrored: Mirrored) -> Details:
     from polarcheck.rules.wording.written import code_of
 
     code = "compensation_left" if compensation.side[hit.row] == Side.RIGHT else "compensation_right"
@@ -92,6 +93,7 @@ def details(hit: Hit, compensation: CutterCompensation) -> Details:
         "remedy": f"write {code_of(hit.trace.machine, code)}"
         + (f", or R {hit.length(-radius)} in the tool offset" if radius < 0 else ""),
         "or_other_sense": _or_other_sense(hit),
+        "likewise": hit.likewise(mirrored.is_mirrored),
     }
 
 

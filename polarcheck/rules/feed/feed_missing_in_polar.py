@@ -9,12 +9,14 @@ if TYPE_CHECKING:
     from polarcheck.columns.modes.mode import PolarMode
     from polarcheck.columns.path.path import ProgrammedPath
     from polarcheck.foundation.arrays import Mask
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     ERROR,
-    "cutting move without F: none is in force",
+    "cutting move without F: none is in force{likewise}",
     at=("line", "arc_clockwise", "arc_counterclockwise", "F"),
+    once="program",
     follows={"block": ("vacant-variable",)},
 )
 def feed_missing_in_polar(mode: PolarMode, path: ProgrammedPath, feeds: Feeds) -> Mask:
@@ -22,7 +24,7 @@ def feed_missing_in_polar(mode: PolarMode, path: ProgrammedPath, feeds: Feeds) -
     Cutting move without a feed.
 
     No F stands above this block, or F0 does. The control stops with an alarm at the first G1, G2 or G3 that moves,
-    be it Z alone.
+    be it Z alone. It is reported once in a program, with the lines in which other sections lack it.
 
     Source: FANUC alarm 011; Mitsubishi alarm P62.
 
@@ -61,3 +63,7 @@ def feed_missing_in_polar(mode: PolarMode, path: ProgrammedPath, feeds: Feeds) -
         G13.1
     """
     return mode.first_in_section(path.moves_at_feed & feeds.missing)
+
+
+def details(hit: Hit, mode: PolarMode, path: ProgrammedPath, feeds: Feeds) -> Details:
+    return {"likewise": hit.likewise(mode.first_in_section(path.moves_at_feed & feeds.missing))}

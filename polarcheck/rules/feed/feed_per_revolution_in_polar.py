@@ -15,9 +15,10 @@ if TYPE_CHECKING:
 
 @rule(
     NOTE,
-    "{of_turns} of a spindle that turns as the {rotary} axis now; {to_per_minute}",
+    "{of_turns} of a spindle that turns as the {rotary} axis now; {to_per_minute}{likewise}",
     values=("feed_per_revolution",),
     at=("feed_per_revolution", "line", "arc_clockwise", "arc_counterclockwise"),
+    once="program",
     follows={"block": ("feed-missing-in-polar",)},
 )
 def feed_per_revolution_in_polar(mode: PolarMode, path: ProgrammedPath, feedrate: Feedrate, feeds: Feeds) -> Hits:
@@ -68,16 +69,20 @@ def feed_per_revolution_in_polar(mode: PolarMode, path: ProgrammedPath, feedrate
     per_revolution = path.cuts & (feedrate.feed_mode == FeedMode.PER_REVOLUTION)
     high = mode.first_in_section(per_revolution & feeds.is_too_high_per_revolution)
     first = mode.first_in_section(per_revolution) & ~mode.anywhere_in_section(high)
-    return graded(warning=high, note=first)
+    return graded(warning=high, note=first, worst=high.astype(float))
 
 
-def details(hit: Hit, feeds: Feeds) -> Details:
+def details(hit: Hit, mode: PolarMode, path: ProgrammedPath, feedrate: Feedrate, feeds: Feeds) -> Details:
+    per_revolution = path.cuts & (feedrate.feed_mode == FeedMode.PER_REVOLUTION)
+    if feeds.is_too_high_per_revolution[hit.row]:
+        per_revolution &= feeds.is_too_high_per_revolution
     feed = hit.trace.feedrate.feed_number[hit.row]
     is_too_high = feeds.is_too_high_per_revolution[hit.row]
     return {
         "feed_per_revolution": feed,
         "of_turns": f"{hit.quantity(feed).as_feed:length} for each turn" if is_too_high else "feed per revolution",
         "to_per_minute": _to_per_minute(hit),
+        "likewise": hit.likewise(mode.first_in_section(per_revolution)),
     }
 
 

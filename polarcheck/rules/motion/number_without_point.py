@@ -19,6 +19,7 @@ _FEED_INCREMENT_INCH = 0.01
     values=("word", "count"),
     worse=("count",),
     over="words",
+    once="program",
     doubts=(("metal", "loop"),),
     follows={"block": ("too-many-digits", "stray-character", "bad-number")},
 )
@@ -27,9 +28,8 @@ def number_without_point(unpointed: Unpointed) -> Hits:
     Length without a decimal point.
 
     A number without a point counts least increments: C20 is 0.020 mm, in inch 0.0020 inch. With parameter 3401#0
-    DPI = 1 it is 20 mm instead, so that one program cuts two shapes on two lathes. Write the point. A section with more
-    such numbers than others is reported once, and a number of 1000 or more in it. Those outside of the polar sections
-    of a program are reported together, at the first of them, or at the first in a section.
+    DPI = 1 it is 20 mm instead, so that one program cuts two shapes on two lathes. Write the point. A program is
+    reported once, at the first such coordinate of a section if there is one.
 
     A control that reads whole units makes a contour of many meters of numbers that were meant in least increments: this
     is reported once in a program, with the parameter that makes it as small as it was meant.
@@ -125,15 +125,17 @@ def number_without_point(unpointed: Unpointed) -> Hits:
         C20
         G13.1
     """
-    return graded(warning=(unpointed.slips > 0) | (unpointed.in_meters > 0), note=unpointed.in_increments > 0)
+    return graded(
+        warning=unpointed.slips | (unpointed.in_meters > 0), note=unpointed.in_increments > 0, worst=unpointed.rank
+    )
 
 
 def details(hit: Hit, unpointed: Unpointed) -> Details:
     if meters := int(unpointed.in_meters[hit.index]):
         return {"count": meters, "taken_as": _in_meters(hit, meters)}
     count = int(unpointed.in_increments[hit.index])
-    more = int(unpointed.slips[hit.index]) - 1
-    others = f"; {more} more {'coordinate has' if more == 1 else 'coordinates have'} none" if more > 0 else ""
+    more = len(unpointed.of_program(hit.index)) - 1
+    others = f"; {more} more {'number has' if more == 1 else 'numbers have'} none" if more > 0 else ""
     if count:
         others = f"; the whole program is read in least increments, {count} of its coordinates have no point"
     return {"count": count or more + 1, "taken_as": _taken_as(hit, others)}
@@ -166,7 +168,7 @@ def _taken_as(hit: Hit, others: str) -> str:
     address, value = chr(int(table.address[hit.index])), float(table.value[hit.index])
     inch = bool(trace.lengths.units[row] == Units.INCH)
     if address == "F":
-        return f"{value * _FEED_INCREMENT_INCH:g} inch/min"
+        return f"{value * _FEED_INCREMENT_INCH:g} inch/min{others}"
     is_angle = address in "CH" and not trace.mode.in_polar[row]
     least = control.least_increment_inch if inch and not is_angle else control.least_increment
     unit = "deg" if is_angle else "inch" if inch else "mm"

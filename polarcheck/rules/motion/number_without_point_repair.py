@@ -12,10 +12,10 @@ def number_without_point(text: Text, unpointed: Unpointed, index: int) -> Mended
     """
     The missing decimal point is put behind the number.
 
-    Where one finding stands for all coordinates of a section, all of them get one. There is no fix for numbers of 1000
-    or more, for a program that is written in least increments throughout, nor for an F that would then be above all
-    that the machine recommends: F200 in inch may well be meant as the 2 inch/min that it is. Unsafe: the number is
-    1000 times as large for the control.
+    One finding stands for all of a program, and all of them get one: all coordinates, or all F. There is no fix for
+    numbers of 1000 or more, for a program that is written in least increments throughout, nor for an F that would then
+    be above all that the machine recommends: F200 in inch may well be meant as the 2 inch/min that it is. Unsafe: the
+    number is 1000 times as large for the control.
 
     Bad:
 

@@ -99,11 +99,11 @@ def _polygon(shape: Shape, line_of: _Line, sizes: Sizes) -> _Told:
     count, across = int(value["sides"]), value["across_flats"]
     told = [shape.name, f"{sizes(across)} across flats"]
     if shape.odd:
-        told = [f"{shape.name}, not quite regular", f"{count - len(shape.odd)} sides of {sizes(across)}"]
-        told += [f"one of {sizes(odd.size)} (line {line_of(odd.row)})" for odd in shape.odd]
+        told = [f"{count} flats", f"{count - len(shape.odd)} at {sizes(across / 2)}"]
+        told += [f"one at {sizes(odd.size / 2)} (line {line_of(odd.row)})" for odd in shape.odd]
     elif "least" in value:
         told = [f"{shape.name}, not quite regular", f"{sizes(value['least'])} to {sizes(value['most'])} across flats"]
-    if count % 2 or shape.odd:
+    if count % 2 and not shape.odd:
         told.append("sizes are twice the distance of a side from the middle")
     if "corner_diameter" in value:
         told.append(f"corners round at {sizes(value['corner_diameter'])}")
@@ -112,7 +112,7 @@ def _polygon(shape: Shape, line_of: _Line, sizes: Sizes) -> _Told:
 
 def _uneven(shape: Shape, line_of: _Line, sizes: Sizes) -> _Told:
     value = shape.values
-    told = [f"{shape.name} with {value['sides']:.0f} sides" if shape.name == "polygon" else shape.name, "not regular"]
+    told = [f"polygon with {value['sides']:.0f} sides"] if shape.name == "polygon" else [shape.name, "not regular"]
     if "least" in value:
         told.append(f"{sizes(value['least'])} to {sizes(value['most'])} across flats")
     if "regular_by_x" in value:
@@ -242,6 +242,15 @@ _TOLD: Mapping[str, Callable[[Shape, _Line, Sizes], _Told]] = {
 
 
 def _corners(value: Mapping[str, float], sizes: Sizes) -> _Told:
+    if "corners_round" in value:
+        kinds = (
+            ("corners_round", f"R{sizes(value['corner_radius'])}"),
+            ("corners_chamfered", f"chamfered {sizes(value['corner_chamfer'])}"),
+            ("corners_sharp", "sharp"),
+        )
+        (first, *more) = [f"{value[key]:.0f} {text}" for key, text in kinds if value[key]]
+        number, _, text = first.partition(" ")
+        return [", ".join([f"{number} corner{'s' * (number != '1')} {text}", *more])]
     for name, mark in (("corner_radius", "R"), ("corner_chamfer", "chamfered ")):
         if name not in value:
             continue
