@@ -87,7 +87,8 @@ NEVER = "G0 X50. Z2. C0/{}/G1 C-10. F500./G42 X40./C10./G40 X50./{}"
 def test_the_end_of_a_mode_that_was_never_entered(before: str, after: str, machine: str) -> None:
     [(block, rule, message)] = found(NEVER.format(before, after), machine, "1:radius=4")
     assert (block, rule) == (after, "polar-never-entered")
-    assert message.endswith("write G112 before it" if after == "G113" else "write G12.1 before it")
+    assert f"; write {'G112' if after == 'G113' else 'G12.1'} before line " in message
+    assert message.endswith(", G1 C-10. F500.")
 
 
 def test_it_names_the_first_line_that_turns() -> None:

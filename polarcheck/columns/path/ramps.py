@@ -116,6 +116,16 @@ class Ramps(Columns, frozen=True):
         return np.asarray(trace.path.travels & (trace.path.length < np.abs(trace.compensation.radius) - ROUNDING))
 
     @cached_property
+    def suffices_for_smaller_cutter(self) -> Mask:
+        """The row is long enough for a cutter that fits into the inside arcs of its loop, which R does not."""
+        tight = np.flatnonzero(self.tool_center.inside_arc_too_small & (self.loop >= 0))
+        if not len(tight):
+            return self.trace.blocks.nowhere
+        largest = np.full(int(self.loop.max(initial=0)) + 1, np.nan)
+        np.fmin.at(largest, self.loop[tight], self.arc_radius[tight])
+        return np.asarray((self.loop >= 0) & (self.trace.path.length >= largest[self.loop]))
+
+    @cached_property
     def start_up_judged_by_radius(self) -> Mask:
         """Start-ups that nothing can be said of without R: straight ones."""
         return np.asarray(self.trace.compensation.starts_up & ~self.trace.path.is_arc)

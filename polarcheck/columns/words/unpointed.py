@@ -106,7 +106,8 @@ class Unpointed(Columns, frozen=True):
         words = self.trace.text.words
         is_feed = words.address == ord("F")
         same = self.of_program(index)
-        return same[(is_feed[same] == is_feed[index]) & ~self._is_large[same]].tolist()
+        chosen: list[int] = same[(is_feed[same] == is_feed[index]) & ~self._is_large[same]].tolist()
+        return chosen
 
     @cached_property
     def _is_large(self) -> Mask:

@@ -63,7 +63,7 @@ class Sides:
         """
         if self.radius.any() and self.chamfer.any():
             values = {"corner_radius": float(self.radius.max()), "corner_chamfer": float(self.chamfer.max())}
-            counts = {"round": np.count_nonzero(self.radius), "chamfered": np.count_nonzero(self.chamfer)}
+            counts = {"round": int((self.radius > 0).sum()), "chamfered": int((self.chamfer > 0).sum())}
             counts["sharp"] = len(self) - sum(counts.values())
             return values | {"corner_least": 0.0} | {f"corners_{name}": float(count) for name, count in counts.items()}
         for name, size in (("corner_radius", self.radius), ("corner_chamfer", self.chamfer)):

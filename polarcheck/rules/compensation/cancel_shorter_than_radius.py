@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     gouges=True,
     at=("compensation_off",),
     doubts=(("metal", "block"),),
+    follows={"loop": ("inside-arc-smaller-than-radius", "start-up-shorter-than-radius")},
 )
 def cancel_shorter_than_radius(
     path: ProgrammedPath, compensation: CutterCompensation, ramps: Ramps, machine: Machine
@@ -86,9 +87,11 @@ def cancel_shorter_than_radius(
     short = compensation.cancels & ~path.is_arc & ramps.shorter_than_radius
     # With R 0 an offset cancel needs no length; an R that is not known is not 0.
     missing = ramps.cancel_missing & (compensation.radius != 0)
+    # R is too large for both ramps, or for an arc between them.
+    follows = {"loop": short | ramps.suffices_for_smaller_cutter}
     if machine.compensation.leaving_cancels:
-        return graded(error=short, note=missing)
-    return graded(error=short | missing)
+        return graded(error=short, note=missing, follows=follows)
+    return graded(error=short | missing, follows=follows)
 
 
 def details(hit: Hit) -> Details:

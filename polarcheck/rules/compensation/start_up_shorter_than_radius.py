@@ -2,13 +2,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from polarcheck.rules.rule import ERROR, rule
+from polarcheck.rules.rule import ERROR, Hits, rule
 
 if TYPE_CHECKING:
     from polarcheck.columns.path.compensation import CutterCompensation
     from polarcheck.columns.path.path import ProgrammedPath
     from polarcheck.columns.path.ramps import Ramps
-    from polarcheck.foundation.arrays import Mask
     from polarcheck.rules.hit import Details, Hit
     from polarcheck.rules.rule import Needs
 
@@ -21,8 +20,9 @@ if TYPE_CHECKING:
     gouges=True,
     at=("compensation_left", "compensation_right"),
     doubts=(("metal", "loop"),),
+    follows={"loop": ("inside-arc-smaller-than-radius",)},
 )
-def start_up_shorter_than_radius(path: ProgrammedPath, compensation: CutterCompensation, ramps: Ramps) -> Mask:
+def start_up_shorter_than_radius(path: ProgrammedPath, compensation: CutterCompensation, ramps: Ramps) -> Hits:
     """
     Start-up shorter than the cutter radius.
 
@@ -79,7 +79,8 @@ def start_up_shorter_than_radius(path: ProgrammedPath, compensation: CutterCompe
     """
     short = compensation.starts_up & ~path.is_arc & ramps.shorter_than_radius
     # With R 0 a start-up needs no length; an R that is not known is not 0.
-    return short | (ramps.start_up_missing & (compensation.radius != 0))
+    missing = ramps.start_up_missing & (compensation.radius != 0)
+    return Hits(short | missing, follows={"loop": ramps.suffices_for_smaller_cutter})
 
 
 def details(hit: Hit) -> Details:

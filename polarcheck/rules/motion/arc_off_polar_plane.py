@@ -8,11 +8,12 @@ from polarcheck.rules.rule import ERROR, rule
 if TYPE_CHECKING:
     from polarcheck.columns.path.arcs import Arcs
     from polarcheck.foundation.arrays import Mask
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     ERROR,
-    "arc along Z; in the polar mode arcs lie in the plane of {linear} and {virtual}",
+    "arc along Z; in the polar mode arcs lie in the plane of {linear} and {virtual}{still_in_force}",
     at=("arc_clockwise", "arc_counterclockwise", "Z", "W"),
     subject="",
     doubts=NO_SUCH_ARC,
@@ -68,3 +69,9 @@ def arc_off_polar_plane(arcs: Arcs) -> Mask:
     """
     # Compares nothing: whether an arc of the plane fits is a formula, on which helical-arc-in-polar hangs as well.
     return arcs.is_off_plane
+
+
+def details(hit: Hit) -> Details:
+    from polarcheck.rules.wording.arcs import still_in_force
+
+    return {"still_in_force": still_in_force(hit.trace, hit.row)}

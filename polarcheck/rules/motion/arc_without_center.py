@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 @rule(
     ERROR,
-    "arc without {radius_word}, {centers}{more_arcs}",
+    "arc without {radius_word}, {centers}{still_in_force}{more_arcs}",
     at=("arc_clockwise", "arc_counterclockwise", "X", "U", "C", "H"),
     once="motion",
     subject="",
@@ -63,5 +63,11 @@ def arc_without_center(path: ProgrammedPath, arcs: Arcs) -> Mask:
 
 
 def details(hit: Hit, machine: Machine) -> Details:
+    from polarcheck.rules.wording.arcs import still_in_force
+
     more = f"; so {'is' if hit.count == 2 else 'are'} {hit.count - 1} more up to the next code of motion"
-    return {"radius_word": machine.arcs.radius_word, "more_arcs": more if hit.count > 1 else ""}
+    return {
+        "radius_word": machine.arcs.radius_word,
+        "still_in_force": still_in_force(hit.trace, hit.row),
+        "more_arcs": more if hit.count > 1 else "",
+    }

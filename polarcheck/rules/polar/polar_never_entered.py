@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 @rule(
     ERROR,
     "{code} ends a polar mode that was never entered: {turned} as outside the mode, not on the contour; "
-    "write {switch_on} before it",
+    "write {switch_on} {place}",
     values=("code", "other_line"),
     at=("off",),
     follows={"program": ("polar-switch-unknown",)},
@@ -156,4 +156,20 @@ def details(
         turned = f"{from_line} {axis} moves at feed with G41 or G42"
     elif axes.motion[first] != Motion.LINE:
         turned = f"{from_line} {axis} moves on an arc"
-    return {"code": hit.switch, "other_line": hit.line(first), "turned": turned}
+    return {"code": hit.switch, "other_line": hit.line(first), "turned": turned, "place": _place(hit, first)}
+
+
+def _place(hit: Hit, first: int) -> str:
+    """Before which block the mode begins: the first move behind the rapid traverse that leads to the contour."""
+    import numpy as np
+
+    from polarcheck.rules.wording.written import block_in_short
+
+    trace = hit.trace
+    moves = trace.axes.moves & (trace.blocks.program == trace.blocks.program[first])
+    rapid = np.flatnonzero(moves & (trace.axes.motion == Motion.RAPID))
+    rapid = rapid[rapid < first]
+    if not len(rapid):
+        return "before it"
+    row = int(rapid[-1]) + 1 + int(np.argmax(moves[rapid[-1] + 1 :]))
+    return f"before line {hit.line(row)}, {block_in_short(trace.run, row)}"

@@ -78,7 +78,7 @@ def details(hit: Hit, text: Text) -> Details:
     character = text.source.excerpt(at, at + 1)
     if character == "%":
         return {"stray": "% inside a block: for the control the program ends here"}
-    whole = re.search(r"(?<![0-9])[0-9]++\Z", text.source.excerpt(max(at - _DIGITS, 0), at))
+    whole = re.search(r"(?<![0-9])[-+]?[0-9]++\Z", text.source.excerpt(max(at - _DIGITS, 0), at))
     decimals = re.match(r"[0-9]++", text.source.excerpt(at + 1, at + 1 + _DIGITS))
     if character == "," and whole and decimals:
         return {"stray": f", is no decimal point: write {whole[0]}.{decimals[0]}"}

@@ -18,6 +18,16 @@ def arc_code(trace: Trace, row: int, reverse: bool = False) -> str:
     return move_code(trace.machine, "arc_clockwise" if is_clockwise else "arc_counterclockwise")
 
 
+def still_in_force(trace: Trace, row: int) -> str:
+    """`: G3 of line 12 is still in force, write G1`, where the block of an arc writes no code; else nothing."""
+    start = int(trace.modal.motion_word[row])
+    code = np.flatnonzero(trace.run.words.start == start)
+    if start < 0 or not len(code) or trace.run.block[row] == trace.run.block[trace.run.row[code[0]]]:
+        return ""
+    line = int(trace.blocks.line[trace.run.row[code[0]]])
+    return f": {arc_code(trace, row)} of line {line} is still in force, write {move_code(trace.machine, 'line')}"
+
+
 def written_arc(trace: Trace, arcs: Arcs, row: int) -> str:
     """The words of an arc that say where its center is: `R8.`, or `I-4. J0`."""
     blocks, run = trace.blocks, trace.run
