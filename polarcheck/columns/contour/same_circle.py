@@ -68,8 +68,9 @@ class SameCircle(Columns, frozen=True):
         way = np.where(is_back[:, None], ends[:, ::-1], ends)
         columns = np.column_stack([way.view(np.float64), passes.center[arcs].real, passes.center[arcs].imag])
         keys = np.column_stack([np.round(columns / _SAME), section[arcs]])
-        _, number = np.unique(keys, axis=0, return_inverse=True)
-        number = number.ravel()
+        order = np.lexsort(keys.T)
+        number = np.zeros(len(arcs), np.int64)
+        number[order[1:]] = np.cumsum(np.any(np.diff(keys[order], axis=0) != 0, axis=1))
         count = int(number.max(initial=-1)) + 1
         runs = [np.bincount(number[is_back == back], minlength=count) > 0 for back in (False, True)]
         both[arcs] = (runs[0] & runs[1])[number]

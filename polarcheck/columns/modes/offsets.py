@@ -25,7 +25,17 @@ from polarcheck.columns.modes.tools import CalledTools
 from polarcheck.columns.path.lengths import Lengths
 from polarcheck.columns.words.comments import Comments
 from polarcheck.columns.words.radius_comments import StatedRadius, radii
-from polarcheck.foundation.arrays import Columns, Floats, Mask, Rows, cached_property, computed, is_uniform, repeated
+from polarcheck.foundation.arrays import (
+    Columns,
+    Floats,
+    Mask,
+    Rows,
+    cached_property,
+    computed,
+    different,
+    is_uniform,
+    repeated,
+)
 from polarcheck.program.execution.run import NO_VARIABLE, Run
 from polarcheck.program.machines.job import Job
 from polarcheck.program.machines.machine import Machine
@@ -130,7 +140,7 @@ class ToolOffsets(Columns, frozen=True):
         """The rows that set X of an offset, in force in a section of the program, to a value that is not known."""
         settings = self.offset_settings
         unknown = settings.of((settings.kind >= X) & np.isnan(settings.value))
-        return np.unique(unknown.row[self._is_used(unknown.row, unknown.number)])
+        return different(unknown.row[self._is_used(unknown.row, unknown.number)])
 
     def _is_used(self, rows: Rows, numbers: Rows) -> Mask:
         """True for offsets, named in some rows, that are in force in the polar mode of the same program."""

@@ -10,7 +10,7 @@ import numpy as np
 from polarcheck.columns.filling import fill_down, positions
 from polarcheck.columns.modes.offset_settings import Settings, X, in_order, of_list
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Columns, Floats, Mask, Rows, cached_property, repeated
+from polarcheck.foundation.arrays import Columns, Floats, Mask, Rows, cached_property, different, repeated
 from polarcheck.program.machines.code_lists import numbers
 from polarcheck.program.machines.offset_calls import steps_above
 from polarcheck.program.machines.own_language import shown
@@ -117,7 +117,7 @@ class Origin(Columns, frozen=True):
     @cached_property
     def set_to_unknown(self) -> Rows:
         """The rows that set X of a work offset to a value that is not known."""
-        return np.unique(self._settings.row[np.isnan(self._settings.value)])
+        return different(self._settings.row[np.isnan(self._settings.value)])
 
     def _x_of(self, number: float) -> tuple[Floats, Rows]:
         """X of a work offset in each row, NaN where it is not known, and the row that has set it; -1 where none has."""

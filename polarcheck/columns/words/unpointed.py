@@ -86,8 +86,9 @@ class Unpointed(Columns, frozen=True):
         )
         rank = np.zeros(len(self.trace.text.words))
         for words in (at_words[0], at_words[0] & at_words[1], at_words[0] & at_words[2]):
-            at, _ = self._in_file(np.flatnonzero(words))
-            rank[np.unique(at)] += 1
+            of_file = np.zeros(len(rank), bool)
+            of_file[self._in_file(np.flatnonzero(words))[0]] = True
+            rank += of_file
         return rank
 
     def of_program(self, index: int) -> Rows:

@@ -7,6 +7,7 @@ from polarcheck.rules.rule import ERROR, Hits, rule
 
 if TYPE_CHECKING:
     from polarcheck.columns.path.arcs import Arcs
+    from polarcheck.columns.path.ramps import Ramps
     from polarcheck.program.machines.machine import Machine
     from polarcheck.rules.hit import Details, Hit
     from polarcheck.rules.rule import Needs
@@ -16,10 +17,11 @@ if TYPE_CHECKING:
     ERROR,
     "the arc starts {start_radius:length/end_radius} from its center and "
     "ends {end_radius:length/start_radius} from it; "
-    "{tolerance:length} of difference is allowed",
+    "{tolerance:length} of difference is allowed{likewise}",
     values=("difference", "start_radius", "end_radius", "tolerance"),
     worse=("difference",),
     at=("X", "U", "C", "H", "I", "J"),
+    once="loop",
     doubts=END_IN_DOUBT,
     follows={
         "block": ("arc-center-on-path",),
@@ -34,7 +36,8 @@ def arc_end_off_circle(arcs: Arcs, machine: Machine) -> Hits:
     I and J lead from the start of the arc to its center, I along X and J along the virtual axis, both as they are and
     not on the diameter. From there the end must be as far away as the start. Beyond the tolerance the control stops
     with an alarm; older ones go on straight, others spiral. A word of the virtual axis that is missing, or an X that is
-    not on the diameter, shows here.
+    not on the diameter, shows here. Several such arcs of a contour are one finding: an end that is wrong is the start
+    of the next arc.
 
     Source: FANUC B-62754EN/01, p. 67; parameter 3410; alarm 020.
 
@@ -69,9 +72,16 @@ def arc_end_off_circle(arcs: Arcs, machine: Machine) -> Hits:
     return Hits(abs(arcs.start_radius - arcs.end_radius) > tolerance, values={"tolerance": tolerance})
 
 
-def details(hit: Hit, arcs: Arcs) -> Details:
+def details(hit: Hit, arcs: Arcs, ramps: Ramps, machine: Machine) -> Details:
     start, end = arcs.start_radius[hit.row], arcs.end_radius[hit.row]
-    return {"difference": abs(start - end), "start_radius": start, "end_radius": end}
+    same_loop = ramps.loop == ramps.loop[hit.row]
+    others = (abs(arcs.start_radius - arcs.end_radius) > machine.arcs.tolerance) & same_loop
+    return {
+        "difference": abs(start - end),
+        "start_radius": start,
+        "end_radius": end,
+        "likewise": hit.likewise(others),
+    }
 
 
 def needs(arcs: Arcs) -> Needs:
