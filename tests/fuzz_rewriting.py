@@ -39,6 +39,7 @@ from polarcheck.reports.pages.painting import plain
 from polarcheck.rewrite.compare import comparison_page as comparison
 from polarcheck.rewrite.compare.comparison_report import DIFFERS, SAME_METAL
 from polarcheck.rewrite.compare.revision_comparison import Revision, compared, default_tolerance
+from polarcheck.rewrite.compare.terms import Terms
 from polarcheck.rewrite.compensate.centering import centered
 from polarcheck.rewrite.compensate.compensating import Compensating, compensated
 from polarcheck.rewrite.convert.converting import converted
@@ -148,7 +149,7 @@ def compare(data: bytes, setup: int) -> Iterable[str]:
     for pair in ((old, old), (old, new), (new, old)):
         try:
             with time_limit(4 * _SECONDS):
-                result = compared(*pair, default_tolerance(*pair))
+                result = compared(*pair, Terms(default_tolerance(*pair)))
         except PolarcheckError as error:
             found.append(_said(error))
             continue

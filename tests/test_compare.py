@@ -27,9 +27,10 @@ from polarcheck.checking import check
 from polarcheck.commands import main
 from polarcheck.reports.pages.painting import plain
 from polarcheck.rewrite.compare import comparison_page as page
-from polarcheck.rewrite.compare import differences
+from polarcheck.rewrite.compare import differences, order_differences
 from polarcheck.rewrite.compare.comparison_report import DIFFERS, NOT_COMPARED, SAME_METAL, SAME_WORDS, Comparison
 from polarcheck.rewrite.compare.revision_comparison import Revision, compared, default_tolerance
+from polarcheck.rewrite.compare.terms import Terms
 from polarcheck.rewrite.schemas import schema
 
 HEXAGON = (ROOT / "sample_programs" / "hexagon.nc").read_text()
@@ -49,7 +50,7 @@ def revision(program: str, machine: str = "fanuc", tools: Sequence[str] = RADIUS
 
 def comparison(old: str | Revision, new: str | Revision, tolerance: float = 0.0, **arguments: Any) -> Comparison:
     pair = [revision(each, **arguments) if isinstance(each, str) else each for each in (old, new)]
-    return compared(pair[0], pair[1], tolerance or default_tolerance(*pair))
+    return compared(pair[0], pair[1], Terms(tolerance or default_tolerance(*pair)))
 
 
 def kinds(result: Comparison) -> set[str]:
@@ -348,7 +349,8 @@ def test_block_skip_is_compared_in_both_states() -> None:
 
 @pytest.mark.ci
 def test_lists_are_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(differences, "_LISTED", 2)
+    for module in (differences, order_differences):
+        monkeypatch.setattr(module, "_LISTED", 2)
     orders = "".join(f"M{code}\n" for code in (60, 61, 62))
     between = changed(("G28 H0", "M71\nG28 H0"), ("G97", "M72\nG97"), ("G0 X70.", "G4 P1\nG0 X70."))
     assert "and 1 other orders" in text(comparison(HEXAGON, between))

@@ -14,6 +14,7 @@ from polarcheck.foundation.time_limit import seconds_for, time_limit
 from polarcheck.program.reading.files import LARGEST
 from polarcheck.rewrite.compare.comparison_report import Comparison
 from polarcheck.rewrite.compare.revision_comparison import Revision, compared, default_tolerance
+from polarcheck.rewrite.compare.terms import Terms
 
 #: As for the command [mm].
 _LARGEST_TOLERANCE = 10.0
@@ -100,4 +101,4 @@ def _compared(function: str, old: Program, new: Program, tolerance: float | None
             )
             for program in (old, new)
         )
-        return compared(first, second, same or default_tolerance(first, second))
+        return compared(first, second, Terms(same or default_tolerance(first, second)))

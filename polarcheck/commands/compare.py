@@ -191,6 +191,7 @@ def _compared(old: Task, new: Task, tolerance: float | None, max_size: int) -> t
     from polarcheck.foundation.time_limit import seconds_for, time_limit
     from polarcheck.program.reading import files
     from polarcheck.rewrite.compare.revision_comparison import compared, default_tolerance
+    from polarcheck.rewrite.compare.terms import Terms
 
     data = [files.read_program(task.path, max_size) for task in (old, new)]
     seconds = max(task.settings.job.run.max_seconds for task in (old, new))
@@ -200,7 +201,7 @@ def _compared(old: Task, new: Task, tolerance: float | None, max_size: int) -> t
         inch = bool(len(units) and (units == Units.INCH).all())
         given = None if tolerance is None else tolerance * (MM_PER_INCH if inch else 1.0)
         length = given or default_tolerance(*revisions)
-        return compared(revisions[0], revisions[1], length), inch
+        return compared(revisions[0], revisions[1], Terms(length)), inch
 
 
 def _revision(task: Task, data: bytes) -> Revision:

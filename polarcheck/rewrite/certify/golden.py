@@ -21,15 +21,15 @@ from polarcheck.program.reading import files
 from polarcheck.reports.pages import executed
 from polarcheck.reports.pages.executed import Move
 from polarcheck.reports.pages.trace_report import without_lines
-from polarcheck.rewrite.compare.orders import Step, aligned, change_of, has_same_values, steps
+from polarcheck.rewrite.compare.comparison_report import Difference
+from polarcheck.rewrite.compare.order_differences import order_differences
+from polarcheck.rewrite.compare.orders import Step, steps
 from polarcheck.rules.quantity import rounded
 
 #: Of a golden trace [bytes]: 200,000 moves take 90 MB.
 _LARGEST = 100_000_000
 #: How a line begins that holds an order.
 _ORDER = b'{"order":'
-#: Further orders that differ than this are not listed.
-_LISTED = 20
 _Pair = tuple[float | None, float | None]
 
 
@@ -71,7 +71,7 @@ class GoldenOrder(msgspec.Struct, frozen=True):
         """Return the order in the form in which orders are compared; the section is one of its words."""
         place = f"{self.channel or ''} {self.section} {self.before}"
         values = tuple(np.nan if value is None else value for value in self.values)
-        return Step(number, (place, *self.tokens), values, self.order)
+        return Step(number, self.line or 0, (place, *self.tokens), values, self.order)
 
 
 class GoldenTrace(msgspec.Struct, frozen=True):
@@ -106,25 +106,16 @@ def changed_orders(ours: GoldenTrace, golden: GoldenTrace, tolerance: float, tit
 
     tolerance: of lengths [mm]. title: of the golden trace.
     """
-    pairs, changes = aligned(
-        [order.step(number) for number, order in enumerate(golden.orders)],
-        [order.step(number) for number, order in enumerate(ours.orders)],
-    )
-    found: list[tuple[int, str]] = []
-    for removed, added in changes:
-        was, is_now = (", ".join(step.text for step in steps[:_LISTED]) for steps in (removed, added))
-        change = f"{was} stands between other moves" if was == is_now else change_of(was, is_now)
-        found.append((ours.orders[added[0].row].line or 0 if added else 0, change))
-    for old, step in pairs:
-        of_golden, order = golden.orders[old.row], ours.orders[step.row]
-        if not has_same_values(old, step, tolerance):
-            found.append((order.line or 0, change_of(old.text, step.text)))
-        elif _distance(order, of_golden) > 2 * tolerance:
-            found.append((order.line or 0, f"{step.text} stands elsewhere on the path"))
-    for line, text in sorted(found)[:_LISTED]:
-        yield f"{f'line {line}: ' if line else ''}{text} against {title}"
-    if len(found) > _LISTED:
-        yield f"and {len(found) - _LISTED} other orders"
+
+    def moved(old: Step, step: Step) -> Difference | None:
+        if _distance(ours.orders[step.row], golden.orders[old.row]) <= 2 * tolerance:
+            return None
+        return Difference("place", f"{step.text} stands elsewhere on the path", new_line=step.line)
+
+    before, after = ([order.step(number) for number, order in enumerate(trace.orders)] for trace in (golden, ours))
+    for difference in order_differences(before, after, tolerance, moved):
+        where = f"line {difference.new_line}: " if difference.new_line else ""
+        yield f"{where}{difference.text} against {title}"
 
 
 def _distance(order: GoldenOrder, other: GoldenOrder) -> float:

@@ -8,13 +8,12 @@ from typing import NamedTuple
 import msgspec
 import numpy as np
 
-from polarcheck.foundation.arrays import Floats
 from polarcheck.foundation.errors import TooHardError
 from polarcheck.geometry.comparison.path_deviation import PathDeviation, path_deviation
-from polarcheck.geometry.polar import length
 from polarcheck.reports import counted
 from polarcheck.rewrite.certify.golden import GoldenTrace, changed_orders
 from polarcheck.rewrite.certify.tool_path import ToolPath, tool_path
+from polarcheck.rewrite.compare.differences import common_pieces
 
 #: F differs if it does so by more than this share: digits that a trace rounds away are no change.
 _SAME_FEED = 1e-6
@@ -219,24 +218,12 @@ def _feed_change(mine: ToolPath, theirs: ToolPath, tolerance: float) -> tuple[in
     """
     Return the line of the first move with another F than the golden trace has there, and both F; None without any.
 
-    Both paths are the same: moves at the same distance from the start belong together.
+    Both paths are the same.
     """
-    ends = [np.cumsum(_lengths(path)) for path in (mine, theirs)]
-    if not len(ends[0]) or not len(ends[1]):
-        return None
-    shares = np.unique(np.concatenate([end / (end[-1] or 1.0) for end in ends]))
-    wide = np.diff(np.append(0.0, shares)) * ends[0][-1] > 2 * tolerance
-    middle = (shares - np.diff(np.append(0.0, shares)) / 2)[wide]
-    rows = [np.minimum(np.searchsorted(end / (end[-1] or 1.0), middle), len(end) - 1) for end in ends]
-    now, before = mine.feed[rows[0]], theirs.feed[rows[1]]
-    differs = ~np.isclose(now, before, rtol=_SAME_FEED, atol=0, equal_nan=True)
+    ours, golden, length = common_pieces(mine.space(), theirs.space())
+    now, before = mine.feed[ours], theirs.feed[golden]
+    differs = (length > 2 * tolerance) & ~np.isclose(now, before, rtol=_SAME_FEED, atol=0, equal_nan=True)
     if not differs.any():
         return None
     first = int(np.argmax(differs))
-    return int(mine.line[rows[0][first]]), float(now[first]), float(before[first])
-
-
-def _lengths(path: ToolPath) -> Floats:
-    """Return the length of each move in space [mm], 0 where it is not known."""
-    on_plane = length(path.start, path.end, path.center, path.kind)
-    return np.hypot(np.nan_to_num(on_plane), np.nan_to_num(path.z_to - path.z_from))
+    return int(mine.line[ours[first]]), float(now[first]), float(before[first])

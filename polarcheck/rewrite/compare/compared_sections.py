@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 
 import msgspec
 import numpy as np
@@ -16,10 +16,9 @@ from polarcheck.foundation.states import FeedMode, Motion
 from polarcheck.geometry import polar
 from polarcheck.geometry.comparison.polyline import SpacePath
 from polarcheck.rewrite.compare.orders import Step, special_rows
+from polarcheck.rewrite.compare.terms import Terms
 from polarcheck.rules.wording.offsets import called_tool, to_give
 
-#: The tolerance of C outside sections [deg], independent of the tolerance of lengths.
-ANGLE = 0.001
 #: Angles less than this below a full turn count as 0 [deg].
 _NEAR_TURN = 0.01
 NOWHERE = complex("nan+nanj")
@@ -181,34 +180,17 @@ def _turned(trace: Trace, moves: Moves, section: int) -> tuple[SpacePath, bool]:
     return SpacePath(moves.start * turn, moves.end * turn, moves.center * turn, moves.kind, z_from, z_to), knows_z
 
 
-class Rewritten(msgspec.Struct, frozen=True):
+def outside(trace: Trace, steps: Sequence[Step], rows: Rows, terms: Terms) -> Stretch:
     """
-    How a program is compared with its rewritten version for another control.
+    Return what lies outside sections in these rows.
 
-    left_out: lines of the file whose moves and orders outside sections do not count; the moves after them continue from
-    there.
-    angle: tolerance of C after a section [deg].
+    terms: C is scaled so that the tolerance of angles counts as much as that of lengths.
     """
-
-    left_out: Collection[int] = ()
-    angle: float = ANGLE
-
-
-def outside(
-    trace: Trace, tolerance: float, steps: Sequence[Step], first: int, until: int, rewritten: Rewritten | None = None
-) -> Stretch:
-    """
-    Return what lies outside sections between two rows.
-
-    tolerance: of lengths [mm]; C is scaled so that ANGLE, or the angle of `rewritten`, counts as much.
-    until: the row after the last one.
-    """
-    rows = np.arange(first, until)
     rows = rows[trace.mode.section[rows] < 0]
     at_work = np.isin(trace.axes.motion[rows], (Motion.RAPID, Motion.LINE, Motion.CW, Motion.CCW))
     moving = at_work & trace.path.moves[rows] & ~trace.modal.in_cycle[rows] & trace.modal.uses_axes[rows]
     moving &= ~special_rows(trace)[rows]
-    left_out = np.isin(trace.blocks.line_in_file, list(rewritten.left_out if rewritten else ()))
+    left_out = np.isin(trace.blocks.line_in_file, list(terms.left_out))
     is_left_out = left_out[rows]
     row = rows[moving & ~is_left_out]
     starts, path = trace.blocks.starts, trace.path
@@ -219,7 +201,7 @@ def outside(
         lost = np.isnan(after) & trace.blocks.has(*words)[row]
         if lost.any() and not needs:
             needs = f"{words[0]} of line {int(trace.blocks.line_in_file[row[np.argmax(lost)]])} is not known"
-    if rewritten is not None and len(rows):
+    if terms.is_rewritten and len(rows):
         positions = [before(column, starts, np.nan)[rows[0]] for column in (path.x, path.z, path.c_angle)]
         named = [trace.blocks.has(*words)[row] for words in written]
         columns = [
@@ -228,14 +210,14 @@ def outside(
         ]
     (x_from, x_to), (z_from, z_to) = (_without_unknown(*column) for column in columns[:2])
     c_from, c_to = _without_unknown(*columns[2])
-    if rewritten is not None:
+    if terms.is_rewritten:
         turn = c_to - c_from
         turn -= 360 * np.round((turn - np.nan_to_num(path.c_turn[row])) / 360)
         c_from, c_to = _at_feed_alone(trace, row, left_out, c_from, c_from + turn)
     else:
         c_from, c_to = _continuous(c_from, c_to, path.c_turn[row])
     # C counts in the sense of the plane, which is not that of C on each lathe.
-    scale = tolerance / (rewritten.angle if rewritten else ANGLE) * trace.path.c_axis.sense
+    scale = terms.tolerance / terms.angle * trace.path.c_axis.sense
     start, end = z_from + 1j * x_from, z_to + 1j * x_to
     kind = trace.axes.motion[row].astype(np.int16)
     center = _centers(trace, row, start, end, kind)
@@ -243,7 +225,7 @@ def outside(
     of_stretch = SpacePath(start, end, center, kind, c_from * scale, c_to * scale)
     rows_kept = set(rows[~is_left_out].tolist())
     stretch = _stretch(trace, -1, rows, of_stretch, row, [step for step in steps if step.row in rows_kept], needs)
-    return msgspec.structs.replace(stretch, c_scale=scale, is_rewritten=rewritten is not None)
+    return msgspec.structs.replace(stretch, c_scale=scale, is_rewritten=terms.is_rewritten)
 
 
 def _without_unknown(start: Floats, end: Floats) -> tuple[Floats, Floats]:

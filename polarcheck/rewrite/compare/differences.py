@@ -2,25 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
 import msgspec
 import numpy as np
 
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Floats, Rows
+from polarcheck.foundation.arrays import Floats, Mask, Rows
 from polarcheck.foundation.states import FeedMode
 from polarcheck.geometry import polar
 from polarcheck.geometry.comparison.path_deviation import PathDeviation, path_deviation
+from polarcheck.geometry.comparison.polyline import SpacePath
 from polarcheck.geometry.tolerances import ZERO
 from polarcheck.rewrite.compare.compared_sections import Stretch, turn_of
 from polarcheck.rewrite.compare.comparison_report import Difference
-from polarcheck.rewrite.compare.orders import Step, aligned, change_of, has_same_values
+from polarcheck.rewrite.compare.order_differences import order_differences
+from polarcheck.rewrite.compare.orders import Step
+from polarcheck.rewrite.compare.terms import Terms
 from polarcheck.rules.quantity import Quantity, in_row, rounded
 
-#: F that differ by no more than this share are the same: mm and inch are rounded otherwise.
-_SAME_FEED = 1e-3
-#: The most changes of F, and of orders, in a list.
+#: The most changes of F in a list.
 _LISTED = 20
 
 
@@ -46,15 +47,32 @@ def deviation_of(old: Part, new: Part, tolerance: float) -> PathDeviation | None
     return path_deviation(old.stretch.path, new.stretch.path, tolerance)
 
 
-def differences(old: Part, new: Part, deviation: PathDeviation | None, tolerance: float) -> Iterator[Difference]:
-    """Yield what differs between two parts whose paths are known. tolerance: of lengths [mm]."""
-    is_same_path = deviation is None or deviation.is_within
+def differences(old: Part, new: Part, deviation: PathDeviation | None, terms: Terms) -> Iterator[Difference]:
+    """Yield what differs between two parts whose paths are known; deviation: None where the paths were not compared."""
+    has_other_moves = terms.has_other_moves and old.stretch.section >= 0
+    is_same_path = not has_other_moves and (deviation is None or deviation.is_within)
     if deviation is not None and not is_same_path:
         yield _of_path(old, new, deviation)
-        yield from _of_depth(old, new, tolerance)
-    if deviation is not None:
-        yield from _feeds_along(old, new, tolerance) if is_same_path else _feeds_apart(old, new)
-    yield from _orders(old, new, tolerance, is_same_path)
+    if not is_same_path:
+        yield from _of_depth(old, new, terms.tolerance)
+    if is_same_path and deviation is not None:
+        yield from _feeds_along(old, new, terms)
+    elif not is_same_path:
+        yield from _feeds_apart(old, new)
+
+    def moved(step: Step, new_step: Step) -> Difference | None:
+        """Return the difference of two orders in their positions on the path."""
+        here, there = _where(old, step.row), _where(new, new_step.row)
+        if not is_same_path or np.abs(np.nan_to_num(np.subtract(here, there))).max() <= 2 * terms.tolerance:
+            return None
+        places = [
+            _location(old, step.row, complex(*here[:2]), here[2]),
+            _location(new, new_step.row, complex(*there[:2]), there[2]),
+        ]
+        text = f"{step.text} stands elsewhere on the path: {places[0]} | {places[1]}"
+        return Difference("place", text, places[0], places[1], "", step.line, new_step.line)
+
+    yield from order_differences(old.stretch.steps, new.stretch.steps, terms.tolerance, moved)
 
 
 # ---- path ----
@@ -143,47 +161,55 @@ def _of_depth(old: Part, new: Part, tolerance: float) -> Iterator[Difference]:
 # ---- feeds ----
 
 
-def _feeds_along(old: Part, new: Part, tolerance: float) -> Iterator[Difference]:
+def common_pieces(old: SpacePath, new: SpacePath) -> tuple[Rows, Rows, Floats]:
+    """
+    Return the pieces of a path that two programs have in common, however moves divide it: for each piece the move of
+    either program, and the length on the old path [mm].
+    """
+    ends = [np.cumsum(_lengths(path)) for path in (old, new)]
+    if not min(float(end[-1]) if len(end) else 0.0 for end in ends) > ZERO:
+        return np.zeros(0, np.intp), np.zeros(0, np.intp), np.zeros(0)
+    shares = [end / end[-1] for end in ends]
+    cuts = np.union1d(*shares)
+    middle = (cuts + np.append(0.0, cuts[:-1])) / 2
+    moves = [np.minimum(np.searchsorted(share, middle), len(share) - 1) for share in shares]
+    return moves[0], moves[1], np.diff(cuts, prepend=0.0) * ends[0][-1]
+
+
+def _lengths(path: SpacePath) -> Floats:
+    """Return the length of each move in space [mm]; what is not known of it counts as 0."""
+    length = polar.length(path.start, path.end, path.center, path.kind)
+    return np.asarray(np.hypot(np.nan_to_num(length), np.nan_to_num(path.z_end - path.z_start)))
+
+
+def _feeds_along(old: Part, new: Part, terms: Terms) -> Iterator[Difference]:
     """
     Yield where F differs along the common path; all changes from one value to the same other value are one difference.
     """
-    distances = [_distances(part.stretch) for part in (old, new)]
-    totals = [float(distance.sum()) for distance in distances]
-    if min(totals) <= ZERO:
-        return
-    ends = [np.cumsum(distance) / total for distance, total in zip(distances, totals, strict=True)]
-    cuts = np.union1d(*ends)
-    middle, share = (cuts + np.append(0.0, cuts[:-1])) / 2, np.diff(cuts, prepend=0.0)
-    moves = [np.minimum(np.searchsorted(end, middle), len(end) - 1) for end in ends]
-    differs = _feed_differs(old.stretch, moves[0], new.stretch, moves[1])
+    before, after, length = common_pieces(old.stretch.path, new.stretch.path)
     # The ends of moves that are the same up to the tolerance leave slivers between them.
-    sliver = 10 * tolerance + 2 * abs(totals[0] - totals[1])
+    totals = [float(_lengths(part.stretch.path).sum()) for part in (old, new)]
+    sliver = 10 * terms.tolerance + 2 * abs(totals[0] - totals[1])
+    differs = _feed_differs(old.stretch, before, new.stretch, after, terms.feed) & (length > sliver)
     groups: dict[tuple[str, str], list[tuple[int, int, float]]] = {}
-    for index in np.flatnonzero(differs & (share * totals[0] > sliver)).tolist():
-        first, second = int(moves[0][index]), int(moves[1][index])
-        key = _feed(old, first), _feed(new, second)
-        groups.setdefault(key, []).append((first, second, float(share[index]) * totals[0]))
-    for (before, after), places in list(groups.items())[:_LISTED]:
+    for index in np.flatnonzero(differs).tolist():
+        first, second = int(before[index]), int(after[index])
+        groups.setdefault((_feed(old, first), _feed(new, second)), []).append((first, second, float(length[index])))
+    for (was, is_now), places in list(groups.items())[:_LISTED]:
         first, second, _ = places[0]
-        distance = sum(length for *_, length in places)
+        distance = sum(piece for *_, piece in places)
         row, new_row = int(old.stretch.row[first]), int(new.stretch.row[second])
-        text = f"{before} has become {after} along {old.quantity(distance, row).shown('length')}"
-        yield Difference("feed", text, before, after, "", old.line(row), new.line(new_row), rounded(distance))
+        text = f"{was} has become {is_now} along {old.quantity(distance, row).shown('length')}"
+        yield Difference("feed", text, was, is_now, "", old.line(row), new.line(new_row), rounded(distance))
     if len(groups) > _LISTED:
         yield Difference("feed", f"and {len(groups) - _LISTED} other changes of F")
 
 
-def _distances(stretch: Stretch) -> Floats:
-    path = stretch.path
-    length = polar.length(path.start, path.end, path.center, path.kind)
-    return np.asarray(np.hypot(np.nan_to_num(length), path.z_end - path.z_start))
-
-
-def _feed_differs(old: Stretch, first: Rows, new: Stretch, second: Rows) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
+def _feed_differs(old: Stretch, first: Rows, new: Stretch, second: Rows, share: float) -> Mask:
     rapid = old.rapid[first], new.rapid[second]
     feed, new_feed = old.feed[first], new.feed[second]
     is_known = ~np.isnan(feed), ~np.isnan(new_feed)
-    same = (np.abs(feed - new_feed) <= _SAME_FEED * np.abs(feed)) & (old.feed_mode[first] == new.feed_mode[second])
+    same = (np.abs(feed - new_feed) <= share * np.abs(feed)) & (old.feed_mode[first] == new.feed_mode[second])
     at_feed = ~rapid[0] & ~rapid[1]
     return np.asarray((rapid[0] != rapid[1]) | (at_feed & ((is_known[0] != is_known[1]) | (is_known[0] & ~same))))
 
@@ -217,51 +243,6 @@ def _changes_of_feed(stretch: Stretch) -> list[int]:
     feed = np.nan_to_num(stretch.feed, nan=-1)
     changes = (np.diff(feed) != 0) | (np.diff(stretch.rapid) != 0) | (np.diff(stretch.feed_mode) != 0)
     return [0, *(np.flatnonzero(changes) + 1).tolist()]
-
-
-# ---- orders ----
-
-
-def _orders(old: Part, new: Part, tolerance: float, is_same_path: bool) -> Iterator[Difference]:
-    pairs, changes = aligned(list(old.stretch.steps), list(new.stretch.steps))
-    differences = [_changed_orders(old, new, removed, added) for removed, added in changes]
-    for step, new_step in pairs:
-        difference = _of_pair(old, step, new, new_step, tolerance, is_same_path)
-        if difference is not None:
-            differences.append(difference)
-    differences.sort(key=lambda change: change.old_line or change.new_line or 0)
-    yield from differences[:_LISTED]
-    if len(differences) > _LISTED:
-        yield Difference("order", f"and {len(differences) - _LISTED} other orders")
-
-
-def _changed_orders(old: Part, new: Part, removed: Sequence[Step], added: Sequence[Step]) -> Difference:
-    if max(len(removed), len(added)) > _LISTED:
-        return Difference("order", f"{len(removed)} orders have become {len(added)} others")
-    was, is_now = (", ".join(step.text for step in steps) for steps in (removed, added))
-    old_line = old.line(removed[0].row) if removed else None
-    new_line = new.line(added[0].row) if added else None
-    return Difference("order", change_of(was, is_now), was or None, is_now or None, "", old_line, new_line)
-
-
-def _of_pair(
-    old: Part, step: Step, new: Part, new_step: Step, tolerance: float, is_same_path: bool
-) -> Difference | None:
-    """Return the difference of two orders with the same words: in their values, or in their position on the path."""
-    lines = old.line(step.row), new.line(new_step.row)
-    if not has_same_values(step, new_step, tolerance):
-        return Difference("order", change_of(step.text, new_step.text), step.text, new_step.text, "", *lines)
-    if not is_same_path:
-        return None
-    here, there = _where(old, step.row), _where(new, new_step.row)
-    if np.abs(np.nan_to_num(np.subtract(here, there))).max() <= 2 * tolerance:
-        return None
-    places = [
-        _location(old, step.row, complex(*here[:2]), here[2]),
-        _location(new, new_step.row, complex(*there[:2]), there[2]),
-    ]
-    text = f"{step.text} stands elsewhere on the path: {places[0]} | {places[1]}"
-    return Difference("place", text, places[0], places[1], "", *lines)
 
 
 def _where(part: Part, row: int) -> tuple[float, float, float]:

@@ -11,6 +11,7 @@ from polarcheck.columns.trace import Trace
 from polarcheck.rewrite.compare.comparison_report import Difference
 from polarcheck.rewrite.compare.differences import Part
 from polarcheck.rewrite.compare.orders import speed_in_force
+from polarcheck.rewrite.compare.terms import ANGLE, Terms
 from polarcheck.rules.quantity import rounded
 from polarcheck.rules.wording.offsets import called_tool
 
@@ -24,8 +25,6 @@ _NAMES = {
     "speed": "S",
     "plane": "the plane",
 }
-#: Angles that differ by less are equal [deg].
-_SAME_ANGLE = 1e-3
 
 
 class Entry(NamedTuple):
@@ -70,7 +69,7 @@ def _runs(on: bool) -> str:
     return "runs" if on else "stands"
 
 
-def entry_differences(old: Part, new: Part, *, is_same_machine: bool, tolerance: float) -> Iterator[Difference]:
+def entry_differences(old: Part, new: Part, *, is_same_machine: bool, terms: Terms) -> Iterator[Difference]:
     """Yield what differs at the start of two sections; across machines only states that mean the same on both."""
     before, after = (entry_of(part.trace, part.stretch.section) for part in (old, new))
     lines = [part.line(int(part.trace.mode.sections.enter[part.stretch.section])) for part in (old, new)]
@@ -87,7 +86,7 @@ def entry_differences(old: Part, new: Part, *, is_same_machine: bool, tolerance:
         apart = abs(value - new_value)
         if what == "c_angle":
             apart = min(apart, 360 - apart)
-        least = {"c_angle": _SAME_ANGLE, "radius": tolerance}.get(what, 0.0)
+        least = {"c_angle": ANGLE, "radius": terms.tolerance}.get(what, 0.0)
         if (np.isnan(value) and np.isnan(new_value)) or apart <= least:
             continue
         if what in ("radius", "c_angle") and np.isnan(apart):

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from difflib import SequenceMatcher
 from typing import NamedTuple
 
 import numpy as np
@@ -33,8 +31,6 @@ _OF_STATES = (
 _EVERYWHERE = ("M0", "M1", "M7", "M8", "M9")
 #: M codes that are compared across machines in another way, or that end programs.
 _COMPARED_OTHERWISE = ("M2", "M3", "M4", "M5", "M30")
-#: The most orders that are paired, not counting those that are equal at both ends.
-_PAIRED = 2000
 
 
 class Step(NamedTuple):
@@ -42,12 +38,14 @@ class Step(NamedTuple):
     An order beside the moves.
 
     row: row of the trace.
+    line: its line in the file; 0 in a golden trace.
     tokens: its codes, and the addresses of its values.
     values: the numbers at these addresses; lengths in mm, X as a radius.
     text: as it is reported.
     """
 
     row: int
+    line: int
     tokens: tuple[str, ...]
     values: tuple[float, ...]
     text: str
@@ -85,49 +83,6 @@ def not_comparable(trace: Trace) -> list[str]:
     comparable = {*_EVERYWHERE, *_COMPARED_OTHERWISE, *macro.subprogram_calls, *macro.program_returns}
     written = dict.fromkeys(f"M{value:g}" for value in trace.run.words.value[trace.blocks.m_words].tolist())
     return [word for word in written if word not in comparable]
-
-
-def aligned(
-    before: Sequence[Step], after: Sequence[Step]
-) -> tuple[list[tuple[Step, Step]], list[tuple[Sequence[Step], Sequence[Step]]]]:
-    """
-    Return the orders of two revisions that belong together, and what stands in the place of what, the old ones first.
-
-    Where too many differ, all between the equal ends are one change.
-    """
-    head = 0
-    while head < min(len(before), len(after)) and before[head].tokens == after[head].tokens:
-        head += 1
-    tail = 0
-    while tail < min(len(before), len(after)) - head and before[-1 - tail].tokens == after[-1 - tail].tokens:
-        tail += 1
-    pairs = [*zip(before[:head], after[:head], strict=True)]
-    if tail:
-        pairs += zip(before[-tail:], after[-tail:], strict=True)
-    removed, added = before[head : len(before) - tail], after[head : len(after) - tail]
-    changes: list[tuple[Sequence[Step], Sequence[Step]]] = []
-    if max(len(removed), len(added)) > _PAIRED:
-        return pairs, [(removed, added)]
-    matcher = SequenceMatcher(None, [step.tokens for step in removed], [step.tokens for step in added], autojunk=False)
-    for kind, low, high, new_low, new_high in matcher.get_opcodes():
-        if kind == "equal":
-            pairs += zip(removed[low:high], added[new_low:new_high], strict=True)
-        else:
-            changes.append((removed[low:high], added[new_low:new_high]))
-    return pairs, changes
-
-
-def has_same_values(step: Step, other: Step, tolerance: float) -> bool:
-    """Return True if two orders with the same words have the same values, up to a tolerance."""
-    pairs = zip(step.values, other.values, strict=True)
-    return all(abs(value - after) <= tolerance or (value != value and after != after) for value, after in pairs)
-
-
-def change_of(was: str, is_now: str) -> str:
-    """Return what has become of orders; "" stands for none."""
-    if not is_now:
-        return f"{was} is missing"
-    return f"{was} has become {is_now}" if was else f"{is_now} is added"
 
 
 def _rows(trace: Trace, is_same_machine: bool) -> Rows:
@@ -206,7 +161,8 @@ class _Reader:
         if not parts:
             return None
         tokens, values, texts = zip(*parts, strict=True)
-        return Step(row, tokens, tuple(value for value in values if value is not None), " ".join(texts))
+        line = int(self._trace.blocks.line_in_file[row])
+        return Step(row, line, tokens, tuple(value for value in values if value is not None), " ".join(texts))
 
     def _part(self, row: int, index: int) -> tuple[str, float | None, str] | None:
         """Return token, value and text of a word; None for a word that is compared elsewhere."""

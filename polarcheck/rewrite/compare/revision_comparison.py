@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 import re
 from collections import Counter
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple, TypeVar
 
 import msgspec
@@ -25,7 +25,7 @@ from polarcheck.foundation.finding import PolarSection
 from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.comparison.path_deviation import PathDeviation
 from polarcheck.program.reading.words import Blocks, Spans, Text
-from polarcheck.rewrite.compare.compared_sections import ANGLE, Rewritten, Stretch, of_sections, outside
+from polarcheck.rewrite.compare.compared_sections import Stretch, of_sections, outside
 from polarcheck.rewrite.compare.comparison_report import (
     DIFFERS,
     NOT_COMPARED,
@@ -42,6 +42,7 @@ from polarcheck.rewrite.compare.differences import Part, depth_of, deviation_of,
 from polarcheck.rewrite.compare.entry_state import entry_differences
 from polarcheck.rewrite.compare.orders import not_comparable, steps
 from polarcheck.rewrite.compare.pairing import paired
+from polarcheck.rewrite.compare.terms import Terms
 from polarcheck.rules.quantity import rounded
 from polarcheck.rules.tables import Tables
 from polarcheck.rules.wording.written import executed_word
@@ -112,19 +113,10 @@ def default_tolerance(old: Revision, new: Revision) -> float:
     return max(*steps_of, 1e-6)
 
 
-def compared(
-    old: Revision, new: Revision, tolerance: float, left_out: Collection[int] = (), *, is_rewritten: bool = False
-) -> Comparison:
-    """
-    Compare two revisions.
-
-    tolerance: lengths that differ by no more are the same [mm].
-    left_out: lines of the old file whose moves and orders outside sections are not compared.
-    is_rewritten: the new program is the old one for another control. Then sections are compared by the speed of the
-    tool center on the plane, not by the programmed F; after a section C may differ by the rounding of the last point.
-    """
+def compared(old: Revision, new: Revision, terms: Terms) -> Comparison:
+    """Compare two revisions."""
     is_same_machine = old.trace.machine == new.trace.machine
-    runs = [_Runs(*pair, tolerance, is_same_machine, left_out, is_rewritten) for pair in _pairs_of_runs(old, new)]
+    runs = [_Runs(*pair, is_same_machine, terms) for pair in _pairs_of_runs(old, new)]
     sections = [section for run in runs for section in run.sections()]
     between = [difference for run in runs for difference in run.outside()]
     reasons = sorted((reason for run in runs for reason in run.not_compared), key=lambda reason: not reason.matters)
@@ -148,7 +140,7 @@ def compared(
         old=_program(old),
         new=_program(new),
         verdict=verdict,
-        tolerance=tolerance,
+        tolerance=terms.tolerance,
         deviation=None if largest is None else rounded(largest[0]),
         is_exact=largest is None or largest[1],
         sections=_once(sections),
@@ -188,27 +180,17 @@ def _by_channel(revision: Revision) -> dict[str, dict[str, Tables]]:
 class _Runs:
     """Compares one run of each revision."""
 
-    def __init__(
-        self,
-        old: Tables,
-        new: Tables,
-        tolerance: float,
-        is_same_machine: bool,
-        left_out: Collection[int],
-        is_rewritten: bool,
-    ) -> None:
+    def __init__(self, old: Tables, new: Tables, is_same_machine: bool, terms: Terms) -> None:
         self._tables = old, new
-        self._left_out = left_out
-        self._is_rewritten = is_rewritten
-        self._tolerance = tolerance
+        self._terms = terms
         self._is_same_machine = is_same_machine
         self._traces: tuple[Trace, Trace] = old["trace"], new["trace"]
         self._steps = tuple(steps(trace, is_same_machine=is_same_machine) for trace in self._traces)
         self._old, self._new = (
-            of_sections(trace, tables["tool_center"], steps, is_feed_on_plane=is_rewritten)
+            of_sections(trace, tables["tool_center"], steps, is_feed_on_plane=terms.is_rewritten)
             for trace, tables, steps in zip(self._traces, self._tables, self._steps, strict=True)
         )
-        is_in_order = is_rewritten and len(self._old) == len(self._new)
+        is_in_order = terms.is_rewritten and len(self._old) == len(self._new)
         numbers = np.arange(len(self._old))
         self._partner, self._ordered = (numbers, numbers) if is_in_order else paired(self._old, self._new)
         #: Largest deviations [mm], and whether they are exact.
@@ -255,7 +237,7 @@ class _Runs:
             unlike = [
                 item
                 for text, item in of_side
-                if written[0][text] != written[1][text] or not (self._is_rewritten or text == f"#{item.variable}")
+                if written[0][text] != written[1][text] or not (self._terms.is_rewritten or text == f"#{item.variable}")
             ]
             if unlike:
                 value = unknown_value(trace, [unlike[0].variable], unlike, matters=True)
@@ -263,7 +245,7 @@ class _Runs:
 
     def _unknown_items(self, side: int) -> list[tuple[str, UnknownItem]]:
         """Return the values of a program that are not known, each as it is written behind its address."""
-        trace, left_out = self._traces[side], () if side else self._left_out
+        trace, left_out = self._traces[side], () if side else self._terms.left_out
         excerpt, line = trace.text.source.excerpt, trace.blocks.line_in_file
         return [
             (_ADDRESS.sub("", "".join(excerpt(item.start, item.end).split()).upper()), item)
@@ -303,9 +285,7 @@ class _Runs:
         state = [*_left_open(old, new)]
         state += [
             difference
-            for difference in entry_differences(
-                old, new, is_same_machine=self._is_same_machine, tolerance=self._tolerance
-            )
+            for difference in entry_differences(old, new, is_same_machine=self._is_same_machine, terms=self._terms)
             # What holds for all sections stands in the first.
             if (difference.what, difference.old, difference.new) not in reported
         ]
@@ -324,7 +304,7 @@ class _Runs:
             self.not_compared.append(NotCompared(reason, matters=False))
         if not why:
             self.not_compared += [
-                NotCompared(f"section of line {side.line}: {reason}", matters=not self._is_rewritten)
+                NotCompared(f"section of line {side.line}: {reason}", matters=not self._terms.is_rewritten)
                 for reason in _not_known_in_both(old, new)
             ]
         differences = [*differences, *_points(old, new), *state]
@@ -339,12 +319,12 @@ class _Runs:
     def _measured(self, old: Part, new: Part) -> tuple[str, PathDeviation | None, list[Difference]]:
         """Return why two parts were not compared, or the deviation of their paths and their differences."""
         try:
-            deviation = deviation_of(old, new, self._tolerance)
+            deviation = deviation_of(old, new, self._terms.tolerance)
         except TooHardError as error:
             return str(error), None, []
         if deviation is not None and np.isfinite(deviation.largest):
             self.measured.append((length_of(old, deviation), deviation.is_exact))
-        return "", deviation, list(differences(old, new, deviation, self._tolerance))
+        return "", deviation, list(differences(old, new, deviation, self._terms))
 
     def _why_not(self, old: Part, new: Part) -> str:
         for name, part in (("old", old), ("new", new)):
@@ -374,9 +354,14 @@ class _Runs:
             _gaps(self._traces[0], self._ordered), _gaps(self._traces[1], partners), strict=True
         ):
             keep_time()
-            rewritten = self._rewritten(low)
-            old = self._outside(0, low, high, rewritten)
-            new = _turned_to(old, self._outside(1, new_low, new_high, rewritten))
+            terms = self._terms_behind(low)
+            old, new = (
+                Part(trace, outside(trace, steps, np.arange(*gap), of_side))
+                for trace, steps, gap, of_side in zip(
+                    self._traces, self._steps, ((low, high), (new_low, new_high)), terms, strict=True
+                )
+            )
+            new = _turned_to(old, new)
             why = next(
                 (f"{name}: {part.stretch.needs}" for name, part in (("old", old), ("new", new)) if part.stretch.needs),
                 "",
@@ -388,20 +373,14 @@ class _Runs:
                 self.not_compared.append(NotCompared(f"outside of sections: {why}"))
         return differences
 
-    def _rewritten(self, row: int) -> Rewritten | None:
-        """Return how to compare the moves that begin with a row of the old program, after a section."""
-        if not self._is_rewritten:
-            return None
-        trace = self._traces[0]
-        radius = abs(float(trace.path.x_before[row])) if 0 < row < len(trace) else 0.0
-        angle = math.degrees(2 * self._tolerance / radius) if radius > self._tolerance else 0.0
-        return Rewritten(self._left_out, max(ANGLE, angle))
-
-    def _outside(self, side: int, first: int, until: int, rewritten: Rewritten | None) -> Part:
-        trace = self._traces[side]
-        if rewritten is not None and side:
-            rewritten = Rewritten((), rewritten.angle)
-        return Part(trace, outside(trace, self._tolerance, self._steps[side], first, until, rewritten))
+    def _terms_behind(self, row: int) -> tuple[Terms, Terms]:
+        """Return how to compare the moves of both programs that begin with a row of the old one, after a section."""
+        terms, trace = self._terms, self._traces[0]
+        if terms.is_rewritten:
+            radius = abs(float(trace.path.x_before[row])) if 0 < row < len(trace) else 0.0
+            angle = math.degrees(2 * terms.tolerance / radius) if radius > terms.tolerance else 0.0
+            terms = msgspec.structs.replace(terms, angle=max(terms.angle, angle))
+        return terms, msgspec.structs.replace(terms, left_out=())
 
 
 def _not_known_in_both(old: Part, new: Part) -> Iterator[str]:

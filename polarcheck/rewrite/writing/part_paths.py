@@ -16,7 +16,8 @@ from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.comparison.polyline import SpacePath
 from polarcheck.geometry.plane import arc_sweep
 from polarcheck.geometry.tolerances import CHORDS_OF_FILE
-from polarcheck.rewrite.compare.compared_sections import ANGLE, NOWHERE, Stretch, of_sections, outside
+from polarcheck.rewrite.compare.compared_sections import NOWHERE, Stretch, of_sections, outside
+from polarcheck.rewrite.compare.terms import ANGLE, Terms
 from polarcheck.rewrite.writing.outcome import refused_at
 from polarcheck.rules.tables import Tables
 
@@ -58,7 +59,7 @@ def path_on_part(tables: Tables, first: int = 0, until: int | None = None, chord
     sections = of_sections(trace, tables["tool_center"], ())
     parts = [_in_section(section) for section in sections if section.rows[0] < until and section.rows[-1] >= first]
     # With ANGLE as its tolerance C stays in degrees.
-    parts.append(_without_mode(outside(trace, ANGLE, (), first, until), chord))
+    parts.append(_without_mode(outside(trace, (), np.arange(first, until), Terms(ANGLE)), chord))
     moves = PartPath.concatenated(parts)
     moves = moves[(moves.row >= first) & (moves.row < until)]
     moves = moves[np.argsort(moves.row, kind="stable")]

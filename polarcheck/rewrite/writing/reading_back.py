@@ -14,6 +14,7 @@ from polarcheck.foundation.finding import SEVERITIES, Finding, Severity
 from polarcheck.geometry.comparison.path_deviation import path_deviation
 from polarcheck.rewrite.compare.comparison_report import Comparison, Difference, SectionPair
 from polarcheck.rewrite.compare.revision_comparison import Revision, compared, default_tolerance
+from polarcheck.rewrite.compare.terms import Terms
 from polarcheck.rewrite.writing.meanings import lost_orders, other_speeds
 from polarcheck.rewrite.writing.original import Original, read
 from polarcheck.rewrite.writing.outcome import Refusal, RefusedError
@@ -86,8 +87,8 @@ def read_back(
         Revision(program.path, program.settings.name, [("", program.tables)]) for program in (original, new)
     )
     tolerance = default_tolerance(old_side, new_side)
-    left_out = _without_moves(new, origin, decided)
-    result = compared(old_side, new_side, tolerance, left_out, is_rewritten=True)
+    terms = Terms(tolerance, left_out=_without_moves(new, origin, decided), is_rewritten=True)
+    result = compared(old_side, new_side, terms)
     differences = [*_of_comparison(result, decided, rapid_as_line, other_states, origin)]
     differences += [] if rapid_as_line else _times(result)
     if original.settings.machine != settings.machine:
