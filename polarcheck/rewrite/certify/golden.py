@@ -22,7 +22,7 @@ from polarcheck.reports.pages import executed
 from polarcheck.reports.pages.executed import Move
 from polarcheck.reports.pages.trace_report import without_lines
 from polarcheck.rewrite.compare.comparison_report import Difference
-from polarcheck.rewrite.compare.order_differences import order_differences
+from polarcheck.rewrite.compare.order_differences import listed, order_differences
 from polarcheck.rewrite.compare.orders import Step, steps
 from polarcheck.rules.quantity import rounded
 
@@ -113,7 +113,7 @@ def changed_orders(ours: GoldenTrace, golden: GoldenTrace, tolerance: float, tit
         return Difference("place", f"{step.text} stands elsewhere on the path", new_line=step.line)
 
     before, after = ([order.step(number) for number, order in enumerate(trace.orders)] for trace in (golden, ours))
-    for difference in order_differences(before, after, tolerance, moved):
+    for difference in listed(order_differences(before, after, tolerance, moved)):
         where = f"line {difference.new_line}: " if difference.new_line else ""
         yield f"{where}{difference.text} against {title}"
 

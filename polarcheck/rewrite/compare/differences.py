@@ -16,7 +16,7 @@ from polarcheck.geometry.comparison.polyline import SpacePath
 from polarcheck.geometry.tolerances import ZERO
 from polarcheck.rewrite.compare.compared_sections import Stretch, turn_of
 from polarcheck.rewrite.compare.comparison_report import Difference
-from polarcheck.rewrite.compare.order_differences import order_differences
+from polarcheck.rewrite.compare.order_differences import listed, order_differences
 from polarcheck.rewrite.compare.orders import Step
 from polarcheck.rewrite.compare.terms import Terms
 from polarcheck.rules.quantity import Quantity, in_row, rounded
@@ -59,6 +59,8 @@ def differences(old: Part, new: Part, deviation: PathDeviation | None, terms: Te
         yield from _feeds_along(old, new, terms)
     elif not is_same_path:
         yield from _feeds_apart(old, new)
+    if has_other_moves:
+        return
 
     def moved(step: Step, new_step: Step) -> Difference | None:
         """Return the difference of two orders in their positions on the path."""
@@ -72,7 +74,7 @@ def differences(old: Part, new: Part, deviation: PathDeviation | None, terms: Te
         text = f"{step.text} stands elsewhere on the path: {places[0]} | {places[1]}"
         return Difference("place", text, places[0], places[1], "", step.line, new_step.line)
 
-    yield from order_differences(old.stretch.steps, new.stretch.steps, terms.tolerance, moved)
+    yield from listed(order_differences(old.stretch.steps, new.stretch.steps, terms.tolerance, moved))
 
 
 # ---- path ----

@@ -24,7 +24,8 @@ def order_differences(
     """
     Return what differs between orders, sorted by line.
 
-    tolerance: of values, lengths in mm. moved: returns the difference of two equal orders in their positions.
+    old_line is None for what is added. tolerance: of values, lengths in mm. moved: returns the difference of two equal
+    orders in their positions.
     """
     pairs, changes = aligned(before, after)
     differences = [_of_change(*change) for change in changes]
@@ -33,11 +34,14 @@ def order_differences(
             differences.append(_of_change([step], [new_step]))
         elif (difference := moved(step, new_step)) is not None:
             differences.append(difference)
-    differences.sort(key=lambda change: change.old_line or change.new_line or 0)
-    if len(differences) > _LISTED:
-        rest = Difference("order", f"and {len(differences) - _LISTED} other orders")
-        return [*differences[:_LISTED], rest]
-    return differences
+    return sorted(differences, key=lambda change: change.old_line or change.new_line or 0)
+
+
+def listed(differences: list[Difference]) -> list[Difference]:
+    """Return the first differences of a long list, and how many more there are."""
+    if len(differences) <= _LISTED:
+        return differences
+    return [*differences[:_LISTED], Difference("order", f"and {len(differences) - _LISTED} other orders")]
 
 
 def aligned(before: Sequence[Step], after: Sequence[Step]) -> tuple[list[tuple[Step, Step]], list[_Change]]:

@@ -99,8 +99,8 @@ def _rows(trace: Trace, is_same_machine: bool) -> Rows:
 
 
 def _words_of_moves(trace: Trace) -> set[str]:
-    polar = trace.machine.polar
-    return {*_OF_MOVES, *polar.axis_addresses, *polar.rotary_words}
+    polar, arcs = trace.machine.polar, trace.machine.arcs
+    return {*_OF_MOVES, *polar.axis_addresses, *polar.rotary_words, arcs.radius_word}
 
 
 def _sets_state(trace: Trace) -> Mask:

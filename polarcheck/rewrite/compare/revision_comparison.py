@@ -5,7 +5,6 @@ compared.
 
 from __future__ import annotations
 
-import math
 import re
 from collections import Counter
 from collections.abc import Iterator, Sequence
@@ -20,12 +19,10 @@ from polarcheck.checking.polar_sections import polar_sections
 from polarcheck.columns.trace import Trace
 from polarcheck.columns.words.unknown_words import UnknownItem
 from polarcheck.foundation.arrays import Rows
-from polarcheck.foundation.errors import TooHardError
 from polarcheck.foundation.finding import PolarSection
 from polarcheck.foundation.time_limit import keep_time
-from polarcheck.geometry.comparison.path_deviation import PathDeviation
 from polarcheck.program.reading.words import Blocks, Spans, Text
-from polarcheck.rewrite.compare.compared_sections import Stretch, of_sections, outside
+from polarcheck.rewrite.compare.compared_sections import Stretch, of_sections
 from polarcheck.rewrite.compare.comparison_report import (
     DIFFERS,
     NOT_COMPARED,
@@ -38,14 +35,14 @@ from polarcheck.rewrite.compare.comparison_report import (
     SectionPair,
     Side,
 )
-from polarcheck.rewrite.compare.differences import Part, depth_of, deviation_of, differences, length_of
+from polarcheck.rewrite.compare.differences import Part, depth_of
 from polarcheck.rewrite.compare.entry_state import entry_differences
 from polarcheck.rewrite.compare.orders import not_comparable, steps
 from polarcheck.rewrite.compare.pairing import paired
+from polarcheck.rewrite.compare.parts_compared import Measured, measured, outside_compared
 from polarcheck.rewrite.compare.terms import Terms
 from polarcheck.rules.quantity import rounded
 from polarcheck.rules.tables import Tables
-from polarcheck.rules.wording.written import executed_word
 
 
 def has_same_words(old: Trace, new: Trace) -> bool:
@@ -185,12 +182,13 @@ class _Runs:
         self._terms = terms
         self._is_same_machine = is_same_machine
         self._traces: tuple[Trace, Trace] = old["trace"], new["trace"]
-        self._steps = tuple(steps(trace, is_same_machine=is_same_machine) for trace in self._traces)
+        old_steps, new_steps = (steps(trace, is_same_machine=is_same_machine) for trace in self._traces)
+        self._steps = old_steps, new_steps
         self._old, self._new = (
             of_sections(trace, tables["tool_center"], steps, is_feed_on_plane=terms.is_rewritten)
             for trace, tables, steps in zip(self._traces, self._tables, self._steps, strict=True)
         )
-        is_in_order = terms.is_rewritten and len(self._old) == len(self._new)
+        is_in_order = terms.is_kept and len(self._old) == len(self._new)
         numbers = np.arange(len(self._old))
         self._partner, self._ordered = (numbers, numbers) if is_in_order else paired(self._old, self._new)
         #: Largest deviations [mm], and whether they are exact.
@@ -237,7 +235,7 @@ class _Runs:
             unlike = [
                 item
                 for text, item in of_side
-                if written[0][text] != written[1][text] or not (self._terms.is_rewritten or text == f"#{item.variable}")
+                if written[0][text] != written[1][text] or not (self._terms.is_kept or text == f"#{item.variable}")
             ]
             if unlike:
                 value = unknown_value(trace, [unlike[0].variable], unlike, matters=True)
@@ -293,38 +291,26 @@ class _Runs:
             (difference.what, difference.old, difference.new) for difference in state if difference.what != "c_angle"
         )
         why = self._why_not(old, new)
-        deviation, differences = None, list[Difference]()
-        if not why:
-            why, deviation, differences = self._measured(old, new)
-        if why:
-            lines = f"section of line {side.line} (old) and {new_side.line} (new)"
-            self.not_compared.append(NotCompared(f"{lines}: {why}"))
-        elif old.stretch.as_programmed:
+        result = Measured(why) if why else measured(old, new, self._terms)
+        why = result.reason
+        self._take(result, f"section of line {side.line} (old) and {new_side.line} (new)")
+        if not why and old.stretch.as_programmed:
             reason = f"section of line {side.line}: {old.stretch.as_programmed}: compared as programmed, for any R"
             self.not_compared.append(NotCompared(reason, matters=False))
         if not why:
             self.not_compared += [
-                NotCompared(f"section of line {side.line}: {reason}", matters=not self._terms.is_rewritten)
+                NotCompared(f"section of line {side.line}: {reason}", matters=not self._terms.is_kept)
                 for reason in _not_known_in_both(old, new)
             ]
-        differences = [*differences, *_points(old, new), *state]
+        differences = [*result.differences, *state]
         change = "changed" if differences else "not compared" if why else "same"
         if number not in self._ordered:
             change = "moved"
             text = f"the section of line {side.line} runs at another place in the order, in line {new_side.line}"
             differences.insert(0, Difference("section", text, None, None, "", side.line, new_side.line))
-        largest = None if deviation is None else rounded(length_of(old, deviation))
+        deviation = result.deviation
+        largest = None if deviation is None else rounded(result.length)
         return SectionPair(side, new_side, change, largest, deviation is None or deviation.is_exact, differences)
-
-    def _measured(self, old: Part, new: Part) -> tuple[str, PathDeviation | None, list[Difference]]:
-        """Return why two parts were not compared, or the deviation of their paths and their differences."""
-        try:
-            deviation = deviation_of(old, new, self._terms.tolerance)
-        except TooHardError as error:
-            return str(error), None, []
-        if deviation is not None and np.isfinite(deviation.largest):
-            self.measured.append((length_of(old, deviation), deviation.is_exact))
-        return "", deviation, list(differences(old, new, deviation, self._terms))
 
     def _why_not(self, old: Part, new: Part) -> str:
         for name, part in (("old", old), ("new", new)):
@@ -350,37 +336,19 @@ class _Runs:
         """Return the differences between those sections that have the same order in both revisions."""
         differences: list[Difference] = []
         partners: Rows = self._partner[self._ordered]
-        for (low, high), (new_low, new_high) in zip(
-            _gaps(self._traces[0], self._ordered), _gaps(self._traces[1], partners), strict=True
-        ):
+        for gap, new_gap in zip(_gaps(self._traces[0], self._ordered), _gaps(self._traces[1], partners), strict=True):
             keep_time()
-            terms = self._terms_behind(low)
-            old, new = (
-                Part(trace, outside(trace, steps, np.arange(*gap), of_side))
-                for trace, steps, gap, of_side in zip(
-                    self._traces, self._steps, ((low, high), (new_low, new_high)), terms, strict=True
-                )
-            )
-            new = _turned_to(old, new)
-            why = next(
-                (f"{name}: {part.stretch.needs}" for name, part in (("old", old), ("new", new)) if part.stretch.needs),
-                "",
-            )
-            if not why:
-                why, _, differing = self._measured(old, new)
-                differences += [*differing, *_points(old, new)]
-            if why:
-                self.not_compared.append(NotCompared(f"outside of sections: {why}"))
+            result = outside_compared(self._traces, self._steps, (np.arange(*gap), np.arange(*new_gap)), self._terms)
+            differences += result.differences
+            self._take(result, "outside of sections")
         return differences
 
-    def _terms_behind(self, row: int) -> tuple[Terms, Terms]:
-        """Return how to compare the moves of both programs that begin with a row of the old one, after a section."""
-        terms, trace = self._terms, self._traces[0]
-        if terms.is_rewritten:
-            radius = abs(float(trace.path.x_before[row])) if 0 < row < len(trace) else 0.0
-            angle = math.degrees(2 * terms.tolerance / radius) if radius > terms.tolerance else 0.0
-            terms = msgspec.structs.replace(terms, angle=max(terms.angle, angle))
-        return terms, msgspec.structs.replace(terms, left_out=())
+    def _take(self, result: Measured, name: str) -> None:
+        """Note the deviation of a path, or why it was not measured."""
+        if result.reason:
+            self.not_compared.append(NotCompared(f"{name}: {result.reason}"))
+        elif result.deviation is not None and np.isfinite(result.deviation.largest):
+            self.measured.append((result.length, result.deviation.is_exact))
 
 
 def _not_known_in_both(old: Part, new: Part) -> Iterator[str]:
@@ -389,35 +357,6 @@ def _not_known_in_both(old: Part, new: Part) -> Iterator[str]:
         yield "C at its beginning is not known in either: at which angle of the part it mills is not compared"
     if not old.stretch.knows_z:
         yield "Z is not known in either: how deep it mills is not compared"
-
-
-def _points(old: Part, new: Part) -> Iterator[Difference]:
-    """Yield a difference where a number has no decimal point, and has one in the other revision."""
-    if old.trace.machine != new.trace.machine:
-        return
-    words = [_coordinates(part) for part in (old, new)]
-    if len(words[0]) != len(words[1]):
-        return
-    lacks = [part.trace.coordinates.is_unpointed[indices] for part, indices in zip((old, new), words, strict=True)]
-    differs = np.flatnonzero(lacks[0] != lacks[1])
-    if not len(differs):
-        return
-    before, after = (int(indices[differs[0]]) for indices in words)
-    texts = executed_word(old.trace.run, before), executed_word(new.trace.run, after)
-    lines = old.line(int(old.trace.run.row[before])), new.line(int(new.trace.run.row[after]))
-    without = "old" if lacks[0][differs[0]] else "new"
-    text = f"{texts[0]} has become {texts[1]}: without a decimal point the {without} one counts least increments"
-    yield Difference("point", text, *texts, "", *lines)
-
-
-def _coordinates(part: Part) -> Rows:
-    """Return the coordinates among the executed words of a part."""
-    trace, rows = part.trace, part.stretch.rows
-    if not len(rows):
-        return rows
-    low, high = np.searchsorted(trace.run.row, (rows[0], rows[-1] + 1))
-    indices = np.arange(low, high)[trace.coordinates.is_coordinate[low:high]]
-    return indices[np.isin(trace.run.row[indices], rows)]
 
 
 def _left_open(old: Part, new: Part) -> Iterator[Difference]:
@@ -429,17 +368,6 @@ def _left_open(old: Part, new: Part) -> Iterator[Difference]:
         yield Difference(
             "section", text, "left" if is_left[0] else "open", "left" if is_left[1] else "open", "", *lines
         )
-
-
-def _turned_to(old: Part, new: Part) -> Part:
-    """Return the new part with C shifted by full turns towards the old one: the C after a section counts its turns."""
-    paths = old.stretch.path, new.stretch.path
-    if not len(paths[0]) or not len(paths[1]):
-        return new
-    turn = 360 * new.stretch.c_scale
-    by = turn * round(float(paths[0].z_start[0] - paths[1].z_start[0]) / turn)
-    path = msgspec.structs.replace(paths[1], z_start=paths[1].z_start + by, z_end=paths[1].z_end + by)
-    return Part(new.trace, msgspec.structs.replace(new.stretch, path=path))
 
 
 def _gaps(trace: Trace, sections: Rows) -> list[tuple[int, int]]:

@@ -22,8 +22,8 @@ class Terms(msgspec.Struct, frozen=True):
     is_rewritten: the new program is the old one for another control. Then sections are compared by the speed of the
     tool center on the plane, not by the programmed F; C is compared at feed only, and after a section it may differ by
     the rounding of the last point.
-    has_other_moves: sections are divided into other moves, or compensated otherwise: their paths are compared on the
-    part, and here only their depths, values of F, orders and the state at their beginning.
+    has_other_moves: sections are divided into other moves, or compensated otherwise: their paths and orders are
+    compared for the program as a whole, and here only their depths, values of F and the state at their beginning.
     """
 
     tolerance: float
@@ -32,3 +32,8 @@ class Terms(msgspec.Struct, frozen=True):
     left_out: Collection[int] = ()
     is_rewritten: bool = False
     has_other_moves: bool = False
+
+    @property
+    def is_kept(self) -> bool:
+        """True where a rewriter writes what it does not change: what neither program says is the same in both."""
+        return self.is_rewritten or self.has_other_moves

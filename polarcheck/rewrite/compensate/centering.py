@@ -18,9 +18,8 @@ from polarcheck.rewrite.compensate.section_moves import Move, of_section
 from polarcheck.rewrite.writing.new_blocks import NewBlock, edit_before, edits_of, with_edits
 from polarcheck.rewrite.writing.original import Original
 from polarcheck.rewrite.writing.outcome import Figure, Outcome, RefusedError, refusal_at, refused_at
-from polarcheck.rewrite.writing.reading_back import read_back_on_part, require_equal
+from polarcheck.rewrite.writing.reading_back import changed_around, read_back_on_part, require_equal
 from polarcheck.rewrite.writing.style_of import style_of
-from polarcheck.rewrite.writing.unchanged import changed_outside, changed_words
 from polarcheck.rules.wording.offsets import called_tool, to_give
 
 #: The most by which rounding and chords may shift the path, in least increments.
@@ -53,7 +52,7 @@ def centered(original: Original) -> Outcome:
     step = float(np.max(trace.lengths.least_step))
     result = read_back_on_part(original, data, original.settings, origin, _INCREMENTS * step + 1e-3)
     require_equal(result)
-    if changed := [*changed_words(trace, result.new.trace), *changed_outside(trace, result.new.trace)]:
+    if changed := changed_around(original, result.new):
         raise RefusedError(changed)
     figures = [
         Figure("sections written as the path of the tool center", len(sections)),

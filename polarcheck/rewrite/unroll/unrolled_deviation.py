@@ -3,25 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import Any
 
 import msgspec
 import numpy as np
-from numpy.typing import NDArray
 
 from polarcheck.columns.path.moves import Moves
 from polarcheck.columns.path.tool_center import ToolCenter
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Floats, Mask, Rows, is_among
+from polarcheck.foundation.arrays import Floats, Mask, Rows
 from polarcheck.foundation.states import MM_PER_INCH, FeedMode, Motion
 from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.plane import arc_sweep
 from polarcheck.geometry.straight_axes.spiral_pieces import along, distances
+from polarcheck.rewrite.compare.parts_compared import outside_compared
+from polarcheck.rewrite.compare.terms import Terms
 from polarcheck.rewrite.unroll.axis_blocks import Steps, x_factor
 from polarcheck.rewrite.unroll.unrolled_feeds import method_of
-from polarcheck.rewrite.writing.meanings import lost_orders
 from polarcheck.rewrite.writing.original import Original
 from polarcheck.rewrite.writing.outcome import Figure, Refusal, refusal_at
+from polarcheck.rewrite.writing.reading_back import changed_orders, refusal_of
 from polarcheck.rewrite.writing.rotary_feed import block_times
 
 
@@ -31,32 +31,15 @@ def outside(old: Trace, new: Trace, rows: Mask) -> Iterator[Refusal]:
     if len(before) != len(after):
         yield Refusal(0, "the result runs other blocks outside of the sections")
         return
-    arcs = is_among(old.axes.motion, (Motion.CW, Motion.CCW))
-    columns: dict[str, tuple[NDArray[Any], NDArray[Any]]] = {
-        "X": (old.path.x, new.path.x),
-        "Z": (old.path.z, new.path.z),
-        "C": (_within_turn(old.path.c_angle), _within_turn(new.path.c_angle)),
-        "G code of motion": (old.axes.motion, new.axes.motion),
-        "feed mode": (old.feedrate.modal_feed_mode, new.feedrate.modal_feed_mode),
-        "F": (old.feedrate.feed_number, new.feedrate.feed_number),
-        "plane": (np.where(arcs, old.modal.state("plane"), 0), new.modal.state("plane")),
-        "distances": (old.modal.state("distance"), new.modal.state("distance")),
-    }
-    tolerance = max(old.machine.control.least_increment, old.machine.control.least_increment_inch * MM_PER_INCH)
-    for name, (was, is_now) in columns.items():
-        first, second = was[before].astype(np.float64), is_now[after].astype(np.float64)
-        if name == "plane":
-            second = np.where(first == 0, 0, second)
-        if name == "C":
-            second = first + (second - first + 180) % 360 - 180
-        limit = 1e-3 * np.abs(first) if name == "F" else tolerance
-        differs = ~(np.abs(first - second) <= limit) & ~(np.isnan(first) & np.isnan(second))
-        if differs.any():
-            yield refusal_at(old, before[np.argmax(differs)], f"{name} would differ from here on")
-
-
-def _within_turn(angle: Floats) -> Floats:
-    return np.asarray(angle % 360)
+    control = old.machine.control
+    terms = Terms(max(control.least_increment, control.least_increment_inch * MM_PER_INCH), has_other_moves=True)
+    section = np.searchsorted(old.mode.sections.enter, before)
+    for number in np.unique(section).tolist():
+        gap = section == number
+        result = outside_compared((old, new), ((), ()), (before[gap], after[gap]), terms)
+        if result.reason:
+            yield Refusal(0, f"not comparable: outside of sections: {result.reason}")
+        yield from map(refusal_of, result.differences)
 
 
 def depths(old: Trace, new: Trace, within: Mask) -> Iterator[Refusal]:
@@ -117,7 +100,7 @@ def measured(
     rows = np.flatnonzero(within & after.blocks.has("X", rotary) & after.modal.uses_axes)
     if len(rows) != len(steps):
         return Measured([Refusal(0, f"the result has {len(rows)} blocks of X and C, not {len(steps)}")], [])
-    differences = [*outside(old, after, ~within), *depths(old, after, within), *lost_orders(old, after, ())]
+    differences = [*outside(old, after, ~within), *depths(old, after, within), *changed_orders(old, after)]
     center: ToolCenter = original.tables["tool_center"]
     run = _Run(after, rows, method_of(old, feed))
     unknown = np.flatnonzero(np.isnan(run.x_before) | np.isnan(run.turn))

@@ -22,7 +22,6 @@ from polarcheck.rewrite.writing.new_blocks import with_edits
 from polarcheck.rewrite.writing.original import Original, read
 from polarcheck.rewrite.writing.outcome import Figure, Outcome, Refusal, RefusedError
 from polarcheck.rewrite.writing.style_of import style_of
-from polarcheck.rewrite.writing.unchanged import changed_words
 from polarcheck.rules.rule import load_all
 
 #: Groups of rules about text that a control reads otherwise, or not at all.
@@ -86,9 +85,8 @@ def unrolled(original: Original, options: Unrolling) -> Outcome:
     data, origin = with_edits(original, text.edits)
     new = read(original.path, data, original.settings)
     measured = unrolled_deviation.measured(original, new, text.spans, steps, options.chord_error, feed)
-    changed = list(changed_words(trace, new.trace))
-    if measured.differences or changed:
-        raise RefusedError([*measured.differences, *changed])
+    if measured.differences:
+        raise RefusedError(measured.differences)
     notes = [*measured.notes, *_notes(original, steps, time, feed), *_notes_of_text(trace, sections, writer, text)]
     return Outcome(data, origin, [], [*_sizes(original, data), *measured.figures], notes)
 

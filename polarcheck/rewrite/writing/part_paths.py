@@ -45,6 +45,13 @@ class PartPath(SpacePath, frozen=True):
     feed_mode: States
     feed: Floats
 
+    def position(self, row: int) -> tuple[float, float, float]:
+        """Return x, y and z of the tool on the part before a row of the trace; NaN before the first move."""
+        move = int(np.searchsorted(self.row, row)) - 1
+        if move < 0:
+            return np.nan, np.nan, np.nan
+        return float(self.end[move].real), float(self.end[move].imag), float(self.z_end[move])
+
 
 def path_on_part(tables: Tables, first: int = 0, until: int | None = None, chord: float = CHORD) -> PartPath:
     """

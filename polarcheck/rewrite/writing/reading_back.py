@@ -2,20 +2,25 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
+from typing import Any
 
 import msgspec
 import numpy as np
 
 from polarcheck.checking.check import check_runs
 from polarcheck.checking.settings import Settings
+from polarcheck.columns.trace import Trace
 from polarcheck.foundation.finding import SEVERITIES, Finding, Severity
 from polarcheck.geometry.comparison.path_deviation import path_deviation
 from polarcheck.rewrite.compare.comparison_report import Comparison, Difference, SectionPair
+from polarcheck.rewrite.compare.order_differences import order_differences
+from polarcheck.rewrite.compare.order_meanings import SAME_SPEED, meaning_steps, names_speeds, speed_steps
+from polarcheck.rewrite.compare.orders import Step, steps
 from polarcheck.rewrite.compare.revision_comparison import Revision, compared, default_tolerance
 from polarcheck.rewrite.compare.terms import Terms
-from polarcheck.rewrite.writing.meanings import lost_orders, other_speeds
 from polarcheck.rewrite.writing.original import Original, read
 from polarcheck.rewrite.writing.outcome import Refusal, RefusedError
 from polarcheck.rewrite.writing.part_paths import CHORD, path_on_part
@@ -33,6 +38,14 @@ _OF_ORDERS = frozenset(
 )
 #: Chords of arcs and the end of the search add no more than this share to a measured distance.
 _SHARE_OF_CHORDS = 0.05
+#: Values of orders that differ by no more are the same, as lengths [mm].
+_SAME = 1e-6
+#: Dwells that differ by no more are the same [s]: a control counts thousandths.
+_SAME_DWELL = 1e-3
+#: Words of compensation.
+_OF_SIDES = frozenset(("G40", "G41", "G42", "D"))
+#: Words of M, S and T in a text.
+_COMMANDS = re.compile(r"\b[MST]\d")
 #: Further differences than this are not listed.
 _LISTED = 20
 
@@ -83,17 +96,11 @@ def read_back(
     Raises RefusedError where the new program cannot be run once, TooHardError.
     """
     new = read(original.path, data, settings)
-    old_side, new_side = (
-        Revision(program.path, program.settings.name, [("", program.tables)]) for program in (original, new)
-    )
-    tolerance = default_tolerance(old_side, new_side)
-    terms = Terms(tolerance, left_out=_without_moves(new, origin, decided), is_rewritten=True)
-    result = compared(old_side, new_side, terms)
+    result = _comparison(original, new, left_out=_without_moves(new, origin, decided), is_rewritten=True)
     differences = [*_of_comparison(result, decided, rapid_as_line, other_states, origin)]
     differences += [] if rapid_as_line else _times(result)
     if original.settings.machine != settings.machine:
-        differences += lost_orders(original.trace, new.trace, decided)
-        differences += other_speeds(original.trace, new.trace, {*decided, *added_speeds}, origin)
+        differences += _changed_meanings(original.trace, new.trace, decided, added_speeds, origin)
     errors = list(_errors(original, new, origin))
     # The original may start a live tool by a code that its profile does not name, or leave it to the operator.
     open_orders = [refusal for rule, refusal in errors if rule.name in _OF_ORDERS]
@@ -155,7 +162,16 @@ def read_back_on_part(
             new_line = int(lines[1][new_path.row[deviation.place.new_move]])
         text = f"the tool would be {largest:.4f} mm away from its path, above {tolerance:g} mm"
         differences.append(Refusal(line, f"{text} (line {new_line} of the result)"))
-    differences += lost_orders(original.trace, new.trace, ())
+
+    def moved(step: Step, new_step: Step) -> Difference | None:
+        """Return a difference if the tool is elsewhere on the part at an order."""
+        apart = np.abs(np.subtract(old_path.position(step.row), new_path.position(new_step.row))).max()
+        if not apart > tolerance:
+            return None
+        text = f"{step.text} would stand elsewhere on the path"
+        return Difference("place", text, old_line=step.line, new_line=new_step.line)
+
+    differences += changed_orders(original.trace, new.trace, moved)
     notes: dict[str, str] = {}
     for rule, refusal in _errors(original, new, origin):
         if rule.group in noted:
@@ -163,6 +179,59 @@ def read_back_on_part(
         else:
             differences.append(refusal)
     return ReadBack(new, differences[:_LISTED], largest, list(notes.values()))
+
+
+def changed_around(original: Original, new: Original) -> list[Refusal]:
+    """
+    Return what differs around the moves of sections that are divided otherwise: outside of them, in their depths,
+    values of F, and the state at their beginning.
+    """
+    return [*_of_comparison(_comparison(original, new, has_other_moves=True))]
+
+
+def _comparison(original: Original, new: Original, **terms: Any) -> Comparison:
+    """Return the comparison of two programs; terms: those beside the tolerance."""
+    old_side, new_side = (
+        Revision(program.path, program.settings.name, [("", program.tables)]) for program in (original, new)
+    )
+    return compared(old_side, new_side, Terms(default_tolerance(old_side, new_side), **terms))
+
+
+def changed_orders(
+    old: Trace, new: Trace, moved: Callable[[Step, Step], Difference | None] = lambda *_: None
+) -> Iterator[Refusal]:
+    """
+    Yield what differs between the orders of two programs for the same machine.
+
+    G codes that are added, and G41 to G40 with D, say how the path is written, and are compared by the path. moved:
+    returns the difference of two equal orders in their positions.
+    """
+    before, after = (
+        [step for step in steps(trace, is_same_machine=True) if not _OF_SIDES.issuperset(step.tokens)]
+        for trace in (old, new)
+    )
+    for difference in order_differences(before, after, _SAME, moved):
+        if difference.old_line is not None or _COMMANDS.search(difference.text):
+            yield refusal_of(difference)
+
+
+def _changed_meanings(
+    old: Trace, new: Trace, decided: Collection[int], added_speeds: Collection[int], origin: Sequence[int]
+) -> Iterator[Refusal]:
+    """
+    Yield the orders that a program for another machine lacks at their place in the order, and the first speed that
+    differs.
+    """
+    ordered = [step for step in meaning_steps(old) if step.line not in decided]
+    for difference in order_differences(ordered, meaning_steps(new), _SAME_DWELL):
+        if difference.old_line is not None:
+            yield refusal_of(difference)
+    if names_speeds(old) and names_speeds(new):
+        left_out = {*decided, *added_speeds}
+        before = [step for step in speed_steps(old) if step.line not in left_out]
+        after = [step for step in speed_steps(new) if _line(origin, step.line) not in left_out]
+        for difference in order_differences(before, after, SAME_SPEED)[:1]:
+            yield refusal_of(difference)
 
 
 def require_equal(result: ReadBack) -> None:
@@ -181,26 +250,27 @@ def _without_moves(new: Original, origin: Sequence[int], decided: Collection[int
 
 def _of_comparison(
     result: Comparison,
-    decided: Collection[int],
-    rapid_as_line: bool,
-    other_states: Collection[str],
-    origin: Sequence[int],
+    decided: Collection[int] = (),
+    rapid_as_line: bool = False,
+    other_states: Collection[str] = (),
+    origin: Sequence[int] = (),
 ) -> Iterator[Refusal]:
     for section in result.sections:
         for difference in section.differences:
             is_rapid = rapid_as_line and difference.what == "feed" and difference.old == "rapid traverse"
             if not is_rapid and difference.what not in other_states:
-                yield _refusal(difference, section)
+                yield refusal_of(difference, section)
     for difference in result.outside:
         of_line = difference.old_line or (_line(origin, difference.new_line) if difference.new_line else 0)
         if difference.what != "order" or of_line not in decided:
-            yield _refusal(difference)
+            yield refusal_of(difference)
     for reason in result.not_compared:
         if reason.matters:
             yield Refusal(0, f"not comparable: {reason.reason}")
 
 
-def _refusal(difference: Difference, section: SectionPair | None = None) -> Refusal:
+def refusal_of(difference: Difference, section: SectionPair | None = None) -> Refusal:
+    """Return a difference as a reason not to write the new program."""
     line = difference.old_line or (section.old.line if section is not None and section.old is not None else 0)
     where = f" (line {difference.new_line} of the result)" if difference.new_line else ""
     return Refusal(line, f"{difference.text}{where}")

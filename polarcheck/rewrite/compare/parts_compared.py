@@ -1,0 +1,102 @@
+"""Compares two parts of programs: their paths, and what lies outside of their sections."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+
+import msgspec
+import numpy as np
+
+from polarcheck.columns.trace import Trace
+from polarcheck.foundation.arrays import Rows
+from polarcheck.foundation.errors import TooHardError
+from polarcheck.geometry.comparison.path_deviation import PathDeviation
+from polarcheck.rewrite.compare.compared_sections import outside
+from polarcheck.rewrite.compare.comparison_report import Difference
+from polarcheck.rewrite.compare.differences import Part, deviation_of, differences, length_of
+from polarcheck.rewrite.compare.orders import Step
+from polarcheck.rewrite.compare.terms import Terms
+from polarcheck.rules.wording.written import executed_word
+
+
+class Measured(msgspec.Struct, frozen=True):
+    """
+    Two parts compared.
+
+    reason: why they were not compared; empty if they were. deviation: of their paths, None where none was measured.
+    length: the largest deviation [mm], without the share of C outside sections. differences: what differs.
+    """
+
+    reason: str = ""
+    deviation: PathDeviation | None = None
+    length: float = 0.0
+    differences: Sequence[Difference] = ()
+
+
+def measured(old: Part, new: Part, terms: Terms) -> Measured:
+    """Compare two parts whose paths are known."""
+    has_other_moves = terms.has_other_moves and old.stretch.section >= 0
+    try:
+        deviation = None if has_other_moves else deviation_of(old, new, terms.tolerance)
+    except TooHardError as error:
+        return Measured(str(error))
+    differing = [*differences(old, new, deviation, terms), *([] if has_other_moves else _points(old, new))]
+    return Measured("", deviation, length_of(old, deviation), differing)
+
+
+def outside_compared(
+    traces: tuple[Trace, Trace], steps: tuple[Sequence[Step], Sequence[Step]], rows: tuple[Rows, Rows], terms: Terms
+) -> Measured:
+    """Compare what lies outside sections in these rows of two programs."""
+    if terms.is_kept and len(rows[0]):
+        radius = abs(float(traces[0].path.x_before[rows[0][0]]))
+        angle = math.degrees(2 * terms.tolerance / radius) if radius > terms.tolerance else 0.0
+        terms = msgspec.structs.replace(terms, angle=max(terms.angle, angle))
+    of_new = msgspec.structs.replace(terms, left_out=())
+    old = Part(traces[0], outside(traces[0], steps[0], rows[0], terms))
+    new = _turned_to(old, Part(traces[1], outside(traces[1], steps[1], rows[1], of_new)))
+    for name, part in (("old", old), ("new", new)):
+        if part.stretch.needs:
+            return Measured(f"{name}: {part.stretch.needs}")
+    return measured(old, new, terms)
+
+
+def _turned_to(old: Part, new: Part) -> Part:
+    """Return the new part with C shifted by full turns towards the old one: the C after a section counts its turns."""
+    paths = old.stretch.path, new.stretch.path
+    if not len(paths[0]) or not len(paths[1]):
+        return new
+    turn = 360 * new.stretch.c_scale
+    by = turn * round(float(paths[0].z_start[0] - paths[1].z_start[0]) / turn)
+    path = msgspec.structs.replace(paths[1], z_start=paths[1].z_start + by, z_end=paths[1].z_end + by)
+    return Part(new.trace, msgspec.structs.replace(new.stretch, path=path))
+
+
+def _points(old: Part, new: Part) -> Iterator[Difference]:
+    """Yield a difference where a number has no decimal point, and has one in the other revision."""
+    if old.trace.machine != new.trace.machine:
+        return
+    words = [_coordinates(part) for part in (old, new)]
+    if len(words[0]) != len(words[1]):
+        return
+    lacks = [part.trace.coordinates.is_unpointed[indices] for part, indices in zip((old, new), words, strict=True)]
+    differs = np.flatnonzero(lacks[0] != lacks[1])
+    if not len(differs):
+        return
+    before, after = (int(indices[differs[0]]) for indices in words)
+    texts = executed_word(old.trace.run, before), executed_word(new.trace.run, after)
+    lines = old.line(int(old.trace.run.row[before])), new.line(int(new.trace.run.row[after]))
+    without = "old" if lacks[0][differs[0]] else "new"
+    text = f"{texts[0]} has become {texts[1]}: without a decimal point the {without} one counts least increments"
+    yield Difference("point", text, *texts, "", *lines)
+
+
+def _coordinates(part: Part) -> Rows:
+    """Return the coordinates among the executed words of a part."""
+    trace, rows = part.trace, part.stretch.rows
+    if not len(rows):
+        return rows
+    low, high = np.searchsorted(trace.run.row, (rows[0], rows[-1] + 1))
+    indices = np.arange(low, high)[trace.coordinates.is_coordinate[low:high]]
+    return indices[np.isin(trace.run.row[indices], rows)]
