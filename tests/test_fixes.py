@@ -51,6 +51,8 @@ MINUS = DASH.replace("–", "-")
 OPEN = HEAD + "C10.\nX60.\nG0 Z50.\nM30\n"
 CLOSED = OPEN.replace("G0 Z", "G13.1\nG0 Z")
 BOTH = HEAD + "C–10.\nX60.\nG0 Z50.\nM30\n"
+#: Orders behind a section.
+AFTER = "G1 X99. F300\nM8 S3000\nG4 P500\nG28 H0\n"
 #: G13.1 would stand in offset mode: the fix makes another finding of it.
 REFUSED = "T0101\nG98 G0 X60. C0\nG12.1\nG1 G41 X40. F200\nC-10.\nG0 G40 X60.\nG0 Z50.\nM30\n"
 NO_NEWS = ("--tool", "1:radius=4")
@@ -323,6 +325,12 @@ def test_what_a_baseline_knows_is_not_fixed() -> None:
         ("X60.\n->", "the tool would make other moves in the polar mode"),
         ("Z50.->Z51.", "the axes would move otherwise in line 7, outside the polar mode"),
         ("G0 Z50.\n->G0 Z50.\nX100.\n", "the axes would make other moves outside the polar mode"),
+        ("M8 S3000\nG4 P500\n->S3000\nG4 P500\n", "an order would be another: M8"),
+        ("M8 S3000->M9 S3000", "an order would be another: M8"),
+        ("M8 S3000->M8 S300", "an order would be another: M8 S3000 has become M8 S300"),
+        ("G4 P500->G4 P50", "an order would be another: G4 P500 has become G4 P50"),
+        ("G28 H0\n->", "an order would be another: G28 H0 is missing"),
+        ("G1 X99. F300->G1 X99. F900", "F would be another in line 8, outside the polar mode"),
         ("–->–", "the finding would still be there, in line 4"),
         ("M30\n->G12.1\nM30\n", "the result would have polar-never-left in line 8: "),
         ("C–10.->C-10. G53", "the result would have "),
@@ -330,7 +338,7 @@ def test_what_a_baseline_knows_is_not_fixed() -> None:
 )
 def test_a_fix_that_does_more_than_it_says_is_not_made(wrong: str, said: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """A repair of a wrong dash with a fault of its own."""
-    program = DASH + "G0 Z50.\nM30\n"
+    program = f"{DASH}G0 Z50.\n{AFTER if wrong.partition('->')[0] in AFTER else ''}M30\n"
     old, new = wrong.split("->")
     (at,) = [found.start() for found in re.finditer(re.escape(old), program)][:1]
 

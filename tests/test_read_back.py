@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,7 +12,14 @@ from programs import job_of, machine_of, tables_of
 
 from polarcheck.checking.settings import Settings
 from polarcheck.geometry.comparison.path_deviation import path_deviation
+from polarcheck.rewrite.compensate import centering, compensating
+from polarcheck.rewrite.compensate.centering import centered
+from polarcheck.rewrite.compensate.compensating import Compensating, compensated
+from polarcheck.rewrite.unroll import unrolling
+from polarcheck.rewrite.unroll.unrolling import Unrolling
+from polarcheck.rewrite.unroll.unrolling import unrolled as unrolled_by
 from polarcheck.rewrite.writing.original import Original, read
+from polarcheck.rewrite.writing.outcome import RefusedError
 from polarcheck.rewrite.writing.part_paths import PartPath, path_on_part
 from polarcheck.rewrite.writing.reading_back import read_back
 from polarcheck.rules.tables import Tables
@@ -105,3 +113,73 @@ def test_what_differs_has_the_line_of_the_original(was: str, becomes: str, said:
     found = differences(original_of(text), text.replace(was, becomes, 1))
     assert any(each.startswith(said) for each in found), found
     assert not differences(original_of(text), text)
+
+
+#: Two sections, and what stands before, between and behind them.
+AROUND = """\
+%
+O1
+G21 G98 G40
+T0808
+M13 S3000
+M68
+G28 H0
+G0 X60. Z2. C0
+G12.1
+G1 Z-2. F500
+{first}
+M8
+{second}
+Z2.
+G13.1
+G4 P500
+G1 X70. F300
+G0 X60. C0
+G12.1
+G1 Z-3. F500
+{first}
+{second}
+Z2.
+G13.1
+M9
+G0 X100. Z50.
+M5
+M30
+%
+"""
+HALVES = {
+    "plain": ("X36. C0 F150\nC18.", "X-36.\nC-18.\nX36.\nC0"),
+    "left": ("G42 X36. C0 F150\nC18.", "X-36.\nC-18.\nX36.\nC0\nG40 X60."),
+}
+WORK = {
+    "unroll": (unrolling, lambda original: unrolled_by(original, Unrolling(feed="per-minute")), "plain"),
+    "compensate": (compensating, lambda original: compensated(original, Compensating("left")), "plain"),
+    "center": (centering, centered, "left"),
+}
+FAULTS = [
+    ("M8", ""), ("M8", "M9"), ("M13", "M14"), ("S3000", "S300"), ("M68", ""), ("G28 H0", ""), ("P500", "P600"),
+    ("F300", "F400"), ("T0808", "T0809"), ("Z-3.", "Z-3.01"), ("X70.", "X70.01"), ("M9", ""), ("F150", "F250"),
+]  # fmt: skip
+
+
+@pytest.mark.one_in(6)
+@pytest.mark.parametrize("name", WORK)
+@pytest.mark.parametrize("fault", FAULTS, ids="->".join)
+def test_a_rewriter_writes_nothing_where_an_order_a_depth_or_f_is_lost(
+    name: str, fault: tuple[str, str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    module, work, form = WORK[name]
+    first, second = HALVES[form]
+    original = original_of(AROUND.format(first=first, second=second), "fanuc-30i", "8:radius=4,nose=0", "9:radius=4")
+    real = module.with_edits
+    assert work(original).data
+
+    def wrong(*arguments: Any) -> tuple[bytes, list[int]]:
+        data, origin = real(*arguments)
+        was, becomes = (text.encode() for text in fault)
+        assert was in data
+        return data.replace(was, becomes, 1), origin
+
+    monkeypatch.setattr(module, "with_edits", wrong)
+    with pytest.raises(RefusedError):
+        work(original)

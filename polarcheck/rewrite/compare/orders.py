@@ -67,14 +67,16 @@ def special_rows(trace: Trace) -> Mask:
     return np.asarray(~modal.uses_axes | modal.in_cycle | with_other_words)
 
 
-def steps(trace: Trace, *, is_same_machine: bool) -> list[Step]:
+def steps(trace: Trace, *, is_same_machine: bool, with_sides: bool = True) -> list[Step]:
     """
     Return the orders of a program in the order in which they run.
 
     is_same_machine: both revisions are for the same machine. Otherwise only M codes count that mean the same on every
     lathe: which others a contour needs depends on the lathe.
+    with_sides: G40 to G42 and D count, too; False where the path of the tool center shows them.
     """
-    return list(filter(None, map(_Reader(trace, is_same_machine).step, _rows(trace, is_same_machine).tolist())))
+    reader = _Reader(trace, is_same_machine, with_sides)
+    return list(filter(None, map(reader.step, _rows(trace, is_same_machine).tolist())))
 
 
 def not_comparable(trace: Trace) -> list[str]:
@@ -136,12 +138,12 @@ def _of_calls(trace: Trace) -> Mask:
 class _Reader:
     """Reads the orders of rows in sequence."""
 
-    def __init__(self, trace: Trace, is_same_machine: bool) -> None:
+    def __init__(self, trace: Trace, is_same_machine: bool, with_sides: bool) -> None:
         self._trace = trace
         self._is_same_machine = is_same_machine
-        self._of_moves = _words_of_moves(trace)
+        self._of_moves = _words_of_moves(trace) | (set() if with_sides else {"D"})
         self._special = special_rows(trace)
-        self._turns_side = _turns_side(trace)
+        self._turns_side = _turns_side(trace) & with_sides
         self._is_left_out = trace.run.words.is_unreadable | _of_calls(trace)
         self._is_left_out[trace.blocks.g_words[_sets_state(trace)]] = True
         self._in_force: dict[str, float] = {}

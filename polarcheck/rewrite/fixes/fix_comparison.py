@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator, Sequence
 
@@ -13,17 +14,26 @@ from polarcheck.checking.engine import LISTED
 from polarcheck.checking.settings import Settings
 from polarcheck.columns.path.moves import Moves, z_along
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Floats, Mask
+from polarcheck.foundation.arrays import Floats, Mask, Rows
 from polarcheck.foundation.finding import SEVERITIES, FileReport, Finding
+from polarcheck.foundation.states import Motion
 from polarcheck.foundation.time_limit import seconds_for, time_limit
+from polarcheck.program.machines.axis_table import FIRST_NAMED
 from polarcheck.program.reading import source
 from polarcheck.program.reading.source import Source
+from polarcheck.rewrite.compare.order_differences import order_differences
+from polarcheck.rewrite.compare.order_meanings import meaning_steps
+from polarcheck.rewrite.compare.orders import steps
 from polarcheck.rules.repair import FEED, WAY, Z
 from polarcheck.rules.rule import load_all
 from polarcheck.rules.tables import Tables
 
 #: Lengths and feeds that differ by no more are equal [mm, mm/min].
 _SAME = 1e-6
+#: A G code, and nothing else.
+_ONE_CODE = re.compile(r"G[\d.]+")
+#: The address of a word.
+_ADDRESS = re.compile(r"\b[A-Z](?=[\d.+-])")
 _VERDICTS = ("pass", "unverified", "fail")
 
 
@@ -120,7 +130,11 @@ def _moves_otherwise(before: State, after: State, changes: Sequence[tuple[Collec
     if [name for name, _ in before.runs] != [name for name, _ in after.runs]:
         return "the program would run otherwise"
     for (_, old), (_, new) in zip(before.runs, after.runs, strict=True):
-        difference = _in_sections(old, new, changes) or _outside(old, new)
+        difference = (
+            _in_sections(old, new, changes)
+            or _outside(old, new, changes)
+            or _orders(old["trace"], new["trace"], changes)
+        )
         if difference:
             return difference
     return ""
@@ -139,9 +153,9 @@ def _in_sections(old: Tables, new: Tables, changes: Sequence[tuple[Collection[st
         line = _line(trace, was, ~same)
         return f"the tool center would take another way{line}"
     z = [_alike(*pair) for pair in zip(z_along(trace, was), z_along(new_trace, now), strict=True)]
-    if (wrong := ~(z[0] & z[1]) & ~_may_change(trace, was, changes, Z)).any():
+    if (wrong := ~(z[0] & z[1]) & ~_may_change(trace, was.row, changes, Z)).any():
         return f"Z would move otherwise{_line(trace, was, wrong)}"
-    if (wrong := ~_alike(was.feed, now.feed) & ~_may_change(trace, was, changes, FEED)).any():
+    if (wrong := ~_alike(was.feed, now.feed) & ~_may_change(trace, was.row, changes, FEED)).any():
         return f"F would be another{_line(trace, was, wrong)}"
     return ""
 
@@ -160,9 +174,9 @@ def _fixed_moves(tables: Tables, changes: Sequence[tuple[Collection[str], range]
     return fixed
 
 
-def _may_change(trace: Trace, moves: Moves, changes: Sequence[tuple[Collection[str], range]], what: str) -> Mask:
+def _may_change(trace: Trace, rows: Rows, changes: Sequence[tuple[Collection[str], range]], what: str) -> Mask:
     """
-    Return a mask of the moves that fixes declare to change: those of the edited lines.
+    Return a mask of the rows of moves that fixes declare to change: those of the edited lines.
 
     For the feed also those for which F words or G codes of motion in these lines are in force.
     """
@@ -175,10 +189,10 @@ def _may_change(trace: Trace, moves: Moves, changes: Sequence[tuple[Collection[s
             if what == FEED:
                 may |= np.isin(trace.feedrate.feed_word, trace.feedrate.feed_word[inside & trace.blocks.has("F")])
                 may |= np.isin(trace.modal.motion_word, trace.modal.motion_word[inside & trace.modal.sets("motion")])
-    return may[moves.row]
+    return may[rows]
 
 
-def _outside(old: Tables, new: Tables) -> str:
+def _outside(old: Tables, new: Tables, changes: Sequence[tuple[Collection[str], range]]) -> str:
     """Return the first difference in the moves outside the polar mode; empty if there is none."""
     trace, new_trace = old["trace"], new["trace"]
     was, now = (np.flatnonzero(revision.axes.moves & (revision.mode.section < 0)) for revision in (trace, new_trace))
@@ -195,6 +209,30 @@ def _outside(old: Tables, new: Tables) -> str:
     if not same.all():
         line = int(trace.blocks.line_in_file[was[np.argmin(same)]])
         return f"the axes would move otherwise in line {line}, outside the polar mode"
+    wrong = ~_alike(trace.feedrate.feed[was], new_trace.feedrate.feed[now]) & (trace.axes.motion[was] != Motion.RAPID)
+    wrong &= ~_may_change(trace, was, changes, FEED)
+    if wrong.any():
+        line = int(trace.blocks.line_in_file[was[np.argmax(wrong)]])
+        return f"F would be another in line {line}, outside the polar mode"
+    return ""
+
+
+def _orders(old: Trace, new: Trace, changes: Sequence[tuple[Collection[str], range]]) -> str:
+    """
+    Return the first order that the fixed program lacks or has otherwise; empty if there is none.
+
+    A fix may give the place of a G code that does nothing beside the mode to another, and make words readable.
+    """
+    meant = {step.line for step in meaning_steps(old)}
+    edited = {line for _, lines in changes for line in lines} - meant
+    words = old.run.words
+    addresses = {chr(number) for number in words.address[words.is_unreadable].tolist() if number < FIRST_NAMED}
+    before, after = (steps(trace, is_same_machine=True, with_sides=False) for trace in (old, new))
+    for difference in order_differences(before, after, _SAME):
+        is_code = _ONE_CODE.fullmatch(str(difference.old)) is not None and difference.old_line in edited
+        is_added = difference.old_line is None and addresses.issuperset(_ADDRESS.findall(difference.text))
+        if not is_code and not is_added:
+            return f"an order would be another: {difference.text}, in line {difference.old_line or difference.new_line}"
     return ""
 
 

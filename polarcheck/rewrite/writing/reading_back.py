@@ -42,8 +42,6 @@ _SHARE_OF_CHORDS = 0.05
 _SAME = 1e-6
 #: Dwells that differ by no more are the same [s]: a control counts thousandths.
 _SAME_DWELL = 1e-3
-#: Words of compensation.
-_OF_SIDES = frozenset(("G40", "G41", "G42", "D"))
 #: Words of M, S and T in a text.
 _COMMANDS = re.compile(r"\b[MST]\d")
 #: Further differences than this are not listed.
@@ -206,10 +204,7 @@ def changed_orders(
     G codes that are added, and G41 to G40 with D, say how the path is written, and are compared by the path. moved:
     returns the difference of two equal orders in their positions.
     """
-    before, after = (
-        [step for step in steps(trace, is_same_machine=True) if not _OF_SIDES.issuperset(step.tokens)]
-        for trace in (old, new)
-    )
+    before, after = (steps(trace, is_same_machine=True, with_sides=False) for trace in (old, new))
     for difference in order_differences(before, after, _SAME, moved):
         if difference.old_line is not None or _COMMANDS.search(difference.text):
             yield refusal_of(difference)
