@@ -21,6 +21,7 @@ from polarcheck.rewrite.unroll.axis_blocks import Steps, x_factor
 from polarcheck.rewrite.unroll.unrolled_feeds import method_of
 from polarcheck.rewrite.writing.original import Original
 from polarcheck.rewrite.writing.outcome import Figure, Refusal, refusal_at
+from polarcheck.rewrite.writing.part_paths import path_on_part
 from polarcheck.rewrite.writing.reading_back import changed_orders, refusal_of
 from polarcheck.rewrite.writing.rotary_feed import block_times
 
@@ -70,6 +71,8 @@ _TOGETHER = 20_000
 #: Tolerance for rounding of F, C and X, as a share.
 _SHARE = 1e-3
 _SAME = 1e-6
+#: How far apart the tool may stand at an order [mm].
+_AT_ORDERS = 0.1
 
 
 class Measured(msgspec.Struct, frozen=True):
@@ -100,7 +103,9 @@ def measured(
     rows = np.flatnonzero(within & after.blocks.has("X", rotary) & after.modal.uses_axes)
     if len(rows) != len(steps):
         return Measured([Refusal(0, f"the result has {len(rows)} blocks of X and C, not {len(steps)}")], [])
-    differences = [*outside(old, after, ~within), *depths(old, after, within), *changed_orders(old, after)]
+    paths = [path_on_part(program.tables, chord=np.inf) for program in (original, new)]
+    differences = [*outside(old, after, ~within), *depths(old, after, within)]
+    differences += changed_orders(old, after, paths[0], paths[1], _AT_ORDERS)
     center: ToolCenter = original.tables["tool_center"]
     run = _Run(after, rows, method_of(old, feed))
     unknown = np.flatnonzero(np.isnan(run.x_before) | np.isnan(run.turn))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from typing import Any
 
 import msgspec
@@ -23,7 +23,7 @@ from polarcheck.rewrite.compare.revision_comparison import Revision, compared, d
 from polarcheck.rewrite.compare.terms import Terms
 from polarcheck.rewrite.writing.original import Original, read
 from polarcheck.rewrite.writing.outcome import Refusal, RefusedError
-from polarcheck.rewrite.writing.part_paths import CHORD, path_on_part
+from polarcheck.rewrite.writing.part_paths import CHORD, PartPath, path_on_part
 from polarcheck.rules.rule import Rule, load_all
 
 #: Times of a section that differ by less than this share, or by less than this [s], are the same.
@@ -160,16 +160,7 @@ def read_back_on_part(
             new_line = int(lines[1][new_path.row[deviation.place.new_move]])
         text = f"the tool would be {largest:.4f} mm away from its path, above {tolerance:g} mm"
         differences.append(Refusal(line, f"{text} (line {new_line} of the result)"))
-
-    def moved(step: Step, new_step: Step) -> Difference | None:
-        """Return a difference if the tool is elsewhere on the part at an order."""
-        apart = np.abs(np.subtract(old_path.position(step.row), new_path.position(new_step.row))).max()
-        if not apart > tolerance:
-            return None
-        text = f"{step.text} would stand elsewhere on the path"
-        return Difference("place", text, old_line=step.line, new_line=new_step.line)
-
-    differences += changed_orders(original.trace, new.trace, moved)
+    differences += changed_orders(original.trace, new.trace, old_path, new_path, tolerance)
     notes: dict[str, str] = {}
     for rule, refusal in _errors(original, new, origin):
         if rule.group in noted:
@@ -196,14 +187,23 @@ def _comparison(original: Original, new: Original, **terms: Any) -> Comparison:
 
 
 def changed_orders(
-    old: Trace, new: Trace, moved: Callable[[Step, Step], Difference | None] = lambda *_: None
+    old: Trace, new: Trace, old_path: PartPath, new_path: PartPath, tolerance: float
 ) -> Iterator[Refusal]:
     """
-    Yield what differs between the orders of two programs for the same machine.
+    Yield what differs between the orders of two programs for the same machine, and where the tool is elsewhere on the
+    part at an order.
 
-    G codes that are added, and G41 to G40 with D, say how the path is written, and are compared by the path. moved:
-    returns the difference of two equal orders in their positions.
+    G codes that are added, and G41 to G40 with D, say how the path is written, and are compared by the path.
+    tolerance: of the paths [mm].
     """
+
+    def moved(step: Step, new_step: Step) -> Difference | None:
+        apart = np.abs(np.subtract(old_path.position(step.row), new_path.position(new_step.row))).max()
+        if not apart > tolerance:
+            return None
+        text = f"{step.text} would stand elsewhere on the path"
+        return Difference("place", text, old_line=step.line, new_line=new_step.line)
+
     before, after = (steps(trace, is_same_machine=True, with_sides=False) for trace in (old, new))
     for difference in order_differences(before, after, _SAME, moved):
         if difference.old_line is not None or _COMMANDS.search(difference.text):
