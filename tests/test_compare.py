@@ -277,6 +277,15 @@ def test_arcs_outside_of_sections() -> None:
     assert comparison(by_radius, program.format("G2 X60. Z-3. R5. F0.1")).verdict == DIFFERS
 
 
+@pytest.mark.ci
+def test_another_origin_on_another_machine_is_no_verdict() -> None:
+    program = "O1\nG21 G99\nT0101\nG54\nG0 X50. Z2.\nG1 Z-5. F0.1\nM30\n"
+    old = revision(program, "fanuc-30i")
+    assert comparison(old, revision(program, "haas-lathe")).verdict == SAME_METAL
+    for words in ("G55", "G54\nG52 Z1.", "G54\nG10 L2 P1 Z-5."):
+        assert comparison(old, revision(program.replace("G54", words), "haas-lathe")).verdict == NOT_COMPARED, words
+
+
 # ---- what is not known ----
 
 

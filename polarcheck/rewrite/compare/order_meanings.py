@@ -12,6 +12,7 @@ from polarcheck.foundation.arrays import stretch
 from polarcheck.foundation.states import Units
 from polarcheck.program.machines.m_codes import SWITCHED
 from polarcheck.rewrite.compare.orders import Step
+from polarcheck.rules.wording.written import executed_word
 
 #: Lists of G codes; what the others do is compared as paths, feeds and states.
 _G_LISTS = (
@@ -21,6 +22,12 @@ _G_LISTS = (
     *("thread_cutting", "turning_cycle", "threading_cycle", "facing_cycle", "repetitive_cycle", "local_shift"),
     *("coordinate_setting", "coordinate_preset", "constant_surface_speed", "constant_surface_speed_off"),
 )
+#: Lists of codes that put the coordinates elsewhere; the no word of a block goes with those without words.
+_SHIFTS = (
+    *("work_offset", "work_offset_extended", "scaling", "scaling_off", "rotation", "rotation_off", "mirror_image"),
+    *("mirror_image_off", "data_input", "local_shift", "coordinate_setting"),
+)
+_WITHOUT_WORDS = ("work_offset", "scaling_off", "rotation_off", "mirror_image_off")
 #: Lists of M codes.
 _M_LISTS = (*(name for pair in SWITCHED for name in pair), "spindle_orientation", "optional_stop", "program_end")
 #: M5 stops whichever spindle runs, and M3 starts a live tool without codes of its own: which one turns where a section
@@ -28,6 +35,23 @@ _M_LISTS = (*(name for pair in SWITCHED for name in pair), "spindle_orientation"
 _ANY_SPINDLE = {"live_tool_on": "spindle_on", "live_tool_off": "spindle_off"}
 #: Speeds are whole numbers: those by G96 are rounded where the units are others.
 SAME_SPEED = 1.0
+
+
+def shift_steps(trace: Trace) -> list[Step]:
+    """Return the orders that put the coordinates elsewhere, each with its code and the words that go with it."""
+    words, row = trace.run.words, trace.run.row
+    result = []
+    for step in meaning_steps(trace):
+        (name,), text = step.tokens, step.text.partition(" ")[0]
+        if name not in _SHIFTS:
+            continue
+        low, high = stretch(row, step.row, step.row + 1)
+        beside = low + np.flatnonzero(~np.isin(words.address[low:high], np.frombuffer(b"GMNOSTF/", np.uint8)))
+        if name not in _WITHOUT_WORDS:
+            text += "".join(f" {executed_word(trace.run, index)}" for index in beside.tolist())
+        if len(beside) or name != "coordinate_setting":
+            result.append(Step(step.row, step.line, (text,), (), text))
+    return result
 
 
 def meaning_steps(trace: Trace) -> list[Step]:

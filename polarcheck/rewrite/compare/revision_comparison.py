@@ -37,6 +37,8 @@ from polarcheck.rewrite.compare.comparison_report import (
 )
 from polarcheck.rewrite.compare.differences import Part, depth_of
 from polarcheck.rewrite.compare.entry_state import entry_differences
+from polarcheck.rewrite.compare.order_differences import order_differences
+from polarcheck.rewrite.compare.order_meanings import shift_steps
 from polarcheck.rewrite.compare.orders import not_comparable, steps
 from polarcheck.rewrite.compare.pairing import paired
 from polarcheck.rewrite.compare.parts_compared import Measured, measured, outside_compared
@@ -217,6 +219,11 @@ class _Runs:
             if codes:
                 reason = f"{name}: {', '.join(codes)}: what another lathe needs in their place is not compared"
                 yield NotCompared(reason, matters=False)
+        shifts = [shift_steps(trace) for trace in self._traces]
+        if (first := next(iter(order_differences(shifts[0], shifts[1], self._terms.tolerance)), None)) is not None:
+            where = f"line {first.old_line} (old)" if first.old_line else f"line {first.new_line} (new)"
+            reason = f"where codes as {first.old or first.new} of {where} put the coordinates on another lathe"
+            yield NotCompared(f"{reason} is not compared", matters=not self._terms.is_rewritten)
 
     def _other_unknown_values(self) -> Iterator[NotCompared]:
         """
