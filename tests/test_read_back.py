@@ -15,6 +15,8 @@ from polarcheck.geometry.comparison.path_deviation import path_deviation
 from polarcheck.rewrite.compensate import centering, compensating
 from polarcheck.rewrite.compensate.centering import centered
 from polarcheck.rewrite.compensate.compensating import Compensating, compensated
+from polarcheck.rewrite.roll import rolling
+from polarcheck.rewrite.roll.rolling import Rolling, rolled
 from polarcheck.rewrite.unroll import unrolling
 from polarcheck.rewrite.unroll.unrolling import Unrolling
 from polarcheck.rewrite.unroll.unrolling import unrolled as unrolled_by
@@ -155,6 +157,7 @@ WORK = {
     "unroll": (unrolling, lambda original: unrolled_by(original, Unrolling(feed="per-minute")), "left"),
     "compensate": (compensating, lambda original: compensated(original, Compensating("left")), "plain"),
     "center": (centering, centered, "left"),
+    "roll": (rolling, lambda original: rolled(original, Rolling(feed="per-minute")), "left"),
 }
 #: Each is a list of replacements.
 FAULTS = [
@@ -172,13 +175,19 @@ FAULTS = [
 ]
 
 
-@looped(("name", "faults"), [(name, faults) for name in WORK for faults in FAULTS], one_in=5)
+#: roll writes F anew, and lengths up to its tolerance.
+CASES = [(name, faults) for name in WORK for faults in (FAULTS[1:8:2] if name == "roll" else FAULTS)]
+
+
+@looped(("name", "faults"), CASES, one_in=7)
 def test_a_rewriter_writes_nothing_where_an_order_a_depth_or_f_is_lost(
     name: str, faults: list[tuple[str, str]], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     module, work, form = WORK[name]
     first, second = HALVES[form]
     original = original_of(AROUND.format(first=first, second=second), "fanuc-30i", "8:radius=4,nose=0", "9:radius=4")
+    if name == "roll":
+        original = original_of(WORK["unroll"][1](original).data.decode(), "fanuc-30i")
     real = module.with_edits
     assert work(original).data
 
