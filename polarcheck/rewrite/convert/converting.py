@@ -68,7 +68,7 @@ def converted(original: Original, target: Settings) -> Outcome:
         added_speeds=translation.added_speeds,
     )
     _require_equal(result, original, target)
-    decisions = sorted({*outside.decisions, *inside.decisions}, key=lambda decision: decision.line)
+    decisions = sorted(dict.fromkeys((*outside.decisions, *inside.decisions)), key=lambda decision: decision.line)
     # What an M code is that is to be decided says whether the live tool runs.
     if result.open_orders and not any(_M_CODE.match(decision.text) for decision in decisions):
         edits += _remarks(original, target, style, result.open_orders)
