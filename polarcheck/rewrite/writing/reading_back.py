@@ -198,8 +198,9 @@ def changed_orders(
     """
 
     def moved(step: Step, new_step: Step) -> Difference | None:
-        apart = np.abs(np.subtract(old_path.position(step.row), new_path.position(new_step.row))).max()
-        if not apart > tolerance:
+        here, there = old_path.position(step.row), new_path.position(new_step.row)
+        # NaN before the first move: of both or of neither.
+        if np.allclose(here, there, rtol=0, atol=tolerance, equal_nan=True):
             return None
         text = f"{step.text} would stand elsewhere on the path"
         return Difference("place", text, old_line=step.line, new_line=new_step.line)
