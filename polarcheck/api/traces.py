@@ -156,26 +156,14 @@ def _trace(call: Call, program: Program, given: str) -> Trace:
         channels = [str(run["trace"].text.source.channel) for run in tables]
     counts = [len(part) for part in parts]
     moves = parts[0].concatenated(parts)
+    columns = {name: getattr(moves, name) for name in Trace.__struct_fields__ if hasattr(moves, name)}
+    columns |= {
+        "kind": _texts([KINDS.get(Motion(kind), "line") for kind in moves.kind.tolist()]),
+        "path": np.where(moves.is_of_tool, which, PROGRAMMED),
+        "channel": np.repeat(_texts(channels), counts),
+    }
     return Trace(
-        line=moves.line,
-        section=moves.section,
-        kind=_texts([KINDS.get(Motion(kind), "line") for kind in moves.kind.tolist()]),
-        start=moves.start,
-        end=moves.end,
-        center=moves.center,
-        z=np.stack([moves.z_from, moves.z_to], axis=1),
-        path=np.where(moves.is_of_tool, which, PROGRAMMED),
-        radius=moves.radius,
-        feed=moves.feed,
-        x_axis=np.stack([moves.x_from, moves.x_to], axis=1),
-        c_axis=np.stack([moves.c_from, moves.c_to], axis=1),
-        nearest=moves.nearest,
-        c_feed=moves.c_feed,
-        x_feed=moves.x_feed,
-        c_acceleration=moves.c_acceleration,
-        x_acceleration=moves.x_acceleration,
-        time=moves.time,
-        channel=np.repeat(_texts(channels), counts),
+        **columns,
         file=program.path,
         machine=program.settings.machine_id,
         missing="; ".join(text for text in missing if text),

@@ -102,6 +102,12 @@ def computed(function: Callable[..., NDArray[_Number]], *columns: NDArray[Any]) 
     return function(*columns)
 
 
+def ranges(count: Rows) -> tuple[Rows, Rows]:
+    """Return, for groups of `count` elements one after another, the group of each element, and its number in it."""
+    group = np.repeat(np.arange(len(count)), count)
+    return group, np.arange(len(group)) - np.repeat(np.cumsum(count) - count, count)
+
+
 def stretch(column: NDArray[np.signedinteger[Any]], first: int, end: int) -> tuple[int, int]:
     """
     Return the slice (low, high) of a rising column with the values from `first` up to, not including, `end`.

@@ -12,13 +12,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-import msgspec
 import numpy as np
 
 from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, States, Table
 from polarcheck.foundation.states import Motion
 from polarcheck.geometry import polar, rates
 from polarcheck.geometry.plane import arcs_from_center, cross, dot, lines_from_center, quiet, rows_of_arcs
+from polarcheck.geometry.plane_path import PlanePath
 from polarcheck.geometry.tolerances import ZERO
 
 #: Pieces shorter than this are left out [mm]: an arc shorter than ZERO would be a full circle, and rounding shifts the
@@ -33,31 +33,24 @@ _AT_ONCE = 1024
 _OfPoint = Callable[[Points, Points, Floats], Floats]
 
 
-class Pieces(msgspec.Struct, frozen=True):
+class Pieces(PlanePath, frozen=True):
     """
-    Parts of moves in their order. move: the one that each is of. held: C turns at the rate that is allowed [deg/min],
-    else the tool runs at F [mm/min].
+    Parts of moves. move: the one that each is of. held: C turns at the rate that is allowed [deg/min], else the tool
+    runs at F [mm/min].
     """
 
+    _shared = ("allowed",)
+
     move: Rows
-    start: Points
-    end: Points
-    center: Points
-    kind: States
     held: Mask
     feed: Floats
     allowed: float
-
-    @property
-    def shape(self) -> tuple[Points, Points, Points, States]:
-        """start, end, center, kind: what the functions of `polar` take."""
-        return self.start, self.end, self.center, self.kind
 
     def time(self) -> Floats:
         """The time of each piece [s]; at the center itself the tool waits until C has made its half turn."""
         turning = np.abs(polar.c_sweep(*self.shape)) / self.allowed
         waiting = np.where(np.isinf(rates.c_feed(*self.shape, self.feed)), 180 / self.allowed, 0.0)
-        moving = polar.time(polar.length(*self.shape), self.feed) / 60
+        moving = polar.time(self.length, self.feed) / 60
         return np.asarray(60 * np.where(self.held, turning, moving + waiting))
 
     def c_feed(self) -> Floats:
@@ -90,8 +83,7 @@ class Pieces(msgspec.Struct, frozen=True):
         share = (1 - np.cos(np.linspace(0.0, np.pi, _POINTS)[:, None])) / 2
         for first in range(0, len(held), _AT_ONCE):
             rows = held[first : first + _AT_ONCE]
-            start, end, center = self.start[rows], self.end[rows], self.center[rows]
-            spokes = Spokes.of(start, end, center, self.kind[rows])
+            spokes = Spokes.of(*self[rows].shape)
             largest[rows] = np.abs(of_point(*spokes.at(share * spokes.length), spokes.bend)).max(axis=0)
         return largest
 
@@ -172,7 +164,7 @@ def pieces(start: Points, end: Points, center: Points, kind: States, feed: Float
     ends = np.where(last, end[move], spoke.at(finish)[0])
     middle = spoke.at((begin + finish) / 2)
     held = np.abs(c_per_way(*middle)) > room[move]
-    return Pieces(move, points, ends, center[move], kind[move], held, feed[move], allowed)
+    return Pieces(points, ends, center[move], kind[move], move, held, feed[move], allowed)
 
 
 def _limit_distances(start: Points, end: Points, center: Points, kind: States, room: Floats) -> Floats:

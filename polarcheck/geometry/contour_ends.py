@@ -9,8 +9,8 @@ from __future__ import annotations
 import msgspec
 import numpy as np
 
-from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, States, Table
-from polarcheck.geometry.segments import Curves, directions, first_of_its_kind, segments
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, Table, ranges
+from polarcheck.geometry.segments import Curves, first_of_its_kind, segments
 from polarcheck.geometry.tolerances import TOUCH
 
 #: Ribs above this height [mm] count: a lower one cannot be felt, and a worn cutter leaves as much.
@@ -55,8 +55,8 @@ class Loops(msgspec.Struct, frozen=True):
     def rows(self) -> tuple[Rows, Rows]:
         """The numbers of all curves of the loops, loop after loop, and the number of the loop of each."""
         count = self.last - self.first + 1
-        loop = np.repeat(np.arange(len(self)), count)
-        return np.arange(len(loop)) + (self.first - np.cumsum(count) + count)[loop], loop
+        loop, index = ranges(count)
+        return self.first[loop] + index, loop
 
 
 def distinct(loops: Loops, program: Rows, z: Floats) -> Rows:
@@ -117,17 +117,11 @@ def lead_corners(loops: Loops, winds: Mask) -> Corners:
     curves, after = loops.curves, curve + 1
     joined = np.abs(curves.end[curve] - curves.start[after]) < TOUCH
     curve, after, loop = curve[joined], after[joined], loop[joined]
-    _, arriving = directions(*_shape(curves, curve))
-    leaving, _ = directions(*_shape(curves, after))
-    turn = np.angle(leaving * arriving.conj()) * np.where(loops.left[curve], 1, -1)
+    turn = np.angle(curves[after].leaving * curves[curve].arriving.conj()) * np.where(loops.left[curve], 1, -1)
     reach = loops.radius[loop] * np.tan(np.clip(turn, 0, _SHARPEST) / 2)
     # The same corner on both sides leaves a rib of R - sqrt(R**2 - reach**2), a little more than this.
     sharp = reach**2 / (2 * loops.radius[loop]) > WITNESS / 2
     return Corners(curves.end[curve[sharp]], reach[sharp], turn[sharp], loop[sharp])
-
-
-def _shape(curves: Curves, rows: Rows) -> tuple[Points, Points, Points, States]:
-    return curves.start[rows], curves.end[rows], curves.center[rows], curves.kind[rows]
 
 
 class Gaps(msgspec.Struct, frozen=True):
@@ -160,7 +154,7 @@ def gaps_between_ends(curves: Curves, first: Rows, last: Rows) -> Gaps:
     is_pair = before - after >= 2
     after, before = np.minimum(after, last[:, None]), np.maximum(before, first[:, None])
     vector = curves.start[after] - curves.end[before]
-    begins, ends = directions(*_shape(curves, after))[0], directions(*_shape(curves, before))[1]
+    begins, ends = curves[after].leaving, curves[before].arriving
     ahead = np.maximum((vector * ends.conj()).real, (vector * begins.conj()).real)
     return Gaps(before, after, vector, np.where(is_pair, np.abs(vector), np.inf), ahead)
 

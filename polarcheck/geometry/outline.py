@@ -9,8 +9,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, States, Table
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows
 from polarcheck.foundation.states import Motion
+from polarcheck.geometry.plane_path import PlanePath
 from polarcheck.geometry.segments import Curves
 from polarcheck.geometry.tolerances import CORNER
 
@@ -18,29 +19,20 @@ from polarcheck.geometry.tolerances import CORNER
 _MOST_OPEN = 100
 
 
-class Outline(Table, frozen=True):
+class Outline(PlanePath, frozen=True):
     """
-    Lines and arcs with the part on their left, n of them, those of one chain in the order in which they run.
+    Lines and arcs with the part on their left: an arc that runs counterclockwise bulges outward.
 
-    start, end: complex128[n] [mm]. center: complex128[n], NaN for lines. kind: int16[n], Motion: an arc that runs
-    counterclockwise bulges outward. row: int[n], the row of the block. chain: int[n], from 0. closed: bool[chains], the
-    chain comes back to where it begins; else it ends where nobody knows what the part is like.
+    row: int[n], the row of the block. chain: int[n], from 0; elements of a chain are in the order in which they run.
+    closed: bool[chains], the chain comes back to where it begins; else it ends where nobody knows what the part is
+    like.
     """
 
     _shared = ("closed",)
 
-    start: Points
-    end: Points
-    center: Points
-    kind: States
     row: Rows
     chain: Rows
     closed: Mask
-
-    @property
-    def is_arc(self) -> Mask:
-        """The element is an arc."""
-        return np.asarray(self.kind != Motion.LINE)
 
     @property
     def radius(self) -> Floats:

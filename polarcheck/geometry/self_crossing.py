@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from polarcheck.foundation.arrays import Floats, Points, Rows
+from polarcheck.foundation.arrays import Floats, Points, Rows, ranges
 from polarcheck.geometry.plane import cross
 
 #: Length of the path before and after a crossing that is compared [mm].
@@ -84,9 +84,8 @@ def _pairs(start: Points, end: Points) -> tuple[Rows, Rows]:
     many = until - np.arange(count) - 1
     if many.sum() > _PAIRS:
         return none, none
-    first = np.repeat(np.arange(count), many)
-    second = np.arange(len(first)) - np.repeat(np.cumsum(many) - many, many) + first + 1
-    first, second = order[first], order[second]
+    first, second = ranges(many)
+    first, second = order[first], order[first + second + 1]
     earlier, later = np.minimum(first, second), np.maximum(first, second)
     meets = (later - earlier > 1) & (low_c[earlier] <= high_c[later]) & (low_c[later] <= high_c[earlier])
     return earlier[meets], later[meets]

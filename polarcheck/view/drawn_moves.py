@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import Any, cast, get_args
+from typing import cast, get_args
 
 import numpy as np
 
 from polarcheck.columns.feed.dynamics import Dynamics
-from polarcheck.columns.path.moves import Moves, z_along
+from polarcheck.columns.path.moves import z_along
+from polarcheck.columns.path.standing_moves import with_standing
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, States, is_among
 from polarcheck.foundation.states import Motion
@@ -39,7 +40,8 @@ class SectionMoves:
     def __init__(self, trace: Trace, dynamics: Dynamics) -> None:
         self.trace = trace
         self.dynamics = dynamics
-        self.moves, self.of_path = _with_standing(trace, dynamics)
+        standing = (trace.path.moves_z & ~trace.path.travels) | dynamics.dwells
+        self.moves, self.of_path = with_standing(trace, dynamics.moves, trace.mode.in_polar & standing)
 
     def __len__(self) -> int:
         return len(self.moves)
@@ -155,44 +157,6 @@ class SectionMoves:
             jump=self.jump[chosen].tolist(),
             angle=list(zip(*(numbers_of(angle[chosen], RATE) for angle in moves.c_angles), strict=True)),
         )
-
-
-def _with_standing(trace: Trace, dynamics: Dynamics) -> tuple[Moves, Rows]:
-    """
-    Return the moves of the plane with moves of Z alone and dwells inserted, and for each its number in the former.
-
-    An inserted move ends at the point where it starts; its number is -1.
-    """
-    moves = dynamics.moves
-    standing = trace.mode.in_polar & ((trace.path.moves_z & ~trace.path.travels) | dynamics.dwells)
-    row = np.setdiff1d(np.flatnonzero(standing), moves.row)
-    if not len(row):
-        return moves, np.arange(len(moves))
-    # Each pass of an infeed cycle runs over the same rows again.
-    insertion = np.searchsorted(np.maximum.accumulate(moves.row), row)
-    last = np.append(moves.end, complex(np.nan, np.nan))[insertion - 1]
-    follows = np.append(moves.section, -1)[insertion - 1] == trace.mode.section[row]
-    point = np.where(follows, last, trace.path.end[row])
-    nowhere = np.full(len(row), complex(np.nan, np.nan))
-    off = np.where(trace.compensation.compensates[row], Phase.OFFSET, Phase.CANCELLED)
-    is_known = np.append(moves.known, True)[insertion - 1]
-    still: dict[str, Any] = {
-        "row": row,
-        "section": trace.mode.section[row],
-        "kind": np.int16(Motion.LINE),
-        "start": point,
-        "end": point,
-        "center": nowhere,
-        "feed": trace.feedrate.feed[row],
-        "rise": 0.0,
-        "arc_share": 1.0,
-        "known": np.where(follows, is_known, True) & ~np.isnan(point),
-        "phase": off,
-        "corner": False,
-        "allowance": 0.0,
-    }
-    columns = {name: np.insert(getattr(moves, name), insertion, values) for name, values in still.items()}
-    return Moves(entry=moves.entry, c_axis=moves.c_axis, **columns), np.insert(np.arange(len(moves)), insertion, -1)
 
 
 def _centers(kind: States, center: Points) -> list[tuple[float, float] | None]:

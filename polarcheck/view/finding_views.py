@@ -15,11 +15,11 @@ import numpy as np
 
 from polarcheck.checking.engine import Listed
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Points, Rows, States
+from polarcheck.foundation.arrays import Rows
 from polarcheck.foundation.errors import TooHardError
 from polarcheck.foundation.finding import Finding
 from polarcheck.foundation.states import Motion
-from polarcheck.geometry.plane import arc_sweep
+from polarcheck.geometry.plane_path import PlanePath
 from polarcheck.geometry.tolerances import ZERO
 from polarcheck.rules import places
 from polarcheck.rules.hit import Hit
@@ -214,11 +214,11 @@ class Face:
                 return complex(path.end[row])
             moves, indices = self._table.moves, self.moves_of(row)
             if where != Where.CONTOUR and len(indices) and self._table.is_known[move := self.move(row, where)]:
-                if where == Where.NEAREST:
-                    return _nearest_point(*(column[move] for column in moves.shape))
-                return _middle(*moves.shape, move)
-            center = np.where(path.is_arc, path.center, complex(math.nan, math.nan))
-            return _middle(path.start, path.end, center, self.trace.axes.motion, row)
+                single = moves[move : move + 1]
+                return _nearest_point(single) if where == Where.NEAREST else _middle(single)
+            center = path.center[[row]]
+            kind = np.where(path.is_arc[[row]] & ~np.isnan(center), self.trace.axes.motion[[row]], Motion.LINE)
+            return _middle(PlanePath(path.start[[row]], path.end[[row]], center, kind.astype(np.int16)))
         return self._standing(row)
 
     def move(self, row: int, where: Where) -> int:
@@ -271,27 +271,21 @@ class Face:
         return following if enter[following] - row <= row - leave[following - 1] else following - 1
 
 
-def _middle(start: Points, end: Points, center: Points, kind: States, index: int) -> complex:
-    """Return the point in the middle of a move [mm]."""
-    element = slice(index, index + 1)
-    sweep = float(arc_sweep(start[element], end[element], center[element], np.asarray(kind[element]))[0])
-    if kind[index] in (Motion.CW, Motion.CCW) and not cmath.isnan(complex(center[index])):
-        middle = complex(center[index])
-        return middle + complex(start[index] - middle) * cmath.exp(0.5j * sweep)
-    return complex(start[index] + end[index]) / 2
+def _middle(move: PlanePath) -> complex:
+    """Return the point in the middle of a single move [mm]."""
+    return complex(move.points(np.zeros(1, np.int64), np.array([0.5]))[0])
 
 
-def _nearest_point(start: complex, end: complex, center: complex, kind: int) -> complex:
-    """Return the point of a move that is nearest to the center of C [mm]."""
-    start, end, center = complex(start), complex(end), complex(center)
+def _nearest_point(move: PlanePath) -> complex:
+    """Return the point of a single move that is nearest to the center of C [mm]."""
+    start, end, center = complex(move.start[0]), complex(move.end[0]), complex(move.center[0])
     ends = min(start, end, key=abs)
-    if kind in (Motion.CW, Motion.CCW) and not cmath.isnan(center):
+    if move.is_arc[0]:
         if abs(center) <= ZERO:
             return start
         radius = abs(start - center)
         toward = center - center / abs(center) * radius
-        first, last, middle = (np.array([value], complex) for value in (start, end, center))
-        sweep = float(arc_sweep(first, last, middle, np.array([kind], np.int16))[0])
+        sweep = float(move.sweep[0])
         turn = cmath.phase((toward - center) / (start - center)) if radius > ZERO else 0.0
         turn = turn % (2 * math.pi) if sweep > 0 else -(-turn % (2 * math.pi))
         return toward if abs(turn) <= abs(sweep) else ends

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from polarcheck.foundation.arrays import Floats, Mask, Points, Rows
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, ranges
 from polarcheck.foundation.states import Motion
 from polarcheck.geometry.plane import angle_between, arc_sweep, cleared, cross, dot, quiet
 from polarcheck.view.rate_curves import Samples, Segments
@@ -56,7 +56,7 @@ def samples(path: Segments, held_at: float, sense: int, most: int) -> Samples:
         x_feed=np.where(waits, 0.0, feed * outward),
         feed=np.where(waits, 0.0, feed),
         point=point,
-        z=path.z_from[of] + share * (path.z_to - path.z_from)[of],
+        z=path.z_start[of] + share * (path.z_end - path.z_start)[of],
         angle=path.c_from[of] + sense * _turned_by(path.move[of], toward, is_behind),
     )
 
@@ -113,10 +113,9 @@ class _Sampler:
 
     def at(self, of: Rows, share: Floats) -> tuple[Points, Points]:
         """Return points [mm] and directions."""
-        start, end, center = self.path.start[of], self.path.end[of], self.path.center[of]
-        spoke = (start - center) * np.exp(1j * self._sweep[of] * share)
-        point = np.where(self._is_arc[of], center + spoke, start + share * (end - start))
-        return point, np.where(self._is_arc[of], 1j * np.sign(self._sweep[of]) * spoke / self._radius[of], self._u[of])
+        point = self.path.points(of, share)
+        along = 1j * np.sign(self._sweep[of]) * (point - self.path.center[of]) / self._radius[of]
+        return point, np.where(self._is_arc[of], along, self._u[of])
 
     def time(self, of: Rows, share: Floats, is_behind: Mask | bool = False) -> Floats:
         """Return the time of points [s]: it is proportional to the length or, where C is held, to its turn."""
@@ -143,8 +142,7 @@ class _Sampler:
         # Each segment has its two ends, count - 1 points that divide its length, as many that divide the turn of C, and
         # the nearest point, where rates are highest.
         counts = 2 * count + passes
-        of = np.repeat(np.arange(len(count)), counts)
-        number = np.arange(len(of)) - np.repeat(np.cumsum(counts) - counts, counts)
+        of, number = ranges(counts)
         evenly = number <= count[of]
         share = np.where(evenly, number / count[of], (number - count[of]) / count[of])
         seen = self._seen_first[of] + share * turn[of]
@@ -196,7 +194,7 @@ class _Sampler:
         off = np.abs(between - first - part * (last - first))
         off_x = np.abs(np.abs(between) - np.abs(first) - part * (np.abs(last) - np.abs(first)))
         turn, whole = angle_between(seen[0], seen[1]), angle_between(seen[0], seen[2])
-        rise = np.abs(self.path.z_to - self.path.z_from)[of] * np.abs((middle - low) - part * (high - low))
+        rise = np.abs(self.path.z_end - self.path.z_start)[of] * np.abs((middle - low) - part * (high - low))
         is_off = (off > _NEAR) | (off_x > _NEAR) | (rise > _NEAR) | (np.abs(turn - part * whole) > _NEAR_ANGLE)
         return np.asarray(is_off & (np.abs(last - first) > 0))
 

@@ -10,7 +10,7 @@ import msgspec
 import numpy as np
 import shapely  # type: ignore[import-untyped]
 
-from polarcheck.foundation.arrays import Mask, Points, Rows, States
+from polarcheck.foundation.arrays import Mask, Points, Rows, States, ranges
 from polarcheck.geometry.segments import Curves, chord_counts, segments
 from polarcheck.geometry.tolerances import ROUNDING
 
@@ -102,8 +102,8 @@ def thinned(path: Chords, keep: Mask, look: States, tolerance: float, most: int)
     within = ~path.begins[bounds[1:]]
     low, high = bounds[:-1][within], bounds[1:][within]
     count = high - low + 1
-    of = np.repeat(np.arange(len(count)), count)
-    index = np.arange(len(of)) - np.repeat(np.cumsum(count) - count, count) + np.repeat(low, count)
+    of, index = ranges(count)
+    index += low[of]
     point = path.point[index]
     # The third coordinate holds the number of the point, to see which ones remain.
     lines = shapely.linestrings(np.stack([point.real, point.imag, index], axis=1), indices=of)

@@ -7,9 +7,9 @@ from collections.abc import Sequence
 import msgspec
 import numpy as np
 
-from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, States
-from polarcheck.geometry import polar
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows
 from polarcheck.geometry import rates as of_moves
+from polarcheck.geometry.plane_path import SpacePath
 from polarcheck.view.drawn_moves import SectionMoves
 
 #: How far a point may lie from the curves between its neighbours to be left out [mm], [deg], as a share of rates.
@@ -48,33 +48,24 @@ class Samples(msgspec.Struct, frozen=True):
         return Samples(*(getattr(self, name)[chosen] for name in Samples.__struct_fields__))
 
 
-class Segments(msgspec.Struct, frozen=True):
+class Segments(SpacePath, frozen=True):
     """
     The k segments of a path, each a move or a part of one.
 
-    start, end, center: complex[k] [mm].
-    kind: int16[k], a Motion.
     feed: float[k] [mm/min].
     begin, time: float[k] [s].
     held: bool[k], C turns at a constant rate, and the feed follows.
     move: int64[k], the move of each segment.
-    z_from, z_to: float[k] [mm].
     jumps: bool[k], it passes through the center of C.
     waits: float[k], how much of its time the tool stands in the center, while C makes half a turn [s].
     c_from: float[k], C at the start of its move [deg].
     """
 
-    start: Points
-    end: Points
-    center: Points
-    kind: States
     feed: Floats
     begin: Floats
     time: Floats
     held: Mask
     move: Rows
-    z_from: Floats
-    z_to: Floats
     jumps: Mask
     waits: Floats
     c_from: Floats
@@ -94,7 +85,7 @@ def path_segments(table: SectionMoves, chosen: Rows) -> Segments:
     move = number[pieces.move]
     part = np.flatnonzero(move >= 0)
     part = part[~np.isnan(time[move[part]])]
-    of_part, part_time, length = move[part], pieces.time()[part], polar.length(*pieces.shape)[part]
+    of_part, part_time, length = move[part], pieces.time()[part], pieces.length[part]
     first = np.searchsorted(of_part, of_part)
     done = np.cumsum(part_time) - part_time
     gone = np.cumsum(length) - length
@@ -119,13 +110,13 @@ def path_segments(table: SectionMoves, chosen: Rows) -> Segments:
         end=end,
         center=center,
         kind=kind,
+        z_start=(z_from + share_from * rise)[order],
+        z_end=(z_from + share_to * rise)[order],
         feed=np.concatenate([table.true_feed[plain], pieces.feed[part]])[order],
         begin=np.concatenate([begin[plain], begin[of_part] + done - done[first]])[order],
         time=np.concatenate([time[plain], part_time])[order],
         held=np.concatenate([np.zeros(len(plain), bool), pieces.held[part]])[order],
         move=rows[order],
-        z_from=(z_from + share_from * rise)[order],
-        z_to=(z_from + share_to * rise)[order],
         jumps=jumps,
         waits=np.concatenate([np.zeros(len(plain)), waiting])[order],
         c_from=table.moves.c_angles[0][rows][order],

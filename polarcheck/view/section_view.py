@@ -13,11 +13,10 @@ from polarcheck.checking.polar_sections import polar_sections
 from polarcheck.columns.path.moves import Moves, programmed_moves
 from polarcheck.columns.path.tool_center import ToolCenter
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Floats, Points, Rows
+from polarcheck.foundation.arrays import Floats, Points, Rows, ranges
 from polarcheck.foundation.errors import TooHardError
 from polarcheck.foundation.finding import FileReport
-from polarcheck.foundation.states import Motion
-from polarcheck.geometry.plane import arc_sweep, quiet
+from polarcheck.geometry.plane import quiet
 from polarcheck.parts.as_meant import as_meant
 from polarcheck.program.reading.excerpt import head
 from polarcheck.reports.pages.painting import Paint, plain
@@ -161,27 +160,15 @@ def points_of(moves: Moves) -> Points:
     length = np.where(is_known, moves.length, 0.0)
     step = max(size / _DOTS, float(length.sum()) / _MOST, np.finfo(float).tiny)
     count = np.where(is_known, np.ceil(length / step).astype(np.int64) + 1, 0)
-    move, share = _shares(count)
-    point = _along(moves, move, share)
+    point = moves.points(*_shares(count))
     cell = np.round(point.real / step) + 1j * np.round(point.imag / step)
     return np.asarray(point[np.unique(cell, return_index=True)[1]])
 
 
 def _shares(count: Rows) -> tuple[Rows, Floats]:
     """Return `count` places on each move: the move, and the share of its length, from 0 to 1."""
-    move = np.repeat(np.arange(len(count)), count)
-    number = np.arange(len(move)) - np.repeat(np.cumsum(count) - count, count)
+    move, number = ranges(count)
     return move, number / np.maximum(count - 1, 1)[move]
-
-
-def _along(moves: Moves, move: Rows, share: Floats) -> Points:
-    """Return the points at these shares of the length of moves [mm]."""
-    start, end, center, kind = moves.start[move], moves.end[move], moves.center[move], moves.kind[move]
-    is_arc = np.isin(kind, (Motion.CW, Motion.CCW)) & ~np.isnan(center)
-    point = start + share * (end - start)
-    sweep = arc_sweep(start[is_arc], end[is_arc], center[is_arc], kind[is_arc])
-    point[is_arc] = center[is_arc] + (start - center)[is_arc] * np.exp(1j * sweep * share[is_arc])
-    return np.asarray(point)
 
 
 @quiet
@@ -199,7 +186,7 @@ def _curve(moves: Moves) -> tuple[Floats, Floats]:
     count = np.maximum(count.astype(np.int64), 1) + 1
     move, share = _shares(count)
     begin = np.cumsum(time) - time
-    point = _along(moves, move, share)
+    point = moves.points(move, share)
     turn = np.abs(np.angle(point[1:] * np.conj(point[:-1])))
     between = np.diff(share) * time[move[:-1]]
     rate = np.degrees(np.append(turn / between, 0.0)) * 60

@@ -13,7 +13,6 @@ from __future__ import annotations
 import msgspec
 import numpy as np
 
-from polarcheck.columns.filling import before
 from polarcheck.columns.path.moves import Moves
 from polarcheck.columns.path.tool_center import ToolCenter
 from polarcheck.columns.trace import Trace
@@ -191,9 +190,7 @@ class Dynamics:
         x = np.where(trace.mode.in_polar[rows], np.abs(trace.path.end[rows]) - np.abs(trace.path.start[rows]), 0.0)
         x = np.where(trace.mode.in_polar[rows], x, trace.path.x[rows] - trace.path.x_before[rows])
         x = np.where(on_plane | trace.axes.programs_linear_axis[rows], x, 0.0)
-        z = np.where(
-            trace.path.moves_z[rows], (trace.path.z - before(trace.path.z, trace.blocks.starts, np.nan))[rows], 0.0
-        )
+        z = np.where(trace.path.moves_z[rows], (trace.path.z - trace.path.z_before)[rows], 0.0)
         c = trace.path.c_turn[rows]
         c = np.where(on_plane | trace.blocks.has(*trace.machine.polar.rotary_words)[rows], c, 0.0)
         return np.abs(x), np.abs(z), np.abs(c)

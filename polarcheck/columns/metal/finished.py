@@ -2,21 +2,17 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-import msgspec
 import numpy as np
 
 from polarcheck.columns.contour.overcuts import Overcuts, level_of
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Columns, Mask, Rows, cached_property
-from polarcheck.foundation.states import Motion
-from polarcheck.geometry import plane, polar
 from polarcheck.geometry.tolerances import CORNER, ROUNDING
 
 #: Decimals of points of the same wall [mm].
 _SAME_WALL = 3
-Turned = TypeVar("Turned", "Curves", "Outline")
 
 if TYPE_CHECKING:
     from polarcheck.geometry.outline import Outline
@@ -145,8 +141,8 @@ class Finished(Columns, frozen=True):
         turn = np.exp(1j * np.radians(angle))
         return level._replace(
             polygon=turned(level.polygon, float(np.radians(angle))),
-            outline=turned_columns(level.outline, turn),
-            walls=turned_columns(level.walls, turn),
+            outline=level.outline.turned_by(turn),
+            walls=level.walls.turned_by(turn),
             angle=angle,
         )
 
@@ -219,25 +215,13 @@ class Finished(Columns, frozen=True):
         if is_level or np.isnan(np.append(z, z_before)).any() or not len(outline):
             return first, first
         highest = np.fmax(z_before, z)
-        length = polar.length(walls.start, walls.end, walls.center, walls.kind)
-        whole = polar.length(outline.start, outline.end, outline.center, outline.kind).sum()
-        if length[highest <= bottom + ROUNDING].sum() >= whole - CORNER:
+        if walls.length[highest <= bottom + ROUNDING].sum() >= outline.length.sum() - CORNER:
             return bottom, bottom
         # The same wall in another turn, be it run the other way.
         ends = np.sort_complex(np.stack([walls.start, walls.end], axis=1).round(_SAME_WALL))
-        sweep = plane.arc_sweep(walls.start, walls.end, walls.center, walls.kind)
-        of_arc = walls.center + (walls.start - walls.center) * np.exp(0.5j * sweep)
-        middle = np.where(walls.kind == Motion.LINE, (walls.start + walls.end) / 2, of_arc).round(_SAME_WALL)
+        middle = walls.points(np.arange(len(walls)), np.full(len(walls), 0.5)).round(_SAME_WALL)
         _, wall = np.unique(np.column_stack([ends, middle]), axis=0, return_inverse=True)
         wall = wall.ravel()
         cut_to = np.full(int(wall.max()) + 1, np.inf)
         np.minimum.at(cut_to, wall, highest)
         return float(np.max(cut_to[wall[np.isin(walls.row, outline.row)]], initial=bottom)), bottom
-
-
-def turned_columns(table: Turned, turn: complex) -> Turned:
-    """Curves or an outline turned about the center."""
-    columns = {name: getattr(table, name) for name in ("start", "end", "center")}
-    # The center of lines stays NaN in its real part alone: equal lines are recognised by that.
-    turned = {name: np.where(np.isnan(points), points, points * turn) for name, points in columns.items()}
-    return msgspec.structs.replace(table, **turned)

@@ -11,7 +11,6 @@ from polarcheck.columns.path.moves import z_along
 from polarcheck.columns.path.tool_center import ToolCenter
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Columns, Floats, Mask, Rows, Table, cached_property, is_among
-from polarcheck.foundation.states import Motion
 from polarcheck.geometry.segments import Curves
 from polarcheck.geometry.tolerances import ADJUSTMENT, ROUNDING
 
@@ -120,12 +119,7 @@ class Milled(Columns, frozen=True):
         chosen_moves = moves[chosen]
         return Cuts(
             curves=Curves(
-                chosen_moves.start * turn[section],
-                chosen_moves.end * turn[section],
-                chosen_moves.center * turn[section],
-                np.where(np.isnan(chosen_moves.center), Motion.LINE, chosen_moves.kind).astype(np.int16),
-                np.zeros(len(chosen_moves), np.int64),
-                chosen_moves.row,
+                *chosen_moves.turned_by(turn[section]).shape, np.zeros(len(section), np.int64), chosen_moves.row
             ),
             radius=self.radius[chosen_moves.row],
             low=low[chosen],

@@ -20,11 +20,11 @@ from polarcheck.columns.metal.milled import Milled
 from polarcheck.columns.path.moves import z_along
 from polarcheck.columns.path.tool_center import ToolCenter
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Columns, Floats, Mask, Points, Rows, States, Table, cached_property, is_among
+from polarcheck.foundation.arrays import Columns, Floats, Mask, Points, Rows, Table, cached_property, is_among
 from polarcheck.foundation.errors import TooHardError
 from polarcheck.foundation.states import Motion
 from polarcheck.geometry import polar
-from polarcheck.geometry.plane import arc_sweep
+from polarcheck.geometry.plane_path import PlanePath
 from polarcheck.geometry.tolerances import ROUNDING
 
 if TYPE_CHECKING:
@@ -43,21 +43,16 @@ _STILL = 1e-4
 _MOST_WAYS, _MOST_MOVES = 200, 20_000
 
 
-class ToolMoves(Table, frozen=True):
+class ToolMoves(PlanePath, frozen=True):
     """
-    Moves that take a mill to a place, n of them in the order of the program.
+    Moves that take a mill to a place: the part of each that is known whatever the order of the axes, the whole way of X
+    or of C alone, a place on a way up and aside, else its end.
 
-    row: int[n]. start, end, center: complex128[n] [mm], the part of the move that is known whatever the order of the
-    axes: the whole way of X or of C alone, a place on a way up and aside, else its end. kind: int16[n], Motion. tip:
-    float64[n], Z of the tip [mm]. radius: float64[n], R [mm]. is_rapid: bool[n]. plunges: bool[n], it goes down.
-    is_sure: bool[n], False for a way that is taken if the axes move in one order, and not in the other.
+    row: int[n]. tip: float64[n], Z of the tip [mm]. radius: float64[n], R [mm]. is_rapid: bool[n]. plunges: bool[n], it
+    goes down. is_sure: bool[n], False for a way that is taken if the axes move in one order, and not in the other.
     """
 
     row: Rows
-    start: Points
-    end: Points
-    center: Points
-    kind: States
     tip: Floats
     radius: Floats
     is_rapid: Mask
@@ -65,14 +60,9 @@ class ToolMoves(Table, frozen=True):
     is_sure: Mask
 
     @property
-    def nearest(self) -> Floats:
-        """Smallest distance of the center of the cutter from X0 [mm]."""
-        return polar.nearest(self.start, self.end, self.center, self.kind)
-
-    @property
     def farthest(self) -> Floats:
         """Largest distance of the center of the cutter from X0 [mm]."""
-        return polar.farthest(self.start, self.end, self.center, self.kind)
+        return polar.farthest(*self.shape)
 
 
 class Hits(Table, frozen=True):
@@ -199,38 +189,23 @@ class Workpiece(Columns, frozen=True):
     @cached_property
     def _inside(self) -> ToolMoves:
         """All moves of the tool center in sections, those of Z alone as places."""
-        trace, moves = self.trace, self.tool_center.moves
+        from polarcheck.columns.path.standing_moves import with_standing
+
+        trace = self.trace
+        moves, number = with_standing(trace, self.tool_center.moves, self._z_alone & ~trace.modal.in_cycle)
         low = np.minimum(*z_along(trace, moves))
-        turn = np.exp(1j * np.radians(trace.path.section_entry))
         usable = moves.is_of_tool & ~np.isnan(self.radius[moves.row] + low) & ~np.isnan(moves.start + moves.end)
-        moves, low = moves[usable], low[usable]
-        of_move = turn[moves.section]
-        row = np.flatnonzero(
-            self._z_alone & ~np.isnan(self.radius) & ~trace.modal.in_cycle & ~np.isnan(trace.path.end + trace.path.z)
+        moves = moves[usable]
+        turn, row = np.exp(1j * np.radians(trace.path.section_entry[moves.section])), moves.row
+        return ToolMoves(
+            *moves.turned_by(turn).shape,
+            row=row,
+            tip=low[usable],
+            radius=self.radius[row],
+            is_rapid=trace.axes.motion[row] == Motion.RAPID,
+            plunges=(number[usable] < 0) & ~(trace.path.z[row] >= trace.path.z_before[row]),
+            is_sure=np.ones(len(row), bool),
         )
-        # With compensation in force the tool stands beside the programmed point.
-        last = np.searchsorted(moves.row, row) - 1
-        same = (
-            (last >= 0) & (moves.section[last] == trace.mode.section[row]) if len(moves) else np.zeros(len(row), bool)
-        )
-        point = np.where(same, moves.end[last], trace.path.end[row]) if len(moves) else trace.path.end[row]
-        point = point * turn[trace.mode.section[row]]
-        is_rapid = trace.axes.motion == Motion.RAPID
-        rows = np.concatenate([moves.row, row])
-        order = np.argsort(rows, kind="stable")
-        tool_moves = ToolMoves(
-            row=rows,
-            start=np.concatenate([moves.start * of_move, point]),
-            end=np.concatenate([moves.end * of_move, point]),
-            center=np.concatenate([moves.center * of_move, np.full(len(row), np.nan + 0j)]),
-            kind=np.concatenate([moves.kind, np.full(len(row), Motion.LINE)]).astype(np.int16),
-            tip=np.concatenate([low, np.minimum(trace.path.z[row], trace.path.z_before[row])]),
-            radius=self.radius[rows],
-            is_rapid=is_rapid[rows],
-            plunges=np.concatenate([np.zeros(len(moves), bool), ~(trace.path.z[row] >= trace.path.z_before[row])]),
-            is_sure=np.ones(len(rows), bool),
-        )
-        return tool_moves[order]
 
     @cached_property
     def _all(self) -> ToolMoves:
@@ -252,10 +227,7 @@ class Workpiece(Columns, frozen=True):
         from polarcheck.geometry.polygons.standing_metal import Sweeps
         from polarcheck.geometry.segments import Curves
 
-        loop = np.zeros(len(moves), np.int64)
-        return Sweeps(
-            Curves(moves.start, moves.end, moves.center, moves.kind, loop, moves.row), moves.radius, moves.tip
-        )
+        return Sweeps(Curves(*moves.shape, np.zeros(len(moves), np.int64), moves.row), moves.radius, moves.tip)
 
     # ---- the bar ----
 
@@ -375,7 +347,7 @@ class Workpiece(Columns, frozen=True):
         low = (moves.is_rapid | first[moves.row]) & (moves.tip <= top + _CLEARANCE)
         if not low.any():
             return moves[low]
-        farthest = polar.farthest(walls.start, walls.end, walls.center, walls.kind)
+        farthest = polar.farthest(*walls.shape)
         reach = float(np.max(farthest + np.where(self._walls_of_pockets, 2 * self.overcuts.radius[walls.row], 0)))
         return moves[low & (moves.nearest - moves.radius < reach)]
 
@@ -395,12 +367,7 @@ class Workpiece(Columns, frozen=True):
         walls, left = self.overcuts.walls
         first = np.flatnonzero(np.diff(walls.loop, prepend=-1))
         last = np.append(first[1:], len(walls)) - 1
-        twice = (np.conj(walls.start) * walls.end).imag
-        arc = ~np.isnan(walls.center)
-        spoke = np.abs(walls.start - walls.center) ** 2
-        sweep = arc_sweep(walls.start[arc], walls.end[arc], walls.center[arc], walls.kind[arc])
-        twice[arc] += spoke[arc] * (sweep - np.sin(sweep))
-        area = np.add.reduceat(twice, first)
+        area = np.add.reduceat(walls.twice_swept, first)
         closed = np.abs(walls.end[last] - walls.start[first]) <= 2 * np.abs(self.overcuts.radius[walls.row[first]])
         inside = closed & ((area > 0) == left[first])
         return np.asarray(np.repeat(inside, last - first + 1))

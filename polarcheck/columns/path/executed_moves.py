@@ -5,45 +5,40 @@ from __future__ import annotations
 import numpy as np
 
 from polarcheck.columns.feed.dynamics import Dynamics
-from polarcheck.columns.path.moves import Moves, programmed_moves, z_along
+from polarcheck.columns.path.moves import programmed_moves, z_along
 from polarcheck.columns.path.tool_center import ToolCenter
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, States, Table
+from polarcheck.foundation.arrays import Floats, Mask, Rows
 from polarcheck.foundation.states import Motion
+from polarcheck.geometry.plane_path import PlanePath
 
 #: Kinds of moves on the plane by their states; all others are lines.
 KINDS = {Motion.CW: "cw", Motion.CCW: "ccw"}
 TOOL, PROGRAMMED = "tool", "programmed"
-_RATES = ("c_feed", "x_feed", "c_acceleration", "x_acceleration")
 
 
-class ExecutedMoves(Table, frozen=True, eq=False):
+class ExecutedMoves(PlanePath, frozen=True, eq=False):
     """
-    One element per move inside polar sections, in order; NaN is unknown.
+    Moves inside polar sections; NaN is unknown.
 
-    line: of the block; in a program called from another file, that of the call. section: from 0 in each channel.
-    kind: Motion. start, end, center: plane points [mm]; center NaN for lines. z_from, z_to: Z before and after [mm].
-    is_of_tool: the tool center runs there. radius: R of the offset in force [mm]. feed: F in force [mm/min].
-    x_from, x_to: X of the machine as a radius [mm]. c_from, c_to: C of the machine [deg]. nearest: smallest distance of
-    the tool center to the center of C [mm]. c_feed, x_feed: highest rates [deg/min, mm/min]. c_acceleration,
-    x_acceleration: highest accelerations [deg/s2, mm/s2]. time: of the move [s].
+    row: of the trace. line: of the block; in a program called from another file, that of the call. section: from 0 in
+    each channel. is_of_tool: the tool center runs there. z: float64[n, 2], before and after [mm]. radius: R of the
+    offset in force [mm]. feed: F in force [mm/min]. x_axis: float64[n, 2], X of the machine as a radius, from and to
+    [mm]. c_axis: float64[n, 2], C of the machine [deg]. nearest: smallest distance of the tool center to the center of
+    C [mm]. c_feed, x_feed: highest rates [deg/min, mm/min]. c_acceleration, x_acceleration: highest accelerations
+    [deg/s2, mm/s2]. time: of the move [s]. On the path of the tool center these five are those at the actual feed, on
+    the programmed path at F in force.
     """
 
+    row: Rows
     line: Rows
     section: Rows
-    kind: States
-    start: Points
-    end: Points
-    center: Points
-    z_from: Floats
-    z_to: Floats
     is_of_tool: Mask
+    z: Floats
     radius: Floats
     feed: Floats
-    x_from: Floats
-    x_to: Floats
-    c_from: Floats
-    c_to: Floats
+    x_axis: Floats
+    c_axis: Floats
     nearest: Floats
     c_feed: Floats
     x_feed: Floats
@@ -52,40 +47,25 @@ class ExecutedMoves(Table, frozen=True, eq=False):
     time: Floats
 
 
-def running(trace: Trace, tool_center: ToolCenter, path: str) -> tuple[Moves, dict[str, Floats]]:
-    """
-    Return the moves of a path, and their highest rates and times by the names of ExecutedMoves.
-
-    For the path of the tool center ("tool") they are those at the actual feed, for the programmed path at F in force.
-    """
-    if path != TOOL:
-        table = programmed_moves(trace)
-        return table, {name: getattr(table, name) for name in (*_RATES, "time")}
-    runs = Dynamics(trace, tool_center)
-    return runs.moves, {**{name: getattr(runs, name) for name in _RATES}, "time": runs.move_time}
-
-
 def executed_moves(trace: Trace, tool_center: ToolCenter, path: str) -> ExecutedMoves:
     """Return the moves of the tool center path ("tool") or of the programmed path ("programmed")."""
-    table, runs = running(trace, tool_center, path)
-    z_from, z_to = z_along(trace, table)
-    c_from, c_to = table.c_angles
+    runs = Dynamics(trace, tool_center) if path == TOOL else programmed_moves(trace)
+    table = runs.moves if isinstance(runs, Dynamics) else runs
     return ExecutedMoves(
+        *table.shape,
+        row=table.row,
         line=trace.blocks.line_in_file[table.row],
         section=table.section,
-        kind=table.kind,
-        start=table.start,
-        end=table.end,
-        center=table.center,
-        z_from=z_from,
-        z_to=z_to,
         is_of_tool=table.is_of_tool,
+        z=np.stack(z_along(trace, table), axis=1),
         radius=trace.compensation.radius_of_move[table.row],
         feed=table.feed,
-        x_from=np.abs(table.start),
-        x_to=np.abs(table.end),
-        c_from=c_from,
-        c_to=c_to,
+        x_axis=np.abs(np.stack((table.start, table.end), axis=1)),
+        c_axis=np.stack(table.c_angles, axis=1),
         nearest=table.nearest,
-        **runs,
+        c_feed=runs.c_feed,
+        x_feed=runs.x_feed,
+        c_acceleration=runs.c_acceleration,
+        x_acceleration=runs.x_acceleration,
+        time=runs.move_time if isinstance(runs, Dynamics) else runs.time,
     )

@@ -26,10 +26,10 @@ from msgspec.structs import replace
 
 from polarcheck.columns.path.moves import Moves, compensation_path, of_tool, tool_center_path
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Columns, Floats, Mask, Points, Rows, States, cached_property, repeated
+from polarcheck.foundation.arrays import Columns, Floats, Mask, Rows, cached_property, repeated
 from polarcheck.foundation.states import Motion, Side
-from polarcheck.geometry import enclosed, polar
 from polarcheck.geometry.cutter_compensation.offset_path import ToolPath
+from polarcheck.geometry.plane_path import PlanePath
 
 #: Points of one contour nearer than this are one [mm]: the rounding of coordinates to 0.001 mm.
 CLOSED = 0.002
@@ -152,25 +152,25 @@ class Infeed(Columns, frozen=True):
             return 0
         return max(int(min(np.ceil((self._room(contour) - CLOSED) / self.depth[row]) - 1, 1e6)), 0)
 
-    def _seen_from(self, point: complex, contour: Rows) -> tuple[Points, Points, Points, States]:
-        """start, end, center, kind of the contour, from a point instead of the center of C."""
+    def _seen_from(self, point: complex, contour: Rows) -> PlanePath:
+        """The contour from a point instead of the center of C."""
         trace, on = self.trace, contour[1:]
         kind = np.where(np.isnan(trace.path.center[on]), Motion.LINE, trace.axes.motion[on]).astype(np.int16)
-        return trace.path.start[on] - point, trace.path.end[on] - point, trace.path.center[on] - point, kind
+        return PlanePath(trace.path.start[on] - point, trace.path.end[on] - point, trace.path.center[on] - point, kind)
 
     def _room(self, contour: Rows) -> float:
         """From the tool center at the start point to where it runs along the contour [mm]: d - R; 0 if unknown."""
         trace = self.trace
-        shape = self._seen_from(complex(trace.path.start[contour[0]]), contour)
+        path = self._seen_from(complex(trace.path.start[contour[0]]), contour)
         side, radius = (
             int(trace.compensation.side[contour[0]]),
             float(np.nan_to_num(trace.compensation.radius[contour[0]])),
         )
         if side == Side.OFF:
             radius = 0.0
-        elif enclosed.is_on_left(*shape) != ((side == Side.LEFT) == (radius >= 0)):
+        elif path.is_on_left() != ((side == Side.LEFT) == (radius >= 0)):
             return 0.0
-        return float(np.nan_to_num(np.min(polar.nearest(*shape)))) - abs(radius)
+        return float(np.nan_to_num(np.min(path.nearest))) - abs(radius)
 
     @cached_property
     def _cycles(self) -> dict[int, _Cycle]:
@@ -255,16 +255,16 @@ class Infeed(Columns, frozen=True):
         """Passes that do not lie between the contour and the start point."""
         trace, tool, count = self.trace, cycle.tool, len(cycle.contour)
         start = complex(trace.path.start[cycle.contour[0]])
-        inside = enclosed.goes_round(*self._seen_from(start, cycle.contour))
+        inside = self._seen_from(start, cycle.contour).goes_round()
         on = tool.row % count > 0
         group = tool.row[on] // count
-        shape = (tool.start[on] - start, tool.end[on] - start, tool.center[on] - start, tool.kind[on])
-        return np.asarray(enclosed.go_round(*shape, group, len(cycle.offsets)) != inside)
+        path = PlanePath(tool.start[on] - start, tool.end[on] - start, tool.center[on] - start, tool.kind[on])
+        return np.asarray(path.go_round(group, len(cycle.offsets)) != inside)
 
     def _side_of_start(self, contour: Rows) -> Side:
         """The side of the contour on which the start point lies, where the tool center itself is programmed."""
-        shape = self._seen_from(complex(self.trace.path.start[contour[0]]), contour)
-        return Side.LEFT if enclosed.is_on_left(*shape) else Side.RIGHT
+        path = self._seen_from(complex(self.trace.path.start[contour[0]]), contour)
+        return Side.LEFT if path.is_on_left() else Side.RIGHT
 
     # ---- passes that do not fit ----
 

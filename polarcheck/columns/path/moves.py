@@ -6,37 +6,32 @@ import math
 
 import numpy as np
 
-from polarcheck.columns.filling import before
 from polarcheck.columns.path.path import NOWHERE
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, States, Table, cached_property, is_among
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, States, cached_property, is_among
 from polarcheck.foundation.states import ArcFeed, Motion
 from polarcheck.geometry import polar, rates
 from polarcheck.geometry.cutter_compensation import offset_path
+from polarcheck.geometry.plane_path import PlanePath
 from polarcheck.geometry.tolerances import ZERO
 
 
-class Moves(Table, frozen=True, dict=True):
+class Moves(PlanePath, frozen=True, dict=True):
     """
-    One element per move, in order.
+    Moves of the tool center, or as programmed.
 
-    row: the row of the trace that it belongs to. section: its polar section. kind: int16, Motion. start, end, center:
-    plane points [mm]. feed: F in force [mm/min]. rise: way of Z beside that on the plane, where F measures both [mm];
-    0 where F measures the plane alone. arc_share: share of F with which the tool center runs along an arc; 1 elsewhere,
-    and where F is that of the tool center. known: False where the radius or a position is unknown. phase:
-    compensation.Phase. corner: a line or an arc that the control adds. allowance: what a pass of an infeed cycle leaves
-    on the contour [mm], 0 elsewhere. entry: float64[sections], C angle of the linear axis of each section [deg].
-    c_axis: how C stands to the angles of the plane.
+    row: the row of the trace that it belongs to. section: its polar section. feed: F in force [mm/min]. rise: way of Z
+    beside that on the plane, where F measures both [mm]; 0 where F measures the plane alone. arc_share: share of F with
+    which the tool center runs along an arc; 1 elsewhere, and where F is that of the tool center. known: False where the
+    radius or a position is unknown. phase: compensation.Phase. corner: a line or an arc that the control adds.
+    allowance: what a pass of an infeed cycle leaves on the contour [mm], 0 elsewhere. entry: float64[sections], C angle
+    of the linear axis of each section [deg]. c_axis: how C stands to the angles of the plane.
     """
 
     _shared = ("entry", "c_axis")
 
     row: Rows
     section: Rows
-    kind: States
-    start: Points
-    end: Points
-    center: Points
     feed: Floats
     rise: Floats
     arc_share: Floats
@@ -46,11 +41,6 @@ class Moves(Table, frozen=True, dict=True):
     allowance: Floats
     entry: Floats
     c_axis: polar.CAxis
-
-    @property
-    def shape(self) -> tuple[Points, Points, Points, States]:
-        """start, end, center, kind: what the functions of `polar` take."""
-        return self.start, self.end, self.center, self.kind
 
     @cached_property
     def length(self) -> Floats:
@@ -127,7 +117,7 @@ class Moves(Table, frozen=True, dict=True):
 def z_along(trace: Trace, moves: Moves) -> tuple[Floats, Floats]:
     """Z before and after each move [mm], NaN unknown; where a block is several moves, it goes as the way does."""
     begins, _, after_move = _shares_of_block(moves.row, moves.length)
-    z_from, z_to = before(trace.path.z, trace.blocks.starts, np.nan)[moves.row], trace.path.z[moves.row]
+    z_from, z_to = trace.path.z_before[moves.row], trace.path.z[moves.row]
     ends = np.append(begins[1:], True)[: len(moves)]
     after = np.where(ends, z_to, z_from + after_move * (z_to - z_from))
     return np.where(begins, z_from, np.append(np.nan, after[:-1])[: len(moves)]), after
@@ -189,14 +179,14 @@ def any_in_row(hit: Mask, moves: Moves, count: int) -> Mask:
 def programmed_moves(trace: Trace) -> Moves:
     """The programmed path: one move per row that moves on the polar plane."""
     row = np.flatnonzero(trace.path.on_plane)
-    kind, (start, end), center = _kind(trace, row), _ends(trace, row), trace.path.center[row]
+    start, end = _ends(trace, row)
     return Moves(
-        row=row,
-        section=trace.mode.section[row],
-        kind=kind,
         start=start,
         end=end,
-        center=center,
+        center=trace.path.center[row],
+        kind=_kind(trace, row),
+        row=row,
+        section=trace.mode.section[row],
         feed=trace.feedrate.feed[row],
         rise=trace.path.rise[row],
         arc_share=np.ones(len(row)),
@@ -264,16 +254,12 @@ def tool_center_path(trace: Trace, path: offset_path.Path) -> offset_path.ToolPa
 def of_tool(trace: Trace, tool: offset_path.ToolPath, row: Rows) -> Moves:
     """The moves of a tool center path; row: the rows of the trace that it was given."""
     rows = row[tool.row]
-    length = polar.length(tool.start, tool.end, tool.center, tool.kind)
     return Moves(
+        *tool.shape,
         row=rows,
         section=trace.mode.section[rows],
-        kind=tool.kind,
-        start=tool.start,
-        end=tool.end,
-        center=tool.center,
         feed=trace.feedrate.feed[rows],
-        rise=rise_of(trace, rows, length),
+        rise=rise_of(trace, rows, tool.length),
         arc_share=_arc_share(trace, tool, rows),
         known=tool.known,
         phase=tool.phase,

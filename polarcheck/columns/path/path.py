@@ -26,7 +26,6 @@ from polarcheck.foundation.arrays import (
     Mask,
     Points,
     Rows,
-    States,
     cached_property,
     is_among,
     repeated,
@@ -34,6 +33,7 @@ from polarcheck.foundation.arrays import (
 from polarcheck.foundation.states import Distance, FeedAxes, Motion
 from polarcheck.geometry import polar
 from polarcheck.geometry.plane import angle_between
+from polarcheck.geometry.plane_path import PlanePath
 from polarcheck.geometry.tolerances import ZERO
 from polarcheck.program.execution.run import Run
 from polarcheck.program.machines.axis_table import INCREMENTS
@@ -477,7 +477,7 @@ class ProgrammedPath(Columns, frozen=True):
         """Distance of the row on the polar plane [mm]; 0 where it does not move there, NaN where unknown."""
         moving = self.mode.in_polar & self.axes.moves_plane
         length = np.zeros(len(self.run))
-        length[moving] = polar.length(*self._move(moving))
+        length[moving] = self._move(moving).length
         return length
 
     @cached_property
@@ -490,8 +490,8 @@ class ProgrammedPath(Columns, frozen=True):
         rises = self.mode.in_polar & self.axes.moves_plane & measured & self.moves_z
         return np.where(rises, np.abs(self.z - self.z_before), 0.0)
 
-    def _move(self, rows: Mask) -> tuple[Points, Points, Points, States]:
-        return self.start[rows], self.end[rows], self.center[rows], self.axes.motion[rows]
+    def _move(self, rows: Mask) -> PlanePath:
+        return PlanePath(self.start[rows], self.end[rows], self.center[rows], self.axes.motion[rows])
 
     @cached_property
     def c_words(self) -> tuple[Floats, Floats]:
@@ -513,7 +513,7 @@ class ProgrammedPath(Columns, frozen=True):
         absolute, turn = self.c_words
         on_plane = self.mode.in_polar & self.axes.moves_plane
         turn = turn.copy()
-        turn[on_plane] = self.c_axis.sense * polar.c_sweep(*self._move(on_plane))
+        turn[on_plane] = self.c_axis.sense * polar.c_sweep(*self._move(on_plane).shape)
         # G28 H0 takes C to its reference point, the zero of its angle (builder's guide: "zero return C-axis").
         referenced = self.blocks.listed("c_axis_reference") & self.blocks.has(axis, increment)
         set_to = np.where(self.modal.sets_coordinates, self.coordinates.angle_of(axis), np.nan)

@@ -14,7 +14,6 @@ import numpy as np
 import shapely  # type: ignore[import-untyped]
 
 from polarcheck.foundation.arrays import Floats, Mask, Points, Rows
-from polarcheck.geometry import polar
 from polarcheck.geometry.comparison.measured_path import MeasuredPath, path_of_outline
 from polarcheck.geometry.outline import Outline
 
@@ -180,7 +179,7 @@ def _compared(part: MachinedPart, drawn: MeasuredPath, turned: float) -> tuple[F
 def _between_walls(part: MachinedPart, drawn: MeasuredPath, metal: float) -> Mask:
     """Elements of an outline that lie beyond this radius, and are parallel to no line of the drawing."""
     outline = part.outline
-    nearest = polar.nearest(outline.start, outline.end, outline.center, outline.kind)
+    nearest = outline.nearest
     walls = drawn.end - drawn.start
     chord = outline.end - outline.start
     across = np.abs((chord[:, None].conj() * walls).imag) / np.maximum(np.abs(chord[:, None] * walls), 1e-9)

@@ -74,8 +74,7 @@ def path_of(start: Points, end: Points, of: Rows) -> MeasuredPath:
 
 def path_of_outline(outline: Outline) -> MeasuredPath:
     """The path along an outline, with fine chords for its arcs; `of` are its elements."""
-    chain, row = outline.chain, np.arange(len(outline))
-    chords = segments(Curves(outline.start, outline.end, outline.center, outline.kind, chain, row), _TOLERANCE)
+    chords = segments(Curves(*outline.shape, outline.chain, np.arange(len(outline))), _TOLERANCE)
     return path_of(chords.start, chords.end, chords.move)
 
 

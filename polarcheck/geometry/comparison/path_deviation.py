@@ -20,7 +20,8 @@ from polarcheck.foundation.arrays import Floats, Rows
 from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.comparison.anchors import anchors
 from polarcheck.geometry.comparison.free_space import Budget, Corner, Meeting, OverBudgetError, frechet, is_within
-from polarcheck.geometry.comparison.polyline import Polyline, SpacePath, polyline
+from polarcheck.geometry.comparison.polyline import Polyline, polyline
+from polarcheck.geometry.plane_path import SpacePath
 
 #: Grids by which corners are paired, as a multiple of the tolerance, the finest first.
 _CELLS = (2.0, 16.0, 128.0, 1024.0)

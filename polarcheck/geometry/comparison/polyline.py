@@ -4,41 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, States, Table
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, Table, ranges
 from polarcheck.foundation.errors import TooHardError
-from polarcheck.foundation.states import Motion
 from polarcheck.foundation.time_limit import keep_time
-from polarcheck.geometry.plane import arc_sweep
+from polarcheck.geometry.plane_path import SpacePath
 from polarcheck.geometry.tolerances import CHORDS_OF_FILE, ZERO
 
 #: The fewest chords of a full circle are three, the flattest chord turns by this angle [rad].
 _LEAST_TURN, _LARGEST_TURN = 1e-6, 2 * np.pi / 3
-
-
-class SpacePath(Table, frozen=True):
-    """
-    A path in the order in which it is run, n moves.
-
-    start, end: complex128[n], plane points [mm, X as radius]. center: complex128[n], NaN for lines.
-    kind: int16[n], Motion; what is neither CW nor CCW is a line. z_start, z_end: float64[n] [mm].
-
-    Where a move does not begin at the end of the one before it, as behind a block that moves Z alone, a straight line
-    leads there, which belongs to the later move.
-    """
-
-    start: Points
-    end: Points
-    center: Points
-    kind: States
-    z_start: Floats
-    z_end: Floats
-
-    @property
-    def is_known(self) -> Mask:
-        """The moves of which every coordinate is known."""
-        is_arc = (self.kind == Motion.CW) | (self.kind == Motion.CCW)
-        points = self.start + self.end + self.z_start + self.z_end
-        return np.asarray(~np.isnan(points) & ~(is_arc & np.isnan(self.center)))
 
 
 class Polyline(Table, frozen=True):
@@ -69,37 +42,29 @@ def polyline(path: SpacePath, sagitta: float) -> tuple[Polyline, float]:
     more moves than chords are allowed.
     """
     keep_time()
-    is_arc = (path.kind == Motion.CW) | (path.kind == Motion.CCW)
-    spoke = np.where(is_arc, path.start - path.center, 0)
-    last = np.where(is_arc, path.end - path.center, 0)
-    sweep = np.where(is_arc, arc_sweep(path.start, path.end, np.where(is_arc, path.center, 0), path.kind), 0.0)
-    radius = np.maximum(np.abs(spoke), np.abs(last))
-    count = _counts(sweep, radius, sagitta)
+    count = _counts(path, sagitta)
     while count.sum() > CHORDS_OF_FILE:
         if len(path) > CHORDS_OF_FILE // 4:
             raise TooHardError(f"a path of {len(path)} moves is too long to compare")
         sagitta *= 4
-        count = _counts(sweep, radius, sagitta)
-    move = np.repeat(np.arange(len(path)), count)
-    share = (np.arange(len(move)) - np.repeat(np.cumsum(count) - count, count) + 1) / count[move]
-    # An end that is not quite on the circle is reached in a spiral.
-    growth = np.where(is_arc, np.abs(last) / np.maximum(np.abs(spoke), ZERO) - 1, 0.0)[move]
-    turned = spoke[move] * (1 + growth * share) * np.exp(1j * sweep[move] * share)
+        count = _counts(path, sagitta)
+    move, index = ranges(count)
+    share = (index + 1) / count[move]
     ends = share == 1
-    point = np.where(ends, path.end[move], np.where(is_arc, path.center, 0)[move] + turned)
-    z = path.z_start[move] + (path.z_end - path.z_start)[move] * share
-    corners = Polyline(point, np.where(ends, path.z_end[move], z), move, ends)
+    z = np.where(ends, path.z_end[move], path.z_start[move] + (path.z_end - path.z_start)[move] * share)
+    corners = Polyline(path.points(move, share), z, move, ends)
     begins = Polyline(path.start, path.z_start, np.arange(len(path)), np.ones(len(path), bool))
     both = Polyline.concatenated([begins, corners])
     order = np.argsort(np.append(2 * begins.move, 2 * corners.move + 1), kind="stable")
-    return _without_stubs(both[order]), sagitta if is_arc.any() else 0.0
+    return _without_stubs(both[order]), sagitta if path.is_arc.any() else 0.0
 
 
-def _counts(sweep: Floats, radius: Floats, sagitta: float) -> Rows:
+def _counts(path: SpacePath, sagitta: float) -> Rows:
     """Chords of each move."""
+    radius = np.nan_to_num(np.maximum(np.abs(path.start - path.center), np.abs(path.end - path.center)))
     flat = np.clip(1 - sagitta / np.maximum(radius, ZERO), -1, 1)
     unit = np.clip(2 * np.arccos(flat), _LEAST_TURN, _LARGEST_TURN)
-    return np.asarray(np.maximum(np.ceil(np.abs(sweep) / unit - ZERO), 1), np.int64)
+    return np.asarray(np.maximum(np.ceil(np.abs(path.sweep) / unit - ZERO), 1), np.int64)
 
 
 def _without_stubs(line: Polyline) -> Polyline:

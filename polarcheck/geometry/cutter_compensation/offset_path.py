@@ -15,10 +15,11 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, States, Table
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, States
 from polarcheck.foundation.states import Motion
 from polarcheck.geometry.cutter_compensation.offset_vectors import Vectors, end_vectors
 from polarcheck.geometry.cutter_compensation.programmed_path import Method, Path, Programmed, fits, moving_rows
+from polarcheck.geometry.plane_path import PlanePath
 from polarcheck.geometry.tolerances import ROUNDING, ZERO
 
 __all__ = ["Method", "Path", "Phase", "ToolPath", "tool_center_path"]
@@ -36,15 +37,14 @@ class Phase(enum.IntEnum):
     CANCEL = 3
 
 
-class ToolPath(Table, frozen=True):
+class ToolPath(PlanePath, frozen=True):
     """
-    The moves of the tool center in order, and what the control would object to.
+    The moves of the tool center, and what the control would object to. An arc that ends where it starts is a full
+    circle.
 
     Per move, k of them. row: int[k], into Path; the block whose F applies: a line across a corner belongs to the latter
-    block. kind: int16[k], Motion LINE, CW or CCW. start, end, center: complex128[k] [mm], center NaN for lines; an arc
-    that ends where it starts is a full circle. phase: int16[k]. corner: bool[k], a line or an arc that the control
-    adds between two blocks. known: bool[k], False where a position or R is unknown and the move is therefore the
-    programmed one.
+    block. phase: int16[k]. corner: bool[k], a line or an arc that the control adds between two blocks. known: bool[k],
+    False where a position or R is unknown and the move is therefore the programmed one.
 
     Per row of the Path, n of them, bool[n]. inside_arc_too_small: arc radius not above R on its inner side (PS0041).
     interferes: tool center would run against the program (PS0041). no_intersection: the offset curves do not meet at
@@ -53,10 +53,6 @@ class ToolPath(Table, frozen=True):
     """
 
     row: Rows
-    kind: States
-    start: Points
-    end: Points
-    center: Points
     phase: States
     corner: Mask
     known: Mask
@@ -73,15 +69,11 @@ _PART = 16_384
 _LEAD, _CORNER, _BLOCK, _TRAIL = range(4)
 
 
-class _Moves(Table, frozen=True):
+class _Moves(PlanePath, frozen=True):
     """Some moves of the tool center, columns as in ToolPath; `order` sorts them among all others."""
 
     order: Rows
     row: Rows
-    start: Points
-    end: Points
-    center: Points
-    kind: States
     phase: States
     known: Mask
 
@@ -161,11 +153,8 @@ def _of_sections(path: Path, method: Method) -> ToolPath:
         return result
 
     return ToolPath(
+        *moves.shape,
         row=moves.row,
-        kind=moves.kind,
-        start=moves.start,
-        end=moves.end,
-        center=moves.center,
         phase=moves.phase,
         corner=moves.order % 4 == _CORNER,
         known=moves.known,

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, Table
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, Table, ranges
 from polarcheck.geometry.plane import quiet
 from polarcheck.geometry.tolerances import ZERO
 
@@ -79,8 +79,8 @@ def sampled(radius: Floats, angle: Floats, z: Floats, tolerance: float, reserve:
     stands = bow <= MOST_BOW * tolerance
     count = np.where(stands, np.minimum(counts(radius, angle, tolerance), 2), counts(radius, angle, tolerance))
     count = count.astype(np.int64)
-    block = np.repeat(np.arange(len(count)), count)
-    index = np.arange(len(block)) - np.repeat(np.cumsum(count) - count, count) + 1
+    block, index = ranges(count)
+    index += 1
     share = index / count[block]
 
     def along(values: Floats) -> Floats:

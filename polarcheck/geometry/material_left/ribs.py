@@ -14,7 +14,7 @@ import msgspec
 import numpy as np
 import shapely  # type: ignore[import-untyped]
 
-from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, Table
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, Table, ranges
 from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.contour_ends import WITNESS, Corners
 from polarcheck.geometry.polygons import areas
@@ -178,8 +178,7 @@ def _along_outline(part: FinishedParts, corners: Corners, shift: Floats, radius:
     low, high = (np.clip(foot + sign * reach[corner], 0, length) for sign in (-1, 1))
     step = np.sqrt(8 * WITNESS * radius[corners.loop[corner]]) / _SAMPLES
     count = np.ceil((high - low) / step).astype(np.int64)
-    pair = np.repeat(np.arange(len(wall)), count)
-    index = np.arange(len(pair)) - np.repeat(np.cumsum(count) - count, count)
+    pair, index = ranges(count)
     position = low[pair] + (index + 0.5) * ((high - low) / np.maximum(count, 1))[pair]
     return _Samples(start[pair] + position * along[pair], along[pair], corner[pair], corners.loop[corner[pair]])
 

@@ -12,7 +12,7 @@ import msgspec
 import numpy as np
 import shapely  # type: ignore[import-untyped]
 
-from polarcheck.foundation.arrays import Floats, Mask, Rows
+from polarcheck.foundation.arrays import Floats, Mask, Rows, ranges
 from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.overcuts.cuts import Cuts, assign_walls, cuts_into, endless, shortened
 from polarcheck.geometry.overcuts.uncompensated_moves import Bare, FlatLoops
@@ -115,8 +115,8 @@ def _groups(curves: Curves, loops: FlatLoops, bare: Bare) -> _Groups:
     index = np.arange(len(level)) - np.searchsorted(section[level], section[level])
     level = level[index < _DEPTHS]
     count = level - begin[level] + 1
-    group = np.repeat(np.arange(len(level)), count)
-    loop = np.arange(len(group)) - np.repeat(np.cumsum(count) - count, count) + begin[level][group]
+    group, loop = ranges(count)
+    loop += begin[level][group]
     bounds = is_first[loop]
     return _Groups(section[level], z[level], loops.loop[order][loop[bounds]], group[bounds])
 

@@ -15,12 +15,11 @@ import msgspec
 import numpy as np
 import shapely  # type: ignore[import-untyped]
 
-from polarcheck.foundation.arrays import Floats, Mask, Points, Rows
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, ranges
 from polarcheck.foundation.errors import TooHardError
 from polarcheck.foundation.states import Motion
 from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.outline import Outline, outline_of
-from polarcheck.geometry.plane import arc_sweep
 from polarcheck.geometry.polygons.faces import coordinates, edges_of, lines_of
 from polarcheck.geometry.polygons.widened import widened
 from polarcheck.geometry.segments import Curves, Segments, first_of_its_kind, segments
@@ -91,8 +90,8 @@ def _across(polygon: Any, chords: Segments, radius: float) -> float:
     keep_time()
     vector = chords.end - chords.start
     count = np.clip(np.ceil(np.abs(vector) / radius), 1, _SAMPLES).astype(np.int64)
-    of = np.repeat(np.arange(len(vector)), count)
-    share = (np.arange(len(of)) - (np.cumsum(count) - count)[of] + 0.5) / count[of]
+    of, index = ranges(count)
+    share = (index + 0.5) / count[of]
     point = chords.start[of] + share * vector[of]
     aside = 1j * (vector / np.abs(vector))[of] * (radius + _TOLERANCE)
     length = (np.abs(vector) / count)[of]
@@ -246,8 +245,7 @@ def _exact_ends(outline: Outline, curves: _ExactCurves) -> Outline:
     for touched in (curves.touched(number, following), curves.touched(following, number)):
         point = np.where(np.isnan(touched), point, touched)
     exact = msgspec.structs.replace(outline, start=point[before], end=point)
-    sweeps = [arc_sweep(version.start, version.end, version.center, version.kind) for version in (outline, exact)]
-    kept = exact[~(outline.is_arc & (np.abs(sweeps[1] - sweeps[0]) > np.pi))]
+    kept = exact[~(outline.is_arc & (np.abs(exact.sweep - outline.sweep) > np.pi))]
     before, _ = _adjacent_in_chain(kept)
     return msgspec.structs.replace(kept, start=kept.end[before])
 

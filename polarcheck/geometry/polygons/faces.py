@@ -16,7 +16,7 @@ import numpy as np
 import shapely  # type: ignore[import-untyped]
 from numpy.typing import NDArray
 
-from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, Table
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, Table, ranges
 from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.polygons import areas
 from polarcheck.geometry.polygons.noding import Edges, merged, noded
@@ -248,8 +248,7 @@ def _rings(lines: _Lines, inside: Mask) -> tuple[Rows, Rows, Mask]:
 def _along(lines: _Lines, line: Rows, forward: Mask) -> tuple[Rows, Mask, Rows]:
     """The edges of these lines in order, a mask of those that keep their direction, and the line of each by index."""
     count = lines.count[line]
-    of = np.repeat(np.arange(len(line)), count)
-    index = np.arange(len(of)) - np.repeat(np.cumsum(count) - count, count)
+    of, index = ranges(count)
     index = np.where(forward[of], index, count[of] - 1 - index)
     return lines.first[line[of]] + index, forward[of], of
 

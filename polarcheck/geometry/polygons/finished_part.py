@@ -22,7 +22,7 @@ from polarcheck.geometry.contour_ends import gaps_between_ends
 from polarcheck.geometry.polygons import areas
 from polarcheck.geometry.polygons.faces import GRID, Geometries, Standing, Walls, standing
 from polarcheck.geometry.polygons.loop_ends import LoopEnds, closed_beside, joined_to_walls
-from polarcheck.geometry.segments import Curves, Segments, directions, first_of_its_kind, members, segments
+from polarcheck.geometry.segments import Curves, Segments, first_of_its_kind, members, segments
 from polarcheck.geometry.tolerances import TOUCH
 
 #: Corners of the circle that stands for the bar, in a quarter.
@@ -210,8 +210,8 @@ def _ends(chosen: Curves, first: Rows, total: Floats, contours: Contours, pitch:
     return LoopEnds(
         start.start + pitch * group,
         end.end + pitch * group,
-        directions(start.start, start.end, start.center, start.kind)[0],
-        directions(end.start, end.end, end.center, end.kind)[1],
+        start.leaving,
+        end.arriving,
         np.isnan(start.center) & np.isnan(end.center),
         total,
         contours.radius[group],
@@ -319,9 +319,9 @@ def _bridges(plane: _Plane, contours: Contours) -> tuple[Walls, Floats]:
     gaps = gaps_between_ends(curves, first, last)
     fits = (gaps.length < 2 * contours.radius[curves.loop[first]][:, None]) & (gaps.length > TOUCH)
     fits &= gaps.lead_on | (gaps.length <= contours.tolerance)
-    begins, ends = directions(curves.start, curves.end, curves.center, curves.kind)
     aside = np.where(plane.left, 1j, -1j)
-    for lead, direction, across in ((gaps.after - 1, ends, -gaps.vector), (gaps.before + 1, begins, gaps.vector)):
+    leads = (gaps.after - 1, curves.arriving, -gaps.vector), (gaps.before + 1, curves.leaving, gaps.vector)
+    for lead, direction, across in leads:
         lead = np.clip(lead, first[:, None], last[:, None])
         is_lead = (lead != gaps.after) & (lead != gaps.before)
         fits &= ~is_lead | ((across * (aside * direction)[lead].conj()).real <= contours.tolerance)
@@ -340,9 +340,8 @@ def _bridges(plane: _Plane, contours: Contours) -> tuple[Walls, Floats]:
 def _rays(plane: _Plane, contours: Contours) -> tuple[Walls, Floats]:
     """Lines straight on from both ends of each loop to the square, and the longest of each group [mm], 0 for none."""
     curves = plane.chosen
-    begins, ends = directions(curves.start, curves.end, curves.center, curves.kind)
     point = np.concatenate([curves.start[plane.first], curves.end[plane.last]])
-    direction = np.concatenate([-begins[plane.first], ends[plane.last]])
+    direction = np.concatenate([-curves.leaving[plane.first], curves.arriving[plane.last]])
     group = np.concatenate([curves.loop[plane.first], curves.loop[plane.last]])
     length = np.full(len(point), np.inf)
     for begin, along in ((point.real, direction.real), (point.imag, direction.imag)):

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, Table
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, Table, ranges
 from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.contour_ends import CLOSED
 from polarcheck.geometry.polygons.faces import Walls
@@ -88,8 +88,8 @@ def _candidates(ends: Points, walls: Walls) -> tuple[Rows, Rows]:
         before = total[begins - 1] if begins else 0
         stop = max(int(np.searchsorted(total, before + _PAIRS)), begins + 1)
         count = (until - first)[begins:stop]
-        wall = np.repeat(np.arange(begins, stop), count)
-        index = np.arange(len(wall)) - np.repeat(np.cumsum(count) - count, count)
+        wall, index = ranges(count)
+        wall += begins
         end = order[first[wall] + index]
         c, a, b = ends[end].imag, walls.start[wall].imag, walls.end[wall].imag
         near = (c >= np.minimum(a, b) - CLOSED) & (c <= np.maximum(a, b) + CLOSED)

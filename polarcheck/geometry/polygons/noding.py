@@ -13,7 +13,7 @@ import msgspec
 import numpy as np
 import shapely  # type: ignore[import-untyped]
 
-from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, Table
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, Table, ranges
 from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.tolerances import CROSSINGS, FREE_CROSSINGS, TOUCH
 
@@ -192,8 +192,7 @@ def _each_wall(walls: _Walls, boxes: _Boxes, runs: _Runs, run: Rows, second: Row
     """Pairs of a wall of one run and a wall of the other that may meet."""
     first, size = runs.first, runs.size
     count = size[run] * size[second]
-    pair = np.repeat(np.arange(len(run)), count)
-    index = np.arange(len(pair)) - np.repeat(np.cumsum(count) - count, count)
+    pair, index = ranges(count)
     i = first[run[pair]] + index // size[second[pair]]
     j = first[second[pair]] + index % size[second[pair]]
     left, below, right, above = boxes

@@ -69,7 +69,7 @@ def area_of(sweeps: Sweeps, less: float = 0.0) -> Any:
 
 def as_one_loop(path: Curves) -> Curves:
     """The same curves as one loop."""
-    return Curves(path.start, path.end, path.center, path.kind, np.zeros(len(path), np.int64), path.row)
+    return Curves(*path.shape, np.zeros(len(path), np.int64), path.row)
 
 
 def disc(diameter: float, bore: float = 0.0) -> Any:

@@ -15,7 +15,7 @@ import numpy as np
 
 from polarcheck.foundation.arrays import Floats, Mask, Points, Rows
 from polarcheck.geometry.outline import Outline
-from polarcheck.geometry.plane import arc_sweep, passes_toward
+from polarcheck.geometry.plane import passes_toward
 from polarcheck.geometry.rounding import kept_ends
 from polarcheck.geometry.shapes.shape import SAME
 
@@ -111,8 +111,7 @@ def rings(outline: Outline, gap: float = 0.0, bar: float = np.nan) -> Iterator[R
 
 
 def _ring_of(part: Outline, closed: bool, gap: float) -> Ring:
-    sweep = np.where(part.is_arc, arc_sweep(part.start, part.end, part.center, part.kind), 0.0)
-    start, end, center, row = part.start, part.end, part.center, part.row
+    start, end, center, sweep, row = part.start, part.end, part.center, part.sweep, part.row
     apart = abs(end[-1] - start[0]) if len(row) else 0.0
     if not closed and 0 < apart <= gap + SAME:
         corner = _corner(part, apart)

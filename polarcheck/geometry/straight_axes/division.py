@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from polarcheck.foundation.arrays import Floats, Points, Rows, Table
+from polarcheck.foundation.arrays import Floats, Points, Rows, Table, ranges
 from polarcheck.foundation.errors import TooHardError
 from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.plane import angle_between, cross, quiet
@@ -110,8 +110,7 @@ def _placed(spans: Spans, shares: Floats, need: Floats, count: Rows) -> Pieces:
     # A span without need is divided by length; a little of its length makes the need rise everywhere.
     total = need[:, -1:]
     share = np.where(total > 0, need / np.where(total > 0, total, 1.0), shares) * (1 - 1e-6) + shares * 1e-6
-    span = np.repeat(np.arange(len(spans)), count)
-    index = np.arange(len(span)) - np.repeat(np.cumsum(count) - count, count)
+    span, index = ranges(count)
     of = count[span]
     cuts = np.interp(number[span] + index / of, (number[:, None] + share).ravel(), shares.ravel())
     first = np.where(index == 0, 0.0, cuts)

@@ -15,7 +15,6 @@ import msgspec
 import numpy as np
 
 from polarcheck.checking.channel_reports import first_runs
-from polarcheck.columns.metal.finished import turned_columns
 from polarcheck.foundation.errors import TooHardError
 from polarcheck.foundation.finding import FileReport, LeftStanding, MadeInSection, MadeShape, OddSide
 from polarcheck.foundation.states import Units
@@ -177,7 +176,7 @@ def level_in_words(trace: Trace, level: Level) -> str:
     """The shapes of a level of one section in words, in the frame of the part and the units of the program."""
     turn = _turn(trace, level.section)
     if not level.angle and turn != 1:
-        level = level._replace(outline=turned_columns(level.outline, turn))
+        level = level._replace(outline=level.outline.turned_by(turn))
     depth = Depth(level.sections, level.z, level.radius, shapes_of_level(trace, level))
     return "; ".join(_words(trace, shape, depth) for shape in depth.shapes)
 

@@ -8,8 +8,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from polarcheck.columns.contour.overcuts import level_of_rows
-from polarcheck.columns.filling import before
-from polarcheck.columns.metal.finished import turned_columns
 from polarcheck.foundation.arrays import Floats, Mask, Rows
 from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.segments import Curves
@@ -67,17 +65,10 @@ def _depth(trace: Trace, moves: Moves, chosen: Rows, cutter: float) -> Depth:
     z = float(trace.path.z[row])
     if np.isnan(cutter) or not cutter:
         return Depth(sections, z, np.nan, [], _needs_radius(trace, row))
-    path = Curves(
-        moves.start[chosen],
-        moves.end[chosen],
-        moves.center[chosen],
-        moves.kind[chosen],
-        np.zeros(len(chosen), int),
-        moves.row[chosen],
-    )
+    path = Curves(*moves.shape, np.zeros(len(moves), int), moves.row)[chosen]
     entry = np.where(trace.path.knows_section_entry, trace.path.section_entry, 0.0)
     parts = [
-        turned_columns(path[trace.mode.section[path.row] == number], complex(np.exp(1j * np.radians(entry[number]))))
+        path[trace.mode.section[path.row] == number].turned_by(np.exp(1j * np.radians(entry[number])))
         for number in sections
     ]
     bar = float(trace.lengths.stock_diameter[row])
@@ -87,9 +78,7 @@ def _depth(trace: Trace, moves: Moves, chosen: Rows, cutter: float) -> Depth:
 
 def _changes_depth(trace: Trace) -> Mask:
     """A ramp clears its way at the Z of its end at that end alone, where what follows begins."""
-    return np.asarray(
-        trace.path.moves_z & (np.abs(trace.path.z - before(trace.path.z, trace.blocks.starts, np.nan)) > ZERO)
-    )
+    return np.asarray(trace.path.moves_z & (np.abs(trace.path.z - trace.path.z_before) > ZERO))
 
 
 def above_the_face(trace: Trace) -> Mask:

@@ -65,6 +65,10 @@ class Move(msgspec.Struct, frozen=True):
     channel: str | UnsetType = UNSET
 
 
+#: Columns of numbers that are not known everywhere.
+_NUMBERS = ("radius", "feed", "nearest", "c_feed", "x_feed", "c_acceleration", "x_acceleration", "time")
+
+
 def _point(value: complex) -> list[float | None]:
     return [rounded(value.real), rounded(value.imag)]
 
@@ -81,19 +85,12 @@ def moves(trace: Trace, tool_center: ToolCenter, path: str) -> Iterator[Move]:
             start=_point(table.start[index]),
             end=_point(table.end[index]),
             center=None if np.isnan(center) else _point(center),
-            z=[rounded(table.z_from[index]), rounded(table.z_to[index])],
+            z=[rounded(z) for z in table.z[index]],
             path=path if table.is_of_tool[index] else PROGRAMMED,
-            radius=rounded(table.radius[index]),
-            feed=rounded(table.feed[index]),
-            x_axis=[rounded(table.x_from[index]), rounded(table.x_to[index])],
-            c_axis=[rounded(table.c_from[index]), rounded(table.c_to[index])],
-            nearest=rounded(table.nearest[index]),
-            c_feed=rounded(table.c_feed[index]),
-            x_feed=rounded(table.x_feed[index]),
-            c_acceleration=rounded(table.c_acceleration[index]),
-            x_acceleration=rounded(table.x_acceleration[index]),
-            time=rounded(table.time[index]),
+            x_axis=[rounded(x) for x in table.x_axis[index]],
+            c_axis=[rounded(c) for c in table.c_axis[index]],
             channel=trace.text.source.channel or UNSET,
+            **{name: rounded(getattr(table, name)[index]) for name in _NUMBERS},
         )
 
 

@@ -8,11 +8,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from polarcheck.columns.path.executed_moves import KINDS, running
-from polarcheck.columns.path.moves import Moves, z_along
+from polarcheck.columns.path.executed_moves import KINDS, ExecutedMoves, executed_moves
 from polarcheck.columns.path.tool_center import ToolCenter
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Floats, Mask
+from polarcheck.foundation.arrays import Mask
 from polarcheck.foundation.states import FeedMode, Motion, Side
 from polarcheck.program.reading.excerpt import visible
 from polarcheck.reports.pages.aligned import Column, table
@@ -34,11 +33,9 @@ def moves_table(
     trace: Trace, tool_center: ToolCenter, path: str, room: int | None, height: int | None
 ) -> Iterator[str]:
     """Yield the moves of `executed.moves` on the tool center path ("tool") or the programmed one."""
-    moves, runs = running(trace, tool_center, path)
+    moves = executed_moves(trace, tool_center, path)
     yield from _channel(trace)
-    yield from table(
-        _of_moves(trace, moves, runs, path), lambda move: _block(trace, int(moves.row[move])), room, height
-    )
+    yield from table(_of_moves(moves, path), lambda move: _block(trace, int(moves.row[move])), room, height)
 
 
 def _channel(trace: Trace) -> Iterator[str]:
@@ -80,34 +77,31 @@ def _of_rows(trace: Trace, tool_center: ToolCenter) -> list[Column]:
     ]  # fmt: skip
 
 
-def _of_moves(trace: Trace, moves: Moves, runs: Mapping[str, Floats], path: str) -> list[Column]:
-    c_from, c_to = moves.c_angles
-    z_from, z_to = z_along(trace, moves)
-    is_arc = ~np.isnan(moves.center)
+def _of_moves(moves: ExecutedMoves, path: str) -> list[Column]:
     first = int(moves.section[0]) if len(moves) else 0
     path_key = np.where(moves.is_of_tool, 1, 0) if path == "tool" else np.ones(len(moves), np.int64)
     return [
-        _count("line", 0, trace.blocks.line_in_file[moves.row]),
+        _count("line", 0, moves.line),
         _count("section", 5, moves.section, usual=first),
         _words("kind", 1, moves.kind, {kind: KINDS.get(Motion(kind), "line") for kind in _distinct(moves.kind)}),
         _words("path", 1, path_key, {0: "programmed", 1: path}, usual=1),
         *_point("start", 4, moves.start),
         *_point("end", 1, moves.end),
-        *_point("center", 6, moves.center, is_blank=~is_arc),
-        Column("z_from", MM, 7, z_from),
-        Column("z_to", MM, 2, z_to),
-        Column("radius", MM, 6, trace.compensation.radius_of_move[moves.row]),
+        *_point("center", 6, moves.center, is_blank=np.isnan(moves.center)),
+        Column("z_from", MM, 7, moves.z[:, 0]),
+        Column("z_to", MM, 2, moves.z[:, 1]),
+        Column("radius", MM, 6, moves.radius),
         Column("feed", FEED, 1, moves.feed),
-        Column("x_axis_from", MM, 8, np.abs(moves.start)),
-        Column("x_axis_to", MM, 7, np.abs(moves.end)),
-        Column("c_axis_from", DEG, 8, c_from),
-        Column("c_axis_to", DEG, 3, c_to),
+        Column("x_axis_from", MM, 8, moves.x_axis[:, 0]),
+        Column("x_axis_to", MM, 7, moves.x_axis[:, 1]),
+        Column("c_axis_from", DEG, 8, moves.c_axis[:, 0]),
+        Column("c_axis_to", DEG, 3, moves.c_axis[:, 1]),
         Column("nearest", MM, 3, moves.nearest),
-        Column("c_feed", C_FEED, 2, runs["c_feed"], _RATE),
-        Column("x_feed", FEED, 4, runs["x_feed"], _RATE),
-        Column("c_acceleration", "deg/s2", 7, runs["c_acceleration"], _RATE),
-        Column("x_acceleration", "mm/s2", 7, runs["x_acceleration"], _RATE),
-        Column("time", "s", 4, runs["time"]),
+        Column("c_feed", C_FEED, 2, moves.c_feed, _RATE),
+        Column("x_feed", FEED, 4, moves.x_feed, _RATE),
+        Column("c_acceleration", "deg/s2", 7, moves.c_acceleration, _RATE),
+        Column("x_acceleration", "mm/s2", 7, moves.x_acceleration, _RATE),
+        Column("time", "s", 4, moves.time),
     ]
 
 

@@ -6,23 +6,21 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, States, Table
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows
 from polarcheck.foundation.states import Motion
-from polarcheck.geometry.comparison.polyline import SpacePath
+from polarcheck.geometry.plane_path import PlanePath, SpacePath
 from polarcheck.reports.pages.executed import Move
 from polarcheck.rewrite.certify.golden import GoldenMove
 
 _KINDS = {"line": Motion.LINE, "cw": Motion.CW, "ccw": Motion.CCW}
 
 
-class ToolPath(Table, frozen=True):
+class ToolPath(PlanePath, frozen=True):
     """
-    Moves of the tool center; one element per move, in order.
+    Moves of the tool center.
 
     line: of the block, 0 in a golden trace.
     section: number of the polar section, counted over all channels.
-    kind: Motion.
-    start, end, center: plane points x + 1j*c [mm]; NaN unknown, and the center of lines.
     z_from, z_to: Z before and after [mm].
     feed: F [mm/min].
     is_programmed: the programmed path in the place of the tool's, since R is unknown.
@@ -33,10 +31,6 @@ class ToolPath(Table, frozen=True):
 
     line: Rows
     section: Rows
-    kind: States
-    start: Points
-    end: Points
-    center: Points
     z_from: Floats
     z_to: Floats
     feed: Floats
@@ -49,15 +43,7 @@ class ToolPath(Table, frozen=True):
 
     def space(self, turned: float = 0.0) -> SpacePath:
         """Return the moves for a comparison, turned about the center of C by an angle [deg]."""
-        by = np.exp(1j * np.radians(turned))
-        return SpacePath(
-            start=self.start * by,
-            end=self.end * by,
-            center=self.center * by,
-            kind=self.kind,
-            z_start=self.z_from,
-            z_end=self.z_to,
-        )
+        return SpacePath(*self.turned_by(np.exp(1j * np.radians(turned))).shape, self.z_from, self.z_to)
 
     @property
     def farthest(self) -> float:

@@ -9,12 +9,13 @@ import numpy as np
 
 from polarcheck.columns.filling import before
 from polarcheck.columns.path.moves import Moves, programmed_moves, z_along
+from polarcheck.columns.path.standing_moves import with_standing
 from polarcheck.columns.path.tool_center import ToolCenter
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, States
 from polarcheck.foundation.states import FeedMode, Motion
 from polarcheck.geometry import polar
-from polarcheck.geometry.comparison.polyline import SpacePath
+from polarcheck.geometry.plane_path import SpacePath
 from polarcheck.rewrite.compare.orders import Step, special_rows
 from polarcheck.rewrite.compare.terms import Terms
 from polarcheck.rules.wording.offsets import called_tool, to_give
@@ -127,40 +128,9 @@ def _stretch(
 
 
 def _with_z_alone(trace: Trace, moves: Moves) -> Moves:
-    """Return the moves with the blocks that move only Z between them, as moves of no length on the plane."""
-    alone = np.flatnonzero((trace.mode.section >= 0) & trace.path.moves_z & ~trace.path.travels)
-    alone = alone[~np.isin(alone, moves.row)]
-    if not len(alone):
-        return moves
-    section = trace.mode.section[alone]
-    insertion = np.searchsorted(moves.row, alone)
-    last = np.maximum(insertion - 1, 0)
-    follows = np.minimum(insertion, max(len(moves) - 1, 0))
-    point = trace.path.end[alone].copy()
-    if len(moves):
-        has_next = (insertion < len(moves)) & (moves.section[follows] == section)
-        point = np.where(has_next, moves.start[follows], point)
-        has_last = (insertion > 0) & (moves.section[last] == section)
-        point = np.where(has_last, moves.end[last], point)
-    count = len(alone)
-    added = msgspec.structs.replace(
-        moves,
-        row=alone,
-        section=section,
-        kind=np.full(count, Motion.LINE, np.int16),
-        start=point,
-        end=point,
-        center=np.full(count, NOWHERE),
-        feed=trace.feedrate.feed[alone],
-        rise=np.zeros(count),
-        arc_share=np.ones(count),
-        known=np.ones(count, bool),
-        phase=np.zeros(count, np.int16),
-        corner=np.zeros(count, bool),
-        allowance=np.zeros(count),
-    )
-    both = Moves.concatenated([moves, added])
-    return both[np.argsort(both.row, kind="stable")]
+    """Return the moves with the blocks that move only Z between them."""
+    alone = (trace.mode.section >= 0) & trace.path.moves_z & ~trace.path.travels
+    return with_standing(trace, moves, alone)[0]
 
 
 def turn_of(trace: Trace, section: int) -> complex:
@@ -177,7 +147,7 @@ def _turned(trace: Trace, moves: Moves, section: int) -> tuple[SpacePath, bool]:
     knows_z = not len(moves) or not (np.isnan(z_from).all() and np.isnan(z_to).all())
     if not knows_z:
         z_from = z_to = np.zeros(len(moves))
-    return SpacePath(moves.start * turn, moves.end * turn, moves.center * turn, moves.kind, z_from, z_to), knows_z
+    return SpacePath(*moves.turned_by(turn).shape, z_from, z_to), knows_z
 
 
 def outside(trace: Trace, steps: Sequence[Step], rows: Rows, terms: Terms) -> Stretch:

@@ -104,10 +104,8 @@ class Swept:
 
     def _curves(self, chosen: np.ndarray) -> Curves:
         """The chosen moves as curves in their frame."""
-        moves, turn = self.moves, self.turn[chosen]
-        center = np.where(np.isnan(moves.center[chosen]), np.nan, moves.center[chosen] * turn)
-        start, end = moves.start[chosen] * turn, moves.end[chosen] * turn
-        return Curves(start, end, center, moves.kind[chosen], np.zeros(len(chosen), int), chosen)
+        moves = self.moves[chosen].turned_by(self.turn[chosen])
+        return Curves(*moves.shape, np.zeros(len(chosen), int), chosen)
 
 
 def points_along(contour: Sequence[Piece], count: int = _POINTS) -> Points:

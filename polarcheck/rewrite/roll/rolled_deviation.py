@@ -12,7 +12,6 @@ from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Floats, Rows, stretch
 from polarcheck.foundation.states import FeedMode, Motion
 from polarcheck.foundation.time_limit import keep_time
-from polarcheck.geometry.plane import arc_sweep
 from polarcheck.geometry.straight_axes.spiral_pieces import along, distances
 from polarcheck.geometry.tolerances import ZERO
 from polarcheck.rewrite.compare.compared_sections import NOWHERE, turn_of
@@ -133,9 +132,9 @@ def _away(section: Section, moves: Moves, of_line: Rows, lines: Rows, turn: comp
     original = section.way
     points = along(original.start_radius, original.radius, original.start_angle, original.angle, _PLACES)
     away = np.repeat(np.where(original.length > ZERO, np.inf, 0.0)[:, None], points.shape[1], axis=1)
-    start, end, center = moves.start * turn, moves.end * turn, moves.center * turn
-    sweep = arc_sweep(start, end, np.where(np.isnan(center), 0, center), moves.kind)
-    center = np.where(sweep == 0, NOWHERE, center)
+    path = moves.turned_by(turn)
+    sweep = path.sweep
+    center = np.where(sweep == 0, NOWHERE, path.center)
     for element in section.parts.elements:
         line = int(lines[original.row[element.until - 1]])
         of_element = slice(*stretch(of_line, line, line + 1))
@@ -145,6 +144,6 @@ def _away(section: Section, moves: Moves, of_line: Rows, lines: Rows, turn: comp
         first, until = max(element.first - 1, 0), min(element.until + 1, len(original))
         samples = points[first:until].ravel()
         samples = np.broadcast_to(samples, (of_element.stop - of_element.start, len(samples)))
-        far = distances(samples, start[of_element], end[of_element], center[of_element], sweep[of_element]).min(axis=0)
-        away[first:until] = np.minimum(away[first:until], far.reshape(until - first, -1))
+        far = distances(samples, path.start[of_element], path.end[of_element], center[of_element], sweep[of_element])
+        away[first:until] = np.minimum(away[first:until], far.min(axis=0).reshape(until - first, -1))
     return away

@@ -13,6 +13,7 @@ from polarcheck.foundation.states import Motion
 from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.fitted_curves.curves import fitted
 from polarcheck.geometry.fitted_curves.spirals import Samples, bows, counts, sampled
+from polarcheck.geometry.plane_path import PlanePath
 from polarcheck.geometry.tolerances import CHORDS_OF_FILE, ZERO
 from polarcheck.rewrite.roll.ways import AxisMoves, runs_of
 
@@ -34,6 +35,12 @@ class Element(msgspec.Struct, frozen=True):
     z: float | None
     first: int
     until: int
+
+    @property
+    def path(self) -> PlanePath:
+        """The element as a path of a single move."""
+        start, end, center = (np.array([point], complex) for point in (self.start, self.end, self.center))
+        return PlanePath(start, end, center, np.array([self.kind], np.int16))
 
 
 class Fit(msgspec.Struct, frozen=True):

@@ -9,7 +9,6 @@ import numpy as np
 
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.states import Motion
-from polarcheck.geometry import polar
 from polarcheck.rewrite.roll.entries import entry_of
 from polarcheck.rewrite.roll.following import Following, x_factor
 from polarcheck.rewrite.roll.rollable import LEAST, Stretch, stretches
@@ -142,9 +141,7 @@ def _require_off_center(original: Original, moves: AxisMoves, fit: Fit, step: fl
     if severities.get(_THROUGH_CENTER, "error") != "error":
         return
     for element in fit.elements:
-        start, end, center = (np.array([point], complex) for point in (element.start, element.end, element.center))
-        nearest = polar.nearest(start, end, center, np.array([element.kind], np.int16))[0]
-        if element.kind != Motion.NONE and nearest < step:
+        if element.kind != Motion.NONE and element.path.nearest[0] < step:
             title = original.settings.machine.title
             raise refused_at(
                 original.trace,

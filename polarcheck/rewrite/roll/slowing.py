@@ -10,7 +10,7 @@ import numpy as np
 from polarcheck.foundation.arrays import Floats, Points
 from polarcheck.foundation.states import Motion
 from polarcheck.geometry import rates
-from polarcheck.geometry.plane import arc_sweep, quiet
+from polarcheck.geometry.plane import quiet
 from polarcheck.program.machines.machine import Machine
 from polarcheck.rewrite.roll.rolled_elements import Element
 from polarcheck.rewrite.roll.rolled_feeds import Feeds, nice
@@ -83,14 +83,13 @@ def _allowed(element: Element, limit: float) -> float:
     """The highest F along an element at which C keeps its limit [mm/min]; 0 through the center."""
     if not math.isfinite(limit):
         return math.inf
-    start, end, center = (np.array([point], complex) for point in (element.start, element.end, element.center))
-    return float(rates.feed_allowed(start, end, center, np.array([element.kind], np.int16), limit)[0])
+    return float(rates.feed_allowed(*element.path.shape, limit)[0])
 
 
 def _divided(moves: AxisMoves, element: Element, limit: float, feed: float) -> list[Element]:
     """The parts of an element from one F to the next lower one."""
     share = np.linspace(0, 1, _PLACES)
-    points = _points_at(element, share)
+    points = element.path.points(np.zeros(_PLACES, np.int64), share)
     allowed = _allowed_at(points, limit)
     lowest = max(float(allowed.min()), feed * 1e-3)
     count = min(math.ceil(math.log(feed / lowest) / -math.log(_STEP)), _MOST)
@@ -129,24 +128,13 @@ def _allowed_at(points: Points, limit: float) -> Floats:
     return np.asarray(np.where(turn > 0, limit / np.degrees(turn), np.inf))
 
 
-def _sweep(element: Element) -> float:
-    start, end, center = (np.array([point], complex) for point in (element.start, element.end, element.center))
-    return float(arc_sweep(start, end, center, np.array([element.kind], np.int16))[0])
-
-
-def _points_at(element: Element, share: Floats) -> Points:
-    if element.kind == Motion.LINE:
-        return np.asarray(element.start + (element.end - element.start) * share, complex)
-    return np.asarray(element.center + (element.start - element.center) * np.exp(1j * _sweep(element) * share))
-
-
 def _along(element: Element, points: Points) -> Floats:
     """How far along an element points are, as a share that never falls."""
     if element.kind == Motion.LINE:
         chord = element.end - element.start
         share = ((points - element.start) * chord.conjugate()).real / abs(chord) ** 2
     else:
-        sweep = _sweep(element)
+        sweep = float(element.path.sweep[0])
         turned = np.angle((points - element.center) / (element.start - element.center)) * math.copysign(1, sweep)
         share = np.where(turned < -0.05, turned + 2 * math.pi, turned) / abs(sweep)
     return np.asarray(np.maximum.accumulate(share))

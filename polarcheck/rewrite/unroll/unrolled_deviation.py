@@ -13,7 +13,6 @@ from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Floats, Mask, Rows
 from polarcheck.foundation.states import MM_PER_INCH, FeedMode, Motion
 from polarcheck.foundation.time_limit import keep_time
-from polarcheck.geometry.plane import arc_sweep
 from polarcheck.geometry.straight_axes.spiral_pieces import along, distances
 from polarcheck.rewrite.compare.parts_compared import outside_compared
 from polarcheck.rewrite.compare.terms import Terms
@@ -217,7 +216,7 @@ def _distance(old: Trace, moves: Moves, run: _Run, steps: Steps) -> Floats:
     runs = np.flatnonzero(steps.move >= 0)
     distance = np.zeros(len(steps))
     of_move = steps.move[runs]
-    sweep = arc_sweep(*moves.shape)
+    sweep = moves.sweep
     center = np.where(sweep == 0, complex("nan+nanj"), moves.center)
     c_from, c_to = moves.c_angles
     sense = moves.c_axis.sense

@@ -9,12 +9,11 @@ from __future__ import annotations
 import numpy as np
 
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, States
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, States, ranges
 from polarcheck.foundation.errors import TooHardError
 from polarcheck.foundation.states import Motion
 from polarcheck.foundation.time_limit import keep_time
-from polarcheck.geometry.comparison.polyline import SpacePath
-from polarcheck.geometry.plane import arc_sweep
+from polarcheck.geometry.plane_path import SpacePath
 from polarcheck.geometry.tolerances import CHORDS_OF_FILE
 from polarcheck.rewrite.compare.compared_sections import NOWHERE, Stretch, of_sections, outside
 from polarcheck.rewrite.compare.terms import ANGLE, Terms
@@ -80,22 +79,16 @@ def path_on_part(tables: Tables, first: int = 0, until: int | None = None, chord
 
 def _in_section(section: Stretch) -> PartPath:
     path = section.path
-    columns = (path.start, path.end, path.center, path.kind, path.z_start, path.z_end)
-    return PartPath(*columns, section.row, section.rapid, section.feed_mode, section.feed)
+    return PartPath(*path.shape, path.z_start, path.z_end, section.row, section.rapid, section.feed_mode, section.feed)
 
 
 def _without_mode(stretch: Stretch, chord: float) -> PartPath:
     """The moves outside of sections: chords between points that lie at even shares of X, Z and C, or of an arc."""
     path = stretch.path  # Z + 1j*X, and C [deg] in the place of Z
     turn = np.radians(path.z_end - path.z_start)
-    is_arc = ~np.isnan(path.center)
-    sweep = np.where(is_arc, arc_sweep(path.start, path.end, np.where(is_arc, path.center, 0), path.kind), 0.0)
-    count = _counts(path, turn, sweep, stretch.rapid, chord)
-    move = np.repeat(np.arange(len(path)), count)
-    step = np.arange(len(move)) - np.repeat(np.cumsum(count) - count, count)
-    start, end = (
-        _points_at(path, turn, sweep, move, share) for share in (step / count[move], (step + 1) / count[move])
-    )
+    count = _counts(path, turn, stretch.rapid, chord)
+    move, step = ranges(count)
+    start, end = (_points_at(path, turn, move, share) for share in (step / count[move], (step + 1) / count[move]))
     return PartPath(
         start=start[0],
         end=end[0],
@@ -110,7 +103,7 @@ def _without_mode(stretch: Stretch, chord: float) -> PartPath:
     )
 
 
-def _counts(path: SpacePath, turn: Floats, sweep: Floats, rapid: Mask, chord: float) -> Rows:
+def _counts(path: SpacePath, turn: Floats, rapid: Mask, chord: float) -> Rows:
     """
     Chords of each move: a curve p(u) leaves a chord of the length h of u by no more than h^2 / 8 max|p''|.
 
@@ -119,22 +112,16 @@ def _counts(path: SpacePath, turn: Floats, sweep: Floats, rapid: Mask, chord: fl
     x_start, x_end = path.start.imag, path.end.imag
     largest = np.maximum(np.abs(x_start), np.abs(x_end))
     bend = 2 * np.abs(x_end - x_start) * np.abs(turn) + largest * turn**2
-    bend += np.where(sweep != 0, np.abs(path.start - np.nan_to_num(path.center)) * sweep**2, 0)
+    bend += np.abs(path.start - np.nan_to_num(path.center)) * path.sweep**2
     count = np.where(rapid, 1, np.ceil(np.sqrt(np.nan_to_num(bend) / (8 * chord))))
     if count.sum() > CHORDS_OF_FILE:
         raise TooHardError(f"the moves of C take more than {CHORDS_OF_FILE} chords")
     return np.asarray(np.maximum(count, 1), np.int64)
 
 
-def _points_at(path: SpacePath, turn: Floats, sweep: Floats, move: Rows, share: Floats) -> tuple[Points, Floats]:
+def _points_at(path: SpacePath, turn: Floats, move: Rows, share: Floats) -> tuple[Points, Floats]:
     """Points on the part, and Z, at a share of moves."""
     keep_time()
-    start, end = path.start[move], path.end[move]
-    point = start + (end - start) * share
-    is_arc = sweep[move] != 0
-    center = np.where(is_arc, path.center[move], 0)
-    point = np.where(is_arc, center + (start - center) * np.exp(1j * sweep[move] * share), point)
+    point = path.points(move, share)
     angle = np.radians(path.z_start[move]) + turn[move] * share
-    ends = share == 1
-    point = np.where(ends, end, point)
     return point.imag * np.exp(1j * angle), point.real
