@@ -83,7 +83,7 @@ class Pieces(PlanePath, frozen=True):
         share = (1 - np.cos(np.linspace(0.0, np.pi, _POINTS)[:, None])) / 2
         for first in range(0, len(held), _AT_ONCE):
             rows = held[first : first + _AT_ONCE]
-            spokes = Spokes.of(*self[rows].shape)
+            spokes = Spokes.of(self[rows])
             largest[rows] = np.abs(of_point(*spokes.at(share * spokes.length), spokes.bend)).max(axis=0)
         return largest
 
@@ -105,13 +105,13 @@ class Spokes(Table, frozen=True):
 
     @classmethod
     @quiet
-    def of(cls, start: Points, end: Points, center: Points, kind: States) -> Spokes:
-        is_arc = (kind == Motion.CW) | (kind == Motion.CCW)
-        spoke = np.where(is_arc, start - center, end - start)
+    def of(cls, path: PlanePath) -> Spokes:
+        is_arc = path.is_arc
+        spoke = np.where(is_arc, path.start - path.center, path.end - path.start)
         radius = np.where(is_arc, np.abs(spoke), np.inf)
-        bend = np.where(is_arc, np.where(kind == Motion.CCW, 1.0, -1.0) / radius, 0.0)
-        length = polar.length(start, end, center, kind)
-        return cls(start, np.asarray(spoke / np.abs(spoke), np.complex128), center, radius, bend, length, is_arc)
+        bend = np.where(is_arc, np.where(path.kind == Motion.CCW, 1.0, -1.0) / radius, 0.0)
+        toward = np.asarray(spoke / np.abs(spoke), np.complex128)
+        return cls(path.start, toward, path.center, radius, bend, path.length, is_arc)
 
     @quiet
     def at(self, distance: Floats) -> tuple[Points, Points]:
@@ -147,7 +147,7 @@ def _x_bend_per_turn(point: Points, direction: Points, bend: Floats) -> Floats:
 def pieces(start: Points, end: Points, center: Points, kind: States, feed: Floats, allowed: float) -> Pieces:
     """The moves in parts; all is known, and F [mm/min] and the rate of C that is allowed [deg/min] are above 0."""
     room = np.radians(allowed) / feed
-    spokes = Spokes.of(start, end, center, kind)
+    spokes = Spokes.of(PlanePath(start, end, center, kind))
     distance = _limit_distances(start, end, center, kind, room)
     length = spokes.length[:, None]
     distance = np.where((distance > 0) & (distance < length), distance, length)

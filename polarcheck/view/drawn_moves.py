@@ -8,10 +8,10 @@ from typing import cast, get_args
 import numpy as np
 
 from polarcheck.columns.feed.dynamics import Dynamics
-from polarcheck.columns.path.moves import z_along
+from polarcheck.columns.path.moves import Moves, z_along
 from polarcheck.columns.path.standing_moves import with_standing
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, States, is_among
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, States
 from polarcheck.foundation.states import Motion
 from polarcheck.geometry.cutter_compensation.offset_path import Phase
 from polarcheck.geometry.rates import c_feed
@@ -153,16 +153,16 @@ class SectionMoves:
             share=numbers_of(self.c_feed[chosen] / limit, RATE + 1),
             begin=numbers_of(self.begin[chosen], TIME),
             time=numbers_of(self.time[chosen], TIME),
-            center=_centers(moves.kind[chosen], moves.center[chosen]),
+            center=_centers(moves[chosen]),
             jump=self.jump[chosen].tolist(),
             angle=list(zip(*(numbers_of(angle[chosen], RATE) for angle in moves.c_angles), strict=True)),
         )
 
 
-def _centers(kind: States, center: Points) -> list[tuple[float, float] | None]:
+def _centers(moves: Moves) -> list[tuple[float, float] | None]:
     """Return the center of each arc [mm], None for other moves."""
-    is_arc = is_among(kind, (Motion.CW, Motion.CCW)) & ~np.isnan(center)
-    rounded = np.round(center, LENGTH) + 0.0
+    is_arc = moves.is_arc & ~np.isnan(moves.center)
+    rounded = np.round(moves.center, LENGTH) + 0.0
     return [
         (x, c) if has_center else None
         for x, c, has_center in zip(rounded.real.tolist(), rounded.imag.tolist(), is_arc.tolist(), strict=True)

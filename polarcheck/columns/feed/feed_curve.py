@@ -39,7 +39,7 @@ def feed_curve(dynamics: Dynamics) -> FeedCurve:
     """
     moves = dynamics.moves[dynamics.at_feed & dynamics.moves.is_of_tool]
     whole = dynamics.move_time[dynamics.at_feed & dynamics.moves.is_of_tool]
-    spokes = Spokes.of(*moves.shape)
+    spokes = Spokes.of(moves)
     foot = -lines_from_center(moves.start, moves.end).before
     nearest = np.where(spokes.is_arc, 0.0, np.clip(foot, 0.0, spokes.length))
     even = np.linspace(0.0, 1.0, _POINTS)[:, None] * spokes.length

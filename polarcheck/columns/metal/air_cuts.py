@@ -17,7 +17,6 @@ from polarcheck.columns.metal.workpiece import Workpiece
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Columns, Floats, Mask, Rows, States, cached_property
 from polarcheck.foundation.states import Motion
-from polarcheck.geometry import polar
 from polarcheck.geometry.tolerances import ROUNDING
 
 #: Z is above something if it is so by more than this [mm]: rounding of words, and finishing passes over a face.
@@ -178,8 +177,7 @@ class AirCuts(Columns, frozen=True):
             return np.zeros(len(trace), bool)
         rows = np.flatnonzero(self.walls)
         nearest = np.full(len(trace), np.inf)
-        path, motion = trace.path, trace.axes.motion
-        nearest[rows] = polar.nearest(path.start[rows], path.end[rows], path.center[rows], motion[rows])
+        nearest[rows] = trace.path.moves_of(rows).nearest
         # Where G41 and G42 only correct a tool center path, the cutter reaches R farther in, too.
         reach = nearest - self.workpiece.radius
         inner = self._of_section(np.where(np.isnan(reach), -np.inf, reach), self.walls, np.minimum, np.inf)

@@ -106,7 +106,6 @@ class Milled(Columns, frozen=True):
     def cuts(self) -> Cuts:
         """All cuts of known R and place. Where no Z is known, all are at Z0; else those of unknown Z are left out."""
         trace, moves = self.trace, self.tool_center.moves
-        turn = np.exp(1j * np.radians(np.where(trace.path.knows_section_entry, trace.path.section_entry, 0.0)))
         z_from, z_to = z_along(trace, moves)
         low, high = np.fmin(z_from, z_to), np.fmax(z_from, z_to)
         at_feed = trace.path.cuts & self.is_along_z & ~np.isnan(self.radius)
@@ -116,11 +115,9 @@ class Milled(Columns, frozen=True):
         else:
             chosen &= low < self.top - _CLEARANCE
         section = moves.section[chosen]
-        chosen_moves = moves[chosen]
+        chosen_moves = moves[chosen].turned_by(trace.path.section_turn[section])
         return Cuts(
-            curves=Curves(
-                *chosen_moves.turned_by(turn[section]).shape, np.zeros(len(section), np.int64), chosen_moves.row
-            ),
+            curves=Curves(*chosen_moves.shape, np.zeros(len(section), np.int64), chosen_moves.row),
             radius=self.radius[chosen_moves.row],
             low=low[chosen],
             high=high[chosen],

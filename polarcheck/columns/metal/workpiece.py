@@ -196,9 +196,9 @@ class Workpiece(Columns, frozen=True):
         low = np.minimum(*z_along(trace, moves))
         usable = moves.is_of_tool & ~np.isnan(self.radius[moves.row] + low) & ~np.isnan(moves.start + moves.end)
         moves = moves[usable]
-        turn, row = np.exp(1j * np.radians(trace.path.section_entry[moves.section])), moves.row
+        row = moves.row
         return ToolMoves(
-            *moves.turned_by(turn).shape,
+            *moves.turned_by(trace.path.section_turn[moves.section]).shape,
             row=row,
             tip=low[usable],
             radius=self.radius[row],

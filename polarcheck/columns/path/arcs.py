@@ -7,7 +7,6 @@ import numpy as np
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Columns, Floats, Mask, Points, Rows, cached_property, is_among, repeated
 from polarcheck.foundation.states import Motion
-from polarcheck.geometry import plane
 from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.program.reading.translation import spans
 
@@ -175,10 +174,7 @@ class Arcs(Columns, frozen=True):
     def sweep(self) -> Floats:
         """Angle of each arc about its own center [deg], 360 for a full circle; NaN for other rows and unknown arcs."""
         trace, rows = self.trace, np.flatnonzero(self.trace.path.is_arc)
-        angle = plane.arc_sweep(
-            trace.path.start[rows], trace.path.end[rows], trace.path.center[rows], trace.axes.motion[rows]
-        )
-        return self._of_arcs(rows, np.abs(np.degrees(angle)))
+        return self._of_arcs(rows, np.abs(np.degrees(trace.path.moves_of(rows).sweep)))
 
     # ---- diameter or radius ----
 

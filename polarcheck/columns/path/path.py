@@ -477,7 +477,7 @@ class ProgrammedPath(Columns, frozen=True):
         """Distance of the row on the polar plane [mm]; 0 where it does not move there, NaN where unknown."""
         moving = self.mode.in_polar & self.axes.moves_plane
         length = np.zeros(len(self.run))
-        length[moving] = self._move(moving).length
+        length[moving] = self.moves_of(moving).length
         return length
 
     @cached_property
@@ -490,7 +490,8 @@ class ProgrammedPath(Columns, frozen=True):
         rises = self.mode.in_polar & self.axes.moves_plane & measured & self.moves_z
         return np.where(rises, np.abs(self.z - self.z_before), 0.0)
 
-    def _move(self, rows: Mask) -> PlanePath:
+    def moves_of(self, rows: Mask | Rows) -> PlanePath:
+        """The programmed moves of these rows."""
         return PlanePath(self.start[rows], self.end[rows], self.center[rows], self.axes.motion[rows])
 
     @cached_property
@@ -513,7 +514,7 @@ class ProgrammedPath(Columns, frozen=True):
         absolute, turn = self.c_words
         on_plane = self.mode.in_polar & self.axes.moves_plane
         turn = turn.copy()
-        turn[on_plane] = self.c_axis.sense * polar.c_sweep(*self._move(on_plane).shape)
+        turn[on_plane] = self.c_axis.sense * polar.c_sweep(*self.moves_of(on_plane).shape)
         # G28 H0 takes C to its reference point, the zero of its angle (builder's guide: "zero return C-axis").
         referenced = self.blocks.listed("c_axis_reference") & self.blocks.has(axis, increment)
         set_to = np.where(self.modal.sets_coordinates, self.coordinates.angle_of(axis), np.nan)
@@ -542,6 +543,11 @@ class ProgrammedPath(Columns, frozen=True):
         direction = self._points[1]
         turned = np.degrees(angle_between(np.ones_like(direction), direction))
         return np.asarray(360 * np.round((angle - self.c_axis.sense * turned) / 360))
+
+    @cached_property
+    def section_turn(self) -> Points:
+        """Direction of the x axis of each section in the frame of the part; 1 where C at its beginning is not known."""
+        return np.exp(1j * np.radians(self.section_entry))
 
     @cached_property
     def knows_section_entry(self) -> Mask:

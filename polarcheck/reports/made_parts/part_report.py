@@ -174,17 +174,11 @@ def shapes_of_level(trace: Trace, level: Level) -> list[Shape]:
 
 def level_in_words(trace: Trace, level: Level) -> str:
     """The shapes of a level of one section in words, in the frame of the part and the units of the program."""
-    turn = _turn(trace, level.section)
+    turn = complex(trace.path.section_turn[level.section])
     if not level.angle and turn != 1:
         level = level._replace(outline=level.outline.turned_by(turn))
     depth = Depth(level.sections, level.z, level.radius, shapes_of_level(trace, level))
     return "; ".join(_words(trace, shape, depth) for shape in depth.shapes)
-
-
-def _turn(trace: Trace, section: int) -> complex:
-    """The direction of x of a section in the frame of the part; 1 where C is not known at its beginning."""
-    is_known = trace.path.knows_section_entry[section]
-    return complex(np.exp(1j * np.radians(trace.path.section_entry[section]))) if is_known else 1 + 0j
 
 
 def _bar(trace: Trace) -> float:
@@ -266,7 +260,7 @@ def _ribs_and_strips(tables: Tables) -> list[tuple[int, LeftStanding]]:
     for kind, columns in (("rib", coverage.ribs), ("strip", coverage.strips)):
         for row in np.flatnonzero(columns.height > 0).tolist():
             sizes, section = _sizes(trace, row), int(trace.mode.section[row])
-            point = complex(columns.place[row]) * _turn(trace, section)
+            point = complex(columns.place[row] * trace.path.section_turn[section])
             line = int(trace.blocks.line_in_file[row])
             size = float(columns.height[row])
             how = "high" if kind == "rib" else "thick"

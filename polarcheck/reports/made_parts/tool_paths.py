@@ -66,9 +66,8 @@ def _depth(trace: Trace, moves: Moves, chosen: Rows, cutter: float) -> Depth:
     if np.isnan(cutter) or not cutter:
         return Depth(sections, z, np.nan, [], _needs_radius(trace, row))
     path = Curves(*moves.shape, np.zeros(len(moves), int), moves.row)[chosen]
-    entry = np.where(trace.path.knows_section_entry, trace.path.section_entry, 0.0)
     parts = [
-        path[trace.mode.section[path.row] == number].turned_by(np.exp(1j * np.radians(entry[number])))
+        path[trace.mode.section[path.row] == number].turned_by(complex(trace.path.section_turn[number]))
         for number in sections
     ]
     bar = float(trace.lengths.stock_diameter[row])

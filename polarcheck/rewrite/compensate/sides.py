@@ -32,8 +32,7 @@ class Swept:
 
     def __init__(self, trace: Trace, moves: Moves, radius: Floats) -> None:
         is_known = trace.path.knows_section_entry[moves.section]
-        entry = np.where(is_known, moves.entry[moves.section], 0.0)
-        self.turn = np.exp(1j * np.radians(entry))
+        self.turn = trace.path.section_turn[moves.section]
         #: Sections share frame -1; one that begins at an unknown C has a frame of its own.
         self.frame = np.where(is_known, -1, moves.section)
         begins, ends = z_along(trace, moves)
