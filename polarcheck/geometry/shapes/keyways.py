@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
+from msgspec.structs import replace
 
 from polarcheck.foundation.arrays import Mask
 from polarcheck.geometry.shapes.shape import SAME, SAME_DIRECTION, Shape, off_axis, turned_by
@@ -66,7 +67,7 @@ def _between(ring: Ring, on_circle: Mask) -> Iterator[Ring]:
     for stretch in np.unique(number):
         chosen = order[(number == stretch) & ~on_circle[order]]
         if len(chosen):
-            yield ring.some(chosen, closed=False)
+            yield replace(ring[chosen], closed=False)
 
 
 def _keyway_of(piece: Ring, center: complex, radius: float) -> _Keyway | None:

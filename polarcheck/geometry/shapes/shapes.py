@@ -36,7 +36,7 @@ def shapes_of_rings(rings: Iterable[Ring], bar: float = np.nan) -> list[Shape]:
             chains.append(ring)
         elif len(ring):
             remaining.append(ring)
-    single = [ring.some(np.array([side])) for ring in chains for side in range(len(ring))]
+    single = [ring[side : side + 1] for ring in chains for side in range(len(ring))]
     if len(single) > len(chains) and not bound_one_piece(single, bar):
         single = [ring for ring in chains if len(ring) == 1]
         remaining = [*(ring for ring in chains if len(ring) > 1), *remaining]

@@ -7,13 +7,13 @@ Plane points complex, x + 1j*c [mm].
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Self
 
 import numpy as np
+from msgspec.structs import replace
 
-from polarcheck.foundation.arrays import Floats, Mask, Points, Rows
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, Table
 from polarcheck.geometry.outline import Outline
 from polarcheck.geometry.plane import passes_toward
 from polarcheck.geometry.rounding import kept_ends
@@ -31,8 +31,7 @@ _HALF = SAME / 8 * (1 + 1j)
 SHARP = 0.26
 
 
-@dataclass(frozen=True, slots=True)
-class Ring:
+class Ring(Table, frozen=True):
     """
     Sides in the order in which they run, n of them.
 
@@ -43,6 +42,8 @@ class Ring:
     [mm].
     """
 
+    _shared = ("closed", "inside", "beyond")
+
     start: Points
     end: Points
     center: Points
@@ -51,9 +52,6 @@ class Ring:
     closed: bool
     inside: bool = False
     beyond: float = np.inf
-
-    def __len__(self) -> int:
-        return len(self.row)
 
     @property
     def is_line(self) -> Mask:
@@ -84,16 +82,10 @@ class Ring:
         bows = np.where(self.is_line, 0.0, np.nan_to_num(self.radius) ** 2 * (self.sweep - np.sin(self.sweep)))
         return float(np.sum(chords + bows)) / 2
 
-    def some(self, chosen: Rows | Mask, closed: bool | None = None) -> Self:
-        """Some of the sides, in this order."""
-        columns = {name: getattr(self, name)[chosen] for name in ("start", "end", "center", "sweep", "row")}
-        return replace(self, closed=self.closed if closed is None else closed, **columns)
-
     def turned_round(self) -> Self:
         """The ring in the opposite direction."""
-        back = np.arange(len(self))[::-1]
-        ring = self.some(back)
-        return replace(ring, start=self.end[back], end=self.start[back], sweep=-self.sweep[back])
+        ring = self[::-1]
+        return replace(ring, start=ring.end, end=ring.start, sweep=-ring.sweep)
 
 
 def rings(outline: Outline, gap: float = 0.0, bar: float = np.nan) -> Iterator[Ring]:
@@ -122,7 +114,7 @@ def _ring_of(part: Outline, closed: bool, gap: float) -> Ring:
             start, end = np.append(corner, start[1:]), np.append(end[:-1], corner)
         closed = True
     ring = Ring(start, end, center, sweep, row, closed)
-    return ring.some(ring.length > _STUB)
+    return ring[ring.length > _STUB]
 
 
 def _corner(part: Outline, apart: float) -> complex | None:
@@ -152,11 +144,11 @@ def _within(ring: Ring, bar: float) -> Iterator[Ring]:
     if ring.closed:
         first = int(np.argmax(out))
         order = np.roll(np.arange(len(ring)), -first)
-        ring, out = ring.some(order), out[order]
+        ring, out = ring[order], out[order]
     number = np.cumsum(np.diff(out, prepend=True) != 0)
     for piece in np.unique(number[~out]):
         chosen = np.flatnonzero((number == piece) & ~out)
-        yield replace(ring.some(chosen, closed=False), beyond=_fits_beyond(ring, chosen, bar / 2))
+        yield replace(ring[chosen], closed=False, beyond=_fits_beyond(ring, chosen, bar / 2))
 
 
 def _fits_beyond(ring: Ring, chosen: Rows, radius: float) -> float:
@@ -239,7 +231,7 @@ def _begun_at_corner(ring: Ring) -> Ring:
     kinds = ring.is_line != np.roll(ring.is_line, 1)
     differs = np.nan_to_num(np.abs(ring.center - np.roll(ring.center, 1))) > SAME
     best = int(np.argmax(turn + 0.1 * (kinds | differs)))
-    return ring.some(np.roll(np.arange(len(ring)), -best))
+    return ring[np.roll(np.arange(len(ring)), -best)]
 
 
 def directions(ring: Ring) -> tuple[Points, Points]:
