@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from unrolled_contours import Piece, as_x_and_c, hexagon, oval, places, slot
 
 from polarcheck.foundation.states import Motion
-from polarcheck.geometry.fitted_curves.curves import Curves, fitted
+from polarcheck.geometry.fitted_curves.curves import FittedPath, fitted
 from polarcheck.geometry.fitted_curves.spirals import MOST_BOW, bows, counts, sampled
 from polarcheck.geometry.polar import length
 
@@ -19,7 +19,7 @@ TOLERANCE, RESERVE = 0.005, 0.001
 NOISE = 0.0005
 
 
-def fit(x: NDArray[np.float64], c: NDArray[np.float64], z: NDArray[np.float64] | None = None) -> Curves:
+def fit(x: NDArray[np.float64], c: NDArray[np.float64], z: NDArray[np.float64] | None = None) -> FittedPath:
     samples = sampled(x, np.radians(c), np.zeros(len(x)) if z is None else z, TOLERANCE, RESERVE)
     return fitted(samples, TOLERANCE - RESERVE, NOISE)
 
@@ -32,7 +32,7 @@ def test_a_block_that_bows_little_is_looked_at_in_its_middle_alone(turn: float, 
     assert len(sampled(*around, np.zeros(2), TOLERANCE).point) == pieces + 1
 
 
-def along(start: complex, curves: Curves, share: NDArray[np.float64]) -> list[NDArray[np.complex128]]:
+def along(start: complex, curves: FittedPath, share: NDArray[np.float64]) -> list[NDArray[np.complex128]]:
     """Dense points of each element."""
     result, begin = [], start
     for end, center, kind in zip(curves.end.tolist(), curves.center.tolist(), curves.kind.tolist(), strict=True):
@@ -46,7 +46,7 @@ def along(start: complex, curves: Curves, share: NDArray[np.float64]) -> list[ND
     return result
 
 
-def farthest(x: NDArray[np.float64], c: NDArray[np.float64], curves: Curves) -> tuple[float, float]:
+def farthest(x: NDArray[np.float64], c: NDArray[np.float64], curves: FittedPath) -> tuple[float, float]:
     """How far the end points of the blocks, and their way between, are from the curves, by points 0.002 mm apart."""
     angle = np.radians(c)
     ends = x * np.exp(1j * angle)

@@ -9,7 +9,6 @@ import numpy as np
 
 from polarcheck.columns.contour.overcuts import Overcuts, curves_of, loop_of_row
 from polarcheck.columns.contour.skipped_loops import SkippedLoops, SkipReason
-from polarcheck.columns.filling import before
 from polarcheck.columns.path.path import NOWHERE
 from polarcheck.columns.path.tool_center import ToolCenter
 from polarcheck.columns.trace import Trace
@@ -244,7 +243,7 @@ class Coverage(Columns, frozen=True):
         path: Curves = curves_of(moves, np.zeros(len(moves), np.int64), within)
         chords = segments(path, trace.machine.compensation.overcut_tolerance)
         row = path.row[chords.move]
-        z = np.fmin(trace.path.z, before(trace.path.z, trace.blocks.starts, np.nan))
+        z = np.fmin(trace.path.z, trace.path.z_before)
         with_radius = ~np.isnan(self._radius[row])
         row = row[with_radius]
         return Swept(

@@ -7,12 +7,13 @@ import math
 import msgspec
 import numpy as np
 
-from polarcheck.foundation.arrays import Floats, Points, Rows, States, Table
+from polarcheck.foundation.arrays import Floats, Points, Rows
 from polarcheck.foundation.states import Motion
 from polarcheck.geometry.fitted_curves.bends import bend
 from polarcheck.geometry.fitted_curves.elements import Element, longest_elements
 from polarcheck.geometry.fitted_curves.spirals import Samples
 from polarcheck.geometry.plane import quiet
+from polarcheck.geometry.plane_path import PlanePath
 
 #: A closer fit is taken where it needs no more than this many times the elements of the widest tolerance.
 _MORE_ELEMENTS = 1.15
@@ -22,20 +23,13 @@ _CLOSED = 0.5
 _TURN, _NEARLY = 2 * math.pi, 0.2
 
 
-class Curves(Table, frozen=True):
-    """
-    Lines and arcs, one behind the other.
-
-    last: int64[n], the sample at which each ends. end, center: complex128[n] [mm], center NaN for lines. kind: Motion.
-    """
+class FittedPath(PlanePath, frozen=True):
+    """Lines and arcs, each from the end of the one before. last: int64[n], the sample at which each ends."""
 
     last: Rows
-    end: Points
-    center: Points
-    kind: States
 
 
-def fitted(samples: Samples, tolerance: float, noise: float) -> Curves:
+def fitted(samples: Samples, tolerance: float, noise: float) -> FittedPath:
     """
     Return few lines and arcs that pass all samples within the tolerance [mm] and begin and end at the first and last.
 
@@ -54,7 +48,7 @@ def fitted(samples: Samples, tolerance: float, noise: float) -> Curves:
     return _curves(samples, tolerance, best)
 
 
-def _curves(samples: Samples, tolerance: float, elements: list[Element]) -> Curves:
+def _curves(samples: Samples, tolerance: float, elements: list[Element]) -> FittedPath:
     last, end, center, kind = [], [], [], []
     index = 0
     while index < len(elements):
@@ -72,7 +66,9 @@ def _curves(samples: Samples, tolerance: float, elements: list[Element]) -> Curv
         center.append(complex(math.nan, math.nan) if arc is None else arc.center)
         kind.append(int(Motion.LINE if arc is None else Motion.CCW if arc.sweep > 0 else Motion.CW))
         index += 1
-    return Curves(np.array(last, np.int64), np.array(end, complex), np.array(center, complex), np.array(kind, np.int16))
+    ends = np.array(end, complex)
+    start = np.append(samples.point[:1], ends)[: len(ends)]
+    return FittedPath(start, ends, np.array(center, complex), np.array(kind, np.int16), np.array(last, np.int64))
 
 
 class _Arc(msgspec.Struct, frozen=True):

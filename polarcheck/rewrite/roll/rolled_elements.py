@@ -101,15 +101,14 @@ def _bow(samples: Samples, radius: Floats, angle: Floats) -> float:
 def _of_run(samples: Samples, first: int, tolerance: float, noise: float) -> list[Element]:
     curves = fitted(samples, tolerance, noise)
     elements = []
-    start, first_sample = complex(samples.point[0]), 0
-    for last, end, center, kind in zip(
-        curves.last.tolist(), curves.end.tolist(), curves.center.tolist(), curves.kind.tolist(), strict=True
-    ):
+    first_sample = 0
+    columns = (*curves.shape, curves.last)
+    for start, end, center, kind, last in zip(*(column.tolist() for column in columns), strict=True):
         z = samples.z[first_sample : last + 1]
         moves_z = bool((np.abs(z - z[0]) > ZERO).any())
         blocks = int(samples.block[first_sample + 1]), int(samples.block[last]) + 1
         elements.append(
             Element(kind, start, end, center, float(z[-1]) if moves_z else None, first + blocks[0], first + blocks[1])
         )
-        start, first_sample = end, last
+        first_sample = last
     return elements
