@@ -29,7 +29,7 @@ _SLANT = 1.6
 _SHARPEST = 2.65
 
 
-class Loops(msgspec.Struct, frozen=True):
+class Loops(Table, frozen=True):
     """
     The loops of a contour, n of them.
 
@@ -39,6 +39,8 @@ class Loops(msgspec.Struct, frozen=True):
     radius: float64[n] [mm], R of each loop.
     """
 
+    _shared = ("curves", "left")
+
     curves: Curves
     left: Mask
     first: Rows
@@ -47,10 +49,6 @@ class Loops(msgspec.Struct, frozen=True):
 
     def __len__(self) -> int:
         return len(self.first)
-
-    def some(self, chosen: Rows | Mask) -> Loops:
-        """A selection of the loops, with the same curves."""
-        return Loops(self.curves, self.left, self.first[chosen], self.last[chosen], self.radius[chosen])
 
     def rows(self) -> tuple[Rows, Rows]:
         """The numbers of all curves of the loops, loop after loop, and the number of the loop of each."""
@@ -108,7 +106,7 @@ def lead_corners(loops: Loops, winds: Mask) -> Corners:
     loop = np.repeat(np.arange(len(loops)), len(near))
     curve, loop = np.append(head, tail), np.append(loop, loop)
     if winds.any():
-        rows, winding = loops.some(winds).rows()
+        rows, winding = loops[winds].rows()
         curve, loop = np.append(curve, rows), np.append(loop, np.flatnonzero(winds)[winding])
     inside = (curve >= loops.first[loop]) & (curve < loops.last[loop])
     curve, first_use = np.unique(curve[inside], return_index=True)

@@ -6,11 +6,10 @@ Import late: shapely is slow to import.
 
 from __future__ import annotations
 
-import msgspec
 import numpy as np
 import shapely  # type: ignore[import-untyped]
 
-from polarcheck.foundation.arrays import Mask, Points, Rows, States, ranges
+from polarcheck.foundation.arrays import Mask, Points, Rows, States, Table, ranges
 from polarcheck.geometry.segments import Curves, chord_counts, segments
 from polarcheck.geometry.tolerances import ROUNDING
 
@@ -24,7 +23,7 @@ _AT_A_TIME = 1000
 _DOUBLINGS = 16
 
 
-class Chords(msgspec.Struct, frozen=True):
+class Chords(Table, frozen=True):
     """
     The n points of a path.
 
@@ -36,13 +35,6 @@ class Chords(msgspec.Struct, frozen=True):
     point: Points
     move: Rows
     begins: Mask
-
-    def __len__(self) -> int:
-        return len(self.move)
-
-    def chosen(self, chosen: Mask) -> Chords:
-        """Return the chosen points."""
-        return Chords(self.point[chosen], self.move[chosen], self.begins[chosen])
 
 
 def unseen(point: Points) -> float:
@@ -114,4 +106,4 @@ def thinned(path: Chords, keep: Mask, look: States, tolerance: float, most: int)
         if np.count_nonzero(chosen) <= enough:
             break
         tolerance *= 2
-    return path.chosen(chosen), tolerance
+    return path[chosen], tolerance

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import msgspec
 import numpy as np
 
-from polarcheck.foundation.arrays import Floats, Mask, Points, Rows
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, Table
 from polarcheck.geometry import rates as of_moves
 from polarcheck.geometry.plane_path import SpacePath
 from polarcheck.view.drawn_moves import SectionMoves
@@ -20,7 +19,7 @@ _ROUNDS = 16
 _FAR_TOO_MANY = 8
 
 
-class Samples(msgspec.Struct, frozen=True):
+class Samples(Table, frozen=True):
     """
     The n points of the curves.
 
@@ -42,10 +41,6 @@ class Samples(msgspec.Struct, frozen=True):
     point: Points
     z: Floats
     angle: Floats
-
-    def chosen(self, chosen: Rows) -> Samples:
-        """Return the chosen points."""
-        return Samples(*(getattr(self, name)[chosen] for name in Samples.__struct_fields__))
 
 
 class Segments(SpacePath, frozen=True):
@@ -132,18 +127,18 @@ def thinned(curves: Samples, keep: Mask, most: int) -> tuple[Samples, float]:
     First points go that lie on the curves between their neighbours. If too many are left, the ends of moves stay, if
     these are not too many, and of each short interval the first point, and the highest and lowest of each curve.
     """
-    if len(curves.move) <= most:
+    if len(curves) <= most:
         return curves, 0.0
     if np.count_nonzero(keep[curves.move]) > most:
         keep = np.zeros_like(keep)
-    rest = np.arange(len(curves.move))
+    rest = np.arange(len(curves))
     for number in range(_ROUNDS if len(rest) <= _FAR_TOO_MANY * most else 0):
         if len(rest) <= most:
             break
         rest = _without_straight(curves, rest, keep, number % 2)
     if len(rest) > most:
-        rest = rest[_extremes(curves.chosen(rest), keep, most)]
-    chosen = curves.chosen(rest)
+        rest = rest[_extremes(curves[rest], keep, most)]
+    chosen = curves[rest]
     between = np.interp(curves.t, chosen.t, chosen.point.real) + 1j * np.interp(curves.t, chosen.t, chosen.point.imag)
     return chosen, float(np.abs(between - curves.point).max(initial=0.0))
 
@@ -170,7 +165,7 @@ def _without_straight(curves: Samples, rest: Rows, keep: Mask, first: int) -> Ro
 
 def _extremes(curves: Samples, keep: Mask, most: int) -> Rows:
     """Return the ends of moves, and of each short interval the first point and the highest and lowest of each curve."""
-    count = len(curves.move)
+    count = len(curves)
     columns: Sequence[Floats] = (curves.c_feed, curves.x_feed, curves.feed)
     bins = max(most // (4 * len(columns)), 1)
     whole = float(curves.t[-1] - curves.t[0])

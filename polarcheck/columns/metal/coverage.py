@@ -99,11 +99,11 @@ class Coverage(Columns, frozen=True):
         sound = np.flatnonzero(~np.isin(walls.loop[first], faulty))
         if not len(sound):
             return None
-        loops = loops.some(sound)
+        loops = loops[sound]
         program = trace.blocks.program[walls.row[loops.first]]
         z = np.maximum.reduceat(trace.path.z[walls.row], first)[sound]
         unique = distinct(loops, program, z)
-        return _CheckedLoops(loops.some(unique), walls.loop[loops.first[unique]], program[unique], z[unique])
+        return _CheckedLoops(loops[unique], walls.loop[loops.first[unique]], program[unique], z[unique])
 
     @cached_property
     def _parts(self) -> tuple[_CheckedLoops, FinishedParts, Corners] | None:
@@ -122,7 +122,7 @@ class Coverage(Columns, frozen=True):
         from polarcheck.geometry.contour_ends import Corners
         from polarcheck.geometry.polygons.finished_part import Contours, finished_parts
 
-        loops, number = checked.loops.some(may_leave), checked.number[may_leave]
+        loops, number = checked.loops[may_leave], checked.number[may_leave]
         tolerance, bar = self.trace.machine.compensation.overcut_tolerance, self.overcuts.bar
         part = finished_parts(
             Contours(loops.curves, loops.left, number, np.arange(len(loops)), loops.radius, bar, tolerance)
@@ -166,7 +166,7 @@ class Coverage(Columns, frozen=True):
 
         checked, part, _ = self._parts
         is_open = np.flatnonzero(part.gap > CLOSED)
-        first, last = gaps_of(checked.loops.some(is_open), part.gap[is_open])
+        first, last = gaps_of(checked.loops[is_open], part.gap[is_open])
         length, begins = np.zeros(len(self.trace)), np.full(len(self.trace), NOWHERE)
         row = checked.loops.curves.row[last]
         length[row], begins[row] = part.gap[is_open], checked.loops.curves.start[first]
@@ -332,7 +332,7 @@ class Coverage(Columns, frozen=True):
 
         checked = self._checked_loops
         assert checked is not None
-        loops, number = checked.loops.some(level), checked.number[level]
+        loops, number = checked.loops[level], checked.number[level]
         tolerance, bar = self.trace.machine.compensation.overcut_tolerance, self.overcuts.bar
         group = np.zeros(len(level), np.int64)
         radius = np.array([loops.radius.max()])

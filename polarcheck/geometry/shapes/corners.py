@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
-from polarcheck.foundation.arrays import Floats, Mask, Points, Rows
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, Table
 from polarcheck.geometry.shapes.shape import SAME
 from polarcheck.geometry.shapes.side_rings import Ring
 
@@ -16,8 +14,7 @@ _TANGENT = 3 * SAME
 _CHAMFER, _EVEN = 0.6, 0.02
 
 
-@dataclass(frozen=True, slots=True)
-class Sides:
+class Sides(Table, frozen=True):
     """
     Straight sides of a closed ring that runs counterclockwise, n of them.
 
@@ -30,9 +27,6 @@ class Sides:
     row: Rows
     radius: Floats
     chamfer: Floats
-
-    def __len__(self) -> int:
-        return len(self.row)
 
     @property
     def normal(self) -> Points:
