@@ -6,7 +6,7 @@ import numpy as np
 
 from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, ranges
 from polarcheck.foundation.states import Motion
-from polarcheck.geometry.plane import angle_between, arc_sweep, cleared, cross, dot, quiet
+from polarcheck.geometry.plane import angle_between, cleared, cross, dot, quiet
 from polarcheck.view.rate_curves import Samples, Segments
 
 #: The turn of C, or of an arc about its own center, between two points [rad].
@@ -90,7 +90,7 @@ class _Sampler:
         self.path = path
         start, end, center = path.start, path.end, path.center
         self._is_arc = path.kind != Motion.LINE
-        self._sweep = arc_sweep(start, end, center, path.kind)
+        self._sweep = path.sweep
         self._long = np.where(self._is_arc, 1.0, np.abs(end - start))
         self._u = np.where(self._long > 0, (end - start) / self._long, 0)
         self._offset, self._foot = np.abs(cross(start, self._u)), dot(start, self._u)
@@ -113,9 +113,11 @@ class _Sampler:
 
     def at(self, of: Rows, share: Floats) -> tuple[Points, Points]:
         """Return points [mm] and directions."""
-        point = self.path.points(of, share)
-        along = 1j * np.sign(self._sweep[of]) * (point - self.path.center[of]) / self._radius[of]
-        return point, np.where(self._is_arc[of], along, self._u[of])
+        start, end, center = self.path.start[of], self.path.end[of], self.path.center[of]
+        # On the circle itself, as the rates are.
+        spoke = (start - center) * np.exp(1j * self._sweep[of] * share)
+        point = np.where(self._is_arc[of], center + spoke, start + share * (end - start))
+        return point, np.where(self._is_arc[of], 1j * np.sign(self._sweep[of]) * spoke / self._radius[of], self._u[of])
 
     def time(self, of: Rows, share: Floats, is_behind: Mask | bool = False) -> Floats:
         """Return the time of points [s]: it is proportional to the length or, where C is held, to its turn."""
