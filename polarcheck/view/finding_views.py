@@ -272,8 +272,11 @@ class Face:
 
 
 def _middle(move: PlanePath) -> complex:
-    """Return the point in the middle of a single move [mm]."""
-    return complex(move.points(np.zeros(1, np.int64), np.array([0.5]))[0])
+    """Return the point in the middle of a single move, of an arc on the circle of its start [mm]."""
+    start, end, center = complex(move.start[0]), complex(move.end[0]), complex(move.center[0])
+    if move.is_arc[0]:
+        return center + (start - center) * cmath.exp(0.5j * float(move.sweep[0]))
+    return (start + end) / 2
 
 
 def _nearest_point(move: PlanePath) -> complex:
