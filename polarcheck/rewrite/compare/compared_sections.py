@@ -133,16 +133,9 @@ def _with_z_alone(trace: Trace, moves: Moves) -> Moves:
     return with_standing(trace, moves, alone)[0]
 
 
-def turn_of(trace: Trace, section: int) -> complex:
-    """Return the direction of the x axis of a section on the part; 1 if C at the start of the section is not known."""
-    if not trace.path.knows_section_entry[section]:
-        return 1 + 0j
-    return complex(np.exp(1j * np.radians(trace.path.c_axis.sense * trace.path.section_entry[section])))
-
-
 def _turned(trace: Trace, moves: Moves, section: int) -> tuple[SpacePath, bool]:
     """Return the path in the frame of the part, and True if Z is known; otherwise Z is 0."""
-    turn = turn_of(trace, section)
+    turn = complex(trace.path.section_turn[section])
     z_from, z_to = z_along(trace, moves)
     knows_z = not len(moves) or not (np.isnan(z_from).all() and np.isnan(z_to).all())
     if not knows_z:

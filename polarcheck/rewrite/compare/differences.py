@@ -12,9 +12,9 @@ from polarcheck.foundation.arrays import Floats, Mask, Rows
 from polarcheck.foundation.states import FeedMode
 from polarcheck.geometry import polar
 from polarcheck.geometry.comparison.path_deviation import PathDeviation, path_deviation
-from polarcheck.geometry.comparison.polyline import SpacePath
+from polarcheck.geometry.plane_path import SpacePath
 from polarcheck.geometry.tolerances import ZERO
-from polarcheck.rewrite.compare.compared_sections import Stretch, turn_of
+from polarcheck.rewrite.compare.compared_sections import Stretch
 from polarcheck.rewrite.compare.comparison_report import Difference
 from polarcheck.rewrite.compare.order_differences import listed, order_differences
 from polarcheck.rewrite.compare.orders import Step
@@ -127,7 +127,7 @@ def _location(part: Part, row: int, point: complex, third: float) -> str:
     """
     trace, section = part.trace, part.stretch.section
     if section >= 0:
-        point = point / turn_of(trace, section)
+        point = point / complex(trace.path.section_turn[section])
         x, across, z = point.real, point.imag, third
         name = trace.axes.virtual_axis_of(int(trace.mode.sections.enter[section]))
         words = f"{name}{_number(part, row, across)}"
@@ -252,7 +252,7 @@ def _where(part: Part, row: int) -> tuple[float, float, float]:
     path = part.trace.path
     z = float(path.z[row - 1]) if row and not part.trace.blocks.starts[row] else np.nan
     if part.stretch.section >= 0:
-        point = complex(path.start[row]) * turn_of(part.trace, part.stretch.section)
+        point = complex(path.start[row]) * complex(part.trace.path.section_turn[part.stretch.section])
         return point.real, point.imag, z
     c = 0.0 if part.stretch.is_rewritten else float(path.c_angle_before[row]) * part.stretch.c_scale
     return z, float(path.x_before[row]), c

@@ -14,7 +14,7 @@ from polarcheck.foundation.states import FeedMode, Motion
 from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.straight_axes.spiral_pieces import along, distances
 from polarcheck.geometry.tolerances import ZERO
-from polarcheck.rewrite.compare.compared_sections import NOWHERE, turn_of
+from polarcheck.rewrite.compare.compared_sections import NOWHERE
 from polarcheck.rewrite.roll.entries import Entry
 from polarcheck.rewrite.roll.rollable import Stretch
 from polarcheck.rewrite.roll.rolled_blocks import Writer
@@ -91,7 +91,7 @@ def measured_of(
         low, high = np.searchsorted(moves.section, (number, number + 1)).tolist()
         moves_of_section: Moves = moves[low:high]
         of_line = stands_for[moves_of_section.row]
-        away = _away(section, moves_of_section, of_line, lines, turn_of(trace, number))
+        away = _away(section, moves_of_section, of_line, lines, complex(trace.path.section_turn[number]))
         at_ends = away[:, -1]
         worst = int(np.argmax(at_ends))
         places, away_of_path = max(places, float(at_ends[worst])), max(away_of_path, float(away.max()))
