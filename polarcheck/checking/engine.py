@@ -113,10 +113,12 @@ class Engine:
         if not self.tables.may_hold(rule.parameters):
             return Hits(np.zeros(0, np.bool_))
         hits = rule.hits(self.tables)
-        behind = self.trace.modal.behind_unknown_code
-        if not rule.of_text and behind.any() and hits.mask.any():
+        if self.trace.run.unknown_words and not rule.of_text and hits.mask.any():
             rows = places.rows(rule.over, self.tables)
-            hits = msgspec.structs.replace(hits, mask=hits.mask & ~((rows >= 0) & behind[rows]))
+            unknown = self.trace.modal.behind_unknown_code
+            if rule.of_contours:
+                unknown = unknown | self.tables["unknown_words"].in_section
+            hits = msgspec.structs.replace(hits, mask=hits.mask & ~((rows >= 0) & unknown[rows]))
         return self._shared_if_empty(hits)
 
     def _shared_if_empty(self, hits: Hits) -> Hits:

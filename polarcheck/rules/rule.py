@@ -22,7 +22,7 @@ from polarcheck.foundation.finding import WARNING as WARNING
 from polarcheck.foundation.finding import Severity as Severity
 from polarcheck.rules.causes import DOUBTFUL, RESTS_ON, UNIT, UNIT_OF, Doubt, subject_of
 from polarcheck.rules.documented import Documented
-from polarcheck.rules.tables import OF_CAUSE, OF_TEXT, SPANS
+from polarcheck.rules.tables import OF_CAUSE, OF_TEXT, SPANS, of_contours
 from polarcheck.rules.tables import parameters as parameters_of
 
 if TYPE_CHECKING:
@@ -171,6 +171,11 @@ class Rule(Documented, frozen=True):
     def of_text(self) -> bool:
         """True if the rule depends on the text only, not on how the program runs."""
         return OF_TEXT.issuperset(self.parameters)
+
+    @property
+    def of_contours(self) -> bool:
+        """True if the rule judges contours as wholes, or the metal that they leave: one point says nothing of them."""
+        return self.subject in ("side", "compensation", "metal", "infeed") or of_contours(self.parameters)
 
     def level(self, severities: Mapping[str, str]) -> str:
         """Return error, warning, note or off, by the severities that the machine and the job set per rule."""

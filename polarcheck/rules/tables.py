@@ -127,6 +127,8 @@ TABLES = {
     "sections": Maker("polarcheck.columns.modes.mode:sections_of", SECTION),
     "moves": Maker("polarcheck.columns.path.tool_center:moves_of"),
 }
+#: Where the tables stand that look at contours as wholes, and at the metal that they leave.
+_OF_CONTOURS = "polarcheck.columns.contour.", "polarcheck.columns.metal.", "polarcheck.parts."
 #: How far a cause reaches, or what one finding stands for: the column whose value its rows have in common; None where
 #: rules/places.py finds it otherwise. The narrowest come first: the nearest cause of a finding counts.
 SPANS: dict[str, Callable[[Tables], Rows] | None] = {
@@ -240,6 +242,11 @@ class Tables(dict[str, Any]):
     def computed(self) -> Iterator[tuple[str, Any]]:
         """The tables computed so far, by name."""
         return iter(self.items())
+
+
+def of_contours(names: Iterable[str]) -> bool:
+    """Return True if one of these tables looks at contours as wholes."""
+    return any(name in TABLES and TABLES[name].module.startswith(_OF_CONTOURS) for name in names)
 
 
 def parameters(maker: Callable[..., Any]) -> tuple[str, ...]:

@@ -132,6 +132,12 @@ class UnknownWords(Columns, frozen=True):
         lasting.append(self._lasting(("F",), positions, trace.path.moves_at_feed))
         return np.asarray(matters | np.isin(self.index, np.concatenate(lasting)))
 
+    @cached_property
+    def in_section(self) -> Mask:
+        """The rows of polar sections in which a word of unknown value stands that says where the tool goes."""
+        rows = self.row[self.matters & (self.trace.mode.section[self.row] >= 0)]
+        return self.trace.mode.anywhere_in_section(self.trace.blocks.mask_of(rows))
+
     def _numbers(self, *addresses: str) -> list[int]:
         return [self.trace.machine.address_number(address) for address in addresses]
 

@@ -1,0 +1,69 @@
+"""Drawn programs with one number of a section made unknown: none passes, is like another one, or is rewritten."""
+
+from __future__ import annotations
+
+import random
+import re
+from pathlib import Path
+
+import pytest
+from cases import looped
+from click.testing import CliRunner
+from programs import report_of, tables_of
+from setter_programs import drawn
+
+from polarcheck.commands import main
+
+_WORD = re.compile(r"(?<![A-Z#=])([GXYZCUVWHIJKRFT])(-?\d+\.?\d*|-?\.\d+)(?![\d.])")
+_COMMENT = re.compile(r"\([^)]*\)")
+#: These have variables of their own, and other words for them.
+_OTHER_LANGUAGES = ("siemens", "okuma", "hurco")
+_CHANGED = 3
+
+
+def programs_of(seed: int) -> tuple[str, list[str], str, list[tuple[str, str]]]:
+    """A machine, its cutters, a sound program, and the same with one word of a section as #900 and as #901."""
+    program = drawn(seed)
+    text, machine, tools = program.text(), program.machine, program.tools()
+    if machine.startswith(_OTHER_LANGUAGES) or report_of(text, machine, *tools).verdict != "pass":
+        return machine, tools, text, []
+    trace, lines = tables_of(text, machine, *tools)["trace"], text.splitlines()
+    places = [
+        (line - 1, match)
+        for line in sorted({int(line) for line in trace.blocks.line[trace.mode.in_polar]})
+        for match in _WORD.finditer(_COMMENT.sub(lambda comment: " " * len(comment[0]), lines[line - 1]))
+    ]
+    chosen = random.Random(seed).sample(places, min(_CHANGED, len(places)))  # noqa: S311
+    changed = []
+    for line, match in chosen:
+        head, tail = lines[line][: match.start(2)], lines[line][match.end() :]
+        both = ("\n".join([*lines[:line], f"{head}#{number}{tail}", *lines[line + 1 :]]) for number in (900, 901))
+        changed.append((next(both) + "\n", next(both) + "\n"))
+    return machine, tools, text, changed
+
+
+@looped("seed", range(300), one_in=30)
+def test_a_check_never_passes_and_names_no_other_fault(seed: int) -> None:
+    machine, tools, _, changed = programs_of(seed)
+    for text, _ in changed:
+        report = report_of(text, machine, *tools)
+        found = [(finding.rule, finding.line) for finding in report.findings if finding.severity != "note"]
+        assert (report.verdict, found) == ("unverified", []), text
+
+
+@pytest.mark.ci
+@looped("seed", range(120), one_in=12)
+def test_no_comparison_says_the_same_and_no_rewriter_writes(seed: int, tmp_path: Path) -> None:
+    machine, tools, sound, changed = programs_of(seed)
+    options = ["--machine", machine, "--no-config", *(option for tool in tools for option in ("--tool", tool))]
+    for texts in changed:
+        files = [str(tmp_path / f"{number}.nc") for number in range(3)]
+        for file, text in zip(files, (*texts, sound), strict=True):
+            Path(file).write_text(text, "utf-8")
+        for other in files[1:]:
+            result = CliRunner().invoke(main, ["compare", *options, files[0], other])
+            assert result.exit_code in (1, 2), texts[0]
+            assert "the same" not in result.stdout, texts[0]
+        for command in (["unroll"], ["compensate", "--center"]):
+            result = CliRunner().invoke(main, [*command, *options, files[0]])
+            assert (result.exit_code, result.stdout) == (2, ""), texts[0]
