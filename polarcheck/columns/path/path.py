@@ -445,13 +445,22 @@ class ProgrammedPath(Columns, frozen=True):
     @cached_property
     def judged_z(self) -> Mask:
         """Z words that count beside a line of the plane: those that move Z, or all, where the block is forbidden."""
-        moves = self.axes.commands_z if self.machine.polar.repeated_z == "forbidden" else self.moves_z
+        moves = self.axes.commands_z if self.machine.polar.repeated_z == "forbidden" else self._surely_moves_z
         return moves & self.axes.is_simulated
 
     @cached_property
     def judged_z_of_arc(self) -> Mask:
         """The same beside an arc."""
-        return self.moves_z if self.machine.polar.repeated_z == "allowed" else self.axes.commands_z
+        return self._surely_moves_z if self.machine.polar.repeated_z == "allowed" else self.axes.commands_z
+
+    @cached_property
+    def _surely_moves_z(self) -> Mask:
+        """The same without rows of which a variable leaves open where Z goes, or stands before."""
+        unknown = self.blocks.is_unknown("Z", "W")
+        if not unknown.any():
+            return self.moves_z
+        is_open = fill_down(unknown, self.blocks.has("Z", "W") | self.blocks.starts, False).astype(bool)
+        return self.moves_z & ~is_open & ~before(is_open, self.blocks.starts, False)
 
     @cached_property
     def ends_above_plunge(self) -> Mask:
