@@ -460,7 +460,7 @@ class ProgrammedPath(Columns, frozen=True):
         if not unknown.any():
             return self.moves_z
         is_open = fill_down(unknown, self.blocks.has("Z", "W") | self.blocks.starts, False).astype(bool)
-        return self.moves_z & ~is_open & ~before(is_open, self.blocks.starts, False)
+        return np.asarray(self.moves_z & ~is_open & ~before(is_open, self.blocks.starts, False))
 
     @cached_property
     def ends_above_plunge(self) -> Mask:
