@@ -220,7 +220,7 @@ FRAMES = {
 @looped("blocks", FRAMES)
 def test_frames_are_told_by_their_names_where_the_profile_has_no_words_for_them(blocks: str) -> None:
     assert any(entry.startswith(FRAMES[blocks]) for entry in told(f"{blocks} / M30", ISO))
-    assert not told(f"{blocks} / M30", OWN)
+    assert not [entry for entry in told(f"{blocks} / M30", OWN) if not entry.startswith("the value of RPL=R1")]
 
 
 @pytest.mark.ci
