@@ -356,7 +356,8 @@ def test_a_size_that_the_x_offset_is_to_keep(block: str, word: str, column: int,
     assert (found.rule, found.severity, found.line) == ("size-by-x-offset", "note", 3 if first else 8)
     assert found.column == column
     assert found.message.startswith(f"{word} changes X of offset 8, which shifts the shape and leaves its size")
-    assert report.verdict == "pass"
+    # By how much #500 shifts it nobody knows.
+    assert report.verdict == ("unverified" if "#500" in block else "pass")
 
 
 @looped(
