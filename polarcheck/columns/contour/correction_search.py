@@ -237,10 +237,7 @@ class _Search:
         """The block with other words, and what follows it with them."""
         values, moved, texts = self.trace.run.words.value, self.loop.point.copy(), []
         for axis, word, shift in words:
-            end = corner + 1
-            while end < len(axis.word) and axis.word[end] < 0:
-                end += 1
-            moved[corner:end] += shift * axis.direction
+            moved[corner : _next_word(axis, corner)] += shift * axis.direction
             value, step = float(values[word]) + shift / axis.scale[corner], 2 * self.tolerance / axis.scale[corner]
             texts.append(f"{axis.address}{self._as_elsewhere(axis, value, step)}")
         slip = Slip(" ".join(texts), "its corner alone is off the polygon of the others", False)
@@ -376,10 +373,7 @@ class _Search:
         moved, parts = self.loop.point.copy(), []
         for axis in self._axes:
             shift = ((point - moved[corner]) / axis.direction).real
-            end = corner + 1
-            while end < len(axis.word) and axis.word[end] < 0:
-                end += 1
-            moved[corner + 1 : end] += shift * axis.direction
+            moved[corner + 1 : _next_word(axis, corner)] += shift * axis.direction
             value, tolerance = (
                 (point / axis.direction).real / axis.scale[corner],
                 2 * self.tolerance / axis.scale[corner],
@@ -392,6 +386,14 @@ class _Search:
             parts = [code, *parts, f"{machine.arcs.radius_word}{plain_number(round(self._usual_arc[1] / scale, 4))}"]
         slip = Slip(" ".join(parts), "a block is missing", False)
         return _Trial(corner + 1, -1, slip, np.insert(moved, corner + 1, point), self._with_edge(corner, turns))
+
+
+def _next_word(axis: _Axis, corner: int) -> int:
+    """The first block behind one that has a word of an axis; up to it all points have its coordinate."""
+    end = corner + 1
+    while end < len(axis.word) and axis.word[end] < 0:
+        end += 1
+    return end
 
 
 def _writers(axis: _Axis, corner: int) -> Iterator[int]:

@@ -138,7 +138,7 @@ class PolarMode(Columns, frozen=True):
         return self._comes_before(np.flatnonzero(contours & ends))
 
     def _comes_before(self, rows: Rows) -> Mask:
-        """Rows at or above one of these, ascending, of the same program."""
+        """Rows at or above one of these rows, which ascend, in the same program."""
         ahead = np.searchsorted(rows, np.arange(len(self.run)))
         program = np.append(self.blocks.program[rows], -1)[ahead]
         return np.asarray(program == self.blocks.program)

@@ -72,24 +72,15 @@ class Unpointed(Columns, frozen=True):
         It is the coordinates in and outside of the sections; in inch the F of the mode; R of a tool offset that G10
         sets. Beside a number that cannot be read nothing is: what the others mean is open, too.
         """
-        mask = np.zeros(len(self.trace.text.words), bool)
-        mask[self._in_file(np.flatnonzero(self._coordinates | self._feeds | self._radii_of_offsets))[0]] = True
-        return mask
+        return self._of_file(self._coordinates | self._feeds | self._radii_of_offsets)
 
     @cached_property
     def rank(self) -> Floats:
         """How well a number of `slips` stands for the others: a small coordinate of a section best."""
-        at_words = (
-            self._coordinates,
-            ~self.trace.coordinates.is_large_unpointed,
-            self._sections[self.trace.run.row] >= 0,
-        )
-        rank = np.zeros(len(self.trace.text.words))
-        for words in (at_words[0], at_words[0] & at_words[1], at_words[0] & at_words[2]):
-            of_file = np.zeros(len(rank), bool)
-            of_file[self._in_file(np.flatnonzero(words))[0]] = True
-            rank += of_file
-        return rank
+        small = self._coordinates & ~self.trace.coordinates.is_large_unpointed
+        in_section = self._coordinates & (self._sections >= 0)[self.trace.run.row]
+        kinds = self._coordinates, small, in_section
+        return np.asarray(np.sum([self._of_file(words) for words in kinds], axis=0, dtype=np.float64))
 
     def of_program(self, index: int) -> Rows:
         """The words of the file among `slips` that belong to the program of one of them."""
@@ -112,9 +103,7 @@ class Unpointed(Columns, frozen=True):
 
     @cached_property
     def _is_large(self) -> Mask:
-        mask = np.zeros(len(self.trace.text.words), bool)
-        mask[self._in_file(np.flatnonzero(self.trace.coordinates.is_large_unpointed))[0]] = True
-        return mask
+        return self._of_file(self.trace.coordinates.is_large_unpointed)
 
     @cached_property
     def _is_slip(self) -> Mask:
@@ -190,6 +179,12 @@ class Unpointed(Columns, frozen=True):
         at, found = self._in_file(index)
         own, first = np.unique(own[found], return_index=True)
         np.maximum.at(reported, at[first], count[own])
+
+    def _of_file(self, words: Mask) -> Mask:
+        """The words of the file that executed words are."""
+        mask = np.zeros(len(self.trace.text.words), bool)
+        mask[self._in_file(np.flatnonzero(words))[0]] = True
+        return mask
 
     def _in_file(self, index: Rows) -> tuple[Rows, Mask]:
         """Where executed words stand among the words of the file, and which do: those of macro statements do not."""

@@ -28,13 +28,13 @@ def missing_places(point: Points, tolerance: float) -> Points:
     """
     images = [*_images(point, tolerance), *regular_polygons(point, tolerance, _MISSING)]
     places: list[Points] = [image[is_lonely(image, point, tolerance)] for image in images]
-    return _each_once(np.concatenate([np.zeros(0, np.complex128), *places]), tolerance)
+    return each_once(np.concatenate([np.zeros(0, np.complex128), *places]), tolerance)
 
 
 def regular_polygons(point: Points, tolerance: float, missing: int) -> Iterator[Points]:
     """The corners of the regular polygons about the center that points are corners of, all but so many at least."""
     far = np.abs(point)
-    for radius in _each_once(far + 0j, tolerance).real:
+    for radius in each_once(far + 0j, tolerance).real:
         corner = point[(np.abs(far - radius) <= tolerance) & (far > _NEAR)]
         for sides in range(_FEWEST_SIDES, _MOST_SIDES + 1):
             if len(corner) < sides - missing:
@@ -51,10 +51,6 @@ def regular_polygons(point: Points, tolerance: float, missing: int) -> Iterator[
 
 def each_once(point: Points, tolerance: float) -> Points:
     """The points without those that repeat an earlier one."""
-    return _each_once(point, tolerance)
-
-
-def _each_once(point: Points, tolerance: float) -> Points:
     if not len(point):
         return point
     near = np.abs(point[:, None] - point) <= tolerance

@@ -72,11 +72,8 @@ def _updated(loaded: Loaded, entry: Certified) -> tuple[str, bool]:
 
 def _change(loaded: Loaded, entry: Certified) -> str:
     """Return what a new golden trace changes, in one line."""
-    before, ours = (
-        golden.read(loaded.beside(entry.case.golden or "")),
-        entry.run.golden_trace(loaded.path_of(entry.case)),
-    )
-    tolerance = loaded.tolerance(entry.case)
+    before = golden.read(loaded.beside(entry.case.golden or ""))
+    ours, tolerance = entry.run.golden_trace(loaded.path_of(entry.case)), loaded.tolerance(entry.case)
     compared = near_path.with_golden(ours, before, entry.run.sense, tolerance, "the golden trace before")
     deviation = compared.deviation
     if compared.reasons:
