@@ -28,12 +28,13 @@ from test_samples import SAMPLES
 from test_samples import settings as settings_of_sample
 
 import polarcheck
+from polarcheck.checking import edits
 from polarcheck.checking.settings import Settings
 from polarcheck.columns.trace import Trace
 from polarcheck.commands import main
 from polarcheck.foundation.finding import FileReport
 from polarcheck.program.reading import replacing, source
-from polarcheck.rewrite.fixes import edits, fix_rounds
+from polarcheck.rewrite.fixes import fix_rounds
 from polarcheck.rewrite.fixes.fix_comparison import _VERDICTS
 from polarcheck.rules import repair
 from polarcheck.rules.editing import Replace

@@ -6,10 +6,10 @@ from collections.abc import Sequence
 
 import msgspec
 
+from polarcheck.checking.edits import applied, origins
 from polarcheck.program.reading import source
 from polarcheck.rewrite.feeds.feed_rewriting import feed_words
 from polarcheck.rewrite.fixes.difference import difference
-from polarcheck.rewrite.fixes.edits import applied, origins
 from polarcheck.rules.tables import Tables
 
 

@@ -7,12 +7,12 @@ from collections.abc import Callable, Sequence
 import msgspec
 import numpy as np
 
+from polarcheck.checking.edits import applied, origins, overlap, spans
 from polarcheck.checking.settings import Settings
 from polarcheck.foundation.arrays import Rows
 from polarcheck.foundation.errors import SourceError, TooHardError
 from polarcheck.foundation.finding import FileReport, Finding, Fix
 from polarcheck.foundation.time_limit import current_limit, seconds_for, time_limit
-from polarcheck.rewrite.fixes.edits import applied, origins, overlap, spans
 from polarcheck.rewrite.fixes.fix_comparison import State, objection, state_of
 from polarcheck.rules.editing import Replace
 from polarcheck.rules.repair import WAY, repair_of

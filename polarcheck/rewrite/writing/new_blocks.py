@@ -9,11 +9,11 @@ from collections.abc import Collection, Mapping, Sequence
 import msgspec
 import numpy as np
 
+from polarcheck.checking.edits import applied, origins
 from polarcheck.foundation.arrays import stretch
 from polarcheck.program.machines.machine import Machine
 from polarcheck.program.reading import source
 from polarcheck.program.reading.words import Text
-from polarcheck.rewrite.fixes.edits import applied, origins
 from polarcheck.rewrite.writing.original import Original
 from polarcheck.rewrite.writing.outcome import Refusal, RefusedError
 from polarcheck.rewrite.writing.style import Style
