@@ -156,7 +156,7 @@ def _check_channel(
     """Check the runs of one channel; returns the report and the engines. Rules of the text alone run once."""
     (state, tables), *more = channel
     engine = engine_of(tables, rules, severities, inline=inline)
-    first = report_of(engine)
+    first = report_of(engine, 0)
     if not more:
         return first, [engine]
     ((second_state, second_tables),) = more
@@ -164,7 +164,7 @@ def _check_channel(
     # The texts differ if one run calls a program that the other does not.
     reusable = of_text if second_tables["text"] is tables["text"] else None
     second = engine_of(second_tables, rules, severities, reusable, inline)
-    return _merged((state, first), (second_state, report_of(second)), of_text), [engine, second]
+    return _merged((state, first), (second_state, report_of(second, 1)), of_text), [engine, second]
 
 
 def engine_of(
@@ -197,10 +197,15 @@ def engine_of(
     return Engine(tables, levels, [rule for rule in active if "allows" not in rule.parameters], known_hits)
 
 
-def report_of(engine: Engine) -> FileReport:
-    """Report the findings of one run, and what could not be evaluated."""
+def report_of(engine: Engine, number: int = 0) -> FileReport:
+    """Report the findings of one run, and what could not be evaluated. number: of the run, of those of its file."""
     tables, trace = engine.tables, engine.trace
-    findings, silenced = divided(in_order(in_the_file(engine.findings(), trace, engine.answered, engine.rows_in_calls)))
+    found = engine.findings()
+    if any(finding.section_line is not None for finding in found):
+        from polarcheck.checking.explanations import explained  # imported late: most files have no finding
+
+        found = explained(engine, found, number)
+    findings, silenced = divided(in_order(in_the_file(found, trace, engine.answered, engine.rows_in_calls)))
     unevaluated = (*bounds_not_reported(tables, _all(findings)), *all_unevaluated(tables, engine.rules.values()))
     not_evaluated = list(dict.fromkeys((*unevaluated, *engine.unlisted)))
     text = trace.text

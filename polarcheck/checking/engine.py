@@ -233,7 +233,7 @@ class Engine:
                 for number, runs in zip(chosen[groups][:LISTED].tolist(), count[groups].tolist(), strict=False):
                     first = listed[number]
                     located = PLACES[rule.over](self.tables, int(index[first]))
-                    one_finding = self._finding(rule, located, hits, runs)
+                    one_finding = self.finding(rule, located, hits, runs)
                     findings.append(self._allowed(one_finding, located) if quiet else one_finding)
                     has_cause = follows and not quiet
                     causes.append((self._names[cause[first]], int(element[first])) if has_cause else None)
@@ -328,7 +328,8 @@ class Engine:
         order = np.argsort(first, kind="stable")
         return first[order], np.argsort(order)[group], count[order]
 
-    def _finding(self, rule: Rule, element: Place, hits: Hits, count: int) -> Finding:
+    def finding(self, rule: Rule, element: Place, hits: Hits, count: int) -> Finding:
+        """Return the finding of a rule at an element. count: how many runs or blocks it stands for."""
         from polarcheck.checking.fingerprints import fingerprint
         from polarcheck.rules.hit import Hit
         from polarcheck.rules.message import fill

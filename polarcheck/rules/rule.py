@@ -120,6 +120,7 @@ class Rule(Documented, frozen=True):
     is_advice: the rule is off unless the machine or the user names a severity for it.
     worse: the values of the message that grow where the fault grows worse; behind a minus those of which less is worse,
     and with a colon between them two whose distance counts (position:limit).
+    is_symptom: the finding says what goes wrong, and not which word is: checking/explanations.py searches that.
     gouges: the tool cuts where it must not, so that the fault grows with the depth and F of its blocks.
     parameters: the names of the tables that the function compares.
     companion: returns a function in the file of the rule by its name, None for none. Their parameters name tables.
@@ -139,6 +140,7 @@ class Rule(Documented, frozen=True):
     values: tuple[str, ...] = ()
     is_advice: bool = False
     worse: tuple[str, ...] = ()
+    is_symptom: bool = False
     gouges: bool = False
     group: str = ""
     parameters: tuple[str, ...] = ()

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from polarcheck.columns.contour.correction import Correction
 from polarcheck.columns.contour.plane_loops import PlaneLoop
 from polarcheck.columns.trace import Trace
 from polarcheck.columns.words.slips import Slip, plain_number, slip_of
@@ -37,21 +38,6 @@ _PART_OF_TURN, _FULL_TURN = 15.0, 360.0
 #: Numbers that differ by less are one.
 _SAME_NUMBER = 1e-6
 _WORD = re.compile(r"([A-Z])([+-]?+(?:\d++\.?+\d*+|\.\d++))")
-
-
-class Correction(NamedTuple):
-    """
-    A correction that makes a contour regular.
-
-    row: of the block. word: the executed word that is wrong, -1 where a word or a block is missing or too many. text:
-    as it is to be written. why: the slip. becomes: what the contour is then.
-    """
-
-    row: int
-    word: int
-    text: str
-    why: str
-    becomes: Symmetry
 
 
 class _Trial(NamedTuple):
@@ -117,7 +103,8 @@ class _Search:
             if symmetry is not None and self._is_better(symmetry, trial):
                 row, slip = self._row(trial.at), trial.slip
                 rank = number + _MOST_TRIALS * (2 * (not slip.plain) + (not self._is_known(slip.text)))
-                yield symmetry.freedom, rank, Correction(row, trial.word, slip.text, slip.kind, symmetry)
+                remedy, becomes = _remedy(slip), _becomes(symmetry)
+                yield symmetry.freedom, rank, Correction(row, trial.word, slip.text, slip.kind, remedy, becomes)
 
     def _is_known(self, text: str) -> bool:
         """A word stands in a block of another loop, as another pass has it."""
@@ -386,6 +373,23 @@ class _Search:
             parts = [code, *parts, f"{machine.arcs.radius_word}{plain_number(round(self._usual_arc[1] / scale, 4))}"]
         slip = Slip(" ".join(parts), "a block is missing", False)
         return _Trial(corner + 1, -1, slip, np.insert(moved, corner + 1, point), self._with_edge(corner, turns))
+
+
+def _remedy(slip: Slip) -> str:
+    """What is to be written where."""
+    remedy = f"with {slip.text}" if slip.text else "without it"
+    return f"{remedy} in a block before it" if slip.text and "a block" in slip.kind else remedy
+
+
+def _becomes(symmetry: Symmetry) -> str:
+    """What the contour would be with a symmetry."""
+    from polarcheck.geometry.shapes.shape import polygon_name
+
+    if symmetry.is_regular:
+        return f"it would be a regular {polygon_name(symmetry.corners)}"
+    if symmetry.is_turned:
+        return f"it would be the same after each {360 / symmetry.order:g} deg"
+    return "it would be its own mirror image"
 
 
 def _next_word(axis: _Axis, corner: int) -> int:

@@ -13,7 +13,7 @@ from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.regularity.symmetry import Symmetry
 
 if TYPE_CHECKING:
-    from polarcheck.columns.contour.correction_search import Correction
+    from polarcheck.columns.contour.correction import Correction
 
 
 #: A regular contour has a higher order of symmetry than a rectangle, and at least this many corners.
@@ -99,6 +99,11 @@ class Regularity(Columns, frozen=True):
             if correction is not None:
                 by_row.setdefault(correction.row, correction)
         return by_row
+
+    @cached_property
+    def explained(self) -> dict[int, Correction]:
+        """By row what explains findings of other rules: checking/explanations.py adds what it finds."""
+        return {}
 
     @cached_property
     def is_wrong(self) -> Mask:

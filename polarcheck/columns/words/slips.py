@@ -27,17 +27,19 @@ class Slip(NamedTuple):
 
 def slip_of(written: str, meant: float, tolerance: float) -> Slip | None:
     """The slip that makes what is written of a number near the one that is meant; None where none does."""
-    match = _NUMBER.fullmatch(written)
-    if match is None or not (match[2] or match[4]):
-        return None
     best: tuple[float, Slip] | None = None
-    for slip in _slips(*match.groups()):
-        if slip.text.strip("+-") == ".":
-            continue
+    for slip in slips_of(written):
         off = abs(float(slip.text) - meant)
         if off <= tolerance and (best is None or (not slip.plain, off) < (not best[1].plain, best[0])):
             best = off, slip
     return best[1] if best else None
+
+
+def slips_of(written: str) -> Iterator[Slip]:
+    """All numbers that are one slip away from what is written of a number."""
+    match = _NUMBER.fullmatch(written)
+    if match is not None and (match[2] or match[4]):
+        yield from (slip for slip in _slips(*match.groups()) if slip.text.strip("+-.") not in ("", "."))
 
 
 def _slips(sign: str, whole: str, point: str, rest: str) -> Iterator[Slip]:

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     at=("compensation_off",),
     doubts=(("metal", "block"),),
     follows={"loop": ("inside-arc-smaller-than-radius", "start-up-shorter-than-radius")},
+    is_symptom=True,
 )
 def cancel_shorter_than_radius(
     path: ProgrammedPath, compensation: CutterCompensation, ramps: Ramps, machine: Machine

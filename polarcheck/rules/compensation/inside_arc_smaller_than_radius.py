@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     at=("arc_clockwise", "arc_counterclockwise", "R", "I", "J"),
     once="tight arc",
     doubts=(("metal", "narrow loop"),),
+    is_symptom=True,
 )
 def inside_arc_smaller_than_radius(compensation: CutterCompensation, tool_center: ToolCenter) -> Mask:
     """

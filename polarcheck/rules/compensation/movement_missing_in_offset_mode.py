@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     gouges=True,
     doubts=(("metal", "pause"),),
     follows={"pause": (*OUT_OF_PLACE, "full-circle-by-radius"), "way": OUT_OF_PLACE},
+    is_symptom=True,
 )
 def movement_missing_in_offset_mode(tool_center: ToolCenter) -> Mask:
     """

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     worse=("radius",),
     gouges=True,
     doubts=(("metal", "narrow loop"),),
+    is_symptom=True,
 )
 def no_offset_intersection(tool_center: ToolCenter, ramps: Ramps) -> Mask:
     """

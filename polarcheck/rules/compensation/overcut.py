@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     worse=("depth",),
     gouges=True,
     once="wall",
+    is_symptom=True,
 )
 def overcut(overcuts: Overcuts) -> Hits:
     """

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     gouges=True,
     once="slot",
     follows={"loop": ("overcut",)},
+    is_symptom=True,
 )
 def slot_narrower_than_cutter(slots: Slots) -> Hits:
     """

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     at=("compensation_left", "compensation_right"),
     doubts=(("metal", "loop"),),
     follows={"loop": ("inside-arc-smaller-than-radius",)},
+    is_symptom=True,
 )
 def start_up_shorter_than_radius(path: ProgrammedPath, compensation: CutterCompensation, ramps: Ramps) -> Hits:
     """

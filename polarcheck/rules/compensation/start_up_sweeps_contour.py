@@ -23,6 +23,7 @@ if TYPE_CHECKING:
         "block": ("path-through-center",),
         "loop": ("overcut", "slot-narrower-than-cutter"),
     },
+    is_symptom=True,
 )
 def start_up_sweeps_contour(slots: Slots) -> Hits:
     """

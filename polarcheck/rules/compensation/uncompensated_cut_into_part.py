@@ -23,6 +23,7 @@ if TYPE_CHECKING:
         "section": ("start-up-on-arc", "nearly-regular-contour", "no-offset-intersection"),
         "tool call": ("rapid-plunge-into-stock",),
     },
+    is_symptom=True,
 )
 def uncompensated_cut_into_part(uncompensated_cuts: UncompensatedCuts) -> Hits:
     """

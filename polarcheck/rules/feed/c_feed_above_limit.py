@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     at=("F",),
     once="feed",
     follows={"block": ("start-up-sweeps-contour",)},
+    is_symptom=True,
 )
 def c_feed_above_limit(center: Center, tool_center: ToolCenter, machine: Machine) -> Hits:
     """

@@ -13,7 +13,14 @@ if TYPE_CHECKING:
     from polarcheck.rules.hit import Details, Hit
 
 
-@rule(ERROR, "tool center {meeting}", at=("X", "U", "C", "H"), doubts=(("move", "X before"),), gouges=True)
+@rule(
+    ERROR,
+    "tool center {meeting}",
+    at=("X", "U", "C", "H"),
+    doubts=(("move", "X before"),),
+    gouges=True,
+    is_symptom=True,
+)
 def path_through_center(path: ProgrammedPath, center: Center, arcs: Arcs) -> Mask:
     """
     Path through the center of the C axis.

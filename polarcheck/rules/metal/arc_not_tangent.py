@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     subject="side",
     doubts=(("compensation", "loop"), ("move", "loop"), ("metal", "section")),
     follows={"block": ("arc-sweep-above-limit",)},
+    is_symptom=True,
 )
 def arc_not_tangent(tangency: Tangency, arcs: Arcs) -> Mask:
     """

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
             "arc-sweep-above-limit",
         )
     },
+    is_symptom=True,
 )
 def contour_crosses_itself(crossings: Crossings) -> Mask:
     """

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 @rule(
     WARNING,
-    "{misfit}: {remedy} it would be {as_meant}",
+    "{misfit}: {remedy} {as_meant}",
     values=("word", "word_needed"),
     subject="",
     doubts=(("position", "loop"),),
@@ -42,6 +42,7 @@ if TYPE_CHECKING:
             "start-up-after-contour",
         ),
     },
+    is_symptom=True,
 )
 def nearly_regular_contour(regularity: Regularity) -> Hits:
     """
@@ -107,21 +108,14 @@ def nearly_regular_contour(regularity: Regularity) -> Hits:
 
 
 def details(hit: Hit, regularity: Regularity) -> Details:
-    from polarcheck.geometry.shapes.shape import polygon_name
     from polarcheck.rules.wording.written import executed_word
 
-    correction = regularity.corrections[hit.row]
-    shape, why = correction.becomes, correction.why
+    correction = regularity.explained.get(hit.row) or regularity.corrections[hit.row]
     word = executed_word(hit.trace.run, correction.word) if correction.word >= 0 else ""
-    remedy = f"with {correction.text}" if correction.text else "without it"
-    if shape.is_regular:
-        as_meant = f"a regular {polygon_name(shape.corners)}"
-    else:
-        as_meant = f"the same after each {360 / shape.order:g} deg" if shape.is_turned else "its own mirror image"
     return {
         "word": word,
         "word_needed": correction.text,
-        "misfit": f"{word or 'this block'} does not fit the rest of the contour, {why}",
-        "remedy": f"{remedy} in a block before it" if correction.text and "a block" in why else remedy,
-        "as_meant": as_meant,
+        "misfit": f"{word or 'this block'} does not fit the rest of the contour, {correction.why}",
+        "remedy": correction.remedy,
+        "as_meant": correction.becomes,
     }

@@ -23,6 +23,7 @@ _APART = 1e-3
     worse=("difference",),
     subject="side",
     follows={"twin": FAULTS_OF_CONTOUR},
+    is_symptom=True,
 )
 def passes_differ(pass_differences: PassDifferences) -> Mask:
     """

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
         "block": ("uncompensated-cut-into-part", "rapid-plunge-into-stock"),
         "tool call": ("start-up-shorter-than-radius", "cancel-shorter-than-radius"),
     },
+    is_symptom=True,
 )
 def rapid_through_part(workpiece: Workpiece) -> Hits:
     """

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     at=("I", "J"),
     doubts=END_IN_DOUBT,
     follows={"loop": ("number-without-point",)},
+    is_symptom=True,
 )
 def arc_center_on_path(arcs: Arcs) -> Mask:
     """

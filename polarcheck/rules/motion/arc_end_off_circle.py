@@ -28,6 +28,7 @@ if TYPE_CHECKING:
         "loop": ("number-without-point",),
         "misfitting arcs": ("arc-radius-too-small",),
     },
+    is_symptom=True,
 )
 def arc_end_off_circle(arcs: Arcs, machine: Machine) -> Hits:
     """

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     once="misfitting arcs",
     doubts=END_IN_DOUBT,
     follows={"loop": ("number-without-point",)},
+    is_symptom=True,
 )
 def arc_radius_too_small(arcs: Arcs, machine: Machine) -> Mask:
     """

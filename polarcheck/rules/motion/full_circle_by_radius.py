@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     "arc by radius that ends where it starts: nothing moves; {of_full_circle}",
     at=("X", "C", "R"),
     subject="",
+    is_symptom=True,
 )
 def full_circle_by_radius(
     blocks: ExecutedBlocks, axes: PlaneAxes, path: ProgrammedPath, arcs: Arcs, machine: Machine

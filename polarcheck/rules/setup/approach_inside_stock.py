@@ -31,6 +31,7 @@ if TYPE_CHECKING:
             "side-of-compensation-mirrored",
         ),
     },
+    is_symptom=True,
 )
 def approach_inside_stock(path: ProgrammedPath, entry: Entry) -> Hits:
     """

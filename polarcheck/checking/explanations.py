@@ -1,0 +1,220 @@
+"""
+The one word or block that explains the findings of a contour: it is searched, and a program without the slip is tried.
+
+A contour with a finding is a symptom. Each edit of its words and blocks that is one slip of the pen away is compared by
+what it leaves to chance (columns/contour/likely_edits.py). The best are tried: the program with the edit is read and
+checked. An edit explains the findings that are gone then, if no other finding has come; they are listed under it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+import msgspec
+import numpy as np
+
+from polarcheck.checking.edits import applied, origins
+from polarcheck.checking.engine import Engine, with_following
+from polarcheck.columns.contour.correction import Correction
+from polarcheck.columns.contour.likely_edits import Likely, likely_edits
+from polarcheck.columns.contour.written_loop import WrittenLoop, written_loops
+from polarcheck.foundation.errors import TooHardError
+from polarcheck.foundation.finding import SEVERITIES, WARNING, Finding, Silenced, Undecided
+from polarcheck.program.execution.runs import runs
+from polarcheck.program.reading.source import read_source
+from polarcheck.rules.editing import Replace, content_of, in_place_of, is_plain, with_word, without, words_of
+from polarcheck.rules.other_machine import OtherMachine
+from polarcheck.rules.places import PLACES
+from polarcheck.rules.rule import Hits
+from polarcheck.rules.tables import Tables
+
+#: The rule that reports an edit; its own findings are explanations, and no symptoms.
+REPORTS = "nearly-regular-contour"
+#: Paths of a file that are searched, edits of each that are tried, and rows of all trials of a file together.
+_MOST_LOOPS, _TRIALS, _MOST_ROWS = 8, 5, 20_000
+#: By how much less a second edit may explain, for both to be named [coordinates]; how many are named.
+_AS_LIKELY, _NAMED = 0.5, 2
+
+#: What is to be done where nothing is to be written.
+_REMEDIES = {"twice": "without it", "order": "behind the next one"}
+
+#: A rule and a line at which it fires.
+_Symptom = tuple[str, int]
+
+
+class _Explained(NamedTuple):
+    """An edit, the row of its block, and the symptoms that it removes; other: a second one that is as likely."""
+
+    likely: Likely
+    row: int
+    gone: frozenset[_Symptom]
+    other: _Explained | None = None
+
+
+def explained(engine: Engine, findings: Sequence[Finding], number: int) -> list[Finding]:
+    """
+    Return the findings, with those that one edit explains listed under it.
+
+    number: of the run, in the order of program/execution/runs.py.
+    """
+    trace = engine.trace
+    source = trace.text.source
+    symptoms = [finding for finding in findings if _is_symptom(engine, finding)]
+    if not symptoms or REPORTS not in engine.rules or source.parts or source.channel or len(trace) > _MOST_ROWS:
+        return list(findings)
+    search = _Search(engine, number)
+    try:
+        for explanation in search.explanations(symptoms):
+            findings = _under(engine, findings, explanation)
+    except TooHardError:
+        pass  # what was found before stands
+    return list(findings)
+
+
+def _is_symptom(engine: Engine, finding: Finding) -> bool:
+    if isinstance(finding, Silenced | Undecided) or finding.section_line is None:
+        return False
+    return SEVERITIES[finding.severity] >= WARNING and engine.rules[finding.rule].is_symptom
+
+
+class _Search:
+    def __init__(self, engine: Engine, number: int) -> None:
+        self.engine, self.trace, self.number = engine, engine.trace, number
+        self.rules = [rule for rule in engine.rules.values() if not rule.of_text and rule.over == "rows"]
+        self.rows_left = _MOST_ROWS
+
+    def explanations(self, findings: Sequence[Finding]) -> Iterator[_Explained]:
+        """One explanation at most for each path with a symptom."""
+        trace, written = self.trace, self._symptoms(self.engine)
+        lines = {finding.line for finding in findings}
+        rows = np.flatnonzero(np.isin(trace.blocks.line, [*lines]) & (trace.mode.section >= 0))
+        sections = np.flatnonzero(np.bincount(trace.mode.section[rows], minlength=1)).tolist()
+        loops = list(written_loops(trace, sections))[:_MOST_LOOPS]
+        ends = [*(int(loop.row[1]) - 1 for loop in loops[1:]), len(trace)][: len(loops)]
+        known: set[_Symptom] = set()
+        for loop, end in zip(loops, ends, strict=True):
+            own_lines = set(trace.blocks.line[max(int(loop.row[0]) - 1, 0) : end + 1].tolist()) & lines
+            own = {(finding.rule, finding.line) for finding in findings if finding.line in own_lines}
+            if not own <= known:
+                found = self._explained(loop, written)
+                if found is not None:
+                    known |= found.gone
+                    yield found
+
+    def _explained(self, loop: WrittenLoop, written: frozenset[_Symptom]) -> _Explained | None:
+        """The likeliest edit that removes symptoms and brings none; None for none, or for too many alike."""
+        found: list[_Explained] = []
+        for likely in likely_edits(self.trace, loop, _TRIALS):
+            if found and found[0].likely.gain - likely.gain > _AS_LIKELY:
+                break
+            edits = self._edits(loop, likely)
+            if not edits or self.rows_left < len(self.trace):
+                continue
+            self.rows_left -= len(self.trace)
+            gone = self._tried(edits, written)
+            if gone is not None:
+                found.append(_Explained(likely, int(loop.row[likely.edit.corner]), gone))
+        if not found or len(found) > _NAMED:
+            return None
+        return found[0]._replace(other=found[1]) if found[1:] else found[0]
+
+    def _edits(self, loop: WrittenLoop, likely: Likely) -> list[Replace]:
+        """The edits of the text; none where the block is no plain one."""
+        run, edit = self.trace.run, likely.edit
+        row = int(loop.row[edit.corner])
+        if not is_plain(run, row):
+            return []
+        if edit.kind == "twice":
+            return without(run, row, words_of(run, row))
+        if edit.kind == "order":
+            following = int(loop.row[edit.corner + 1])
+            blocks = int(run.block[row]), int(run.block[following])
+            (start, end), (other_start, other_end) = (content_of(run.text, block) for block in blocks)
+            excerpt = run.text.source.excerpt
+            return [(start, end, excerpt(other_start, other_end)), (other_start, other_end, excerpt(start, end))]
+        if not edit.words:
+            return [with_word(run, row, edit.text)]
+        if len(edit.words) == 1:
+            return [in_place_of(run, edit.words[0], edit.text)]
+        return [in_place_of(run, word, text) for word, text in zip(edit.words, edit.text.split(), strict=True)]
+
+    def _tried(self, edits: list[Replace], written: frozenset[_Symptom]) -> frozenset[_Symptom] | None:
+        """The symptoms that the edits remove; None where they remove none, or bring one."""
+        source, engine = self.trace.text.source, self.engine
+        data = applied(source, edits)
+        if data is None:
+            return None
+        states = runs(read_source(data, source.path, source.encoding), self.trace.machine, engine.tables["job"])
+        if self.number >= len(states):
+            return None
+        tables = Tables(states[self.number][1], self.trace.machine, engine.tables["job"])
+        tables.give("other_machine", OtherMachine(tables))
+        trial = Engine(tables, engine.severities, self.rules)
+        line = origins(source, tables["trace"].text.source, edits)
+        left = frozenset((rule, int(line[number - 1])) for rule, number in self._symptoms(trial))
+        gone = written - left
+        return gone if gone and left <= written else None
+
+    def _symptoms(self, engine: Engine) -> frozenset[_Symptom]:
+        """Where rules fire as warnings or errors."""
+        line = engine.trace.blocks.line
+        found: set[_Symptom] = set()
+        for rule in self.rules:
+            hits = engine.hits(rule)
+            if hits.mask.any() and SEVERITIES[rule.level(engine.severities)] >= WARNING:
+                severity = rule.severity if hits.severity is None else hits.severity
+                fires = hits.mask & (np.asarray(severity) >= WARNING)
+                found.update((rule.name, number) for number in set(line[fires].tolist()))
+        return frozenset(found)
+
+
+def _under(engine: Engine, findings: Sequence[Finding], explanation: _Explained) -> list[Finding]:
+    """The findings with those that are explained under the edit: under the one at its line, else under a new one."""
+    gone = [finding for finding in findings if (finding.rule, finding.line) in explanation.gone]
+    if not gone:
+        return list(findings)
+    line = int(engine.trace.blocks.line[explanation.row])
+    others = [finding for finding in findings if finding not in gone]
+    there = [finding for finding in gone if finding.line == line and finding.rule != REPORTS]
+    head = _with_remedy(engine, there[0], explanation) if there else _new(engine, explanation)
+    symptoms = [
+        symptom
+        for finding in gone
+        if finding not in there[:1]
+        for symptom in (msgspec.structs.replace(finding, follows=[]), *finding.follows)
+        if symptom.rule != REPORTS
+    ]
+    return [*others, with_following(head, [*head.follows, *symptoms])]
+
+
+def _with_remedy(engine: Engine, finding: Finding, explanation: _Explained) -> Finding:
+    """The finding, which also says what the edit is."""
+    if (text := explanation.likely.edit.text) and text in finding.message:
+        return finding
+    message = f"{finding.message}; {_remedies(engine, explanation)} {explanation.likely.becomes}"
+    return msgspec.structs.replace(finding, message=message)
+
+
+def _new(engine: Engine, explanation: _Explained) -> Finding:
+    trace, tables = engine.trace, engine.tables
+    likely, row = explanation.likely, explanation.row
+    word = likely.edit.words[0] if len(likely.edit.words) == 1 else -1
+    remedies = _remedies(engine, explanation)
+    correction = Correction(row, word, likely.edit.text, likely.edit.why, remedies, likely.becomes)
+    tables["regularity"].explained[row] = correction
+    at = trace.blocks.words_at(np.array([word][: word >= 0], np.int64))
+    hits = Hits(trace.blocks.mask_of(np.array([row])), at=at)
+    place = PLACES["rows"](tables, row)
+    return engine.answered(engine.finding(engine.rules[REPORTS], place, hits, 1), place.block)
+
+
+def _remedies(engine: Engine, explanation: _Explained) -> str:
+    if (other := explanation.other) is None:
+        return _remedy(explanation)
+    return f"{_remedy(explanation)}, or {_remedy(other)} in line {int(engine.trace.blocks.line[other.row])},"
+
+
+def _remedy(explanation: _Explained) -> str:
+    edit = explanation.likely.edit
+    return _REMEDIES.get(edit.kind, f"with {edit.text}")

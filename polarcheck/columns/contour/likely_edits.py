@@ -1,0 +1,77 @@
+"""Which one edit makes a path regular, tangent or closed, so that it may be what was meant."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from polarcheck.columns.contour.loop_edits import Edit, edits_of, outlines_of
+from polarcheck.columns.contour.written_loop import WrittenLoop
+from polarcheck.columns.trace import Trace
+from polarcheck.geometry.regularity.coincidences import Chances, Outlines, chances_of
+
+#: An edit must leave so much less to chance than what is written.
+_LEAST_GAIN = 2.5
+#: So much of it must be other than arcs that reach their ends; in a path of few blocks more.
+_LEAST_WITNESS, _IF_SHORT, _SHORT = 1.0, 2.0, 4
+#: What each corner that is lost counts, but for the one of a wrong point on a side [coordinates].
+_OF_LOST_CORNER = 2.0
+#: Points of all edits of a path together, above which none is searched.
+_MOST_POINTS = 400_000
+
+
+class Likely(NamedTuple):
+    """
+    An edit that may be what was meant.
+
+    gain: how many coordinates fewer are as they are by chance. becomes: what the path is then, in words.
+    """
+
+    edit: Edit
+    gain: float
+    becomes: str
+
+
+def likely_edits(trace: Trace, loop: WrittenLoop, most: int) -> list[Likely]:
+    """The edits that leave least to chance, the likeliest first, each path once; none where none is clearly better."""
+    edits = edits_of(trace, loop)
+    if (len(edits) + 1) * len(loop.row) > _MOST_POINTS:
+        return []
+    outlines = outlines_of(loop, edits)
+    chances = chances_of(outlines, loop.tolerance)
+    total = chances.total + np.array([0.0, *(edit.cost for edit in edits)])
+    # A shape that loses corners is another shape.
+    lost = np.maximum(chances.corners[0] - chances.corners - 1, 0)
+    gain = total[0] - total - _OF_LOST_CORNER * lost
+    witness = chances.without_broken_arcs[0] - chances.without_broken_arcs
+    least = _LEAST_WITNESS if len(loop.turns) >= _SHORT else _IF_SHORT
+    found: list[int] = []
+    for number in np.argsort(-gain, kind="stable").tolist():
+        if len(found) == most or gain[number] < _LEAST_GAIN:
+            break
+        if witness[number] >= least and all(_differs(outlines, number, other, loop.tolerance) for other in found):
+            found.append(number)
+    return [Likely(edits[number - 1], float(gain[number]), _becomes(chances, number)) for number in found]
+
+
+def _differs(outlines: Outlines, first: int, second: int, tolerance: float) -> bool:
+    """Two outlines are not the same."""
+    if np.abs(outlines.point[first] - outlines.point[second]).max() > tolerance:
+        return True
+    parts = ((part[first], part[second]) for part in outlines[1:])
+    return not all(np.allclose(one, other, atol=tolerance, equal_nan=True) for one, other in parts)
+
+
+def _becomes(chances: Chances, number: int) -> str:
+    """What an outline is better in than the one that is written."""
+    before, after = ([int(part[index]) for part in chances[:4]] for index in (0, number))
+    if after[0] < before[0]:
+        return "all its arcs would end on their circles" if not after[0] else "one more arc would end on its circle"
+    if after[3] < before[3]:
+        return "it would be closed"
+    if after[1] < before[1]:
+        return "its arcs would be tangent" if not after[1] else "more of its arcs would be tangent"
+    if after[2] < before[2]:
+        return "it would not turn back"
+    return "more of its lengths and points would be alike"

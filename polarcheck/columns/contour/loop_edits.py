@@ -1,0 +1,227 @@
+"""All that one slip of the pen may have changed in a path: words, letters, codes, blocks; and the path without it."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from typing import Literal, NamedTuple
+
+import numpy as np
+
+from polarcheck.columns.contour.written_loop import AxisWords, WrittenLoop
+from polarcheck.columns.trace import Trace
+from polarcheck.columns.words.slips import Slip, plain_number, slips_of
+from polarcheck.foundation.arrays import Floats, Points
+from polarcheck.geometry.regularity.coincidences import Outlines
+
+#: A word as it is written: its address and its number.
+_WORD = re.compile(r"([A-Za-z]+=?)([-+]?[\d.]+)")
+#: Numbers of a contour; smaller ones are 0, or nobody can tell.
+_LEAST, _GREATEST = 0.02, 2000.0
+#: Numbers that differ by less are one.
+_SAME_NUMBER = 5e-5
+#: By how much an edit is less likely, as a number of coordinates that are as they are by chance: a slip that is seldom
+#: made, a number of another block, a word or block that is missing or too many, another sense, a number with more
+#: decimals than what is written, and one of a block that is not beside it.
+_SELDOM, _ELSEWHERE, _OF_BLOCK, _SAME_SIZE, _FINER, _FAR = 0.3, 0.2, 0.4, 0.1, 0.6, 2.5
+
+
+class Edit(NamedTuple):
+    """
+    One edit of a path.
+
+    kind: what it changes. corner: the block, 0 for the move before. words: the executed words that it replaces. text:
+    what is written instead, or put behind the last word. why: the slip. cost: how unlikely the slip is. axis: of a
+    word, 0 for X. value: its number, for a word of an arc the factor.
+    """
+
+    kind: Literal["word", "missing", "letter", "exchanged", "arc", "sense", "twice", "order"]
+    corner: int
+    words: tuple[int, ...]
+    text: str
+    why: str
+    cost: float
+    axis: int = 0
+    value: float = np.nan
+
+
+def edits_of(trace: Trace, loop: WrittenLoop) -> list[Edit]:
+    """All edits of a path, the likelier first where they say the same."""
+    axes = range(2)
+    found = [edit for axis in axes for edit in _of_axis(trace, loop, axis)]
+    found += [edit for address in loop.arc_words for edit in _of_arcs(trace, loop, address)]
+    found += [*_of_codes(trace, loop), *_of_blocks(loop)]
+    return found
+
+
+def _of_axis(trace: Trace, loop: WrittenLoop, number: int) -> Iterator[Edit]:
+    axis, other = loop.axes[number], loop.axes[1 - number]
+    sizes, on_circle = _sizes(axis.value[~axis.is_step]), _on_circles(trace, loop, number)
+    for corner, word in enumerate(axis.word.tolist()):
+        if word < 0:
+            values = dict.fromkeys(signed for size in (0.0, *sizes) for signed in (size, -size))
+            for value in (*values, *on_circle.get(corner, ())) if corner else ():
+                text = f"{axis.address}{plain_number(value)}"
+                yield Edit("missing", corner, (), text, "a word is missing", _OF_BLOCK, number, value)
+            continue
+        address, written = _parts(trace, word)
+        if not address:
+            continue
+        others = () if axis.is_step[corner] else (0.0, *sizes)
+        beside = axis.value[max(corner - 1, 0) : corner + 2 : 2] if corner else axis.value[1:2]
+        for slip, cost in _numbers(written, float(axis.value[corner]), others, beside):
+            yield Edit("word", corner, (word,), address + slip.text, slip.kind, cost, number, float(slip.text))
+        if other.word[corner] < 0:
+            letter = other.step_address if axis.is_step[corner] else other.address
+            text = letter + "=" * address.endswith("=") + written
+            yield Edit("letter", corner, (word,), text, "it has the letter of the other axis", 0.0, number)
+        elif not number and (parts := _parts(trace, int(other.word[corner])))[0]:
+            words = word, int(other.word[corner])
+            text = f"{address}{parts[1]} {parts[0]}{written}"
+            why = f"the numbers of {address.strip('=')} and {parts[0].strip('=')} are exchanged"
+            yield Edit("exchanged", corner, words, text, why, 0.0)
+
+
+def _on_circles(trace: Trace, loop: WrittenLoop, number: int) -> dict[int, tuple[float, ...]]:
+    """By corner where an axis would end on the circle of an arc, with the other axis as it is written."""
+    axis, other = loop.axes[number], loop.axes[1 - number]
+    ends = loop.points([one.value[None] for one in loop.axes], [one.is_step[None] for one in loop.axes])[0]
+    found: dict[int, tuple[float, ...]] = {}
+    for block in np.flatnonzero((loop.turns != 0) & np.isnan(loop.radius)).tolist():
+        center = complex(ends[block] + loop.to_center[block])
+        across = ((ends[block + 1] - center) / other.direction).real
+        if abs(across) < abs(loop.to_center[block]):
+            reach, middle = (abs(loop.to_center[block]) ** 2 - across**2) ** 0.5, (center / axis.direction).real
+            places = int(trace.run.words.decimals[axis.word[axis.word >= 0]].max(initial=0))
+            found[block + 1] = tuple(round((middle + way) / axis.scale[block + 1], places) for way in (reach, -reach))
+    return found
+
+
+def _of_arcs(trace: Trace, loop: WrittenLoop, address: str) -> Iterator[Edit]:
+    words = loop.arc_words[address]
+    values, axis = trace.run.words.value[words[words >= 0]], max("RIJ".find(address), 0)
+    for block, word in enumerate(words.tolist()):
+        had = float(trace.run.words.value[word]) if word >= 0 else 0.0
+        letters, written = _parts(trace, word) if word >= 0 else ("", "")
+        if letters and had:
+            for slip, cost in _numbers(written, had, (0.0, *_sizes(values)), values):
+                if (value := float(slip.text)) or axis:
+                    text, factor = letters + slip.text, value / had
+                    yield Edit("arc", block + 1, (word,), text, slip.kind, cost, axis, factor)
+
+
+def _of_codes(trace: Trace, loop: WrittenLoop) -> Iterator[Edit]:
+    machine = trace.machine
+    for block in np.flatnonzero(loop.turns).tolist():
+        codes = machine.codes("arc_counterclockwise" if loop.turns[block] < 0 else "arc_clockwise")
+        words = (int(loop.code[block]),) if loop.code[block] >= 0 else ()
+        if codes:
+            why = "the arc has the other sense" if words else "its code is missing"
+            yield Edit("sense", block + 1, words, next(iter(codes)), why, _SAME_SIZE)
+
+
+def _of_blocks(loop: WrittenLoop) -> Iterator[Edit]:
+    count = len(loop.turns)
+    for corner in range(1, count + 1):
+        if all(_is_same(axis, corner) for axis in loop.axes):
+            yield Edit("twice", corner, (), "", "it stands there twice", _OF_BLOCK)
+        if corner < count:
+            yield Edit("order", corner, (), "", "it stands before the block that should be before it", _OF_BLOCK)
+
+
+def _is_same(axis: AxisWords, corner: int) -> bool:
+    """A block has the word of an axis that the block before it has."""
+    both = slice(corner - 1, corner + 1)
+    return bool(np.isnan(axis.value[both]).all() or (axis.value[corner - 1] == axis.value[corner]))
+
+
+def _parts(trace: Trace, word: int) -> tuple[str, str]:
+    """The address and the number of a word as they are written; empty where it is no plain number."""
+    words = trace.run.words
+    written = trace.run.text.source.excerpt(int(words.start[word]), int(words.end[word]))
+    match = _WORD.fullmatch("".join(written.split()))
+    return (match[1], match[2]) if match is not None else ("", "")
+
+
+def _sizes(values: Floats) -> tuple[float, ...]:
+    """The different sizes of numbers, but 0."""
+    return tuple(dict.fromkeys(size for size in np.round(np.abs(values), 4).tolist() if size > 0))
+
+
+def _numbers(written: str, value: float, others: tuple[float, ...], beside: Floats) -> Iterator[tuple[Slip, float]]:
+    """
+    What a number may be instead, each once, with its cost.
+
+    others: the sizes of the numbers of all blocks, one of which may be meant. beside: the numbers of the blocks before
+    and behind, one of which may be what is written.
+    """
+    known = {round(value / _SAME_NUMBER)}
+    is_beside = bool((np.abs(beside - value) < _SAME_NUMBER).any())
+    of_others = Slip("", "it is that of the block beside it" if is_beside else "another number is meant", False)
+    slips = [(slip, _cost(slip, written, others)) for slip in slips_of(written)]
+    for size in others:
+        cost = _SELDOM if is_beside else _FAR
+        slips += [(of_others._replace(text=plain_number(number)), cost) for number in (size, -size)]
+    for slip, cost in sorted(slips, key=lambda pair: pair[1]):
+        key = round(float(slip.text) / _SAME_NUMBER)
+        if key not in known and (_LEAST <= abs(float(slip.text)) <= _GREATEST or not key):
+            known.add(key)
+            yield slip, cost
+
+
+def _cost(slip: Slip, written: str, others: tuple[float, ...]) -> float:
+    is_other = any(abs(abs(float(slip.text)) - size) < _SAME_NUMBER for size in others)
+    is_finer = _decimals(slip.text) > _decimals(written)
+    return (not slip.is_common) * _SELDOM + (not (slip.plain or is_other)) * _ELSEWHERE + is_finer * _FINER
+
+
+def _decimals(number: str) -> int:
+    return len(number.partition(".")[2].rstrip("0"))
+
+
+def outlines_of(loop: WrittenLoop, edits: list[Edit]) -> Outlines:
+    """The path with each of these edits; the first outline is that of the path as it is written."""
+    count = len(edits) + 1
+    values = [np.repeat(axis.value[None], count, 0) for axis in loop.axes]
+    steps = [np.repeat(axis.is_step[None], count, 0) for axis in loop.axes]
+    turns, radius = np.repeat(loop.turns[None], count, 0), np.repeat(loop.radius[None], count, 0)
+    to_center = np.repeat(loop.to_center[None], count, 0)
+    for number, edit in enumerate(edits, 1):
+        at = number, edit.corner
+        match edit.kind:
+            case "word" | "missing":
+                values[edit.axis][at] = edit.value
+            case "letter":
+                values[1 - edit.axis][at], values[edit.axis][at] = values[edit.axis][at], np.nan
+                steps[1 - edit.axis][at] = steps[edit.axis][at]
+            case "exchanged":
+                values[0][at], values[1][at] = values[1][at], values[0][at]
+            case "arc":
+                _change_arc(edit, radius, to_center, number)
+            case "sense":
+                turns[number, edit.corner - 1 : _next_code(loop, edit.corner)] *= -1
+            case "twice":
+                values[0][at] = values[1][at] = np.nan
+                turns[number, edit.corner - 1] = 0
+            case "order":
+                for words in (*values, *steps):
+                    words[number, edit.corner : edit.corner + 2] = words[number, [edit.corner + 1, edit.corner]]
+                for parts in (turns, radius, to_center):
+                    parts[number, edit.corner - 1 : edit.corner + 1] = parts[number, [edit.corner, edit.corner - 1]]
+    return Outlines(loop.points(values, steps), turns, radius, to_center)
+
+
+def _next_code(loop: WrittenLoop, block: int) -> int:
+    """The first block from this one on with a code of motion of its own."""
+    following = np.flatnonzero(loop.code[block:] >= 0)
+    return block + int(following[0]) if len(following) else len(loop.code)
+
+
+def _change_arc(edit: Edit, radius: Floats, to_center: Points, number: int) -> None:
+    at = number, edit.corner - 1
+    if edit.axis == 1:
+        to_center[at] += (edit.value - 1) * to_center[at].real
+    elif edit.axis == 2:
+        to_center[at] += 1j * (edit.value - 1) * to_center[at].imag
+    else:
+        radius[at] *= edit.value
