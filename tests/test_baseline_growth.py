@@ -210,6 +210,7 @@ WITHOUT_SIZE = {
     *("c-angle-unknown-at-entry", "c-axis-clamped-in-polar", "c-axis-not-engaged", "c-axis-not-referenced"),
     *("flat-end-mill-at-od", "live-tool-never-stopped", "live-tool-without-speed", "main-spindle-running-at-entry"),
     *("no-tool-offset-at-entry", "spindle-code-in-polar", "variable-never-set", "x-unknown-at-entry"),
+    "units-contradict-sizes",
 }
 
 

@@ -34,7 +34,8 @@ SUBJECT_OF_TABLE: Final = {
     "senses": "side",
     "tangency": "side",
 }
-#: What each subject rests on. A move is judged by itself: rates of its axes, travel, a ramp on an arc.
+#: What each subject rests on. A move is judged by itself: rates of its axes, travel, a ramp on an arc. A size is of
+#: a bar, a cutter or F: rules that compare lengths with it name it as their subject.
 RESTS_ON: Final = {
     "arc": ("position", "arc"),
     "move": ("position", "arc", "move"),
@@ -42,6 +43,7 @@ RESTS_ON: Final = {
     "compensation": ("position", "arc", "compensation"),
     "metal": ("position", "arc", "compensation", "metal"),
     "infeed": ("position", "arc", "compensation", "metal"),
+    "size": ("size",),
 }
 #: The span in which each subject is judged: a wrong arc costs its own rate of C, but all of the contour.
 UNIT_OF: Final = {
@@ -51,6 +53,7 @@ UNIT_OF: Final = {
     "compensation": "loop",
     "metal": "loop",
     "infeed": "section",
+    "size": "program",
 }
 #: All that may be doubtful.
 DOUBTFUL: Final = frozenset(what for subject in RESTS_ON.values() for what in subject)

@@ -91,6 +91,7 @@ TABLES = {
     "finished": Maker("polarcheck.columns.metal.finished:Finished"),
     "milled": Maker("polarcheck.columns.metal.milled:Milled"),
     "workpiece": Maker("polarcheck.columns.metal.workpiece:Workpiece", SECTION),
+    "implied_units": Maker("polarcheck.columns.metal.implied_units:ImpliedUnits", SECTION),
     "air_cuts": Maker("polarcheck.columns.metal.air_cuts:AirCuts", SECTION),
     "rapid_contours": Maker("polarcheck.columns.contour.rapid_contours:RapidContours", SECTION),
     "pass_ends": Maker("polarcheck.columns.contour.pass_ends:PassEnds", SECTION),

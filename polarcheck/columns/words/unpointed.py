@@ -95,11 +95,14 @@ class Unpointed(Columns, frozen=True):
         """
         if not self.slips[index] or self._is_large[index]:
             return []
-        words = self.trace.text.words
-        is_feed = words.address == ord("F")
         same = self.of_program(index)
-        chosen: list[int] = same[(is_feed[same] == is_feed[index]) & ~self._is_large[same]].tolist()
+        chosen: list[int] = same[(self.is_feed[same] == self.is_feed[index]) & ~self._is_large[same]].tolist()
         return chosen
+
+    @cached_property
+    def is_feed(self) -> Mask:
+        """Per word of the file: F, whose point matters in inch alone."""
+        return np.asarray(self.trace.text.words.address == ord("F"))
 
     @cached_property
     def _is_large(self) -> Mask:

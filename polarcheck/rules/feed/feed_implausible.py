@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     worse=("time",),
     at=("F", "feed_per_minute", "line", "arc_clockwise", "arc_counterclockwise"),
     once="program",
+    subject="size",
     follows={
         "block": ("feed-missing-in-polar", "feed-lost-from-per-revolution"),
         "section": ("code-not-allowed-in-polar",),

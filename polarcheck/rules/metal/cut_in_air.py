@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     "{in_air}",
     values=("z",),
     once="section",
-    subject="",
+    subject="size",
     follows={
         "section": (
             *OUT_OF_PLACE,

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     WARNING,
     "{misfit}: {remedy} {as_meant}",
     values=("word", "word_needed"),
-    subject="",
+    subject="size",
     doubts=(("position", "loop"),),
     follows={
         "loop": (

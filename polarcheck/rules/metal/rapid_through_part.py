@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     worse=("-z",),
     gouges=True,
     once="tool call",
+    subject="size",
     follows={
         "block": ("uncompensated-cut-into-part", "rapid-plunge-into-stock"),
         "tool call": ("start-up-shorter-than-radius", "cancel-shorter-than-radius"),

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     worse=("-z",),
     gouges=True,
     once="tool call",
+    subject="size",
     follows={
         "block": ("uncompensated-cut-into-part", "rapid-through-part"),
         "motion": ("rapid-in-polar", "rapid-along-contour"),

@@ -20,6 +20,7 @@ _FEED_INCREMENT_INCH = 0.01
     worse=("count",),
     over="words",
     once="program",
+    subject="size",
     doubts=(("metal", "loop"),),
     follows={"block": ("too-many-digits", "stray-character", "bad-number")},
 )
@@ -126,7 +127,10 @@ def number_without_point(unpointed: Unpointed) -> Hits:
         G13.1
     """
     return graded(
-        warning=unpointed.slips | (unpointed.in_meters > 0), note=unpointed.in_increments > 0, worst=unpointed.rank
+        warning=unpointed.slips | (unpointed.in_meters > 0),
+        note=unpointed.in_increments > 0,
+        worst=unpointed.rank,
+        follows={"program": unpointed.is_feed},
     )
 
 

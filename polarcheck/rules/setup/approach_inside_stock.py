@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     values=("x", "x_needed", "stock", "diameter", "clearance"),
     worse=("x:x_needed",),
     at=("on",),
+    subject="size",
     doubts=(("compensation", "first start-up"),),
     follows={
         "section": (

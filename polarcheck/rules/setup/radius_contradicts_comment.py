@@ -23,6 +23,7 @@ _SAME_SHARE = 0.02
     values=("offset", "radius", "radius_stated", "comment"),
     worse=("radius:radius_stated",),
     at=("T",),
+    subject="size",
     doubts=(("compensation", "tool call"),),
 )
 def radius_contradicts_comment(entry: Entry) -> Hits:
