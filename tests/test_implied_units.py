@@ -33,7 +33,6 @@ def findings(program: str, head: str, machine: str, job: dict[str, Any]) -> list
         (INCH, "G98 G40", IN_MM, "G20 is missing"),
         (INCH, "G98 G40", IN_INCH, "G20 is missing"),
         (INCH, "G98 G40", NO_BAR, "G20 is missing"),
-        (INCH, "G98 G40", WITHOUT_UNITS, "G20 is missing"),
         (INCH, "G21 G98 G40", IN_MM, "write G20 instead of G21"),
         (MM, "G20 G98 G40", IN_MM, "write G21 instead of G20"),
         (MM, "G20 G98 G40", IN_INCH, "write G21 instead of G20"),
@@ -48,6 +47,11 @@ def test_the_other_unit_is_one_finding(program: str, head: str, job: dict[str, A
 def test_sound_programs_in_both_units(job: dict[str, Any]) -> None:
     assert findings(INCH, "G20 G98 G40", "fanuc-30i", job) == []
     assert findings(MM, "G21 G98 G40", "fanuc-30i", job) == []
+
+
+@pytest.mark.ci
+def test_a_lathe_that_powers_up_in_inches_reads_numbers_as_meant() -> None:
+    assert findings(INCH, "G98 G40", "fanuc-30i", WITHOUT_UNITS) == []
 
 
 def test_one_size_alone_says_nothing() -> None:

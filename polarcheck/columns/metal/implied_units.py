@@ -56,12 +56,11 @@ class ImpliedUnits(Columns, frozen=True):
         is_small = np.stack((self.by_feed, self.by_x & ~self.in_inch)).sum(axis=0)
         is_selected = trace.blocks.anywhere_in_program(trace.modal.sets("units"))
         count = of_bodies + of_numbers
-        by_bodies = (of_bodies > 0) & np.where(
+        # Numbers alone say nothing: a lathe that powers up in the other unit reads them as they are meant.
+        enough = np.where(
             is_selected, (count >= _ENOUGH_AGAINST_CODE) & (count - is_small >= _ENOUGH), count >= _ENOUGH
         )
-        # Numbers alone tell inches by all three; mm have as many digits as inches.
-        by_numbers = (of_numbers >= np.where(self.in_inch, _ENOUGH, _ENOUGH_AGAINST_CODE)) & ~is_selected
-        says = self._is_judged & (by_bodies | by_numbers)
+        says = self._is_judged & (of_bodies > 0) & enough
         return np.asarray(says & self._is_first)
 
     @cached_property

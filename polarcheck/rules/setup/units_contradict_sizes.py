@@ -22,9 +22,9 @@ def units_contradict_sizes(implied_units: ImpliedUnits) -> Mask:
     Program whose sizes are those of the other unit.
 
     G20 or G21 is missing, or is the wrong one of the two, so that the control reads inches as mm or mm as inches. The
-    lathe cuts nothing, or into everything. Two sizes at least say so: the cutter is larger than the whole contour, or
-    much too small for it; R of the job is that of the comment in the other unit; no X comes near the bar, or all lie
-    far outside it; the digits, F and X are those of the other unit. Sizes of cutter and bar count where the job says
+    lathe cuts nothing, or into everything. Two sizes at least say so, one of them of a body: the cutter is larger than
+    the whole contour, or much too small for it; R of the job is that of the comment in the other unit; no X comes near
+    the bar, or all lie far outside it. Others are the digits, F and X. Sizes of cutter and bar count where the job says
     their unit (`units`). Against a G20 or G21 of the program three sizes are needed. What else is found of lengths in
     the program is listed under this finding. Write the code; where the lathe powers up in that unit, give it with
     `--units`.
