@@ -798,3 +798,20 @@ def test_the_example_of_the_page_is_as_it_is_shown() -> None:
     result = check(*command.split())
     assert result.stdout == diff
     assert result.exit_code == 1
+
+
+def test_the_report_names_what_unsafe_fixes_have_assumed() -> None:
+    program = "O7\nT0101\nG98 G0 X60. C0 Z5.\nG12.1 M8\nG1 G41 X40 F200\nC-10.\nG40 X60.\nG0 Z50.\nM30\n"
+    options = "--fix", "--unsafe-fixes", "--tool", "1:radius=4"
+    make(a__nc=program)
+    found = msgspec.json.decode(check("a.nc", *options, "--format", "json").stdout)
+    assert [(one["line"], one["block"], one["rule"]) for one in found["assumed"]] == [
+        (6, "G1 G41 X40. F200", "number-without-point"),
+        (9, "G13.1", "polar-never-left"),
+    ]
+    make(a__nc=program)
+    text = check("a.nc", *options).stdout
+    assert "assumed by --unsafe-fixes:" in text
+    assert "a.nc:9: G13.1 (polar-never-left: " in text
+    again = msgspec.json.decode(check("a.nc", *options, "--format", "json").stdout)
+    assert "assumed" not in again

@@ -78,6 +78,13 @@ def _encoded(text: str, encoding: str) -> bytes:
     return text.encode(encoding)[len("".encode(encoding)) :]
 
 
+def line_written(after: Source, spans: Iterable[Replace], span: Replace) -> int:
+    """Return the line (from 1) in which the text of one of the edits stands after all of them."""
+    grown = sum(len(text) - (end - start) for start, end, text in set(spans) if (start, end, text) < span)
+    text = span[2]
+    return after.line_of(span[0] + grown + len(text) - len(text.lstrip()))
+
+
 def origins(before: Source, after: Source, spans: Iterable[Replace]) -> Rows:
     """Return for each line after the edits the line before the edits (from 1) that it comes from."""
     edits = sorted(set(spans))

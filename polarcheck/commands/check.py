@@ -268,6 +268,7 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
         interrupted=batch.interrupted(reason, checked.files, tasks) if reason else None,
         skipped=skipped,
         called_files=checked.called_files,
+        assumed=fixed.assumed,
     )
     for excess in _excesses(report, tasks):
         say(excess)

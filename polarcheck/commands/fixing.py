@@ -19,7 +19,7 @@ from polarcheck.foundation.errors import OutputError, PolarcheckError, SourceErr
 
 if TYPE_CHECKING:
     from polarcheck.files.batch.tasks import Task
-    from polarcheck.foundation.finding import FileReport
+    from polarcheck.foundation.finding import Assumed, FileReport
     from polarcheck.rewrite.fixes.fix_rounds import Outcome
 
 #: The most fixes of a file that are listed.
@@ -66,6 +66,7 @@ class Result(NamedTuple):
 
     status: the exit code so far.
     fixed: the number of fixes that were written.
+    assumed: the unsafe ones.
     ends: the command ends without a report.
     has_output: standard output holds a program, so that the report goes to standard error.
     """
@@ -74,6 +75,7 @@ class Result(NamedTuple):
     fixed: int = 0
     ends: bool = False
     has_output: bool = False
+    assumed: Sequence[Assumed] = ()
 
 
 def wanted(function: Any) -> Any:
@@ -130,7 +132,7 @@ def run(
     if not shown.quiet:
         work.summarize()
     findings = FINDINGS if wanted.diff and work.count else CLEAN
-    return Result(max(work.status, findings), work.count, wanted.diff, work.has_output)
+    return Result(max(work.status, findings), work.count, wanted.diff, work.has_output, work.assumed)
 
 
 def _other(wanted: Wanted) -> str:
@@ -146,6 +148,7 @@ class _Work:
     files: the number of files with fixes.
     left: the number of fixes that only --unsafe-fixes would apply.
     has_output: standard output holds a program.
+    assumed: the unsafe fixes that were written.
     """
 
     def __init__(
@@ -160,6 +163,7 @@ class _Work:
         self.status = CLEAN
         self.count = self.files = self.left = 0
         self.has_output = False
+        self.assumed: list[Assumed] = []
 
     def do(self, task: Task) -> None:
         """Fix one program; an error concerns this program only, and the report that follows says more."""
@@ -235,7 +239,13 @@ class _Work:
 
     def _count(self, outcome: Outcome, path: str) -> None:
         """List the applied and the refused fixes, with lines of the original file."""
+        from polarcheck.foundation.finding import Assumed
+
         self.count += len(outcome.fixed)
+        self.assumed += [
+            Assumed(path=path, line=written.new_line, block=written.block, rule=written.rule, title=written.title)
+            for written in outcome.assumed
+        ]
         self.files += bool(outcome.fixed)
         self.left += outcome.left
         if not outcome.is_whole:

@@ -523,6 +523,23 @@ class Summary(msgspec.Struct, frozen=True, kw_only=True):
     excluded: int = 0
 
 
+class Assumed(msgspec.Struct, frozen=True, kw_only=True):
+    """
+    What --unsafe-fixes has written into a file before its check, and the program does not say: the result rests on it.
+
+    path, line: of the file as it is checked; the line counts from 1.
+    block: the block there, as it is written now.
+    rule: the rule whose finding was fixed.
+    title: the fix in a few words.
+    """
+
+    path: str
+    line: int
+    block: str
+    rule: str
+    title: str
+
+
 class Report(msgspec.Struct, frozen=True, kw_only=True):
     """
     The report over all files.
@@ -532,6 +549,7 @@ class Report(msgspec.Struct, frozen=True, kw_only=True):
     machine: of all files; null if they differ.
     settings: what decided the verdicts and the exit code.
     interrupted: why the run ended before its last file; absent where it did not.
+    assumed: what --unsafe-fixes has written into the files before; absent where it has written nothing.
     files: the files, in the order in which they were named.
     summary: counts over all files.
     """
@@ -541,6 +559,7 @@ class Report(msgspec.Struct, frozen=True, kw_only=True):
     machine: str | None
     settings: RunSettings = RunSettings()
     interrupted: Interrupted | UnsetType = UNSET
+    assumed: list[Assumed] | UnsetType = UNSET
     files: Sequence[FileReport]
     summary: Summary
 

@@ -41,6 +41,8 @@ def jsonl_parts(background: Background) -> Parts:
         about = {"schema": report.schema, "tool": report.tool, "machine": report.machine, "settings": report.settings}
         if report.interrupted is not msgspec.UNSET:
             about["interrupted"] = report.interrupted
+        if report.assumed is not msgspec.UNSET:
+            about["assumed"] = report.assumed
         return encoded({"type": "summary", **about, **msgspec.to_builtins(report.summary)}) + "\n"
 
     return Parts(of_file, end)

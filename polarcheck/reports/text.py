@@ -26,6 +26,8 @@ _NARROWEST = 60
 _LISTED = 10
 #: With more files than this, the report does not say what the verdicts rest on.
 _RESTING = 3
+#: The most unsafe fixes that are listed.
+_ASSUMED = 20
 #: How many places are listed for each reason for "not evaluated".
 _PLACES = 3
 _SENTENCE_END = re.compile(r"(?<!\be\.g\.)(?<!\bi\.e\.)(?<!\bp\.)(?<=[.?!])\s+(?=[A-Z0-9(])")
@@ -106,6 +108,7 @@ def _parts(background: Background, are_listed: bool) -> Parts:
         output = list[str]()
         if not background.quiet and report.files:
             output += [] if are_listed else _not_evaluated(report.files, page)
+            output += _assumed(report, page)
             output += [*_verdicts(report, page), "", *settings_lines(report), summary(report, background.fixed)]
             explained_rule = next((rule for rule in explained if rule in background.rules), None)
             output += (
@@ -265,6 +268,18 @@ def _is_listed(file: FileReport, report: Report) -> bool:
     return file.verdict != PASS or len(report.files) <= _LISTED
 
 
+def _assumed(report: Report, page: _Page) -> Iterator[str]:
+    """Yield a paragraph on what unsafe fixes have written, so that nobody takes it for what the program says."""
+    if report.assumed is UNSET:
+        return
+    yield "assumed by --unsafe-fixes:"
+    for one in report.assumed[:_ASSUMED]:
+        yield from page.indented(f"{one.path}:{one.line}: {one.block} ({one.rule}: {one.title})")
+    if len(report.assumed) > _ASSUMED:
+        yield from page.indented(f"{len(report.assumed) - _ASSUMED} more")
+    yield ""
+
+
 def _verdicts(report: Report, page: _Page) -> Iterator[str]:
     # Iterates over the files twice, so that not all reports are in memory at once.
     widths = [len(verdict(file)) for file in report.files if _is_listed(file, report)]
@@ -317,7 +332,8 @@ def summary(report: Report, fixed: int = 0) -> str:
     machine = f"{machines} machines" if report.machine is None else visible(report.machine)
     facts = [severities({"error": total.errors, "warning": total.warnings, "note": total.notes})]
     facts += [f"{total.silenced} silenced"] if total.silenced else []
-    facts += [f"{fixed} fixed"] if fixed else []
+    unsafe = "" if report.assumed is UNSET else f", {len(report.assumed)} by --unsafe-fixes"
+    facts += [f"{fixed} fixed{unsafe}"] if fixed else []
     planned = len(report.files) if report.interrupted is UNSET else report.interrupted.planned
     checked = len(report.files) - total.unreadable
     files = f"{checked} of {planned} files" if checked < planned else counted(planned, "file")

@@ -21,6 +21,7 @@ from polarcheck.foundation.finding import (
     SCHEMA,
     SEVERITIES,
     UNREADABLE,
+    Assumed,
     FileReport,
     Interrupted,
     Producer,
@@ -408,12 +409,14 @@ def report(
     interrupted: Interrupted | None = None,
     skipped: Sequence[Skipped] = (),
     called_files: Collection[str] = (),
+    assumed: Sequence[Assumed] = (),
 ) -> Report:
     """
     Return the report over all files.
 
     machine: what a report without files is for. settings: what decided. interrupted: why files are missing.
     skipped: what the walks did not read. called_files: subprograms that were executed where programs call them.
+    assumed: what unsafe fixes have written before.
     """
     severities, verdicts, machines, silenced = Counter[str](), Counter[str](), set[tuple[str, str]](), 0
     for file in reports:  # once: it may not lie in memory
@@ -446,6 +449,7 @@ def report(
         machine=machines.pop()[0] if len(machines) == 1 else None,
         settings=settings or RunSettings(version=__version__),
         interrupted=interrupted or msgspec.UNSET,
+        assumed=[*assumed] or msgspec.UNSET,
         files=reports,
         summary=summary,
     )

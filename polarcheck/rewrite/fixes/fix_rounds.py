@@ -7,12 +7,13 @@ from collections.abc import Callable, Sequence
 import msgspec
 import numpy as np
 
-from polarcheck.checking.edits import applied, origins, overlap, spans
+from polarcheck.checking.edits import applied, line_written, origins, overlap, spans
 from polarcheck.checking.settings import Settings
 from polarcheck.foundation.arrays import Rows
 from polarcheck.foundation.errors import SourceError, TooHardError
 from polarcheck.foundation.finding import FileReport, Finding, Fix
 from polarcheck.foundation.time_limit import current_limit, seconds_for, time_limit
+from polarcheck.program.reading.source import Source
 from polarcheck.rewrite.fixes.fix_comparison import State, objection, state_of
 from polarcheck.rules.editing import Replace
 from polarcheck.rules.repair import WAY, repair_of
@@ -40,6 +41,18 @@ class Fixed(msgspec.Struct, frozen=True):
     title: str
 
 
+class Written(Fixed, frozen=True):
+    """
+    An unsafe fix that was applied.
+
+    new_line: the line in the result (from 1).
+    block: what stands there.
+    """
+
+    new_line: int
+    block: str
+
+
 class Refused(Fixed, frozen=True):
     """A fix that was not applied, and the reason."""
 
@@ -52,6 +65,7 @@ class Outcome(msgspec.Struct, frozen=True):
 
     data: the program, as bytes.
     fixed, refused: the fixes that were applied, and those that were not.
+    assumed: the unsafe fixes that were applied, once for each block that they write.
     left: the number of unsafe fixes that remain, since they were not requested.
     origin: for each line of the result its line in the original file (from 1).
     is_whole: there was time for all fixes.
@@ -59,6 +73,7 @@ class Outcome(msgspec.Struct, frozen=True):
 
     data: bytes
     fixed: list[Fixed]
+    assumed: list[Written]
     refused: list[Refused]
     left: int = 0
     origin: list[int] = []
@@ -119,7 +134,13 @@ def _fixed(
         finding.fix is not None and not finding.fix.safe and not unsafe for finding in suppress(state.selected).findings
     )
     return Outcome(
-        state.source.data, work.fixed, list(work.refused.values()), remaining, work.origin.tolist(), not work.is_over
+        state.source.data,
+        work.fixed,
+        sorted(work.assumed, key=lambda written: written.new_line),
+        list(work.refused.values()),
+        remaining,
+        work.origin.tolist(),
+        not work.is_over,
     )
 
 
@@ -128,6 +149,7 @@ class _Work:
     The state of the rounds.
 
     fixed: the fixes applied so far.
+    assumed: the unsafe ones, with their lines in the present program.
     refused: the fixes refused since the last one that was applied.
     last: the program with the fixes accepted in this round; None before the first.
     checks: the number of checks so far.
@@ -146,6 +168,7 @@ class _Work:
         self.settings, self.path, self.encoding = settings, path, encoding
         self.unsafe, self.suppress = unsafe, suppress
         self.fixed: list[Fixed] = []
+        self.assumed: list[Written] = []
         self.refused: dict[_Key, Refused] = {}
         self.last: State | None = None
         self.checks = 0
@@ -187,7 +210,14 @@ class _Work:
             Fixed(candidate.finding.rule, self._line(candidate), candidate.fix.title) for candidate in accepted
         ]
         edits = [span for candidate in accepted for span in candidate.spans]
-        self.origin = self.origin[origins(state.source, self.last.source, edits) - 1]
+        after, before = self.last.source, origins(state.source, self.last.source, edits)
+        self.assumed = [_moved(written, after, before) for written in self.assumed]
+        for candidate in accepted:
+            if not candidate.fix.safe:
+                fixed = candidate.finding.rule, self._line(candidate), candidate.fix.title
+                for line in dict.fromkeys(line_written(after, edits, span) for span in candidate.spans):
+                    self.assumed.append(Written(*fixed, line, after.line_text(line).strip()))
+        self.origin = self.origin[before - 1]
         return self.last
 
     def _accepted(self, state: State, accepted: list[_Candidate], candidates: Sequence[_Candidate]) -> list[_Candidate]:
@@ -228,6 +258,13 @@ class _Work:
         except (SourceError, TooHardError) as error:
             return None, f"the result could not be judged: {error}"
         return (None, reason) if reason else (after, "")
+
+
+def _moved(written: Written, after: Source, before: Rows) -> Written:
+    """Return a fix with its line and block after further edits; before: for each line now the line it comes from."""
+    lines = (np.flatnonzero(before == written.new_line) + 1).tolist()
+    line = next((line for line in lines if after.line_text(line).strip() == written.block), lines[0])
+    return msgspec.structs.replace(written, new_line=line, block=after.line_text(line).strip())
 
 
 def _parts(candidates: Sequence[_Candidate]) -> list[list[_Candidate]]:
