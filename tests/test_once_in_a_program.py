@@ -68,8 +68,105 @@ def test_a_cutter_too_large_for_ramps_and_an_arc_is_one_finding() -> None:
             ": G3 of line 13 is still in force, write G1",
         ),
         (("G12.1/", ""), "polar-never-entered", "write G12.1 before line 7, G1 X56. F1000"),
+        (("G12.1/", "G40/M8/"), "polar-never-entered", "write G12.1 before line 9, G1 X56. F1000"),
+        (
+            ("G12.1/G1 X56. F1000/Z-4. F200/G42 X36. C0 F150", "G0 Z-4./G42/G1 X36. C0 F150"),
+            "polar-never-entered",
+            "write G12.1 before line 8, G42",
+        ),
+        (
+            ("G12.1/G1 X56. F1000/Z-4. F200/G42 X36. C0", "G1 Z-4. F200/G42 G0 X40./G1 X36. C0"),
+            "polar-never-entered",
+            "write G12.1 before line 7, G1 Z-4. F200",
+        ),
     ],
 )
 def test_what_is_to_be_written_and_where(change: tuple[str, str], rule: str, said: str) -> None:
     report = report_of(hexagon(change), "fanuc-30i", CUTTER)
     assert any(said in finding.message for finding in report.findings if finding.rule == rule), report.findings
+
+
+@looped(
+    ("changes", "rule", "line"),
+    [
+        ([("G40 X56./Z2. F1000/G13.1", "G13.1/G40 X56./Z2. F1000")], "polar-switched-in-offset-mode", 18),
+        ([("G1 X56. F1000/Z-4. F200", "G1 Z-4. F200/X-56. F1000")], "uncompensated-cut-into-part", 9),
+        ([("G1 X56. F1000/Z-4. F200", "G1 Z-4. F200/X-40. C5. F1000")], "uncompensated-cut-into-part", 9),
+        ([("G1 X56. F1000", "G1 X-40. C5. F1000")], "c-feed-above-limit", 8),
+        ([("G1 X56. F1000", "G1 X-56. F1000")], "path-through-center", 8),
+        ([("G40 X56.", "G40 X-56. C1.")], "start-up-sweeps-contour", 18),
+    ],
+)
+def test_a_lead_through_the_part_and_g13_1_before_g40_are_one_finding(
+    changes: list[tuple[str, str]], rule: str, line: int
+) -> None:
+    report = report_of(hexagon(*changes), "fanuc-30i", CUTTER, changes={"limits": {"c_feed": 3600}})
+    found = [finding for finding in report.findings if finding.severity != "note"]
+    assert [(finding.rule, finding.line) for finding in found] == [(rule, line)]
+
+
+def test_a_high_f_before_a_ramp_through_a_corner_is_another_mistake() -> None:
+    """A lead that is only too fast for its F does not explain a ramp that comes from the wrong side."""
+    fast = ("G1 X56. F1000", "G1 X40. C-20. F9000/X56. C20. F1000")
+    report = report_of(hexagon(fast), "fanuc-30i", CUTTER, changes={"limits": {"c_feed": 3600}})
+    assert [finding.rule for finding in report.findings] == ["c-feed-above-limit"]
+    swept = ("G42 X36. C0 F150", "G42 X36. C10.392 F150/C0")
+    both = report_of(hexagon(fast, swept), "fanuc-30i", CUTTER, changes={"limits": {"c_feed": 3600}})
+    assert "c-feed-above-limit" in {finding.rule for finding in both.findings}
+    assert len(both.findings) > 1
+
+
+def test_a_missing_block_of_g40_behind_an_arc_is_one_finding() -> None:
+    program = hexagon(("X36. C-10.392/C0/G40 X56./Z2.", "X36. C-10.392/G3 X33. C0 R20./Z2."))
+    report = report_of(program, "fanuc-30i", CUTTER)
+    rules = {finding.rule for finding in report.findings}
+    assert "polar-switched-in-offset-mode" in rules
+    assert "arc-off-polar-plane" not in rules
+
+
+def test_g13_1_in_offset_mode_in_each_section_is_one_finding() -> None:
+    section = _SECTION.replace("G40 X56.", "X56.")
+    report = report_of((_HEAD + section * 3 + _END).replace("/", "\n") + "\n", "fanuc-30i", CUTTER)
+    (found,) = (finding for finding in report.findings if finding.rule == "polar-switched-in-offset-mode")
+    assert "; likewise in lines 35 and 50" in found.message, found.message
+
+
+def test_without_g12_1_the_section_before_is_no_place_for_it() -> None:
+    program = HEX.replace(
+        "G13.1/G0 X100. Z50.",
+        "G13.1/G1 X60. C0/X56./Z-4./G42 X36. F150 C0/C10.392/X0 C20.785/G40 X56./Z2./G13.1/G0 X100. Z50.",
+    )
+    report = report_of(program.replace("/", "\n"), "fanuc-30i", CUTTER)
+    (found,) = (finding for finding in report.findings if finding.rule == "polar-never-entered")
+    assert found.message.endswith("write G12.1 before line 21, G1 X60. C0")
+
+
+#: A hexagon in increments and one in positions, on a control with G90 and G91.
+_STEPS = "G91 C10.392/X-36. C10.392/X-36. C-10.392/C-20.784/X36. C-10.392/X36. C10.392/C10.392/"
+_POSITIONS = HEX[HEX.index("C10.392") : HEX.index("G40 X56.")]
+
+
+@looped(
+    ("path", "says"),
+    [
+        (_STEPS + "G40 X56./Z-8. F200/G42 X36. F150/" + _POSITIONS, "; G91 of line 11 is still in force: write G90"),
+        (_STEPS + "G90 G40 X56./Z-8. F200/G42 X36. F150/" + _POSITIONS, ""),
+    ],
+)
+def test_a_forgotten_g90(path: str, says: str) -> None:
+    program = HEX.replace("G21 G98 G40", "G90 G21 G94 G40").replace(_POSITIONS, path)
+    changes = {"control": {"g_code_system": "B"}}
+    report = report_of(program.replace("/", "\n"), "fanuc-30i", CUTTER, changes=changes)
+    assert bool(report.findings) == bool(says)
+    assert any(says in finding.message for finding in report.findings) or not says
+
+
+def test_a_missing_line_behind_an_arc_is_written_with_its_code() -> None:
+    program = (
+        "O1/G21 G98 G40/T0101/G97 S3000 M13/G28 H0/G0 X80. Z2. C0/G12.1/G1 X70. F1000/Z-4. F200/G42 X36. F150/C14./"
+        "G3 X28. C18. R4./G3 X-36. C14. R4./G1 C-14./G3 X-28. C-18. R4./G1 X28./G3 X36. C-14. R4./G1 C0/G40 X70./"
+        "Z2. F1000/G13.1/G0 X100. Z50./M5/M30"
+    )
+    report = report_of(program.replace("/", "\n"), "fanuc-30i", CUTTER)
+    messages = [one.message for finding in report.findings for one in (finding, *finding.follows)]
+    assert any("with G1 X-28. C18. in a block before it" in message for message in messages), messages

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from polarcheck.columns.filling import fill_down, happened
+from polarcheck.columns.filling import before, fill_down, happened
 from polarcheck.columns.path.tool_center import ToolCenter
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Columns, Floats, Mask, cached_property, repeated
@@ -71,6 +71,17 @@ class Feeds(Columns, frozen=True):
         np.fmin.at(least, trace.mode.section[of_contour], nearest[of_contour])
         least[-1] = np.nan
         return np.asarray(~of_contour & (nearest < _STRAYS * least[trace.mode.section]))
+
+    @property
+    def is_only_fast(self) -> Mask:
+        """Moves that turn C too fast for their F, and stray nowhere."""
+        return np.asarray(self.tool_center.exceeds_c_feed_limit & ~self.strays_to_center)
+
+    def before_on_plane(self, rows: Mask) -> Mask:
+        """Rows above which the last move on the plane in their section is one of these rows."""
+        trace = self.trace
+        last = fill_down(rows & trace.axes.moves_plane, trace.axes.moves_plane | trace.mode.enters, False)
+        return before(last, trace.mode.enters | trace.blocks.starts, False)
 
     @cached_property
     def mode_is_unknown(self) -> Mask:

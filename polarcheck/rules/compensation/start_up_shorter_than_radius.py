@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     gouges=True,
     at=("compensation_left", "compensation_right"),
     doubts=(("metal", "loop"),),
-    follows={"loop": ("inside-arc-smaller-than-radius",)},
+    follows={"loop": ("inside-arc-smaller-than-radius",), "X before": ("uncompensated-cut-into-part",)},
     is_symptom=True,
 )
 def start_up_shorter_than_radius(path: ProgrammedPath, compensation: CutterCompensation, ramps: Ramps) -> Hits:

@@ -7,12 +7,13 @@ from polarcheck.rules.rule import ERROR, Hits, rule
 if TYPE_CHECKING:
     from polarcheck.columns.contour.overcuts import Overcuts
     from polarcheck.columns.contour.slots import Slots
+    from polarcheck.columns.feed.programmed_feeds import Feeds
     from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     ERROR,
-    "the ramp goes {depth:length} deep into {swept}{ramp_at_rest}",
+    "the ramp goes {depth:length} deep into {swept}{ramp_at_rest}{increments}",
     values=("depth", "radius", "plane_x", "plane_c", "other_line"),
     worse=("depth",),
     gouges=True,
@@ -21,11 +22,12 @@ if TYPE_CHECKING:
     doubts=(("metal", "X before"),),
     follows={
         "block": ("path-through-center",),
+        "X before": ("uncompensated-cut-into-part", "path-through-center", "c-feed-above-limit"),
         "loop": ("overcut", "slot-narrower-than-cutter"),
     },
     is_symptom=True,
 )
-def start_up_sweeps_contour(slots: Slots) -> Hits:
+def start_up_sweeps_contour(slots: Slots, feeds: Feeds) -> Hits:
     """
     Start-up or offset cancel that cuts the contour.
 
@@ -58,11 +60,14 @@ def start_up_sweeps_contour(slots: Slots) -> Hits:
         G40 C-50.
         G13.1
     """
-    return Hits(slots.ramp_depth > 0, values={"depth": slots.ramp_depth}, worst=slots.ramp_depth)
+    sweeps = slots.ramp_depth > 0
+    # A high F says nothing of the end of its move, nor does the ramp with which the last pass of a loop has ended.
+    by_approach = ~feeds.before_on_plane(sweeps | feeds.is_only_fast)
+    return Hits(sweeps, values={"depth": slots.ramp_depth}, follows={"X before": by_approach}, worst=slots.ramp_depth)
 
 
 def details(hit: Hit, overcuts: Overcuts, slots: Slots) -> Details:
-    from polarcheck.rules.wording.ramps import ramp_at_rest
+    from polarcheck.rules.wording.ramps import increments_in_force, ramp_at_rest
 
     own = overcuts.sweep_depth[hit.row] >= slots.sweep_depth[hit.row]
     into, place = (overcuts if own else slots).sweeps.deepest(hit.row)
@@ -72,4 +77,5 @@ def details(hit: Hit, overcuts: Overcuts, slots: Slots) -> Details:
         "other_line": hit.line(into),
         "swept": f"the contour of line {hit.line(into)} at {hit.point(place)}",
         "ramp_at_rest": ramp_at_rest(hit),
+        "increments": increments_in_force(hit),
     }

@@ -131,8 +131,10 @@ def _from_point(hit: Hit) -> str:
 
 def _way_round(hit: Hit) -> str:
     """What to write where a move without compensation leads through the part."""
+    from polarcheck.rules.wording.ramps import increments_in_force
+
     blocks, machine, row = hit.trace.blocks, hit.trace.machine, hit.row
     if hit.trace.axes.motion[row] == Motion.RAPID and not blocks.listed("rapid")[row] and blocks.has("F")[row]:
         rapid, line = machine.codes("rapid")[0], machine.codes("line")[0]
         return f"{rapid} is still in force: write {line} here, or retract Z first"
-    return "retract Z above the part first, or go round it"
+    return f"retract Z above the part first, or go round it{increments_in_force(hit)}"

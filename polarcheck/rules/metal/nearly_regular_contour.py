@@ -2,6 +2,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from polarcheck.foundation.states import Motion
 from polarcheck.rules.rule import WARNING, Hits, rule
 
 if TYPE_CHECKING:
@@ -112,10 +113,22 @@ def details(hit: Hit, regularity: Regularity) -> Details:
 
     correction = regularity.explained.get(hit.row) or regularity.corrections[hit.row]
     word = executed_word(hit.trace.run, correction.word) if correction.word >= 0 else ""
+    text = _with_code(hit, correction.text) if "a block is missing" in correction.why else correction.text
     return {
         "word": word,
-        "word_needed": correction.text,
+        "word_needed": text,
         "misfit": f"{word or 'this block'} does not fit the rest of the contour, {correction.why}",
-        "remedy": correction.remedy,
+        "remedy": correction.remedy.replace(correction.text, text),
         "as_meant": correction.becomes,
     }
+
+
+def _with_code(hit: Hit, text: str) -> str:
+    """The words of a missing line with the code of a line, where that of an arc is in force before it."""
+    from polarcheck.rules.wording.written import move_code
+
+    motion, arcs = hit.trace.axes.motion, (Motion.CW, Motion.CCW)
+    codes = [move_code(hit.trace.machine, key) for key in ("arc_clockwise", "arc_counterclockwise")]
+    if not hit.row or motion[hit.row - 1] not in arcs or text.partition(" ")[0] in codes:
+        return text
+    return f"{move_code(hit.trace.machine, 'line')} {text}"

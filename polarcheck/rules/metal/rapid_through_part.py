@@ -19,7 +19,11 @@ if TYPE_CHECKING:
     subject="size",
     follows={
         "block": ("uncompensated-cut-into-part", "rapid-plunge-into-stock"),
-        "tool call": ("start-up-shorter-than-radius", "cancel-shorter-than-radius"),
+        "tool call": (
+            "start-up-shorter-than-radius",
+            "cancel-shorter-than-radius",
+            "polar-switched-in-offset-mode",
+        ),
     },
     is_symptom=True,
 )

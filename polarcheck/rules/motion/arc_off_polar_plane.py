@@ -3,11 +3,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from polarcheck.rules.causes import NO_SUCH_ARC
-from polarcheck.rules.rule import ERROR, rule
+from polarcheck.rules.rule import ERROR, Hits, rule
 
 if TYPE_CHECKING:
     from polarcheck.columns.path.arcs import Arcs
-    from polarcheck.foundation.arrays import Mask
+    from polarcheck.columns.path.compensation import CutterCompensation
     from polarcheck.rules.hit import Details, Hit
 
 
@@ -17,9 +17,12 @@ if TYPE_CHECKING:
     at=("arc_clockwise", "arc_counterclockwise", "Z", "W"),
     subject="",
     doubts=NO_SUCH_ARC,
-    follows={"arc before": ("arc-without-center",)},
+    follows={
+        "arc before": ("arc-without-center",),
+        "section": ("polar-switched-in-offset-mode", "side-repeated-in-offset-mode"),
+    },
 )
-def arc_off_polar_plane(arcs: Arcs) -> Mask:
+def arc_off_polar_plane(arcs: Arcs, compensation: CutterCompensation) -> Hits:
     """
     Arc along Z in the polar mode.
 
@@ -68,7 +71,8 @@ def arc_off_polar_plane(arcs: Arcs) -> Mask:
         G13.1
     """
     # Compares nothing: whether an arc of the plane fits is a formula, on which helical-arc-in-polar hangs as well.
-    return arcs.is_off_plane
+    # In offset mode the block that leads away with G1 and G40 is missing before it.
+    return Hits(arcs.is_off_plane, follows={"section": compensation.compensates})
 
 
 def details(hit: Hit) -> Details:

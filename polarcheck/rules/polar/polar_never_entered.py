@@ -20,18 +20,18 @@ if TYPE_CHECKING:
     "write {switch_on} {place}",
     values=("code", "other_line"),
     at=("off",),
-    follows={"program": ("polar-switch-unknown",)},
+    follows={"block": ("polar-switched-in-offset-mode",), "program": ("polar-switch-unknown",)},
 )
 def polar_never_entered(axes: PlaneAxes, procedure: Procedure, switch_slips: SwitchSlips) -> Hits:
     """
     G13.1 after a contour that no G12.1 began.
 
     Cutter compensation and moves of C at feed belong into the polar mode. Without its G12.1 the control takes C as an
-    angle, and compensates in another plane or stops: the shape is not cut. Write G12.1 before G41 or G42. Without them
-    an arc of C tells the same, and so do moves of X and C at feed that lead right up to the G13.1, or to a retract
-    before it where a block moves both, unless C would lie far outside X as a length, as in a groove round the diameter,
-    or Z moves with C, as in a helix. A G13.1 for safety, at the head of a program or of a tool, ends nothing and is
-    right.
+    angle, and compensates in another plane or stops: the shape is not cut. Write G12.1 behind the positioning, before
+    G41 or G42. Without them an arc of C tells the same, and so do moves of X and C at feed that lead right up to the
+    G13.1, or to a retract before it where a block moves both, unless C would lie far outside X as a length, as in a
+    groove round the diameter, or Z moves with C, as in a helix. A G13.1 for safety, at the head of a program or of a
+    tool, ends nothing and is right.
 
     Source: FANUC B-62764EN/01, p. 50; builder's guide to G12.1, cutter compensation in the mode.
 
@@ -160,16 +160,21 @@ def details(
 
 
 def _place(hit: Hit, first: int) -> str:
-    """Before which block the mode begins: the first move behind the rapid traverse that leads to the contour."""
+    """
+    Before which block the mode begins: the first one that moves or writes G41 or G42, behind the last rapid traverse
+    without compensation that leads to the contour, and behind the section before.
+    """
     import numpy as np
 
     from polarcheck.rules.wording.written import block_in_short
 
     trace = hit.trace
-    moves = trace.axes.moves & (trace.blocks.program == trace.blocks.program[first])
-    rapid = np.flatnonzero(moves & (trace.axes.motion == Motion.RAPID))
-    rapid = rapid[rapid < first]
-    if not len(rapid):
-        return "before it"
-    row = int(rapid[-1]) + 1 + int(np.argmax(moves[rapid[-1] + 1 :]))
+    same = trace.blocks.program == trace.blocks.program[first]
+    moves = trace.axes.moves & same
+    outside = (moves & (trace.axes.motion == Motion.RAPID) & (trace.compensation.side == Side.OFF)) | (
+        trace.axes.switches_off & same
+    )
+    begins = np.flatnonzero(outside[:first])
+    after = int(begins[-1]) + 1 if len(begins) else int(np.argmax(same))
+    row = after + int(np.argmax((moves | (trace.compensation.writes_side & same))[after:]))
     return f"before line {hit.line(row)}, {block_in_short(trace.run, row)}"

@@ -14,13 +14,13 @@ if TYPE_CHECKING:
 
 @rule(
     ERROR,
-    "{switch} while {code} is in force; G40 must be in force here",
+    "{switch} while {code} is in force; G40 must be in force here{likewise}",
     values=("code",),
     at=("on", "off"),
-    once="section",
+    once="program",
     doubts=(("compensation", "section"),),
     follows={
-        "section": ("side-repeated-in-offset-mode", "side-changed-in-offset-mode", "arc-off-polar-plane"),
+        "section": ("side-repeated-in-offset-mode", "side-changed-in-offset-mode"),
     },
 )
 def polar_switched_in_offset_mode(mode: PolarMode, compensation: CutterCompensation) -> Mask:
@@ -82,11 +82,18 @@ def polar_switched_in_offset_mode(mode: PolarMode, compensation: CutterCompensat
         G40 X60.
         G13.1
     """
+    # Compares nothing: the comparison is that of the blocks that the message names, too.
+    return _in_offset_mode(mode, compensation)
+
+
+def details(hit: Hit, mode: PolarMode, compensation: CutterCompensation) -> Details:
+    switches_on = mode.enters[hit.row]
+    alike = _in_offset_mode(mode, compensation) & (mode.enters == switches_on)
+    return {"code": f"G{compensation.side_before[hit.row]}", "likewise": hit.likewise(alike)}
+
+
+def _in_offset_mode(mode: PolarMode, compensation: CutterCompensation) -> Mask:
     # A G41 after which nothing has moved is no offset mode yet; that is start-up-shorter-than-radius.
     in_offset_mode = (mode.leaves | mode.enters_again) & (compensation.side_of_move_before != Side.OFF)
     side_in_force = (compensation.side_before != Side.OFF) & ~compensation.writes_cancel
     return (mode.enters | in_offset_mode) & side_in_force
-
-
-def details(hit: Hit, compensation: CutterCompensation) -> Details:
-    return {"code": f"G{compensation.side_before[hit.row]}"}

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     worse=("x:x_needed",),
     at=("on",),
     subject="size",
-    doubts=(("compensation", "first start-up"),),
+    doubts=(("compensation", "first start-up"), ("move", "X before")),
     follows={
         "section": (
             "degrees-in-polar",

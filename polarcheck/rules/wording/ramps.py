@@ -43,7 +43,8 @@ def short_ramp(hit: Hit) -> str:
     of_program = f", set by {block_and_line(trace, setter)}," if setter >= 0 else _of_offset(trace, row)
     given = hit.quantity(radius).beside(hit.quantity(length), "length")
     moves, needs = _along(hit, length, radius), _along(hit, radius, length)
-    return f"moves {moves}; with R {given}{of_program} it needs {needs}{_in_inch(trace, row, radius)}"
+    others = _in_inch(trace, row, radius) + increments_in_force(hit)
+    return f"moves {moves}; with R {given}{of_program} it needs {needs}{others}"
 
 
 def _along(hit: Hit, length: float, other: float) -> str:
@@ -88,6 +89,23 @@ def ramp_at_rest(hit: Hit) -> str:
     if at == row or not is_idle or not trace.compensation.starts_up[row]:
         return ""
     return f"; {hit.side} of line {hit.line(at)} moves nowhere, so that this block is the ramp"
+
+
+def increments_in_force(hit: Hit) -> str:
+    """
+    `; G91 of line 11 is still in force: write G90 if X36. is a position`, where a block above wrote the code and the
+    program writes G90, too; else nothing.
+    """
+    trace, row = hit.trace, hit.row
+    blocks, modal = trace.blocks, trace.modal
+    address = next((name for name in (hit.linear, hit.virtual) if blocks.has(name)[row]), "")
+    if not address or not modal.incremental[row] or modal.sets("distance")[row]:
+        return ""
+    code, needed = code_of(trace.machine, "incremental"), code_of(trace.machine, "absolute")
+    if not np.any(blocks.anywhere_in_program(blocks.listed("absolute"))[row]):
+        return ""
+    line = hit.line(int(np.flatnonzero(modal.sets("distance")[:row])[-1]))
+    return f"; {code} of line {line} is still in force: write {needed} if {hit.written(address)} is a position"
 
 
 def wrong_by(hit: Hit) -> str:
