@@ -126,6 +126,8 @@ class Workpiece(Columns, frozen=True):
         # Controls show the angle of C from 0 to 360 deg, however far a section has turned it.
         c_from = np.where((c_from < 0) | (c_from > 360), np.mod(c_from, 360), c_from)
         c_to = c_from + np.where(returns | ~path.moves_c[row], 0.0, path.c_turn_from(c_from, row))
+        # The way of the first C word is not known, its end is.
+        c_to = np.where(np.isnan(c_to), path.c_angle[row], c_to)
         c_from, c_to = (path.c_axis.sense * c for c in (c_from, c_to))
         with np.errstate(invalid="ignore"):
             begin, end = (x * np.exp(1j * np.radians(c)) for x, c in ((x_from, c_from), (x_to, c_to)))
@@ -356,7 +358,7 @@ class Workpiece(Columns, frozen=True):
         """The highest Z at which a contour is milled, or the face if it is known [mm]."""
         walls, _ = self.overcuts.walls
         highest = float(np.nanmax(np.append(self.trace.path.z[walls.row], -np.inf)))
-        if (self.trace.path.z[self.trace.mode.sections.enter] > 0).any():
+        if self._comes_from_above.any():
             highest = max(highest, 0.0)
         face = self.bar.known.face
         return highest if np.isnan(face) else max(face - 2 * _CLEARANCE, highest)
@@ -382,16 +384,41 @@ class Workpiece(Columns, frozen=True):
         from polarcheck.geometry.polygons.standing_metal import hits_on_part, lines_along, turned
 
         moves = self._inside
-        cleared = self._sweeps(moves[~moves.is_rapid])
+        moves = moves[~moves.is_rapid]
+        arrives, leads_in = self.arrives[rapids.row], self._leads_in[moves.row]
         hit, point = np.zeros(len(rapids), bool), np.full(len(rapids), np.nan + 0j)
-        sweeps = self._sweeps(rapids)
-        for level, top in self._levels:
-            angle = float(np.radians(self.trace.path.section_entry[level.section]))
-            part, walls = turned(level.polygon, angle), turned(lines_along(level.walls), angle)
-            more, where = hits_on_part(sweeps, part, walls, level.radius, top, level.z, cleared)
-            point[more & ~hit] = where[more & ~hit]
-            hit |= more
+        # What a section cuts on its way from where it arrives to its contour is part all the same.
+        for chosen, cleared in ((~arrives, moves), (arrives, moves[~leads_in])):
+            rows = np.flatnonzero(chosen)
+            if not len(rows):
+                continue
+            sweeps, taken = self._sweeps(rapids[rows]), self._sweeps(cleared)
+            for level, top in self._levels:
+                angle = float(np.radians(self.trace.path.section_entry[level.section]))
+                part, walls = turned(level.polygon, angle), turned(lines_along(level.walls), angle)
+                more, where = hits_on_part(sweeps, part, walls, level.radius, top, level.z, taken)
+                new = rows[more & ~hit[rows]]
+                point[new] = where[more & ~hit[rows]]
+                hit[new] = True
         return Hits(rapids.row[hit], point[hit], rapids.is_sure[hit])
+
+    @cached_property
+    def arrives(self) -> Mask:
+        """Rows of the last move before each section: where it ends the section begins."""
+        trace = self.trace
+        moving = np.append(-1, np.flatnonzero(trace.axes.moves & (trace.mode.section < 0)))
+        last = moving[np.searchsorted(moving, trace.mode.sections.enter) - 1]
+        return self._mask(last[last >= 0])
+
+    @cached_property
+    def _leads_in(self) -> Mask:
+        """Rows of each section before its first start-up, where it has one."""
+        trace = self.trace
+        return np.asarray(
+            trace.mode.in_polar
+            & ~trace.mode.given_in_section(trace.compensation.starts_up)
+            & trace.mode.anywhere_in_section(trace.compensation.starts_up)
+        )
 
     @property
     def _levels(self) -> list[tuple[Level, float]]:
@@ -407,9 +434,17 @@ class Workpiece(Columns, frozen=True):
             tops[level.section] = max(tops.get(level.section, -np.inf), level.z)
         if not np.isnan(face):
             return [(level, max(face - 2 * _CLEARANCE, level.z)) for level in levels]
-        # The tool comes from above Z0: there is the face, as is usual on lathes.
-        enters = self.trace.path.z[self.trace.mode.sections.enter]
-        return [(level, 0.0 if enters[level.section] > 0 > level.z else tops[level.section]) for level in levels]
+        above = self._comes_from_above
+        return [(level, 0.0 if above[level.section] and level.z < 0 else tops[level.section]) for level in levels]
+
+    @cached_property
+    def _comes_from_above(self) -> Mask:
+        """
+        Sections that the tool enters from above Z0, or leaves for a place above it: there is the face, as is usual on
+        lathes; bool[sections].
+        """
+        z, sections = self.trace.path.z, self.trace.mode.sections
+        return np.asarray((z[sections.enter] > 0) | (z[np.minimum(sections.last, len(z) - 1)] > 0))
 
     # ---- columns ----
 

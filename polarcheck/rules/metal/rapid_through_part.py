@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 @rule(
     ERROR,
-    "{block} takes the cutter, R {cutter}, {height} {through} the finished part; retract Z above the part first",
+    "{block} takes the cutter, R {cutter}, {height} {through} the finished part; {way_round}",
     values=("radius", "z"),
     worse=("-z",),
     gouges=True,
@@ -33,7 +33,8 @@ def rapid_through_part(workpiece: Workpiece) -> Hits:
 
     Behind a section, or on the way to it, the mill moves in rapid traverse with its tip below the top of a contour, and
     a part that the contour leaves standing is in its way: the retract is missing, and the next G0 or the index of C
-    tears the cutter through the part. No bar needs to be known for that: the metal beside a programmed wall, up to 2R
+    tears the cutter through the part. Or a section begins at depth, where the contour leaves metal: the approach is that
+    of another block. No bar needs to be known for that: the metal beside a programmed wall, up to 2R
     behind it, must stand whatever the bar is, unless the program mills it off as well. Only mills along Z are looked
     at, whose R is known. At feed it is a warning, since a slot may be milled by C alone.
 
@@ -51,6 +52,25 @@ def rapid_through_part(workpiece: Workpiece) -> Hits:
         G1 G40 X26.
         G13.1
         G0 C120.          (expect: rapid-through-part)
+
+    Bad, tool 1:radius=4:
+
+        T0101
+        G98 G0 X27.2 Z-4. C0    (expect: rapid-through-part)
+        G12.1
+        G1 X46.4 F250
+        Z-5.
+        G42 X27.
+        C7.794
+        X0 C15.588
+        X-27. C7.794
+        C-7.794
+        X0 C-15.588
+        X27. C-7.794
+        C0
+        G40 X46.4
+        Z2.
+        G13.1
 
     Bad, tool 1:radius=2.5:
 
@@ -92,4 +112,7 @@ def details(hit: Hit, workpiece: Workpiece) -> Details:
         "cutter": hit.length(workpiece.radius[hit.row]),
         "height": height(hit),
         "through": through(hit, workpiece),
+        "way_round": "arrive beside the part, or above it"
+        if workpiece.arrives[hit.row]
+        else "retract Z above the part first",
     }
