@@ -73,6 +73,7 @@ RULES: Final[Mapping[FaultKind, str]] = {
     "mixed-logic": "ambiguous-precedence",
     "sequence-number-twice": "duplicate-sequence-number",
     "never-run": "unreachable-block",
+    "loop-never-run": "unreachable-block",
 }
 
 #: The rule that reports a program that never ends, and one that was broken off at a bound.
@@ -134,6 +135,8 @@ _REASONS: Final[Mapping[FaultKind, str]] = {
         "(--max-statements)"
     ),
     "runs-too-long": "is still reached after {limit:g} seconds; the rest is not executed (--max-seconds)",
+    "never-run": "the block before it goes elsewhere, and no jump leads here",
+    "loop-never-run": "{expression} is false as {counter} begins with {start:g}{comparison}",
     "too-many-repeats": (
         "calls {repeats:.15g} times, more than the {limit} blocks that a check executes; it is run once here"
     ),
@@ -227,6 +230,7 @@ class Faults:
             "closing": closing,
             "times": f" in {len(blocks)} blocks" if len(blocks) > 1 else "",
             "others": self._others(values.get("program")),
+            "comparison": f"; with {values['instead']} the loop would run" if values.get("instead") else "",
             **values,
         }
 

@@ -13,6 +13,7 @@ from polarcheck.foundation.arrays import Rows
 from polarcheck.program.execution.called_programs import Shelf
 from polarcheck.program.execution.execute import execute
 from polarcheck.program.execution.expression import Fault
+from polarcheck.program.execution.idle_loops import idle_loop
 from polarcheck.program.execution.listing import Listing
 from polarcheck.program.execution.programs import Program, block_text
 from polarcheck.program.execution.run import Beside, FlowFault, Remark, Run
@@ -48,6 +49,7 @@ def add_static_faults(state: State) -> None:
             at_fault = listing.statement(structure.block)
             names = {"keyword": structure.keyword, "missing": structure.missing}
             state.add_fault(structure.kind, structure.block, at_fault, **names)
+        _idle_loops(state, program)
     if not state.remarks and not state.stopped:
         _never_run(state)
 
@@ -70,6 +72,29 @@ def _target_twice(state: State, program: Program, block: int, statement: Stateme
     count = len(state.listing.programs.targets(program).get(round(number), [])) if math.isfinite(number) else 0
     if count > 1:
         state.add_fault("sequence-number-twice", block, jump, number=round(number), count=count)
+
+
+def _idle_loops(state: State, program: Program) -> None:
+    """Report loops that move or set something, and never run by what the program itself writes."""
+    listing, visited = state.listing, state.visited
+    heads = {**listing.loops(program).end, **listing.structures(program.first).end}
+    statements = listing.macro_statements(program) if heads else []
+    for head, end in heads.items():
+        if not visited[head] or visited[head + 1 : end].any():
+            continue
+        loop = idle_loop(statements, head, end)
+        if loop is not None:
+            written = " ".join(block_text(listing.text, head)[loop.condition.start : loop.condition.end].split())
+            counter = block_text(listing.text, loop.block)[loop.target.start : loop.target.end]
+            state.add_fault(
+                "loop-never-run",
+                head,
+                loop.condition,
+                expression=written[:_SHOWN],
+                counter=counter,
+                start=loop.start,
+                instead=loop.instead,
+            )
 
 
 def _never_run(state: State) -> None:

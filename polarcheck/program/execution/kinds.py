@@ -65,7 +65,8 @@ FaultKind: TypeAlias = Literal[
     # ---- what is legal, and seldom meant ----
     "mixed-logic",  # no alarm: AND, OR, XOR beside + - * / without brackets
     "sequence-number-twice",  # no alarm: the control takes the next one
-    "never-run",  # no alarm: blocks that no run comes to
+    "never-run",  # no alarm, as the next one: blocks that no run comes to
+    "loop-never-run",
 ]
 
 #: All kinds of fault.

@@ -2,24 +2,27 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from polarcheck.rules.rule import NOTE, rule
+from polarcheck.rules.rule import NOTE, Hits, graded, rule
 
 if TYPE_CHECKING:
     from polarcheck.columns.words.macro_faults import Faults
-    from polarcheck.foundation.arrays import Mask
+    from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     NOTE,
-    "no run of the program comes to {text}: the block before it goes elsewhere, and no jump leads here",
+    "no run of the program comes to {unreached}: {reason}",
     over="faults",
 )
-def unreachable_block(faults: Faults) -> Mask:
+def unreachable_block(faults: Faults) -> Hits:
     """
     Blocks that no run of the program comes to.
 
     Behind a GOTO, M30 or M99 and without an N number that anything jumps to: left over, or a jump goes to the wrong
     place. Said once for each stretch of such blocks, and only where every condition of the program is known.
+
+    A loop that counts from a number of the program to a number of its condition and never runs is a warning: what it
+    cuts is missing. The comparison or a sign is wrong.
 
     Source: FANUC B-62754EN/01, chapter 16.
 
@@ -32,6 +35,16 @@ def unreachable_block(faults: Faults) -> Mask:
         N20 G0 X#1       (expect: vacant-variable)
         M30
 
+    Bad:
+
+        O0001
+        #1=1
+        WHILE[#1 GE 4]DO1    (expect: unreachable-block)
+        G0 X#1
+        #1=#1+1
+        END1
+        M30
+
     Good:
 
         O0001
@@ -41,4 +54,14 @@ def unreachable_block(faults: Faults) -> Mask:
         N20 G0 X70.
         M30
     """
-    return faults.rule == "unreachable-block"
+    unreached = faults.rule == "unreachable-block"
+    idle_loop = unreached & (faults.kind == "loop-never-run")
+    return graded(note=unreached, warning=idle_loop)
+
+
+def details(hit: Hit, faults: Faults) -> Details:
+    is_loop = faults.kind[hit.index] == "loop-never-run"
+    return {
+        "unreached": "the blocks of this loop" if is_loop else hit.text,
+        "reason": faults.reason(hit.index),
+    }

@@ -33,10 +33,10 @@ def rapid_through_part(workpiece: Workpiece) -> Hits:
 
     Behind a section, or on the way to it, the mill moves in rapid traverse with its tip below the top of a contour, and
     a part that the contour leaves standing is in its way: the retract is missing, and the next G0 or the index of C
-    tears the cutter through the part. Or a section begins at depth, where the contour leaves metal: the approach is that
-    of another block. No bar needs to be known for that: the metal beside a programmed wall, up to 2R
-    behind it, must stand whatever the bar is, unless the program mills it off as well. Only mills along Z are looked
-    at, whose R is known. At feed it is a warning, since a slot may be milled by C alone.
+    tears the cutter through the part. Or a section begins at depth, where the contour leaves metal: the approach is
+    that of another block. No bar needs to be known for that: the metal beside a programmed wall, up to 2R behind it,
+    must stand whatever the bar is, unless the program mills it off as well. Only mills along Z are looked at, whose R
+    is known. At feed it is a warning, since a slot may be milled by C alone.
 
     Source: FANUC B-62764EN/01, p. 51 (positions outside the mode are X and the angle of C).
 
