@@ -39,6 +39,7 @@ class Reason(IntEnum):
     OTHERS_BELOW = 4
     REPEATED = 5
     OUTSIDE_BAR = 6
+    BLOCKS_REPEATED = 7
 
 
 class AirCuts(Columns, frozen=True):
@@ -83,6 +84,7 @@ class AirCuts(Columns, frozen=True):
         if not self.walls.any():
             return reason
         for mask, why in (
+            (self._blocks_repeated, Reason.BLOCKS_REPEATED),
             (self._outside_bar, Reason.OUTSIDE_BAR),
             (self._is_repeated, Reason.REPEATED),
             (self._others_below, Reason.OTHERS_BELOW),
@@ -206,6 +208,40 @@ class AirCuts(Columns, frozen=True):
                 repeated[members[later]] = True
             repeated[members[later & self._idle_index[members]]] = True
         return repeated[trace.mode.section]
+
+    @property
+    def _blocks_repeated(self) -> Mask:
+        """
+        The same blocks of a section, as of a subprogram or a loop, cut the same for the second time of three or more,
+        and each time they write a Z: the depth was meant to grow. A spring pass is one more, and writes none; where
+        sections are repeated, each may be on another bar.
+        """
+        trace, mask = self.trace, np.zeros(len(self.trace), bool)
+        rows = np.flatnonzero(self.walls)
+        block = trace.run.block[rows]
+        order = np.argsort(block, kind="stable")
+        again = np.append(False, np.diff(block[order]) == 0)
+        if not again.any():
+            return mask
+        period = np.zeros(len(rows), np.int64)
+        period[order[again]] = order[again] - order[np.flatnonzero(again) - 1]
+        earlier = rows[np.arange(len(rows)) - period]
+        path, section = trace.path, trace.mode.section
+        apart = np.abs(path.end[rows] - path.end[earlier]) + np.abs(path.start[rows] - path.start[earlier])
+        same = (period > 0) & (apart + np.abs(path.z[rows] - path.z[earlier]) <= _SAME)
+        radius = trace.compensation.radius
+        same &= (section[rows] == section[earlier]) & ~(np.abs(radius[rows] - radius[earlier]) > ROUNDING)
+        begins = np.flatnonzero(np.diff(np.where(same, period, 0), prepend=0))
+        count = np.diff(np.append(begins, len(rows)))
+        repeats = same[begins] & (count >= 2 * period[begins])
+        # What moves the origin or an offset may give each of them a depth of its own.
+        sets = trace.blocks.listed("data_input", "local_shift", "coordinate_setting", "work_offset") | trace.run.unknown
+        sets |= trace.blocks.mask_of(np.array(sorted(trace.run.assigned), np.int64))
+        writes_z, has_set = np.cumsum(trace.axes.commands_z), np.cumsum(sets)
+        first = rows[begins[repeats]]
+        origin = earlier[begins[repeats]]
+        mask[first[(writes_z[first] > writes_z[origin]) & (has_set[first] == has_set[origin])]] = True
+        return mask
 
     @property
     def _angle_of_plane(self) -> Floats:

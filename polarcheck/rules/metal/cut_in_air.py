@@ -40,7 +40,8 @@ def cut_in_air(air_cuts: AirCuts) -> Hits:
     that the retract moves nowhere; its sign is wrong, so that the tool goes away from the part to cut and towards it to
     retract; the cut stands above the face that the program has turned or `[stock]` names, or above all others; it runs
     outside the bar, as in a program in inch that the control reads in mm; or the same section is cut again at the same
-    angle of C, since an index is missing or written twice. Programs with their origin at the back, which cut above Z0
+    angle of C, since an index is missing or written twice; or a subprogram that is repeated goes down to the same depth
+    each time, which was meant to be an increment. Programs with their origin at the back, which cut above Z0
     alone, are not meant, nor are spring passes.
 
     Source: builder's guide to G12.1, order of a section.
@@ -83,6 +84,30 @@ def cut_in_air(air_cuts: AirCuts) -> Hits:
         Z2.
         G13.1
         G0 X100. Z50.
+
+    Bad, tool 1:radius=4:
+
+        O1
+        T0101
+        G98 G0 X60. Z2. C0
+        G12.1
+        G1 X60. Z0 F1500
+        M98 P30100
+        Z2.
+        G13.1
+        M30
+        O100
+        G1 Z-2. F200
+        G42 X30. C0
+        C8.66             (expect: cut-in-air)
+        X0 C17.321
+        X-30. C8.66
+        C-8.66
+        X0 C-17.321
+        X30. C-8.66
+        C0
+        G40 X60.
+        M99
 
     Good, tool 1:radius=4:
 
@@ -139,6 +164,9 @@ def _in_air(hit: Hit, air_cuts: AirCuts, bar: Bar) -> str:
             return f"cuts at {z}{where}, where the section begins, {why}"
         case Reason.OUTSIDE_BAR:
             return f"runs outside the bar of {hit.length(bar.known.largest)} all the way: check the units and X"
+        case Reason.BLOCKS_REPEATED:
+            where = of_line(trace, trace.axes.commands_z, row)
+            return f"these blocks cut at {z}{where} each time that they are repeated: write the depth as an increment"
         case _:
             angle = float(trace.path.c_angle[enter])
             return f"this section was cut before at the same angle of C ({angle:g} deg): it takes nothing off; index C"
