@@ -434,8 +434,7 @@ def test_advice_is_given_where_somebody_names_its_severity() -> None:
         found = [one.severity for one in report_of(program, own).findings if one.rule == "no-compensation-in-polar"]
         assert found == expected
     assert sorted(one.name for one in RULES.values() if one.is_advice) == [
-        "live-tool-without-speed", "no-compensation-in-polar", "size-by-x-offset", "start-up-without-move",
-        "turning-feed-not-restored",
+        "no-compensation-in-polar", "size-by-x-offset", "start-up-without-move", "turning-feed-not-restored",
     ]  # fmt: skip
 
 

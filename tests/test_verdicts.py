@@ -163,7 +163,7 @@ def test_a_job_file_keeps_the_pass_with_a_reason(written: str, line: str) -> Non
 def test_an_option_that_overrides_a_reason_has_none() -> None:
     make(f"ignore = {{ rules = ['rapid-in-polar'], reason = '{REASON}' }}\n{JOB}", a__nc=RAPID)
     assert check("a.nc", "--select", "rapid-in-polar")["files"][0]["verdict"] == "fail"
-    # The rule has no weight here, so that 145 others are left.
+    # The rule has no weight here, so that 146 others are left.
     assert deselected(check("a.nc", "--select", "overcut")) == ["146 rules were deselected by --select overcut"]
 
 

@@ -199,7 +199,8 @@ class Procedure(Columns, frozen=True):
     @cached_property
     def live_tool_without_speed(self) -> Mask:
         """
-        The live tool is started in a program with a section, and up to the first move at feed no S in force is for it.
+        The live tool is started in a program with a section, and no S of the whole program gives a speed; where the
+        builder demands one beside the code, up to the first move at feed no S in force is for it.
 
         S is for the live tool if that starts next or runs, and where it has a word of its own, as S3=; one that the
         main spindle starts with is not, and takes the place of what was, nor is a surface speed, or S0. The limit of
@@ -209,6 +210,8 @@ class Procedure(Columns, frozen=True):
         started = trace.blocks.codes(*codes.live_tool_on)
         if not started.any():
             return started
+        if not self._demands_speed:
+            return started & self._never_has_speed
         begins = np.flatnonzero(started | trace.blocks.codes(*codes.spindle_on))
         of_live_tool = np.append(started[begins], False)
         rows = np.arange(len(trace))
@@ -229,6 +232,23 @@ class Procedure(Columns, frozen=True):
             trace.mode.enters
         )
         return np.asarray(started & ~has_speed[until] & is_whole)
+
+    @property
+    def _demands_speed(self) -> bool:
+        """The builder, or the job, wants S beside the code that starts the live tool, whatever was in force."""
+        rule = "live-tool-without-speed"
+        return rule in self.trace.machine.severities or rule in self.trace.job.severities
+
+    @property
+    def _never_has_speed(self) -> Mask:
+        """Rows of whole programs with a section in which no word gives any speed, and all is known."""
+        trace, blocks = self.trace, self.trace.blocks
+        beside = trace.machine.writing.live_tool_speed.rstrip("=")
+        gives = blocks.has("S") & ~trace.modal.sets_coordinates
+        gives |= blocks.has(*trace.machine.live_tool_speeds) | trace.run.unknown
+        gives |= blocks.codes(*trace.machine.m_codes.live_tool_on) & blocks.has(beside)
+        ends = blocks.anywhere_in_program(blocks.ends_program) & blocks.anywhere_in_program(trace.mode.enters)
+        return np.asarray(blocks.whole_program & ends & ~blocks.anywhere_in_program(gives))
 
     @cached_property
     def live_tool_above_highest_speed(self) -> Mask:

@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     "not at all; write S before it",
     values=("code",),
     once="program",
-    is_advice=True,
     follows={"block": ("vacant-variable",)},
 )
 def live_tool_without_speed(blocks: ExecutedBlocks, procedure: Procedure, machine: Machine) -> Hits:
@@ -27,7 +26,7 @@ def live_tool_without_speed(blocks: ExecutedBlocks, procedure: Procedure, machin
     The code that starts the live tool takes the S in force. Where the program gives none for it, that is the speed of
     the job before, or 0, and the cutter is pressed into the part without turning. An S with which the main spindle was
     started is not meant for it, and takes the place of what was; nor is the limit of G50. Write S beside the code:
-    `G97 S2000 M33`.
+    `G97 S2000 M33`. On machines whose builder does not ask for that, only a whole program without any S is meant.
 
     Source: builder's guide to G12.1, sample program: live tool spindle ON.
 
@@ -47,6 +46,21 @@ def live_tool_without_speed(blocks: ExecutedBlocks, procedure: Procedure, machin
         G40 X2.15 F60.
         G13.1
         G99 G0 Z1. M35
+        M30
+
+    Bad, set m_codes.live_tool_on=["M33"], set m_codes.live_tool_off=["M35"], tool 8:radius=0:
+
+        O1
+        T0808
+        G97 M33           (expect: live-tool-without-speed)
+        G98 G0 X60. Z2. C0
+        G12.1
+        G1 C10. F600
+        G41 X40. F70
+        C-10.
+        G40 X60. F600
+        G13.1
+        M35
         M30
 
     Good, machine turning-center, tool 8:radius=0:
