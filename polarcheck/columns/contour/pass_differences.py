@@ -36,6 +36,14 @@ class Difference(NamedTuple):
     last: int
 
 
+class _Stretch(NamedTuple):
+    """The moves of each pass that are compared: the first and the last one, and a number of their shape."""
+
+    first: Rows
+    last: Rows
+    shape: Rows
+
+
 class PassDifferences(Columns, frozen=True):
     """Columns of one trace, one value per row."""
 
@@ -54,14 +62,14 @@ class PassDifferences(Columns, frozen=True):
     @cached_property
     def _by_group(self) -> list[list[Difference]]:
         """The differences of each group of passes."""
-        return [self._differences_of(group) for group in self._groups]
+        return [self._differences_of(stretch, group) for stretch, group in self._groups]
 
     @cached_property
     def twin(self) -> Rows:
         """The same number for all rows of passes that are compared, where one of them differs; -1 for other rows."""
         column = np.full(len(self.trace), -1)
         passes = self.passes
-        for number, (group, differences) in enumerate(zip(self._groups, self._by_group, strict=True)):
+        for number, ((_, group), differences) in enumerate(zip(self._groups, self._by_group, strict=True)):
             for which in group.tolist() if differences else ():
                 column[passes.row[passes.first[which]] : passes.row[passes.last[which]] + 1] = number
         return column
@@ -72,28 +80,47 @@ class PassDifferences(Columns, frozen=True):
         return self.trace.blocks.mask_of(np.array(sorted(self.found), np.int64))
 
     @cached_property
-    def _groups(self) -> list[Rows]:
-        """Passes of a program that begin and end at the same points, where there are several shapes of them."""
+    def _groups(self) -> list[tuple[_Stretch, Rows]]:
+        """
+        Passes of a program that begin and end at the same points, where there are several shapes of them; and passes
+        that do so but for their first and last moves, as where a finishing pass begins beside a roughing pass.
+        """
         passes = self.passes
-        count = passes.last - passes.first + 1
+        if len(passes.first) < 2:
+            return []
+        whole = _Stretch(passes.first, passes.last, passes.shape)
+        groups = [(whole, group) for group in self._with_ends_alike(whole)]
+        long = passes.last - passes.first > _LEAST_AGREEING + 1
+        first, last = (np.where(long, end, passes.first) for end in (passes.first + 1, passes.last - 1))
+        inner = _Stretch(first, last, passes.shape_of(first, last))
+        begins = passes.start[passes.first], passes.end[passes.last]
+        for group in self._with_ends_alike(inner):
+            if any(np.abs(point[group] - point[group[0]]).max() > _OTHER for point in begins):
+                groups.append((inner, group))
+        return groups
+
+    def _with_ends_alike(self, stretch: _Stretch) -> list[Rows]:
+        """Passes of a program of which some moves begin and end at the same points, with several shapes of them."""
+        passes = self.passes
+        count = stretch.last - stretch.first + 1
         long = np.flatnonzero(count > _LEAST_AGREEING)
         if len(long) < 2:
             return []
-        ends = passes.start[passes.first[long]], passes.end[passes.last[long]]
-        program = self.trace.blocks.program[passes.row[passes.first[long]]]
+        ends = passes.start[stretch.first[long]], passes.end[stretch.last[long]]
+        program = self.trace.blocks.program[passes.row[stretch.first[long]]]
         keys = [np.round(part / _OTHER) for point in ends for part in (point.real, point.imag)]
         group = numbered([*keys, program.astype(np.float64), passes.compensated[long].astype(np.float64)])
         if np.bincount(group).max() < 2:
             return []
-        shape = passes.shape[long]
+        shape = stretch.shape[long]
         order = np.lexsort((shape, group))
         several = np.zeros(int(group.max()) + 1, bool)
         several[group[order][1:][(np.diff(group[order]) == 0) & (np.diff(shape[order]) != 0)]] = True
         return [long[group == number] for number in np.flatnonzero(several).tolist()]
 
-    def _differences_of(self, group: Rows) -> list[Difference]:
+    def _differences_of(self, stretch: _Stretch, group: Rows) -> list[Difference]:
         """Each shape against the most frequent one that it differs from in a block or two; the rarer one is wrong."""
-        shape = self.passes.shape[group]
+        shape = stretch.shape[group]
         kinds, first, count = np.unique(shape, return_index=True, return_counts=True)
         if len(kinds) > _MOST:
             return []
@@ -103,23 +130,23 @@ class PassDifferences(Columns, frozen=True):
         for rank, kind in enumerate(order.tolist()):
             for model in order[:rank].tolist():
                 difference = self._difference(
-                    int(group[first[kind]]), int(group[first[model]]), bool(count[model] > count[kind])
+                    stretch, int(group[first[kind]]), int(group[first[model]]), bool(count[model] > count[kind])
                 )
                 if difference is not None:
                     differences.append(difference)
                     break
         return differences
 
-    def _items(self, number: int) -> Points:
+    def _items(self, stretch: _Stretch, number: int) -> Points:
         """Per move of a pass its end, its center, and its motion: complex128[moves, 3]."""
         passes = self.passes
-        moves = np.arange(passes.first[number], passes.last[number] + 1)
+        moves = np.arange(stretch.first[number], stretch.last[number] + 1)
         center = np.where(np.isnan(passes.center[moves]), 0, passes.center[moves])
         return np.stack((passes.end[moves], center, passes.motion[moves].astype(np.complex128)), axis=1)
 
-    def _difference(self, number: int, model: int, is_rare: bool) -> Difference | None:
+    def _difference(self, stretch: _Stretch, number: int, model: int, is_rare: bool) -> Difference | None:
         """Where a pass differs from a model of it, if a slip explains that; is_rare: more passes are as the model."""
-        moves, model_moves = self._items(number), self._items(model)
+        moves, model_moves = self._items(stretch, number), self._items(stretch, model)
         shorter = min(len(moves), len(model_moves))
         head = _agreeing(moves[:shorter], model_moves[:shorter])
         tail = min(_agreeing(moves[::-1][:shorter], model_moves[::-1][:shorter]), shorter - head)
@@ -128,7 +155,7 @@ class PassDifferences(Columns, frozen=True):
             return None
         if not tail:
             return None
-        row, model_row = (int(self.passes.row[self.passes.first[which] + head]) for which in (number, model))
+        row, model_row = (int(self.passes.row[stretch.first[which] + head]) for which in (number, model))
         if self.trace.run.block[row] == self.trace.run.block[model_row] and differing[0] == differing[1]:
             return None
         if differing[0] == differing[1]:
@@ -137,17 +164,18 @@ class PassDifferences(Columns, frozen=True):
                 return None
             explained = is_rare or self._is_slip(here, there, row, model_row)
         else:
-            explained = sorted(differing) == [0, 1] and self._turns_at(number if differing[0] else model, head)
+            explained = sorted(differing) == [0, 1] and self._turns_at(
+                int(stretch.first[number if differing[0] else model]) + head
+            )
         if not explained:
             return None
         passes = self.passes
         first, last = (int(passes.row[ends[model]]) for ends in (passes.first, passes.last))
         return Difference(row, model_row, differing[0] < differing[1], first, last)
 
-    def _turns_at(self, number: int, step: int) -> bool:
-        """The pass turns where a block of it ends that the other one does not have: it is no point on a line."""
+    def _turns_at(self, move: int) -> bool:
+        """The pass turns where a move of it ends that the other one does not have: it is no point on a line."""
         passes = self.passes
-        move = int(passes.first[number]) + step
         start, corner, end = passes.start[move], passes.end[move], passes.end[move + 1]
         off = ((corner - start) * np.conj(end - start)).imag / max(abs(end - start), _SAME)
         return bool(abs(off) > _OTHER or passes.is_arc[move] or passes.is_arc[move + 1])

@@ -105,10 +105,16 @@ class Passes(Columns, frozen=True):
     @cached_property
     def shape(self) -> Rows:
         """Per pass a number of its moves, the same for passes of the same moves."""
-        weight = np.arange(len(self.row)) - self.first[self.number] + 1.0
+        return self.shape_of(self.first, self.last)
+
+    def shape_of(self, first: Rows, last: Rows) -> Rows:
+        """Per pass a number of its moves from one to another, the same for the same moves; int[passes] all."""
+        index = np.arange(len(self.row))
+        chosen = (index >= first[self.number]) & (index <= last[self.number])
+        weight = index - first[self.number] + 1.0
         center = np.where(np.isnan(self.center), 0, self.center)
         columns = (self.end, self.end * weight, center * weight, self.end * self.motion)
-        sums = [np.add.reduceat(column, self.first) for column in columns]
+        sums = [np.add.reduceat(np.where(chosen, column, 0), self.first) for column in columns]
         return numbered([np.round(part, 4) for total in sums for part in (total.real, total.imag)])
 
     # ---- rings ----
