@@ -115,6 +115,28 @@ class Procedure(Columns, frozen=True):
         is_contour = (turning >= _MOVES_OF_CONTOUR) & (both_count > 0) & (with_z == 0) & ~self._is_angle(plane, stops)
         return np.where(is_contour, _first(plane, stops, trace.blocks.starts), -1)
 
+    @cached_property
+    def contour_goes_on_behind(self) -> Rows:
+        """
+        The row of the G13.1 above, if it stands in the middle of a contour; -1 for others. Until the mode begins again.
+
+        Behind it X and C go on at feed and at the same depth: with G41 or G42 still in force, or in two moves of C. The
+        next G13.1, behind them, is the one that ends the contour.
+        """
+        trace, none = self.trace, repeated(np.int64(-1), len(self.trace))
+        if not np.any(trace.axes.switches_off & ~trace.mode.leaves) and not np.any(
+            trace.mode.leaves & (trace.compensation.side_before != Side.OFF)
+        ):
+            return none
+        leaves = trace.mode.leaves
+        since = last_row(leaves, trace.axes.switches_on | trace.tools.changes_tool | trace.blocks.starts)
+        stops = leaves | self._leaves_work | trace.path.moves_z | trace.axes.switches_on | trace.blocks.starts
+        last_stop = last_row(stops, trace.blocks.starts)
+        goes_on = self._turns & (since >= 0) & (last_stop == since)
+        turns = np.bincount(since[goes_on], minlength=len(trace))
+        needed = np.where(trace.compensation.side_before != Side.OFF, 1, _MOVES_OF_CONTOUR)
+        return np.where((since >= 0) & (turns >= needed)[since], since, none)
+
     # ---- a contour outside, and an arc ----
 
     @cached_property

@@ -6,6 +6,7 @@ from polarcheck.rules.rule import ERROR, Hits, graded, rule
 
 if TYPE_CHECKING:
     from polarcheck.columns.metal.workpiece import Workpiece
+    from polarcheck.columns.modes.procedure import Procedure
     from polarcheck.rules.hit import Details, Hit
 
 
@@ -24,10 +25,11 @@ if TYPE_CHECKING:
             "cancel-shorter-than-radius",
             "polar-switched-in-offset-mode",
         ),
+        "program": ("polar-switched-in-offset-mode", "polar-never-entered"),
     },
     is_symptom=True,
 )
-def rapid_through_part(workpiece: Workpiece) -> Hits:
+def rapid_through_part(workpiece: Workpiece, procedure: Procedure) -> Hits:
     """
     Positioning through the finished part.
 
@@ -100,7 +102,13 @@ def rapid_through_part(workpiece: Workpiece) -> Hits:
         G0 C120.
     """
     error = workpiece.hits_part & workpiece.is_rapid & ~workpiece.may_miss_part
-    return graded(error=error, warning=workpiece.hits_part, undecided=workpiece.may_miss_part)
+    goes_on = procedure.contour_goes_on_behind >= 0
+    return graded(
+        error=error,
+        warning=workpiece.hits_part,
+        undecided=workpiece.may_miss_part,
+        follows={"program": goes_on},
+    )
 
 
 def details(hit: Hit, workpiece: Workpiece) -> Details:

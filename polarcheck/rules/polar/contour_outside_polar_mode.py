@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     gouges=True,
     once="tool call",
     follows={
-        "tool call": ("polar-never-entered", "arc-outside-polar-mode"),
+        "tool call": ("polar-never-entered", "arc-outside-polar-mode", "polar-switched-in-offset-mode"),
         "program": ("polar-code-of-another-control",),
         "file": ("other-dialect",),
     },

@@ -16,11 +16,14 @@ if TYPE_CHECKING:
 
 @rule(
     ERROR,
-    "{code} ends a polar mode that was never entered: {turned} as outside the mode, not on the contour; "
-    "write {switch_on} {place}",
+    "{code} ends a polar mode that was never entered: {turned} as outside the mode, not on the contour; {instead}",
     values=("code", "other_line"),
     at=("off",),
-    follows={"block": ("polar-switched-in-offset-mode",), "program": ("polar-switch-unknown",)},
+    follows={
+        "block": ("polar-switched-in-offset-mode",),
+        "tool call": ("polar-switched-in-offset-mode",),
+        "program": ("polar-switch-unknown",),
+    },
 )
 def polar_never_entered(axes: PlaneAxes, procedure: Procedure, switch_slips: SwitchSlips) -> Hits:
     """
@@ -143,7 +146,8 @@ def polar_never_entered(axes: PlaneAxes, procedure: Procedure, switch_slips: Swi
         M30
     """
     never_entered = axes.switches_off & (procedure.contour_without_mode >= 0)
-    return Hits(never_entered, follows={"program": switch_slips.within})
+    goes_on = procedure.contour_goes_on_behind >= 0
+    return Hits(never_entered, follows={"tool call": goes_on, "program": switch_slips.within})
 
 
 def details(
@@ -156,7 +160,11 @@ def details(
         turned = f"{from_line} {axis} moves at feed with G41 or G42"
     elif axes.motion[first] != Motion.LINE:
         turned = f"{from_line} {axis} moves on an arc"
-    return {"code": hit.switch, "other_line": hit.line(first), "turned": turned, "place": _place(hit, first)}
+    early = int(procedure.contour_goes_on_behind[hit.row])
+    instead = f"write {hit.switch_on} {_place(hit, first)}"
+    if early >= 0:
+        instead = f"take out {hit.switch} of line {hit.line(early)}, in the middle of the contour"
+    return {"code": hit.switch, "other_line": hit.line(first), "turned": turned, "instead": instead}
 
 
 def _place(hit: Hit, first: int) -> str:

@@ -7,6 +7,7 @@ from polarcheck.rules.rule import ERROR, rule
 
 if TYPE_CHECKING:
     from polarcheck.columns.modes.mode import PolarMode
+    from polarcheck.columns.modes.procedure import Procedure
     from polarcheck.columns.path.compensation import CutterCompensation
     from polarcheck.foundation.arrays import Mask
     from polarcheck.rules.hit import Details, Hit
@@ -14,7 +15,7 @@ if TYPE_CHECKING:
 
 @rule(
     ERROR,
-    "{switch} while {code} is in force; G40 must be in force here{likewise}",
+    "{switch} while {code} is in force; {instead}{likewise}",
     values=("code",),
     at=("on", "off"),
     once="program",
@@ -29,6 +30,8 @@ def polar_switched_in_offset_mode(mode: PolarMode, compensation: CutterCompensat
 
     The control stops with an alarm. Cutter compensation begins and ends inside the mode: G40 on entry, then G41 or G42
     with the move onto the part, then G40 with the move away from it, then G13.1.
+
+    Where X and C go on at feed behind G13.1, that stands in the middle of the contour.
 
     A second G12.1 in the mode is no other: it stands in offset mode.
 
@@ -86,10 +89,15 @@ def polar_switched_in_offset_mode(mode: PolarMode, compensation: CutterCompensat
     return _in_offset_mode(mode, compensation)
 
 
-def details(hit: Hit, mode: PolarMode, compensation: CutterCompensation) -> Details:
+def details(hit: Hit, mode: PolarMode, compensation: CutterCompensation, procedure: Procedure) -> Details:
+    goes_on = procedure.contour_goes_on_behind[hit.row] == hit.row
     switches_on = mode.enters[hit.row]
     alike = _in_offset_mode(mode, compensation) & (mode.enters == switches_on)
-    return {"code": f"G{compensation.side_before[hit.row]}", "likewise": hit.likewise(alike)}
+    return {
+        "code": f"G{compensation.side_before[hit.row]}",
+        "instead": "the contour goes on behind it: take it out" if goes_on else "G40 must be in force here",
+        "likewise": hit.likewise(alike),
+    }
 
 
 def _in_offset_mode(mode: PolarMode, compensation: CutterCompensation) -> Mask:
