@@ -254,20 +254,37 @@ class Workpiece(Columns, frozen=True):
     @cached_property
     def through_bar(self) -> Hits:
         """Rapid moves through the remaining bar."""
-        bar = self.bar.known
-        if np.isnan(bar.smallest + bar.bore):
+        if np.isnan(self.bar.known.smallest + self.bar.known.bore):
             return Hits.none()
         moves = self._into_bar
-        moves = moves[moves.row < self._unknown_from]
-        if not len(moves):
-            return Hits.none()
-        self._bound(moves)
-        from polarcheck.geometry.polygons.standing_metal import disc, hits_on_bar
-
-        stands = disc(bar.smallest, bar.bore)
-        lower = self._all[(self._all.tip < self.top) & self._all.is_sure]
-        hit, point = hits_on_bar(self._sweeps(moves), stands, self._sweeps(lower), *self._holes)
+        hit, point = self._hits_on_bar(moves, moves.radius)
         return Hits(moves.row[hit], point[hit], moves.is_sure[hit])
+
+    def stands_at(self, rows: Rows, share: float) -> Mask:
+        """Per row of a Z move in a section: it goes down into what stands of the bar, with this share of R already."""
+        bar, moves = self.bar.known, self._inside
+        if np.isnan(bar.smallest + bar.bore):
+            return np.zeros(len(rows), bool)
+        moves = moves[np.isin(moves.row, rows)]
+        hit, _ = self._hits_on_bar(moves, moves.radius * share)
+        return np.isin(rows, moves.row[hit])
+
+    def _hits_on_bar(self, moves: ToolMoves, radius: Floats) -> tuple[Mask, Points]:
+        """A mask of moves of cutters of some R [mm] through what stands of the known bar, and where; rising in rows."""
+        bar = self.bar.known
+        hit, point = np.zeros(len(moves), bool), np.full(len(moves), np.nan + 0j)
+        known = np.flatnonzero(moves.row < self._unknown_from)
+        if len(known):
+            moves = moves[known]
+            self._bound(moves)
+            from polarcheck.geometry.polygons.standing_metal import disc, hits_on_bar
+
+            sweeps = msgspec.structs.replace(self._sweeps(moves), radius=radius[known])
+            lower = self._all[(self._all.tip < self.top) & self._all.is_sure]
+            hit[known], point[known] = hits_on_bar(
+                sweeps, disc(bar.smallest, bar.bore), self._sweeps(lower), *self._holes
+            )
+        return hit, point
 
     def _bound(self, mills: ToolMoves) -> None:
         if len(mills) > _MOST_WAYS or len(self._all) > _MOST_MOVES:

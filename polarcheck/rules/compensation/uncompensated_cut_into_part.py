@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     once="loop",
     follows={
         "motion": ("rapid-in-polar",),
+        "block": ("lift-missing-between-cuts",),
         "X before": ("rapid-through-part",),
         "loop": ("x-not-positive-at-entry",),
         "section": ("start-up-on-arc", "nearly-regular-contour", "no-offset-intersection"),

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     once="program",
     doubts=(("compensation", "section"),),
     follows={
-        "section": ("side-repeated-in-offset-mode", "side-changed-in-offset-mode"),
+        "section": ("side-repeated-in-offset-mode", "side-changed-in-offset-mode", "block-skip-missing"),
     },
 )
 def polar_switched_in_offset_mode(mode: PolarMode, compensation: CutterCompensation) -> Mask:
