@@ -263,14 +263,19 @@ class Procedure(Columns, frozen=True):
 
     @property
     def _never_has_speed(self) -> Mask:
-        """Rows of whole programs with a section in which no word gives any speed, and all is known."""
+        """
+        Rows of whole programs with a section in which no word gives any speed, and all is known.
+
+        Not where the profile does not say with which word the live tool gets its speed: a code may start it at one.
+        """
         trace, blocks = self.trace, self.trace.blocks
-        beside = trace.machine.writing.live_tool_speed.rstrip("=")
+        word = trace.machine.writing.live_tool_speed.rstrip("=")
         gives = blocks.has("S") & ~trace.modal.sets_coordinates
         gives |= blocks.has(*trace.machine.live_tool_speeds) | trace.run.unknown
-        gives |= blocks.codes(*trace.machine.m_codes.live_tool_on) & blocks.has(beside)
+        if len(word) == 1:
+            gives |= blocks.codes(*trace.machine.m_codes.live_tool_on) & blocks.has(word)
         ends = blocks.anywhere_in_program(blocks.ends_program) & blocks.anywhere_in_program(trace.mode.enters)
-        return np.asarray(blocks.whole_program & ends & ~blocks.anywhere_in_program(gives))
+        return np.asarray(blocks.whole_program & ends & ~blocks.anywhere_in_program(gives) & bool(word))
 
     @cached_property
     def live_tool_above_highest_speed(self) -> Mask:

@@ -26,7 +26,8 @@ def live_tool_without_speed(blocks: ExecutedBlocks, procedure: Procedure, machin
     The code that starts the live tool takes the S in force. Where the program gives none for it, that is the speed of
     the job before, or 0, and the cutter is pressed into the part without turning. An S with which the main spindle was
     started is not meant for it, and takes the place of what was; nor is the limit of G50. Write S beside the code:
-    `G97 S2000 M33`. On machines whose builder does not ask for that, only a whole program without any S is meant.
+    `G97 S2000 M33`. Where the builder does not ask for that, only a whole program without any S is meant, on machines
+    of which it is known how the live tool gets its speed.
 
     Source: builder's guide to G12.1, sample program: live tool spindle ON.
 
