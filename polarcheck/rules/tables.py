@@ -94,6 +94,7 @@ TABLES = {
     "workpiece": Maker("polarcheck.columns.metal.workpiece:Workpiece", SECTION),
     "implied_units": Maker("polarcheck.columns.metal.implied_units:ImpliedUnits", SECTION),
     "strokes": Maker("polarcheck.columns.metal.strokes:Strokes", SECTION),
+    "approaches": Maker("polarcheck.columns.metal.approaches:Approaches", SECTION),
     "air_cuts": Maker("polarcheck.columns.metal.air_cuts:AirCuts", SECTION),
     "rapid_contours": Maker("polarcheck.columns.contour.rapid_contours:RapidContours", SECTION),
     "pass_ends": Maker("polarcheck.columns.contour.pass_ends:PassEnds", SECTION),

@@ -28,11 +28,10 @@ class PassEnds(Columns, frozen=True):
     @cached_property
     def leaves_metal(self) -> Mask:
         """The last cut of a pass that begins outside the bar and ends inside it; the next move leads out of it."""
-        trace, bar = self.trace, self.bar.known
+        trace = self.trace
         result = np.zeros(len(trace), bool)
-        if np.isnan(bar.smallest) or not self.air_cuts.walls.any():
+        if self.bar.known.source == "none" or not self.air_cuts.walls.any():
             return result
-        half = bar.smallest / 2
         moving = np.flatnonzero(trace.mode.in_polar & trace.path.travels)
         cuts = self._cuts[moving]
         begins = cuts & ~np.append(False, cuts[:-1] & (np.diff(trace.mode.section[moving]) == 0))
@@ -41,11 +40,15 @@ class PassEnds(Columns, frozen=True):
         has_next = last + 1 < len(moving)
         first, last = first[has_next], last[has_next]
         start, end = trace.path.start[moving[first]], trace.path.end[moving[last]]
+        half = self.bar.inner(moving[last], trace.path.z[moving[last]])
         out = moving[last + 1]
         leads_out = np.abs(trace.path.end[out]) > half + ROUNDING
         leads_out &= (trace.mode.section[out] == trace.mode.section[moving[last]]) & ~trace.path.moves_z[out]
         # An arc at the end leads away from a contour.
         leads_out &= ~trace.path.is_arc[moving[last]]
+        # A slot without compensation ends where it is to end: the tool is lifted out of it.
+        is_lifted = trace.path.z_before[out] > trace.path.z[moving[last]] + ROUNDING
+        leads_out &= trace.compensation.compensates[moving[last]] | ~is_lifted
         below = trace.path.z[moving[last]] < self.workpiece.top - ROUNDING
         leaves = (np.abs(start) > half - ROUNDING) & (np.abs(end) < half - _EDGE) & leads_out & below
         leaves &= ~self._goes_back(out, start)

@@ -173,17 +173,16 @@ class AirCuts(Columns, frozen=True):
 
     @property
     def _outside_bar(self) -> Mask:
-        """All cuts of the section run outside the circle that holds the bar."""
-        trace, largest = self.trace, self.bar.known.largest
-        if np.isnan(largest):
+        """All cuts of the section run outside the circle that holds the bar at their depth."""
+        trace = self.trace
+        if self.bar.known.source == "none":
             return np.zeros(len(trace), bool)
         rows = np.flatnonzero(self.walls)
-        nearest = np.full(len(trace), np.inf)
-        nearest[rows] = trace.path.moves_of(rows).nearest
+        beyond = np.full(len(trace), np.inf)
         # Where G41 and G42 only correct a tool center path, the cutter reaches R farther in, too.
-        reach = nearest - self.workpiece.radius
-        inner = self._of_section(np.where(np.isnan(reach), -np.inf, reach), self.walls, np.minimum, np.inf)
-        return np.asarray(inner > largest / 2 + ROUNDING)
+        reach = trace.path.moves_of(rows).nearest - self.workpiece.radius[rows]
+        beyond[rows] = np.nan_to_num(reach - self.bar.outer(rows, trace.path.z[rows]), nan=-np.inf)
+        return np.asarray(self._of_section(beyond, self.walls, np.minimum, np.inf) > ROUNDING)
 
     # ---- the same section again ----
 

@@ -1,8 +1,8 @@
 """
-The bar before milling: its outside diameter, its face and its bore, and where they are known from.
+The bar before milling: its outside diameter over Z, its face and its bore, and where they are known from.
 
-The job says it, or what the program turns before its first polar section leaves it, or a comment. Lengths in mm,
-diameters as such.
+The job says it, what the program turns before a row takes off, or a comment. Lengths in mm, diameters as such; radii
+where the name says so.
 """
 
 from __future__ import annotations
@@ -11,19 +11,18 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from polarcheck.columns.filling import before, fill_down
+from polarcheck.columns.filling import before, last_row
+from polarcheck.columns.metal.turned_cuts import TurnedCuts
+from polarcheck.columns.metal.turned_profile import Bounds, Profile
+from polarcheck.columns.metal.turning_tools import CENTER, Cuts, TurningTools
 from polarcheck.columns.trace import Trace
 from polarcheck.columns.words.stock_comments import StockComments
-from polarcheck.foundation.arrays import Columns, Floats, Mask, Rows, Table, cached_property, different, is_among
-from polarcheck.foundation.states import Motion
+from polarcheck.foundation.arrays import Columns, Floats, Mask, Rows, cached_property, different
 from polarcheck.geometry.tolerances import ROUNDING
-from polarcheck.program.machines.axis_table import INCREMENTS
 
 #: Across corners of a hexagon, by its width across flats.
 _CORNERS = 2 / np.sqrt(3)
-#: A facing move that ends within this radius of X0 leaves a whole face [mm]: the nose of the tool reaches over it.
-_CENTER = 1.5
-#: More turning moves than this are not looked at.
+#: More turning cuts than this are not followed.
 _MOST = 4000
 
 
@@ -49,37 +48,93 @@ class Known(NamedTuple):
 _NOTHING = Known(np.nan, np.nan, 0.0, np.nan, "none")
 
 
+class Standing(NamedTuple):
+    """
+    What stands of the bar for certain.
+
+    diameter: [mm]. height: Z of the lowest place where it does [mm]. source, lines: as in Known.
+    """
+
+    diameter: float
+    height: float
+    source: Literal["job", "turning", "comment"]
+    lines: tuple[int, int]
+
+
+class Turned(NamedTuple):
+    """
+    What is left of the bar before a row.
+
+    profile: None where what was turned is not followed. bore: diameter [mm]; NaN where a hole of unknown size is
+    drilled. face: Z, NaN unknown; face_rows: the cuts that leave it.
+    """
+
+    profile: Profile | None
+    bore: float
+    face: float
+    face_rows: Rows
+
+
 class Bar(Columns, frozen=True):
-    """The bar of one run, at its first polar section."""
+    """The bar of one run."""
 
     trace: Trace
     stock_comments: StockComments
 
     @cached_property
     def known(self) -> Known:
-        """The bar as the job gives it and the program turns it; a comment counts where neither does."""
-        trace, stock = self.trace, self.trace.job.stock
+        """The bar at the first polar section, from its face down to the deepest polar cut."""
+        trace = self.trace
         if not len(trace.mode.sections):
             return _NOTHING
-        scale = float(np.broadcast_to(trace.lengths.job_scale, len(trace))[trace.mode.sections.enter[0]])
-        turned = _NOTHING if stock.unknown else self.turned
-        face, face_lines = turned.face, turned.face_lines
-        if not np.isnan(stock.face):
-            face, face_lines = stock.face * scale, (0, 0)
-        bore = stock.bore * scale if stock.bore else turned.bore
-        if not np.isnan(stock.diameter):
-            diameter = stock.diameter * scale
-            smallest = np.fmin(diameter, turned.smallest) if turned.source == "turning" else diameter
-            source, lines = ("turning", turned.lines) if smallest < diameter else ("job", (0, 0))
-            largest = np.fmin(diameter, turned.largest)
-            return Known(float(smallest), float(largest), bore, face, source, lines, face_lines)  # type: ignore[arg-type]
+        turned = self._before(int(trace.mode.sections.enter[0]))
+        lines = trace.blocks.line_in_file
+
+        def span(rows: Rows) -> tuple[int, int]:
+            return (int(lines[rows.min()]), int(lines[rows.max()])) if len(rows) else (0, 0)
+
+        unknown = Known(np.nan, np.nan, turned.bore, turned.face, "none", (0, 0), span(turned.face_rows))
+        if turned.profile is None:
+            largest = 2 * self._of_job.outer
+            return unknown if np.isnan(largest) else unknown._replace(largest=largest, source="job")
+        top = min(turned.face, 0.0) if not np.isnan(turned.face) else 0.0
+        deepest = min(self._deepest_cut, top - 2 * ROUNDING)
+        smallest, largest, rows = turned.profile.between(deepest, top)
+        of_job = not np.isnan(self._of_job.outer)
+        if not (len(rows) or of_job) or smallest <= (0 if of_job else CENTER):
+            stated = None if len(rows) or self.trace.job.stock.unknown else self.stated
+            return (
+                stated._replace(bore=turned.bore, face=turned.face, face_lines=unknown.face_lines)
+                if stated
+                else unknown
+            )
+        is_turned = (len(rows) > 0 and smallest < self._of_job.inner) or not of_job
+        return unknown._replace(
+            smallest=2 * smallest,
+            largest=2 * largest if np.isfinite(largest) else np.nan,
+            source="turning" if is_turned else "job",
+            lines=span(rows) if is_turned else (0, 0),
+        )
+
+    @cached_property
+    def _deepest_cut(self) -> float:
+        path = self.trace.path
+        return float(path.z[path.moves_at_feed & ~np.isnan(path.z)].min(initial=0.0))
+
+    @cached_property
+    def _of_job(self) -> Bounds:
+        """The bar that the job gives, as radii [mm]; NaN for none."""
+        stock, scale = self.trace.job.stock, self._scale
         if not np.isnan(stock.hexagon):
-            flats = stock.hexagon * scale
-            smallest = np.fmin(flats, turned.smallest)
-            return Known(float(smallest), flats * _CORNERS, bore, face, "job", (0, 0), face_lines)
-        if turned.source == "none" and not stock.unknown:
-            turned = self.stated or turned
-        return turned._replace(bore=bore, face=face, face_lines=face_lines)
+            flats = stock.hexagon * scale / 2
+            return Bounds(flats, float(flats * _CORNERS))
+        return Bounds(stock.diameter * scale / 2, stock.diameter * scale / 2)
+
+    @property
+    def _scale(self) -> float:
+        """mm per unit of length of the job."""
+        trace = self.trace
+        return float(np.broadcast_to(trace.lengths.job_scale, len(trace))[trace.mode.sections.enter[0]])
 
     @property
     def stated(self) -> Known | None:
@@ -97,205 +152,140 @@ class Bar(Columns, frozen=True):
     @cached_property
     def deepest_turned(self) -> float:
         """The lowest Z that a turning tool cuts before the first section [mm]; inf without any."""
-        rows = self._turning_rows
-        z = np.concatenate([self.trace.path.z[rows], [np.inf]])
-        return float(np.nanmin(z))
+        rows = self.tools.moving_rows
+        rows = rows[: np.searchsorted(rows, self.trace.mode.sections.enter[0])]
+        return float(np.nanmin(np.append(self.trace.path.z[rows], np.inf)))
 
-    # ---- what the program turns ----
-
-    @cached_property
-    def tool_call(self) -> Rows:
-        """A number per T word: the same tool may turn first and mill then."""
-        return np.cumsum(self.trace.blocks.has("T") | self.trace.blocks.starts)
+    # ---- what is turned before a row ----
 
     @cached_property
-    def turns(self) -> Mask:
-        """Rows before the first section, of tool calls that neither use C nor drill nor enter the mode."""
-        trace = self.trace
-        rotary = trace.machine.polar.rotary_words
-        uses_c = trace.blocks.has(*rotary) & trace.modal.uses_axes & trace.axes.moves
-        uses_c |= trace.blocks.has("Y", "V") & trace.axes.moves
-        excluded = uses_c | (trace.modal.drilling != 0) | (trace.mode.section >= 0) | trace.mode.on_cylinder
-        call = self.tool_call
-        has_other = np.zeros(int(call.max(initial=0)) + 1, bool)
-        has_other[call[excluded]] = True
-        first = int(trace.mode.sections.enter[0])
-        result = ~has_other[call] & trace.tools.has_called_tool
-        result[first:] = False
-        return np.asarray(result & ~trace.modal.on_sub_spindle)
+    def tools(self) -> TurningTools:
+        """The tools that turn."""
+        return TurningTools(self.trace)
 
     @cached_property
-    def _x_and_z(self) -> tuple[Floats, Floats, Floats, Floats]:
+    def turned_cuts(self) -> TurnedCuts:
+        """The cuts of turning tools."""
+        return TurnedCuts(self.trace, self.tools)
+
+    @cached_property
+    def _cuts(self) -> Cuts:
+        return Cuts.none() if self.trace.job.stock.unknown else self.turned_cuts.cuts
+
+    @cached_property
+    def _epoch(self) -> Rows:
         """
-        X before and after each row, Z before and after each row of turning tools.
+        Per row a number that is the same where the bar is: it counts the cuts and drillings before the row.
 
-        A cycle ends where it began (B-63944EN, canned cycles): X and Z are those before it.
+        A program that begins behind the end of another has a bar of its own.
         """
-        trace, call = self.trace, self.tool_call
-        begins = np.diff(call, prepend=-1) != 0
-        cycle = trace.modal.in_cycle | trace.blocks.listed("repetitive_cycle")
-        places: list[Floats] = []
-        for value in (np.where(cycle, np.nan, axis) for axis in (trace.path.x, trace.path.z)):
-            after = fill_down(value, ~np.isnan(value) | begins, np.nan)
-            places += [before(after, begins, np.nan), after]
-        return places[0], places[1], places[2], places[3]
+        events = np.zeros(len(self.trace) + 1, np.int64)
+        np.add.at(events, self._cuts.row + 1, 1)
+        events[self._begins_anew] += 1
+        if not self.trace.job.stock.unknown:
+            events[self.turned_cuts.unknown_rows + 1] += 1
+            events[min(self.tools.first_drilled + 1, len(self.trace))] += 1
+        return np.cumsum(events[:-1])
 
     @cached_property
-    def _turning_rows(self) -> Rows:
-        """Feed moves of X or Z by turning tools, known at both ends."""
-        at_feed = is_among(self.trace.axes.motion, (Motion.LINE, Motion.CW, Motion.CCW))
-        return np.flatnonzero(self.turns & at_feed & ~np.isnan(sum(self._x_and_z)))
+    def _begins_anew(self) -> Mask:
+        """Rows at which a program begins behind the end of another."""
+        blocks = self.trace.blocks
+        return np.append(blocks.starts & before(blocks.ends_program, np.zeros(len(self.trace), bool), False), False)
 
     @cached_property
-    def turned(self) -> Known:
-        """The bar that turning tools leave before the first section."""
-        if not self.turns.any():
-            return _NOTHING
-        segments = _Segments.concatenated([self._of_moves, self._of_cycles])
-        if not 0 < len(segments.row) <= _MOST:
-            return _NOTHING
-        lines = self.trace.blocks.line_in_file
-        drills = self._drills_center
-        is_bore = self._is_boring(segments)
-        bored = segments[is_bore & ~segments.faces]
-        bore = np.nan if drills else 0.0
-        if len(bored.row):
-            widest = float(np.maximum(bored.x_from, bored.x_to).max())
+    def _states(self) -> dict[int, Turned]:
+        return {}
+
+    def _before(self, row: int) -> Turned:
+        """What is left of the bar before a row."""
+        epoch = int(self._epoch[row])
+        if epoch not in self._states:
+            self._states[epoch] = self._turned_before(row)
+        return self._states[epoch]
+
+    def _turned_before(self, row: int) -> Turned:
+        trace, stock = self.trace, self.trace.job.stock
+        start = max(int(last_row(self._begins_anew[:-1], np.zeros(len(trace), bool))[row]), 0)
+        cuts = self._cuts[(self._cuts.row >= start) & (self._cuts.row < row)]
+        follows = not stock.unknown
+        faces = cuts[cuts.is_face & ~cuts.is_bore]
+        face, face_rows = np.nan, faces.row[:0]
+        if len(faces):
+            face = float(faces.low.min())
+            face_rows = faces.row[faces.low <= face + ROUNDING]
+        if not np.isnan(stock.face) and not stock.face * self._scale >= face:
+            face, face_rows = stock.face * self._scale, faces.row[:0]
+        bored = cuts[cuts.is_bore]
+        bore = np.nan if follows and start <= self.tools.first_drilled < row else 0.0
+        if len(bored):
+            widest = float(np.fmax(bored.x_low, bored.x_high).max())
             bore = 2 * widest if widest > 0 else np.nan
-        faces = segments[segments.faces & ~is_bore]
-        face, face_lines = np.nan, (0, 0)
-        if len(faces.row):
-            face = float(faces.z_to.min())
-            rows = faces.row[faces.z_to <= face + ROUNDING]
-            face_lines = int(lines[rows.min()]), int(lines[rows.max()])
-        outside = segments[~is_bore & ~segments.faces & (segments.z_to < segments.z_from - ROUNDING)]
-        outside = outside[(outside.x_from > 0) & (outside.x_to > 0)]
-        if not len(outside.row) or self._has_unknown_cycle:
-            return Known(np.nan, np.nan, bore, face, "none", (0, 0), face_lines)
-        smallest, largest, rows = self._outside(outside, face)
-        if np.isnan(smallest):
-            return Known(np.nan, np.nan, bore, face, "none", (0, 0), face_lines)
-        return Known(
-            smallest, largest, bore, face, "turning", (int(lines[rows.min()]), int(lines[rows.max()])), face_lines
-        )
+        bore = float(np.fmax(stock.bore * self._scale, bore)) if stock.bore else bore
+        unknown = self.turned_cuts.unknown_rows if follows else faces.row[:0]
+        lost = bool(((unknown >= start) & (unknown < row)).any()) or len(cuts) > _MOST or self._is_parted(faces, start)
+        top = 0.0 if np.isnan(face) else face
+        profile = None if lost else Profile(cuts[~cuts.is_bore], self._of_job, top)
+        return Turned(profile, bore, face, face_rows)
 
-    def _outside(self, outside: _Segments, face: float) -> tuple[float, float, Rows]:
-        """Smallest and largest diameter that is left from the face down to the deepest polar cut; rows that cut it."""
+    def _is_parted(self, faces: Cuts, start: int) -> bool:
+        """A tool has faced to the center below what was milled before: the part is off, the bar another piece."""
         trace = self.trace
-        cutting = trace.path.moves_at_feed & ~np.isnan(trace.path.z)
-        top = min(face, 0.0) if not np.isnan(face) else 0.0
-        deepest = min(float(trace.path.z[cutting].min(initial=top)), top - 2 * ROUNDING)
-        ends = np.concatenate([outside.z_from, outside.z_to, [deepest, top]])
-        heights = different(np.clip(np.concatenate([ends - ROUNDING, ends + ROUNDING]), deepest, top))
-        if len(heights) * len(outside.row) > _MOST * _MOST:
-            return np.nan, np.nan, outside.row
-        smallest, largest = np.inf, 0.0
-        used = np.zeros(len(outside.row), bool)
-        for z in heights.tolist():
-            x = outside.x_at(z)
-            if np.isnan(x).all():
-                largest = np.nan
-                continue
-            least = int(np.nanargmin(x))
-            used[least] = True
-            smallest, largest = min(smallest, float(x[least])), max(largest, float(x[least]))
-        if not used.any() or smallest <= _CENTER:
-            return np.nan, np.nan, outside.row
-        return 2 * smallest, 2 * largest, outside.row[used]
+        milled = np.flatnonzero(trace.mode.in_polar & trace.path.cuts & (np.arange(len(trace)) >= start))
+        lowest = np.append(-np.inf, np.minimum.accumulate(np.fmin(trace.path.z[milled], np.inf)))
+        return bool((faces.low < lowest[np.searchsorted(milled, faces.row)] - ROUNDING).any())
 
-    @property
-    def _of_moves(self) -> _Segments:
-        rows = self._turning_rows
-        x_from, x_to, z_from, z_to = (column[rows] for column in self._x_and_z)
-        faces = (np.abs(z_to - z_from) <= ROUNDING) & (np.abs(x_to) <= _CENTER) & (x_from > x_to + _CENTER)
-        return _Segments(rows, x_from, x_to, z_from, z_to, faces)
+    def _reach(self, rows: Rows, tip: Floats) -> tuple[Floats, Floats]:
+        inner, outer = np.full(len(rows), np.nan), np.full(len(rows), np.nan)
+        source = self.known.source
+        if source == "comment":
+            inner[:], outer[:] = self.known.smallest / 2, self.known.largest / 2
+        if source in ("comment", "none"):
+            return inner, outer
+        epochs = self._epoch[rows]
+        for epoch in different(epochs).tolist():
+            chosen = np.flatnonzero(epochs == epoch)
+            profile = self._before(int(rows[chosen[0]])).profile
+            if profile is not None:
+                inner[chosen], outer[chosen] = profile.reach(tip[chosen])
+        return inner, outer
 
-    @property
-    def _of_cycles(self) -> _Segments:
-        """Each block of a turning or facing cycle: G90 X.. Z.., G94 X.. Z.. in system A (B-63944EN, canned cycles)."""
-        trace = self.trace
-        turning, facing = trace.blocks.listed("turning_cycle"), trace.blocks.listed("facing_cycle")
-        begins = turning | facing
-        if not (begins & self.turns).any():
-            return self._of_moves[:0]
-        ended = (trace.modal.sets("motion") & ~begins) | trace.tools.changes_tool | trace.blocks.starts
-        kind = fill_down(np.where(turning, 1, np.where(facing, 2, 0)), begins | ended, 0)
-        in_cycle = (kind > 0) & self.turns
-        x = fill_down(trace.lengths.length_of("X") * trace.lengths.x_factor, trace.blocks.has("X") | begins, np.nan)
-        z = fill_down(trace.lengths.length_of("Z"), trace.blocks.has("Z") | begins, np.nan)
-        first = in_cycle & begins
-        x_start, z_start = (fill_down(self._x_and_z[coordinate], first | ended, np.nan) for coordinate in (0, 2))
-        steps = trace.blocks.has(INCREMENTS["X"], INCREMENTS["Z"], "R")
-        rows = np.flatnonzero(in_cycle & trace.blocks.has("X", "Z") & ~np.isnan(x + z + x_start + z_start) & ~steps)
-        faces = kind[rows] == 2
-        whole = ~faces | (np.abs(x[rows]) <= _CENTER)
-        rows, faces = rows[whole], faces[whole]
-        x_from = np.where(faces, x_start[rows], x[rows])
-        return _Segments(rows, x_from, x[rows], np.where(faces, z[rows], z_start[rows]), z[rows], faces)
-
-    @property
-    def _has_unknown_cycle(self) -> bool:
-        """A cycle whose cuts are not among the moves: one that roughs and whose contour is not finished by moves."""
-        trace = self.trace
-        steps = trace.blocks.has(INCREMENTS["X"], INCREMENTS["Z"], "R")
-        unknown = trace.blocks.listed("turning_cycle", "facing_cycle") & steps
-        return bool((unknown & self.turns).any())
-
-    @property
-    def _drills_center(self) -> bool:
-        """A tool drills on X0 before the first section, by a cycle or in Z at feed."""
-        trace = self.trace
-        first = int(trace.mode.sections.enter[0])
-        on_center = np.abs(self._x_and_z[0]) <= _CENTER
-        down = trace.path.moves_z & (np.abs(trace.path.x) <= _CENTER) & on_center
-        down &= trace.path.z < trace.path.z_before - 1
-        cycle = (trace.modal.drilling != 0) | trace.blocks.listed("repetitive_cycle")
-        return bool((down | (cycle & on_center))[:first].any())
-
-    def _is_boring(self, segments: _Segments) -> Mask:
+    def inner(self, rows: Rows, tip: Floats) -> Floats:
         """
-        Cuts of tool calls that turn inside: after a cut along Z the tool moves towards the center.
+        The radius within which there is metal for certain between the tip of a tool and the face, before a row [mm].
 
-        A tool that turns outside moves away from the center there, but for one that comes down to face.
+        tip: float64[n], Z [mm]. NaN where nothing is known of the bar.
         """
-        trace = self.trace
-        in_cycle = trace.modal.in_cycle[segments.row]
-        along = np.flatnonzero(
-            ~in_cycle & (segments.z_to < min(-ROUNDING, float(segments.z_from.max()) - 1)) & ~segments.faces
-        )
-        along = along[segments.z_to[along] < segments.z_from[along] - ROUNDING]
-        call = self.tool_call
-        inside = np.zeros(int(call.max()) + 1, bool)
-        inside[call[segments.row[in_cycle & (segments.x_to > self._x_and_z[0][segments.row])]]] = True
-        x_before, x_after = self._x_and_z[:2]
-        moves_x = np.flatnonzero(trace.axes.moves & (np.abs(x_after - x_before) > ROUNDING))
-        for index in along.tolist():
-            row = int(segments.row[index])
-            following = moves_x[np.searchsorted(moves_x, row, side="right") :][:1]
-            if len(following) and call[following[0]] == call[row]:
-                x = float(x_after[following[0]])
-                inside[call[row]] |= _CENTER < x < segments.x_to[index]
-        return np.asarray(inside[call[segments.row]])
+        return self._reach(rows, tip)[0]
 
+    def outer(self, rows: Rows, tip: Floats) -> Floats:
+        """The radius outside of which there is no metal for certain [mm]; NaN where that is not known."""
+        outer = self._reach(rows, tip)[1]
+        return np.where(np.isinf(outer), np.nan, outer)
 
-class _Segments(Table, frozen=True):
-    """
-    Cuts of turning tools, n of them.
+    def bore(self, rows: Rows) -> Floats:
+        """The diameter of the bore before each row [mm]; NaN where a hole of unknown size is drilled."""
+        epochs = self._epoch[rows]
+        bore = np.full(len(rows), np.nan)
+        for epoch in different(epochs).tolist():
+            chosen = np.flatnonzero(epochs == epoch)
+            bore[chosen] = self._before(int(rows[chosen[0]])).bore
+        return bore
 
-    row: int[n]. x_from, x_to: float64[n], radius [mm]. z_from, z_to: float64[n] [mm]. faces: bool[n], a whole face.
-    """
-
-    row: Rows
-    x_from: Floats
-    x_to: Floats
-    z_from: Floats
-    z_to: Floats
-    faces: Mask
-
-    def x_at(self, z: float) -> Floats:
-        """Radius that each cut leaves at a height [mm]; NaN where it does not reach."""
-        low, high = np.minimum(self.z_from, self.z_to), np.maximum(self.z_from, self.z_to)
-        span = self.z_to - self.z_from
-        share = (z - self.z_from) / np.where(span == 0, 1.0, span)
-        x = self.x_from + (self.x_to - self.x_from) * np.clip(share, 0, 1)
-        return np.where((z >= low - ROUNDING) & (z <= high + ROUNDING), x, np.nan)
+    def standing(self, row: int, tip: float) -> list[Standing]:
+        """What stands of the bar between a tip and the face, before a row: the largest last; empty if not known."""
+        known, turned = self.known, self._before(row)
+        if known.source == "comment":
+            return [Standing(known.smallest, tip, "comment", known.lines)]
+        if turned.profile is None or known.source == "none":
+            return []
+        lines, standing = self.trace.blocks.line_in_file, []
+        for radius, height, cut in turned.profile.steps(tip):
+            line = int(lines[cut])
+            if cut >= 0:
+                standing.append(Standing(2 * radius, height, "turning", (line, line)))
+            elif np.isnan(self._of_job.inner):
+                standing.append(Standing(2 * radius, height, "turning", known.lines))
+            else:
+                standing.append(Standing(2 * radius, height, "job", (0, 0)))
+        return standing

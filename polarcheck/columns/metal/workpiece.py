@@ -97,7 +97,7 @@ class Workpiece(Columns, frozen=True):
     def is_mill(self) -> Mask:
         """Rows of tool calls that enter the mode, along Z of the main spindle."""
         trace = self.trace
-        call = self.bar.tool_call
+        call = self.bar.tools.tool_call
         has_section = np.zeros(int(call.max(initial=0)) + 1, bool)
         has_section[call[trace.mode.sections.enter]] = True
         return np.asarray(has_section[call] & self.milled.is_along_z & ~trace.modal.on_sub_spindle)
@@ -242,49 +242,46 @@ class Workpiece(Columns, frozen=True):
     @cached_property
     def _into_bar(self) -> ToolMoves:
         """Moves in rapid traverse with the tip below the face and the cutter within the circle of the bar."""
-        bar, moves = self.bar.known, self._with_all_rapids
-        low = moves.is_rapid & (moves.tip < self.top - _CLEARANCE)
-        if not low.any():
-            return moves[low]
-        within = (moves.nearest - moves.radius < bar.smallest / 2 - ROUNDING) & (
-            moves.farthest + moves.radius > bar.bore / 2 + ROUNDING
-        )
-        return moves[low & within]
+        moves = self._with_all_rapids
+        moves = moves[moves.is_rapid & (moves.tip < self.top - _CLEARANCE)]
+        within = moves.nearest - moves.radius < self.bar.inner(moves.row, moves.tip) - ROUNDING
+        within &= moves.farthest + moves.radius > self.bar.bore(moves.row) / 2 + ROUNDING
+        return moves[within]
 
     @cached_property
     def through_bar(self) -> Hits:
         """Rapid moves through the remaining bar."""
-        if np.isnan(self.bar.known.smallest + self.bar.known.bore):
+        if self.bar.known.source == "none":
             return Hits.none()
         moves = self._into_bar
-        hit, point = self._hits_on_bar(moves, moves.radius)
+        moves = moves[moves.row < self._unknown_from]
+        if not len(moves):
+            return Hits.none()
+        self._bound(moves)
+        hit, point = self.hits_on_bar(moves)
         return Hits(moves.row[hit], point[hit], moves.is_sure[hit])
 
     def stands_at(self, rows: Rows, share: float) -> Mask:
         """Per row of a Z move in a section: it goes down into what stands of the bar, with this share of R already."""
-        bar, moves = self.bar.known, self._inside
-        if np.isnan(bar.smallest + bar.bore):
+        moves = self._inside
+        moves = moves[np.isin(moves.row, rows) & (moves.row < self._unknown_from)]
+        if self.bar.known.source == "none" or not len(moves):
             return np.zeros(len(rows), bool)
-        moves = moves[np.isin(moves.row, rows)]
-        hit, _ = self._hits_on_bar(moves, moves.radius * share)
+        self._bound(moves)
+        hit, _ = self.hits_on_bar(msgspec.structs.replace(moves, radius=moves.radius * share))
         return np.isin(rows, moves.row[hit])
 
-    def _hits_on_bar(self, moves: ToolMoves, radius: Floats) -> tuple[Mask, Points]:
-        """A mask of moves of cutters of some R [mm] through what stands of the known bar, and where; rising in rows."""
-        bar = self.bar.known
-        hit, point = np.zeros(len(moves), bool), np.full(len(moves), np.nan + 0j)
-        known = np.flatnonzero(moves.row < self._unknown_from)
-        if len(known):
-            moves = moves[known]
-            self._bound(moves)
-            from polarcheck.geometry.polygons.standing_metal import disc, hits_on_bar
+    def hits_on_bar(self, moves: ToolMoves) -> tuple[Mask, Points]:
+        """A mask of the moves that lead through what stands of the bar, and where; rising in rows."""
+        from polarcheck.geometry.polygons.standing_metal import disc, hits_on_bar
 
-            sweeps = msgspec.structs.replace(self._sweeps(moves), radius=radius[known])
-            lower = self._all[(self._all.tip < self.top) & self._all.is_sure]
-            hit[known], point[known] = hits_on_bar(
-                sweeps, disc(bar.smallest, bar.bore), self._sweeps(lower), *self._holes
-            )
-        return hit, point
+        bores = self.bar.bore(moves.row).tolist()
+        stands = [
+            [(disc(step.diameter, bore), step.height) for step in self.bar.standing(row, tip) if step.diameter > bore]
+            for row, tip, bore in zip(moves.row.tolist(), moves.tip.tolist(), bores, strict=True)
+        ]
+        lower = self._all[(self._all.tip < self.top) & self._all.is_sure]
+        return hits_on_bar(self._sweeps(moves), stands, self._sweeps(lower), *self._holes)
 
     def _bound(self, mills: ToolMoves) -> None:
         if len(mills) > _MOST_WAYS or len(self._all) > _MOST_MOVES:
@@ -299,7 +296,7 @@ class Workpiece(Columns, frozen=True):
         trace = self.trace
         down = (trace.axes.motion == Motion.LINE) & trace.path.moves_z & (trace.path.z < trace.path.z_before - ROUNDING)
         drilled = (trace.modal.drilling != 0) & trace.axes.moves
-        return np.asarray((down | drilled) & (trace.mode.section < 0) & ~self.is_mill & ~self.bar.turns)
+        return np.asarray((down | drilled) & (trace.mode.section < 0) & ~self.is_mill & ~self.bar.tools.turns)
 
     @cached_property
     def _holes(self) -> tuple[Rows, Points]:
@@ -328,9 +325,9 @@ class Workpiece(Columns, frozen=True):
             return
         down = self.is_rapid & (trace.mode.section < 0) & (trace.path.z < self.top - _CLEARANCE)
         down &= (np.abs(trace.path.x) < bar.smallest / 2) & trace.axes.moves
-        calls = np.zeros(int(self.bar.tool_call.max(initial=0)) + 1, bool)
-        calls[self.bar.tool_call[trace.mode.sections.enter]] = True
-        mills = calls[self.bar.tool_call]
+        calls = np.zeros(int(self.bar.tools.tool_call.max(initial=0)) + 1, bool)
+        calls[self.bar.tools.tool_call[trace.mode.sections.enter]] = True
+        mills = calls[self.bar.tools.tool_call]
         why_not = [
             (mills & trace.modal.on_sub_spindle, "the sub-spindle has a Z of its own"),
             (mills & ~self.is_mill & ~trace.modal.on_sub_spindle, "the tool is not a mill along Z"),

@@ -12,7 +12,6 @@ from polarcheck.columns.path.tool_center import ToolCenter
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Columns, Floats, Mask, cached_property, is_among
 from polarcheck.foundation.states import STATES, Motion
-from polarcheck.geometry.tolerances import ROUNDING
 
 #: Words and modal groups of G codes that may stand beside a D for the cutter.
 _WORDS_BESIDE_D = ("T", "S", "M", "G", "F", "X", "U", "Z", "W")
@@ -212,31 +211,6 @@ class Entry(Columns, frozen=True):
     def stock_diameter(self) -> Floats:
         """Diameter of the stock [mm]; NaN if the job states none."""
         return self.trace.lengths.stock_diameter
-
-    @property
-    def clearance(self) -> Floats:
-        """Clearance between stock and tool that the job demands at the approach, on the diameter [mm]."""
-        return np.broadcast_to(self.trace.job.stock.clearance * self.trace.lengths.job_scale, len(self.trace))
-
-    @cached_property
-    def approaches_stock(self) -> Mask:
-        """
-        A G12.1 from which the cutter goes to the rim of the stock; a section within, as a pocket, is plunged into.
-
-        What counts is the tool center: the wall of a pocket lies R farther out.
-        """
-        trace = self.trace
-        if np.isnan(trace.job.stock.diameter):
-            return np.zeros(len(trace), bool)
-        farthest = np.full(len(trace.mode.sections) + 1, -np.inf)
-        np.fmax.at(farthest, trace.mode.section, self.tool_center.farthest)
-        reach = 2 * farthest[trace.mode.section] + np.nan_to_num(trace.offsets.cutter_diameter)
-        return np.asarray(trace.mode.enters & (reach > self.stock_diameter + ROUNDING))
-
-    @cached_property
-    def x_needed(self) -> Floats:
-        """X of the tool center that clears the stock, as a radius [mm]: half of stock, cutter and clearance."""
-        return (self.stock_diameter + self.trace.offsets.cutter_diameter + self.clearance) / 2
 
     @cached_property
     def is_flat_and_radial(self) -> Mask:

@@ -7,6 +7,8 @@ height from there up, and less stands the higher one looks: its tip is the heigh
 
 from __future__ import annotations
 
+import functools
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -72,6 +74,7 @@ def as_one_loop(path: Curves) -> Curves:
     return Curves(*path.shape, np.zeros(len(path), np.int64), path.row)
 
 
+@functools.lru_cache(64)
 def disc(diameter: float, bore: float = 0.0) -> Any:
     """The cross section of a bar: a shapely polygon."""
     outside = shapely.buffer(shapely.points(0.0, 0.0), diameter / 2, quad_segs=_BAR_CORNERS)
@@ -128,11 +131,14 @@ class Removed:
         return area
 
 
-def hits_on_bar(sweeps: Sweeps, bar: Any, cleared: Sweeps, drilled: Rows, holes: Points) -> tuple[Mask, Points]:
+def hits_on_bar(
+    sweeps: Sweeps, bars: Sequence[Sequence[tuple[Any, float]]], cleared: Sweeps, drilled: Rows, holes: Points
+) -> tuple[Mask, Points]:
     """
     A mask of the sweeps that lead through what stands of a bar, and where; each clears what it runs through.
 
-    sweeps: rising in rows, moves of one row side by side. cleared: all moves that cut, rising in rows.
+    sweeps: rising in rows, moves of one row side by side. bars: for each sweep the cross sections of the bar that it
+    may touch, each with its lowest height [mm]. cleared: all moves that cut, rising in rows.
     drilled, holes: rows that drill, rising, and where, of any size.
     """
     removed = Removed(cleared)
@@ -141,11 +147,12 @@ def hits_on_bar(sweeps: Sweeps, bar: Any, cleared: Sweeps, drilled: Rows, holes:
         sweep = sweeps[np.array([number])]
         if _is_at_hole(sweep, holes[: np.searchsorted(drilled, sweep.curves.row[0])]):
             continue
-        before = removed.until(int(sweep.curves.row[0]), float(sweep.tip[0]))
-        standing = bar if before is None else areas.difference(bar, before)
-        overlap = touched(sweep, standing)
-        if overlap is not None:
-            hit[number], point[number] = True, place_of(overlap)
+        for bar, height in bars[number]:
+            before = removed.until(int(sweep.curves.row[0]), height)
+            standing = bar if before is None else areas.difference(bar, before)
+            overlap = touched(sweep, standing)
+            if overlap is not None:
+                hit[number], point[number] = True, place_of(overlap)
     return hit, point
 
 

@@ -163,7 +163,10 @@ def _in_air(hit: Hit, air_cuts: AirCuts, bar: Bar) -> str:
             why = "and the program cuts below Z0 elsewhere: a Z word for the depth is missing"
             return f"cuts at {z}{where}, where the section begins, {why}"
         case Reason.OUTSIDE_BAR:
-            return f"runs outside the bar of {hit.length(bar.known.largest)} all the way: check the units and X"
+            import numpy as np
+
+            largest = 2 * float(bar.outer(np.array([row]), trace.path.z[[row]])[0])
+            return f"runs outside the bar of {hit.length(largest)} all the way: check the units and X"
         case Reason.BLOCKS_REPEATED:
             where = of_line(trace, trace.axes.commands_z, row)
             return f"these blocks cut at {z}{where} each time that they are repeated: write the depth as an increment"

@@ -60,13 +60,13 @@ def pass_ends_inside_bar(pass_ends: PassEnds) -> Mask:
 
 
 def details(hit: Hit, bar: Bar) -> Details:
-    from polarcheck.rules.wording.metal import bar_in_words
+    from polarcheck.rules.wording.metal import bar_diameter, bar_in_words
 
-    end = complex(hit.trace.path.end[hit.row])
+    end, z = complex(hit.trace.path.end[hit.row]), float(hit.trace.path.z[hit.row])
     return {
-        "stock": bar.known.smallest,
+        "stock": bar_diameter(hit, bar, z),
         "plane_x": end.real,
         "plane_c": end.imag,
-        "bar": bar_in_words(hit, bar),
+        "bar": bar_in_words(hit, bar, z),
         "end_of_pass": hit.point_off_center(end),
     }

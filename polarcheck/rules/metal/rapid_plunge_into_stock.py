@@ -95,16 +95,16 @@ def rapid_plunge_into_stock(workpiece: Workpiece) -> Hits:
 
 
 def details(hit: Hit, workpiece: Workpiece, bar: Bar) -> Details:
-    from polarcheck.rules.wording.metal import bar_in_words
+    from polarcheck.rules.wording.metal import bar_diameter, bar_in_words
 
     z, radius = hit.trace.path.z[hit.row], workpiece.radius[hit.row]
     in_bar = workpiece.hits_bar[hit.row]
     return {
         "radius": radius,
         "z": z,
-        "stock": bar.known.smallest if in_bar else None,
+        "stock": bar_diameter(hit, bar, z) if in_bar else None,
         "cutter": hit.length(radius),
-        "bar_there": f"the bar ({bar_in_words(hit, bar)})" if in_bar else "what the pocket still has to take off",
+        "bar_there": f"the bar ({bar_in_words(hit, bar, z)})" if in_bar else "what the pocket still has to take off",
         "depth": hit.number(z),
         "way_down": _way_down(hit, bar, radius, in_bar),
     }
@@ -123,5 +123,6 @@ def _way_down(hit: Hit, bar: Bar, radius: float, in_bar: bool) -> str:
         return f"write a Z above the metal here, and go down to Z{hit.number(path.z[row])} with {line} and a feed"
     if not in_bar or np.isnan(radius):
         return f"write {line} with a feed"
-    clear, where = hit.quantity(bar.known.largest / 2 + radius), of_line(trace, trace.blocks.has("X", "U"), row, row)
+    outer = float(bar.outer(np.array([row]), path.z[[row]])[0])
+    clear, where = hit.quantity(outer + radius), of_line(trace, trace.blocks.has("X", "U"), row, row)
     return f"write {line} with a feed, or stand outside the bar: {clear:diameter} or more in X{where}"

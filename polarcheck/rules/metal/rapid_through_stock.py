@@ -81,16 +81,17 @@ def rapid_through_stock(workpiece: Workpiece) -> Hits:
 
 
 def details(hit: Hit, workpiece: Workpiece, bar: Bar) -> Details:
-    from polarcheck.rules.wording.metal import bar_in_words, height, through, z_of_move
+    from polarcheck.rules.wording.metal import bar_diameter, bar_in_words, height, through, z_of_move
 
+    z = z_of_move(hit)
     return {
         "radius": workpiece.radius[hit.row],
-        "z": z_of_move(hit),
-        "stock": bar.known.smallest,
+        "z": z,
+        "stock": bar_diameter(hit, bar, z),
         "cutter": hit.length(workpiece.radius[hit.row]),
         "height": height(hit),
         "through": through(hit, workpiece),
-        "bar": bar_in_words(hit, bar),
+        "bar": bar_in_words(hit, bar, z),
         "at_depth": _at_depth(hit),
     }
 

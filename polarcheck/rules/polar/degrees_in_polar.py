@@ -5,7 +5,6 @@ from typing import TYPE_CHECKING
 from polarcheck.rules.rule import WARNING, Hits, rule
 
 if TYPE_CHECKING:
-    from polarcheck.columns.modes.entry import Entry
     from polarcheck.columns.modes.executed_blocks import ExecutedBlocks
     from polarcheck.columns.path.axes import PlaneAxes
     from polarcheck.columns.words.angles import Angles
@@ -24,7 +23,7 @@ _FAR, _FAR_IN_RAPID = 2.0, 1.5
     once="section",
     doubts=(("position", "block"), ("position", "C before"), ("metal", "section")),
 )
-def degrees_in_polar(blocks: ExecutedBlocks, axes: PlaneAxes, angles: Angles, entry: Entry) -> Hits:
+def degrees_in_polar(blocks: ExecutedBlocks, axes: PlaneAxes, angles: Angles) -> Hits:
     """
     Angle written where the polar mode takes a length.
 
@@ -116,7 +115,7 @@ def degrees_in_polar(blocks: ExecutedBlocks, axes: PlaneAxes, angles: Angles, en
     is_angle = angles.in_series | (angles.is_usual & ~angles.has_both_signs)
     far_out = (angles.reach > 0) & (angles.farthest > _FAR * angles.reach)
     far_out |= angles.is_positioning & (angles.reach > 0) & (angles.farthest > _FAR_IN_RAPID * angles.reach)
-    in_stock = angles.farthest <= entry.stock_diameter / 2
+    in_stock = angles.farthest <= angles.trace.lengths.stock_diameter / 2
     words = blocks.words_at(axes.followed_virtual_words)
     return Hits(is_angle & far_out & ~in_stock & ~angles.in_misplaced_cycle, at=words)
 

@@ -6,16 +6,15 @@ from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.rules.rule import ERROR, Hits, graded, rule
 
 if TYPE_CHECKING:
-    from polarcheck.columns.modes.entry import Entry
+    from polarcheck.columns.metal.approaches import Approaches
     from polarcheck.columns.modes.offsets import ToolOffsets
-    from polarcheck.columns.path.path import ProgrammedPath
     from polarcheck.rules.hit import Details, Hit
     from polarcheck.rules.rule import Needs
 
 
 @rule(
     ERROR,
-    "X stands at {x:diameter/x_needed} at {switch}{since_x}; {to_clear} {x_needed:diameter/x} or more",
+    "{stands_at} {x:diameter/x_needed}{since_x}; {to_clear} {x_needed:diameter/x} or more",
     values=("x", "x_needed", "stock", "diameter", "clearance"),
     worse=("x:x_needed",),
     at=("on",),
@@ -34,13 +33,16 @@ if TYPE_CHECKING:
     },
     is_symptom=True,
 )
-def approach_inside_stock(path: ProgrammedPath, entry: Entry) -> Hits:
+def approach_inside_stock(approaches: Approaches) -> Hits:
     """
     Approach point inside the stock.
 
     X is the place of the cutter center, not of its edge. To clear the bar the approach needs X = diameter of the stock
     + diameter of the cutter + clearance; nearer, the cutter goes down into the bar beside the shape. It is a warning
-    where only the clearance is missing. Sections that stay inside the bar, as pockets do, are not meant.
+    where only the clearance is missing. What counts is where Z goes below the face, and the diameter that the program
+    has left down to that depth: that of `[stock]`, or what was turned since. The face is that of `[stock]` or the one
+    that the program turns, else Z0. Cuts that stay inside the bar, as pockets do, are not meant, nor is metal that
+    mills have taken off before.
 
     Source: builder's guide to G12.1, programming the tool approach point.
 
@@ -85,28 +87,41 @@ def approach_inside_stock(path: ProgrammedPath, entry: Entry) -> Hits:
         G1 Z2. F1500
         G13.1
     """
-    inside = entry.approaches_stock & (path.x < entry.x_needed - entry.clearance / 2 - ROUNDING)
-    near = entry.approaches_stock & (path.x < entry.x_needed - ROUNDING)
-    return graded(error=inside, warning=near, values={"stock": entry.stock_diameter, "x_needed": entry.x_needed})
+    inside = approaches.is_near & (approaches.distance < approaches.x_needed - approaches.clearance / 2 - ROUNDING)
+    values = {"stock": 2 * approaches.stock_radius, "x_needed": approaches.x_needed}
+    return graded(error=inside, warning=approaches.is_near, values=values)
 
 
-def details(hit: Hit, path: ProgrammedPath, offsets: ToolOffsets, entry: Entry) -> Details:
-    from polarcheck.columns.filling import last_row
-
-    x, since = path.x[hit.row], int(last_row(hit.trace.blocks.has("X", "U"), hit.trace.blocks.starts)[hit.row])
-    diameter, clearance = offsets.cutter_diameter[hit.row], entry.clearance[hit.row]
-    stock, cutter = hit.length(entry.stock_diameter[hit.row]), hit.length(diameter)
-    to_clear = f"stock {stock} and cutter {cutter} need"
+def details(hit: Hit, offsets: ToolOffsets, approaches: Approaches) -> Details:
+    diameter, clearance = offsets.cutter_diameter[hit.row], approaches.clearance[hit.row]
+    stock, cutter = 2 * approaches.stock_radius[hit.row], hit.length(diameter)
+    standing = [step for step in approaches.bar.standing(hit.row, approaches.depth[hit.row]) if step.lines[0]]
+    turned = f" turned in line {standing[-1].lines[1]}" if standing else ""
+    to_clear = f"stock {hit.length(stock)}{turned} and cutter {cutter} need"
     if clearance > 0:
-        to_clear = f"stock {stock}, cutter {cutter} and clearance {hit.length(clearance)} need"
+        to_clear = f"stock {hit.length(stock)}{turned}, cutter {cutter} and clearance {hit.length(clearance)} need"
+    stands_at, since_x = _where(hit)
     return {
-        "x": x,
+        "x": approaches.distance[hit.row],
         "diameter": diameter,
         "clearance": clearance,
-        "since_x": f", since line {hit.line(since)}" if since >= 0 else "",
+        "stands_at": stands_at,
+        "since_x": since_x,
         "to_clear": to_clear,
     }
 
 
-def needs(offsets: ToolOffsets, entry: Entry) -> Needs:
-    return entry.approaches_stock, {"diameter": offsets.cutter_diameter}
+def _where(hit: Hit) -> tuple[str, str]:
+    """What stands at the diameter, and since when."""
+    from polarcheck.columns.filling import last_row
+
+    trace, row = hit.trace, hit.row
+    if not trace.mode.enters[row]:
+        return f"the cutter goes down to Z{hit.number(trace.path.z[row])} on a diameter of", ""
+    since = int(last_row(trace.blocks.has("X", "U"), trace.blocks.starts)[row])
+    at = f" at {hit.switch}"
+    return "X stands at", f"{at}, since line {hit.line(since)}" if since >= 0 else at
+
+
+def needs(offsets: ToolOffsets, approaches: Approaches) -> Needs:
+    return approaches.approaches, {"diameter": offsets.cutter_diameter}

@@ -12,13 +12,18 @@ from polarcheck.foundation.arrays import Mask
 from polarcheck.rules.hit import Hit
 
 
-def bar_in_words(hit: Hit, bar: Bar) -> str:
-    """The bar and where it is known from: `40 mm, [stock]`, `27.7 mm turned in lines 8 to 11`."""
-    known, size = bar.known, hit.length(bar.known.smallest)
-    if known.source == "turning":
-        first, last = known.lines
+def bar_in_words(hit: Hit, bar: Bar, z: float) -> str:
+    """The bar at a depth and where it is known from: `40 mm, [stock]`, `27.7 mm turned in line 11`."""
+    standing = bar.standing(hit.row, z)[-1]
+    size, (first, last) = hit.length(standing.diameter), standing.lines
+    if standing.source == "turning":
         return f"{size} turned in {f'line {first}' if first == last else f'lines {first} to {last}'}"
-    return f"{size}, [stock]" if known.source == "job" else f"{size}, comment in line {known.lines[0]}"
+    return f"{size}, [stock]" if standing.source == "job" else f"{size}, comment in line {first}"
+
+
+def bar_diameter(hit: Hit, bar: Bar, z: float) -> float:
+    """The diameter of the bar at a depth [mm]."""
+    return bar.standing(hit.row, z)[-1].diameter
 
 
 def of_line(trace: Trace, writes: Mask, until: int, row: int = -1) -> str:

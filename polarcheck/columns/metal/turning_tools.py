@@ -1,0 +1,112 @@
+"""The tools that turn, where they stand, and the table of what they cut."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from polarcheck.columns.filling import before, fill_down
+from polarcheck.columns.trace import Trace
+from polarcheck.foundation.arrays import Columns, Floats, Mask, Rows, Table, cached_property, is_among
+from polarcheck.foundation.states import Motion
+
+#: A facing move that ends within this radius of X0 leaves a whole face [mm]: the nose of the tool reaches over it.
+CENTER = 1.5
+#: How far a grooving insert reaches along Z to either side of its reference point, at most [mm].
+INSERT = 8.0
+#: The height up to which a cut of a face clears.
+ABOVE_ALL = np.inf
+
+
+class Cuts(Table, frozen=True):
+    """
+    Cuts of turning tools, n of them, in the order of the program.
+
+    row: int[n]. low, high: float64[n], the range of Z [mm]; high is inf where all above is cut. x_low, x_high:
+    float64[n], radius at its ends [mm]. bulge: float64[n], how far an arc may lie off the line between them [mm].
+    is_surface: bool[n], outside of the radius nothing is left; else something may be: grooves, threads, roughing.
+    is_bore: bool[n], cut from inside. is_face: bool[n], a whole face at `low`.
+    """
+
+    row: Rows
+    low: Floats
+    high: Floats
+    x_low: Floats
+    x_high: Floats
+    bulge: Floats
+    is_surface: Mask
+    is_bore: Mask
+    is_face: Mask
+
+    @classmethod
+    def none(cls) -> Cuts:
+        no, never = np.zeros(0), np.zeros(0, bool)
+        return cls(np.zeros(0, np.int64), no, no, no, no, no, never, never, never)
+
+
+class TurningTools(Columns, frozen=True):
+    """Columns of one trace, one value per row."""
+
+    trace: Trace
+
+    @cached_property
+    def tool_call(self) -> Rows:
+        """A number per T word: the same tool may turn first and mill then."""
+        return np.cumsum(self.trace.blocks.has("T") | self.trace.blocks.starts)
+
+    @cached_property
+    def turns(self) -> Mask:
+        """Rows of tool calls that neither use C nor drill nor enter the mode."""
+        trace = self.trace
+        rotary = trace.machine.polar.rotary_words
+        uses_c = trace.blocks.has(*rotary) & trace.modal.uses_axes & trace.axes.moves
+        uses_c |= trace.blocks.has("Y", "V") & trace.axes.moves
+        excluded = uses_c | (trace.modal.drilling != 0) | (trace.mode.section >= 0) | trace.mode.on_cylinder
+        call = self.tool_call
+        has_other = np.zeros(int(call.max(initial=0)) + 1, bool)
+        has_other[call[excluded]] = True
+        return np.asarray(~has_other[call] & trace.tools.has_called_tool & ~trace.modal.on_sub_spindle)
+
+    @cached_property
+    def x_and_z(self) -> tuple[Floats, Floats, Floats, Floats]:
+        """
+        X before and after each row, Z before and after each row of turning tools.
+
+        A cycle ends where it began (B-63944EN, canned cycles): X and Z are those before it.
+        """
+        trace, call = self.trace, self.tool_call
+        begins = np.diff(call, prepend=-1) != 0
+        cycle = trace.modal.in_cycle | trace.blocks.listed("repetitive_cycle")
+        places: list[Floats] = []
+        for value in (np.where(cycle, np.nan, axis) for axis in (trace.path.x, trace.path.z)):
+            after = fill_down(value, ~np.isnan(value) | begins, np.nan)
+            places += [before(after, begins, np.nan), after]
+        return places[0], places[1], places[2], places[3]
+
+    @cached_property
+    def _feeds(self) -> Mask:
+        """Rows in which turning tools move X or Z at feed."""
+        at_feed = is_among(self.trace.axes.motion, (Motion.LINE, Motion.CW, Motion.CCW))
+        return np.asarray(self.turns & at_feed & self.trace.axes.moves)
+
+    @cached_property
+    def moving_rows(self) -> Rows:
+        """Rows in which turning tools move X or Z at feed; only Z before them may be unknown, at the first approach."""
+        x_before, x_after, _, z_after = self.x_and_z
+        return np.flatnonzero(self._feeds & ~np.isnan(x_before + x_after + z_after))
+
+    @property
+    def is_lost(self) -> Mask:
+        """Rows in which turning tools cut, and where is not known."""
+        x_before, x_after, _, z_after = self.x_and_z
+        return np.asarray(self._feeds & np.isnan(x_before + x_after + z_after))
+
+    @cached_property
+    def first_drilled(self) -> int:
+        """The first row that drills on X0, by a cycle or in Z at feed; the number of rows for none."""
+        trace = self.trace
+        on_center = np.abs(self.x_and_z[0]) <= CENTER
+        down = trace.path.moves_z & (np.abs(trace.path.x) <= CENTER) & on_center
+        down &= trace.path.z < trace.path.z_before - 1
+        cycle = (trace.modal.drilling != 0) | trace.blocks.listed("repetitive_cycle")
+        rows = np.flatnonzero((down | (cycle & on_center)) & (trace.mode.section < 0))
+        return int(rows[0]) if len(rows) else len(trace)

@@ -1,0 +1,130 @@
+"""The bar is what turning has left, at the depth that counts: programs that turn first, with the bar of the job."""
+
+from __future__ import annotations
+
+import pytest
+from cases import looped
+from programs import report_of, tables_of
+
+HEAD = "G21 G40/T0303/G97 S1500 M3/"
+AWAY = "/G0 X120. Z50./M5"
+MILL = "/T0101/G98/G97 S3000 M13/G28 H0/"
+END = "/Z2. F1500/G13.1/G0 Z50./M5/M30"
+#: Ways to turn a spigot of 30 down to Z-12, of a bar of 50, with the face at Z0.
+FACING = "G0 X54. Z0 G99/G1 X-1.6 F.15/G0 Z2./"
+SPIGOTS = {
+    "moves": f"{FACING}G0 X40. Z1./G1 Z-11.8 F.2/G0 X42. Z1./X30./G1 Z-12./X52.{AWAY}",
+    "turning cycle": f"{FACING}G0 X54. Z2./G90 X42. Z-12. F.2/X36./X30.{AWAY}",
+    "facing cycle": f"{FACING}G0 X54. Z2./G94 X30. Z-3. F.2/Z-6./Z-9./Z-12./G0 Z2.{AWAY}",
+    "faced by moves": f"{FACING}G0 X54. Z-6./G1 X30. F.2/G0 Z2./X54./Z-12./G1 X30./G0 Z2.{AWAY}",
+    "repetitive cycles": (
+        f"{FACING}G0 X54. Z2./G71 U1.5 R.5/G71 P10 Q20 U.5 W.1 F.2/N10 G0 X30./G1 Z-12. F.1/N20 X54.{AWAY}"
+        f"/T0404/G97 S1500 M3/G0 X54. Z2. G99/G70 P10 Q20{AWAY}"
+    ),
+    "two tools": (
+        f"{FACING}G0 X31. Z1./G1 Z-11.8 F.2/X52.{AWAY}/T0404/G97 S1500 M3/G0 X30. Z1. G99/G1 Z-12. F.1/X52.{AWAY}"
+    ),
+    "with a chamfer": f"{FACING}G0 X26. Z1./G1 Z0 F.2/X30. Z-2./Z-12./X52.{AWAY}",
+    "with an arc": f"{FACING}G0 X26. Z1./G1 Z0 F.2/G3 X30. Z-2. R2./G1 Z-12./X52.{AWAY}",
+}
+#: A hexagon of 24 across flats, at a depth, from an approach.
+HEXAGON = (
+    "G0 Z2./C0/X{x}/G12.1/G1 X{x} F1500/Z{z} F300/G42 X24. C0 F250/C6.928/X0 C13.856/X-24. C6.928/C-6.928/X0 C-13.856"
+    "/X24. C-6.928/C0/G40 X{x}"
+)
+
+
+def told(program: str, radius: float = 6, **stock: float) -> list[tuple[str, str]]:
+    report = report_of(
+        f"O1\n{program.replace('/', chr(10))}\n", "fanuc-30i", f"1:radius={radius},nose=0", job={"stock": stock}
+    )
+    return [(one.rule, one.severity) for one in report.findings if one.severity != "note"]
+
+
+def hexagon(spigot: str, x: str = "46.", z: str = "-6.") -> str:
+    return HEAD + SPIGOTS[spigot] + MILL + HEXAGON.format(x=x, z=z) + END
+
+
+INSIDE = [("approach-inside-stock", "error")]
+
+
+@looped("spigot", list(SPIGOTS))
+@looped("stock", [{"diameter": 50}, {"diameter": 56, "face": 1}, {"hexagon": 44}, {"diameter": 50, "bore": 8}, {}])
+def test_the_approach_clears_what_was_turned(spigot: str, stock: dict[str, float]) -> None:
+    assert told(hexagon(spigot), **stock) == []
+    assert told(hexagon(spigot, x="40."), **stock) == INSIDE
+
+
+@pytest.mark.ci
+@looped("spigot", list(SPIGOTS))
+def test_below_the_spigot_the_bar_counts(spigot: str) -> None:
+    assert told(hexagon(spigot, z="-15."), diameter=50) == INSIDE
+    assert told(hexagon(spigot, x="64.", z="-15."), diameter=50) == []
+
+
+@pytest.mark.ci
+@looped(
+    ("turning", "z", "radius"),
+    [
+        (SPIGOTS["moves"], -6.0, 15.0),
+        (SPIGOTS["moves"], -15.0, 25.0),
+        # A cone, half way down.
+        (f"G0 X30. Z0 G99/G1 X40. Z-20. F.2/X52.{AWAY}", -10.0, 17.5),
+        # A taper of the cycle: R is smaller at its start.
+        (f"G0 X54. Z0 G99/G90 X40. Z-20. R-5. F.2{AWAY}", -10.0, 17.5),
+        # Above a groove the bar stands as it was.
+        (f"{SPIGOTS['moves']}/T0505/G97 S900 M3/G0 X54. Z-30. G99/G1 X20. F.1/G0 X54.{AWAY}", -30.0, 25.0),
+        # A thread leaves what is within its root.
+        (f"{SPIGOTS['moves']}/T0505/G97 S900 M3/G0 X34. Z3./G92 X28. Z-15. F1.5/X27.{AWAY}", -6.0, 13.5),
+        # Of a variable nobody knows what it leaves.
+        (f"G0 X#101 Z1. G99/G1 Z-30. F.2/X52.{AWAY}", -6.0, None),
+    ],
+)
+def test_the_radius_at_a_depth(turning: str, z: float, radius: float | None) -> None:
+    program = HEAD + turning + MILL + HEXAGON.format(x="64.", z="-6.") + END
+    tables = tables_of(
+        f"O1\n{program.replace('/', chr(10))}\n", "fanuc-30i", "1:radius=6,nose=0", job={"stock": {"diameter": 50}}
+    )
+    trace, bar = tables["trace"], tables["bar"]
+    standing = bar.standing(int(trace.mode.sections.enter[0]), z)
+    assert (standing[-1].diameter / 2 if standing else None) == (radius and pytest.approx(radius, abs=1e-4))
+
+
+def test_what_is_turned_later_counts_later() -> None:
+    """A hexagon on a bar of 50, then a spigot of 30 is turned, and the second hexagon begins nearer."""
+    near, wide = HEXAGON.format(x="46.", z="-6."), HEXAGON.format(x="64.", z="-3.")
+    up, turning = "/Z2. F1500/G13.1/G0 Z50./M5/T0303/G97 S1500 M3/", SPIGOTS["moves"].removeprefix(FACING)
+    assert told(HEAD + FACING + AWAY[1:] + MILL + wide + up + turning + MILL + near + END, diameter=50) == []
+    assert told(HEAD + FACING + AWAY[1:] + MILL + near + up + turning + MILL + near + END, diameter=50) == INSIDE
+
+
+POCKET = "G0 Z{z}/C0/X{x}/G12.1/G1 X10. C3. F500/Z-3. F40/X8. F80/X10./Z2. F500/G13.1/G0 Z50./M5/M30"
+FLAT = "G0 Z2./C0/X{x}/G12.1/G1 X{out} C0 F1500/C24./Z-3. F300/X20. F200/C-24./X{out} F1500/Z2./G13.1/G0 Z50./M5/M30"
+
+
+@looped("x", ["34.", "43.6", "20."])
+@looped("z", ["2.", "20."])
+def test_above_the_face_nothing_is_hit(x: str, z: str) -> None:
+    start = "G21 G98 G40" + MILL
+    assert told(start + POCKET.format(x=x, z=z), 4, diameter=30) == []
+    assert told(start + FLAT.format(x=x, out="60."), 4, diameter=30) == []
+    assert told(start + FLAT.format(x=x, out="60.").replace("C24./Z-3.", "X30./Z-3."), 4, diameter=30) != []
+
+
+SLOT = "X60. C{c}/Z-4. F500/X{end} F90/Z2. F1500/"
+
+
+@looped("cs", [("6.",), ("6.", "-6."), ("-6.", "6."), ("6.", "0", "-6."), ("2.", "-2.")])
+@looped("end", ["14.", "20.", "0"])
+def test_slots_that_are_lifted_out_of_are_sound(cs: tuple[str, ...], end: str) -> None:
+    slots = "".join(SLOT.format(c=c, end=end) for c in cs)
+    program = f"G21 G98 G40{MILL}G0 X60. Z2. C0/G12.1/G98 G1 X60. C6. F1500/{slots}G13.1/G0 Z50./M5/M30"
+    assert "pass-ends-inside-bar" not in [rule for rule, _ in told(program, 3, diameter=40)]
+
+
+@looped("after", ["G40 X60. F1500/Z2./", "Z2./G40 X60. F1500/"])
+def test_a_flat_that_ends_inside_is_told(after: str) -> None:
+    flat = f"G1 X60. C28. F1500/Z-4. F500/G41 X20. F200/C{{c}}/{after}"
+    program = f"G21 G98 G40{MILL}G0 X60. Z2. C0/G12.1/{flat}G13.1/G0 Z50./M5/M30"
+    assert told(program.format(c="-28."), 3, diameter=40) == []
+    assert told(program.format(c="-2."), 3, diameter=40) == [("pass-ends-inside-bar", "warning")]
