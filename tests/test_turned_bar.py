@@ -128,3 +128,27 @@ def test_a_flat_that_ends_inside_is_told(after: str) -> None:
     program = f"G21 G98 G40{MILL}G0 X60. Z2. C0/G12.1/{flat}G13.1/G0 Z50./M5/M30"
     assert told(program.format(c="-28."), 3, diameter=40) == []
     assert told(program.format(c="-2."), 3, diameter=40) == [("pass-ends-inside-bar", "warning")]
+
+
+@looped("far", ["-112.", "112."])
+def test_a_point_far_outside_the_bar_is_told(far: str) -> None:
+    """The last word of a flat, of a bar of 46."""
+    flat = "G1 X60. C{near}. F1500/Z-4. F500/{side} X20. F200/C{far}/G40 X60. F1500/Z2./"
+    start, end = f"G21 G98 G40{MILL}G0 X60. Z2. C0/G12.1/", "G13.1/G0 Z50./M5/M30"
+    side, near = ("G41", "32") if far[0] == "-" else ("G42", "-32")
+    for stock in ({"diameter": 46}, {"hexagon": 42}):
+        sound = far.replace("112.", "32.")
+        assert told(start + flat.format(near=near, side=side, far=sound) + end, 3, **stock) == []
+        assert told(start + flat.format(near=near, side=side, far=far) + end, 3, **stock) == [("cut-in-air", "warning")]
+
+
+def test_a_contour_that_comes_round_ends_inside_the_bar_and_leaves_nothing() -> None:
+    """It ends behind its own first cut, nearer to the center than the rim of the bar."""
+    contour = (
+        "G1 X60. C14. F1500/Z-4. F300/G42 X40.822 C2.765 F250/X0 C14.549/X-25.2 C7.275/C-7.275/X0 C-14.549"
+        "/X25.2 C-7.275/C15.058/G40 X60. C15.058/Z2. F1500/G13.1/G0 Z50./M5/M30"
+    )
+    assert told(f"G21 G98 G40{MILL}G0 X60. Z2. C0/G12.1/{contour}", 5, diameter=40.775) == []
+    assert (
+        told(f"G21 G98 G40{MILL}G0 X60. Z2. C0/G12.1/{contour.replace('C15.058', 'C4.058')}", 5, diameter=40.775) != []
+    )

@@ -51,7 +51,7 @@ class PassEnds(Columns, frozen=True):
         leads_out &= trace.compensation.compensates[moving[last]] | ~is_lifted
         below = trace.path.z[moving[last]] < self.workpiece.top - ROUNDING
         leaves = (np.abs(start) > half - ROUNDING) & (np.abs(end) < half - _EDGE) & leads_out & below
-        leaves &= ~self._goes_back(out, start)
+        leaves &= ~self._goes_back(out, start) & ~self._comes_round(moving[first], moving[last])
         result[moving[last[leaves]]] = True
         return result
 
@@ -74,3 +74,19 @@ class PassEnds(Columns, frozen=True):
             share = np.clip(((start - path.start[out]) * chord.conj()).real / np.abs(chord) ** 2, 0, 1)
         apart = np.abs(start - path.start[out] - share * chord)
         return np.asarray(apart <= np.nan_to_num(self.workpiece.radius[out]) / 2)
+
+    def _comes_round(self, first: Rows, last: Rows) -> Mask:
+        """The last cut crosses the first one: what lies beyond its end has been cut there."""
+        path = self.trace.path
+
+        def parted(wall: Rows, of: Rows) -> Mask:
+            """The ends of a cut lie on two sides of another, or on it."""
+            along = path.end[wall] - path.start[wall]
+            sides = [
+                (along.conj() * (point - path.start[wall])).imag / np.abs(along)
+                for point in (path.start[of], path.end[of])
+            ]
+            return np.asarray(np.minimum(*sides) * np.maximum(*sides) <= 0)
+
+        with np.errstate(invalid="ignore", divide="ignore"):
+            return np.asarray((first != last) & parted(first, last) & parted(last, first))

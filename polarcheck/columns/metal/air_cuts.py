@@ -25,6 +25,8 @@ _ABOVE = 0.01
 _FARTHEST = 10.0
 #: A section at the height of its entry is in air beside others that cut below Z0, if it is as high as this [mm].
 _CLEAR = 0.9
+#: A cut goes far out if its end lies this many times as far from X0 as the bar, and as all before it.
+_FAR_OUT = 2.0
 #: Points that are nearer than this are one, and angles [mm, deg].
 _SAME, _SAME_ANGLE = 2e-3, 1e-3
 
@@ -40,6 +42,7 @@ class Reason(IntEnum):
     REPEATED = 5
     OUTSIDE_BAR = 6
     BLOCKS_REPEATED = 7
+    POINT_OUTSIDE = 8
 
 
 class AirCuts(Columns, frozen=True):
@@ -48,6 +51,11 @@ class AirCuts(Columns, frozen=True):
     trace: Trace
     bar: Bar
     workpiece: Workpiece
+
+    @property
+    def goes_outside(self) -> Mask:
+        """Rows whose end lies far outside the bar."""
+        return np.asarray(self.reason == Reason.POINT_OUTSIDE)
 
     @property
     def is_outside_bar(self) -> Mask:
@@ -85,6 +93,7 @@ class AirCuts(Columns, frozen=True):
             return reason
         for mask, why in (
             (self._blocks_repeated, Reason.BLOCKS_REPEATED),
+            (self._point_outside, Reason.POINT_OUTSIDE),
             (self._outside_bar, Reason.OUTSIDE_BAR),
             (self._is_repeated, Reason.REPEATED),
             (self._others_below, Reason.OTHERS_BELOW),
@@ -183,6 +192,25 @@ class AirCuts(Columns, frozen=True):
         reach = trace.path.moves_of(rows).nearest - self.workpiece.radius[rows]
         beyond[rows] = np.nan_to_num(reach - self.bar.outer(rows, trace.path.z[rows]), nan=-np.inf)
         return np.asarray(self._of_section(beyond, self.walls, np.minimum, np.inf) > ROUNDING)
+
+    @property
+    def _point_outside(self) -> Mask:
+        """The cut goes far out of the bar, and much farther than anything before it at depth in the section."""
+        trace, mask = self.trace, np.zeros(len(self.trace), bool)
+        if self.bar.known.source == "none":
+            return mask
+        outer, size = np.full(len(trace), np.nan), np.abs(trace.path.end)
+        rows = np.flatnonzero(self.walls)
+        outer[rows] = self.bar.outer(rows, trace.path.z[rows])
+        far = self.walls & (size > _FAR_OUT * (outer + np.nan_to_num(self.workpiece.radius)))
+        is_low = trace.mode.in_polar & (trace.path.z < self.workpiece.top)
+        for row in np.flatnonzero(far).tolist():
+            first = int(trace.mode.sections.enter[trace.mode.section[row]])
+            low = is_low[first:row]
+            if low.any() and size[row] > _FAR_OUT * np.fmax.reduce(size[first:row][low]):
+                mask[row] = True
+                break
+        return mask
 
     # ---- the same section again ----
 

@@ -30,6 +30,13 @@ if TYPE_CHECKING:
             "bad-number",
         ),
         "program": ("comment-contradicts-part",),
+        "loop": (
+            "arc-end-off-circle",
+            "contour-crosses-itself",
+            "incremental-contour-not-closed",
+            "nearly-regular-contour",
+            "passes-differ",
+        ),
     },
 )
 def cut_in_air(air_cuts: AirCuts) -> Hits:
@@ -39,10 +46,10 @@ def cut_in_air(air_cuts: AirCuts) -> Hits:
     The part comes off the machine without its shape, and the next tool meets the metal. The depth word is missing, so
     that the retract moves nowhere; its sign is wrong, so that the tool goes away from the part to cut and towards it to
     retract; the cut stands above the face that the program has turned or `[stock]` names, or above all others; it runs
-    outside the bar, as in a program in inch that the control reads in mm; or the same section is cut again at the same
-    angle of C, since an index is missing or written twice; or a subprogram that is repeated goes down to the same depth
-    each time, which was meant to be an increment. Programs with their origin at the back, which cut above Z0
-    alone, are not meant, nor are spring passes.
+    outside the bar, as in a program in inch that the control reads in mm, or goes far out of it with one word; or the
+    same section is cut again at the same angle of C, since an index is missing or written twice; or a subprogram that
+    is repeated goes down to the same depth each time, which was meant to be an increment. Programs with their origin at
+    the back, which cut above Z0 alone, are not meant, nor are spring passes.
 
     Source: builder's guide to G12.1, order of a section.
 
@@ -109,6 +116,20 @@ def cut_in_air(air_cuts: AirCuts) -> Hits:
         G40 X60.
         M99
 
+    Bad, tool 1:radius=4, set job.stock.diameter=46:
+
+        T0101
+        G98 G0 X64. Z2. C0
+        G12.1
+        G1 X64. C32. F1500
+        Z-5.
+        G41 X30. C32. F200
+        C-112.            (expect: cut-in-air)
+        G40 X64. F1500
+        Z2.
+        G13.1
+        G0 X100. Z50.
+
     Good, tool 1:radius=4:
 
         T0101
@@ -129,7 +150,8 @@ def cut_in_air(air_cuts: AirCuts) -> Hits:
         G13.1
         G0 X100. Z50.
     """
-    return Hits(air_cuts.reason > 0, follows={"program": air_cuts.is_outside_bar})
+    follows = {"program": air_cuts.is_outside_bar, "loop": air_cuts.goes_outside}
+    return Hits(air_cuts.reason > 0, follows=follows)
 
 
 def details(hit: Hit, air_cuts: AirCuts, bar: Bar) -> Details:
@@ -139,7 +161,7 @@ def details(hit: Hit, air_cuts: AirCuts, bar: Bar) -> Details:
 def _in_air(hit: Hit, air_cuts: AirCuts, bar: Bar) -> str:
     """What is cut in air, and the witness."""
     from polarcheck.columns.metal.air_cuts import Reason
-    from polarcheck.rules.wording.metal import of_line
+    from polarcheck.rules.wording.metal import bar_ends_at, of_line
 
     trace, row = hit.trace, hit.row
     z, enter = f"Z{hit.number(trace.path.z[row])}", int(trace.mode.sections.enter[trace.mode.section[row]])
@@ -163,13 +185,15 @@ def _in_air(hit: Hit, air_cuts: AirCuts, bar: Bar) -> str:
             why = "and the program cuts below Z0 elsewhere: a Z word for the depth is missing"
             return f"cuts at {z}{where}, where the section begins, {why}"
         case Reason.OUTSIDE_BAR:
-            import numpy as np
-
-            largest = 2 * float(bar.outer(np.array([row]), trace.path.z[[row]])[0])
+            largest = 2 * bar_ends_at(hit, bar)
             return f"runs outside the bar of {hit.length(largest)} all the way: check the units and X"
         case Reason.BLOCKS_REPEATED:
             where = of_line(trace, trace.axes.commands_z, row)
             return f"these blocks cut at {z}{where} each time that they are repeated: write the depth as an increment"
+        case Reason.POINT_OUTSIDE:
+            end = complex(trace.path.end[row])
+            largest = 2 * bar_ends_at(hit, bar)
+            return f"goes to {hit.point_off_center(end)}, far outside the bar of {hit.length(largest)}: check the word"
         case _:
             angle = float(trace.path.c_angle[enter])
             return f"this section was cut before at the same angle of C ({angle:g} deg): it takes nothing off; index C"

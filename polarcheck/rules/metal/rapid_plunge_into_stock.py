@@ -114,7 +114,7 @@ def _way_down(hit: Hit, bar: Bar, radius: float, in_bar: bool) -> str:
     """What to write where rapid traverse leads down into the bar."""
     import numpy as np
 
-    from polarcheck.rules.wording.metal import of_line
+    from polarcheck.rules.wording.metal import bar_ends_at, of_line
     from polarcheck.rules.wording.written import code_of
 
     trace, row = hit.trace, hit.row
@@ -123,6 +123,5 @@ def _way_down(hit: Hit, bar: Bar, radius: float, in_bar: bool) -> str:
         return f"write a Z above the metal here, and go down to Z{hit.number(path.z[row])} with {line} and a feed"
     if not in_bar or np.isnan(radius):
         return f"write {line} with a feed"
-    outer = float(bar.outer(np.array([row]), path.z[[row]])[0])
-    clear, where = hit.quantity(outer + radius), of_line(trace, trace.blocks.has("X", "U"), row, row)
+    clear, where = hit.quantity(bar_ends_at(hit, bar) + radius), of_line(trace, trace.blocks.has("X", "U"), row, row)
     return f"write {line} with a feed, or stand outside the bar: {clear:diameter} or more in X{where}"

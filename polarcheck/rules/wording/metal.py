@@ -26,6 +26,12 @@ def bar_diameter(hit: Hit, bar: Bar, z: float) -> float:
     return bar.standing(hit.row, z)[-1].diameter
 
 
+def bar_ends_at(hit: Hit, bar: Bar) -> float:
+    """The radius of the bar at the depth of the block, the larger where there are two [mm]."""
+    rows, z = np.array([hit.row]), hit.trace.path.z[[hit.row]]
+    return float(np.where(np.isnan(bar.outer(rows, z)), bar.inner(rows, z), bar.outer(rows, z))[0])
+
+
 def of_line(trace: Trace, writes: Mask, until: int, row: int = -1) -> str:
     """` of line 7`: the last row up to `until` that writes something, where that is not `row` itself."""
     at = int(last_row(writes, trace.blocks.starts)[until]) if until >= 0 else -1
