@@ -259,8 +259,14 @@ class Bar(Columns, frozen=True):
         return self._reach(rows, tip)[0]
 
     def outer(self, rows: Rows, tip: Floats) -> Floats:
-        """The radius outside of which there is no metal for certain [mm]; NaN where that is not known."""
+        """
+        The radius outside of which there is no metal for certain [mm]; NaN where that is not known.
+
+        Above Z0 with an unknown face it is that of all depths: the face may lie higher.
+        """
         outer = self._reach(rows, tip)[1]
+        if np.isnan(self.known.face):
+            outer = np.where(tip >= 0, self.known.largest / 2, outer)
         return np.where(np.isinf(outer), np.nan, outer)
 
     def bore(self, rows: Rows) -> Floats:
