@@ -581,7 +581,9 @@ def test_offsets_of_edges_are_free_numbers() -> None:
     )
     text = convert(program, "siemens-transmit", "haas-lathe").data.decode()
     assert "T5151\n" in text
-    assert "T0352 (DECIDE: T0352: ENTER THE VALUES OF EDGE 2 OF TOOL 3 IN OFFSET 52)\n" in text
+    assert (
+        "T0352 (DECIDE: T0352: ENTER THE VALUES OF EDGE 2 OF TOOL 3 IN OFFSET 52. THE TOOL CHANGES AT X60 Z2: " in text
+    )
 
 
 def test_a_message_is_no_m_code_that_explains_why_the_live_tool_stands() -> None:
@@ -630,7 +632,7 @@ SURFACE = "%\nO1\nG20 G99\nT0101\nG96 S600 M3\nG0 X2. Z.1\nG1 Z-.5 F.01\nG97 S80
         (HEAD + DRILLED + MILLED + END, SOURCE, "haas-lathe", "(DECIDE: G83 Z-20. R-8."),
         (HEAD + CYCLES + MILLED + END, SOURCE, "mitsubishi-m700", "(DECIDE: G70 P80 Q90: ITS CONTOUR)\n"),
         (HEAD + SECOND + END, "fanuc-30i", "siemens-transmit", "%_N_O2_MPF\nG90 DIAMON\n"),
-        (HEAD + "G50 S2500\n" + MILLED + END, SOURCE, "okuma-osp", "G50 S2500\n"),
+        (HEAD + "G50 S2500\n" + MILLED + END, SOURCE, "okuma-osp", "G50 S2500 (DECIDE: S2500: GIVE THE LIMIT"),
         (HEAD + "M76 M8\n" + MILLED + END, SOURCE, "siemens-transmit", "M8 ; DECIDE: M76: IT ENGAGES THE C AXIS"),
         # The code of the motion was in the block that is to be decided.
         (HEAD + "G1 Z5. F100\nG0 G28 U0 W0\nX99. Z50.\n" + MILLED + END, "fanuc-30i", "okuma-osp", ")\nG0 X99. Z50.\n"),
@@ -643,7 +645,7 @@ SURFACE = "%\nO1\nG20 G99\nT0101\nG96 S600 M3\nG0 X2. Z.1\nG1 Z-.5 F.01\nG97 S80
         ("%_N_O12_MPF\n" + SIEMENS + "M30\n", "siemens-transmit", "fanuc-30i", "%\nO12\n"),
         ("%_N_SHAFT_MPF\n" + SIEMENS + "M30\n", "siemens-transmit", "fanuc-30i", "%\n(SHAFT_MPF)\n"),
         # Tools and offsets.
-        (SIEMENS + "T2 D1\nG0 X40 Z2\nT2 D0\nM30\n", "siemens-transmit", "fanuc-30i", "T0202\n"),
+        (SIEMENS + "T2 D1\nG0 X40 Z2\nT2 D0\nM30\n", "siemens-transmit", "fanuc-30i", "T0202 (DECIDE: THE TOOL"),
         (HEAD + "T0313\nG0 X60. Z2.\n" + END, "fanuc-30i", "siemens-transmit", "T3 D1 ; DECIDE: D1 OF TOOL 3: ENTER"),
         (HEAD + "T0300\nG0 X60. Z2.\n" + END, "fanuc-30i", "siemens-transmit", "T3 D0\n"),
         (HEAD + "T0313\nG0 X60. Z2.\n" + END, "fanuc-30i", "mazak-integrex", "T"),

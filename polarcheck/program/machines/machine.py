@@ -56,6 +56,7 @@ class Writing(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     arc_split: largest angle of an arc that is written, within arcs.sweep_limit [deg]
     helices: arcs with Z beside X and the virtual axis are written
     live_tool_speed: word of the speed of the live tool, as S or SB=; empty where it is not known
+    corner_codes: G codes of how the tool goes through corners at feed, exact stop or not; beside them axis words move
     subprogram_call: block that calls a subprogram, with its number in the place of #; empty where it is not known
     subprogram_repeats: word beside it of how often the subprogram runs; empty where it is not known
     subprogram_return: block that ends a subprogram; empty where it is not known
@@ -76,6 +77,7 @@ class Writing(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     arc_split: Annotated[float, msgspec.Meta(gt=0, le=360)]
     helices: bool = False
     live_tool_speed: Plain = ""
+    corner_codes: list[Plain] = []
     subprogram_call: Plain = ""
     subprogram_repeats: Plain = ""
     subprogram_return: Plain = ""

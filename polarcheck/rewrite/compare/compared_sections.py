@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import msgspec
 import numpy as np
 
-from polarcheck.columns.filling import before
+from polarcheck.columns.filling import before, happened
 from polarcheck.columns.path.moves import Moves, programmed_moves, z_along
 from polarcheck.columns.path.standing_moves import with_standing
 from polarcheck.columns.path.tool_center import ToolCenter
@@ -151,9 +151,11 @@ def outside(trace: Trace, steps: Sequence[Step], rows: Rows, terms: Terms) -> St
     """
     rows = rows[trace.mode.section[rows] < 0]
     at_work = np.isin(trace.axes.motion[rows], (Motion.RAPID, Motion.LINE, Motion.CW, Motion.CCW))
-    moving = at_work & trace.path.moves[rows] & ~trace.modal.in_cycle[rows] & trace.modal.uses_axes[rows]
-    moving &= ~special_rows(trace)[rows]
     left_out = np.isin(trace.blocks.line_in_file, list(terms.left_out))
+    # Behind a block that is left out the tool comes from elsewhere to where the old program has it already.
+    arrives = happened(left_out, trace.path.moves & ~left_out) & trace.blocks.has(*trace.machine.axis_words)
+    moving = at_work & (trace.path.moves | arrives)[rows] & ~trace.modal.in_cycle[rows] & trace.modal.uses_axes[rows]
+    moving &= ~special_rows(trace)[rows]
     is_left_out = left_out[rows]
     row = rows[moving & ~is_left_out]
     starts, path = trace.blocks.starts, trace.path

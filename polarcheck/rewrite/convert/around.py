@@ -14,7 +14,7 @@ from polarcheck.columns.filling import fill_down
 from polarcheck.foundation.arrays import Rows
 from polarcheck.foundation.states import Motion
 from polarcheck.program.machines.machine import Machine
-from polarcheck.rewrite.convert.block_texts import BlockTexts
+from polarcheck.rewrite.convert.block_texts import BlockTexts, decision_comment
 from polarcheck.rewrite.convert.heads import Heads, writes_numbers
 from polarcheck.rewrite.convert.translating import Translated, Translation
 from polarcheck.rewrite.writing.new_blocks import NewBlock
@@ -223,7 +223,8 @@ class _Writer:
             return
         for text in result.decisions:
             self._decide(line, text)
-        comment = "; ".join(result.decisions)
+        self.decisions += [Decision(line, text) for text in result.remarks]
+        comment = result.comment
         if not (result.changed or comment or (self._resigns and self.texts.has_comment(block))):
             return
         new = [NewBlock(tuple(result.words), decision_comment(comment) if comment else "")]
@@ -271,12 +272,6 @@ class _Writer:
             self._decide(line, f"{content}: {reason}")
         self._reported = is_never_run
         self.blocks[block] = [NewBlock((), decision_comment(f"{content}: {reason}"))]
-
-
-def decision_comment(text: str) -> str:
-    """A comment that says what is to be decided, in characters that every control has."""
-    plain = text.upper().translate(str.maketrans("()[];%", "      "))
-    return "DECIDE: " + " ".join("".join(sign for sign in plain if " " <= sign <= "~").split())
 
 
 def _grouped(block: Rows, count: int) -> tuple[Rows, Rows]:

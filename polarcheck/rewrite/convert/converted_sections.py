@@ -13,11 +13,11 @@ import numpy as np
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.states import Motion, Side, Units
 from polarcheck.program.machines.machine import Machine
-from polarcheck.rewrite.convert.block_texts import BlockTexts
+from polarcheck.rewrite.convert.block_texts import BlockTexts, decision_comment
 from polarcheck.rewrite.convert.computed_blocks import ComputedBlocks
 from polarcheck.rewrite.convert.section_refusals import SectionFeeds, refusals
 from polarcheck.rewrite.convert.section_words import SectionWords
-from polarcheck.rewrite.convert.translating import Translation
+from polarcheck.rewrite.convert.translating import Translated, Translation
 from polarcheck.rewrite.writing.new_blocks import NewBlock
 from polarcheck.rewrite.writing.original import Original
 from polarcheck.rewrite.writing.outcome import Decision, RefusedError, refused_at
@@ -55,6 +55,8 @@ class Corners:
         return NewBlock(tuple(self._codes[which][:1]) if is_compensated else ())
 
 
+#: The words of an axis, a coordinate and a distance.
+_STEPS = {"X": ("X", "U"), "Z": ("Z", "W")}
 #: A plane that is turned by less is not turned [rad].
 _SAME_DIRECTION = 1e-9
 _ELSEWHERE = "the other control places it at another angle"
@@ -106,6 +108,7 @@ class _Writer:
         self.computed = ComputedBlocks(self.trace, target, translation.measures, self.words)
         self.corners = Corners(self.trace, target)
         self.is_same = self.words.is_same
+        self.has_axes = self.trace.blocks.has(*self.source.axis_words)
         self.blocks: dict[int, list[NewBlock]] = {}
         self.taken: set[int] = set()
         self.decisions: list[Decision] = []
@@ -136,6 +139,7 @@ class _Writer:
         trace, sections = self.trace, self.trace.mode.sections
         enter, leave = int(sections.enter[number]), int(sections.leave[number])
         rows = self._with_words(enter, leave)
+        self._require_entry(enter, rows)
         if self.is_same:
             for row in rows:
                 self._put(row, self._as_written(row))
@@ -182,7 +186,8 @@ class _Writer:
         """What points of the plane are multiplied by: where the other machine lays its plane otherwise on the part."""
         trace, ours, theirs = self.trace, self.source.polar, self.target.polar
         number = int(trace.mode.section[enter])
-        c_angle = float(trace.path.c_angle[enter])
+        is_lost = self.translation.measures.is_lost(enter, "C")
+        c_angle = math.nan if is_lost else float(trace.path.c_angle[enter])
         if math.isnan(c_angle):
             if ours.zero_angle == theirs.zero_angle and not theirs.direction_word:
                 return 1.0 + 0j
@@ -215,25 +220,43 @@ class _Writer:
         if (call := self._call(row)) is not None:
             return [NewBlock(tuple(call))]
         geometry, remaining = self.words.divided(row, self.translation.words_of(row), row in (enter, leave))
-        words = self._translated(row, remaining)
+        translated = self._translated(row, remaining)
+        words, comment = translated.words, self._comment(row, translated)
         front = [word for word in words if word[:1].upper() == "G" and not self.words.is_dwell(row)]
         back = [word for word in words if word not in front]
         if row == enter:
             point = complex(trace.path.end[row]) * turn
             angle = float(trace.path.c_angle[row]) * self.source.polar.c_sense * self.target.polar.c_sense
             new = pen.enter(point, float(trace.path.z[row]), 0.0 if math.isnan(angle) else angle)
-            return _without_empty(NewBlock(tuple(front)), *new, self.corners.before(row), NewBlock(tuple(back)))
+            last = NewBlock(tuple(back), comment)
+            return _without_empty(NewBlock(tuple(front)), *new, self.corners.before(row), last)
         if row == leave:
             restored = self.corners.behind(row), self._plane_behind(enter, leave)
-            return _without_empty(NewBlock(tuple(words)), *pen.leave(), *restored)
+            return _without_empty(NewBlock(tuple(words), comment), *pen.leave(), *restored)
         codes = [*front, *self._sides(geometry)]
         if self.computed.is_computed(row):
             moves = self._computed_block(row, geometry, pen, turn, codes)
         else:
             moves = self._moves(row, pen, turn, codes)
         if not moves:
-            return [NewBlock((*codes, *back))] if codes or back else []
-        return [*moves[:-1], NewBlock((*moves[-1].words, *back), moves[-1].comment)]
+            return _without_empty(NewBlock((*codes, *back), comment))
+        return [*moves[:-1], NewBlock((*moves[-1].words, *back), comment)]
+
+    def _comment(self, row: int, translated: Translated) -> str:
+        """
+        The comment in the new block on what is to be decided of a row.
+
+        Raises RefusedError for a block that moves the tool and can only be decided whole.
+        """
+        line, content = self._line(row), self.texts.content(int(self.trace.run.block[row]))
+        text = f"{content}: {translated.whole}" if translated.whole else ""
+        if text and (self.has_axes[row] or self.trace.axes.moves[row]):
+            raise refused_at(self.trace, row, f"{text}, and the contour in the mode cannot go on without it")
+        texts = [text] if text else translated.decisions
+        self._decide([Decision(line, decision) for decision in texts])
+        self.decided |= {line} if texts else set()
+        self._decide([Decision(line, remark) for remark in translated.remarks])
+        return decision_comment(text or translated.comment) if texts or translated.remarks else ""
 
     def _plane_behind(self, enter: int, leave: int) -> NewBlock:
         """The plane of before where the section selects one and arcs, cycles or compensation follow outside."""
@@ -298,25 +321,50 @@ class _Writer:
         """The words of a block that calls a subprogram or returns from it; None for any other."""
         return self.translation.calls.words_of_row(row, self.texts.content(int(self.trace.run.block[row])))
 
-    def _translated(self, row: int, words: Sequence[int]) -> list[str]:
-        if not words:
-            return []
-        texts, decisions = self.translation.translate(row, words)
-        self._decide(decisions)
-        return texts
+    def _translated(self, row: int, words: Sequence[int]) -> Translated:
+        """The words of a row beside its geometry; none of them where the whole block is to be decided."""
+        reason = self.translation.why_not(row)
+        result = self.translation.words(row, words) if words and not reason else Translated(whole=reason)
+        return Translated(whole=result.whole) if result.whole else result
 
     def _as_written(self, row: int) -> list[NewBlock] | None:
         """A block whose geometry stays as it is; None where all of it does."""
         indices = self.translation.words_of(row)
         if self._call(row) is not None or not is_plain(self.trace.run, row):
             return None
-        _, remaining = self.words.divided(row, indices, is_switch=False)
+        is_switch = bool(self.trace.mode.enters[row] | self.trace.mode.leaves[row])
+        _, remaining = self.words.divided(row, indices, is_switch)
         written = self.translation.measures.written
         translated = {index: self._translated(row, [index]) for index in remaining}
-        if all(words == [written(index)] for index, words in translated.items()):
+        whole = self.translation.why_not(row) or next((word.whole for word in translated.values() if word.whole), "")
+        parts = list(translated.values())
+        result = Translated(
+            decisions=[text for part in parts for text in part.decisions],
+            remarks=[text for part in parts[:1] for text in part.remarks],
+            whole=whole,
+        )
+        comment = self._comment(row, result)
+        if not comment and all(part.words == [written(index)] for index, part in translated.items()):
             return None
-        words = [word for index in indices for word in translated.get(index, [written(index)])]
-        return [NewBlock(tuple(words))]
+        if whole:
+            return [NewBlock((), comment)]
+        words = [
+            word for index in indices for word in (translated[index].words if index in translated else [written(index)])
+        ]
+        return [NewBlock(tuple(words), comment)]
+
+    def _require_entry(self, enter: int, rows: Sequence[int]) -> None:
+        """Raise RefusedError for a section that begins where nobody knows, and whose first moves do not say it."""
+        trace, measures = self.trace, self.translation.measures
+        moves = [row for row in rows if row > enter and trace.axes.motion[row] != Motion.NONE]
+        for axis in "XZ":
+            first = next((row for row in moves if trace.blocks.has(*_STEPS[axis])[row]), None)
+            if not measures.is_lost(enter, axis) or first is None:
+                continue
+            if measures.is_lost(first + 1, axis) or bool(trace.path.is_arc[moves[0]]):
+                raise refused_at(
+                    trace, first, f"where {axis} stands is not known, behind a block that is to be decided"
+                )
 
     def _feed_behind(self, leave: int, pen: Pen) -> None:
         """Write F behind the section again where a block behind it moves by an F from within."""
@@ -358,7 +406,6 @@ class _Writer:
 
     def _decide(self, decisions: Sequence[Decision]) -> None:
         self.decisions += [decision for decision in decisions if decision not in self.decisions]
-        self.decided |= {decision.line for decision in decisions}
 
     def _notes(self, rapid_as_line: bool) -> list[str]:
         notes = []
@@ -376,7 +423,7 @@ class _Writer:
 
 
 def _without_empty(*blocks: NewBlock) -> list[NewBlock]:
-    return [block for block in blocks if block.words]
+    return [block for block in blocks if block.words or block.comment]
 
 
 def _count(rows: Sequence[int], name: str) -> str:

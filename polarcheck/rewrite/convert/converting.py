@@ -11,7 +11,8 @@ from msgspec.structs import replace
 from polarcheck.checking.settings import Settings
 from polarcheck.foundation.states import Units
 from polarcheck.program.machines.job import Job
-from polarcheck.rewrite.convert.around import around, decision_comment
+from polarcheck.rewrite.convert.around import around
+from polarcheck.rewrite.convert.block_texts import decision_comment
 from polarcheck.rewrite.convert.converted_sections import sections
 from polarcheck.rewrite.convert.translating import Translation
 from polarcheck.rewrite.writing.new_blocks import (

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import msgspec
 
-from polarcheck.program.machines.code_lists import GCodes, GCodeSystem
+from polarcheck.program.machines.code_lists import GCodes, GCodeSystem, numbers
 from polarcheck.program.machines.code_tables import code, spelled
 from polarcheck.program.machines.machine import Machine
 from polarcheck.program.machines.own_language import shown
@@ -101,10 +101,13 @@ class GMeanings:
                     self._with_words[code(word)] = (key, index)
         for name, equivalent in source.control.motion_codes.items():
             self._keys[code(name)] = self._keys[code(equivalent)]
-        self._has_same_codes = (
-            source.control.known_codes == target.control.known_codes
-            and source.control.g_code_system == target.control.g_code_system
-        )
+        # A code that is not in the list of the control is a builder's, and another one on another lathe.
+        self._is_same_machine = source == target
+        same_list = source.control.known_codes == target.control.known_codes
+        same_system = source.control.g_code_system == target.control.g_code_system
+        self._same_codes = set(numbers(source.control.known_codes)) if same_list and same_system else set()
+        corner_codes = (numbers(machine.writing.corner_codes) for machine in (source, target))
+        self._same_codes |= set.intersection(*map(set, corner_codes))
 
     def key(self, number: int, has_words: bool = False) -> str:
         """
@@ -123,7 +126,7 @@ class GMeanings:
         word = spelled("G", number)
         key, index = self._listed(number, has_words)
         if not key:
-            if self._has_same_codes:
+            if number in self._same_codes or self._is_same_machine:
                 return Meaning((self.named(word),))
             return Meaning(reason=f"the profile of {self.source.title} does not say what it does")
         theirs, ours = self.target.codes(key), self.source.codes(key)

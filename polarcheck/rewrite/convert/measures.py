@@ -14,6 +14,7 @@ from polarcheck.program.machines.axis_table import INCREMENTS
 from polarcheck.program.machines.machine import Machine
 from polarcheck.rewrite.convert.number_text import number_of, rescaled, rounded
 from polarcheck.rewrite.writing.outcome import refused_at
+from polarcheck.rewrite.writing.unknown_moves import UnknownMoves
 
 _MM_PER_INCH = Fraction(254, 10)
 #: To which F in other units is rounded.
@@ -51,6 +52,9 @@ class Measures:
         self._codes = {unit: bool(target.codes(unit)) for unit in ("inch", "mm")}
         self._c_ratio = Fraction(self.source.polar.c_sense * target.polar.c_sense)
         #: Both controls read a number without a point alike.
+        self.unknown_moves = UnknownMoves(trace)
+        letters = {"X": "X", "Z": "Z", "C": rotary}
+        self._lost = {axis: self.unknown_moves.lost(letter) for axis, letter in letters.items()}
         self.pointless_is_same = self.source.control.number_without_point == target.control.number_without_point
 
     # ---- units ----
@@ -148,11 +152,15 @@ class Measures:
             ratio = 1 / _MM_PER_INCH if self.writes_inch(row) else Fraction(1)
             if axis == "X":
                 ratio /= fraction(RADIUS_FACTOR[self.target.control.x])
-        if np.isnan(value):
+        if np.isnan(value) or self.is_lost(row, axis):
             return None
         least = fraction(self.target.control.least_increment) if axis == "C" else self.least(row)
         has_point = self.target.control.number_without_point == "least-increment"
         return rounded(Fraction(value) * ratio, least, has_point=has_point)
+
+    def is_lost(self, row: int, axis: str) -> bool:
+        """Nobody knows where an axis stands before a row, behind a block that somebody has to decide."""
+        return axis in self._lost and bool(self._lost[axis][row])
 
     def span(self, index: int) -> tuple[int, int]:
         """The characters of an executed word."""

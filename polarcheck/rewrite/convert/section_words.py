@@ -39,10 +39,11 @@ class SectionWords:
         addresses = {"X", "U", "Z", "W", "F", "I", "J", "K", arcs.radius_word, *polar.axis_addresses, *centers}
         addresses |= {arcs.larger_arc_word[:1]} if arcs.larger_arc_word else set()
         self._addresses = {source.address_number(address) for address in addresses if address}
-        letters = {*"PQDE", *polar.words_beside_switch, polar.direction_word}
+        letters = {*polar.words_beside_switch, polar.direction_word}
         self._beside_switch = {source.address_number(word) for word in letters if len(word) == 1}
         self._virtual = set(trace.axes.virtual_words.tolist())
         self._dwells = trace.blocks.listed("dwell")
+        self._has_arguments = ~trace.modal.uses_axes | trace.blocks.codes(*trace.machine.macro.flow_codes)
         self._switch_codes = {*numbers(polar.on), *numbers(polar.off), *numbers(polar.ended_by)}
 
     @property
@@ -80,7 +81,11 @@ class SectionWords:
         """
         if self.is_dwell(row):
             return [], list(words)
-        geometry = [index for index in words if self._is_geometry(index, is_switch)]
+        if not is_switch and self._has_arguments[row]:
+            # R of G10 P3 R4. is no radius.
+            geometry = [index for index in words if self.key(index) in _OF_GEOMETRY]
+        else:
+            geometry = [index for index in words if self._is_geometry(index, is_switch)]
         return geometry, [index for index in words if index not in geometry]
 
     def _is_geometry(self, index: int, is_switch: bool) -> bool:

@@ -20,11 +20,12 @@ from polarcheck.rewrite.convert.g_meanings import GMeanings
 from polarcheck.rewrite.convert.m_meanings import MMeanings
 from polarcheck.rewrite.convert.measures import Measures
 from polarcheck.rewrite.convert.number_text import number_of, rounded
+from polarcheck.rewrite.convert.of_lathe import OfLathe
 from polarcheck.rewrite.convert.speeds import SpeedWords
 from polarcheck.rewrite.convert.spindle_roles import SpindleRoles
 from polarcheck.rewrite.convert.tool_words import ToolWords
 from polarcheck.rewrite.writing.original import Original
-from polarcheck.rewrite.writing.outcome import Decision, refused_at
+from polarcheck.rewrite.writing.outcome import refused_at
 
 #: The part of a second that a word counts; one with a point may count another.
 _SECONDS = {"seconds": Fraction(1), "hundredths": Fraction(1, 100), "thousandths": Fraction(1, 1000)}
@@ -78,7 +79,8 @@ class Translated(msgspec.Struct):
 
     words: in order.
     behind: of a block that follows it, as G90 behind a block of distances.
-    decisions: what is to be decided of single words.
+    decisions: what is to be decided of single words, which do not stand among them.
+    remarks: what is to be decided though its words stay.
     changed: some word is another one.
     whole: why the whole block is to be decided; or empty.
     """
@@ -86,8 +88,14 @@ class Translated(msgspec.Struct):
     words: list[str] = []
     behind: list[str] = []
     decisions: list[str] = []
+    remarks: list[str] = []
     changed: bool = False
     whole: str = ""
+
+    @property
+    def comment(self) -> str:
+        """What the new block says of what is to be decided; empty where nothing is."""
+        return ". ".join((*self.decisions, *self.remarks))
 
 
 class Translation:
@@ -122,21 +130,13 @@ class Translation:
         )
         self._tool_changes = set(numbers(self.source.m_codes.tool_change))
         self._polar_off = set(numbers([*self.source.polar.off, *self.source.polar.ended_by]))
+        self._of_lathe = OfLathe(self.trace, self.target, self.measures)
+        self._unknown_moves = self.measures.unknown_moves
+        self._moves = self.trace.modal.uses_axes & self.trace.blocks.has(*self.source.axis_words)
         self._speeds = SpeedWords(self.trace, self.target, self.measures, self.roles)
         self._cycles = CycleWords(self.trace, self.target, self.measures, self._g)
 
     # ---- interface ----
-
-    def translate(self, row: int, words: Sequence[int]) -> tuple[list[str], list[Decision]]:
-        """
-        Some words of a row in a polar section, without those of its geometry, as the other machine writes them.
-
-        words: indices of executed words, in order. Raises RefusedError.
-        """
-        result = self.words(row, words)
-        line = int(self.trace.blocks.line_in_file[row])
-        texts = [*result.decisions, *([result.whole] if result.whole else [])]
-        return [] if result.whole else result.words, [Decision(line, text) for text in texts]
 
     def words_of(self, row: int) -> list[int]:
         """The executed words of a row without N, O and block skip, in the order in which they are written."""
@@ -159,12 +159,26 @@ class Translation:
             self._dwell(row, indices, result)
         elif self._references_c_alone(row, indices):
             self._note(row, f"{' '.join(written)} is left out: {self.target.title} needs no reference return of C")
+        elif reason := self.why_not(row):
+            result.whole = reason
         elif bool(self._cycles.has_arguments[row]):
             self._with_arguments(row, indices, result)
         else:
             self._one_by_one(row, indices, in_steps, result)
+        if not result.whole:
+            axes = [word for index in indices if (word := self.measures.axis_word(row, index)) is not None]
+            result.remarks = self._of_lathe.remarks(row, axes)
         result.changed |= result.words != written or bool(result.behind)
         return result
+
+    def why_not(self, row: int) -> str:
+        """Return why no words of a row can stand on the other machine, whatever they are; empty where some can."""
+        index = int(self._unknown_moves.word[row])
+        if index < 0:
+            return self._of_lathe.why_not(row)
+        if self.source == self.target:
+            return ""
+        return f"{self.measures.written(index)}: the profile of {self.source.title} does not say what it does"
 
     # ---- blocks of one meaning ----
 
@@ -229,7 +243,11 @@ class Translation:
 
     def _one_by_one(self, row: int, indices: Sequence[int], in_steps: bool, result: Translated) -> None:
         axes = [word for index in indices if (word := self.measures.axis_word(row, index)) is not None]
-        texts = self._axes.written(row, axes, in_steps, result)
+        lost = [word for word in axes if word.is_step and self._moves[row] and self.measures.is_lost(row, word.axis)]
+        if lost and self.source != self.target:
+            step = self.measures.written(lost[0].index)
+            result.whole = f"{step} begins where the tool stands behind a block that is to be decided"
+        texts = {} if result.whole else self._axes.written(row, axes, in_steps, result)
         if result.whole:
             return
         if result.behind:
@@ -265,7 +283,14 @@ class Translation:
         elif self._beside_m_code(row, letter) or self._beside_x_switch(row):
             result.changed = True
         else:
-            result.decisions.append(f"{written}: nothing says what it is on {self.target.title}")
+            self._undecided(row, f"{written}: nothing says what it is on {self.target.title}", result)
+
+    def _undecided(self, row: int, text: str, result: Translated) -> None:
+        """A word without a counterpart goes alone beside a move, or beside codes; elsewhere its block goes with it."""
+        if self._moves[row] or all(self._letter(index) in "GMST" for index in self.words_of(row)):
+            result.decisions.append(text)
+        else:
+            result.whole = result.whole or text
 
     def _g_word(self, row: int, index: int, result: Translated) -> None:
         number, written = self._code(index), self.measures.written(index)
@@ -291,6 +316,8 @@ class Translation:
             self._note(row, f"{written} is left out: {meaning.note}")
         elif key in _OF_ITS_BLOCK:
             result.whole = result.whole or f"{written}: {meaning.reason}"
+        elif not key:
+            self._undecided(row, f"{written}: {meaning.reason}", result)
         else:
             result.decisions.append(f"{written}: {meaning.reason}")
 

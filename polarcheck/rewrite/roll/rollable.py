@@ -13,6 +13,7 @@ from polarcheck.foundation.states import Distance, FeedMode, Motion, Side
 from polarcheck.program.machines.code_tables import code_set
 from polarcheck.rewrite.roll.following import Following
 from polarcheck.rewrite.writing.outcome import Refusal, refusal_at
+from polarcheck.rewrite.writing.unknown_moves import UnknownMoves
 
 #: The least blocks of X and C in a stretch: for fewer, the section would need as many blocks of its own.
 LEAST = 8
@@ -138,6 +139,7 @@ def _reasons(trace: Trace, following: Following) -> list[tuple[Mask, str]]:
     with_z = path.moves_z & (path.moves_x | path.moves_c)
     not_with_z = with_z & (trace.machine.polar.other_axes != "together")
     mode = feedrate.modal_feed_mode
+    lost = UnknownMoves(trace).lost
     without_f = (mode == FeedMode.INVERSE_TIME) & ~trace.blocks.has("F")
     return [
         (np.bincount(run.block, minlength=1)[run.block] > 1, "its blocks run several times"),
@@ -148,11 +150,14 @@ def _reasons(trace: Trace, following: Following) -> list[tuple[Mask, str]]:
         (trace.compensation.side != Side.OFF, "cutter compensation is in force: X and C are not the path of the tool"),
         (modal.state("modal_call") != 0, "a program is called after each move"),
         (on_sub_spindle, "which way C turns in the mode on the sub-spindle is not known"),
-        (moves & (np.isnan(path.x) | np.isnan(path.x_before)), "X is not known where it begins"),
-        (path.moves_c & np.isnan(path.c_turn), "C is not known where it begins: position it before, as C0"),
+        (moves & (np.isnan(path.x) | np.isnan(path.x_before) | lost("X")), "X is not known where it begins"),
+        (
+            path.moves_c & (np.isnan(path.c_turn) | lost(trace.machine.polar.rotary_address)),
+            "C is not known where it begins: position it before, as C0",
+        ),
         (_unwinds(trace), _UNWINDS),
         (moves & np.isnan(path.z) & bool(np.isfinite(path.z).any()), "Z is not known where it begins"),
-        (with_z & np.isnan(path.z_before), "Z is not known where it begins to move"),
+        (with_z & (np.isnan(path.z_before) | lost("Z")), "Z is not known where it begins to move"),
         (np.nan_to_num(path.local_shift) != 0, "the origin is shifted off the center of C"),
         (travels & (mode == FeedMode.PER_REVOLUTION), "F is per revolution"),
         (travels & without_f, "F is missing, which inverse time has in every block"),

@@ -8,6 +8,7 @@ import numpy as np
 
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import stretch
+from polarcheck.foundation.states import NO_MOVE
 from polarcheck.program.machines.code_tables import NO_CODE, code_set
 from polarcheck.rewrite.writing.outcome import refused_at
 from polarcheck.rules.editing import is_head, is_plain, words_of, written_word
@@ -20,8 +21,6 @@ _DROPPED = (
     "feed_at_contour", "feed_at_inner_contour", "absolute", "incremental", "frame_shift", "frame_shift_added",
     "frame_rotation", "frame_rotation_added",
 )  # fmt: skip
-#: Lists of G codes whose blocks stay as they are, with all of their words.
-_UNTOUCHED = ("dwell",)
 #: Why a block with a word that a statement computes is refused.
 _COMPUTED = "a word of this block cannot be written without the statement around it"
 
@@ -41,7 +40,8 @@ class RemainingWords:
         addresses |= {machine.arcs.larger_arc_word, machine.offsets.allowance_word}
         self._dropped_addresses = {machine.address_number(address) for address in addresses if address}
         self._switches = trace.mode.enters | trace.mode.leaves
-        self._untouched = trace.blocks.listed(*_UNTOUCHED)
+        # R of G10 P3 R4. is no radius: the words beside such a code are no end of a move.
+        self._untouched = trace.blocks.listed(*NO_MOVE) & ~trace.blocks.codes(*trace.machine.macro.flow_codes)
         self._beside_offset = trace.blocks.listed("compensation_left", "compensation_right")
         macro = machine.macro
         calls = [*macro.subprogram_calls, *macro.macro_calls, *macro.program_returns]

@@ -13,6 +13,8 @@ from polarcheck.foundation.arrays import Mask
 from polarcheck.foundation.states import FeedMode, Motion, Side
 from polarcheck.program.execution.variable_names import FIRST_VARIABLE
 from polarcheck.rewrite.writing.outcome import Refusal, refusal_at
+from polarcheck.rewrite.writing.unknown_moves import UnknownMoves
+from polarcheck.rules.editing import written_word
 from polarcheck.rules.tables import Tables
 from polarcheck.rules.wording.offsets import called_tool, to_give
 
@@ -88,6 +90,8 @@ def _of_rows(tables: Tables) -> Iterator[tuple[int, str]]:
     off_circle = np.zeros(len(trace), bool)
     off_by = np.abs(np.abs(moves.start - moves.center) - np.abs(moves.end - moves.center))
     off_circle[moves.row[(moves.kind != Motion.LINE) & (off_by > trace.machine.arcs.tolerance)]] = True
+    unknown_moves = UnknownMoves(trace)
+    lost = unknown_moves.lost("X") | unknown_moves.lost(trace.machine.polar.rotary_address)
     checks: list[tuple[Mask, str]] = [
         (infeed | backwards, "the passes of an infeed cycle are not unrolled"),
         (trace.run.unknown & within, "what this block does is not known"),
@@ -99,6 +103,9 @@ def _of_rows(tables: Tables) -> Iterator[tuple[int, str]]:
         (within & trace.modal.in_cycle & trace.axes.moves, "a cycle in the mode is not unrolled"),
         ((trace.modal.state("modal_call") != 0) & within, "a program that is called after each move is not unrolled"),
         (within & trace.blocks.listed(*_ELSEWHERE), "a code in the mode leads to other coordinates"),
+        (within & unknown_moves.is_skip, "axis words beside this code are no end of a move: write it outside of the mode"),
+        (lost & mode.enters, "where the tool stands is not known, behind a block whose axis words a macro may take"),
+        (within & trace.blocks.has(",R", ",C", ",A"), "a corner or an angle by ,R ,C or ,A is not followed"),
         (center.interferes, "the tool center would run against the program"),
         (center.no_intersection, "the paths of the tool center do not meet"),
         (center.movement_missing, "the control does not know the next move in time"),
@@ -112,6 +119,9 @@ def _of_rows(tables: Tables) -> Iterator[tuple[int, str]]:
     for row in _first_of_sections(trace, without_radius):
         missing = to_give(trace.tools, trace.machine, row, "radius")
         yield row, f"R of {called_tool(trace.tools, row)} is not known: {missing}"
+    for row in _first_of_sections(trace, within & (unknown_moves.word >= 0)):
+        word = written_word(trace.run, int(unknown_moves.word[row]))
+        yield row, f"{word} may be a macro that takes these axis words: the profile does not say what it does"
     for hits, text in checks:
         yield from ((row, text) for row in _first_of_sections(trace, hits))
 

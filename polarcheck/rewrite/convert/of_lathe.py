@@ -1,0 +1,100 @@
+"""Words whose numbers belong to the lathe and not to the part: a person decides what they are on another lathe."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cached_property
+
+import numpy as np
+
+from polarcheck.columns.filling import before
+from polarcheck.columns.trace import Trace
+from polarcheck.program.machines.machine import Machine
+from polarcheck.rewrite.convert.measures import AxisWord, Measures
+from polarcheck.rewrite.convert.number_text import number_of
+
+
+class OfLathe:
+    """
+    The blocks of a program with positions, offsets and limits of its lathe.
+
+    Nothing of this holds where both profiles are the same one.
+    """
+
+    def __init__(self, trace: Trace, target: Machine, measures: Measures) -> None:
+        self.trace, self.target, self.measures = trace, target, measures
+        self._is_same = trace.machine == target
+        blocks = trace.blocks
+        self._has_axes = blocks.has(*trace.machine.axis_words)
+        returns = trace.machine.codes("reference_return")
+        self._returns = blocks.codes(*returns[:1])
+        of_c_alone = blocks.listed("c_axis_reference") & ~blocks.has(*"XYZUVW")
+        self._returns_further = blocks.codes(*returns[1:]) & ~of_c_alone
+        self._lists = {key: blocks.listed(key) for key in ("machine_coordinates", "data_input", "coordinate_setting")}
+
+    def why_not(self, row: int) -> str:
+        """Return why the whole block of a row is to be decided; empty where it need not be."""
+        has_axes = bool(self._has_axes[row])
+        title = self.target.title
+        if self._is_same:
+            return ""
+        if self._lists["machine_coordinates"][row] and has_axes:
+            return f"a position in the coordinates of the machine: choose that of {title}"
+        if self._returns_further[row]:
+            return f"a reference point that its builder or user has set: choose that of {title}"
+        if self._lists["data_input"][row]:
+            return f"it sets values that the control keeps, such as offsets: give those of {title}"
+        if self._lists["coordinate_setting"][row] and has_axes:
+            return f"it sets the origin by where the tool stands: set that of {title}"
+        return ""
+
+    def remarks(self, row: int, axes: Sequence[AxisWord]) -> list[str]:
+        """Return what is to be decided of a row whose words stay. axes: its axis words."""
+        if self._is_same:
+            return []
+        title = self.target.title
+        result = []
+        if self._returns[row] and any(not self._is_zero_step(word) for word in axes):
+            words = " ".join(self.measures.written(word.index) for word in axes)
+            result.append(f"{words}: see that the tool goes free from there to the reference point of {title}")
+        if self._lists["coordinate_setting"][row] and self.trace.blocks.has("S")[row]:
+            result.append(f"S{self.trace.blocks.word('S')[row]:g}: give the limit of the spindle speed of {title}")
+        result += [f"{code}: set this work offset on {title}" for code in self._first_offsets.get(row, ())]
+        if row in self._changes:
+            result.append(f"the tool changes at {self._changes[row]}: choose where the turret of {title} turns free")
+        return result
+
+    def _is_zero_step(self, word: AxisWord) -> bool:
+        number = number_of(self.measures.written(word.index))
+        return word.is_step and number is not None and not float(number)
+
+    @cached_property
+    def _first_offsets(self) -> dict[int, list[str]]:
+        """The first row with each work offset -> the codes of the offsets."""
+        trace, seen = self.trace, set[str]()
+        result: dict[int, list[str]] = {}
+        lists = ("work_offset", "work_offset_extended")
+        codes = [code for key in lists for code in trace.machine.codes(key) if code in self.target.codes(key)]
+        for index in trace.blocks.code_indices(*codes).tolist():
+            row, written = int(trace.run.row[index]), self.measures.written(index).upper()
+            number = float(trace.blocks.word("P")[row])
+            written += f" P{number:g}" if number == number else ""
+            if written not in seen:
+                seen.add(written)
+                result.setdefault(row, []).append(written)
+        return result
+
+    @cached_property
+    def _changes(self) -> dict[int, str]:
+        """The first row in which a tool changes at each known position of the work -> the position, in its words."""
+        trace, starts = self.trace, self.trace.blocks.starts
+        tool = trace.tools.tool
+        changes = trace.blocks.has("T") & (tool != before(tool, starts, 0)) & (tool != 0) & ~starts
+        result: dict[int, str] = {}
+        for row in np.flatnonzero(changes & (trace.mode.whole_section < 0)).tolist():
+            # Behind the change nobody knows where the new tool is.
+            x, z = (self.measures.place(row - 1, axis) for axis in "XZ")
+            text = f"X{x} Z{z}"
+            if x is not None and z is not None and text not in result.values():
+                result[row] = text
+        return result
