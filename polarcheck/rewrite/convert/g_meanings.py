@@ -102,7 +102,6 @@ class GMeanings:
         for name, equivalent in source.control.motion_codes.items():
             self._keys[code(name)] = self._keys[code(equivalent)]
         # A code that is not in the list of the control is a builder's, and another one on another lathe.
-        self._is_same_machine = source == target
         same_list = source.control.known_codes == target.control.known_codes
         same_system = source.control.g_code_system == target.control.g_code_system
         self._same_codes = set(numbers(source.control.known_codes)) if same_list and same_system else set()
@@ -126,7 +125,7 @@ class GMeanings:
         word = spelled("G", number)
         key, index = self._listed(number, has_words)
         if not key:
-            if number in self._same_codes or self._is_same_machine:
+            if number in self._same_codes:
                 return Meaning((self.named(word),))
             return Meaning(reason=f"the profile of {self.source.title} does not say what it does")
         theirs, ours = self.target.codes(key), self.source.codes(key)

@@ -15,15 +15,10 @@ from polarcheck.rewrite.convert.number_text import number_of
 
 
 class OfLathe:
-    """
-    The blocks of a program with positions, offsets and limits of its lathe.
-
-    Nothing of this holds where both profiles are the same one.
-    """
+    """The blocks of a program with positions, offsets and limits of its lathe, for another lathe."""
 
     def __init__(self, trace: Trace, target: Machine, measures: Measures) -> None:
         self.trace, self.target, self.measures = trace, target, measures
-        self._is_same = trace.machine == target
         blocks = trace.blocks
         self._has_axes = blocks.has(*trace.machine.axis_words)
         returns = trace.machine.codes("reference_return")
@@ -36,8 +31,6 @@ class OfLathe:
         """Return why the whole block of a row is to be decided; empty where it need not be."""
         has_axes = bool(self._has_axes[row])
         title = self.target.title
-        if self._is_same:
-            return ""
         if self._lists["machine_coordinates"][row] and has_axes:
             return f"a position in the coordinates of the machine: choose that of {title}"
         if self._returns_further[row]:
@@ -50,8 +43,6 @@ class OfLathe:
 
     def remarks(self, row: int, axes: Sequence[AxisWord]) -> list[str]:
         """Return what is to be decided of a row whose words stay. axes: its axis words."""
-        if self._is_same:
-            return []
         title = self.target.title
         result = []
         if self._returns[row] and any(not self._is_zero_step(word) for word in axes):

@@ -16,7 +16,7 @@ from polarcheck.program.machines.machine import Machine
 from polarcheck.rewrite.convert.axis_words import AxisWords
 from polarcheck.rewrite.convert.call_words import Calls
 from polarcheck.rewrite.convert.cycles import WITH_ARGUMENTS, CycleWords
-from polarcheck.rewrite.convert.g_meanings import GMeanings
+from polarcheck.rewrite.convert.g_meanings import GMeanings, Meaning
 from polarcheck.rewrite.convert.m_meanings import MMeanings
 from polarcheck.rewrite.convert.measures import Measures
 from polarcheck.rewrite.convert.number_text import number_of, rounded
@@ -109,6 +109,7 @@ class Translation:
     def __init__(self, original: Original, target: Settings) -> None:
         self.trace, self.target = original.trace, target.machine
         self.source = self.trace.machine
+        self.is_same_lathe = self.source == self.target
         self.measures = Measures(self.trace, self.target)
         self.roles = SpindleRoles(self.trace)
         self.tools = ToolWords(self.trace, self.target)
@@ -129,6 +130,7 @@ class Translation:
             for key in ("x", "x_radius_words", "x_diameter_words", "x_absolute_diameter_words", "x_without_words")
         )
         self._tool_changes = set(numbers(self.source.m_codes.tool_change))
+        self._in_mode = set(numbers(self.target.polar.allowed_codes))
         self._polar_off = set(numbers([*self.source.polar.off, *self.source.polar.ended_by]))
         self._of_lathe = OfLathe(self.trace, self.target, self.measures)
         self._unknown_moves = self.measures.unknown_moves
@@ -155,7 +157,9 @@ class Translation:
         """
         result = Translated()
         written = [self.measures.written(index) for index in indices]
-        if self._has_dwell(row, indices):
+        if self.is_same_lathe:
+            result.words = written
+        elif self._has_dwell(row, indices):
             self._dwell(row, indices, result)
         elif self._references_c_alone(row, indices):
             self._note(row, f"{' '.join(written)} is left out: {self.target.title} needs no reference return of C")
@@ -165,7 +169,7 @@ class Translation:
             self._with_arguments(row, indices, result)
         else:
             self._one_by_one(row, indices, in_steps, result)
-        if not result.whole:
+        if not result.whole and not self.is_same_lathe:
             axes = [word for index in indices if (word := self.measures.axis_word(row, index)) is not None]
             result.remarks = self._of_lathe.remarks(row, axes)
         result.changed |= result.words != written or bool(result.behind)
@@ -174,10 +178,10 @@ class Translation:
     def why_not(self, row: int) -> str:
         """Return why no words of a row can stand on the other machine, whatever they are; empty where some can."""
         index = int(self._unknown_moves.word[row])
+        if self.is_same_lathe:
+            return ""
         if index < 0:
             return self._of_lathe.why_not(row)
-        if self.source == self.target:
-            return ""
         return f"{self.measures.written(index)}: the profile of {self.source.title} does not say what it does"
 
     # ---- blocks of one meaning ----
@@ -244,7 +248,7 @@ class Translation:
     def _one_by_one(self, row: int, indices: Sequence[int], in_steps: bool, result: Translated) -> None:
         axes = [word for index in indices if (word := self.measures.axis_word(row, index)) is not None]
         lost = [word for word in axes if word.is_step and self._moves[row] and self.measures.is_lost(row, word.axis)]
-        if lost and self.source != self.target:
+        if lost:
             step = self.measures.written(lost[0].index)
             result.whole = f"{step} begins where the tool stands behind a block that is to be decided"
         texts = {} if result.whole else self._axes.written(row, axes, in_steps, result)
@@ -309,6 +313,8 @@ class Translation:
             self._units(row, key, written, result)
             return
         meaning = self._g.meaning(number, has_words)
+        if not key and self.trace.mode.whole_section[row] >= 0 and number not in self._in_mode:
+            meaning = Meaning(reason=meaning.reason or f"it may not stand in the polar mode of {self.target.title}")
         if meaning.words:
             same = [written] if self._is_spelling(index, meaning.words) else self._styled(written, meaning.words)
             result.words += same

@@ -103,7 +103,7 @@ def _of_rows(tables: Tables) -> Iterator[tuple[int, str]]:
         (within & trace.modal.in_cycle & trace.axes.moves, "a cycle in the mode is not unrolled"),
         ((trace.modal.state("modal_call") != 0) & within, "a program that is called after each move is not unrolled"),
         (within & trace.blocks.listed(*_ELSEWHERE), "a code in the mode leads to other coordinates"),
-        (within & unknown_moves.is_skip, "axis words beside this code are no end of a move: write it outside of the mode"),
+        (within & unknown_moves.is_skip, "axis words beside this code are no end of a move"),
         (lost & mode.enters, "where the tool stands is not known, behind a block whose axis words a macro may take"),
         (within & trace.blocks.has(",R", ",C", ",A"), "a corner or an angle by ,R ,C or ,A is not followed"),
         (center.interferes, "the tool center would run against the program"),
