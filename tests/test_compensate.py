@@ -368,3 +368,17 @@ def test_long_paths() -> None:
     assert (new.count("G42"), len(moves)) == (25, 25 * 100)
     at_corners = [abs(move.end) for move in moves if abs(move.end.imag) > 1e-6]
     assert at_corners == pytest.approx([25 - R / math.cos(math.pi / 99)] * len(at_corners), abs=0.02)
+
+
+@pytest.mark.ci
+def test_a_path_that_stays_that_of_the_center_is_to_be_decided() -> None:
+    """Two squares close; the path between them does not, and has moves to it and away from it."""
+    square = [f"G1 X{x} C{c}" for x, c in ((36, 0), (36, 18), (-36, 18), (-36, -18), (36, -18), (36, 0))]
+    open_path = ["X80. C20. F1500", "Z-3. F200", "X60. C10.", "X20. C26.", "X-20. C26.", "X-60. C10.", "X-80. C20."]
+    blocks = [*square, "X80. C0", "Z2.", *open_path, "Z2.", "X80. C0", "Z-3.", *square]
+    outcome = rewrite(PROGRAM.format(x="80.", blocks="\n".join(blocks)))
+    assert [(decision.line, decision.text.partition(":")[0]) for decision in outcome.decisions] == [
+        (20, "lines 20 to 24 stay the path of the tool center")
+    ]
+    assert "(DECIDE: LINES 20 TO 24 STAY" in text_of(outcome)
+    assert not rewrite(PROGRAM.format(x="80.", blocks="\n".join([*square, "X80. C0", "Z2."]))).decisions

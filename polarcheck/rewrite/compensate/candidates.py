@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Sequence
+from collections.abc import Container, Iterator, Sequence
 from itertools import groupby, pairwise
 
 import msgspec
@@ -86,6 +86,23 @@ def _at_depth(trace: Trace, moves: Sequence[Move]) -> list[tuple[int, int]]:
         if low < high and moves[low].feeds:
             result.append((low, high))
     return result
+
+
+def uncovered(trace: Trace, section: Section, covered: Container[int]) -> Iterator[tuple[int, int]]:
+    """
+    Yield the first and the last move of each path at depth that is no contour and does not only lead to one.
+
+    covered: the numbers of the moves of contours, with their ramps.
+    """
+    for low, high in _at_depth(trace, section.moves):
+        numbers = [n for n in range(low, high) if n not in covered and not _is_in_air(section, section.moves[n].piece)]
+        leads = _MOVES_OF_LEAD if any(number in covered for number in range(low, high)) else 1
+        for _, group in groupby(enumerate(numbers), lambda pair: pair[1] - pair[0]):
+            path = [number for _, number in group]
+            # Between two contours one move leads away and another one to the next.
+            ends = (path[0] - 1 in covered) + (path[-1] + 1 in covered)
+            if len(path) > leads * max(ends, 1):
+                yield path[0], path[-1]
 
 
 def _rings(section: Section, swept: Swept, run: tuple[int, int], any_side: bool) -> list[Candidate]:

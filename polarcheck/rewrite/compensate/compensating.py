@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import msgspec
 
@@ -11,7 +11,7 @@ from polarcheck.columns.metal.milled import Milled
 from polarcheck.columns.path.moves import Moves
 from polarcheck.columns.trace import Trace
 from polarcheck.program.machines.machine import Machine
-from polarcheck.rewrite.compensate.candidates import Candidate
+from polarcheck.rewrite.compensate.candidates import Candidate, uncovered
 from polarcheck.rewrite.compensate.centering import centered
 from polarcheck.rewrite.compensate.chosen_sections import Section, sections_of
 from polarcheck.rewrite.compensate.compensated_blocks import Stroke, new_blocks
@@ -22,9 +22,9 @@ from polarcheck.rewrite.compensate.ramp_moves import Contour, with_ramps
 from polarcheck.rewrite.compensate.same_part import CompensatedContour, Proof, require_same_part
 from polarcheck.rewrite.compensate.section_moves import Move
 from polarcheck.rewrite.compensate.sides import Swept
-from polarcheck.rewrite.writing.new_blocks import edits_of, with_edits
+from polarcheck.rewrite.writing.new_blocks import NewBlock, decision_comment, edit_before, edits_of, with_edits
 from polarcheck.rewrite.writing.original import Original
-from polarcheck.rewrite.writing.outcome import Figure, Outcome, RefusedError, refused_at
+from polarcheck.rewrite.writing.outcome import Decision, Figure, Outcome, RefusedError, refused_at
 from polarcheck.rewrite.writing.style_of import style_of
 from polarcheck.rules.wording.offsets import called_tool
 
@@ -70,7 +70,9 @@ def compensated(original: Original, options: Compensating = Compensating()) -> O
         Figure("largest difference of the part", proof.part, "mm"),
         Figure("largest distance of the tool center from its path", proof.path, "mm"),
     ]
-    return Outcome(data, origin, [], figures, _notes(trace, contours))
+    lines = trace.blocks.line_in_file
+    decisions = [Decision(int(lines[row]), text) for row, text in _remaining(trace, sections, contours)]
+    return Outcome(data, origin, decisions, figures, _notes(trace, contours))
 
 
 def _written(
@@ -85,7 +87,11 @@ def _written(
     contours = [ramped for pair in zip(sections, chosen, strict=True) for ramped in _ramped(trace, *pair, by_moves)]
     style = style_of(trace)
     blocks = new_blocks(trace, _strokes(trace, contours, machine), style)
-    data, origin = with_edits(original, edits_of(original, blocks, style, machine))
+    edits = edits_of(original, blocks, style, machine)
+    for row, text in _remaining(trace, sections, contours):
+        remark = NewBlock((), decision_comment(text))
+        edits.append(edit_before(original, int(trace.run.block[row]), [remark], style, machine))
+    data, origin = with_edits(original, edits)
     return data, origin, contours, require_same_part(original, swept, data, origin, contours)
 
 
@@ -107,6 +113,26 @@ def _ramped(
         result.append(CompensatedContour(section, contour, ramped))
         free = max(contour.last, ramped.leaves, *(piece.move for piece in ramped.contour)) + 1
     return result
+
+
+def _remaining(
+    trace: Trace, sections: Sequence[Section], contours: Sequence[CompensatedContour]
+) -> Iterator[tuple[int, str]]:
+    """
+    Yield the first rows of paths that stay those of the tool center, each with what is to be decided.
+
+    Moves to a contour, away from it and between two of them are no path of their own.
+    """
+    lines = trace.blocks.line_in_file
+    for section in sections:
+        covered = set[int]()
+        for contour in contours:
+            if contour.section is section:
+                covered |= {*range(*_span(contour)), contour.ramped.enters, contour.ramped.leaves}
+        for first, last in uncovered(trace, section, covered - {-1}):
+            begin, end = (int(lines[section.moves[number].row]) for number in (first, last))
+            text = f"lines {begin} to {end} stay the path of the tool center: no contour was recognized there: write"
+            yield section.moves[first].row, f"{text} its G41 or G42 by hand, or leave it"
 
 
 # ---- to blocks ----

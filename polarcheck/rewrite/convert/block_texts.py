@@ -134,9 +134,3 @@ class BlockTexts:
     def numbered(self) -> list[int]:
         """The blocks with O and a program number."""
         return sorted(self._numbered)
-
-
-def decision_comment(text: str) -> str:
-    """A comment that says what is to be decided, in characters that every control has."""
-    plain = text.upper().translate(str.maketrans("()[];%", "      "))
-    return "DECIDE: " + " ".join("".join(sign for sign in plain if " " <= sign <= "~").split())

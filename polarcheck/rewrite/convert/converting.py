@@ -12,11 +12,11 @@ from polarcheck.checking.settings import Settings
 from polarcheck.foundation.states import Units
 from polarcheck.program.machines.job import Job
 from polarcheck.rewrite.convert.around import around
-from polarcheck.rewrite.convert.block_texts import decision_comment
 from polarcheck.rewrite.convert.converted_sections import sections
 from polarcheck.rewrite.convert.translating import Translation
 from polarcheck.rewrite.writing.new_blocks import (
     NewBlock,
+    decision_comment,
     edit_before,
     edit_behind,
     edits_of,

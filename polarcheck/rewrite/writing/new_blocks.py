@@ -58,6 +58,12 @@ def comment_text(comment: str, machine: Machine) -> str:
     return f"{begin}{plain}{end}".rstrip()
 
 
+def decision_comment(text: str) -> str:
+    """A comment that says what is to be decided, in characters that every control has."""
+    plain = text.upper().translate(str.maketrans("()[];%", "      "))
+    return "DECIDE: " + " ".join("".join(sign for sign in plain if " " <= sign <= "~").split())
+
+
 def block_text(block: NewBlock, style: Style, machine: Machine) -> str:
     """A block as it is written."""
     text = last = ""
