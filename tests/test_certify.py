@@ -516,9 +516,12 @@ def test_the_suite_is_a_manifest_with_drawings(tmp_path: Path) -> None:
     found = certificate("suite/post.toml")
     assert found["summary"]["cases"] == 3
     assert {reason for case in found["cases"] for reason in case["reasons"]} == {
-        f"there is no golden trace golden/fanuc-30i/{name}.jsonl yet; --update writes it"
-        for name in ("contour", "arc-above-180", "indexing")
+        "no golden trace yet: certify --update"
     }
+    assert {case["state"] for case in found["cases"]} == {"no golden trace"}
+    assert (found["summary"]["no_golden"], found["summary"]["fail"]) == (3, 0)
+    first = certify("suite/post.toml")
+    assert (first.exit_code, first.stdout.count("no golden trace yet: certify --update")) == (1, 1)
 
 
 @pytest.mark.ci

@@ -63,15 +63,15 @@ def certify(
     polarcheck certify post.toml --update
     polarcheck certify init suite --machine fanuc-30i --machine siemens-transmit
 
-    Shown is a matrix, features down and controls across: pass, fail, not run, missing (no case), not offered. A case
-    passes if its program has the expected verdict and findings, makes the expected part, and runs the path of its
-    golden trace or of another case.
+    Shown is a matrix, features down and controls across: pass, no golden trace (before the first --update), fail, not
+    run, missing (no case), not offered. A case passes if its program has the expected verdict and findings, makes the
+    expected part, and runs the path of its golden trace or of another case.
 
     --update writes the golden traces anew and says what changes; of a case that fails otherwise it keeps the old one.
     init writes a folder with small jobs to post, as drawings in words and DXF, and a manifest for them.
 
-    Ends with 0 if all cases pass; 1 if one fails, or with --strict a feature is missing; 2 if a program could not be
-    read, or the manifest cannot be used; 3 for a bug.
+    Ends with 0 if all cases pass; 1 if one fails or has no golden trace, or with --strict a feature is missing; 2 if a
+    program could not be read, or the manifest cannot be used; 3 for a bug.
     """
     if manifest == _INIT and folder is not None:
         ctx.exit(_init(folder, machines))
@@ -126,7 +126,7 @@ def _certify(
     report = _report(certificate, form, columns(), is_colored)
     show(report if form == "text" else report.encode(), is_colored or None)
     counts = certificate.summary
-    if counts.fail or (strict and counts.missing):
+    if counts.fail or counts.no_golden or (strict and counts.missing):
         status = max(status, FINDINGS)
     if any(case.state == NOT_RUN for case in certificate.cases):
         status = max(status, COULD_NOT_RUN)

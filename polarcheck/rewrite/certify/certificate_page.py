@@ -14,7 +14,7 @@ _STYLE = (
     "body{font:15px/1.45 system-ui,sans-serif;margin:2em auto;max-width:80em;padding:0 1em;color:#1a1a1a}"
     "table{border-collapse:collapse;margin:1em 0}th,td{border:1px solid #bbb;padding:.3em .7em;text-align:left;"
     "vertical-align:top}tr{break-inside:avoid}.pass{background:#e4f3e8}.fail{background:#f8e0db;font-weight:bold}"
-    ".not-run{background:#f8e0db;font-style:italic}.missing{background:#fdf3d7}.not-offered{color:#555}"
+    ".no-golden-trace,.missing{background:#fdf3d7}.not-run{background:#f8e0db;font-style:italic}.not-offered{color:#555}"
     "ul{margin:0;padding-left:1.2em;font-weight:normal}"
 )
 _HEADS = ("Case", "Program", "Machine", "Expected", "Verdict", "State", "Paths", "Reasons")

@@ -7,12 +7,29 @@ from collections.abc import Callable, Iterator
 
 from polarcheck.program.reading.excerpt import cells, visible, without_commands
 from polarcheck.reports import counted
-from polarcheck.rewrite.certify.results import FAIL, MISSING, NOT_OFFERED, NOT_RUN, PASS, CaseResult, Cell, Certificate
+from polarcheck.rewrite.certify.results import (
+    FAIL,
+    MISSING,
+    NO_GOLDEN,
+    NOT_OFFERED,
+    NOT_RUN,
+    PASS,
+    CaseResult,
+    Cell,
+    Certificate,
+)
 
 #: Takes the name of a style and a text.
 Paint = Callable[[str, str], str]
 #: The style of each state, by the names that reports have for verdicts.
-_STYLES = {PASS: "pass", FAIL: "fail", NOT_RUN: "fail", MISSING: "unverified", NOT_OFFERED: "aside"}
+_STYLES = {
+    PASS: "pass",
+    NO_GOLDEN: "unverified",
+    FAIL: "fail",
+    NOT_RUN: "fail",
+    MISSING: "unverified",
+    NOT_OFFERED: "aside",
+}
 _GAP = "  "
 _INDENT = "    "
 
@@ -21,8 +38,10 @@ def text(certificate: Certificate, columns: int, paint: Paint) -> str:
     """Return the certificate. columns: width of the terminal [characters]. paint: colors a text."""
     lines = [*_head(certificate), "", *_matrix(certificate, columns, paint)]
     for case in certificate.cases:
-        if case.reasons or case.remarks:
+        if case.remarks or (case.reasons and case.state != NO_GOLDEN):
             lines += ["", *_reasons(case, columns, paint)]
+    if certificate.summary.no_golden:
+        lines += ["", "no golden trace yet: certify --update"]
     lines += ["", summary(certificate)]
     return without_commands("".join(f"{line.rstrip()}\n" for line in lines))
 
@@ -91,6 +110,7 @@ def summary(certificate: Certificate) -> str:
     """Return the counts in one line."""
     counts = certificate.summary
     parts = [f"{counted(counts.cases, 'case')}: {counts.passed} pass, {counts.fail} fail"]
+    parts += [f"{counts.no_golden} without a golden trace"] * bool(counts.no_golden)
     parts += [f"{counts.not_run} not run"] * bool(counts.not_run)
     parts += [f"{counted(counts.missing, 'feature')} of a control missing"] * bool(counts.missing)
     parts += [f"{counts.not_offered} not offered"] * bool(counts.not_offered)

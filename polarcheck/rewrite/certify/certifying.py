@@ -19,7 +19,17 @@ from polarcheck.rewrite.certify.case_runs import CaseRun, run
 from polarcheck.rewrite.certify.conditions import ConditionsOfCases
 from polarcheck.rewrite.certify.loading import Loaded
 from polarcheck.rewrite.certify.manifest import Case
-from polarcheck.rewrite.certify.results import FAIL, MISSING, NOT_OFFERED, NOT_RUN, PASS, CaseResult, Cell, Certificate
+from polarcheck.rewrite.certify.results import (
+    FAIL,
+    MISSING,
+    NO_GOLDEN,
+    NOT_OFFERED,
+    NOT_RUN,
+    PASS,
+    CaseResult,
+    Cell,
+    Certificate,
+)
 from polarcheck.rewrite.certify.tool_path import ToolPath, tool_path
 
 
@@ -175,7 +185,7 @@ def _result(
         control=case.control,
         program=files.display_path(str(loaded.beside(case.program))),
         machine=settings.machine_id,
-        state=NOT_RUN if report is None else FAIL if reasons else PASS,
+        state=_state(report is not None, reasons),
         expected=case.expected,
         verdict=None if report is None else report.verdict,
         reasons=reasons,
@@ -185,8 +195,15 @@ def _result(
     )
 
 
+_NO_GOLDEN = "no golden trace yet: certify --update"
 _NOTHING = near_path.Comparison(None, [], [])
 _Compared = tuple[results.PathComparison | None, near_path.Comparison]
+
+
+def _state(is_run: bool, reasons: Sequence[str]) -> str:
+    if not is_run:
+        return NOT_RUN
+    return PASS if not reasons else NO_GOLDEN if reasons == [_NO_GOLDEN] else FAIL
 
 
 def _golden(loaded: Loaded, case: Case, of_case: CaseRun) -> _Compared:
@@ -196,7 +213,7 @@ def _golden(loaded: Loaded, case: Case, of_case: CaseRun) -> _Compared:
     file, tolerance = loaded.beside(case.golden), loaded.tolerance(case)
     title = files.display_path(case.golden)
     if not file.exists():
-        compared = near_path.Comparison(None, [f"there is no golden trace {title} yet; --update writes it"], [])
+        compared = near_path.Comparison(None, [_NO_GOLDEN], [])
     else:
         try:
             before = golden.read(file)

@@ -12,7 +12,9 @@ from polarcheck.foundation.finding import Producer
 #: Number of the JSON contract.
 SCHEMA = 1
 #: States of a cell; of several cases in a cell the worst one counts.
-PASS, MISSING, NOT_OFFERED, NOT_RUN, FAIL = STATES = ("pass", "missing", "not offered", "not run", "fail")
+PASS, NO_GOLDEN, MISSING, NOT_OFFERED, NOT_RUN, FAIL = STATES = (
+    *("pass", "no golden trace", "missing", "not offered", "not run", "fail"),
+)
 
 
 class PathComparison(msgspec.Struct, frozen=True, kw_only=True):
@@ -37,7 +39,7 @@ class CaseResult(msgspec.Struct, frozen=True, kw_only=True):
 
     name, feature, control: the case, its row and its column.
     program: path of the program. machine: name or file of its machine.
-    state: pass, fail or not run.
+    state: pass, fail, not run, or no golden trace: nothing else is wrong, and --update writes the first one.
     expected, verdict: of the program; verdict is null where it was not run.
     reasons: why it does not pass, each in one line.
     remarks: what else its reader must know.
@@ -62,7 +64,7 @@ class Cell(msgspec.Struct, frozen=True, kw_only=True):
     """
     A feature on a control.
 
-    state: pass, fail, not run, missing (no case) or not offered.
+    state: pass, no golden trace, fail, not run, missing (no case) or not offered.
     cases: names of its cases. reason: why the feature is not offered.
     """
 
@@ -78,6 +80,7 @@ class Summary(msgspec.Struct, frozen=True, kw_only=True):
 
     cases: int
     passed: int = msgspec.field(name="pass")
+    no_golden: int
     fail: int
     not_run: int
     missing: int
@@ -116,6 +119,7 @@ def summary(cases: Sequence[CaseResult], cells: Sequence[Cell]) -> Summary:
     return Summary(
         cases=len(cases),
         passed=of_cases[PASS],
+        no_golden=of_cases[NO_GOLDEN],
         fail=of_cases[FAIL],
         not_run=of_cases[NOT_RUN],
         missing=of_cells[MISSING],

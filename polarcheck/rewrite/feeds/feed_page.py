@@ -19,6 +19,8 @@ from polarcheck.rules.tables import Tables
 
 #: The longest text of a block in the table [characters].
 _BLOCK = 36
+#: Smaller differences of times are none [s]: they are shown with one digit.
+_SHOWN = 0.05
 #: The columns of the curve.
 _CURVE = ("time", "section", "line", "feed", "true_feed", "highest", "c_feed", "channel")
 #: What to do about an unknown time.
@@ -103,11 +105,14 @@ def _totals(table: FeedTable) -> Iterator[str]:
 
 def _cost(total: FeedTotal, table: FeedTable) -> str:
     """Return the times of a section or program, what the table would change, and why a time is not known."""
-    text = f"{total.time:.1f} s{' and what is not known' if total.unknown else ''}"
-    text += f"; cutting {total.cutting:.1f} s, with this table {total.highest_cutting:.1f} s ({total.lost:+.1f} s)"
+    text = f"takes {total.time:.1f} s{' and what is not known' if total.unknown else ''}"
+    change = (
+        f"{abs(total.lost):.1f} s {'more' if total.lost > 0 else 'less'}" if abs(total.lost) >= _SHOWN else "the same"
+    )
+    text += f"; cutting takes {total.cutting:.1f} s, with F of this table {total.highest_cutting:.1f} s ({change})"
     if total.won:
-        limit = f"F{_feed(total.one_feed, table)}" if total.one_feed is not None else "one F in each section"
-        text += f", with no more than {limit} {total.one_feed_cutting:.1f} s ({total.won:.1f} s more than the table)"
+        limit = f"F{_feed(total.one_feed, table)} alone" if total.one_feed is not None else "one F in each section"
+        text += f", with {limit} {total.one_feed_cutting:.1f} s ({total.won:.1f} s more than with the table)"
     for gap in total.unknown:
         blocks = f"{gap.blocks} block{'s' * (gap.blocks > 1)}"
         remedy = _REMEDIES.get(gap.reason)
