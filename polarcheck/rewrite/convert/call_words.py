@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import re
 
+import numpy as np
+
 from polarcheck.columns.trace import Trace
 from polarcheck.program.machines.machine import Machine
 from polarcheck.rewrite.writing.outcome import refused_at
@@ -38,10 +40,16 @@ class Calls:
         #: Programs that are called and not in the file -> the first line with a call.
         self.missing: dict[int, int] = {}
         self._flow = trace.blocks.codes(*self.source.macro.flow_codes)
+        enters = np.append(np.diff(trace.run.depth) > 0, False)[: len(trace)]
+        self._calls_foreign_macro = trace.blocks.codes(*self.source.macro.macro_calls) & ~enters
 
     def is_flow(self, row: int) -> bool:
         """A row calls a program or returns from one."""
         return bool(self._flow[row])
+
+    def calls_foreign_macro(self, row: int) -> bool:
+        """A row calls a macro that is not in the file, such as one of the builder."""
+        return bool(self._calls_foreign_macro[row])
 
     def names(self, text: str) -> bool:
         """The text of a block is a call or a return in the words of the profile, in whatever language."""
@@ -54,7 +62,7 @@ class Calls:
 
         text: of the block, without N word and comments. Raises RefusedError where the other machine has no words.
         """
-        if not self.names(text) and not self.is_flow(row):
+        if self.calls_foreign_macro(row) or (not self.names(text) and not self.is_flow(row)):
             return None
         squeezed = _BLANKS.sub("", text).upper()
         line = int(self.trace.blocks.line_in_file[row])

@@ -333,24 +333,25 @@ class _Writer:
         if self._call(row) is not None or not is_plain(self.trace.run, row):
             return None
         is_switch = bool(self.trace.mode.enters[row] | self.trace.mode.leaves[row])
-        _, remaining = self.words.divided(row, indices, is_switch)
+        geometry, remaining = self.words.divided(row, indices, is_switch)
         written = self.translation.measures.written
-        translated = {index: self._translated(row, [index]) for index in remaining}
-        whole = self.translation.why_not(row) or next((word.whole for word in translated.values() if word.whole), "")
-        parts = list(translated.values())
+        # Words beside a code that moves nothing belong together; beside a move each has its place.
+        groups = [[index] for index in remaining] if geometry else [remaining] if remaining else []
+        parts = {group[0]: self._translated(row, group) for group in groups}
+        whole = self.translation.why_not(row) or next((part.whole for part in parts.values() if part.whole), "")
         result = Translated(
-            decisions=[text for part in parts for text in part.decisions],
-            remarks=[text for part in parts[:1] for text in part.remarks],
+            decisions=[text for part in parts.values() for text in part.decisions],
+            remarks=[text for part in list(parts.values())[:1] for text in part.remarks],
             whole=whole,
         )
         comment = self._comment(row, result)
-        if not comment and all(part.words == [written(index)] for index, part in translated.items()):
-            return None
         if whole:
             return [NewBlock((), comment)]
-        words = [
-            word for index in indices for word in (translated[index].words if index in translated else [written(index)])
-        ]
+        words: list[str] = []
+        for index in indices:
+            words += parts[index].words if index in parts else [] if index in remaining else [written(index)]
+        if not comment and words == [written(index) for index in indices]:
+            return None
         return [NewBlock(tuple(words), comment)]
 
     def _require_entry(self, enter: int, rows: Sequence[int]) -> None:

@@ -103,4 +103,11 @@ class SpeedWords:
         names = [word for word, of_spindle in self.target.control.spindle_words.items() if of_spindle == "live"]
         if is_live and role == "live" and names:
             return f"{names[0]}={number}"
-        return f"{(self.target.writing.live_tool_speed or 'S') if is_live else 'S'}{number}"
+        word = (self.target.writing.live_tool_speed or "S") if is_live else "S"
+        # P is a speed beside the start of the live tool alone, where `in_force` writes it.
+        return f"{'S' if word == 'P' and not self._starts_live_tool[row] else word}{number}"
+
+    @cached_property
+    def _starts_live_tool(self) -> Mask:
+        codes, blocks = self.source.m_codes, self.trace.blocks
+        return blocks.codes(*codes.live_tool_on) | (blocks.codes(*codes.spindle_on) & self._roles.of_live_tool)

@@ -9,6 +9,7 @@ import numpy as np
 from msgspec.structs import replace
 
 from polarcheck.columns.trace import Trace
+from polarcheck.foundation.states import Side
 from polarcheck.program.machines.job import Job
 from polarcheck.program.machines.machine import Machine
 from polarcheck.program.machines.offset_keys import key_of
@@ -41,6 +42,8 @@ class ToolWords:
         self.keys: dict[str, str] = {}
         self._edges: dict[int, list[int]] = {}
         self._offsets: dict[tuple[int, int], int] = {}
+        side = trace.compensation.side
+        self._compensated = set(np.unique(trace.tools.tool[side != Side.OFF]).tolist())
         ours, theirs = self.source, target
         self._is_same = (
             ours.offsets.called_by == theirs.offsets.called_by
@@ -76,7 +79,8 @@ class ToolWords:
         if offset >= 10**control.offset_digits:
             return ToolCall(refusal=f"offset {offset} has more digits than T leaves room for")
         written = f"T{tool:02d}{offset:0{control.offset_digits}d}"
-        if control.radius_offset_digits and radius_offset != offset:
+        if control.radius_offset_digits and offset and (radius_offset != offset or tool in self._compensated):
+            # R in force is that of the digits before the tool: without them the control may take none.
             written = f"T{radius_offset:0{control.radius_offset_digits}d}{written[1:]}"
             number = radius_offset
         else:

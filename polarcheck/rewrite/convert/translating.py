@@ -180,6 +180,8 @@ class Translation:
         index = int(self._unknown_moves.word[row])
         if self.is_same_lathe:
             return ""
+        if index < 0 and self.calls.calls_foreign_macro(row):
+            return f"the macro is not in the file: see whether {self.target.title} has it, and convert it, too"
         if index < 0:
             return self._of_lathe.why_not(row)
         return f"{self.measures.written(index)}: the profile of {self.source.title} does not say what it does"

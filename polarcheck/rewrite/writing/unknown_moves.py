@@ -41,6 +41,8 @@ class UnknownMoves:
             words = words[(self._has_axes & ~is_special)[rows[words]]]
             self.word[rows[words]] = words
         self.is_skip = self._has_axes & blocks.listed("axis_words_no_move")
+        enters = np.append(np.diff(trace.run.depth) > 0, False)[:count]
+        self._is_call = blocks.codes(*machine.macro.call_codes) & ~enters
 
     def _unlisted(self, letter: str) -> Rows:
         """The executed G or M words that no list of the profile has."""
@@ -62,7 +64,7 @@ class UnknownMoves:
     def lost(self, axis: str) -> Mask:
         """Rows before which nobody knows where an axis stands: behind such a block, up to a coordinate of the axis."""
         trace = self.trace
-        loses = (self.word >= 0) | self.is_skip
+        loses = (self.word >= 0) | self.is_skip | self._is_call
         distance = trace.blocks.distance(axis)
         is_step = trace.modal.incremental if distance is None else distance == Distance.INCREMENTAL
         finds = trace.blocks.has(axis) & ~is_step & trace.modal.uses_axes & ~loses
