@@ -151,7 +151,7 @@ def test_each_word_of_a_section_is_in_plain_moves(name: str) -> None:
 
 @pytest.mark.ci
 def test_a_macro_of_the_builder_a_dwell_and_a_speed_before_its_start() -> None:
-    """A macro that is not in the file is to be decided; G4 stays a dwell; P stands beside the start of the live tool."""
+    """A macro that is not in the file is to be decided; G4 stays; P stands beside the start of the live tool."""
     head = "%\nO1\nG21 G98 G40\nT0606\nM76\nG97 S2500\nM70\nG0 X60. Z2. C0\nG12.1\nG1 X36. C10. F150\nG4 P1000\n"
     program = f"{head}C-10.\nX60. C0\nG13.1\nM72\nM75\nG65 P9001 A1. B2.\nU-2.\nM30\n%\n"
     for target, dwell in (("doosan", "G4 P1000"), ("haas-lathe", "G4 P1000"), ("okuma-osp", "G4 F1.")):
