@@ -32,6 +32,7 @@ from polarcheck.foundation.finding import Finding, NotEvaluated, Undecided
 from polarcheck.geometry.tolerances import CHORDS, CROSSINGS, FARTHEST
 from polarcheck.program.execution.run import Remark
 from polarcheck.program.machines.machine import Machine, OwnMachine
+from polarcheck.program.machines.part_keys import DrawnPart
 from polarcheck.program.reading.excerpt import shortened
 from polarcheck.rules.remedies import option_or_place, place, unlisted_codes
 from polarcheck.rules.rule import Rule
@@ -368,6 +369,10 @@ def _parts_not_compared(tables: Tables, rule: Rule) -> Iterator[Missing]:
 
     crosses = f"crosses itself or others more than {CROSSINGS} times a block: no part can be told from it"
     yield from _skipped_loops(tables, rule, deviations.where & deviations.crosses, crosses)
+    for number, part in enumerate(deviations.parts):
+        if isinstance(part, DrawnPart) and part.passed_over:
+            reason = f"{compared_with(deviations, number)} shows {part.passed_over}, which was passed over"
+            yield Missing(rule.name, SAID, reason, reason, 1, matters=False)
     for comparison in deviations.comparisons:
         if comparison.is_partial and comparison.agrees:
             line = int(tables["trace"].blocks.line[comparison.row])

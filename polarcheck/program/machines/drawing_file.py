@@ -7,9 +7,8 @@ The origin is the spindle axis; x points to C0 and is a radius.
 from __future__ import annotations
 
 import itertools
-import math
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -17,21 +16,22 @@ import msgspec
 
 from polarcheck.foundation import bounded
 from polarcheck.foundation.errors import JobError
-from polarcheck.foundation.states import MM_PER_INCH
-from polarcheck.program.machines.chains import chord_count, joined
+from polarcheck.program.machines.chains import joined
+from polarcheck.program.machines.drawn_curves import (
+    MOST_POINTS,
+    NoDrawingError,
+    drop_frame,
+    fineness_of,
+    is_flat,
+    points_of,
+)
 from polarcheck.program.machines.part_keys import DrawnPart, Part
 
 #: A drawing of one part has some kB [bytes].
 _LARGEST = 16_000_000
-#: Limits: lines and arcs, points of the curves, places of blocks, blocks inside each other. No drawing has more.
-_MOST_ENTITIES, _MOST_POINTS, _MOST_BLOCKS, _DEEPEST = 50_000, 400_000, 2000, 16
-#: How far chords may deviate from their curves, and how far apart two ends at one point may be [mm].
-_SAGITTA, _GAP = 2e-4, 0.01
-#: No lathe and no sheet reaches farther from the axis [mm].
-_FARTHEST = 1e5
+#: Limits: lines and arcs, places of blocks, blocks inside each other. No drawing has more.
+_MOST_ENTITIES, _MOST_BLOCKS, _DEEPEST = 50_000, 2000, 16
 _BINARY = b"AutoCAD Binary DXF\r\n\x1a\0"
-#: mm per unit, by $INSUNITS; nobody draws a part in the others.
-_UNITS = {1: MM_PER_INCH, 2: 12 * MM_PER_INCH, 4: 1.0, 5: 10.0, 6: 1000.0, 9: MM_PER_INCH / 1000, 13: 1e-3, 14: 100.0}
 _LISTED = 4
 _HINT = 'pip install "polarcheck[drawing]"'
 
@@ -42,17 +42,20 @@ class Drawing(msgspec.Struct, frozen=True):
 
     curves: the points of each, x + 1j*c in units of the drawing; one that ends where it begins is closed.
     scale: mm per unit; NaN where the drawing does not say.
+    passed_over: curves that could not be read, with their count; empty for none.
     """
 
     curves: tuple[tuple[complex, ...], ...]
     scale: float
+    passed_over: str = ""
 
 
 def part_of(path: Path, title: str, part: Part | None = None) -> DrawnPart:
     """The part of a drawing, with the other values of its entry. Raises JobError as read_drawing does."""
     drawing = read_drawing(path, title, () if part is None else part.layers)
-    values = {} if part is None else {name: getattr(part, name) for name in Part.__struct_fields__}
-    return DrawnPart(**{**values, "drawing": str(path)}, curves=drawing.curves, scale=drawing.scale)
+    values: dict[str, Any] = {} if part is None else {name: getattr(part, name) for name in Part.__struct_fields__}
+    values["drawing"] = str(path)
+    return DrawnPart(**values, curves=drawing.curves, scale=drawing.scale, passed_over=drawing.passed_over)
 
 
 def read_drawing(path: Path, title: str, layers: Sequence[str] = ()) -> Drawing:
@@ -74,19 +77,12 @@ def read_drawing(path: Path, title: str, layers: Sequence[str] = ()) -> Drawing:
     try:
         # ezdxf assumes meters where a file does not say.
         return _drawing(_document(data), layers, says_units=b"$INSUNITS" in data)
-    except _NoDrawingError as error:
+    except NoDrawingError as error:
         raise JobError(f"{title}: {error}") from None
     except Exception as error:
         # A broken file can make ezdxf raise anything.
         said = " ".join(str(error).split())[:80]
         raise JobError(f"{title}: is no DXF file that can be read{f': {said}' if said else ''}") from None
-
-
-class _NoDrawingError(Exception):
-    """The reason why a file shows no part."""
-
-
-_TOO_FAR = _NoDrawingError(f"shows what is farther than {_FARTHEST:g} mm from its origin, the spindle axis")
 
 
 def _load_reader() -> None:
@@ -131,33 +127,37 @@ def _document(data: bytes) -> Any:
         return Document.load(binary_tags_loader(data))
     text = data.decode("utf-8", "ignore")
     if not text.lstrip("\ufeff \t").startswith(("0", "999")):
-        raise _NoDrawingError("is no DXF file; save the drawing as DXF")
+        raise NoDrawingError("is no DXF file; save the drawing as DXF")
     encoding = dxf_stream_info(io.StringIO(text, None)).encoding
     return Document.read(io.StringIO(data.decode(encoding, "surrogateescape").lstrip("\ufeff"), None))
 
 
 def _drawing(document: Any, layers: Sequence[str], *, says_units: bool) -> Drawing:
-    scale = _UNITS.get(int(document.header.get("$INSUNITS", 0)), math.nan) if says_units else math.nan
-    unit = 1.0 if math.isnan(scale) else scale
-    # Without units the chords are short enough for inches.
-    sagitta = _SAGITTA / (MM_PER_INCH if math.isnan(scale) else scale)
-    ignored, curves, points = Counter[str](), [], 0
+    fineness = fineness_of(int(document.header.get("$INSUNITS", 0)) if says_units else 0)
+    ignored, passed_over, curves, points = Counter[str](), Counter[str](), [], 0
     for entity in _shown(document, _Layers(document, layers), ignored):
-        curve = tuple(itertools.islice(_points(entity, sagitta, _FARTHEST / unit), _MOST_POINTS))
+        if is_flat(entity, fineness):
+            passed_over[f"{entity.dxftype()} with an axis of no length"] += 1
+            continue
+        curve = tuple(itertools.islice(points_of(entity, fineness), MOST_POINTS))
         points += len(curve)
-        if points >= _MOST_POINTS:
-            raise _NoDrawingError(f"has curves of more than {_MOST_POINTS} points: no drawing of a part has")
+        if points >= MOST_POINTS:
+            raise NoDrawingError(f"has curves of more than {MOST_POINTS} points: no drawing of a part has")
         if len(curve) > 1:
             curves.append(curve)
+        else:
+            ignored[f"{entity.dxftype()} without length"] += 1
     if not curves:
-        raise _NoDrawingError(f"shows no line, arc or curve of a part{_ignored(ignored)}")
-    return Drawing(joined(curves, _GAP / unit), scale)
+        ignored += passed_over
+        why = f"; ignored: {_listed_counts(ignored)}" if ignored else ""
+        why = why or ("" if len(document.modelspace()) else ": its model space is empty")
+        raise NoDrawingError(f"shows no line, arc or curve of a part{why}{fineness.of_units}")
+    return Drawing(joined(curves, fineness.gap), fineness.scale, _listed_counts(passed_over))
 
 
-def _ignored(ignored: Counter[str]) -> str:
-    if not ignored:
-        return ": its model space is empty"
-    return f"; ignored: {', '.join(f'{count} {what}' for what, count in ignored.most_common(_LISTED))}"
+def _listed_counts(counts: Counter[str]) -> str:
+    """`3 TEXT, 1 HATCH`: the most frequent first."""
+    return ", ".join(f"{count} {what}" for what, count in counts.most_common(_LISTED))
 
 
 #: Entities that are curves, and those that are resolved into curves.
@@ -178,7 +178,7 @@ def _shown(document: Any, layers: _Layers, ignored: Counter[str]) -> Iterator[An
             continue
         count += 1
         if count > _MOST_ENTITIES:
-            raise _NoDrawingError(f"has more than {_MOST_ENTITIES} lines and arcs: no drawing of a part has")
+            raise NoDrawingError(f"has more than {_MOST_ENTITIES} lines and arcs: no drawing of a part has")
         kind, layer = entity.dxftype(), str(entity.dxf.get("layer", "0"))
         layer = outer if layer == "0" else layer
         reason = layers.reason(entity, kind, layer)
@@ -187,11 +187,12 @@ def _shown(document: Any, layers: _Layers, ignored: Counter[str]) -> Iterator[An
         elif kind in _CURVES:
             yield entity
         elif kind != "INSERT":
+            drop_frame(entity)
             waiting.append((iter(entity.virtual_entities()), layer))
         else:
             blocks += max(int(entity.dxf.row_count * entity.dxf.column_count), 1)
             if blocks > _MOST_BLOCKS or len(waiting) > _DEEPEST:
-                raise _NoDrawingError(
+                raise NoDrawingError(
                     f"has blocks at more than {_MOST_BLOCKS} places, or more than {_DEEPEST} in each other"
                 )
             inserted = entity.multi_insert() if entity.mcount > 1 else iter(entity.virtual_entities())
@@ -216,7 +217,7 @@ class _Layers:
         self._check(document, named)
 
     def _check(self, document: Any, named: Sequence[str]) -> None:
-        """Raises _NoDrawingError for a layer that is not there. The table need not list the layers of all entities."""
+        """Raises NoDrawingError for a layer that is not there. The table need not list the layers of all entities."""
         if self._named <= self._spelled.keys():
             return
         for entity in itertools.chain(*document.blocks):
@@ -225,7 +226,7 @@ class _Layers:
         missing = [name for name in named if name.lower() not in self._spelled]
         if missing:
             names = sorted((name for name in self._spelled.values() if name.lower() != "defpoints"), key=str.lower)
-            raise _NoDrawingError(f"has no layer {missing[0][:_LONGEST_NAME]}; its layers are {_listed(names)}")
+            raise NoDrawingError(f"has no layer {missing[0][:_LONGEST_NAME]}; its layers are {_listed(names)}")
 
     def reason(self, entity: Any, kind: str, layer: str) -> str:
         """Why an entity on a layer is ignored, for the message; empty if it is not."""
@@ -255,34 +256,3 @@ _MOST_NAMES, _LONGEST_NAME = 12, 40
 def _is_broken(linetype: str) -> bool:
     """True for the line type of centers and hidden edges."""
     return linetype.upper() not in ("CONTINUOUS", "BYLAYER", "BYBLOCK")
-
-
-def _points(entity: Any, sagitta: float, farthest: float) -> Iterator[complex]:
-    """The points of a curve, with chords that deviate by the sagitta at most; lengths in units of the drawing."""
-    for point in _vertices(entity, sagitta, farthest):
-        position = complex(point[0], point[1])
-        if not abs(position) <= farthest:
-            raise _TOO_FAR
-        yield position
-
-
-def _vertices(entity: Any, sagitta: float, farthest: float) -> Iterable[Any]:
-    kind = entity.dxftype()
-    if kind == "LINE":
-        return entity.dxf.start, entity.dxf.end
-    if kind in ("ARC", "CIRCLE"):
-        radius = abs(entity.dxf.radius)
-        sweep = (entity.dxf.end_angle - entity.dxf.start_angle) % 360 or 360 if kind == "ARC" else 360
-        count = chord_count(math.radians(sweep), radius, sagitta) if radius else 0
-        if count > _MOST_POINTS or not radius:
-            return ()
-        first = entity.dxf.start_angle if kind == "ARC" else 0
-        return entity.vertices(first + sweep * number / count for number in range(count + 1))  # type: ignore[no-any-return]
-    corners = (
-        [entity.dxf.center, entity.dxf.major_axis]
-        if kind == "ELLIPSE"
-        else [*entity.control_points, *entity.fit_points]
-    )
-    if not all(abs(coordinate) <= farthest for corner in corners for coordinate in list(corner)[:2]):
-        raise _TOO_FAR
-    return entity.flattening(sagitta)  # type: ignore[no-any-return]

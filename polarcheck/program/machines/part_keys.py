@@ -193,11 +193,13 @@ class DrawnPart(Part, frozen=True):
     """
     One whose drawing has been read.
 
-    curves: as in drawing.Drawing. scale: mm per unit of it; NaN where it has the units of the program.
+    curves: as in drawing.Drawing. scale: mm per unit of it; NaN where it has the units of the program. passed_over:
+    curves of the drawing that could not be read, with their count.
     """
 
     curves: tuple[tuple[complex, ...], ...] = ()
     scale: float = math.nan
+    passed_over: str = ""
 
 
 #: Of a part of which nothing is given; made late, since the class checks what it is given.
