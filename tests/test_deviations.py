@@ -25,8 +25,8 @@ from part_reference import along, judge, read_section
 from programs import job_of, report_of, tables_of
 
 from polarcheck.commands import main
-from polarcheck.geometry.comparison.deviation import turned_radius
 from polarcheck.geometry.comparison.measured_path import path_of_curves
+from polarcheck.geometry.comparison.rounds import round_pieces
 from polarcheck.geometry.tolerances import ADJUSTMENT
 from polarcheck.parts.deviations import Deviations
 from polarcheck.parts.part_comparison import Comparison
@@ -138,7 +138,9 @@ def test_metal_that_stays_or_is_missing_is_found_where_shapely_finds_it(seed: in
     if one.bar:
         job = msgspec.structs.replace(job, stock=Stock(diameter=one.bar))
         certain = one.bar / 2
-    turned = turned_radius(path_of_curves([np.array(curve) for curve in job.part[0].curves]))  # type: ignore[attr-defined]
+    curves = [np.array(curve) for curve in job.part[0].curves]  # type: ignore[attr-defined]
+    on = round_pieces(path_of_curves(curves), 0.02) >= 0
+    turned = reach if on.any() and not on.all() else math.inf
     found = comparisons(one.text, one.radius, job)
     assert any(comparison.differs for comparison in found) == leaves_metal(one, min(certain, turned) - 0.02)
 

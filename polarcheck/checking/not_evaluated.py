@@ -380,6 +380,16 @@ def _parts_not_compared(tables: Tables, rule: Rule) -> Iterator[Missing]:
             compared = f"was compared with {compared_with(deviations, comparison.number)} along its walls alone"
             reason = f"{contour}, and {compared}: end it where it began, or beyond"
             yield Missing(rule.name, SAID, reason, reason, 1)
+        if comparison.difference.is_broken and comparison.agrees:
+            title = compared_with(deviations, comparison.number)
+            reason = f"of the round of {title} a part is milled: whether the rest of it is turned is not known"
+            yield Missing(rule.name, SAID, reason, reason, 1)
+        if comparison.difference.outside >= 0 and comparison.agrees:
+            line = int(tables["trace"].blocks.line[comparison.row_outside])
+            title = compared_with(deviations, comparison.number)
+            runs = f"the contour of line {line} runs outside of the round of {title}"
+            reason = f"{runs}, where there may be metal: give the bar, [stock] diameter"
+            yield Missing(rule.name, SAID, reason, reason, 1)
         if comparison.island and comparison.agrees and not tables["trace"].job.stock.unknown:
             title = compared_with(deviations, comparison.number)
             line = int(tables["trace"].blocks.line[comparison.row])

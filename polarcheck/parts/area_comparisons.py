@@ -18,6 +18,7 @@ from polarcheck.parts.nominal_parts import NominalParts
 from polarcheck.parts.part_comparison import SAME_Z, Comparison
 
 if TYPE_CHECKING:
+    from polarcheck.geometry.comparison.deviation import Difference
     from polarcheck.geometry.shapes.shape import Shape
     from polarcheck.parts.metal_differences import AreaDifference, Feature
 
@@ -116,16 +117,26 @@ class AreaComparisons(Columns, frozen=True):
         base = results[index] if index >= 0 else None
         if metal.is_none and base is not None:
             is_partial = base.is_partial and not feature.excess_is_judged
-            changed = is_partial != base.is_partial or metal.island.size > 0
-            return base._replace(is_partial=is_partial, island=metal.island.size > 0) if changed else None
+            difference = _with_rounds(base.difference, feature)
+            return base._replace(is_partial=is_partial, island=metal.island.size > 0, difference=difference)
         if metal.is_none and not feature.excess_is_judged:
             return None
-        proud, deep, is_made = metal.proud.size, metal.deep.size, metal.is_made or base is not None
+        proud, deep, is_made = (
+            metal.proud.size,
+            metal.deep.size,
+            metal.is_made or base is not None or (feature.rounds is not None and feature.rounds.is_broken),
+        )
         if metal.is_none:
             proud = min(metal.off, feature.tolerance) if is_made else metal.off
         difference = Difference(
-            proud=proud, proud_at=metal.proud.place, deep=deep, deep_at=metal.deep.place, mean=0.0, length=1.0
+            proud=proud,
+            proud_at=metal.proud.place,
+            deep=deep,
+            deep_at=metal.deep.place,
+            mean=0.0,
+            length=1.0,
         )
+        difference = _with_rounds(difference, feature)
         row = metal.proud_row if proud >= deep else metal.deep_row
         if row < 0:
             row = int(
@@ -170,3 +181,11 @@ class AreaComparisons(Columns, frozen=True):
         if alike and abs(alike[0].middle - middle) > size:
             alike.sort(key=lambda shape: abs(shape.middle - middle))
         return tuple(alike[:1])
+
+
+def _with_rounds(difference: Difference, feature: Feature) -> Difference:
+    """A difference with what all cuts leave of the round of the drawing."""
+    rounds = feature.rounds
+    if rounds is None:
+        return difference
+    return difference._replace(turned=rounds.turned_radius, is_broken=rounds.is_broken)

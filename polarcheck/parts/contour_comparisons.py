@@ -155,7 +155,7 @@ class ContourComparisons(Columns, frozen=True):
 
     def _compared(self, contour: Contour) -> Comparison | None:
         """The contour compared with its nearest curve."""
-        from polarcheck.geometry.comparison.deviation import difference, turned_radius
+        from polarcheck.geometry.comparison.deviation import difference
 
         results: list[Comparison] = []
         for target in self._targets(contour):
@@ -166,7 +166,8 @@ class ContourComparisons(Columns, frozen=True):
                 angle, curve = self._turned(contour, target)
             both_ways = target.is_closed and contour.is_closed
             metal = self.nominal_parts.air(target.number, target.scale)
-            deviation = difference(contour.made, curve, both_ways=both_ways, metal=metal)
+            allowed = self.nominal_parts.tolerance(target.number, int(contour.made.outline.row[0]))
+            deviation = difference(contour.made, curve, allowed, both_ways=both_ways, metal=metal)
             row = int(contour.made.outline.row[max(deviation.of, 0)])
             is_other_way = (
                 contour.is_closed and target.is_closed and part.drawing is None and part.is_pocket != contour.is_pocket
@@ -175,7 +176,7 @@ class ContourComparisons(Columns, frozen=True):
                 # The whole area is wrong, up to its center.
                 depth = float(np.abs(curve.start - curve.start.mean()).min())
                 deviation = deviation._replace(deep=depth) if contour.is_pocket else deviation._replace(proud=depth)
-            partial = not contour.is_closed and target.rings and math.isinf(min(turned_radius(curve), contour.made.bar))
+            partial = not contour.is_closed and target.rings and math.isinf(min(deviation.turned, contour.made.bar))
             results.append(
                 Comparison(
                     number=target.number,

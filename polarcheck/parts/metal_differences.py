@@ -33,6 +33,7 @@ from polarcheck.geometry.comparison.metal_left import (
     off_wall,
     reachable,
 )
+from polarcheck.geometry.comparison.rounds import Rounds
 from polarcheck.geometry.polygons import areas
 from polarcheck.geometry.polygons.faces import coordinates
 from polarcheck.geometry.segments import segments
@@ -60,7 +61,8 @@ class Feature(NamedTuple):
     is none, inf where nobody knows. excess_is_judged: all that may clear something there is known. is_bar_known: what
     is far from the walls is compared as well. is_solid: there is no hole where it is to be cleared. cuts: bool per cut,
     those in its sections. own_cuts: those without the contours of other parts. pockets: those that it lies in, by their
-    number and curve; `differences` finds them.
+    number and curve; `differences` finds them. beyond: area farther from the axis than `certain` in which there is
+    metal for certain; None for none. rounds: the round of its drawing beside all cuts; None for a shape.
     """
 
     number: int
@@ -79,6 +81,8 @@ class Feature(NamedTuple):
     cuts: Mask
     own_cuts: Mask
     pockets: frozenset[tuple[int, int]] = frozenset()
+    beyond: Any = None
+    rounds: Rounds | None = None
 
 
 class AreaDifference(NamedTuple):
@@ -158,6 +162,8 @@ def _excess(feature: Feature, features: Sequence[Feature], cleared: _Cleared) ->
     gone = cleared.by(cleared.cuts.low <= feature.z + SAME_Z)
     around = _parts_around(feature, features)
     metal = areas.union(disc(feature.certain), around)
+    if feature.beyond is not None:
+        metal = areas.union(metal, feature.beyond)
     near = areas.intersection(area_to_clear(feature.area, feature.radius, tolerance, feature.is_pocket), metal)
     stays = areas.difference(_cleared_of_others(near, feature, features), gone)
     side = areas.intersection(feature.area, metal) if feature.is_pocket else areas.difference(metal, feature.area)

@@ -107,9 +107,8 @@ class NominalFeatures(Columns, frozen=True):
         self, number: int, matched: dict[int, int], angle: float, section: int, chosen: Mask
     ) -> list[tuple[Feature, int]]:
         """The closed curves of a drawing, each with the comparison of its contour."""
-        from polarcheck.geometry.comparison.deviation import turned_radius
-        from polarcheck.geometry.comparison.measured_path import path_of_curves
         from polarcheck.geometry.comparison.metal_left import is_circle, is_inside, polygon_of
+        from polarcheck.parts.milled_rings import MilledRings
 
         row = int(self.trace.mode.sections.enter[section])
         curves = self.nominal_parts.curves(number, self.nominal_parts.unit(number, row))
@@ -122,18 +121,27 @@ class NominalFeatures(Columns, frozen=True):
             for ring, area in rings.items()
         }
         reach = max(float(np.abs(curves[ring]).max()) for ring in rings)
-        bar, round_ = self._bar_radius, turned_radius(path_of_curves([curves[ring] for ring in rings]))
-        certain = min(BEYOND * reach if math.isnan(bar) else bar, round_)
-        features = []
+        tolerance = self.nominal_parts.tolerance(number, row)
+        milled = MilledRings({ring: curves[ring] for ring in rings}, self.milled.cuts[chosen], tolerance)
+        bar = self._bar_radius
+        certain = min(BEYOND * reach if math.isnan(bar) else bar, milled.rounds.radius)
+        beyond, features = None if math.isnan(bar) else milled.sectors(bar), []
         for ring, area in rings.items():
             index = matched.get(ring, -1)
             # Holes are drilled, and the outermost ring may be that of the bar.
             is_of_bar = depth[ring] == 0 and not reach < bar - float(self.milled.cuts.radius[chosen].max())
             may_be_absent = index < 0 and bool(matched) and (is_circle(area) or is_of_bar)
+            may_be_absent = may_be_absent and not milled.is_cut(ring)
             if index < 0:
                 index = matched.get(-1, -1)
             feature = self._feature(number, ring, index, section, chosen)
-            feature = feature._replace(area=area, certain=certain, may_be_absent=may_be_absent)
+            feature = feature._replace(
+                area=area,
+                certain=certain,
+                may_be_absent=may_be_absent,
+                beyond=beyond,
+                rounds=milled.rounds,
+            )
             features.append((feature if index >= 0 else self._nearest([feature]), index))
         features = self._with_roles(features, depth)
         if not matched and len(features) == 1:

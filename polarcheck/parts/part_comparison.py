@@ -130,6 +130,12 @@ class Comparison(NamedTuple):
         return not self.agrees and not self.is_superseded
 
     @property
+    def row_outside(self) -> int:
+        """The row that cuts outside of the round of the drawing; -1 for none."""
+        outside = self.difference.outside
+        return -1 if self.contour is None or outside < 0 else int(self.contour.made.outline.row[outside])
+
+    @property
     def rank(self) -> tuple[bool, bool, float, float]:
         """The comparison of the lowest rank is the nearest; of those that are as near, the deepest."""
         return self.is_superseded, self.is_other_way_round, round(self.difference.largest, _DIGITS), self.z

@@ -15,6 +15,7 @@ import shapely  # type: ignore[import-untyped]
 
 from polarcheck.foundation.arrays import Floats, Mask, Points, Rows
 from polarcheck.geometry.comparison.measured_path import MeasuredPath, path_of_outline
+from polarcheck.geometry.comparison.rounds import Rounds, rounds_of
 from polarcheck.geometry.outline import Outline
 
 #: Points up to this distance [mm] from a circle about the axis are on it.
@@ -44,6 +45,9 @@ class Difference(NamedTuple):
     deep_at, deep_of: the point of it, and the element.
     mean: mean deviation [mm].
     length: length of the outline that was compared [mm].
+    turned: radius of the round of the drawing that is turned, not milled [mm]; inf for none.
+    is_broken: a cut runs along a share of the round only.
+    outside: the element that runs along the round, but outside of it where there may be metal; -1 for none.
     """
 
     proud: float = 0.0
@@ -54,6 +58,9 @@ class Difference(NamedTuple):
     deep_of: int = -1
     mean: float = np.inf
     length: float = 0.0
+    turned: float = np.inf
+    is_broken: bool = False
+    outside: int = -1
 
     @property
     def largest(self) -> float:
@@ -96,27 +103,31 @@ def machined_part(outline: Outline, polygon: Any, bar: float) -> MachinedPart:
     return MachinedPart(outline, path_of_outline(outline), about, polygon, np.inf if np.isnan(bar) else bar)
 
 
-def difference(part: MachinedPart, drawn: MeasuredPath, *, both_ways: bool, metal: float = np.inf) -> Difference:
+def difference(
+    part: MachinedPart, drawn: MeasuredPath, tolerance: float, *, both_ways: bool, metal: float = np.inf
+) -> Difference:
     """
     The deviation of the chains of a part from the curves of a drawing.
 
-    both_ways: the chains should cover all of these curves; else only the chains are measured to the curves. metal: of
-    curves without an end, the radius up to which there is metal for certain [mm]: what lies beyond and is no wall may
-    be the way of the tool from one wall to the next.
+    tolerance: up to this a cut runs along the round of the drawing [mm]. both_ways: the chains should cover all of
+    these curves; else only the chains are measured to the curves. metal: of curves without an end, the radius up to
+    which there is metal for certain [mm]: what lies beyond and is no wall may be the way of the tool from one wall to
+    the next.
     """
-    turned = turned_radius(drawn)
-    places = _compared(part, drawn, turned)
+    rounds = rounds_of(drawn, part.way, tolerance)
+    places, outside = _compared(part, drawn, rounds, tolerance)
     if np.isfinite(metal):
         between = _between_walls(part, drawn, metal)[part.way.of[part.way.at(places[0])[1]]]
         places = places[0], places[1] & ~between
     first = _extremes(part.way, lambda points: _from_part(part, drawn, points), places)
     of_part = _difference(part, first, lambda points: part.way.of[part.way.nearest(points)[2]])
+    of_part = of_part._replace(turned=rounds.turned_radius, is_broken=rounds.is_broken, outside=outside)
     if not both_ways:
         return of_part
     along = drawn.samples()
-    points, _ = drawn.at(along)
+    points, which = drawn.at(along)
     # What lies on the round of the drawing is turned, where the part is not milled there.
-    on_round = np.abs(points) >= turned - _ON_CIRCLE
+    on_round = rounds.turned[which]
     inward = np.where(on_round, points * (1 - _CHORDS / np.maximum(np.abs(points), _CHORDS)), points)
     compared = ~(on_round & _within(part.polygon, inward))
     second = _extremes(drawn, lambda points: _from_drawing(part, points), (along, compared))
@@ -125,7 +136,15 @@ def difference(part: MachinedPart, drawn: MeasuredPath, *, both_ways: bool, meta
     of_drawing = _difference(part, second, lambda points: part.way.of[part.way.nearest(points)[2]])
     proud = of_part if of_part.proud >= of_drawing.proud else of_drawing
     deep = of_part if of_part.deep >= of_drawing.deep else of_drawing
-    return Difference(*proud[:3], *deep[3:6], (of_part.mean + of_drawing.mean) / 2, of_part.length)
+    return of_part._replace(
+        proud=proud.proud,
+        proud_at=proud.proud_at,
+        proud_of=proud.proud_of,
+        deep=deep.deep,
+        deep_at=deep.deep_at,
+        deep_of=deep.deep_of,
+        mean=(of_part.mean + of_drawing.mean) / 2,
+    )
 
 
 def _within(polygon: Any, points: Points) -> Mask:
@@ -142,38 +161,32 @@ def _from_drawing(part: MachinedPart, points: Points) -> Floats:
     return np.where(_within(part.polygon, points), far, -far)
 
 
-def turned_radius(drawn: MeasuredPath) -> float:
-    """The radius of the outermost circle about the axis that a drawing has an arc of [mm]; inf for none."""
-    reach = float(np.abs(drawn.start).max(initial=0))
-    on = (np.abs(drawn.start) > reach - _ON_CIRCLE) & (np.abs(drawn.end) > reach - _ON_CIRCLE)
-    # A chord that is seen under a large angle is no part of an arc.
-    on &= np.abs(drawn.start + drawn.end) / 2 > reach - _ON_CIRCLE
-    # A whole circle may be turned or milled: it counts as milled.
-    is_turned = not on.all() and np.abs(drawn.end - drawn.start)[on].sum() > reach * _LEAST_ARC
-    return reach if is_turned else np.inf
-
-
-#: An arc about the axis is at least so long, as a share of its radius.
-_LEAST_ARC = 0.01
-
-
-def _compared(part: MachinedPart, drawn: MeasuredPath, turned: float) -> tuple[Floats, Mask]:
-    """Distances of sample points along the chains [mm], and a mask of the points to compare."""
-    along = part.way.samples()
+def _compared(
+    part: MachinedPart, drawn: MeasuredPath, rounds: Rounds, tolerance: float
+) -> tuple[tuple[Floats, Mask], int]:
+    """
+    Distances of sample points along the chains [mm], and a mask of the points to compare; and the element that runs
+    along the round outside of it, where there may be metal, -1 for none.
+    """
+    along, turned, outside = part.way.samples(), rounds.turned_radius, -1
     points, which = part.way.at(along)
     size, compared = np.abs(points), np.ones(len(points), bool)
     compared &= size <= part.bar + _ON_CIRCLE
-    beyond = (size > turned + _ON_CIRCLE) & ~part.about_axis[part.way.of[which]]
+    far, closest, nearest = drawn.nearest(points)
+    beyond = (size > turned + _ON_CIRCLE) & ~rounds.milled[nearest]
     if beyond.any():
-        run = np.cumsum(np.diff(beyond, prepend=False))
+        about_axis = part.about_axis[part.way.of[which]]
+        run = np.cumsum(np.diff(beyond, prepend=False) | np.diff(about_axis, prepend=False))
         excess = np.zeros(run[-1] + 1)
         np.maximum.at(excess, run, size - turned)
-        compared &= ~(beyond & (excess[run] > _IN_AIR))
-    far, closest, _ = drawn.nearest(points)
+        in_air = beyond & (excess[run] > np.where(about_axis, tolerance, _IN_AIR))
+        along_round = np.flatnonzero(in_air & about_axis & compared)
+        outside = int(part.way.of[which[along_round[0]]]) if len(along_round) else -1
+        compared &= ~in_air
     compared &= ~_is_open_end(drawn, closest) | (far <= _ON_CIRCLE)
     if np.isinf(min(turned, part.bar)):
         compared &= ~_leading(part, which, far)
-    return along, compared if compared.any() else size <= part.bar + _ON_CIRCLE
+    return (along, compared if compared.any() else size <= part.bar + _ON_CIRCLE), outside
 
 
 def _between_walls(part: MachinedPart, drawn: MeasuredPath, metal: float) -> Mask:

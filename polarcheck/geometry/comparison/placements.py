@@ -128,7 +128,7 @@ def _difference_within(part: MachinedPart, curve: MeasuredPath, limit: float) ->
     both_ways = _both_closed(part.way, curve)
     if both_ways and _mean(part.way, curve) > limit:
         return None
-    deviation = difference(part, curve, both_ways=both_ways)
+    deviation = difference(part, curve, limit, both_ways=both_ways)
     return deviation.largest if deviation.length and deviation.largest <= limit else None
 
 

@@ -32,7 +32,17 @@ def told(trace: Trace, one: Comparison) -> str:
     if found.largest > least and not cmath.isnan(found.at):
         where = f", largest at {_where(trace, one, found.at)} by line {int(trace.blocks.line[one.row])}"
     angle = f"; its angle was not compared: {one.angle_not_compared}" if one.angle_not_compared else ""
-    return f"agrees with {title} within {shown:length} (tolerance {tolerance:length}){where}{angle}"
+    within = f"within {shown:length} (tolerance {tolerance:length})"
+    return f"agrees with {title} {within}{where}{_turned_round(trace, one)}{angle}"
+
+
+def _turned_round(trace: Trace, comparison: Comparison) -> str:
+    """What of a drawing is not milled: its round."""
+    radius = comparison.difference.turned
+    if comparison.part.drawing is None or not math.isfinite(radius):
+        return ""
+    across = Sizes(bool(trace.lengths.units[comparison.row] == Units.INCH))(2 * radius)
+    return f"; its round of {across} is not milled"
 
 
 def deviation(trace: Trace, one: Comparison) -> str:
