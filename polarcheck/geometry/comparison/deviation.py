@@ -173,9 +173,10 @@ def _compared(
     size, compared = np.abs(points), np.ones(len(points), bool)
     compared &= size <= part.bar + _ON_CIRCLE
     far, closest, nearest = drawn.nearest(points)
-    beyond = (size > turned + _ON_CIRCLE) & ~rounds.milled[nearest]
+    # Beyond a round that is milled the arcs are compared, but no wall that runs on in the air.
+    about_axis = part.about_axis[part.way.of[which]]
+    beyond = (size > turned + _ON_CIRCLE) & ~(about_axis & rounds.milled[nearest])
     if beyond.any():
-        about_axis = part.about_axis[part.way.of[which]]
         run = np.cumsum(np.diff(beyond, prepend=False) | np.diff(about_axis, prepend=False))
         excess = np.zeros(run[-1] + 1)
         np.maximum.at(excess, run, size - turned)
