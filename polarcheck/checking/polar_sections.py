@@ -157,7 +157,9 @@ def _ramp_used(trace: Trace, ramps: Ramps) -> Floats:
 # ---- doubtful keys of the profile ----
 
 #: Keys that every polar section rests on.
-_OF_SECTIONS = ("control.x", "polar.x", "polar.virtual_axis", "polar.zero_angle", "limits.c_feed")
+_OF_SECTIONS = ("polar.x", "polar.virtual_axis", "polar.zero_angle", "limits.c_feed")
+#: What X words outside the mode are, in a program with a word that says so and without one.
+_X_KEYS = ("control.x", "control.x_without_words")
 #: Keys that a section rests on that has no limit of C of the lathe.
 _WITHOUT_LIMIT = ("limits.c_feed_suspicious",)
 #: Keys that a section rests on in which such codes are written.
@@ -170,7 +172,16 @@ def with_doubts(report: FileReport, runs: Sequence[tuple[str, Tables]], doubtful
     machine: Machine = runs[0][1]["machine"]
     written = set[str]().union(*(_written(tables["text"]) for _, tables in runs))
     keys = [key for key in doubtful if _rests_on(key, report, machine, written)]
-    return msgspec.structs.replace(report, doubtful=keys) if keys else report
+    if not keys:
+        return report
+    keys.sort(key=lambda key: key not in _X_KEYS)
+    settled_by = {
+        key: parameter
+        for parameter, meaning in machine.known_parameters.items()
+        for key in keys
+        if key == meaning.key or any(key in values for values in meaning.values.values())
+    }
+    return msgspec.structs.replace(report, doubtful=keys, doubtful_parameters=settled_by or UNSET)
 
 
 def _written(text: Text) -> Iterator[str]:
@@ -197,6 +208,11 @@ def _rests_on(key: str, report: FileReport, machine: Machine, written: set[str])
         return written.isdisjoint((*machine.codes("inch"), *machine.codes("mm")))
     if not report.polar_sections:
         return False
+    if key in _X_KEYS:
+        control = machine.control
+        switches = (*control.x_radius_words, *control.x_diameter_words, *control.x_absolute_diameter_words)
+        is_without = bool(control.x_without_words) and written.isdisjoint(word.partition(" ")[0] for word in switches)
+        return is_without == (key == "control.x_without_words")
     if key in _WITH_CODES:
         return not written.isdisjoint(_WITH_CODES[key])
     if key in _WITHOUT_LIMIT:

@@ -430,6 +430,7 @@ class FileReport(msgspec.Struct, frozen=True, kw_only=True):
     profile_sha256: of the machine with all that inherits and changes it: two files with the same were judged alike.
     doubtful: keys of the profile that nobody is sure of, and that the result rests on: codes that the file writes, axes
         and compensation of its sections; `polarcheck machines NAME` says why.
+    doubtful_parameters: of these keys, the control parameter by which the control itself decides.
     settings: what decided for this file, where the files of the run have different settings.
     polar_sections: what the verdict rests on.
     findings: the reported faults, sorted by line.
@@ -454,6 +455,7 @@ class FileReport(msgspec.Struct, frozen=True, kw_only=True):
     sha256: str | None = None
     profile_sha256: str = ""
     doubtful: list[str] = []
+    doubtful_parameters: dict[str, str] | UnsetType = UNSET
     settings: Decided | UnsetType = UNSET
     polar_sections: list[PolarSection] = []
     findings: list[Finding]

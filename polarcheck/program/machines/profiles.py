@@ -140,6 +140,11 @@ def load(
         if isinstance(table.get("parameters"), Mapping):
             # After the values of farther profiles, before those of nearer ones: the nearest word counts.
             parameters.apply(merged, table, title, origins)
+        control = table.get("control")
+        if isinstance(control, Mapping) and "x" in control and "x_without_words" not in control:
+            # X of a nearer profile is that of programs without a word such as DIAMOF, too.
+            merged["control"].pop("x_without_words", None)
+            origins.pop("control.x_without_words", None)
         if axes is not None and axis_names.axis_names(merged) is not None:
             axis_names.follow(merged, table, title, origins, axes)
     written = _convert(merged, origins, [title for title, _ in tables])

@@ -207,6 +207,8 @@ def _example(profile: Profile, group: str, key: str, answer: Any) -> Any:
     if group == "power_on":
         answer = next(iter(profile.machine.codes(answer)), "")
     value = getattr(getattr(profile.written, group), key)
+    if (group, key) == ("control", "x"):
+        value = profile.written.control.x_without_words or value
     is_known = value not in ([], "") and value == value and key not in _DIFFERING
     return value if is_known or answer is None else answer
 

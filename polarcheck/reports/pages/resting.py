@@ -35,13 +35,15 @@ def resting(file: FileReport) -> Iterator[str]:
     for reason in light:
         yield f"not judged, but without weight: {reason}"
     if file.doubtful:
-        yield _doubtful(file.doubtful, file.machine)
+        yield _doubtful(file)
 
 
-def _doubtful(keys: Sequence[str], machine: str) -> str:
+def _doubtful(file: FileReport) -> str:
     """Name keys of the machine that no manual proves, the first of them where there are many."""
-    more = f" and {len(keys) - _LISTED} more" if len(keys) > _LISTED else ""
-    return f"doubtful in {machine}: {', '.join(keys[:_LISTED])}{more}"
+    parameters = file.doubtful_parameters or {}
+    listed = [f"{key} (parameter {parameters[key]})" if key in parameters else key for key in file.doubtful[:_LISTED]]
+    more = f" and {len(file.doubtful) - _LISTED} more" if len(file.doubtful) > _LISTED else ""
+    return f"doubtful in {file.machine}: {', '.join(listed)}{more}"
 
 
 def _section(section: PolarSection) -> str:
