@@ -202,6 +202,7 @@ USES = {
     "control.motion_codes": Use({"G101": "G1"}, inside("G101 C5.")),
     "control.native_words": Use({"POLAR": "G12.1"}, FLAT.replace("G12.1", "POLAR")),
     "control.parentheses_are_comments": Use(False, FLAT.replace("C0", "C0 (APPROACH)")),
+    "control.blanks_in_numbers": Use(False, FLAT.replace("C0", "C 0").replace("X40.", "X4 0.")),
     "g_codes.constant_surface_speed_ended_by": Use(["G98"], before("G96 S100", "G98")),
     "control.units_of_lengths_alone": Use(["G20"], before("G20")),
     "control.x_radius_words": Use(["G7"], before("G7", "X50.")),

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from cases import looped
 from programs import report_of, trace_of
@@ -283,3 +284,60 @@ def test_no_message_has_words_of_custom_macro(block: str) -> None:
     texts = [finding.message for finding in found.findings] + [missing.reason for missing in found.not_evaluated]
     for word in ("#", "custom macro", "macro statement", "500 = 1.5", "run.variables", "END of its own number", " DO "):
         assert not [text for text in texts if word in text]
+
+
+# ---- blanks in numbers, and lists of axes ----
+
+
+@pytest.mark.ci
+@looped("block", ["G1 X-10 10", "G1 X-5.1 0", "X5. 1", "N20 G1 Y4 .5 ; 3 4", "X1\t2"])
+def test_a_blank_inside_a_number_is_a_syntax_error(block: str) -> None:
+    assert "bad-number" in rules(report(block))
+    assert "bad-number" not in rules(report(block, machine="siemens-iso"))
+    assert "bad-number" not in rules(report(f"G291\n{block}\nG290"))
+
+
+@looped("block", ["G1 X=15 0", "R1=5 X10 10", "R1=5 5"])
+def test_so_it_is_beside_statements(block: str) -> None:
+    assert rules(report(block)) == ["macro-syntax"]
+
+
+@looped("block", ["X 40", "X= 15", "Z -5", "N10 G1 X40 Y 1", "T 8", "G1 Z=5 ; 1 2"])
+def test_a_blank_behind_an_address_is_none(block: str) -> None:
+    assert rules(report(block)) == []
+
+
+@pytest.mark.ci
+@looped("block", ["OSCILL[Z]=(X)", "OSCILL[Z]=( X )", "OSCILL[Z]=(X,Y,Z)", "OSCILL[Z]=(C2)", "OSCILL[Z]=(SP1)"])
+def test_a_list_of_axes_is_no_expression(block: str) -> None:
+    of = report(block)
+    assert (rules(of), [missing.reason for missing in of.not_evaluated if missing.matters]) == ([], [])
+
+
+def test_a_value_in_parentheses_still_is_one() -> None:
+    assert rules(report("R1=(X)")) == ["macro-syntax"]
+    assert rules(report("OSCTRL[Z]=(3+")) == ["macro-syntax"]
+
+
+# ---- X of a program without DIAMON and DIAMOF ----
+
+
+@pytest.mark.ci
+@looped(
+    ("words", "changes", "diameter"),
+    [
+        ("", {}, 62.4),
+        ("", {"control": {"x": "diameter"}}, 31.2),
+        ("", {"control": {"x": "radius"}}, 62.4),
+        ("", {"parameters": {"20150[28]": 2}}, 31.2),
+        ("", {"parameters": {"20150[28]": 1}}, 62.4),
+        ("", {"control": {"x": "diameter"}, "parameters": {"20150[28]": 1}}, 31.2),
+        ("DIAMON\n", {}, 31.2),
+        ("DIAMOF\n", {"control": {"x": "diameter"}}, 62.4),
+    ],
+)
+def test_x_of_the_owner_is_that_of_programs_without_a_word(
+    words: str, changes: dict[str, Any], diameter: float
+) -> None:
+    trace = trace_of(f"{words}G0 X31.2 Z5\nM30\n", MACHINE, changes=changes)
+    assert 2 * np.nanmax(trace.path.x) == pytest.approx(diameter)

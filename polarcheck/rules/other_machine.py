@@ -144,5 +144,6 @@ def _read_by(tables: Tables, machine: Machine) -> Tables:
     found = source.read_source(trace.text.source.data, trace.text.source.path)
     found = channel_like(found, trace.text.source, ours.channel_mark, ours.line_comments)
     found = translated(found, theirs.native_words, machine.macro.language)
-    text = read_words(found, theirs.line_comments, ours.channel_mark, ours.wait_mark, machine.macro.language)
+    marks = theirs.line_comments, ours.channel_mark, ours.wait_mark
+    text = read_words(found, *marks, machine.macro.language, blanks_in_numbers=theirs.blanks_in_numbers)
     return Tables(straight(text, machine.m_codes.program_end), machine, trace.job)

@@ -116,14 +116,20 @@ class Written:
         # CR= and RPL= are read as R, too: what is written tells them apart.
         excerpt = self.text.source.excerpt
         mask[at] = [_PARAMETER.match(excerpt(start, start + 4)) is not None for start in words.start[at].tolist()]
-        return np.asarray(mask & ~words.is_unreadable & ~self._in_other_language(words.start))
+        is_readable = ~words.is_unreadable | self._has_blank
+        return np.asarray(mask & is_readable & ~self._in_other_language(words.start))
+
+    @cached_property
+    def _has_blank(self) -> Mask:
+        return np.asarray(self.words.fault == NumberFault.BLANK_INSIDE)
 
     # ---- words of a block ----
 
     @cached_property
     def unreadable_count(self) -> Rows:
         """Per word: the number of blocks with unreadable numbers where one is reported, else 0."""
-        index = np.flatnonzero(self.words.is_unreadable)
+        is_explained = self._has_blank & (self.lacks_equal_sign | self._in_other_language(self.words.start))
+        index = np.flatnonzero(self.words.is_unreadable & ~is_explained)
         return self._habits(index, self.words.fault[index], self.words.address[index])
 
     @cached_property

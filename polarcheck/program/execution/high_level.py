@@ -54,9 +54,15 @@ class _Reader(SpokenBlock):
                 self.letter(token)
             elif token.kind == "name":
                 self.name(token)
+            elif token.kind == "number" and self.is_second_number() and not self.machine.control.blanks_in_numbers:
+                self.wrong("format", self.tokens[self.at - 2], token)
             else:
                 self.leave_rest(token)
         return self.statement()
+
+    def is_second_number(self) -> bool:
+        """Return True if the token just passed over stands right behind a number."""
+        return self.at > 1 and self.tokens[self.at - 2].kind == "number"
 
     def head(self) -> None:
         """Block skip, sequence number and label."""
@@ -209,7 +215,7 @@ class _Reader(SpokenBlock):
             self.pass_over_value()
             self.leave_unread(f"{written}=", first, effect)
         elif index or name[0] == "$":
-            self.value()
+            self.pass_over_value()
             self.leave_unread(f"{written}=", first, matters=name[0] == "$")
         else:
             if not self.names.is_declared(name):

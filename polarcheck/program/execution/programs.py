@@ -200,7 +200,13 @@ def read_text(source: Source, machine: Machine) -> Text:
     control = machine.control
     translation = translated(source, control.native_words, machine.macro.language)
     marks = control.channel_mark, control.wait_mark
-    return read_words(translation, control.line_comments, *marks, machine.macro.language)
+    return read_words(
+        translation,
+        control.line_comments,
+        *marks,
+        machine.macro.language,
+        blanks_in_numbers=control.blanks_in_numbers,
+    )
 
 
 def find_programs(text: Text) -> Programs:

@@ -154,17 +154,25 @@ class SpokenBlock(Tokens):
         return (*self._number_or_more(), None)
 
     def pass_over_value(self) -> None:
-        """The value behind the = of what is not simulated, be it a list: OSCTRL[Z]=(1+2,4)."""
+        """The value behind the = of what is not simulated, be it a list: OSCTRL[Z]=(1+2,4), OSCILL[Z]=(X)."""
         depth, index = 0, self.at
         while is_list := self.tokens[index].kind != "end":
             depth += (self.tokens[index].text in "([") - (self.tokens[index].text in ")]")
             if depth <= 0 or (depth == 1 and self.tokens[index].text == ","):
                 break
             index += 1
-        if is_list and depth == 1 and self.is_sign("("):
+        if self.is_sign("(") and ((is_list and depth == 1) or self.names_axis(1)):
             self.skip_brackets()
         else:
             self.value()
+
+    def names_axis(self, ahead: int) -> bool:
+        """True where the token at this distance behind the next one is an axis in parentheses, and no value."""
+        token, following = self.token_ahead(ahead), self.token_ahead(ahead + 1)
+        has_number = token.kind == "letter" and following.kind == "number"
+        if token.kind not in ("letter", "name") or (token.text == "R" and has_number):
+            return False
+        return self.is_sign(")", ahead + 1 + has_number) and not self.names.is_declared(token.text)
 
     def _number_or_more(self) -> tuple[Expression | None, str | None]:
         first = self.at

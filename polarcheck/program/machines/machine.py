@@ -121,6 +121,7 @@ class Control(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     m_code_limit: most M codes of a block
     line_comments: character that begins a comment up to the end of the line, beside comments in parentheses; or empty
     parentheses_are_comments: whether ( ) holds a comment; where not, the control stops at text in it
+    blanks_in_numbers: whether a blank inside a number is ignored; where not, the control stops at X-10 10
     channel_mark: character before the number of a channel, which parts a file in channels: $ in $2; or empty
     wait_mark: character that begins a wait for another channel, which is a comment: ! in !2L10; or empty
     offset_digits: how many of the last digits of T are the offset number: 2 where T0808 is tool 8 with offset 8
@@ -151,6 +152,7 @@ class Control(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     m_code_limit: Count
     line_comments: CharacterOrNone
     parentheses_are_comments: bool = True
+    blanks_in_numbers: bool = True
     channel_mark: MarkOrNone
     wait_mark: MarkOrNone
     offset_digits: Annotated[int, msgspec.Meta(ge=1, le=4)]

@@ -23,6 +23,7 @@ class NumberFault(enum.IntEnum):
     SIGN_AFTER_DIGITS = 4
     NO_ADDRESS = 5
     WRONG_DASH = 6
+    BLANK_INSIDE = 7
 
 
 class Numbers(Table, frozen=True):

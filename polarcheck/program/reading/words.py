@@ -134,12 +134,19 @@ class Text(msgspec.Struct, frozen=True):
 
 
 def read_words(
-    source: Source, line_comments: str = "", channel_mark: str = "", wait_mark: str = "", language: str = "custom-macro"
+    source: Source,
+    line_comments: str = "",
+    channel_mark: str = "",
+    wait_mark: str = "",
+    language: str = "custom-macro",
+    *,
+    blanks_in_numbers: bool = True,
 ) -> Text:
     """
     Read a file, or a channel of it.
 
     line_comments, channel_mark, wait_mark: as in read_surroundings. language: of its statements, see language_blocks.
+    blanks_in_numbers: the control ignores a blank inside a number; where not, the word has a fault.
     """
     data = source.code.tobytes()
     end_of_data = data.find(CTRL_Z)  # ends a file of old DOS transfers
@@ -157,6 +164,8 @@ def read_words(
     prose = united(prose, around.tags)
     table = _read_pieces(code.tobytes())
     _mark_alignment(table.words, code)
+    if not blanks_in_numbers:
+        _mark_blanks(table.words, code)
     breaks = table.breaks[:-1]
     starts = np.append(breaks[:0], 0)
     starts = np.append(starts, breaks + 1).astype(breaks.dtype)
@@ -438,6 +447,17 @@ def _mark_alignment(words: Words, code: Bytes) -> None:
     heads = heads[code[words.start[heads]] == _COLON]
     heads = heads[heads + 1 < len(words)]
     words.address[heads[words.block[heads + 1] == words.block[heads]]] = ord("N")
+
+
+_BLANK_INSIDE = re.compile(rb"(?<=[0-9.])[ \t]++(?=[0-9.])")
+
+
+def _mark_blanks(words: Words, code: Bytes) -> None:
+    """Set the fault of words with a blank between two digits, or beside their decimal point: X-10 10."""
+    blanks = np.array([match.start() for match in _BLANK_INSIDE.finditer(code.tobytes())], np.int64)
+    first = np.searchsorted(blanks, words.start)
+    inside = np.searchsorted(blanks, words.end) > first
+    words.fault[inside & (words.fault == NumberFault.NONE)] = NumberFault.BLANK_INSIDE
 
 
 def _with_names(words: Words, names: Positions) -> Words:

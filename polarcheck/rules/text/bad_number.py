@@ -16,6 +16,7 @@ _FAULTS = {
     "TWO_SIGNS": "two signs",
     "SIGN_AFTER_DIGITS": "a sign behind the digits",
     "NO_ADDRESS": "a number without an address",
+    "BLANK_INSIDE": "a blank inside the number",
     "WRONG_DASH": "a dash that is not a minus sign",
 }
 
@@ -38,8 +39,9 @@ def bad_number(written: Written, other_mode: OtherMode) -> Hits:
     A number that a control cannot read.
 
     An address without digits, a number with two points or two signs or a sign behind its digits, digits without an
-    address: the control stops at this block. The rest of the block is read as if the word were not there. What is wrong
-    in the same way with more than five words of an address is reported once.
+    address: the control stops at this block. So does a Siemens control in its own language at a blank inside a number
+    (`X-10 10`), which others ignore. The rest of the block is read as if the word were not there. What is wrong in the
+    same way with more than five words of an address is reported once.
 
     Source: FANUC alarms 004 to 007.
 
