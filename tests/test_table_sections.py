@@ -144,6 +144,7 @@ def marks(generator: np.random.Generator, count: int) -> Marks:
         outside=some(0.05),
         planes=some(0.05),
         tool_ends=some(0.05),
+        tools_in_mode=np.zeros(count, bool),
         stops=some(0.05),
         rapid=some(0.2),
         cuts=cuts,

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 from cases import looped
-from programs import moves_of, report_of, tables_of, trace_of
+from programs import moves_of, report_of, said, tables_of, trace_of
 
 from polarcheck.columns.path.moves import Moves
 
@@ -218,3 +218,63 @@ def test_a_spindle_that_is_positioned_in_the_mode_is_no_coordinate(word: str, wh
     assert found.message.startswith(word.partition(") ")[2] or word)
     assert what in found.message
     assert "dialect" not in found.message
+
+
+# ---- another tool in the mode ----
+
+TWO_TOOLS = """T8 D1
+G94 S2=1000
+DIAMOF
+G0 X40 C0 Z5
+TRANSMIT
+G17
+G0 X30 Y0
+G0 Z-2
+G1 G42 X12 Y0 F200
+Y10
+X-12
+Y-10
+X12
+Y0
+G1 {leave}X40
+G0 Z2
+{tool}
+G0 {cancel}{at} Y0
+G1 Z-5 F100
+G0 Z5
+{off}
+G0 Z50
+M30
+"""
+
+
+def of_two_tools(tool: str, off: str, leave: str = "G40 ", cancel: str = "", at: str = "X10") -> list[tuple[int, str]]:
+    program = TWO_TOOLS.format(tool=tool, off=off, leave=leave, cancel=cancel, at=at)
+    return said(report_of(program, MACHINE, "8:radius=4,nose=0", "9:radius=3,nose=0"))
+
+
+@pytest.mark.ci
+@looped("tool", ["T9 D1", 'T="DRILL" D1', "T9", "T9 D1 S2=500", "T9\nM6\nD1"])
+def test_a_tool_is_taken_in_the_mode_without_compensation(tool: str) -> None:
+    assert of_two_tools(tool, "TRAFOOF") == []
+    assert of_two_tools(tool, "TRAFOOF\nG0 X50\nTRANSMIT\nG0 X30 Y0\nTRAFOOF") == []
+
+
+@looped(
+    ("off", "leave", "cancel"),
+    [
+        ("", "G40 ", ""),
+        ("G0 X60", "G40 ", ""),
+        ("TRANSMIT\nG0 X30 Y0\nTRAFOOF", "G40 ", ""),
+        ("TRAFOOF", "", "G40 "),
+    ],
+)
+def test_else_the_mode_was_to_be_left_before_the_tool(off: str, leave: str, cancel: str) -> None:
+    assert (5, "polar-never-left") in of_two_tools("T9 D1", off, leave, cancel)
+
+
+def test_the_second_tool_has_a_contour_of_its_own() -> None:
+    """A drill may go into the part of the first tool; in rapid traverse it may not."""
+    contour = "G0 X14 Y0\nG0 Z-1\nG1 G42 X5 Y0 F200\nY5\nX-5\nY-5\nX5\nY0\nG40 X14\nG0 Z5"
+    assert of_two_tools(f"T9 D1\n{contour}", "TRAFOOF", at="X40") == []
+    assert [rule for _, rule in of_two_tools("T9 D1\nG0 X30 Y0\nZ-2\nG0 X3 Y0\nG0 Z5", "TRAFOOF")] != []

@@ -28,12 +28,22 @@ class UncompensatedCuts(Columns, frozen=True):
 
     @cached_property
     def _has_contour(self) -> Mask:
-        """Rows of sections with compensation, and the rows after them up to the next G12.1."""
+        """
+        Rows of sections with compensation, and the rows after them up to the next G12.1; but for cuts of a tool that is
+        taken in the mode and never compensated there: a drill goes into the part.
+        """
         trace = self.trace
         section = fill_down(trace.mode.section, (trace.mode.section >= 0) | trace.blocks.starts, -1)
         has = np.zeros(len(trace.mode.sections) + 1, bool)
         has[trace.mode.section[trace.compensation.compensates]] = True
-        return has[section]
+        taken = trace.tools.changes_tool & trace.mode.in_polar
+        if not taken.any():
+            return has[section]
+        since = fill_down(np.where(taken, np.cumsum(taken), 0), taken | trace.mode.enters | trace.blocks.starts, 0)
+        compensates = np.zeros(int(since.max()) + 1, bool)
+        compensates[since[trace.compensation.compensates]] = True
+        works_alone = (since > 0) & ~compensates[since] & (trace.axes.motion != Motion.RAPID)
+        return np.asarray(has[section] & ~works_alone)
 
     @cached_property
     def _is_behind_contour(self) -> Mask:

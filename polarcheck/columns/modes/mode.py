@@ -11,7 +11,7 @@ from polarcheck.columns.modes.sections import Marks, Sections, find_sections, se
 from polarcheck.columns.modes.tools import CalledTools
 from polarcheck.columns.path.axes import PlaneAxes
 from polarcheck.foundation.arrays import Columns, Mask, Rows, cached_property, is_among
-from polarcheck.foundation.states import Motion
+from polarcheck.foundation.states import Motion, Side
 from polarcheck.program.execution.run import Run
 from polarcheck.program.machines.code_tables import code_numbers, code_set
 from polarcheck.program.machines.machine import Machine
@@ -41,6 +41,7 @@ class PolarMode(Columns, frozen=True):
         # Where G0 can stand in the mode, one with the second axis does.
         rapid_stands = "G0" in polar.allowed_codes and polar.virtual_axis != polar.rotary_address
         in_rapid = (self.axes.motion == Motion.RAPID) & self.axes.programs_virtual_axis & rapid_stands
+        changes_tool = self.tools.changes_tool | self.blocks.codes(*m_codes.tool_change)
         marks = Marks(
             on=self.axes.switches_on & ~self.axes.ends_mode,
             off=self.axes.ends_mode,
@@ -48,7 +49,8 @@ class PolarMode(Columns, frozen=True):
             outside=self.blocks.listed("reference_check", "reference_return", "machine_coordinates")
             | self.blocks.codes(*m_codes.c_axis_off),
             planes=self.blocks.codes(*planes.difference(polar.plane_before, polar.allowed_codes)),
-            tool_ends=self.tools.changes_tool | self.blocks.ends_program | self.blocks.codes(*m_codes.tool_change),
+            tool_ends=changes_tool | self.blocks.ends_program,
+            tools_in_mode=changes_tool & self._takes_tools,
             stops=self.blocks.codes(*m_codes.optional_stop),
             rapid=self.blocks.listed("rapid"),
             cuts=cutting & self.axes.programs_virtual_axis,
@@ -58,6 +60,14 @@ class PolarMode(Columns, frozen=True):
             rapid_stands=rapid_stands,
         )
         return find_sections(marks)
+
+    @property
+    def _takes_tools(self) -> Mask:
+        """Rows where this control takes another tool in the mode: where no compensation is in force."""
+        if self.machine.offsets.called_in_polar == "never":
+            return np.zeros(len(self.run), bool)
+        side = self.modal.state("side")
+        return np.asarray(is_among(side, (0, Side.OFF)) & is_among(before(side, self.blocks.starts, 0), (0, Side.OFF)))
 
     @property
     def _returns(self) -> Mask:

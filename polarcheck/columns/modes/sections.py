@@ -14,6 +14,7 @@ class Marks(msgspec.Struct, frozen=True):
 
     on, off: the switching codes. starts: a program begins. outside: codes that can only stand outside (reference
     return). planes: a plane is selected that cannot be selected in the mode. tool_ends: tool change, program end.
+    tools_in_mode: tool changes that can stand in the mode as well, of a section that its G13.1 ends.
     stops: M1, between two tools or in the work of one. rapid: G0 is written. cuts: a cutting move with a word of the
     virtual axis. moves: any move in the plane that can stand in the mode. returns: M99 of a program that something
     elsewhere may call. broken_off: the last row of a program that a bound has ended. rapid_stands: G0 can stand in the
@@ -26,6 +27,7 @@ class Marks(msgspec.Struct, frozen=True):
     outside: Mask
     planes: Mask
     tool_ends: Mask
+    tools_in_mode: Mask
     stops: Mask
     rapid: Mask
     cuts: Mask
@@ -86,6 +88,9 @@ def find_sections(marks: Marks) -> Sections:
 
     last_cut = np.maximum(enter, _last_before(np.flatnonzero(marks.cuts), end))
     tool_end = _first_after(np.flatnonzero(marks.tool_ends), last_cut, count)
+    tool_end = np.where(
+        by_off, _first_after(np.flatnonzero(marks.tool_ends & ~marks.tools_in_mode), last_cut, count), tool_end
+    )
     outside = _first_after(np.flatnonzero(marks.tool_ends | marks.outside), last_cut, count)
     rapid = _first_after(np.flatnonzero(marks.tool_ends | marks.outside | marks.rapid), last_cut, count)
     if marks.rapid_stands:

@@ -28,7 +28,8 @@ def polar_never_left(mode: PolarMode) -> Mask:
 
     A forgotten G13.1: what follows is read on the polar plane, with C as a length, X across the center and G0 not
     allowed. One fault is reported here, at the G12.1, with the first block that can only stand outside; from there on
-    the program is read as if the G13.1 stood before it.
+    the program is read as if the G13.1 stood before it. Where the control takes tools in the mode while no compensation
+    is in force, a tool change says nothing as long as the mode is left later.
 
     Source: FANUC B-62764EN/01, p. 50; builder's guide to G12.1.
 
