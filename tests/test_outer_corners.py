@@ -23,7 +23,7 @@ from polarcheck.geometry.cutter_compensation.offset_path import Phase
 
 MACHINE = "siemens-transmit"
 FEED, RADIUS = 300.0, 4.0
-HEAD = "T8 D1\nG94 S2=2000\nDIAMOF\nG0 X60 C0 Z5\nTRANSMIT\nG17\n{code}\nG1 G42 X{x} Y0 F300\n"
+HEAD = "T8 D1\nG94 S2=2000 M2=3\nDIAMOF\nG0 X60 C0 Z5\nTRANSMIT\nG17\n{code}\nG1 G42 X{x} Y0 F300\n"
 FOOT = "G40 X60\nTRAFOOF\nM30\n"
 TOOL = f"8:radius={RADIUS:g}"
 

@@ -17,7 +17,7 @@ pytestmark = pytest.mark.one_in(1)
 
 MACHINE = "siemens-transmit"
 PROGRAM = """T8 D1
-G94 S2=1000
+G94 S2=1000 M2=3
 DIAMOF
 {before}G0 X40 C0 Z5
 TRANSMIT
@@ -341,3 +341,30 @@ def test_x_of_the_owner_is_that_of_programs_without_a_word(
 ) -> None:
     trace = trace_of(f"{words}G0 X31.2 Z5\nM30\n", MACHINE, changes=changes)
     assert 2 * np.nanmax(trace.path.x) == pytest.approx(diameter)
+
+
+# ---- spindles by their number ----
+
+
+@pytest.mark.ci
+@looped(
+    ("before", "is_said"),
+    [
+        ("S2=2000", True),
+        ("S3 = 1500\nM1=5", True),
+        ("N5 S2=500*4", True),
+        ("S2=2000 M3=3", True),
+        ("S2=2000 M2=3", False),
+        ("M2=4\nS2=2000", False),
+        ("S2=300\nS3=2000 M3=3", False),
+        ("SETMS(2)\nS2=2000\nM3", False),
+        ("S2=0", False),
+        ("S2=R1", False),
+        ("G26 S2=2000", False),
+        ("G4 S2=3", False),
+    ],
+)
+def test_a_spindle_with_a_speed_is_started_by_its_number(before: str, is_said: bool) -> None:
+    text = PROGRAM.replace("S2=1000 M2=3", before).format(before="", inside="")
+    found = rules(report_of(text, MACHINE, "8:radius=4,nose=0"))
+    assert found == ["live-tool-stopped-in-cut"] * is_said

@@ -12,7 +12,7 @@ from programs import moves_of, report_of, said, tables_of, trace_of
 from polarcheck.columns.path.moves import Moves
 
 MACHINE = "siemens-transmit"
-HEAD = "G94 S2=1000\nDIAMOF\nG0 X40 {c} Z5\n"
+HEAD = "G94 S2=1000 M2=3\nDIAMOF\nG0 X40 {c} Z5\n"
 #: A quarter of a turn and back, without compensation.
 SECTION = "TRANSMIT\nG17\nG1 X20 Y0 F300\nX0 Y20\nTRAFOOF\n"
 SECOND = "{between}\nTRANSMIT\nG1 X30 Y0\nTRAFOOF\nM30\n"
@@ -108,7 +108,7 @@ def test_a_fanuc_begins_its_plane_at_g12_1() -> None:
 def test_g70_leaves_f_alone(units: str, lengths: float, feed: float) -> None:
     """802D sl BP-N p. 8-139: G70 and G71 do not influence F, G700 and G710 do; the basic system is metric."""
     written = "" if "F" in units else " F300"
-    program = f"G94 S2=1000\nDIAMOF\n{units}\nG0 X40 C0 Z5\nTRANSMIT\nG17\nG1 X20{written}\nY1\nTRAFOOF\nM30\n"
+    program = f"G94 S2=1000 M2=3\nDIAMOF\n{units}\nG0 X40 C0 Z5\nTRANSMIT\nG17\nG1 X20{written}\nY1\nTRAFOOF\nM30\n"
     moves = run(program)
     assert moves.end[0] == pytest.approx(20 * lengths)
     assert moves.feed == pytest.approx(feed)
@@ -117,13 +117,13 @@ def test_g70_leaves_f_alone(units: str, lengths: float, feed: float) -> None:
 @looped(("units", "feed"), [("G70", 7620), ("G71", 7620), ("G710", 300), ("", 7620)])
 @looped("changes", [{"parameters": {"10240": 0}}, {"control": {"units": "inch"}}])
 def test_on_an_inch_basic_system_f_is_in_inch(units: str, feed: float, changes: dict[str, Any]) -> None:
-    program = f"G94 S2=1000\nDIAMOF\n{units}\nG0 X2 C0 Z1\nTRANSMIT\nG17\nG1 X1 F300\nY1\nTRAFOOF\nM30\n"
+    program = f"G94 S2=1000 M2=3\nDIAMOF\n{units}\nG0 X2 C0 Z1\nTRANSMIT\nG17\nG1 X1 F300\nY1\nTRAFOOF\nM30\n"
     assert run(program, changes=changes).feed == pytest.approx(feed)
 
 
 def test_messages_and_fixes_have_f_in_its_own_units() -> None:
     """F3000 under G70 is 3000 mm/min: so it is said, and so is the F that is low enough."""
-    program = "G94 S2=1000\nDIAMOF\nG70\nG0 X2 C0 Z1\nTRANSMIT\nG17\nG1 X1 F3000\nX.05 Y.1\nX1\nTRAFOOF\nM30\n"
+    program = "G94 S2=1000 M2=3\nDIAMOF\nG70\nG0 X2 C0 Z1\nTRANSMIT\nG17\nG1 X1 F3000\nX.05 Y.1\nX1\nTRAFOOF\nM30\n"
     report = report_of(program, MACHINE, changes={"limits": {"c_feed": 7200}})
     (finding,) = [finding for finding in report.findings if finding.rule == "c-feed-above-limit"]
     assert " mm/min" in finding.message
@@ -135,7 +135,7 @@ def test_messages_and_fixes_have_f_in_its_own_units() -> None:
 
 def test_near_the_pole_the_control_slows_down_by_itself() -> None:
     """A note with the F that remains, limit of C times the distance, and the longer time."""
-    program = "G94 S2=1000\nDIAMOF\nG0 X30 C0 Z1\nTRANSMIT\nG17\nG1 X20 Y2 F600\nX-20\nX-30\nTRAFOOF\nM30\n"
+    program = "G94 S2=1000 M2=3\nDIAMOF\nG0 X30 C0 Z1\nTRANSMIT\nG17\nG1 X20 Y2 F600\nX-20\nX-30\nTRAFOOF\nM30\n"
     changes = {"limits": {"c_feed": 7200}}
     report = report_of(program, MACHINE, changes=changes)
     (finding,) = report.findings
@@ -223,7 +223,7 @@ def test_a_spindle_that_is_positioned_in_the_mode_is_no_coordinate(word: str, wh
 # ---- another tool in the mode ----
 
 TWO_TOOLS = """T8 D1
-G94 S2=1000
+G94 S2=1000 M2=3
 DIAMOF
 G0 X40 C0 Z5
 TRANSMIT

@@ -330,7 +330,7 @@ def test_reports_name_the_doubtful_keys_that_they_rest_on() -> None:
     keys = set(check("d.mpf", "--machine", "our.toml")["files"][0]["doubtful"])
     assert {"g_codes.work_offset", "g_code_system_b.mm", "g_code_system_b.feed_per_minute"} <= keys
     assert not any(key.startswith(("polar.", "compensation.", "g_code_system_c.")) for key in keys)
-    Path("e.mpf").write_text("T8 D1\nG94 S2=1000\nG0 X30 C0 Z5\nTRANSMIT\nG1 X20 F300\nTRAFOOF\nM30\n", "utf-8")
+    Path("e.mpf").write_text("T8 D1\nG94 S2=1000 M2=3\nG0 X30 C0 Z5\nTRANSMIT\nG1 X20 F300\nTRAFOOF\nM30\n", "utf-8")
     assert "control.x_without_words (parameter 20150[28])" in call("check", "e.mpf", "--machine", "our.toml").stdout
     (of_diameters,) = check("e.mpf", "--machine", "siemens-transmit", "--set", "control.x=diameter")["files"]
     assert not {"control.x", "control.x_without_words"} & set(of_diameters["doubtful"])

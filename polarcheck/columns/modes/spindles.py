@@ -106,6 +106,13 @@ class Spindles:
         sub = self.trace.modal.switched(self._codes.sub_spindle_on, self._codes.sub_spindle_off, "sub")
         return np.where(self.on_sub_spindle, sub, self.trace.modal.spindle)
 
+    @cached_property
+    def unstarted_speed(self) -> Rows:
+        """Per row the executed word with the speed of a spindle by its number that nothing starts; -1 for none."""
+        from polarcheck.columns.modes.numbered_spindles import unstarted_speeds
+
+        return unstarted_speeds(self.trace)
+
     @property
     def are_no_live_tool(self) -> Mask:
         """The codes that start and stop the spindle of the C axis do not start the live tool, which has its own."""

@@ -28,7 +28,7 @@ def comment_in_parentheses(written: Written) -> Hits:
     Bad, machine siemens-transmit:
 
         (HEXAGON, 24 ACROSS)   (expect: comment-in-parentheses)
-        G94 S2=1000
+        G94 S2=1000 M2=3
         G0 X60 C0
         M30
 
@@ -37,7 +37,7 @@ def comment_in_parentheses(written: Written) -> Hits:
         ; HEXAGON, 24 ACROSS
         R1=(2+3)*4
         MSG("(ROUGHING)")
-        G94 S2=1000
+        G94 S2=1000 M2=3
         G0 X60 C0
         M30
     """

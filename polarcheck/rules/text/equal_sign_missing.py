@@ -26,7 +26,7 @@ def equal_sign_missing(written: Written) -> Mask:
 
     Bad, machine siemens-transmit:
 
-        G94 S2=1000
+        G94 S2=1000 M2=3
         DIAMOF
         G0 X60 C0
         TRANSMIT
@@ -40,7 +40,7 @@ def equal_sign_missing(written: Written) -> Mask:
     Good, machine siemens-transmit:
 
         R1=20
-        G94 S2=1000
+        G94 S2=1000 M2=3
         DIAMOF
         G0 X60 C0
         TRANSMIT
