@@ -368,3 +368,31 @@ def test_a_spindle_with_a_speed_is_started_by_its_number(before: str, is_said: b
     text = PROGRAM.replace("S2=1000 M2=3", before).format(before="", inside="")
     found = rules(report_of(text, MACHINE, "8:radius=4,nose=0"))
     assert found == ["live-tool-stopped-in-cut"] * is_said
+
+
+# ---- quotes of print ----
+
+
+@pytest.mark.ci
+@looped("encoding", ["utf-8", "cp1252", "utf-16"])
+@looped(
+    "block",
+    ["MSG(“ROUGH”)", "MSG(‘ROUGH’)", "MSG(„ROUGH (1); 2“)", "T=“MILL” D1", "MSG(“A”)\nMSG(“B”)", "MSG(”ROUGH”) ; A"],
+)
+def test_printed_quotes_are_named_once_and_read_as_plain_ones(block: str, encoding: str) -> None:
+    text = PROGRAM.format(before=f"{block}\n", inside="").replace("T8 D1", "" if "T=" in block else "T8 D1")
+    tools = "8:radius=4,nose=0", "MILL/1:radius=4,nose=0"
+    found = report_of(text.encode(encoding), MACHINE, *tools)
+    assert (rules(found), [missing for missing in found.not_evaluated if missing.matters]) == (["stray-character"], [])
+
+
+@looped("block", ['MSG("TOOL “A” OR ‘B’")', "; “A” ‘B’", 'MSG("A") ; “B”'])
+def test_printed_quotes_in_text_are_text(block: str) -> None:
+    assert "stray-character" not in rules(report(block))
+
+
+@looped("block", ["TN=’MILL’", "NOEX PUT ‘TEXT’", "VC1=‘5’"])
+def test_so_they_are_on_an_okuma(block: str) -> None:
+    assert rules(report_of(f"O1\nG0 X100 Z100\n{block}\nM2\n", "okuma-osp")) == ["stray-character"]
+    plain = block.replace("’", "'").replace("‘", "'")
+    assert rules(report_of(f"O1\nG0 X100 Z100\n{plain}\nM2\n", "okuma-osp")) == []

@@ -18,7 +18,7 @@ import numpy as np
 from polarcheck.foundation.arrays import Mask, cached_property, stretch
 from polarcheck.program.execution.run import begins_program, is_code
 from polarcheck.program.machines.machine import Machine
-from polarcheck.program.reading.source import Source
+from polarcheck.program.reading.source import PRINTED_QUOTES, Source
 from polarcheck.program.reading.translation import translated
 from polarcheck.program.reading.words import Text, read_words
 
@@ -259,7 +259,7 @@ def needs_flow(text: Text, codes: Iterable[str]) -> bool:
 def block_text(text: Text, block: int) -> str:
     """
     A block as the control would read it: comments, other text, stray characters and the label before words blanked,
-    digits for letters, points for decimal commas.
+    digits for letters, points for decimal commas, plain quotes for printed ones.
     """
     start, end = int(text.blocks.start[block]), int(text.blocks.end[block])
     written = text.source.excerpt(start, end)
@@ -275,6 +275,8 @@ def block_text(text: Text, block: int) -> str:
     for index in strays:
         if written[index - start] == "," and _DECIMAL_COMMA.match(written, index - start):
             characters[index - start] = "."
+        elif quote := PRINTED_QUOTES.get(int(text.source.code[index])):
+            characters[index - start] = quote
         elif written[index - start] != "%":  # ends what is read
             characters[index - start] = " "
     for index in letters:

@@ -14,7 +14,7 @@ import re
 import msgspec
 import numpy as np
 
-from polarcheck.program.reading.source import LF, Bytes, Positions
+from polarcheck.program.reading.source import LF, PRINTED_QUOTES, Bytes, Positions
 from polarcheck.program.reading.surroundings import Ranges
 
 
@@ -48,6 +48,7 @@ class Extracted(msgspec.Struct, frozen=True):
     heads: names in lines such as %_N_SHAFT_MPF, with one character on either side.
     is_joined: some line continues the block of the line above.
     commas: positions of commas in statements that stand for a decimal point.
+    quotes: positions of printed quotes in statements, outside of strings in plain quotes.
     """
 
     statements: Positions
@@ -56,6 +57,7 @@ class Extracted(msgspec.Struct, frozen=True):
     heads: Ranges
     is_joined: bool
     commas: Positions
+    quotes: Positions
 
 
 _SIGNS = {
@@ -93,6 +95,10 @@ _OF_COMMAS = re.compile(
     rb'"[^"\n]*+"?|(?<![A-Z_])(?:[AID]C|ACP|ACN)[ \t]*+\([-+ \t]*+[0-9]++(,)(?=[0-9]++[ \t]*+\))'
     rb"|[()\[\]]|(?<=[0-9]),(?=[0-9])"
 )
+_STRING = re.compile(rb'"[^"\n]*+"?')
+_PRINTED_QUOTE = re.compile(b"[" + bytes(PRINTED_QUOTES) + b"]")
+_DOUBLE = b"[" + bytes(code for code, plain in PRINTED_QUOTES.items() if plain == '"') + b"]"
+_IN_PRINTED_QUOTES = _DOUBLE + rb"(?>[^\n]*?" + _DOUBLE + b")"
 _FLAGS = re.IGNORECASE | re.MULTILINE
 #: The line before a program of an archive: %_N_SHAFT_MPF. The character before the name is _ or %.
 _HEAD = re.compile(rb"[ \t\0]*+%[ \t]*+(?:_N_)?([A-Z0-9_]{1,32}?)_(?:MPF|SPF)[ \t\r\0]*+\Z")
@@ -109,7 +115,7 @@ def extract_statements(code: Bytes, language: str) -> Extracted:
     none = np.zeros(0, np.int64)
     if signs is None or not len(code):
         nothing = Ranges(none, none)
-        return Extracted(none, nothing, nothing, nothing, False, none)
+        return Extracted(none, nothing, nothing, nothing, False, none, none)
     is_joined = signs.has_names and _join(code)
     is_name = _NAME_CHARACTERS[code]
     alone = b":" + signs.alone
@@ -126,6 +132,7 @@ def extract_statements(code: Bytes, language: str) -> Extracted:
     programs: list[tuple[int, int]] = []
     heads: list[tuple[int, int]] = []
     commas: list[int] = []
+    quotes: list[int] = []
     for start, end in zip(starts.tolist(), breaks[index].tolist(), strict=True):
         line = code[start:end].tobytes().upper()
         if line.lstrip(_BLANK)[:2] == b"O<":
@@ -159,6 +166,9 @@ def extract_statements(code: Bytes, language: str) -> Extracted:
         statements.append(start + first)
         if _COMMA.search(line):
             commas += [start + suspected for suspected in _decimal_commas(_without(line, comments))]
+        if _PRINTED_QUOTE.search(line):
+            bare = _without(line, [*comments, *(string.span() for string in _STRING.finditer(line))])
+            quotes += [start + quote.start() for quote in _PRINTED_QUOTE.finditer(bare)]
         begin = 0
         for comment, after in [*comments, (len(line), len(line))]:
             code[start + begin : start + comment] = _BLANK[0]
@@ -170,6 +180,7 @@ def extract_statements(code: Bytes, language: str) -> Extracted:
         _ranges(heads),
         is_joined,
         np.array(commas, np.int64),
+        np.array(quotes, np.int64),
     )
 
 
@@ -226,9 +237,9 @@ def _first_outside(line: bytes, start: int, marks: list[int], comments: list[tup
 
 def _pattern(signs: _Signs) -> re.Pattern[bytes]:
     alone = rb"[" + re.escape(signs.alone) + rb"]"
-    return re.compile(
-        rb'"[^"\n]*+"?|(' + signs.line_comment + rb")|(\()|(\))|(" + _LABEL + b"|" + _NAME + b"|" + alone + b")"
-    )
+    strings = rb'"[^"\n]*+"?|' + _IN_PRINTED_QUOTES
+    sign = b"|".join((_LABEL, _NAME, alone))
+    return re.compile(strings + rb"|(" + signs.line_comment + rb")|(\()|(\))|(" + sign + b")")
 
 
 def _parts(line: bytes, pattern: re.Pattern[bytes], signs: _Signs) -> tuple[list[tuple[int, int]], int]:

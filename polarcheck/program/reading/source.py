@@ -15,11 +15,16 @@ from polarcheck.foundation.errors import SourceError, UsageError
 Bytes = NDArray[np.uint8]
 Positions = NDArray[np.signedinteger[Any]]
 
-#: One code per character. Minus look-alikes share the code that Windows gives to the en dash, all else above 255 OTHER.
+#: One code per character. Minus look-alikes share the code that Windows gives to the en dash, printed quotes those that
+#: it gives to them, all else above 255 OTHER.
 DASH = 0x96
 OTHER = 0xFE
 MINUS_LOOK_ALIKES = "\u2013\u2014\u2212"
 _DASHES = (*map(ord, MINUS_LOOK_ALIKES), 0x97)
+
+#: Printed quotes, by the codes that Windows gives to them, with the plain quote that is meant.
+PRINTED_QUOTES = {0x91: "'", 0x92: "'", 0x82: "'", 0x93: '"', 0x94: '"', 0x84: '"'}
+_QUOTES = {ord(bytes([code]).decode("cp1252")): code for code in PRINTED_QUOTES}
 
 LF, CR, CTRL_Z = 10, 13, 26
 
@@ -152,6 +157,8 @@ def _codes(data: bytes, bom: bytes, encoding: str) -> Bytes:
     wide = np.frombuffer(data[len(bom) :].decode(encoding).encode("utf-32-le", "surrogatepass"), np.uint32)
     code = np.where(wide < 256, wide, OTHER).astype(np.uint8)
     code[np.isin(wide, _DASHES)] = DASH
+    for character, quote in _QUOTES.items() if (code == OTHER).any() else ():
+        code[wide == character] = quote
     return code
 
 

@@ -185,7 +185,9 @@ def read_words(
         return Spans(ranges.start, ranges.end, _block_of(ranges.start, starts))
 
     strays = table.strays[_is_reported(table, code, is_macro, starts)]
-    strays = np.sort(np.concatenate((strays, _outside_prose(around.strays, prose, starts), extracted.commas)))
+    strays = np.sort(
+        np.concatenate((strays, _outside_prose(around.strays, prose, starts), extracted.commas, extracted.quotes))
+    )
     outside = around.outside
     names = united(united(around.names, extracted.heads), extracted.programs)
     if data[end_of_data + 1 :].translate(None, BLANKS + b"\n"):

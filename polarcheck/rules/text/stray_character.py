@@ -32,7 +32,8 @@ def stray_character(written: Written, other_mode: OtherMode) -> Hits:
 
     A block holds letters with their numbers, and nothing else outside comments. The control stops at any other
     character. A % inside a block is the end of the program to it. Of several in a block the first is reported, each
-    character once in a file, as a $ or * at the end of every block; what can be read around them is read.
+    character once in a file, as a $ or * at the end of every block; what can be read around them is read. The quotes of
+    print, which programs copied from manuals and mails have around a text, are read as the plain ones.
 
     Source: FANUC alarms 009 and 5010.
 
@@ -49,6 +50,12 @@ def stray_character(written: Written, other_mode: OtherMode) -> Hits:
 
         O0001
         G0 X60. % M3      (expect: stray-character)
+        M30
+
+    Bad, machine siemens-transmit:
+
+        MSG(“ROUGHING”)   (expect: stray-character)
+        G94 G0 X60 C0
         M30
 
     Good:
@@ -74,10 +81,16 @@ def stray_character(written: Written, other_mode: OtherMode) -> Hits:
 
 
 def details(hit: Hit, text: Text) -> Details:
+    from polarcheck.program.reading.source import PRINTED_QUOTES
+
     at = int(text.strays.start[hit.index])
     character = text.source.excerpt(at, at + 1)
     if character == "%":
         return {"stray": "% inside a block: for the control the program ends here"}
+    code = int(text.source.code[at])
+    if text.blocks.is_macro[text.strays.block[hit.index]] and code in PRINTED_QUOTES:
+        printed = bytes([code]).decode("cp1252")
+        return {"stray": f"{printed} is a quote of print: write {PRINTED_QUOTES[code]}"}
     whole = re.search(r"(?<![0-9])[-+]?[0-9]++\Z", text.source.excerpt(max(at - _DIGITS, 0), at))
     decimals = re.match(r"[0-9]++", text.source.excerpt(at + 1, at + 1 + _DIGITS))
     if character == "," and whole and decimals:
