@@ -498,12 +498,16 @@ def _profile(name: str, over: Sequence[profiles.Change], catalogue: Rules) -> pr
     return profile
 
 
+#: .5 and 4., which TOML does not read.
+_SHORT_NUMBER = re.compile(r"[-+]?(?:[0-9]{1,9}\.|\.[0-9]{1,9})")
+
+
 def toml_value(text: str) -> Any:
-    """Return the TOML value of a text; else the text itself, so that quotes may be left out."""
+    """Return the TOML value of a text, or the number; else the text itself, so that quotes may be left out."""
     try:
         table = toml_text.parsed(f"value = {text}")
     except ValueError:
-        return text
+        return float(text) if _SHORT_NUMBER.fullmatch(text) else text
     value = table["value"]
     return value if len(table) == 1 and isinstance(value, bool | int | float | str | list) else text
 

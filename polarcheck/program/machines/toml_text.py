@@ -32,6 +32,12 @@ _BIT = r"^[ \t]*+(\w{1,20}#\w{1,20})[ \t]*+="
 
 #: 1,5 for 1.5.
 _COMMA = re.compile(r"=[ \t]*+([-+]?\d{1,9}+),(\d{1,9}+)[ \t]*+(?:#.*)?$")
+#: .5, 4., 08, 3/16 and 1 3/16 as a value, be it with a unit behind it.
+_NUMBER = re.compile(
+    r"[=\[,][ \t]*+([-+]?)(?:(?:(\d{1,9})[ \t-]+)?(\d{1,9})[ \t]*+/[ \t]*+(\d{1,9})|(\d{0,9})\.?(\d{0,9}))"
+    r"[ \t]*+(mm|inches|inch|in|\"|'')?[ \t]*+(?=[,\]}#]|$)",
+    re.IGNORECASE,
+)
 #: M35 without quotes.
 _UNQUOTED = re.compile(r"[=\[,][ \t]*+([A-Za-z][\w.-]{0,20}+)[ \t]*+(?:[,\]#]|$)")
 
@@ -98,8 +104,26 @@ def _hint(text: str, said: str) -> str:
         return f'; "{bare[1]}" has no value behind the =: write one, or # before the line'
     if comma := _COMMA.search(line):
         return f"; write {comma[1]}.{comma[2]}, with a decimal point"
+    if number := _written_number(line):
+        return f"; write {number}"
     if code := _UNQUOTED.search(line):
         return f'; write "{code[1]}", in quotes'
+    return ""
+
+
+def _written_number(line: str) -> str:
+    """The first number of a line that TOML does not read, as it is to be written; empty without one."""
+    for match in _NUMBER.finditer(line):
+        sign, whole, above, below, before, behind, unit = (group or "" for group in match.groups())
+        sign = sign.replace("+", "")
+        without = f", without {unit}" if unit else ""
+        if below.strip("0"):
+            value = int(whole or 0) + int(above) / int(below)
+            return f"{sign}{value:.10g}{without}"
+        is_whole = "." not in match[0]
+        is_odd = unit or before[:1] == "0" != before or not (is_whole or (before and behind))
+        if (before or behind) and is_odd:
+            return f"{sign}{int(before or 0)}{'' if is_whole else f'.{behind or 0}'}{without}"
     return ""
 
 

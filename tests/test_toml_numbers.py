@@ -1,0 +1,48 @@
+"""Numbers as people write them into a job file or a machine file, and what is said of those that TOML does not read."""
+
+from __future__ import annotations
+
+import pytest
+from cases import looped
+
+from polarcheck.files.settings.of_programs import toml_value
+from polarcheck.program.machines.toml_text import parsed
+
+
+@pytest.mark.ci
+@looped(
+    ("line", "hint"),
+    [
+        ("radius = .1875", "write 0.1875"),
+        ("radius = 4.", "write 4.0"),
+        ("radius = 3/16", "write 0.1875"),
+        ("radius = -.5 # wear", "write -0.5"),
+        ("radius = 1 3/16", "write 1.1875"),
+        ("radius = 1-3/16", "write 1.1875"),
+        ("radius = 3 / 16", "write 0.1875"),
+        ('radius = 3/16"', 'write 0.1875, without "'),
+        ("radius = 4.5 mm", "write 4.5, without mm"),
+        ("radius = 4mm", "write 4, without mm"),
+        ("radius = 08", "write 8"),
+        ("a = { radius = .5, nose = 0 }", "write 0.5"),
+        ("a = [1.5, 4., 3]", "write 4.0"),
+        ("radius = 1,5", "write 1.5, with a decimal point"),
+        ("radius = M35", 'write "M35", in quotes'),
+    ],
+)
+def test_the_message_says_what_to_write(line: str, hint: str) -> None:
+    with pytest.raises(ValueError, match="at line 2") as caught:
+        parsed(f"[tools.8]\n{line}\n")
+    assert str(caught.value).endswith(f"; {hint}")
+
+
+@looped("line", ["radius = 3/0", "radius = 4 ..", "radius = .", "radius = 1.5 x"])
+def test_of_what_is_no_number_nothing_is_said(line: str) -> None:
+    with pytest.raises(ValueError, match="at line 2") as caught:
+        parsed(f"[tools.8]\n{line}\n")
+    assert "write" not in str(caught.value)
+
+
+@looped(("text", "value"), [(".5", 0.5), ("4.", 4.0), ("-.25", -0.25), ("4", 4), ("3/16", "3/16"), (".", ".")])
+def test_an_option_takes_short_numbers(text: str, value: object) -> None:
+    assert toml_value(text) == value
