@@ -5,11 +5,13 @@ from __future__ import annotations
 import functools
 import itertools
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 from cases import looped
 from programs import ROOT, machine_of, report_of, said, tables_of
 
+from polarcheck.checking import survey
 from polarcheck.columns.modes import other_mode
 from polarcheck.foundation.finding import FileReport, Finding
 from polarcheck.program.machines import profiles
@@ -271,7 +273,8 @@ def test_only_a_program_with_such_a_code_makes_other_machines_be_looked_at(monke
 
 def test_an_unknown_code_elsewhere_is_still_said() -> None:
     program = "O1\nG98 G0 X50. C0\nG137 C0\nG101 X40. Y5. F200\nG136\nG12.11\nX F5\nM30\n"
-    assert said(report_of(program)) == [(3, RULE), (6, "unknown-code"), (7, "bad-number")]
+    of_chosen = report_of(program, job={"machine": "fanuc"})
+    assert said(of_chosen) == [(3, RULE), (6, "unknown-code"), (7, "bad-number")]
 
 
 def test_every_code_that_begins_the_mode_is_known_everywhere() -> None:
@@ -346,3 +349,52 @@ def test_a_macro_of_the_builder_is_no_map(on: str, off: str, name: str) -> None:
     report = report_of(MAPPED.format(on, off), name)
     assert RULE not in {found.rule for found in report.findings}
     assert not [reason for reason in report.not_evaluated if "polar mode on another" in reason.reason]
+
+
+# ---- where nobody has said which machine it is ----
+
+OKUMA = """O1000
+NAT01 G0 X200 Z200 (NOTE)
+T080808
+SB=1500 M13
+VC1=5
+G94 G0 X60 Z2 C0
+G137 C0
+G101 X40. Y0 F500
+G101 X=VC1*2 Y10.
+G103 X-40. Y-10 L5
+G136
+CALL OABC
+M2
+"""
+SIEMENS = """T="MILL8" D1 ; 8 MM
+SETMS(2)
+S2000 M3
+SPOS[1]=0
+TRANSMIT
+G1 X12 Y0 F200
+Y10
+TRAFOOF
+MSG("READY")
+M30
+"""
+FAGOR = "G90 G94\nG15\nG16 XC\n#(1)=2\nG1 G42 X30 C0 F200\nC10\nG40 X40\nG15\nM30\n"
+
+
+@pytest.mark.ci
+@looped(("program", "name"), [(OKUMA, "okuma-osp"), (SIEMENS, "siemens-transmit"), (FAGOR, "fagor-8055t")], one_in=1)
+def test_nothing_is_told_but_which_machine_it_is_for(program: str, name: str) -> None:
+    report = report_of(program)
+    assert [one.rule for one in report.findings] == [RULE]
+    assert report.findings[0].message.endswith(f"check it with --machine {name}")
+    assert (list(report.findings[0].follows), report.not_evaluated, report.looked_at) == ([], [], [])
+    chosen = report_of(program, job={"machine": "fanuc"})
+    assert len(chosen.findings) > 1
+
+
+@looped(("program", "name"), [(OKUMA, "okuma-osp"), (SIEMENS, "siemens-transmit"), (FAGOR, "fagor-8055t")], one_in=1)
+def test_a_new_job_names_the_same_machine(tmp_path: Path, program: str, name: str) -> None:
+    path = tmp_path / "a.nc"
+    path.write_text(program, "utf-8")
+    found = survey.survey([str(path)], None)
+    assert (found.polar, found.machine, found.fitting[:1]) == ([str(path)], name, [name])

@@ -17,6 +17,7 @@ from polarcheck.checking.engine import Engine, in_order, with_following
 from polarcheck.checking.not_evaluated import all_unevaluated, bounds_not_reported
 from polarcheck.checking.polar_sections import known_stock, polar_sections
 from polarcheck.checking.suppression import UNUSED, divided
+from polarcheck.checking.written_for import RULE, written_for
 from polarcheck.columns.words.allow_mention import Used, mentions_allow
 from polarcheck.foundation.finding import (
     DESELECTED,
@@ -153,7 +154,23 @@ def _source(tables: Tables) -> source.Source:
 def _check_channel(
     channel: Sequence[tuple[str, Tables]], rules: Sequence[Rule], severities: Mapping[str, str] | None, inline: bool
 ) -> tuple[FileReport, list[Engine]]:
-    """Check the runs of one channel; returns the report and the engines. Rules of the text alone run once."""
+    """
+    Check the runs of one channel; returns the report and the engines. Rules of the text alone run once.
+
+    Where the program is written for another control, what this one would make of its words is not worth reporting.
+    """
+    saying = [rule for rule in rules if rule.name == RULE]
+    if saying and any(written_for(tables) for _, tables in channel):
+        report, engines = _check_runs_of_channel(channel, saying, severities, inline)
+        if report.findings or report.silenced:
+            rest = {"not_evaluated": [], "looked_at": [], "verdict": verdict(report.findings, [])}
+            return msgspec.structs.replace(report, **rest), engines
+    return _check_runs_of_channel(channel, rules, severities, inline)
+
+
+def _check_runs_of_channel(
+    channel: Sequence[tuple[str, Tables]], rules: Sequence[Rule], severities: Mapping[str, str] | None, inline: bool
+) -> tuple[FileReport, list[Engine]]:
     (state, tables), *more = channel
     engine = engine_of(tables, rules, severities, inline=inline)
     first = report_of(engine, 0)

@@ -9,6 +9,7 @@ import msgspec
 import numpy as np
 
 from polarcheck.checking import check
+from polarcheck.checking.written_for import written_for
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.errors import PolarcheckError
 from polarcheck.foundation.states import Side, Units
@@ -67,7 +68,8 @@ def survey(paths: Sequence[str], requested: Profile | None, awaited: Iterable[st
         data = _data(path)
         if data is not None and begins.search(data.replace(b"\0", b"")):  # UTF-16, too
             contents.append((path, data))
-    fitting = _fitting([data for _, data in _sample(contents)], candidates)
+    sample = [data for _, data in _sample(contents)]
+    fitting = _fitting(sample, candidates) or ([] if requested else _recognized(sample))
     names = [profile.name for profile in fitting]
     chosen = _chosen(requested, fitting)
     offsets: dict[str, list[StatedOffset]] = {}
@@ -139,6 +141,14 @@ def _fitting(programs: Sequence[bytes], candidates: Sequence[Profile]) -> list[P
             reading.append(well)
     names = set.intersection(*reading) if reading else set()
     return [profile for profile in candidates if profile.name in names]
+
+
+def _recognized(programs: Sequence[bytes]) -> list[Profile]:
+    """The machines for which all programs are written whose control is recognized."""
+    default = profiles.load(profiles.DEFAULT).machine
+    read = [tables for data in programs if (tables := _tables(data, default)) is not None]
+    recognized = [machines for tables in read if (machines := written_for(tables))]
+    return [profile for profile in recognized[0] if all(profile in more for more in recognized)] if recognized else []
 
 
 def _reads(tables: Tables) -> bool:

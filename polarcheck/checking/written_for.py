@@ -1,0 +1,25 @@
+"""The machines that a program is written for, where nobody has said which lathe it is for."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from polarcheck.columns.modes.other_mode import OtherMode
+from polarcheck.program.machines.profiles import Profile
+from polarcheck.rules.remedies import is_chosen
+from polarcheck.rules.tables import Tables
+
+#: The rule that says so, and names them.
+RULE = "polar-code-of-another-control"
+
+
+def written_for(tables: Tables) -> tuple[Profile, ...]:
+    """
+    Return the machines whose polar mode a program certainly begins, in the language of their control, where only the
+    default machine reads it; none where somebody has chosen the machine, or it knows the mode.
+    """
+    if is_chosen(tables["machine"], tables["job"]):
+        return ()
+    other_mode: OtherMode = tables["other_mode"]
+    rows = np.flatnonzero(other_mode.is_meant)
+    return other_mode.machines(int(rows[0])) if len(rows) else ()
