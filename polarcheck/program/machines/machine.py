@@ -118,7 +118,7 @@ class Control(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     number_without_point: whether X10 is ten least increments (least-increment) or ten mm, inch or deg (whole-unit)
     digit_limit: most digits of a number
     word_limit: most words of a block
-    m_code_limit: most M codes of a block
+    m_code_limit: most M codes of a block; 0 where that is not known
     line_comments: character that begins a comment up to the end of the line, beside comments in parentheses; or empty
     parentheses_are_comments: whether ( ) holds a comment; where not, the control stops at text in it
     blanks_in_numbers: whether a blank inside a number is ignored; where not, the control stops at X-10 10
@@ -149,7 +149,7 @@ class Control(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     number_without_point: Literal["least-increment", "whole-unit"]
     digit_limit: Count
     word_limit: Count
-    m_code_limit: Count
+    m_code_limit: Annotated[int, msgspec.Meta(ge=0, le=MOST)]
     line_comments: CharacterOrNone
     parentheses_are_comments: bool = True
     blanks_in_numbers: bool = True

@@ -22,7 +22,8 @@ def too_many_m_codes(words: Words, written: Written, machine: Machine) -> Hits:
     More M codes in a block than the control takes.
 
     Depending on a parameter a block may have one M code or up to three, on newer controls up to five. What is too much
-    raises an alarm or is lost, and it may be the coolant or the clamp. Put them into blocks of their own.
+    raises an alarm or is lost, and it may be the coolant or the clamp. Put them into blocks of their own. Nothing is
+    said where the machine profile does not know the limit.
 
     Source: FANUC parameter 3404#7; alarm 5016.
 
@@ -31,13 +32,20 @@ def too_many_m_codes(words: Words, written: Written, machine: Machine) -> Hits:
         T0101
         M5 M8 M10 M46     (expect: too-many-m-codes)
 
+    Good, machine okuma-osp:
+
+        T0101
+        M5 M8 M10 M46
+
     Good, set control.m_code_limit=3:
 
         T0101
         M5 M8 M10
         M46
     """
+    import numpy as np
+
     limit = machine.control.m_code_limit
     counted = words.address == ord("M")
-    beyond = written.first_beyond(counted, limit)
+    beyond = written.first_beyond(counted, limit) if limit else np.zeros(len(words), bool)
     return Hits(beyond, values={"count": written.in_block(counted, beyond), "limit": limit})
