@@ -69,7 +69,7 @@ FAULTS = {kind: (statement, "", [3]) for kind, statement in _ONE_STATEMENT.items
 #: Kinds that no rule reports.
 UNREPORTED = {"word-format": "G0 X[20] Z--5.", "stray-character": "G0 X[20] ? Y5."}
 #: Kinds of the languages of other controls.
-OF_LANGUAGES = {"label-not-found", "structure-without-end", "end-without-structure"}
+OF_LANGUAGES = {"label-not-found", "label-too-long", "structure-without-end", "end-without-structure"}
 #: Bounds that some of them reach, and limits of the control.
 RUNNING: dict[str, dict[str, Any]] = {
     "too-many-repeats": {"max_blocks": 100},

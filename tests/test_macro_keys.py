@@ -32,6 +32,7 @@ KEYS: dict[str, tuple[Any, str]] = {
     "tool_offset_variables": ([], "G98 G0 X60. C0\nG12.1\n#2001=.5\nG1 X40. F200\nX60.\nG13.1\nM30\n"),
     "work_offset_variables": ([], "G98 G0 X60. C0\nG12.1\n#5221=.5\nG1 X40. F200\nX60.\nG13.1\nM30\n"),
     "subprogram_calls": (["M198"], "M98 P2\n" + _SUB),
+    "sequence_name_limit": (4, "GOTO NLOOP1\nG0 X5.\nNLOOP1 G0 X6.\nM2\n"),
     "sequence_word": ("", "M98 Q10\nM30\nN10 G0 X5.\nM99\n"),
     "local_calls": (["M97"], "M97 P10\nM30\nN10 G0 X5.\nM99\n"),
     "macro_calls": ([], "G65 P2 X5.\n" + _SUB),
@@ -57,7 +58,8 @@ def outcome(program: str, changes: dict[str, Any]) -> tuple[Any, ...]:
     trace = trace_of(f"O1\n{program}", changes=changes)
     report = report_of(f"O1\n{program}", changes=changes)
     words = [[None if value != value else value for value in trace.blocks.word(address).tolist()] for address in "XZU"]
-    return words, said(report), [(entry.rule, entry.reason) for entry in report.not_evaluated]
+    messages = [(finding.line, finding.message) for finding in report.findings]
+    return words, messages, [(entry.rule, entry.reason) for entry in report.not_evaluated]
 
 
 def test_no_key_is_forgotten() -> None:
@@ -69,7 +71,8 @@ def test_no_key_is_forgotten() -> None:
 def test_changing_a_key_changes_a_result(key: str) -> None:
     value, program = KEYS[key]
     high_level = ("other_language", "statements", "master_spindle_word")
-    language = {"named_words": "user-task", **dict.fromkeys(high_level, "high-level")}.get(key)
+    tasks = dict.fromkeys(("named_words", "sequence_name_limit"), "user-task")
+    language = {**tasks, **dict.fromkeys(high_level, "high-level")}.get(key)
     others = {"language": language} if language else {}
     assert outcome(program, {"macro": others}) != outcome(program, {"macro": {**others, key: value}})
 

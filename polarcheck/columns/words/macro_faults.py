@@ -52,6 +52,7 @@ RULES: Final[Mapping[FaultKind, str]] = {
     "sequence-number-not-found": "jump-target-missing",
     "sequence-number-vacant": "jump-target-missing",
     "label-not-found": "jump-target-missing",
+    "label-too-long": "jump-target-missing",
     "return-target-not-found": "jump-target-missing",
     "call-target-not-found": "jump-target-missing",
     "loop-without-end": "loop-unbalanced",
@@ -118,6 +119,10 @@ _REASONS: Final[Mapping[FaultKind, str]] = {
     "sequence-number-not-found": "there is no N{number:.15g} in this program",
     "sequence-number-vacant": "the number to go to is a vacant variable",
     "label-not-found": "there is no label {label} {where} this block in this program",
+    "label-too-long": (
+        "{label} is no sequence name of this control, which has N and {limit} letters or digits at most; give it a "
+        "shorter one"
+    ),
     "return-target-not-found": "there is no N{number:.15g} in the calling program",
     "call-target-not-found": "there is no N{number:.15g} in {called}",
     "loop-without-end": "DO{number} has no END{number} behind it",

@@ -253,7 +253,10 @@ def _jump(state: State, target: int, block: int) -> int:
 def _find_label(state: State, statement: Statement, block: int) -> int | None:
     program, search = state.stack[-1].program, statement.search
     target = state.listing.programs.labelled(program, statement.label, block, search)
-    if target is None and search is not Search.IF_THERE:
+    limit = state.listing.macro.sequence_name_limit
+    if target is None and limit and len(statement.label) - 1 > limit and search is not Search.IF_THERE:
+        state.add_fault("label-too-long", block, statement, label=statement.label, limit=limit)
+    elif target is None and search is not Search.IF_THERE:
         where = {Search.FORWARD: "behind", Search.BACKWARD: "before"}.get(search, "beside")
         state.add_fault("label-not-found", block, statement, label=statement.label, where=where)
     return target

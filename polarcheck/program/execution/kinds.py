@@ -48,6 +48,7 @@ FaultKind: TypeAlias = Literal[
     "sequence-number-not-found",  # 128
     "sequence-number-vacant",  # 128
     "label-not-found",
+    "label-too-long",
     "return-target-not-found",  # 078
     "loop-without-end",  # 124
     "end-without-loop",  # 124, PS1124

@@ -50,6 +50,7 @@ class Macro(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     tool_offset_variables: ranges of system variables that are tool offsets, so that an assignment changes one
     work_offset_variables: ranges of system variables that are work offsets
     subprogram_calls: codes that call a subprogram by its number in P or its <NAME>; M198 that of another device
+    sequence_name_limit: most letters and digits behind N of a sequence name, to which jumps lead; 0: not known, or none
     sequence_word: address beside such a call of the N number at which it begins, without P in its program; or empty
     local_calls: codes that call the blocks of the same program from the N number in P on
     macro_calls: codes that call a macro once; the other words of the block are its arguments
@@ -92,6 +93,7 @@ class Macro(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     tool_offset_variables: Ranges
     work_offset_variables: Ranges
     subprogram_calls: list[str]
+    sequence_name_limit: Annotated[int, msgspec.Meta(ge=0, le=99)]
     sequence_word: AddressOrNone
     local_calls: list[str]
     macro_calls: list[str]

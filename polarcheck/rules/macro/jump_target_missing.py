@@ -17,7 +17,8 @@ def jump_target_missing(faults: Faults) -> Mask:
     Jump to a sequence number that is not there.
 
     GOTO, or M99 with P, names an N number that the program does not have: the control stops with an alarm. The N must
-    stand in the same program, for M99 P in the program that called. The block is passed over here.
+    stand in the same program, for M99 P in the program that called. The block is passed over here. On controls with
+    sequence names, a name that is longer than they take is no target either.
 
     Source: FANUC alarms 128 and 078.
 
@@ -33,6 +34,14 @@ def jump_target_missing(faults: Faults) -> Mask:
         O2
         N20 G0 X50.
         M99 P30          (expect: jump-target-missing)
+
+    Bad, machine okuma-osp:
+
+        O1
+        GOTO NLOOP1      (expect: jump-target-missing)
+        G0 X50
+        NLOOP1 G0 X60
+        M2
 
     Good:
 
