@@ -63,12 +63,16 @@ class Entry(Columns, frozen=True):
         """
         Rows of programs that would have one of these codes above, were it needed: of whole programs, and of excerpts
         with any of them. Not below a row of unknown effect, and nowhere if the profile names no code.
+
+        Where programs have no head, one that calls a tool and comes to its end is whole.
         """
         if not codes:
             return np.zeros(len(self.trace), bool)
-        return (
-            self.trace.blocks.whole_program | self.trace.blocks.anywhere_in_program(self.trace.blocks.codes(*codes))
-        ) & self._is_known
+        blocks = self.trace.blocks
+        is_whole = blocks.whole_program | blocks.anywhere_in_program(blocks.codes(*codes))
+        if not self.trace.machine.writing.program_head:
+            is_whole |= blocks.anywhere_in_program(blocks.ends_program) & self.trace.tools.has_called_tool
+        return is_whole & self._is_known
 
     @cached_property
     def expects_offset(self) -> Mask:
