@@ -6,6 +6,8 @@ import pytest
 from cases import looped
 from programs import machine_of, report_of, said
 
+from polarcheck.foundation.finding import Undecided
+
 PROGRAM = "O1\nG98 G40 G97\nT0101\nG0 X60. C0\n{}\nG1 X10. C0 F200\nC5.\nG3 X0. C10. R5.\nG1 X60. C0\n{}\nG0 Z5.\nM30\n"
 DIAMETER = {"x": "diameter"}
 UNKNOWN = "polar-switch-unknown"
@@ -74,3 +76,49 @@ def test_words_of_another_language_have_no_such_slips() -> None:
     assert "G12.1" in machine_of("siemens-transmit").polar.on
     report = report_of("G94\nT1 D1\nG0 X60 Y0\nG121\nG1 X10 Y5 F200\nTRAFOOF\nM30\n", "siemens-transmit")
     assert UNKNOWN not in {rule for _, rule in said(report)}
+
+
+# ---- codes of the builder's own ----
+
+OWN = """O1
+T0808
+G98 G0 X60. Z2. C0
+{on}
+G1 G42 X30. F200
+C10.
+X-30.
+C-10.
+X30.
+C3.
+G40 X{leave}
+{off}
+G0 Z50.
+M30
+"""
+
+
+@pytest.mark.ci
+@looped(
+    ("on", "off", "leave", "rules"),
+    [
+        ("G121", "G120", "32.", [(4, "polar-switch-unknown"), (11, "cancel-shorter-than-radius")]),
+        ("G121", "G120", "60.", [(4, "polar-switch-unknown")]),
+        ("N5 G121", "G120", "60.", [(4, "polar-switch-unknown")]),
+        ("G121", "G13.1", "32.", [(4, "polar-switch-unknown")]),
+    ],
+)
+def test_the_contour_is_judged_as_if_they_switched_the_mode(
+    on: str, off: str, leave: str, rules: list[tuple[int, str]]
+) -> None:
+    report = report_of(OWN.format(on=on, off=off, leave=leave), "fanuc", "8:radius=4,nose=0")
+    assert (said(report), report.verdict) == (rules, "fail")
+    for finding in report.findings[1:]:
+        assert finding.message.startswith("if G121 begins the mode: ")
+        assert isinstance(finding, Undecided)
+        assert finding.fix is None
+
+
+def test_without_the_rule_nothing_is_supposed() -> None:
+    program = OWN.format(on="G121", off="G120", leave="32.")
+    job = {"severities": {"polar-switch-unknown": "off"}}
+    assert "cancel-shorter-than-radius" not in [rule for _, rule in said(report_of(program, job=job))]

@@ -11,6 +11,8 @@ from typing import TypeVar
 
 import msgspec
 
+from polarcheck.checking.builders_switch import RULE as RULE_OF_SWITCH
+from polarcheck.checking.builders_switch import supposition, with_supposed
 from polarcheck.checking.called_files import in_the_file
 from polarcheck.checking.channel_reports import united
 from polarcheck.checking.engine import Engine, in_order, with_following
@@ -165,7 +167,14 @@ def _check_channel(
         if report.findings or report.silenced:
             rest = {"not_evaluated": [], "looked_at": [], "verdict": verdict(report.findings, [])}
             return msgspec.structs.replace(report, **rest), engines
-    return _check_runs_of_channel(channel, rules, severities, inline)
+    report, engines = _check_runs_of_channel(channel, rules, severities, inline)
+    if any(finding.rule == RULE_OF_SWITCH for finding in report.findings):
+        for supposed in filter(None, (supposition(tables) for _, tables in channel[:1])):
+            of_mode, more = _check_runs_of_channel(supposed.channel, rules, severities, inline)
+            engines = [*engines, *more]
+            report = with_supposed(report, of_mode, supposed)
+            report = msgspec.structs.replace(report, verdict=verdict(report.findings, report.not_evaluated))
+    return report, engines
 
 
 def _check_runs_of_channel(

@@ -116,8 +116,9 @@ _SHORT: tuple[tuple[str, str, tuple[str, ...]], ...] = (
     ("control", "Is X60. a diameter of 60, or a radius?", ("x",)),
     (
         "polar",
-        "Between the codes of the mode: which address has the second axis, and is X60. a diameter there?",
-        ("virtual_axis", "x"),
+        "Which codes begin and end the polar mode; between them, which address has the second axis, and is X60. a"
+        " diameter there?",
+        ("on", "off", "virtual_axis", "x"),
     ),
     ("limits", "How fast may C turn while it cuts? Turns in a minute times 360.", ("c_feed",)),
     ("limits", "How fast does the live tool turn at most?", ("live_tool_speed",)),

@@ -19,7 +19,7 @@ def polar_switch_unknown(switch_slips: SwitchSlips) -> Hits:
     mode does not end. Write the code with its point.
 
     Where G121 is answered by G120, the builder may have given the mode codes of its own: then polar.on and polar.off of
-    a machine profile name them. Until then nothing of the contour is looked at.
+    a machine profile name them. Until then the contour is judged as if they did, and its findings are conditional.
 
     Source: FANUC B-62764EN/01, p. 51; alarm 010; G100 to G199 are free for macros of the builder.
 
@@ -87,7 +87,7 @@ def _effect(hit: Hit, switch_slips: SwitchSlips, slip: Slip) -> str:
         )
         keys = place(machine, f"polar.on = [{on}] and polar.off = [{off}]")
         effect = f"begins and {names[-1]} ends no polar mode that {machine.title} has"
-        return f"{names[0]} {effect}: if they do on this lathe, write {keys}; the contour is not looked at till then"
+        return f"{names[0]} {effect}: if they do on this lathe, write {keys}; what is said of the contour rests on that"
     if slip.meant in mode.off:
         return f"{names[0]} does not end the polar mode; write {slip.meant}"
     answer = ""
