@@ -104,8 +104,8 @@ def _hint(text: str, said: str) -> str:
         return f'; "{bare[1]}" has no value behind the =: write one, or # before the line'
     if comma := _COMMA.search(line):
         return f"; write {comma[1]}.{comma[2]}, with a decimal point"
-    if number := _written_number(line):
-        return f"; write {number}"
+    if written := _written_number(line):
+        return f"; write {written}"
     if code := _UNQUOTED.search(line):
         return f'; write "{code[1]}", in quotes'
     return ""

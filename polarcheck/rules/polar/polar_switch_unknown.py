@@ -46,6 +46,7 @@ def polar_switch_unknown(switch_slips: SwitchSlips) -> Hits:
     Bad:
 
         O1
+        T0808
         G98 G0 X60. C0
         G121              (expect: polar-switch-unknown)
         G1 X40. F200
