@@ -44,11 +44,18 @@ _Symptom = tuple[str, int]
 
 
 class _Explained(NamedTuple):
-    """An edit, the row of its block, and the symptoms that it removes; other: a second one that is as likely."""
+    """
+    An edit that explains findings.
+
+    row: of its block. edits: of the text. gone: the symptoms that it removes. left: those that are there with it.
+    other: a second one that is as likely.
+    """
 
     likely: Likely
     row: int
+    edits: list[Replace]
     gone: frozenset[_Symptom]
+    left: frozenset[_Symptom]
     other: _Explained | None = None
 
 
@@ -83,27 +90,38 @@ class _Search:
         self.engine, self.trace, self.number = engine, engine.trace, number
         self.rules = [rule for rule in engine.rules.values() if not rule.of_text and rule.over == "rows"]
         self.rows_left = _MOST_ROWS
+        # What is explained is mended when the next path is tried, which may be compared with it.
+        self.mended: list[Replace] = []
+        self.symptoms = self._symptoms(engine)
 
     def explanations(self, findings: Sequence[Finding]) -> Iterator[_Explained]:
         """One explanation at most for each path with a symptom."""
-        trace, written = self.trace, self._symptoms(self.engine)
+        trace = self.trace
         lines = {finding.line for finding in findings}
         rows = np.flatnonzero(np.isin(trace.blocks.line, [*lines]) & (trace.mode.section >= 0))
         sections = np.flatnonzero(np.bincount(trace.mode.section[rows], minlength=1)).tolist()
         loops = list(written_loops(trace, sections))[:_MOST_LOOPS]
-        ends = [*(int(loop.row[1]) - 1 for loop in loops[1:]), len(trace)][: len(loops)]
+        begins = [max(int(loop.row[0]) - 1, 0) for loop in loops]
+        ends = [*(int(loop.row[1]) for loop in loops[1:]), len(trace)]
+        reach = [set(trace.blocks.line[slice(*rows)].tolist()) for rows in zip(begins, ends, strict=False)]
         known: set[_Symptom] = set()
-        for loop, end in zip(loops, ends, strict=True):
-            own_lines = set(trace.blocks.line[max(int(loop.row[0]) - 1, 0) : end + 1].tolist()) & lines
+        for loop, own_lines in zip(loops, reach, strict=True):
             own = {(finding.rule, finding.line) for finding in findings if finding.line in own_lines}
             if not own <= known:
-                found = self._explained(loop, written)
+                others = (other for other in reach if other is not own_lines and other & lines)
+                found = self._explained(loop, set[int]().union(*others) - own_lines)
                 if found is not None:
                     known |= found.gone
+                    self.mended += found.edits
+                    self.symptoms = found.left
                     yield found
 
-    def _explained(self, loop: WrittenLoop, written: frozenset[_Symptom]) -> _Explained | None:
-        """The likeliest edit that removes symptoms and brings none; None for none, or for too many alike."""
+    def _explained(self, loop: WrittenLoop, others: set[int]) -> _Explained | None:
+        """
+        The likeliest edit that removes symptoms and brings none; None for none, or for too many alike.
+
+        others: the lines of other paths with a symptom, where another one may come, as by a comparison of passes.
+        """
         found: list[_Explained] = []
         for likely in likely_edits(self.trace, loop, _TRIALS):
             if found and found[0].likely.gain - likely.gain > _AS_LIKELY:
@@ -112,9 +130,10 @@ class _Search:
             if not edits or self.rows_left < len(self.trace):
                 continue
             self.rows_left -= len(self.trace)
-            gone = self._tried(edits, written)
-            if gone is not None:
-                found.append(_Explained(likely, int(loop.row[likely.edit.corner]), gone))
+            left = self._left_by(edits)
+            if left is not None and self.symptoms - left and all(line in others for _, line in left - self.symptoms):
+                row = int(loop.row[likely.edit.corner])
+                found.append(_Explained(likely, row, edits, self.symptoms - left, left))
         if not found or len(found) > _NAMED:
             return None
         return found[0]._replace(other=found[1]) if found[1:] else found[0]
@@ -139,9 +158,10 @@ class _Search:
             return [in_place_of(run, edit.words[0], edit.text)]
         return [in_place_of(run, word, text) for word, text in zip(edit.words, edit.text.split(), strict=True)]
 
-    def _tried(self, edits: list[Replace], written: frozenset[_Symptom]) -> frozenset[_Symptom] | None:
-        """The symptoms that the edits remove; None where they remove none, or bring one."""
+    def _left_by(self, edits: list[Replace]) -> frozenset[_Symptom] | None:
+        """The symptoms of the program with these edits; None where it cannot be read as before."""
         source, engine = self.trace.text.source, self.engine
+        edits = [*self.mended, *edits]
         data = applied(source, edits)
         if data is None:
             return None
@@ -151,10 +171,8 @@ class _Search:
         tables = Tables(states[self.number][1], self.trace.machine, engine.tables["job"])
         tables.give("other_machine", OtherMachine(tables))
         trial = Engine(tables, engine.severities, self.rules)
-        line = origins(source, tables["trace"].text.source, edits)
-        left = frozenset((rule, int(line[number - 1])) for rule, number in self._symptoms(trial))
-        gone = written - left
-        return gone if gone and left <= written else None
+        origin = origins(source, tables["trace"].text.source, edits)
+        return frozenset((rule, int(origin[number - 1])) for rule, number in self._symptoms(trial))
 
     def _symptoms(self, engine: Engine) -> frozenset[_Symptom]:
         """Where rules fire as warnings or errors."""

@@ -66,7 +66,7 @@ class Strokes(Columns, frozen=True):
     def _alike(self) -> list[Rows]:
         """The strokes of one tool call to one depth, where there are more of them than _LEAST."""
         z = np.rint(self.trace.path.z[self.row] / _SAME)
-        call = self.workpiece.bar.tool_call[self.row]
+        call = self.workpiece.bar.tools.tool_call[self.row]
         order = np.lexsort((z, call))
         begins = np.flatnonzero((np.diff(z[order], prepend=np.inf) != 0) | (np.diff(call[order], prepend=-1) != 0))
         return [np.sort(group) for group in np.split(order, begins[1:]) if len(group) > _LEAST]

@@ -1,0 +1,106 @@
+"""One wrong word or block of a contour is one finding, in its block, with what to write instead."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+
+from cases import looped
+from programs import report_of, said
+
+HEAD = ["O1", "T0101", "G98 G0 X60. Z2. C0", "G12.1", "G1 X50. F1500", "Z-4. F300"]
+TAIL = ["G40 X60. F1500", "Z2.", "G13.1", "M30"]
+#: A rectangle of 40 x 20 with corners of R 3.
+ROUNDED = [
+    *("G42 X40. F200", "C7.", "G3 X34. C10. R3.", "G1 X-34.", "G3 X-40. C7. R3."),
+    *("G1 C-7.", "G3 X-34. C-10. R3.", "G1 X34.", "G3 X40. C-7. R3.", "G1 C0"),
+]
+#: The same with centers.
+CENTERED = [
+    re.sub(r"R3\.", center, line)
+    for line, center in zip(ROUNDED, ("", "", "I-3. J0", "", "I0 J-3.", "", "I3. J0", "", "I0 J3.", ""), strict=True)
+]
+#: A contour, its block, what stands in the place of that, and the words that are meant.
+Slip = tuple[list[str], str, str, str]
+Turn = Callable[[list[str]], list[str]]
+SLIPS: list[Slip] = [
+    (ROUNDED, "C7.", "C-7.", "C7."),
+    (ROUNDED, "G1 X-34.", "G1 X-43.", "X-34."),
+    (ROUNDED, "G1 X-34.", "G1 X-3.4", "X-34."),
+    (ROUNDED, "G1 C-7.", "G1 X-7.", "C-7."),
+    (ROUNDED, "G3 X-40. C7. R3.", "G3 X7. C-40. R3.", "X-40. C7."),
+    (ROUNDED, "G3 X-34. C-10. R3.", "G3 X-34. C-10. R30.", "R3."),
+    (ROUNDED, "G3 X40. C-7. R3.", "G3 X20. C-7. R3.", "X40."),
+    (CENTERED, "G3 X-34. C-10. I3. J0", "G3 X-34. C-10. I-3. J0", "I3."),
+    (CENTERED, "G3 X40. C-7. I0 J3.", "G3 X40. C-7.5 I0 J3.", "C-7."),
+    (CENTERED, "G1 X34.", "G1 X32.", "X34."),
+]
+#: Those that remain the same slip in the mirror.
+OF_ONE_AXIS = [slip for slip in SLIPS if slip[2] not in ("G1 X-7.", "G3 X7. C-40. R3.")]
+
+
+def program(contour: list[str]) -> str:
+    return "\n".join([*HEAD, *contour, *TAIL]) + "\n"
+
+
+def mirrored(lines: list[str]) -> list[str]:
+    """The same on the other side of the X axis: C, J, the sense of arcs and the side of the cutter."""
+    exchanged = {"G2": "G3", "G3": "G2", "G41": "G42", "G42": "G41"}
+    codes = (re.sub(r"\bG(?:2|3|41|42)\b", lambda code: exchanged[code[0]], line) for line in lines)
+    turned = (re.sub(r"\b([CJ])(-?)(?=[1-9])", lambda word: word[1] + "-" * (not word[2]), line) for line in codes)
+    return list(turned)
+
+
+@looped("contour", [ROUNDED, CENTERED, mirrored(ROUNDED), mirrored(CENTERED)])
+def test_the_sound_contour_has_no_finding(contour: list[str]) -> None:
+    assert said(report_of(program(contour), "fanuc-30i", "1:radius=2")) == []
+
+
+def as_it_is(lines: list[str]) -> list[str]:
+    return lines
+
+
+@looped(("turn", "slip"), [*((as_it_is, slip) for slip in SLIPS), *((mirrored, slip) for slip in OF_ONE_AXIS)])
+def test_one_finding_in_the_block_says_what_to_write(turn: Turn, slip: Slip) -> None:
+    contour, right, wrong, word = slip
+    lines = turn([wrong if line == right else line for line in contour])
+    report = report_of(program(lines), "fanuc-30i", "1:radius=2")
+    (finding,) = report.findings
+    assert finding.line == len(HEAD) + contour.index(right) + 1
+    (meant,) = turn([word])
+    assert meant in finding.message
+
+
+@looped(("first", "second"), [(SLIPS[1], SLIPS[7]), (SLIPS[3], SLIPS[8])])
+def test_mistakes_in_two_contours_are_two_findings(first: Slip, second: Slip) -> None:
+    slipped = [[wrong if line == right else line for line in contour] for contour, right, wrong, _ in (first, second)]
+    text = "\n".join([*HEAD, *slipped[0], *TAIL[:-1], *HEAD[2:], *slipped[1], *TAIL]) + "\n"
+    report = report_of(text, "fanuc-30i", "1:radius=2")
+    assert [first[3] in report.findings[0].message, second[3] in report.findings[1].message] == [True, True]
+    assert len(report.findings) == 2
+
+
+#: What is as it was meant, and does not fit the cutter or the control: no word of it is doubted.
+MEANT = [
+    ("G98 G0 X100. C0/G12.1/G1 C20. F500/G41 X60. F200/C3./X40./C-3./X60./C-20./G40 X100./G13.1", "interference"),
+    (
+        "G98 G0 X110. C0/G12.1/G1 C20. F500/G41 X60. F200/C0./G3 X70. C0. R5./G1 C-20./G40 X110./G13.1",
+        "no-offset-intersection",
+    ),
+    ("G98 G0 X60. C0/G12.1/G1 X40. C10. F200/G3 X24. I-8. J6./G1 X60./G13.1", "arc-end-off-circle"),
+    ("G98 G0 X60. C0/G12.1/G1 X40. F200/G3 X40. C0 R20./G1 X60./G13.1", "full-circle-by-radius"),
+]
+
+
+@looped(("section", "rule"), MEANT)
+def test_no_value_is_named_where_nothing_shows_it(section: str, rule: str) -> None:
+    text = "T0101\n" + section.replace("/", "\n") + "\nM30\n"
+    findings = report_of(text, "fanuc-30i", "1:radius=4").findings
+    assert [finding.rule for finding in findings if finding.severity != "note"] == [rule]
+
+
+def test_a_rule_that_is_not_run_explains_nothing() -> None:
+    contour, right, wrong, _ = SLIPS[7]
+    text = program([wrong if line == right else line for line in contour])
+    (finding,) = report_of(text, "fanuc-30i", "1:radius=2", only=["arc-end-off-circle"]).findings
+    assert finding.message.endswith("difference is allowed")
