@@ -63,6 +63,7 @@ _OTHERS: dict[str, tuple[str, str, list[int]]] = {
     "too-many-statements": (_COUNTS, "", [4]),
     "runs-too-long": (_COUNTS, "", [6]),
     "sequence-number-twice": ("IF[1 EQ 2]GOTO 10\nN10\nN10", "", [3]),
+    "loop-never-run": ("WHILE[1 EQ 2]DO1\nG0 X40.\nEND1", "", [3]),
     "never-run": ("GOTO 10\nG0 X40.\nN10", "", [4]),
 }
 FAULTS = {kind: (statement, "", [3]) for kind, statement in _ONE_STATEMENT.items()} | _OTHERS

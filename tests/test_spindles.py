@@ -98,9 +98,9 @@ def test_a_message_names_the_code_with_its_word() -> None:
 
 
 def test_the_code_that_is_at_fault_is_the_one_with_its_word() -> None:
-    assert broken("M35 / M3 P12", "M5 P11", **BY_P) == ["spindle-code-in-polar"]
-    assert broken("M35 / M3 P12", "M3 P12 S900", **BY_P) == []
-    assert broken("M35 / M3 P12", "M8 P12", **BY_P) == []
+    assert broken("M35 / M3 P12 S900", "M5 P11", **BY_P) == ["spindle-code-in-polar"]
+    assert broken("M35 / M3 P12 S900", "M3 P12 S900", **BY_P) == []
+    assert broken("M35 / M3 P12 S900", "M8 P12", **BY_P) == []
 
 
 @looped("key", ["program_end", "tool_change", "optional_stop", "stops_reading_ahead"])

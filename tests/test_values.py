@@ -74,6 +74,7 @@ def test_a_number_that_a_message_shows_is_a_value() -> None:
 _BY_ANOTHER_VALUE = {
     "inside-arc-smaller-than-radius": {"signed_radius"},
     "no-offset-intersection": {"signed_radius"},
+    "plunge-at-positioning-feed": {"other_feed"},
     "blocks-faster-than-control": {"feed_of_series"},
     "c-acceleration-above-limit": {"allowed"},
     "x-acceleration-above-limit": {"allowed"},

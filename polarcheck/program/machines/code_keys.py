@@ -13,6 +13,7 @@ from polarcheck.program.machines.macro_keys import CODE_LISTS
 RANGES: Final[Mapping[str, tuple[str, ...]]] = {
     "control": ("known_codes", "units_of_lengths_alone"),
     "polar": ("allowed_codes", "off_of_other_modes", "contours_outside", "planes_not_simulated"),
+    "writing": ("corner_codes",),
     "g_codes": GCodes.__struct_fields__,
     "g_code_system_a": GCodeSystem.__struct_fields__,
     "g_code_system_b": GCodeSystem.__struct_fields__,

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     at=("X", "U", "C", "H"),
     doubts=(("move", "X before"),),
     gouges=True,
-    follows={"block": ("uncompensated-cut-into-part",)},
+    follows={"block": ("uncompensated-cut-into-part", "lift-missing-between-cuts")},
     is_symptom=True,
 )
 def path_through_center(path: ProgrammedPath, center: Center, arcs: Arcs) -> Mask:

@@ -17,10 +17,7 @@ if TYPE_CHECKING:
     "the part is missing before this block",
     values=("z", "other_line"),
     gouges=True,
-    follows={
-        "block": ("path-through-center",),
-        "section": (*OUT_OF_PLACE, "cut-in-air"),
-    },
+    follows={"section": OUT_OF_PLACE},
 )
 def lift_missing_between_cuts(strokes: Strokes) -> Mask:
     """
