@@ -135,6 +135,17 @@ def test_a_circle_of_two_splines_is_too_large() -> None:
     assert bulge == pytest.approx(0.367, abs=1e-3)
 
 
+@looped("size", [20.05, 20.5, 24.0])
+def test_a_curve_that_lies_beyond_the_bar_is_compared_with_nothing(size: float) -> None:
+    """It touches the bar where splines meet; with more of the drawing within the bar, that is compared."""
+    outside = ring(lambda angle: 20 + (size - 20) * math.sin(angle) ** 4, 720)
+    centers = (text.replace("G42 ", "").replace("40.", "48.") for text in (WHOLE, BIT))
+    paths = (text.replace("39.9280 C1.1993", "47.9136 C1.4392").replace("20. J0", "24. J0") for text in centers)
+    for text in (WHOLE, BIT, *paths):
+        assert "a.dxf lies beyond the bar" in outcome(report(text, outside, 40.0))
+    assert "beyond" not in outcome(report(FLATS, flats(15, 20.5), 40.0))
+
+
 @pytest.mark.ci
 @looped("arc", [None, cubic], ids=["arcs", "splines"])
 @looped("stock", [None, 40.0, 50.0])

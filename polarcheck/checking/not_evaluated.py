@@ -384,6 +384,10 @@ def _parts_not_compared(tables: Tables, rule: Rule) -> Iterator[Missing]:
             title = compared_with(deviations, comparison.number)
             reason = f"of the round of {title} a part is milled: whether the rest of it is turned is not known"
             yield Missing(rule.name, SAID, reason, reason, 1)
+        if comparison.difference.is_beyond and comparison.agrees:
+            title = compared_with(deviations, comparison.number)
+            reason = f"{title} lies beyond the bar, and nowhere within it: it was compared where they touch alone"
+            yield Missing(rule.name, SAID, reason, reason, 1)
         if comparison.difference.outside >= 0 and comparison.agrees:
             line = int(tables["trace"].blocks.line[comparison.row_outside])
             title = compared_with(deviations, comparison.number)

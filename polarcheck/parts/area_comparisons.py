@@ -117,7 +117,7 @@ class AreaComparisons(Columns, frozen=True):
         base = results[index] if index >= 0 else None
         if metal.is_none and base is not None:
             is_partial = base.is_partial and not feature.excess_is_judged
-            difference = _with_rounds(base.difference, feature)
+            difference = self._with_rounds(base.difference, feature)
             return base._replace(is_partial=is_partial, island=metal.island.size > 0, difference=difference)
         if metal.is_none and not feature.excess_is_judged:
             return None
@@ -136,7 +136,7 @@ class AreaComparisons(Columns, frozen=True):
             mean=0.0,
             length=1.0,
         )
-        difference = _with_rounds(difference, feature)
+        difference = self._with_rounds(difference, feature)
         row = metal.proud_row if proud >= deep else metal.deep_row
         if row < 0:
             row = int(
@@ -163,6 +163,19 @@ class AreaComparisons(Columns, frozen=True):
             made=() if metal.is_none and is_made else self._made(feature),
         )
 
+    def _with_rounds(self, difference: Difference, feature: Feature) -> Difference:
+        """A difference with what all cuts leave of the round of the drawing, and whether it lies beyond the bar."""
+        import shapely  # type: ignore[import-untyped]
+
+        rounds = feature.rounds
+        if rounds is None:
+            return difference
+        bar, drawn = self.bar.known.largest / 2, shapely.boundary(feature.area)
+        farthest = np.hypot(*shapely.get_coordinates(drawn).T).max(initial=0)
+        is_beyond = shapely.distance(drawn, shapely.Point(0, 0)) > bar - feature.tolerance
+        is_beyond &= bool(farthest > bar + feature.tolerance)
+        return difference._replace(turned=rounds.turned_radius, is_broken=rounds.is_broken, is_beyond=is_beyond)
+
     def _made(self, feature: Feature) -> tuple[Shape, ...]:
         """The shapes that stand, or are cleared, in the place of a feature."""
         from polarcheck.geometry.shapes.grooves import shapes_of_cleared
@@ -181,11 +194,3 @@ class AreaComparisons(Columns, frozen=True):
         if alike and abs(alike[0].middle - middle) > size:
             alike.sort(key=lambda shape: abs(shape.middle - middle))
         return tuple(alike[:1])
-
-
-def _with_rounds(difference: Difference, feature: Feature) -> Difference:
-    """A difference with what all cuts leave of the round of the drawing."""
-    rounds = feature.rounds
-    if rounds is None:
-        return difference
-    return difference._replace(turned=rounds.turned_radius, is_broken=rounds.is_broken)

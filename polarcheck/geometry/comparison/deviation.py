@@ -47,6 +47,7 @@ class Difference(NamedTuple):
     length: length of the outline that was compared [mm].
     turned: radius of the round of the drawing that is turned, not milled [mm]; inf for none.
     is_broken: a cut runs along a share of the round only.
+    is_beyond: the drawing lies beyond the bar, and nowhere within it.
     outside: the element that runs along the round, but outside of it where there may be metal; -1 for none.
     """
 
@@ -60,6 +61,7 @@ class Difference(NamedTuple):
     length: float = 0.0
     turned: float = np.inf
     is_broken: bool = False
+    is_beyond: bool = False
     outside: int = -1
 
     @property
@@ -122,6 +124,7 @@ def difference(
     first = _extremes(part.way, lambda points: _from_part(part, drawn, points), places)
     of_part = _difference(part, first, lambda points: part.way.of[part.way.nearest(points)[2]])
     of_part = of_part._replace(turned=rounds.turned_radius, is_broken=rounds.is_broken, outside=outside)
+    of_part = of_part._replace(is_beyond=_lies_beyond(drawn, part.bar, tolerance))
     if not both_ways:
         return of_part
     along = drawn.samples()
@@ -145,6 +148,11 @@ def difference(
         deep_of=deep.deep_of,
         mean=(of_part.mean + of_drawing.mean) / 2,
     )
+
+
+def _lies_beyond(drawn: MeasuredPath, bar: float, tolerance: float) -> bool:
+    (nearest,), _, _ = drawn.nearest(np.zeros(1, complex))
+    return bool(nearest > bar - tolerance and np.abs(drawn.start).max() > bar + tolerance)
 
 
 def _within(polygon: Any, points: Points) -> Mask:
