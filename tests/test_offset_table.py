@@ -162,6 +162,75 @@ def test_a_line_among_the_offsets_that_is_none_is_told(text: str, told: str) -> 
     assert told in refusal(text)
 
 
+# ---- tool data of Siemens controls ----
+
+TOOL_DATA = """%_N_TO1_TOA
+;$PATH=/_N_NC_ACT_DIR
+CHANDATA(1)
+$TC_TP1[8]=1
+$TC_DP1[8,1]=120
+$TC_DP2[8,1]=9
+$TC_DP3[8,1]=104.2
+$TC_DP6[8,1]=4.0 ; $TC_DP6[8,1]=9
+$TC_DP15[8,1]=-0.05
+$TC_DP6[12,2]=0.4 $TC_DP1[12,2]=500 $TC_DP2[12,2]=3
+M30
+"""
+
+
+@looped(
+    "text",
+    [
+        TOOL_DATA,
+        TOOL_DATA.replace("\n", "\r\n"),
+        TOOL_DATA.replace("\n", "\r"),
+        TOOL_DATA.replace("$", "N10 $").replace("=", " = ").replace("[", " [ ").replace(",", " , "),
+        TOOL_DATA.lower(),
+        "$TC_DP6[8,1]=4\n$TC_DP6[12,2]=.4\n$TC_DP1[8,1]=145.\n$TC_DP15[8,1]=-.05\n$TC_DP2[12,2]=3.\n$TC_DP1[12,2]=510",
+    ],
+)
+def test_tool_data_give_r_of_each_edge_with_its_wear(text: str) -> None:
+    assert table(text) == {"8": (3.95, 0), "12/2": (0.4, 3)}
+
+
+@looped(
+    ("text", "expected"),
+    [
+        ('$TC_TP2[3470]="mill_8"\n$TC_DP6[3470,1]=4.\n', {"MILL_8": (4.0, None)}),
+        ('$TC_DP6[7,2]=4.\n$TC_TP2[7]="MILL;8"\n', {"MILL;8/2": (4.0, None)}),
+        ("$TC_DP1[3,1]=700\n$TC_DP6[3,1]=80.\n$TC_DP6[4,1]=2.", {"4": (2.0, None)}),
+        ("$TC_DP1[3,1]=205\n$TC_DP2[3,1]=9\n$TC_DP6[3,1]=2.", {"3": (2.0, None)}),
+    ],
+)
+def test_tool_data_name_tools_and_their_types(text: str, expected: dict[str, Any]) -> None:
+    assert table(text) == expected
+
+
+@looped(
+    ("text", "expected"),
+    [
+        ("$TC_DP6[8,1]=4.\n$TC_DP15[R103,1]=0.\n", f"{NAME}:2: expected the number of the tool"),
+        ("$TC_DP6[8,EDGE]=4.\n", f"{NAME}:1: expected the number of the edge"),
+        ("$TC_DP6[8,1]=R1\n", f"{NAME}:1: expected a number, such as $TC_DP6[8,1]=4.0, found $TC_DP6[8,1]=R1"),
+        ("$TC_DP6[8,1]=4000.\n", f"{NAME}:1: offset 8: radius"),
+        ("$TC_DP3[8,1]=104.\n", "no offsets found"),
+        ("hello\n", "or tool data such as $TC_DP6[8,1]=4.0"),
+    ],
+)
+def test_what_tool_data_do_not_say_is_refused(text: str, expected: str) -> None:
+    assert expected in refusal(text)
+
+
+def test_tool_data_of_the_command_line_reach_the_program() -> None:
+    Path("a.mpf").write_text("T8 D2\nG0 X60 Z2 C0\nTRANSMIT\nG1 G41 X20 Y0 F200\nY-10\nG40 X30\nTRAFOOF\nM30\n")
+    Path("TO1.TOA").write_text("$TC_DP1[8,2]=120\n$TC_DP6[8,2]=3.5\n$TC_DP15[8,2]=0.01\n")
+    options = ["check", "a.mpf", "--offsets", "TO1.TOA", "--machine"]
+    assert "offset 8/2 with R 3.51 mm (offset table)" in CliRunner().invoke(main, [*options, "siemens-transmit"]).stdout
+    result = CliRunner().invoke(main, [*options, "fanuc"])
+    assert result.exit_code == 2
+    assert "the offset table has 8/2, an edge or name of a tool; this machine has offset numbers alone" in result.stderr
+
+
 # ---- from the command line and from a job ----
 
 RAMP = "T0808\nG98 G0 X60. C0\nG12.1\nG1 G41 X40. F200\nC-10.\nG40 X60.\nG13.1\n"

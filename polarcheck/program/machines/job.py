@@ -356,7 +356,11 @@ def check_tools(job: Job, options: Iterable[str], machine: Machine, where: Calla
     for option in options:
         if not is_plain_number(key_of_option(option)):
             raise UsageError(_expected_number(option))
-    for key in job.tools:
+    for key, tool in job.tools.items():
+        if not is_plain_number(key) and isinstance(tool, PunchedTool):
+            raise JobError(
+                f"the offset table has {key}, an edge or name of a tool; this machine has offset numbers alone"
+            )
         if not is_plain_number(key):
             raise JobError(
                 f"{where(f'tools.{key}')}: tools.{key}: expected the number of a tool offset, 8 for T0808, found {key}"

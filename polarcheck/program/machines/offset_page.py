@@ -39,10 +39,10 @@ _LONGEST = 1000
 
 
 class Entry(msgspec.Struct, frozen=True):
-    """A value of an offset: radius, nose or x, of the geometry or of the wear, and the line in which it stands."""
+    """A value of an offset, by its key: radius, nose or x, of the geometry or of the wear; and its line."""
 
     line: int
-    number: int
+    offset: str
     is_geometry: bool
     key: str
     value: float
@@ -120,7 +120,7 @@ def _of_line(line: int, text: str, cells: list[str], columns: list[str] | None, 
             continue
         if _NUMBER.fullmatch(written) is None:
             raise NotUnderstoodError(line, f"expected a number as {_TITLES[key]}, found {_short(written)}")
-        yield Entry(line, int(match[2]), is_geometry, key, float(written.replace(",", ".")))
+        yield Entry(line, str(int(match[2])), is_geometry, key, float(written.replace(",", ".")))
 
 
 _TITLES = {"number": "NO.", "x": "X", "z": "Z", "radius": "R", "nose": "T", "other": "...", "": "..."}

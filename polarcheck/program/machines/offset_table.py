@@ -1,4 +1,4 @@
-"""The offset table of a control: as it is punched out, in G10 blocks, or its page copied as text."""
+"""The offset table of a control: in G10 blocks, as tool data, or its page copied as text."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any, Literal
 
 from polarcheck.foundation import bounded
 from polarcheck.foundation.errors import JobError
-from polarcheck.program.machines import offset_page
+from polarcheck.program.machines import offset_page, tool_data
 from polarcheck.program.machines.job import PunchedTool, Tool
 from polarcheck.program.machines.offset_page import Entry, NotUnderstoodError
 from polarcheck.program.machines.value_types import MisfitError, fitted
@@ -41,10 +41,11 @@ def read_offset_table(path: Path, title: str, *, pipes: bool = False, units: Uni
     """
     The offsets of a table by offset number; R of geometry and wear are added, X of the wear is kept by itself.
 
-    A table is what the control punches out (`G10 P10008 X.. Z.. R.. Q..`, `G10 L12 P8 R..`), or its page as text:
-    number, X, Z, R and T in columns. Lengths are in the units of the table. units: which these are said to be, where
-    the table names its own. pipes: whether it may be a pipe, as a shell hands over `<(...)`. Raises JobError, which
-    names the title, for a file that cannot be read or holds no offset, and the line for what cannot be understood.
+    A table is what the control punches out (`G10 P10008 X.. Z.. R.. Q..`, `G10 L12 P8 R..`, `$TC_DP6[8,1]=..`), or its
+    page as text: number, X, Z, R and T in columns. Lengths are in the units of the table. units: which these are said
+    to be, where the table names its own. pipes: whether it may be a pipe, as a shell hands over `<(...)`. Raises
+    JobError, which names the title, for a file that cannot be read or holds no offset, and the line for what cannot be
+    understood.
     """
     try:
         data = bounded.read_file(path, _LARGEST, "no offset table is", pipes=pipes)
@@ -57,7 +58,7 @@ def read_offset_table(path: Path, title: str, *, pipes: bool = False, units: Uni
     entries: list[Entry] = []
     problem: NotUnderstoodError | None = None
     try:
-        for entry in _punched(plain, units) if _IS_PUNCHED.search(plain) else offset_page.entries(text):
+        for entry in _entries(text, plain, units):
             entries.append(entry)
     except NotUnderstoodError as error:
         problem = error
@@ -65,9 +66,16 @@ def read_offset_table(path: Path, title: str, *, pipes: bool = False, units: Uni
         raise JobError(f"{title}:{problem.line}: {problem}")
     if not entries:
         raise JobError(
-            f"{title}: no offsets found; expected blocks such as G10 P10008 R0.375 Q0, or columns NO. X Z R T"
+            f"{title}: no offsets found; expected blocks such as G10 P10008 R0.375 Q0, or columns NO. X Z R T,"
+            " or tool data such as $TC_DP6[8,1]=4.0"
         )
     return _tools(entries, title)
+
+
+def _entries(text: str, plain: str, units: Units | None) -> Iterator[Entry]:
+    if tool_data.IS_TOOL_DATA.search(text):
+        return tool_data.entries(text)
+    return _punched(plain, units) if _IS_PUNCHED.search(plain) else offset_page.entries(text)
 
 
 def _blank(match: re.Match[str]) -> str:
@@ -164,11 +172,11 @@ def _of_block(line: int, block: str, words: dict[str, str], has_radii: bool) -> 
     if not number or (has_radii and kind in _OF_LATHE):
         return  # of the work shift, or of lengths
     if "R" in words:
-        yield Entry(line, number, is_geometry, "radius", float(words["R"]))
+        yield Entry(line, str(number), is_geometry, "radius", float(words["R"]))
     if "X" in words:
-        yield Entry(line, number, is_geometry, "x", float(words["X"]))
+        yield Entry(line, str(number), is_geometry, "x", float(words["X"]))
     if "Q" in words:
-        yield Entry(line, number, is_geometry, "nose", float(words["Q"]))
+        yield Entry(line, str(number), is_geometry, "nose", float(words["Q"]))
 
 
 def _number(written: str | None) -> int | None:
@@ -182,13 +190,13 @@ def _short(block: str) -> str:
 
 def _tools(entries: Iterable[Entry], title: str) -> dict[str, Tool]:
     """The offsets of all entries; of two for the same value the last counts."""
-    given: dict[int, dict[str, dict[bool, float]]] = {}
-    lines: dict[int, int] = {}
+    given: dict[str, dict[str, dict[bool, float]]] = {}
+    lines: dict[str, int] = {}
     for entry in entries:
-        given.setdefault(entry.number, {}).setdefault(entry.key, {})[entry.is_geometry] = entry.value
-        lines[entry.number] = entry.line
+        given.setdefault(entry.offset, {}).setdefault(entry.key, {})[entry.is_geometry] = entry.value
+        lines[entry.offset] = entry.line
     tools: dict[str, Tool] = {}
-    for number, keys in sorted(given.items()):
+    for offset, keys in sorted(given.items(), key=lambda item: (len(item[0]), item[0])):
         if "radius" not in keys and "nose" not in keys:
             continue
         table: dict[str, Any] = {}
@@ -203,9 +211,9 @@ def _tools(entries: Iterable[Entry], title: str) -> dict[str, Tool]:
         if x_wear is not None and abs(x_wear) < offset_page.LARGEST_WEAR:
             table["x_wear"] = x_wear
         try:
-            tools[str(number)] = fitted(table, PunchedTool)
+            tools[offset] = fitted(table, PunchedTool)
         except MisfitError as misfit:
-            raise JobError(f"{title}:{lines[number]}: offset {number}: {misfit}") from None
+            raise JobError(f"{title}:{lines[offset]}: offset {offset}: {misfit}") from None
     if not tools:
         raise JobError(f"{title}: no offsets found; X and Z alone say nothing of R and T")
     return tools
