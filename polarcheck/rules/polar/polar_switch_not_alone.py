@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 @rule(
     ERROR,
-    "{code} shares its block with {word}; it must stand in a block of its own",
+    "{code} shares its block with {word}; it must stand in a block of its own{taken_by}",
     values=("code", "word"),
     doubts=(("metal", "section"),),
 )
@@ -25,7 +25,11 @@ def polar_switch_not_alone(mode_words: ModeWords, switch_words: SwitchWords) -> 
     beside G12.1 the words that this control takes there (polar.words_beside_switch). A G13.1 outside the mode, as at
     the head of a program for safety, is not meant.
 
-    Source: FANUC B-62764EN/01, p. 50; GSK 988, description of G12.1 IP P Q E.
+    The message names the controls that take such words beside G12.1: P is the spindle or the axis there, and in
+    LinuxCNC, whose G12.1 is no polar mode, the number of the kinematics.
+
+    Source: FANUC B-62764EN/01, p. 50; GSK 988, description of G12.1 IP P Q E; LinuxCNC, pull requests 4414
+    and 4534.
 
     Bad:
 
@@ -63,4 +67,22 @@ def polar_switch_not_alone(mode_words: ModeWords, switch_words: SwitchWords) -> 
 
 
 def details(hit: Hit) -> Details:
-    return {"code": hit.switch, "word": hit.word_list}
+    return {"code": hit.switch, "word": hit.word_list, "taken_by": _taken_by(hit)}
+
+
+def _taken_by(hit: Hit) -> str:
+    """Where these addresses stand beside the same code that begins the mode; empty for nowhere."""
+    from polarcheck.program.machines import profiles
+
+    code, letters = hit.switch, {chr(hit.trace.run.words.address[index]) for index in hit.words}
+    names = [
+        profile.name
+        for profile in profiles.built_in()
+        if code in profile.machine.polar.on and letters <= {*profile.machine.polar.words_beside_switch}
+    ]
+    if not names or code not in hit.trace.machine.polar.on:
+        return ""
+    *others, last = names
+    listed, words = f"{', '.join(others)} and {last}" if others else last, " ".join(sorted(letters))
+    kinematics = ", and LinuxCNC chooses the kinematics by it" if code == "G12.1" and words == "P" else ""
+    return f"; {listed} (--machine) {'take' if others else 'takes'} {words} there{kinematics}"
