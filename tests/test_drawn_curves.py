@@ -193,3 +193,38 @@ def test_units_of_no_part_are_named(tmp_path: Path, units: int, message: str) ->
     with pytest.raises(JobError) as refused:
         drawing_file.read_drawing(written(tmp_path / "a.dxf", circle, units=units), "a.dxf")
     assert message in str(refused.value)
+
+
+@looped("begin", [0.3, 1.0, -math.pi, math.pi, 5.0])
+@looped("turns", [1, -1, 0])
+def test_an_ellipse_that_ends_where_it_begins_is_whole(tmp_path: Path, begin: float, turns: int) -> None:
+    """As writers have it: from -pi to pi, or from any parameter to that one a turn later."""
+
+    def draw(space: Any) -> None:
+        space.add_ellipse((0, 0), (20, 0), 0.75, begin, begin + turns * math.tau)
+
+    (curve,) = curves(written(tmp_path / "a.dxf", draw))
+    assert area(curve) == pytest.approx(math.pi * 20 * 15, abs=0.1)
+    mirrored = written(tmp_path / "b.dxf", lambda space: _in_block(space, draw, xscale=-1, yscale=0.5))
+    assert area(curves(mirrored)[0]) == pytest.approx(math.pi * 20 * 7.5, abs=0.1)
+
+
+def test_a_part_of_an_ellipse_ends_where_it_is_said(tmp_path: Path) -> None:
+    (curve,) = curves(written(tmp_path / "a.dxf", lambda space: space.add_ellipse((0, 0), (20, 0), 0.75, 0.3, 0.31)))
+    assert length(curve) == pytest.approx(1e-2 * math.hypot(20 * math.sin(0.305), 15 * math.cos(0.305)), rel=1e-3)
+
+
+@looped("repeated", [(0,), (5,), (12,), (3, 4), (5, 5), (0, 12)])
+def test_a_point_of_a_spline_may_be_given_twice(tmp_path: Path, repeated: tuple[int, ...]) -> None:
+    points = [(20 * math.cos(turn * math.pi / 6), 15 * math.sin(turn * math.pi / 6)) for turn in range(13)]
+    (plain,) = curves(written(tmp_path / "a.dxf", lambda space: space.add_spline(points)))
+    twice = points[:]
+    for number in sorted(repeated, reverse=True):
+        twice.insert(number, twice[number])
+    (curve,) = curves(written(tmp_path / "b.dxf", lambda space: space.add_spline(twice)))
+    np.testing.assert_allclose(curve, plain, atol=1e-6)
+
+
+def _in_block(space: Any, draw: Draw, **placed: float) -> None:
+    draw(space.doc.blocks.new("PART"))
+    space.add_blockref("PART", (0, 0), dxfattribs=placed)

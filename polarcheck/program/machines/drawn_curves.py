@@ -23,6 +23,8 @@ _FLATTEST = 1e6
 _SAGITTA, _GAP = 2e-4, 0.01
 #: What is shorter than this share of the distance between ends at one point has no length.
 _NO_LENGTH = 1e-4
+#: Parameters of an ellipse that differ by less are the same [rad].
+_SAME_PARAMETER = 1e-9
 #: A survey foot of the United States [mm]: 1200/3937 m.
 _SURVEY_FOOT = 1_200_000 / 3937
 #: Units by $INSUNITS (Autodesk, DXF reference, header variables): the name of each, and its length [mm].
@@ -156,7 +158,17 @@ def _vertices(entity: Any, fineness: Fineness) -> Iterable[Any]:
     )
     if not all(abs(coordinate) <= fineness.farthest for corner in corners for coordinate in list(corner)[:2]):
         raise fineness.too_far()
-    return entity.flattening(fineness.sagitta) if kind == "ELLIPSE" else _spline(entity, fineness)
+    return _ellipse(entity, fineness) if kind == "ELLIPSE" else _spline(entity, fineness)
+
+
+def _ellipse(entity: Any, fineness: Fineness) -> Iterable[Any]:
+    """The points of an ellipse or a part of it; one that ends at the parameter where it begins is whole."""
+    start, end = entity.dxf.start_param, entity.dxf.end_param
+    if abs(math.remainder(end - start, math.tau)) > _SAME_PARAMETER:
+        return entity.flattening(fineness.sagitta)  # type: ignore[no-any-return]
+    whole = entity.construction_tool()
+    whole.start_param, whole.end_param = 0.0, math.tau
+    return whole.flattening(fineness.sagitta)  # type: ignore[no-any-return]
 
 
 def _spline(entity: Any, fineness: Fineness) -> Iterable[Any]:
@@ -175,6 +187,14 @@ def _spline(entity: Any, fineness: Fineness) -> Iterable[Any]:
     poles = [complex(pole[0], pole[1]) for pole in entity.control_points or entity.fit_points]
     if all(abs(pole - poles[0]) <= fineness.least for pole in poles):
         return ()
+    if not len(entity.control_points):
+        # A curve cannot be fitted through one point twice in a row.
+        fit = list(entity.fit_points)
+        entity.fit_points = [
+            point
+            for number, (point, pole) in enumerate(zip(fit, poles, strict=True))
+            if not number or abs(pole - poles[number - 1]) > fineness.least
+        ]
     tool = entity.construction_tool()
     whole = OnDomain(tool.control_points, tool.order, tool.knots(), tool.weights() or None)
     return whole.flattening(fineness.sagitta)
