@@ -144,6 +144,13 @@ def test_columns_are_parted_and_named_in_many_ways(text: str) -> None:
     assert table(text) == {"8": (4.0, 0), "12": (0.4, 3)}
 
 
+def test_the_columns_of_a_fagor_control_are_read_by_their_names() -> None:
+    assert table("D X Z R F I K\n8 -95.1 -40. 4. 3 .1 .2\n12 0. 0. .4 0 0. 0.\n") == {
+        "8": (4.0, None),
+        "12": (0.4, None),
+    }
+
+
 @looped(
     ("text", "told"),
     [
