@@ -225,8 +225,9 @@ class PartComments(Columns, frozen=True):
     def _faces(self, rows: Mask) -> Floats:
         """Every Z to which these rows cut, and Z0: a depth may be meant from any of these faces."""
         trace = self.trace
-        at_feed = is_among(trace.axes.motion, (Motion.LINE, Motion.CW, Motion.CCW, Motion.CYCLE))
-        return different(np.append(np.nan_to_num(trace.path.z[rows & at_feed]), 0.0))
+        at_feed = is_among(trace.axes.motion, (Motion.LINE, Motion.CW, Motion.CCW))
+        ends = np.append(trace.path.z[rows & at_feed], trace.path.z_of_cycles[rows])
+        return different(np.append(np.nan_to_num(ends), 0.0))
 
     # ---- bars ----
 

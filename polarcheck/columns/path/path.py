@@ -18,6 +18,7 @@ from polarcheck.columns.modes.mode import PolarMode
 from polarcheck.columns.modes.tools import CalledTools
 from polarcheck.columns.path.axes import PlaneAxes
 from polarcheck.columns.path.coordinates import Coordinates
+from polarcheck.columns.path.cycle_ends import CycleEnds
 from polarcheck.columns.path.frames import AxisPath, Frames, along, find_frames, in_frame
 from polarcheck.columns.path.lengths import RADIUS_FACTOR, Lengths
 from polarcheck.foundation.arrays import (
@@ -26,6 +27,7 @@ from polarcheck.foundation.arrays import (
     Mask,
     Points,
     Rows,
+    States,
     cached_property,
     is_among,
     repeated,
@@ -73,7 +75,9 @@ class ProgrammedPath(Columns, frozen=True):
         if of_step is not None:
             factor = np.where(is_step, of_step, factor)
         value, step = self.lengths.length_of(address) * factor, self.lengths.length_of(increment) * factor
-        where = where & self.modal.uses_axes
+        where = where & self.modal.uses_axes & ~self.cycles.returns
+        if address == "Z" and self.modal.sets("drilling").any():
+            where &= self.modal.drilling == 0  # the bottom of the hole, where the tool does not stay
         written = self.blocks.has(address) & where
         has_step = self.blocks.has(increment) & where
         absolute = np.where(written & ~is_step, value, np.nan)
@@ -81,6 +85,11 @@ class ProgrammedPath(Columns, frozen=True):
         steps = np.where(written & is_step, value, 0.0) + np.where(has_step, step, 0.0)
         broken = written & np.isnan(value)
         return absolute, np.where(broken, np.nan, steps)
+
+    @cached_property
+    def cycles(self) -> CycleEnds:
+        """Where cycles of turning end."""
+        return CycleEnds(self.blocks, self.modal)
 
     @property
     def _virtual_coordinates(self) -> tuple[Floats, Floats]:
@@ -106,8 +115,7 @@ class ProgrammedPath(Columns, frozen=True):
         work_offset = self.modal.state("work_offset")
         lost |= self.modal.sets("work_offset") & (work_offset != before(work_offset, self.blocks.starts, 0))
         if axis in "XZ":
-            cycle = (self.axes.motion == Motion.CYCLE) | self.blocks.listed("repetitive_cycle")
-            lost |= cycle | self.tools.changes_tool
+            lost |= (self.cycles.loses_place & self.axes.moves) | self.tools.changes_tool
         outside = self.mode.section < 0
         if (allowed := self._machine_coordinates_in_mode).any():
             outside |= allowed
@@ -219,7 +227,8 @@ class ProgrammedPath(Columns, frozen=True):
             begins = self.mode.enters & (self.axes.linear_axis == ord(axis))
             resets, values = resets | begins, np.where(begins, self._alone(axis), values)
         leave = leave[(self.axes.linear_axis == ord("X"))[leave - 1]]
-        x_words = AxisPath(*self._linear_coordinates, resets, values)
+        linear = self._linear_coordinates
+        x_words = AxisPath(*self.cycles.without_contours(*linear), resets, values)
         c_words = AxisPath(*self._virtual_coordinates, self.mode.enters, virtual)
         alone = None if len(enter) else self._virtual(c_words)
         for _ in range(_PASSES):
@@ -237,6 +246,7 @@ class ProgrammedPath(Columns, frozen=True):
         else:
             values[leave] = np.nan  # sections that hang on each other by increments alone, one after another
             x, c = self._both(x_words, c_words, alone)
+        x = self.cycles.with_contours(x, *linear, resets, values)
         end = np.empty(len(self.run), np.complex128)
         end.real, end.imag = np.where(self.mode.is_followed, x, np.nan), c
         end -= shift
@@ -285,13 +295,12 @@ class ProgrammedPath(Columns, frozen=True):
     @cached_property
     def x_before(self) -> Floats:
         """X before the row as a radius [mm]."""
-        return before(self._after.real, self.blocks.starts, np.nan)
+        return self.cycles.before(self._after.real)
 
     @cached_property
     def z(self) -> Floats:
         """Z after the row [mm]; NaN while unknown."""
-        absolute, steps = self._z_words
-        return positions(absolute, steps, self._forgets("Z", "W"), self._set_by("Z"))
+        return self._along_z(*self._z_words, self._set_by("Z"))
 
     @cached_property
     def depth(self) -> Floats:
@@ -301,7 +310,13 @@ class ProgrammedPath(Columns, frozen=True):
         Increments show how much deeper one block is than another. A Z word without a known value moves nothing.
         """
         absolute, steps = self._z_words
-        return positions(absolute, np.nan_to_num(steps), self._forgets("Z", "W"), np.nan_to_num(self._set_by("Z")))
+        return self._along_z(absolute, np.nan_to_num(steps), np.nan_to_num(self._set_by("Z")))
+
+    def _along_z(self, absolute: Floats, steps: Floats, values: Floats) -> Floats:
+        """Z after each row by its words; values: where resets of it set it."""
+        resets = self._forgets("Z", "W")
+        stays = positions(*self.cycles.without_contours(absolute, steps), resets, values)
+        return self.cycles.with_contours(stays, absolute, steps, resets, values)
 
     @property
     def _z_words(self) -> tuple[Floats, Floats]:
@@ -378,6 +393,16 @@ class ProgrammedPath(Columns, frozen=True):
         return np.asarray((self.is_arc & of_arc) | (moves & self.modal.is_unknown))
 
     @cached_property
+    def motion(self) -> States:
+        """The motion of each row; that of a cycle along the contour that the cycle runs."""
+        return np.where(self.cycles.contour, Motion.CYCLE, self.axes.motion).astype(np.int16)
+
+    @cached_property
+    def z_of_cycles(self) -> Floats:
+        """Z to which the cycle in force goes [mm], where the row names it; NaN elsewhere."""
+        return np.where(self.modal.in_cycle, self.lengths.length_of("Z"), np.nan)
+
+    @cached_property
     def is_arc(self) -> Mask:
         """An arc on the polar plane."""
         of_plane = self.mode.in_polar & self.axes.moves_plane & self.axes.is_simulated
@@ -397,7 +422,7 @@ class ProgrammedPath(Columns, frozen=True):
     @cached_property
     def z_before(self) -> Floats:
         """Z before the row [mm]; NaN while unknown."""
-        return before(self.z, self.blocks.starts, np.nan)
+        return self.cycles.before(self.z)
 
     @cached_property
     def c_angle_before(self) -> Floats:

@@ -143,7 +143,7 @@ def rows(trace: Trace, tool_center: ToolCenter) -> Iterator[dict[str, Any]]:
             "program": int(trace.blocks.program[row]),
             "depth": int(trace.run.depth[row]),
             "section": int(trace.mode.section[row]),
-            "motion": Motion(int(trace.axes.motion[row])).name.lower(),
+            "motion": Motion(int(trace.path.motion[row])).name.lower(),
             "side": SIDES[Side(int(trace.compensation.side[row]))],
             "tool": trace.run.names.get(int(trace.tools.tool[row]), int(trace.tools.tool[row])),
             "offset_number": key_of(trace.tools, int(trace.tools.offset_number[row])) or 0,

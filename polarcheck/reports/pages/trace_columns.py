@@ -49,7 +49,7 @@ def _block(trace: Trace, row: int) -> str:
 
 def _of_rows(trace: Trace, tool_center: ToolCenter) -> list[Column]:
     moving = trace.mode.in_polar & trace.axes.moves_plane
-    mode, motion = trace.feedrate.feed_mode, trace.axes.motion
+    mode, motion = trace.feedrate.feed_mode, trace.path.motion
     number = np.where(mode == FeedMode.PER_MINUTE, trace.feedrate.feed, trace.feedrate.feed_number)
     tools = {tool: str(trace.run.names.get(tool, tool)) for tool in _distinct(trace.tools.tool)}
     keys = {offset: str(key_of(trace.tools, offset) or 0) for offset in _distinct(trace.tools.offset_number)}
