@@ -100,5 +100,5 @@ def test_what_cycles_take_off_is_not_lost(turned: str) -> None:
         "C10.\nX-30.\nC-10.\nX30.\nC0\nG40 X60.\nG13.1\nM30\n"
     )
     tables = tables_of(head + turned + mill, "fanuc", "3:radius=4", job={"stock": {"diameter": 62.0}})
-    known = tables.get("bar").known
+    known = tables["bar"].known
     assert (known.source, known.smallest, known.largest) == ("turning", 44, 44)

@@ -128,6 +128,7 @@ FAULTS_OF_CONTOUR: Final = (
 )
 #: What leaves other metal than a contour says, or says that the contour is another one.
 FAULTS_OF_METAL: Final = (
+    "c-angle-without-effect",
     "c-elsewhere-at-entry",
     "cancel-shorter-than-radius",
     "cancel-without-start-up",

@@ -122,6 +122,7 @@ VOCABULARY: Mapping[str, Meaning] = {
     "corner": Meaning(Kind.ANGLE, "corner that the contour turns at an end of the arc"),
     "sweep": Meaning(Kind.ANGLE, "angle of the arc"),
     "turned": Meaning(Kind.ANGLE, "by how much the section comes out turned"),
+    "between": Meaning(Kind.ANGLE, "angle of C from the section before to this one"),
     # Feeds, rates, times.
     "c_acceleration": Meaning(Kind.ANGULAR_ACCELERATION, "acceleration that C would need"),
     "c_feed": Meaning(Kind.RATE, "rate at which C would turn"),

@@ -1,4 +1,4 @@
-"""The angle of C at which each section begins, where C was not positioned since the section before."""
+"""The angle of C at which each section begins: where nobody has positioned it, and where it has no effect."""
 
 from __future__ import annotations
 
@@ -16,6 +16,8 @@ _SAME_ANGLE = 0.2
 _SAME = 0.02
 #: A section of more moves is compared with nothing.
 _MOST_MOVES = 2000
+#: The lists of codes that change a frame.
+_FRAMES = ("frame_shift", "frame_shift_added", "frame_rotation", "frame_rotation_added", "frame_not_simulated")
 #: A contour without compensation begins within so many moves.
 _MOST_LEADS = 20
 
@@ -67,6 +69,47 @@ class EntryAngles(Columns, frozen=True):
                 turned[number] = before[number]
         return turned
 
+    @cached_property
+    def without_effect(self) -> Floats:
+        """
+        C before the section less C before the section before [deg], where both cut the same contour at one place, as C
+        does not turn the plane. NaN elsewhere, and where the contour turned by that angle is the same.
+
+        Not where a frame, another zero or a block of unknown effect stands between them: that may turn the plane.
+        """
+        trace, sections = self.trace, self.trace.mode.sections
+        found = np.full(len(sections), np.nan)
+        if len(sections) < 2 or not trace.machine.polar.plane_is_fixed:
+            return found
+        enter, last = sections.enter, np.minimum(sections.last, len(trace) - 1)
+        turns_zero = trace.blocks.listed("work_offset", "work_offset_extended", "data_input", "coordinate_setting")
+        turns_zero |= trace.blocks.listed(*_FRAMES) | trace.run.unknown | trace.blocks.starts
+        may_turn, positioned = np.cumsum(turns_zero), np.cumsum(self._names_c)
+        turn = np.mod(np.diff(trace.path.c_angle[enter]) + 180, 360) - 180
+        tool = trace.tools.tool[enter]
+        chosen = (positioned[enter] > positioned[np.append(0, last[:-1])])[1:] & (tool[1:] == tool[:-1])
+        chosen &= (may_turn[enter[1:]] == may_turn[enter[:-1]]) & (np.abs(turn) > _SAME_ANGLE)
+        for number in np.flatnonzero(chosen).tolist():
+            if self._are_same(number, number + 1) and not self._is_invariant(number + 1, float(turn[number])):
+                found[number + 1] = turn[number]
+        return found
+
+    def _are_same(self, one: int, other: int) -> bool:
+        """Both sections cut the same moves, at the same heights."""
+        trace = self.trace
+        rows = [np.flatnonzero(trace.path.cuts & (trace.mode.section == number)) for number in (one, other)]
+        if len(rows[0]) != len(rows[1]) or not 0 < len(rows[0]) <= _MOST_MOVES:
+            return False
+        pairs = [(column[rows[0]], column[rows[1]]) for column in (trace.path.start, trace.path.end, trace.path.z)]
+        same_kind = np.array_equal(*(trace.axes.motion[part] for part in rows))
+        return same_kind and all(bool(np.all(np.abs(here - there) <= _SAME)) for here, there in pairs)
+
+    @property
+    def _names_c(self) -> Mask:
+        """Rows outside the mode that position C."""
+        trace = self.trace
+        return trace.blocks.has(*trace.machine.polar.rotary_words) & trace.modal.uses_axes & (trace.mode.section < 0)
+
     @property
     def _positions(self) -> Mask:
         """Rows outside the mode in which C is positioned, lost, or may be."""
@@ -104,7 +147,9 @@ def _corners(start: Points, end: Points, center: Points) -> Points:
 
 
 def _ring(rows: Rows, start: Points, end: Points) -> Rows:
-    """The longest closed part of a path; the whole path where none closes."""
+    """The longest closed part of a path, without leads that come back the same way; the whole path where none is."""
+    while len(rows) > 2 and abs(start[0] - end[-1]) <= _SAME and abs(end[0] - start[-1]) <= _SAME:
+        rows, start, end = rows[1:-1], start[1:-1], end[1:-1]
     places = np.append(start[:1], end)
     begins, length = 0, 0
     for first in range(min(len(rows), _MOST_LEADS)):
