@@ -66,6 +66,10 @@ SIMULATED = {
     "DEF REAL AA=1.5, BB / DEF INT CC=2 / DEF BOOL DD=TRUE / G0 X=AA Y=BB Z=CC+DD": ["G0 X1.5 Y0 Z3"],
     "GOTOF ON / X9 / ON: G0 X1": ["G0 X1"],
     "GOTOF N30 / X9 / N30 G0 X1": ["N30 G0 X1"],
+    # Labels with the names of custom macro.
+    "GOTOF END1 / X9 / END1: G0 X1": ["G0 X1"],
+    "R1=1 / IF R1==1 GOTOF DO2 / X9 / N30 DO2 : G0 X1": ["G0 X1"],
+    "R1=0 / END3: / R1=R1+1 / IF R1<2 GOTOB END3 / G0 X1": ["G0 X1"],
     "GOTO ON / X9 / ON: G0 X1": ["G0 X1"],
     "GOTOC NOWHERE / G0 X1": ["G0 X1"],
     "R1=5 / IF R1==5 GOTOF ON / X9 / ON: G0 X1": ["G0 X1"],

@@ -15,9 +15,11 @@ from polarcheck.program.execution.statement import Statement, Word
 from polarcheck.program.execution.variable_names import Names
 from polarcheck.program.machines.machine import Machine
 
-#: What only custom macro writes: it may stand beside the statements of this language.
+#: What only custom macro writes: it may stand beside the statements of this language. END1: and GOTOF END1 are labels.
 _CUSTOM_MACRO: Final = re.compile(
-    r"#|(?<![A-Z_])(?:(?:IF|WHILE)\s*\[|(?:GOTO|DO|END)\s*[0-9]|[BD]PRNT\s*\[|POPEN|PCLOS)", re.IGNORECASE
+    r"#|(?<![A-Z_])(?:(?:IF|WHILE)\s*\[|GOTO\s*[0-9]|[BD]PRNT\s*\[|POPEN|PCLOS)"
+    r"|\A[\s/]*+(?:N\s*+[0-9]++\s*+)?(?:DO|END)\s*+[0-9]++\s*+\Z",
+    re.IGNORECASE,
 )
 _STRING: Final = re.compile('"[^"]*+"?')
 #: Addresses of functions: with a number before their = they are those of another spindle, and no axis.
