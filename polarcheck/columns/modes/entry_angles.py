@@ -16,7 +16,8 @@ _SAME_ANGLE = 0.2
 _SAME = 0.02
 #: A section of more moves is compared with nothing.
 _MOST_MOVES = 2000
-#: The lists of codes that change a frame.
+#: The lists of codes that change the zero, and those that change a frame.
+_ZEROS = ("work_offset", "work_offset_extended", "data_input", "coordinate_setting")
 _FRAMES = ("frame_shift", "frame_shift_added", "frame_rotation", "frame_rotation_added", "frame_not_simulated")
 #: A contour without compensation begins within so many moves.
 _MOST_LEADS = 20
@@ -82,8 +83,7 @@ class EntryAngles(Columns, frozen=True):
         if len(sections) < 2 or not trace.machine.polar.plane_is_fixed:
             return found
         enter, last = sections.enter, np.minimum(sections.last, len(trace) - 1)
-        turns_zero = trace.blocks.listed("work_offset", "work_offset_extended", "data_input", "coordinate_setting")
-        turns_zero |= trace.blocks.listed(*_FRAMES) | trace.run.unknown | trace.blocks.starts
+        turns_zero = trace.blocks.listed(*_ZEROS, *_FRAMES) | trace.run.unknown | trace.blocks.starts
         may_turn, positioned = np.cumsum(turns_zero), np.cumsum(self._names_c)
         turn = np.mod(np.diff(trace.path.c_angle[enter]) + 180, 360) - 180
         tool = trace.tools.tool[enter]
