@@ -32,6 +32,8 @@ def after(program: str, **more: object) -> list[tuple[float, float]]:
         ("G0 X52. Z2.\nG75 R1.\nG75 X30. Z-20. P2000 Q3000 F.1\nG0 Z9.\n", [(26, 2), (26, 2), (26, 9)]),
         ("G0 X32. Z5.\nG76 P010060 Q100 R.1\nG76 X28. Z-20. P920 Q300 F1.5\nU2.\n", [(16, 5), (16, 5), (17, 5)]),
         ("G0 X0 Z5.\nG74 R1.\nG74 Z-40. Q5000 F.1\nG0 X50.\n", [(0, 5), (0, 5), (25, 5)]),
+        # Of two codes of one group in a block the last counts: no cycle here.
+        ("G0 X52. Z2.\nG90 G0 X46. Z-30.\nX44.\n", [(23, -30), (22, -30)]),
         # One pass of a thread ends where its words say, and the other axis stays.
         ("G0 X29. Z5.\nG32 Z-20. F1.5\nG0 X34.\nZ5.\n", [(14.5, -20), (17, -20), (17, 5)]),
         # The bottom of a hole is not where the tool stays.

@@ -23,9 +23,12 @@ class CycleEnds(Columns, frozen=True):
     modal: ModalStates
 
     def _in_force(self, *keys: str) -> Mask:
-        """A code of group 01 of these lists is in force."""
+        """A code of group 01 of these lists is in force; of two in a block the last counts."""
         begins = self.blocks.listed(*keys)
-        return happened(begins, self.modal.sets("motion") | self.blocks.starts) if begins.any() else begins
+        if not begins.any():
+            return begins
+        is_cycle = self.modal.state("motion") == Motion.CYCLE
+        return happened(begins & is_cycle, self.modal.sets("motion") | self.blocks.starts)
 
     @cached_property
     def returns(self) -> Mask:
@@ -39,8 +42,8 @@ class CycleEnds(Columns, frozen=True):
         is_cycle = self.modal.in_cycle
         if not is_cycle.any():
             return is_cycle
-        is_thread = (self.modal.state("motion") == Motion.CYCLE) & self._in_force("thread_cutting")
-        return np.asarray(is_cycle & ((self.modal.drilling != 0) | ~(self.returns | is_thread)))
+        is_followed = self.returns | self._in_force("thread_cutting")
+        return np.asarray(is_cycle & ((self.modal.drilling != 0) | ~is_followed))
 
     @cached_property
     def contour(self) -> Mask:
