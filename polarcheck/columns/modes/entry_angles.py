@@ -101,7 +101,7 @@ class EntryAngles(Columns, frozen=True):
         if len(rows[0]) != len(rows[1]) or not 0 < len(rows[0]) <= _MOST_MOVES:
             return False
         pairs = [(column[rows[0]], column[rows[1]]) for column in (trace.path.start, trace.path.end, trace.path.z)]
-        same_kind = np.array_equal(*(trace.axes.motion[part] for part in rows))
+        same_kind = np.array_equal(trace.axes.motion[rows[0]], trace.axes.motion[rows[1]])
         return same_kind and all(bool(np.all(np.abs(here - there) <= _SAME)) for here, there in pairs)
 
     @property
