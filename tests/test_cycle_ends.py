@@ -82,6 +82,15 @@ def test_contours_of_other_forms(program: str) -> None:
     assert after(program + "G1 W-1.\n")[-1] == (26, 1)
 
 
+def test_a_contour_of_okuma_is_run_by_the_cycles_that_name_it() -> None:
+    contour = "NLAP1 G81\nG0 X20\nG1 Z-10 F0.1\nX52\nG80\n"
+    along = [(26, 2), (10, 2), (10, -10), (26, -10), (26, 2)]
+    behind = "G0 X52 Z2\nG85 NLAP1 D2 F0.2 U0.4 W0.1\n" + contour + "G87 NLAP1\nG1 Z1\n"
+    assert after(behind, machine="okuma-osp") == [(26, 2), *along, (26, 2), (26, 1)]
+    above = "G0 X52 Z2\n" + contour + "G0 Z5\nG85 NLAP1 D2 F0.2\nG0 X60\n"
+    assert after(above, machine="okuma-osp") == [*along, (26, 5), (26, 5), (30, 5)]
+
+
 def test_a_number_that_names_no_contour_behind_the_cycle_changes_nothing() -> None:
     # The contour stands before; a later block that has its number is no contour of this cycle.
     program = _ROUGHED + "G70 P100 Q200\nG0 X60.\nN100 G1 X50.\nZ-5.\nN200 X40.\nG0 U2.\n"

@@ -279,6 +279,10 @@ USES = {
     "g_code_system_a.threading_cycle": Use([], before("G92 X50. Z-5. F1.")),
     "g_code_system_a.facing_cycle": Use([], before("G94 X50. Z-5.")),
     "g_code_system_a.repetitive_cycle": Use([], before("G71 U1. R1.")),
+    "g_codes.cycle_contour": Use(["G81"], before("G81", "G1 X80. F.1", "G80")),
+    "g_codes.cycle_contour_off": Use(
+        ["G80"], before("G85", "G1 X80. F.1", "G80"), also={"g_codes": {"cycle_contour": ["G85"]}}
+    ),
     "g_code_system_a.coordinate_setting": Use([], before("G50 X0")),
     "g_code_system_a.coordinate_preset": Use([], before("G52 X1.", "G50.3 X0")),
     "g_code_system_a.feed_is_lead": Use([], before("G76 X50. F100").replace(" F200", "")),

@@ -2,7 +2,8 @@
 Cycles of turning end where they began: those of one block, each repeat of them, and the multiple repetitive cycles.
 
 The blocks that a multiple repetitive cycle names by P and Q are its contour. Where they stand behind it the cycle has
-run them, and the program goes on behind them from where the cycle began (B-63944EN, multiple repetitive cycles).
+run them, and the program goes on behind them from where the cycle began (B-63944EN, multiple repetitive cycles). On
+other controls codes begin and end a contour, which a cycle names: NLAP1 G81 .. G80.
 """
 
 from __future__ import annotations
@@ -47,7 +48,14 @@ class CycleEnds(Columns, frozen=True):
 
     @cached_property
     def contour(self) -> Mask:
-        """Rows of a contour that stands behind the cycle that names it, with no move between."""
+        """Rows of a contour that codes begin and end, or that stands behind its cycle with no move between."""
+        blocks = self.blocks
+        begins, ends = blocks.listed("cycle_contour"), blocks.listed("cycle_contour_off") | blocks.starts
+        return self._named | (happened(begins, ends) if begins.any() else begins)
+
+    @property
+    def _named(self) -> Mask:
+        """Rows of a contour that P and Q of a cycle above name."""
         blocks = self.blocks
         names = blocks.listed("repetitive_cycle") & blocks.has("P") & blocks.has("Q") & ~blocks.has("X", "Z")
         rows = np.flatnonzero(names & ~np.isnan(blocks.word("P") + blocks.word("Q")))

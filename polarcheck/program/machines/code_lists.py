@@ -38,6 +38,8 @@ class GCodes(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     work_offset_extended: further work coordinate systems, selected by P
     drilling_cycle: canned cycles for drilling, boring and tapping
     drilling_cycle_off: canned cycle cancel
+    cycle_contour: begins the contour that a multiple repetitive cycle runs by its name; the blocks are no moves there
+    cycle_contour_off: ends it
     scaling: scaling
     scaling_off: what ends it, in the order of the codes that begin it
     rotation: coordinate system rotation
@@ -93,6 +95,8 @@ class GCodes(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     work_offset_extended: list[str]
     drilling_cycle: list[str]
     drilling_cycle_off: list[str]
+    cycle_contour: list[str]
+    cycle_contour_off: list[str]
     scaling: list[str]
     scaling_off: list[str]
     rotation: list[str]
