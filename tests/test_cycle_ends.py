@@ -37,7 +37,8 @@ def after(program: str, **more: object) -> list[tuple[float, float]]:
         # One pass of a thread ends where its words say, and the other axis stays.
         ("G0 X29. Z5.\nG32 Z-20. F1.5\nG0 X34.\nZ5.\n", [(14.5, -20), (17, -20), (17, 5)]),
         # The bottom of a hole is not where the tool stays.
-        ("G0 X40. Z5. C0\nG83 Z-20. R3. F.1\nG80\nG0 Z9.\n", [(NAN, NAN), (NAN, NAN), (NAN, 9)]),
+        ("G0 X40. Z5. C0\nG83 Z-20. R3. F.1\nC90.\nG80\nG0 Z9.\n", [(20, NAN)] * 3 + [(20, 9)]),
+        ("G0 X40. Z5. C0\nG83 X30. Z-20. R3. F.1\nG80\nG0 Z9.\n", [(15, NAN)] * 2 + [(15, 9)]),
     ],
 )
 def test_cycles_end_where_they_began(program: str, expected: list[tuple[float, float]]) -> None:

@@ -37,14 +37,19 @@ class CycleEnds(Columns, frozen=True):
         of_one_block = self._in_force("turning_cycle", "threading_cycle", "facing_cycle")
         return np.asarray(of_one_block | self.blocks.listed("repetitive_cycle"))
 
-    @cached_property
-    def loses_place(self) -> Mask:
-        """A motion in force whose end is not followed: neither a cycle that returns nor a thread cut in one pass."""
+    def loses(self, axis: str, increment: str) -> Mask:
+        """
+        Rows after which it is not known where an axis is: a motion in force whose end is not followed, neither a cycle
+        that returns nor a thread cut in one pass, or a drilling cycle that names the axis.
+        """
         is_cycle = self.modal.in_cycle
         if not is_cycle.any():
             return is_cycle
+        drills = self.modal.drilling != 0
+        ends = self.modal.sets("drilling") | self.modal.sets("motion") | self.blocks.starts
+        names = happened(drills & self.blocks.has(axis, increment), ends)
         is_followed = self.returns | self._in_force("thread_cutting")
-        return np.asarray(is_cycle & ((self.modal.drilling != 0) | ~is_followed))
+        return np.asarray(is_cycle & np.where(drills, names, ~is_followed))
 
     @cached_property
     def contour(self) -> Mask:

@@ -115,7 +115,7 @@ class ProgrammedPath(Columns, frozen=True):
         work_offset = self.modal.state("work_offset")
         lost |= self.modal.sets("work_offset") & (work_offset != before(work_offset, self.blocks.starts, 0))
         if axis in "XZ":
-            lost |= (self.cycles.loses_place & self.axes.moves) | self.tools.changes_tool
+            lost |= (self.cycles.loses(axis, increment) & self.axes.moves) | self.tools.changes_tool
         outside = self.mode.section < 0
         if (allowed := self._machine_coordinates_in_mode).any():
             outside |= allowed
