@@ -34,6 +34,8 @@ def test_each_of_several_sections_is_one_finding() -> None:
         ("G0 X60 C90", "ROT RPL=90\n" + SLOT + "ROT\n"),
         ("G55 G0 X60 C90", SLOT),
         ("TRANS C90\nG0 X60 C0", SLOT),
+        ("$P_PFRAME=CTRANS(C,90)\nG0 X60 C90", SLOT),
+        ("L100\nG0 X60 C90", SLOT),
         ("G0 X60 C90", SLOT.replace("X10", "X12")),
         ("G0 X60 C90", SLOT.replace("Z-2", "Z-4")),
         ("G0 X60 C0", SLOT),

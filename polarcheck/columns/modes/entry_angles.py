@@ -89,6 +89,10 @@ class EntryAngles(Columns, frozen=True):
         tool = trace.tools.tool[enter]
         chosen = (positioned[enter] > positioned[np.append(0, last[:-1])])[1:] & (tool[1:] == tool[:-1])
         chosen &= (may_turn[enter[1:]] == may_turn[enter[:-1]]) & (np.abs(turn) > _SAME_ANGLE)
+        unread = np.sort([remark.block for remark in trace.run.remarks if remark.kind == "not-simulated"])
+        block = trace.run.block
+        behind, ahead = (np.searchsorted(unread, block[rows]) for rows in (last[:-1], enter[1:]))
+        chosen &= behind == ahead
         for number in np.flatnonzero(chosen).tolist():
             if self._are_same(number, number + 1) and not self._is_invariant(number + 1, float(turn[number])):
                 found[number + 1] = turn[number]
