@@ -6,7 +6,7 @@ import math
 
 import pytest
 from cases import looped
-from programs import tables_of, trace_of
+from programs import report_of, said, tables_of, trace_of
 
 from polarcheck.foundation.states import Motion
 
@@ -90,6 +90,22 @@ def test_a_contour_of_okuma_is_run_by_the_cycles_that_name_it() -> None:
     assert after(behind, machine="okuma-osp") == [(26, 2), *along, (26, 2), (26, 1)]
     above = "G0 X52 Z2\n" + contour + "G0 Z5\nG85 NLAP1 D2 F0.2\nG0 X60\n"
     assert after(above, machine="okuma-osp") == [*along, (26, 5), (26, 5), (30, 5)]
+
+
+@looped(
+    ("cycle", "expected"),
+    [
+        ("G90 X46. Z-130. F.2", [5]),
+        ("G90 U-6. W-132. F.2", [5]),
+        ("G90 X46. Z-30. F.2\nX-60.", [6]),
+        ("G83 Z-120. R2. F.2", [5]),
+        ("G90 X46. Z-30. F.2\nX44.", []),
+    ],
+)
+def test_cycles_may_leave_the_travel_of_the_machine(cycle: str, expected: list[int]) -> None:
+    program = f"O1\nG21 G99\nT0101\nG0 X52. Z2.\n{cycle}\nG0 X60.\nM30\n"
+    report = report_of(program, changes={"limits": {"z_minimum": -100.0, "x_minimum": -20.0}})
+    assert [line for line, rule in said(report) if rule == "travel-limit"] == expected
 
 
 def test_a_number_that_names_no_contour_behind_the_cycle_changes_nothing() -> None:

@@ -112,3 +112,8 @@ class CycleEnds(Columns, frozen=True):
             return above
         stays = fill_down(after, ~self.contour | self.blocks.starts, np.nan)
         return np.where(self.contour, above, before(stays, self.blocks.starts, np.nan))
+
+
+def or_of_cycle(place: Floats, of_cycle: Floats) -> Floats:
+    """Where an axis goes: in a cycle to the end of its cut, from which it comes back."""
+    return np.where(np.isnan(of_cycle), place, of_cycle)

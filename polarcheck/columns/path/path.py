@@ -18,7 +18,7 @@ from polarcheck.columns.modes.mode import PolarMode
 from polarcheck.columns.modes.tools import CalledTools
 from polarcheck.columns.path.axes import PlaneAxes
 from polarcheck.columns.path.coordinates import Coordinates
-from polarcheck.columns.path.cycle_ends import CycleEnds
+from polarcheck.columns.path.cycle_ends import CycleEnds, or_of_cycle
 from polarcheck.columns.path.frames import AxisPath, Frames, along, find_frames, in_frame
 from polarcheck.columns.path.lengths import RADIUS_FACTOR, Lengths
 from polarcheck.foundation.arrays import (
@@ -398,9 +398,24 @@ class ProgrammedPath(Columns, frozen=True):
         return np.where(self.cycles.contour, Motion.CYCLE, self.axes.motion).astype(np.int16)
 
     @cached_property
+    def x_of_cycles(self) -> Floats:
+        """X to which the cycle in force goes [mm, radius], where the row names it; NaN elsewhere."""
+        return self._of_cycles("X", self.lengths.x_factor, lambda: self.x_before)
+
+    @cached_property
     def z_of_cycles(self) -> Floats:
-        """Z to which the cycle in force goes [mm], where the row names it; NaN elsewhere."""
-        return np.where(self.modal.in_cycle, self.lengths.length_of("Z"), np.nan)
+        """Z likewise [mm]."""
+        return self._of_cycles("Z", 1.0, lambda: self.z_before)
+
+    def _of_cycles(self, axis: str, factor: Floats | float, start: Callable[[], Floats]) -> Floats:
+        """Where a cycle goes along an axis by its words; increments of a drilling cycle count from another place."""
+        cycle = self.modal.in_cycle & self.modal.uses_axes & self.blocks.has(axis, INCREMENTS[axis])
+        if not cycle.any():
+            return repeated(np.float64(np.nan), len(self.run))
+        value, step = (self.lengths.length_of(word) * factor for word in (axis, INCREMENTS[axis]))
+        is_step = self.modal.is_step(axis)
+        step = np.where(is_step, value, step) + np.where(self.modal.drilling != 0, np.nan, start())
+        return np.where(cycle, np.where(is_step | np.isnan(value), step, value), np.nan)
 
     @cached_property
     def is_arc(self) -> Mask:
@@ -436,12 +451,15 @@ class ProgrammedPath(Columns, frozen=True):
 
         With moves_z and moves_c, and with travels on the polar plane, the test of all rules for a word that is a move.
         """
-        return _differs(self.modal.uses_axes & self.axes.programs_linear_axis, lambda: (self.x_before, self.x))
+        return _differs(
+            self.modal.uses_axes & self.axes.programs_linear_axis,
+            lambda: (self.x_before, or_of_cycle(self.x, self.x_of_cycles)),
+        )
 
     @cached_property
     def moves_z(self) -> Mask:
         """Z moves likewise, where that is not the linear axis; posts repeat the present Z in each block."""
-        return _differs(self.axes.commands_z, lambda: (self.z_before, self.z))
+        return _differs(self.axes.commands_z, lambda: (self.z_before, or_of_cycle(self.z, self.z_of_cycles)))
 
     @cached_property
     def moves_c(self) -> Mask:

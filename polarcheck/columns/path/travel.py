@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from polarcheck.columns.path.cycle_ends import or_of_cycle
 from polarcheck.columns.path.tool_center import ToolCenter
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Columns, Floats, Mask, cached_property, repeated
@@ -48,13 +49,16 @@ class Travel(Columns, frozen=True):
     def _x(self, inside: Floats, none: float) -> Floats:
         """Outside the mode the end of a move is one extreme, the end of the move before the other."""
         trace = self.trace
-        outside = np.where(trace.modal.uses_axes & trace.blocks.has("X", "U"), trace.path.x, none)
+        end = or_of_cycle(trace.path.x, trace.path.x_of_cycles)
+        outside = np.where(trace.modal.uses_axes & trace.blocks.has("X", "U"), end, none)
         return np.where(trace.mode.in_polar, inside, outside)
 
     @cached_property
     def z(self) -> Floats:
-        """Z of the machine axis after the row [mm]; NaN while unknown, and where it has no limits."""
-        return self.trace.path.z if self._limits_z else repeated(np.float64(np.nan), len(self.trace))
+        """Z of the machine axis after the row, in a cycle at its end [mm]; NaN while unknown, or without limits."""
+        if not self._limits_z:
+            return repeated(np.float64(np.nan), len(self.trace))
+        return or_of_cycle(self.trace.path.z, self.trace.path.z_of_cycles)
 
     @cached_property
     def moves_x(self) -> Mask:
