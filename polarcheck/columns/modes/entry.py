@@ -208,8 +208,15 @@ class Entry(Columns, frozen=True):
 
     @property
     def radius_off_comment(self) -> Floats:
-        """Difference of R from the R in a comment on the same offset [mm]; NaN without such a comment."""
-        return np.abs(np.abs(self.radius_in_mode) - self.radius_told)
+        """
+        Difference of R from the R in a comment on the same offset [mm]; NaN without such a comment.
+
+        What R leaves for another tool does not count.
+        """
+        left = np.zeros(len(self.trace))
+        for row in np.flatnonzero(~np.isnan(self.radius_told)).tolist():
+            left[row] = self.trace.offsets.metal_left[self.first_in_mode[int(self.trace.tools.offset_number[row])]]
+        return np.abs(np.abs(self.radius_in_mode) - left - self.radius_told)
 
     @property
     def stock_diameter(self) -> Floats:

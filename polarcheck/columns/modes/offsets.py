@@ -37,6 +37,7 @@ from polarcheck.foundation.arrays import (
     repeated,
 )
 from polarcheck.program.execution.run import NO_VARIABLE, Run
+from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.program.machines.job import Job
 from polarcheck.program.machines.machine import Machine
 from polarcheck.program.machines.offset_calls import place_in
@@ -45,6 +46,8 @@ from polarcheck.program.machines.offset_calls import place_in
 _LONGEST = 100.0
 #: No cutter of a lathe is larger: what is set is not known [mm].
 _LARGEST = 1000.0
+#: What wear may add to R [mm], and more than any roughing leaves.
+_WEAR, _MOST_LEFT = 0.25, 2.0
 #: No control has as many offsets.
 _LONGEST_NUMBER = 1e9
 #: A larger X of the wear is where the tool has been touched off, likewise [mm].
@@ -154,6 +157,23 @@ class ToolOffsets(Columns, frozen=True):
         diameters = {n: tool.diameter for n, tool in self.tools.of_job.items()}
         of_job = self._offset_column(diameters) * self.lengths.job_scale
         return np.where(np.isnan(of_job) & (self.radius_of_offset > 0), 2 * self.radius_of_offset, of_job)
+
+    @cached_property
+    def metal_left(self) -> Floats:
+        """
+        By how much R in force is larger than the cutter, so that as much is left for another tool [mm]; else 0.
+
+        The cutter is that of the diameter that the job gives beside R, else that of a comment that says of the tool
+        that it leaves metal.
+        """
+        radius, of_job = np.abs(self.radius_of_offset), self.tools.of_job
+        left = np.nan_to_num(radius - self.cutter_diameter / 2)
+        for number, comment in self.radii_in_comments.items():
+            if comment.allowance and not (number in of_job and of_job[number].diameter > 0):
+                excess = radius - comment.radius
+                is_left = (self.tools.offset_number == number) & (excess < comment.allowance + _WEAR)
+                left = np.where(is_left, excess, left)
+        return np.where((left > ROUNDING) & (left < _MOST_LEFT), left, 0.0)
 
     @cached_property
     def teeth(self) -> Floats:

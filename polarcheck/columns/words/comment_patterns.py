@@ -179,6 +179,32 @@ PART_DEPTH: Final = Subject(
     largest_in_inch=12 * MM_PER_INCH,
 )
 
+# ---- metal that is left: ROUGH, LEAVE 0.3, SCHRUPPEN ----
+
+_LEAVES = (
+    r"(?:\bLEAV(?:E|ES|ING)\b|\bALLOWANCE\b|\bSTOCK\b|AUFMA(?:SS|\u00df)\b|\bUEBERMASS\b|\bSUR.PAISSEUR\b"
+    r"|\bSOVRAMETALLO\b)"
+)
+#: Words by which a tool leaves metal for another one, by language: English, German, French, Italian, Spanish.
+ROUGHING: Final = (
+    r"\bROUGH|\bSEMI-?\s?FIN|\bLEAV(?:E|ES|ING)\b|\bALLOWANCE\b|SCHRUPP|AUFMA(?:SS|\u00df)\b|\bUEBERMASS\b|BAUCHE"
+    r"|\bSUR.PAISSEUR\b|SGROSS|\bSOVRAMETALLO\b|DESBAST"
+)
+#: STOCK of 2 mm and more is a bar.
+ALLOWANCE: Final = Subject(
+    words=(),
+    never=r"(?!)",
+    forms=(
+        Form(
+            "allowance", rf"{_LEAVES}(?:\s++(?:STOCK|FOR|ON|OF|SIDE|WALLS?|FINISH\w*+)\b){{0,4}}{_IS}{_VALUE}"
+        ),  # LEAVE 0.3
+        Form("allowance", rf"{_WHOLE}{_SIZE}\s*+(?:{_LEAVES}|LEFT\b)"),  # 0.3 STOCK
+    ),
+    least=0.0,
+    largest=2.0,
+    largest_in_inch=2.0,
+)
+
 # ---- the cutter: EM10, 8MM DIA. CUTTER, T9 END MILL D12 ----
 
 _EQUALS = r"\s*+[=:]?+\s*+"

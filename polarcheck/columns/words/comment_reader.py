@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import itertools
 import re
+from collections.abc import Iterator
 from typing import NamedTuple
 
 from polarcheck.columns.words.comment_patterns import (
     ACROSS_FLATS,
+    ALLOWANCE,
     ANY_CUTTER,
     BAR,
     BESIDE_HEXAGON,
@@ -24,6 +26,7 @@ from polarcheck.columns.words.comment_patterns import (
     OTHER_TOOL,
     PART_DEPTH,
     PART_SIZE,
+    ROUGHING,
     SIZE_ALONE,
     SIZE_BEFORE_BAR,
     Form,
@@ -36,6 +39,8 @@ _PART_FORMS = {word: [*forms] for word, forms in itertools.groupby(PART_SIZE.for
 _MILLIMETERS = "MM"
 #: Fractions of an inch have these denominators.
 _DENOMINATORS = (2, 4, 8, 16, 32, 64)
+#: Of no more roughing leaves, where the comment does not say how much [mm].
+_LEFT = 0.75
 #: No more digits than this are a length; a longer number would cost more than its text to convert.
 _MOST_DIGITS = 9
 
@@ -83,6 +88,7 @@ def bar_in(comment: str, in_inch: bool) -> StatedBar | None:
     text = plain_text(comment)
     if not _may_state(BAR, text):
         return None
+    text = _without_allowances(text, in_inch)
     has_hexagon = bool(re.search(HEXAGON_BAR, text))
     for form in BAR.forms:
         # A hexagon that is cut from a bar may stand beside it: then only BAR DIA 28 says which of the two is which.
@@ -129,9 +135,16 @@ def depth_in(comment: str, in_inch: bool) -> float | None:
     return depths[0] if len(depths) == 1 else None
 
 
+def allowance_in(comment: str, in_inch: bool) -> float:
+    """The metal that a comment says is left for another tool [mm]; _LEFT where it does not say how much, 0 for none."""
+    text = plain_text(comment)
+    stated = [size for _, size in _allowances(text, in_inch)]
+    return max(stated, default=_LEFT if re.search(ROUGHING, text) else 0.0)
+
+
 def cutter_radius(comment: str, in_inch: bool) -> float | None:
     """The radius of the cutter that a comment names [mm]."""
-    text = plain_text(comment)
+    text = _without_allowances(plain_text(comment), in_inch)
     if re.search(CUTTER.never, re.sub(r"SLOT\s*+DRILL", "", text)):
         return None
     diameters = [size for form in CUTTER.forms if (size := _cutter_size(form, text, in_inch)) is not None]
@@ -157,6 +170,21 @@ def speaks_of_tool(comment: str) -> bool:
 
 def _may_state(subject: Subject, text: str) -> bool:
     return any(word in text for word in subject.words) and not re.search(subject.never, text)
+
+
+def _allowances(text: str, in_inch: bool) -> Iterator[tuple[str, float]]:
+    """What a comment writes of metal that is left, and how much that is [mm]."""
+    for form in ALLOWANCE.forms:
+        for match in re.finditer(form.pattern, text):
+            size = _size(ALLOWANCE, match, in_inch)
+            if size is not None:
+                yield match[0], size
+
+
+def _without_allowances(text: str, in_inch: bool) -> str:
+    for match, _ in _allowances(text, in_inch):
+        text = text.replace(match, " ROUGH ")
+    return text
 
 
 def _bar_size(form: Form, text: str, in_inch: bool) -> float | None:

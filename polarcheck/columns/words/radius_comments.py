@@ -15,10 +15,17 @@ _LARGEST_T = 1e15
 
 
 class StatedRadius(msgspec.Struct, frozen=True):
-    """A radius [mm] that a comment gives to an offset, and the comment."""
+    """
+    A radius that a comment gives to an offset.
+
+    radius: [mm].
+    comment: as it is written.
+    allowance: the most that this comment, or one beside it, says is left for another tool [mm]; 0 for none.
+    """
 
     radius: float
     comment: str
+    allowance: float
 
 
 def radius_in(comment: str, inch: bool) -> float | None:
@@ -68,5 +75,11 @@ def radii(comments: Comments, tools: CalledTools) -> dict[int, StatedRadius]:
         for comment in near:
             radius = radius_in(comment, in_inch)
             if offset and radius is not None and offset not in stated:
-                stated[offset] = StatedRadius(radius, comment)
+                stated[offset] = StatedRadius(radius, comment, _allowance(near, in_inch))
     return stated
+
+
+def _allowance(comments: list[str], in_inch: bool) -> float:
+    from polarcheck.columns.words.comment_reader import allowance_in
+
+    return max(allowance_in(comment, in_inch) for comment in comments)

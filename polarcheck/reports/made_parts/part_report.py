@@ -294,6 +294,7 @@ def _entry(trace: Trace, group: Sequence[Depth], shape: Shape) -> MadeShape:
     texts = [
         _words(trace, shape, first),
         _depths_in_words(depths_known, sizes) + _floor(group, sizes),
+        *_left_in_words(trace, first, sizes),
         *_sections_in_words(trace, first, sections),
     ]
     return MadeShape(
@@ -311,6 +312,14 @@ def _entry(trace: Trace, group: Sequence[Depth], shape: Shape) -> MadeShape:
         left_standing=[*_corners_left(shape, first.radius, sizes)],
         needs=first.needs,
     )
+
+
+def _left_in_words(trace: Trace, depth: Depth, sizes: Sizes) -> Iterator[str]:
+    """`0.300 left`, where R of all its sections is as much larger than the cutter."""
+    used = np.isin(trace.mode.section, depth.sections) & trace.compensation.compensates
+    left = trace.offsets.metal_left[used]
+    if len(left) and left.min() > 0:
+        yield f"{sizes(float(left.min()))} left"
 
 
 def _sections_in_words(trace: Trace, depth: Depth, sections: Sequence[MadeInSection]) -> Iterator[str]:

@@ -123,6 +123,26 @@ def radius_contradicts_comment(entry: Entry) -> Hits:
         G13.1
         M30
 
+    Good, tool 1:radius=6.3, tool 2:radius=6.3,diameter=12:
+
+        O1
+        G21 G98
+        T0101 (D12 ROUGH)
+        G0 X60. C0
+        G12.1
+        G1 G41 X40. F200
+        C-10.
+        G40 X60.
+        G13.1
+        T0202 (EM12)
+        G0 X60. C0
+        G12.1
+        G1 G41 X40. F200
+        C-10.
+        G40 X60.
+        G13.1
+        M30
+
     Good, tool 8:radius=-.005:
 
         O1
