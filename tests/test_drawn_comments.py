@@ -9,7 +9,7 @@ from collections.abc import Callable
 import pytest
 from cases import looped
 
-from polarcheck.columns.words.comment_reader import bar_in, depth_in, shape_in
+from polarcheck.columns.words.comment_reader import StatedShape, bar_in, depth_in, shapes_in
 from polarcheck.columns.words.comments import named_tool
 from polarcheck.columns.words.radius_comments import radius_in
 
@@ -159,6 +159,12 @@ NO_DEPTHS = (
     "ROUGH DEPTH {0}",
     "DEEPER {0}",
 )
+
+
+def shape_in(comment: str, in_inch: bool) -> StatedShape | None:
+    """The one shape that a comment states."""
+    shapes = shapes_in(comment, in_inch)
+    return shapes[0] if len(shapes) == 1 else None
 
 
 def draw(seed: int) -> tuple[random.Random, str, float]:

@@ -19,8 +19,22 @@ RECTANGLE = (
 )
 
 
-def messages(call: str, *sections: str, units: str = "G21") -> list[str]:
-    program = f"O1\n{units} G98\n{call}\n{''.join(sections)}G0 Z50.\nM30\n"
+SHARP_RECTANGLE = (
+    "G0 X80. Z2. C0\nG12.1\nG1 X80. C0 F1500\nZ-5. F300\nG42 X24. F200\nC10.\nX-24.\nC-10.\nX24.\nC0\n"
+    "G40 X80. F1500\nZ2.\nG13.1\n"
+)
+PIN = (
+    "G0 X70. Z2. C0\nG12.1\nG1 X70. C0 F1500\nZ-5. F300\nG42 X28. F200\nG3 X-16. C0 R11.\nX28. C0 R11.\n"
+    "G1 G40 X70. F1500\nZ2.\nG13.1\n"
+)
+KEYWAY = (
+    "G0 X70. Z2. C0\nG12.1\nG1 X70. C0 F1500\nZ-5. F300\nG42 X50. C-5. F200\nX20.\nC5.\nX50.\n"
+    "G40 X70. C0 F1500\nZ2.\nG13.1\n"
+)
+
+
+def messages(call: str, *sections: str, units: str = "G21", title: str = "O1") -> list[str]:
+    program = f"{title}\n{units} G98\n{call}\n{''.join(sections)}G0 Z50.\nM30\n"
     report = report_of(program, "fanuc-30i", "1:radius=4,nose=0", only=[RULE])
     return [finding.message for finding in report.findings]
 
@@ -155,3 +169,84 @@ def test_sizes_in_inch() -> None:
     (finding,) = report("HEX 1-1/8 AF").findings
     assert finding.message.startswith("(HEX 1-1/8 AF) in line 3 states 1.125 inch; the part here: hexagon 1 inch")
     assert finding.severity == "warning"
+
+
+@pytest.mark.ci
+@looped(
+    ("comment", "sections", "message"),
+    [
+        ("HEX 24 AF", [HEXAGON], "states 24 mm; the part here: hexagon 22 mm across flats"),
+        ("SHAFT 24 AF FROM HEX 32", [HEXAGON], "states 24 mm; the part here: hexagon 22 mm across flats"),
+        ("HEX 24 AF, MATERIAL HEX 22", [HEXAGON], "states 24 mm; the part here: hexagon 22 mm across flats"),
+        ("HEX 24 AF, SQ 30", [HEXAGON], "states 24 mm; the part here: hexagon 22 mm across flats"),
+        ("SQ 22", [HEXAGON], "states square 22 mm; the part here: hexagon 22 mm across flats"),
+        ("SQ 24", [SHARP_RECTANGLE], "states square 24 mm; the part here: rectangle 20 mm on one side"),
+        ("SQ 20 AF", [SHARP_RECTANGLE], "states square 20 mm; the part here: rectangle 24 mm on one side"),
+        ("FLATS 24", [FLATS, FLATS.replace("C0", "C180.")], "states 24 mm; the part here: flats 22 mm apart"),
+        ("DIA 20 PIN", [PIN], "states 20 mm; the part here: circle 22 mm in diameter"),
+        ("ECC DIA 20", [PIN], "states 20 mm; the part here: circle 22 mm in diameter"),
+        ("20 DIA ECCENTRIC", [PIN], "states 20 mm; the part here: circle 22 mm in diameter"),
+        ("KEYWAY 8", [KEYWAY], "states 8 mm; the part here: keyway 10 mm wide"),
+        ("KEYWAY 12 X 5", [KEYWAY], "states 12 mm; the part here: keyway 10 mm wide"),
+    ],
+)
+@looped("form", ["O1 ({})/T0101", "O1/T0101 ({})"])
+def test_sizes_in_the_title_and_beside_the_tool(comment: str, sections: list[str], message: str, form: str) -> None:
+    title, call = form.format(comment).split("/T")
+    (found,) = messages(f"T{call}", *sections, title=title)
+    assert found.endswith(message)
+
+
+@pytest.mark.ci
+@looped(
+    "comment",
+    [
+        "HEX 22 AF",
+        "HEX 32 BAR",
+        "HEX 24 AF STOCK",
+        "MATERIAL HEX 32 AF",
+        "MATERIAL: SQ 30",
+        "SECHSKANT 32 ROH",
+        "SHAFT 22 AF FROM HEX 32",
+        "22 SW AUS 6KT 32",
+        "FROM SQ 40",
+        "HEX 22 AF, SQ 20",
+        "HEX 24 AF, LEAVE 0.5",
+        "HEX 22 AF STOCK 0.3",
+        "HEX 24 AF SCHRUPPEN",
+        "HEX 24 EBAUCHE",
+        "DIA 20",
+        "DIA 40 SHAFT",
+        "DIA 20 PIN HOLE",
+        "KEYWAY 8",
+        "ECC 2",
+    ],
+    one_in=2,
+)
+@looped("form", ["O1 ({})/T0101", "O1/T0101 ({})"])
+def test_sound_titles_and_bars(comment: str, form: str) -> None:
+    title, call = form.format(comment).split("/T")
+    assert messages(f"T{call}", HEXAGON, title=title) == []
+
+
+def test_a_title_counts_for_one_shape() -> None:
+    small = HEXAGON.replace("22.", "20.").replace("6.351", "5.774").replace("12.702", "11.547").replace("Z-5.", "Z-3.")
+    deeper = HEXAGON.replace("Z-5.", "Z-8.")
+    assert len(messages("T0101", HEXAGON, deeper, title="O1 (HEX 24 AF)")) == 1
+    assert len(messages("T0101", HEXAGON, title="O1\n(HEX 24 AF)")) == 1
+    assert messages("T0101", HEXAGON, small, title="O1 (HEX 24 AF)") == []
+    # Another program may make it.
+    assert messages("T0101", HEXAGON, title="O1 (SQ 18)") == []
+    # The nearer comment counts, and roughing leaves something.
+    assert messages("T0101 (HEX 22 AF)", HEXAGON, title="O1 (HEX 24 AF)") == []
+    assert messages("T0101 (EM8 ROUGH)", HEXAGON, title="O1 (HEX 24 AF)") == []
+    assert messages("T0101 (EM8 ROUGH)\n(HEX 21 AF)", HEXAGON) == []
+
+
+def test_a_diameter_in_the_title() -> None:
+    turning = "T0202\nG97 S500 M3\nG0 X34. Z2.\nG1 X30. F100\nZ-20.\nG0 X60. Z50.\nM5\nT0101"
+    (message,) = messages("T0101", PIN, title="O1 (SHAFT DIA 20)")
+    assert message.endswith("(SHAFT DIA 20) in line 1 states 20 mm; the part here: circle 22 mm in diameter")
+    assert messages("T0101", PIN, title="O1 (SHAFT DIA 40)") == []
+    assert messages(turning, PIN, title="O1 (SHAFT DIA 20)") == []
+    assert messages("T0101 (DIA 20)", PIN) == []

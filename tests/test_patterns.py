@@ -84,7 +84,7 @@ def build_every_pattern() -> None:
     report_of("O1\nG0 X1.\n#1=1\nO2\nM30\n", "fanuc")
     importlib.reload(completions)
     # The words without a size: all patterns are tried, and none is found.
-    comment_reader.shape_in("HEX SQ OCT PENT FLATS BOSS AF", False)
+    comment_reader.shapes_in("HEX SQ OCT PENT FLATS BOSS AF", False)
     comment_reader.depth_in("DEPTH DEEP", False)
     for bar in ("BAR", "HEX BAR", "BAR DIA 28"):
         comment_reader.bar_in(bar, False)

@@ -9,10 +9,17 @@ import numpy as np
 
 from polarcheck.columns.filling import last_row
 from polarcheck.columns.metal.bar import Bar
-from polarcheck.columns.metal.finished import Finished
+from polarcheck.columns.metal.finished import Finished, Level
 from polarcheck.columns.trace import Trace
-from polarcheck.columns.words.comment_patterns import PART_DEPTH, PART_SIZE
-from polarcheck.columns.words.comment_reader import StatedShape, depth_in, shape_in
+from polarcheck.columns.words.comment_patterns import ALLOWANCE, PART_DEPTH, PART_SIZE, TITLE_DIAMETER
+from polarcheck.columns.words.comment_reader import (
+    StatedShape,
+    allowance_in,
+    depth_in,
+    shapes_in,
+    title_diameter_in,
+    tolerance_of,
+)
 from polarcheck.columns.words.comments import Comments, named_tool
 from polarcheck.columns.words.stock_comments import StockComments
 from polarcheck.foundation.arrays import Columns, Floats, Mask, Rows, cached_property, different, is_among
@@ -22,9 +29,10 @@ from polarcheck.geometry.shapes.shape import POLYGONS
 if TYPE_CHECKING:
     from polarcheck.geometry.shapes.shape import Shape
 
-#: What is made may differ from a comment by so much: sizes of drawings are rounded, and have tolerances [mm].
-_SIZE_TOLERANCE, _SIZE_SHARE = 0.25, 0.01
+#: The cut may differ from the depth of a comment by so much: depths of drawings are rounded [mm].
 _DEPTH_TOLERANCE, _DEPTH_SHARE = 0.3, 0.02
+#: A shorter wall may be that of a corner [mm].
+_SHORTEST = 0.5
 #: A program with more sections than this is not held against its comments.
 _MOST_SECTIONS = 100
 
@@ -36,16 +44,20 @@ class PartComment(NamedTuple):
     comment: its number in text.comments.
     row: of its block, or the first one below it.
     tool: that it names, -1 for none.
-    size: None where it states none.
+    sizes: empty where it states none; one that fits is enough.
     depth: [mm], NaN where it states none.
+    diameter: of the part, in the title of its program [mm], NaN where it states none.
+    in_title: it stands at the head of its program, before all blocks.
     of_size, of_depth: numbers of the sections; another comment nearer to a section takes its place.
     """
 
     comment: int
     row: int
     tool: int
-    size: StatedShape | None
-    depth: float
+    sizes: tuple[StatedShape, ...] = ()
+    depth: float = np.nan
+    diameter: float = np.nan
+    in_title: bool = False
     of_size: Sequence[int] = ()
     of_depth: Sequence[int] = ()
 
@@ -59,6 +71,7 @@ class Contradiction(NamedTuple):
     stated, made: sizes or depths [mm].
     shape: that is made; DEPTH where the depth differs, TURNED where the program turns to a larger diameter than that of
     the bar, BEYOND where the part reaches beyond it.
+    stated_shape: that the comment states; empty where it is the same.
     """
 
     row: int
@@ -66,6 +79,7 @@ class Contradiction(NamedTuple):
     stated: float
     made: float
     shape: str
+    stated_shape: str = ""
 
 
 DEPTH, TURNED, BEYOND = "depth", "turned", "beyond"
@@ -119,20 +133,54 @@ class PartComments(Columns, frozen=True):
         if not 0 < len(sections) <= _MOST_SECTIONS or not len(self.comments):
             return []
         statements = [*self._statements()]
-        of_size = self._nearest([statement for statement in statements if statement.size is not None])
+        with_size = [statement for statement in statements if statement.sizes or not np.isnan(statement.diameter)]
+        of_size = self._nearest(with_size)
+        rough = self._rough_sections if with_size else set()
         of_depth = self._nearest([statement for statement in statements if not np.isnan(statement.depth)])
         return [
-            statement._replace(of_size=of_size.get(statement.comment, []), of_depth=of_depth.get(statement.comment, []))
+            statement._replace(
+                of_size=[section for section in of_size.get(statement.comment, []) if section not in rough],
+                of_depth=of_depth.get(statement.comment, []),
+            )
             for statement in statements
         ]
 
     def _statements(self) -> Iterator[PartComment]:
         """What comments state, without the sections."""
-        for number, written, row, is_behind, in_inch in self.comments.with_words((*PART_SIZE.words, *PART_DEPTH.words)):
-            size, depth = shape_in(written, in_inch), depth_in(written, in_inch)
-            if not is_behind and (size is not None or depth is not None):
-                tool = named_tool(written)
-                yield PartComment(number, row, -1 if tool is None else tool, size, np.nan if depth is None else depth)
+        words = (*PART_SIZE.words, *PART_DEPTH.words, TITLE_DIAMETER.word)
+        for number, written, row, is_behind, in_inch in self.comments.with_words(words):
+            if is_behind:
+                continue
+            tool, in_title = named_tool(written), self._is_in_title(row)
+            depth = depth_in(written, in_inch)
+            diameter = title_diameter_in(written, in_inch) if in_title else None
+            statement = PartComment(
+                number,
+                row,
+                tool=-1 if tool is None else tool,
+                sizes=tuple(shapes_in(written, in_inch)),
+                depth=np.nan if depth is None else depth,
+                diameter=np.nan if diameter is None else diameter,
+                in_title=in_title,
+            )
+            if statement.sizes or depth is not None or diameter is not None:
+                yield statement
+
+    def _is_in_title(self, row: int) -> bool:
+        """A comment of this row stands in the block of the O word, or right behind it."""
+        starts = self.trace.blocks.starts
+        return bool(starts[row]) or bool(starts[row - 1] and self.trace.blocks.has("O")[row - 1])
+
+    @property
+    def _rough_sections(self) -> set[int]:
+        """The sections of which a comment says that they leave metal for another tool."""
+        rough = [
+            PartComment(number, row, -1 if (tool := named_tool(written)) is None else tool)
+            for number, written, row, is_behind, in_inch in self.comments.with_words(ALLOWANCE.words)
+            if not is_behind and allowance_in(written, in_inch)
+        ]
+        sections = range(len(self.trace.mode.sections))
+        return {section for section in sections if any(self._nearness(section, one) >= 0 for one in rough)}
 
     def _nearest(self, statements: list[PartComment]) -> dict[int, list[int]]:
         """By comment the sections that have no nearer one."""
@@ -147,7 +195,7 @@ class PartComments(Columns, frozen=True):
     def _nearness(self, section: int, statement: PartComment) -> int:
         """
         How near a comment is to a section: more for a later one from the call of its tool to its end, 0 for a line of a
-        list of tools, -1 for one that does not speak of it.
+        list of tools and for a title, -1 for one that does not speak of it.
         """
         trace, sections, row = self.trace, self.trace.mode.sections, statement.row
         enter, last = int(sections.enter[section]), int(sections.last[section])
@@ -155,7 +203,8 @@ class PartComments(Columns, frozen=True):
         if int(self._tool_call[enter]) <= row <= last:
             return row + 1 if is_of_tool else -1
         same = bool(trace.blocks.program[row] == trace.blocks.program[enter])
-        return 0 if statement.tool >= 0 and is_of_tool and same and row <= enter else -1
+        speaks_of = statement.tool >= 0 or (statement.in_title and bool(statement.sizes or statement.diameter > 0))
+        return 0 if speaks_of and is_of_tool and same and row <= enter else -1
 
     def _numbers_of_tool(self, row: int) -> tuple[int, int]:
         """The numbers by which a comment may name the tool in force: 8 and 808 for T0808."""
@@ -174,32 +223,92 @@ class PartComments(Columns, frozen=True):
 
     @cached_property
     def _shapes(self) -> dict[int, list[Shape]]:
-        """By section what its contours make, depth by depth."""
-        from polarcheck.geometry.shapes.shapes import shapes_of
-
+        """By section what its contours make, depth by depth, alone and together with other sections."""
+        finished = self.finished
         shapes: dict[int, list[Shape]] = {}
-        for level in (*self.finished.levels, *self.finished.meant):
-            of_level = [] if level.tangled else shapes_of(level.outline, level.gap, self.finished.overcuts.bar)
-            row = int(level.walls.row[0])
-            # The first block of the contour as programmed; a shape may begin with any of its sides.
-            shapes.setdefault(level.section, []).extend(shape._replace(row=row) for shape in of_level)
+        joined = [level for level in (*finished.of_part, *finished.meant_of_part) if len(level.sections) > 1]
+        for level in (*finished.levels, *finished.meant, *joined):
+            shapes.setdefault(level.section, []).extend(self._shapes_of(level))
         return shapes
 
+    def _shapes_of(self, level: Level) -> list[Shape]:
+        from polarcheck.geometry.shapes.shapes import shapes_of
+
+        of_level = [] if level.tangled else shapes_of(level.outline, level.gap, self.finished.overcuts.bar)
+        # The first block of the contour as programmed; a shape may begin with any of its sides.
+        return [shape._replace(row=int(level.walls.row[0])) for shape in of_level]
+
     def _sizes(self, comment: PartComment) -> Iterator[Contradiction]:
-        size = comment.size
-        if size is None or not comment.of_size:
+        if not comment.of_size or any(map(self._has_walls_of, comment.sizes)):
             return
-        if any(_fits(size, shape) for shapes in self._shapes.values() for shape in shapes):
+        from polarcheck.columns.metal.stated_sizes import fits
+
+        of_comment = [shape for section in comment.of_size for shape in self._shapes.get(section, [])]
+        if comment.in_title and not self._is_one_part(comment):
+            return
+        shapes = [shape for shapes in self._shapes.values() for shape in shapes]
+        if any(fits(size, shape) for size in comment.sizes for shape in shapes):
             # Another section may reach the size, as where this tool leaves something for the next one.
             return
-        of_comment = [shape for section in comment.of_size for shape in self._shapes.get(section, [])]
-        comparable = _comparable(size, of_comment)
-        if comparable:
-            shape, machined = min(comparable, key=lambda pair: pair[1])
-            yield Contradiction(shape.row, comment.comment, size.size, machined, shape.name)
-        elif of_comment and size.shape in POLYGONS.values() and all(map(_is_regular_polygon, of_comment)):
+        hits = [hit for size in comment.sizes for hit in self._contradictions(comment, size, of_comment)]
+        yield from hits[:1] or self._beyond_diameter(comment, of_comment)
+
+    def _has_walls_of(self, size: StatedShape) -> bool:
+        """
+        A cheap test: straight walls lie at half the size from the axis, in as many directions as the shape has.
+
+        Then some shape has this size.
+        """
+        walls, _ = self.finished.overcuts.walls
+        along = walls.end - walls.start
+        is_side = ~walls.is_arc & walls.is_known & (np.abs(along) > _SHORTEST)
+        direction = along[is_side] / np.abs(along[is_side])
+        distance = np.abs((walls.start[is_side] * direction.conj()).imag)
+        at_size = np.abs(2 * distance - size.size) <= tolerance_of(size.size)
+        angle = np.rint(np.degrees(np.angle(direction[at_size] ** 2)) / 2) % 180
+        sides = {name: sides for sides, name in POLYGONS.items()}.get(size.shape, 0)
+        return bool(sides) and len(different(angle)) == (sides if sides % 2 else sides // 2)
+
+    def _contradictions(
+        self, comment: PartComment, size: StatedShape, of_comment: list[Shape]
+    ) -> Iterator[Contradiction]:
+        from polarcheck.columns.metal.stated_sizes import comparable, is_regular_polygon, is_size
+
+        pairs = comparable(size, of_comment)
+        if pairs:
+            shape, machined = min(pairs, key=lambda pair: pair[1])
+            stated_shape = size.shape if shape.name == "rectangle" else ""
+            yield Contradiction(shape.row, comment.comment, size.size, machined, shape.name, stated_shape)
+        elif of_comment and size.shape in POLYGONS.values() and all(map(is_regular_polygon, of_comment)):
             shape = of_comment[0]
-            yield Contradiction(shape.row, comment.comment, size.size, shape.values["across_flats"], shape.name)
+            across = shape.values["across_flats"]
+            # A title may speak of what another program makes.
+            if not comment.in_title or is_size(size, across):
+                yield Contradiction(shape.row, comment.comment, size.size, across, shape.name, size.shape)
+
+    def _is_one_part(self, comment: PartComment) -> bool:
+        """The program of a title has one section, or makes one shape."""
+        sections, program = self.trace.mode.sections, self.trace.blocks.program
+        is_of_program = program[sections.enter] == program[comment.row]
+        if np.count_nonzero(is_of_program) == 1:
+            return True
+        levels = [
+            level for level in (*self.finished.of_part, *self.finished.meant_of_part) if is_of_program[level.section]
+        ]
+        shapes = [shape for level in levels for shape in self._shapes_of(level)]
+        from polarcheck.columns.metal.stated_sizes import are_alike
+
+        return bool(shapes) and all(are_alike(shape, shapes[0]) for shape in shapes)
+
+    def _beyond_diameter(self, comment: PartComment, shapes: list[Shape]) -> Iterator[Contradiction]:
+        """A round that is larger than the diameter of the title, if nothing is turned to that diameter."""
+        if np.isnan(comment.diameter) or self.bar.tools.turns_anything:
+            return
+        largest = comment.diameter + tolerance_of(comment.diameter)
+        for shape in shapes:
+            if shape.name == "circle" and not shape.inside and shape.values["diameter"] > largest:
+                yield Contradiction(shape.row, comment.comment, comment.diameter, shape.values["diameter"], shape.name)
+                return
 
     # ---- depths ----
 
@@ -236,96 +345,15 @@ class PartComments(Columns, frozen=True):
         sections = self.trace.mode.sections
         if not 0 < len(sections) <= _MOST_SECTIONS or not self.stock_comments.of_program:
             return
-        row = int(sections.enter[0])
-        comment = int(self.stock_comments.comment[row])
+        comment = int(self.stock_comments.comment[int(sections.enter[0])])
         if comment < 0:
             return
-        across_flats = float(self.stock_comments.across_flats[row])
-        # A hexagon reaches out to its corners.
-        size = float(np.fmax(self.stock_comments.diameter[row], across_flats * 2 / np.sqrt(3)))
-        stated = size if np.isnan(across_flats) else across_flats
-        largest = size + max(_SIZE_TOLERANCE, _SIZE_SHARE * size)
-        stock = self.bar.known
-        if stock.source == "turning" and stock.smallest > largest:
-            turns = np.flatnonzero(self.trace.blocks.line_in_file == stock.lines[0])
-            yield Contradiction(int(turns[0]), comment, stated, stock.smallest, TURNED)
-        elif stock.source == "comment" and self._may_be_beyond(largest / 2):
-            yield from (Contradiction(at, comment, stated, needed, BEYOND) for at, needed in self._beyond(largest / 2))
+        from polarcheck.columns.metal.stated_bars import StatedBars
 
-    def _may_be_beyond(self, radius: float) -> bool:
-        """A cheap test: some of a contour lies beyond this radius with both ends."""
-        walls, _ = self.finished.overcuts.walls
-        return bool(((np.abs(walls.start) > radius) & (np.abs(walls.end) > radius)).any())
-
-    def _beyond(self, radius: float) -> Iterator[tuple[int, float]]:
-        """
-        The first row of the contour whose part reaches beyond this radius, and the diameter that it needs [mm].
-
-        None where another contour of the program stays within. Straight sides may end beyond the bar, and an arc around
-        the axis goes round it; a corner arc there is for nothing, and so is a whole contour.
-        """
-        from polarcheck.geometry.shapes.side_rings import nearest_of, rings
-
-        hits = []
-        for level in self.finished.levels:
-            for ring in rings(level.outline, level.gap) if not (level.tangled or level.open) else ():
-                if not ring.closed or ring.inside:
-                    continue
-                nearest = nearest_of(ring)
-                is_beyond = nearest > radius
-                is_corner = ~ring.is_line & ~(np.abs(ring.center) <= _SIZE_TOLERANCE)
-                if not is_beyond.all() and not (is_beyond & is_corner).any():
-                    return
-                hits.append((int(level.walls.row[0]), 2 * float(nearest[is_beyond].max())))
-        yield from hits[:1]
-
-
-def _fits(size: StatedShape, shape: Shape) -> bool:
-    """A shape has this size, in whatever way it is measured, and is no other regular polygon."""
-    if size.shape in POLYGONS.values() and _is_regular_polygon(shape) and shape.name != size.shape:
-        return False
-    tolerance = max(_SIZE_TOLERANCE, _SIZE_SHARE * size.size)
-    return any(abs(value - size.size) <= tolerance for value in _values(shape, size.is_across_flats))
+        bars = StatedBars(self.trace, self.stock_comments, self.bar, self.finished)
+        yield from (Contradiction(row, comment, bars.stated, made, TURNED) for row, made in bars.turned())
+        yield from (Contradiction(row, comment, bars.stated, made, BEYOND) for row, made in bars.beyond())
 
 
 def _is_depth(depth: float, value: Floats) -> Mask:
     return np.asarray(np.abs(value - depth) <= max(_DEPTH_TOLERANCE, _DEPTH_SHARE * depth))
-
-
-def _values(shape: Shape, is_across_flats: bool) -> Iterator[float]:
-    """Each number by which a comment may give the size of a shape: across flats, else also corners and diameters."""
-    values = shape.values
-    yield from (values[name] for name in ("across_flats", "apart", "width") if name in values)
-    yield from (2 * values[name] for name in ("distance", "least", "most") if name in values)
-    yield from (values[name] for name in ("least", "most") if name in values)
-    if is_across_flats:
-        return
-    yield from (values[name] for name in ("diameter", "corner_diameter", "distance", "length") if name in values)
-    if "across_flats" in values and "sides" in values:
-        yield values["across_flats"] / float(np.cos(np.pi / values["sides"]))
-
-
-def _comparable(size: StatedShape, shapes: list[Shape]) -> list[tuple[Shape, float]]:
-    """The shapes of which the comment can speak, with their sizes."""
-    if size.shape == "boss":
-        return [(shape, shape.values["diameter"]) for shape in shapes if shape.name == "circle" and not shape.inside]
-    pairs = []
-    for shape in shapes:
-        value = shape.values.get("across_flats", shape.values.get("apart", np.nan))
-        if shape.inside or np.isnan(value) or "regular_by_x" in shape.values:
-            continue
-        is_polygon = "across_flats" in shape.values
-        if shape.name == size.shape or not size.shape or (size.shape == "flats" and not is_polygon):
-            pairs.append((shape, value))
-    # Corners that are cut off beside the flats make twice as many sides.
-    with_corners = {name: 2 * sides for sides, name in POLYGONS.items()}.get(size.shape, 0)
-    pairs += [
-        (shape, shape.values["least"])
-        for shape in shapes
-        if shape.values.get("sides") == with_corners and "least" in shape.values and not shape.inside
-    ]
-    return pairs
-
-
-def _is_regular_polygon(shape: Shape) -> bool:
-    return shape.name in POLYGONS.values() and shape.is_regular and not shape.inside and "across_flats" in shape.values

@@ -100,6 +100,11 @@ class TurningTools(Columns, frozen=True):
         x_before, x_after, _, z_after = self.x_and_z
         return np.asarray(self._feeds & np.isnan(x_before + x_after + z_after))
 
+    @property
+    def turns_anything(self) -> bool:
+        """A turning tool moves at feed."""
+        return bool(self._feeds.any())
+
     @cached_property
     def first_drilled(self) -> int:
         """The first row that drills on X0, by a cycle or in Z at feed; the number of rows for none."""

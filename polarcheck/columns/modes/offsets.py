@@ -36,8 +36,8 @@ from polarcheck.foundation.arrays import (
     is_uniform,
     repeated,
 )
-from polarcheck.program.execution.run import NO_VARIABLE, Run
 from polarcheck.geometry.tolerances import ROUNDING
+from polarcheck.program.execution.run import NO_VARIABLE, Run
 from polarcheck.program.machines.job import Job
 from polarcheck.program.machines.machine import Machine
 from polarcheck.program.machines.offset_calls import place_in

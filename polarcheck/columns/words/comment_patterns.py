@@ -127,6 +127,7 @@ _NOT_AFTER = (
     r"(?!\s*+-?(?:X|BY\b|/|BAR|STOCK|DEEP|LONG|WIDE|HIGH|THICK|SIDES|POINT"
     r"|PL[AC]|OFF\b|P[CT]S|DEG|TIMES|OF\b|FL\b|TPI|PITCH))"
 )
+_ROUND_PART = r"(?:BOSS\b|PIN\b(?!\s*+HOLE)|ECC(?:ENTRIC)?\b)"
 _WHOLE = r"(?<![\w.,/-])"
 
 
@@ -140,12 +141,12 @@ def _polygon(name: str, word: str) -> tuple[Form, ...]:
 
 #: Sizes across flats, or diameters; `gives` is empty where any shape has such a size: it counts where no other does.
 PART_SIZE: Final = Subject(
-    words=("HEX", "SQ", "OCT", "PENT", "FLATS", "BOSS", "AF", "A/F", "A.F", "SW", "KANT", "KT"),
+    words=("HEX", "SQ", "OCT", "PENT", "FLATS", "BOSS", "PIN", "ECC", "KEYWAY", "AF", "A/F", "A.F", "SW", "KANT", "KT"),
     # What is not cut here, or not to its size.
     never=(
-        r"SOCKET|\bKEY\b|\bNUT\b|\bBOLT|SCREW|WRENCH|SPANNER|BROACH|\bBUSH|\bJAW|COLLET|CHUCK|\bGRIP|\bHOLD|\bCLAMP|\bROUGH|\bLEAVE"
-        r"|ALLOW|\bBEFORE\b|\bPRE-?|\bA/?C\b|CORNERS|\bINSIDE\b|INTERNAL|\bNOT\b|\bWAS\b|\bOLD\b|\bDONE\b|\bLATER\b|\bOTHER\b"
-        r"|\bNEXT\b|\bOP\s?\d|\bFROM\s++HEX|\bMIN\b|\bMAX\b|\bOR\b|\bM\d"
+        r"SOCKET|\bKEY\b|\bNUT\b|\bBOLT|SCREW|WRENCH|SPANNER|BROACH|\bBUSH|\bJAW|COLLET|CHUCK|\bGRIP|\bHOLD|\bCLAMP"
+        r"|\bBEFORE\b|\bPRE-?|\bA/?C\b|CORNERS|\bINSIDE\b|INTERNAL|\bNOT\b|\bWAS\b|\bOLD\b|\bDONE\b|\bLATER\b|\bOTHER\b"
+        r"|\bNEXT\b|\bOP\s?\d|\bMIN\b|\bMAX\b|\bOR\b|\bM\d"
     ),
     forms=(
         *_polygon("hexagon", r"(?:HEX(?:AGON)?|SECHSKANT|6-?KT|6-?KANT)(?![A-Z])"),
@@ -153,9 +154,10 @@ PART_SIZE: Final = Subject(
         *_polygon("octagon", r"OCT(?:AGON)?(?![A-Z])"),
         *_polygon("pentagon", r"PENT(?:AGON)?(?![A-Z])"),
         Form("flats", rf"{_WHOLE}FLATS{_IS}(?:AT\s++|{_AF}{_IS})?{_VALUE}{_NOT_AFTER}", "FLATS"),
-        Form("boss", rf"{_WHOLE}{_PART_DIAMETER}{_IS}{_VALUE}\s*+(?:ROUND\s++)?BOSS\b", "BOSS"),
-        Form("boss", rf"{_WHOLE}BOSS{_IS}{_PART_DIAMETER}{_IS}{_VALUE}{_NOT_AFTER}", "BOSS"),
-        Form("boss", rf"{_WHOLE}{_SIZE}\s*+{_PART_DIAMETER}\s*+BOSS\b", "BOSS"),
+        Form("boss", rf"{_WHOLE}{_PART_DIAMETER}{_IS}{_VALUE}\s*+(?:ROUND\s++)?{_ROUND_PART}", _ROUND_PART),
+        Form("boss", rf"{_WHOLE}{_ROUND_PART}{_IS}{_PART_DIAMETER}{_IS}{_VALUE}{_NOT_AFTER}", _ROUND_PART),
+        Form("boss", rf"{_WHOLE}{_SIZE}\s*+{_PART_DIAMETER}\s*+{_ROUND_PART}", _ROUND_PART),
+        Form("keyway", rf"{_WHOLE}KEYWAY{_IS}{_VALUE}(?!\s*+-?(?:DEEP|LONG|PL[AC]|OFF\b|P[CT]S|DEG))", "KEYWAY"),
         Form("", rf"{_WHOLE}{_SIZE}\s*+{_AF}", r"A[/.]?F|ACROSS|SW"),
         Form("", rf"{_WHOLE}(?:A/?F|SW){_IS}{_VALUE}{_NOT_AFTER}", r"A[/.]?F|ACROSS|SW"),
     ),
@@ -163,11 +165,16 @@ PART_SIZE: Final = Subject(
     largest=500.0,
     largest_in_inch=12 * MM_PER_INCH,
 )
+#: Behind FROM, and behind the name of a bar, stands the size of the bar; it counts to the next comma.
+FROM_BAR: Final = r"\b(?:FROM|AUS)\b"
+NAME_OF_BAR: Final = rf"{_NOUN}|\bROH\b"
+#: The diameter of a part in its title.
+TITLE_DIAMETER: Final = Form("round", rf"{_WHOLE}(?:DIA(?:M(?:ETER)?)?\b\.?|\u00d8|\u2300){_IS}{_VALUE}", "DIA")
 PART_DEPTH: Final = Subject(
     words=("DEPTH", "DEEP"),
     # Depths of cuts, and of what this section does not cut.
     never=(
-        r"OF\s++CUT|\bCUT\b|\bPASS|\bPER\b|\bSTEP|\bPECK|DRILL|\bHOLE|\bTAP\b|THREAD|\bCHUCK|\bJAW|\bBORE|\bBORING|\bGRIP|\bROUGH|\bLEAVE"
+        r"OF\s++CUT|\bCUT\b|\bPASS|\bPER\b|\bSTEP|\bPECK|DRILL|\bHOLE|\bTAP\b|THREAD|\bCHUCK|\bJAW|\bBORE|\bBORING|\bGRIP"
         r"|\bGROOVE|\bFLATS?\b|\bKEY|\bMIN\b|\bMAX\b|\bOR\b|\bNOT\b|\bWAS\b|\bOLD\b|\bDONE\b|\bOP\s?\d|CHAMF|REAM|SPOT|\bEACH\b|\bFEED\b|\bTOTAL\b"
     ),
     forms=(
@@ -187,12 +194,15 @@ _LEAVES = (
 )
 #: Words by which a tool leaves metal for another one, by language: English, German, French, Italian, Spanish.
 ROUGHING: Final = (
-    r"\bROUGH|\bSEMI-?\s?FIN|\bLEAV(?:E|ES|ING)\b|\bALLOWANCE\b|SCHRUPP|AUFMA(?:SS|\u00df)\b|\bUEBERMASS\b|BAUCHE"
+    r"\bROUGH|\bSEMI-?\s?FIN|\bLEAV(?:E|ES|ING)\b|\bALLOW|SCHRUPP|AUFMA(?:SS|\u00df)\b|\bUEBERMASS\b|BAUCHE"
     r"|\bSUR.PAISSEUR\b|SGROSS|\bSOVRAMETALLO\b|DESBAST"
 )
 #: STOCK of 2 mm and more is a bar.
 ALLOWANCE: Final = Subject(
-    words=(),
+    words=(
+        *("ROUGH", "SEMI", "LEAV", "ALLOW", "STOCK", "LEFT", "SCHRUPP", "AUFMA", "UEBERMASS", "BAUCHE", "PAISSEUR"),
+        *("SGROSS", "SOVRAMETALLO", "DESBAST"),
+    ),
     never=r"(?!)",
     forms=(
         Form(

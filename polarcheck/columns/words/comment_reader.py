@@ -16,11 +16,13 @@ from polarcheck.columns.words.comment_patterns import (
     BESIDE_SIZE,
     COUNTED,
     CUTTER,
+    FROM_BAR,
     HEXAGON_BAR,
     KIND_OF_TOOL,
     LONGEST,
     MILL,
     MILLED,
+    NAME_OF_BAR,
     NOT_BEFORE_BAR,
     OTHER_RADIUS,
     OTHER_TOOL,
@@ -29,6 +31,7 @@ from polarcheck.columns.words.comment_patterns import (
     ROUGHING,
     SIZE_ALONE,
     SIZE_BEFORE_BAR,
+    TITLE_DIAMETER,
     Form,
     Subject,
 )
@@ -45,6 +48,15 @@ _LEFT = 0.75
 _MOST_DIGITS = 9
 
 
+#: What is made may differ from a comment by so much: sizes of drawings are rounded, and have tolerances [mm].
+_TOLERANCE, _TOLERANCE_SHARE = 0.25, 0.01
+
+
+def tolerance_of(size: float) -> float:
+    """How much what is made may differ from a size of a comment [mm]."""
+    return max(_TOLERANCE, _TOLERANCE_SHARE * size)
+
+
 class StatedBar(NamedTuple):
     """A bar: its diameter, or the distance across the flats of a hexagon [mm]; NaN for the other of the two."""
 
@@ -56,8 +68,9 @@ class StatedShape(NamedTuple):
     """
     A shape and its size in a comment.
 
-    shape: hexagon, square, octagon, pentagon, flats, boss (a round one), or empty for what is so wide across its flats.
-    size: across flats, or the diameter [mm].
+    shape: hexagon, square, octagon, pentagon, flats, boss (a round one), keyway, or empty for what is so wide across
+    its flats.
+    size: across flats, the diameter, or the width [mm].
     is_across_flats: the comment says AF; without it corners may be meant.
     """
 
@@ -101,16 +114,14 @@ def bar_in(comment: str, in_inch: bool) -> StatedBar | None:
     return None
 
 
-def shape_in(comment: str, in_inch: bool) -> StatedShape | None:
-    """The shape and size that a comment states of the part."""
+def shapes_in(comment: str, in_inch: bool) -> list[StatedShape]:
+    """The shapes and sizes that a comment states of the part; none where it speaks of roughing."""
     text = plain_text(comment)
-    if not _may_state(PART_SIZE, text):
-        return None
+    if not _may_state(PART_SIZE, text) or allowance_in(comment, in_inch):
+        return []
+    bar, text = bar_in(comment, in_inch), _without_bar(text)
     forms = [form for word, forms in _PART_FORMS.items() if re.search(word, text) for form in forms]
-    bar = bar_in(comment, in_inch)
-    if bar is not None and bar.across_flats == bar.across_flats:
-        return None
-    sizes: list[StatedShape] = []
+    sizes: dict[StatedShape, None] = {}
     is_across_flats = bool(re.search(ACROSS_FLATS, text))
     for form in forms:
         if not form.gives and any(size.shape for size in sizes):
@@ -118,16 +129,26 @@ def shape_in(comment: str, in_inch: bool) -> StatedShape | None:
         for match in re.finditer(form.pattern, text):
             size = _size(PART_SIZE, match, in_inch)
             if size is None:
-                return None
-            sizes.append(StatedShape(form.gives, size, is_across_flats))
-    # Two sizes: nobody knows which section is which.
-    return sizes[0] if len(set(sizes)) == 1 else None
+                return []
+            if bar is None or size != bar.across_flats:
+                sizes[StatedShape(form.gives, size, is_across_flats)] = None
+    return [*sizes]
+
+
+def title_diameter_in(comment: str, in_inch: bool) -> float | None:
+    """The largest diameter that the title of a program states of the part [mm]."""
+    text = plain_text(comment)
+    is_other = re.search(rf"{ANY_CUTTER}|{PART_SIZE.never}", text) or allowance_in(comment, in_inch)
+    if is_other or bar_in(comment, in_inch) is not None:
+        return None
+    sizes = [_size(PART_SIZE, match, in_inch) for match in re.finditer(TITLE_DIAMETER.pattern, _without_bar(text))]
+    return max((size for size in sizes if size is not None), default=None)
 
 
 def depth_in(comment: str, in_inch: bool) -> float | None:
     """The depth [mm] that a comment states."""
     text = plain_text(comment)
-    if not _may_state(PART_DEPTH, text):
+    if not _may_state(PART_DEPTH, text) or re.search(ROUGHING, text):
         return None
     depths = [
         _size(PART_DEPTH, match, in_inch) for form in PART_DEPTH.forms for match in re.finditer(form.pattern, text)
@@ -179,6 +200,18 @@ def _allowances(text: str, in_inch: bool) -> Iterator[tuple[str, float]]:
             size = _size(ALLOWANCE, match, in_inch)
             if size is not None:
                 yield match[0], size
+
+
+def _without_bar(text: str) -> str:
+    """A text without what it says of the bar: SHAFT 24 AF FROM HEX 32, HEX 32 BAR, MATERIAL HEX 32 AF."""
+    clauses = []
+    for clause in re.split(r"[,;](?!\d)", text):
+        head = re.split(FROM_BAR, clause)[0]
+        name = re.search(NAME_OF_BAR, head)
+        if name and not re.search(r"\d", head[name.end() :]):
+            continue
+        clauses.append(head[: name.start()] if name else head)
+    return ", ".join(clauses)
 
 
 def _without_allowances(text: str, in_inch: bool) -> str:
