@@ -12,6 +12,7 @@ import numpy as np
 from polarcheck.checking.not_followed import (
     axes_not_followed,
     contours_outside,
+    depths_not_known,
     extrudes,
     names_not_followed,
     names_not_known,
@@ -169,6 +170,8 @@ def unexecuted(tables: Tables) -> Iterator[NotEvaluated]:
     ):
         if count:
             yield NotEvaluated(rule="all", reason=reason, blocks=count)
+    for reason, count in depths_not_known(trace):
+        yield NotEvaluated(rule="all", reason=reason, blocks=count, matters=False)
 
 
 class UnknownValue(NamedTuple):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Iterator
 
+from polarcheck.columns.metal.turning_tools import z_into_part
 from polarcheck.columns.modes.other_mode import OtherMode
 from polarcheck.columns.path.infeed import Infeed
 from polarcheck.columns.trace import Trace
@@ -107,6 +108,16 @@ def on_sub_spindle(trace: Trace) -> Iterator[tuple[str, int]]:
         if rows.any():
             line = int(trace.blocks.line[trace.mode.sections.enter[trace.mode.section[rows.argmax()]]])
             yield f"the section of line {line} is on the sub-spindle, {what}", int(rows.sum())
+
+
+def depths_not_known(trace: Trace) -> Iterator[tuple[str, int]]:
+    """The sections of which nobody knows which way along Z the part lies."""
+    if len(trace.mode.sections) and not z_into_part(trace):
+        yield (
+            f"control.z_into_part is {trace.machine.control.z_into_part}, and turning cuts the other way along Z: "
+            "what is above and below the face is not known",
+            len(trace.mode.sections),
+        )
 
 
 def not_simulated(infeed: Infeed) -> Iterator[tuple[str, int]]:

@@ -53,7 +53,7 @@ def known_stock(tables: Tables) -> KnownStock | None:
         diameter=rounded(stock.smallest),
         largest=rounded(stock.largest),
         bore=rounded(stock.bore),
-        face=rounded(stock.face),
+        face=rounded(bar.face_as_written),
         source=stock.source,
         line=line or None,
         end_line=end_line or None,

@@ -66,6 +66,7 @@ TABLES = {
     "compensation": Maker("polarcheck.columns.path.compensation:CutterCompensation"),
     "feedrate": Maker("polarcheck.columns.feed.feedrate:Feedrate"),
     "trace": Maker("polarcheck.columns.trace:Trace"),
+    "upright": Maker("polarcheck.columns.metal.turning_tools:upright"),
     "infeed": Maker("polarcheck.columns.path.infeed:Infeed", SECTION),
     "tool_center": Maker("polarcheck.columns.path.tool_center:ToolCenter", SECTION),
     "dynamics": Maker("polarcheck.columns.feed.dynamics:Dynamics"),
@@ -134,6 +135,13 @@ TABLES = {
 }
 #: Where the tables stand that look at contours as wholes, and at the metal that they leave.
 _OF_CONTOURS = "polarcheck.columns.contour.", "polarcheck.columns.metal.", "polarcheck.parts."
+#: Tables that are made from `upright` in the place of `trace`: they look at depths, and its Z rises away from the part.
+_UPRIGHT = frozenset(
+    {
+        *("bar", "milled", "workpiece", "approaches", "air_cuts", "coverage", "part_comments"),
+        *("overcuts", "rapid_contours", "pass_ends", "uncompensated_cuts", "misplaced_ramps", "feed_ranges"),
+    }
+)
 #: How far a cause reaches, or what one finding stands for: the column whose value its rows have in common; None where
 #: rules/places.py finds it otherwise. The narrowest come first: the nearest cause of a finding counts.
 SPANS: dict[str, Callable[[Tables], Rows] | None] = {
@@ -208,7 +216,7 @@ class Tables(dict[str, Any]):
         if name not in TABLES:
             raise RuleError(f"there is no table {name!r}; tables are {', '.join(sorted(self))}")
         maker = TABLES[name].function
-        table = self[name] = called(maker, self, {})
+        table = self[name] = called(maker, self, {"trace": self["upright"]} if name in _UPRIGHT else {})
         return table
 
     def __getattr__(self, name: str) -> Any:

@@ -249,7 +249,7 @@ def _sections(run: int, tables: Tables, spots: Sequence[Spot], requested: Wanted
                     marks=[mark for of_section, mark in marks if of_section == number],
                     makes=list(dict.fromkeys(_in_words(shape) for shape in makes if _is_of(shape, section))),
                     bar=bar,
-                    face=float(tables["bar"].known.face),
+                    face=float(tables["bar"].face_as_written),
                     window=windows.get(number, math.inf),
                 ),
             ),

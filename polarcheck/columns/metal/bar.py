@@ -149,6 +149,11 @@ class Bar(Columns, frozen=True):
         smallest, largest = (diameter, diameter) if np.isnan(flats) else (flats, flats * _CORNERS)
         return Known(smallest, float(largest), 0.0, np.nan, "comment", (line, line))
 
+    @property
+    def face_as_written(self) -> float:
+        """Z of the face, as a program writes it [mm]; NaN where it is not known."""
+        return self.known.face * self.trace.path.z_sense
+
     @cached_property
     def deepest_turned(self) -> float:
         """The lowest Z that a turning tool cuts before the first section [mm]; inf without any."""
@@ -214,8 +219,9 @@ class Bar(Columns, frozen=True):
         if len(faces):
             face = float(faces.low.min())
             face_rows = faces.row[faces.low <= face + ROUNDING]
-        if not np.isnan(stock.face) and not stock.face * self._scale >= face:
-            face, face_rows = stock.face * self._scale, faces.row[:0]
+        face_of_job = stock.face * self._scale * trace.path.z_sense
+        if not np.isnan(face_of_job) and not face_of_job >= face:
+            face, face_rows = face_of_job, faces.row[:0]
         bored = cuts[cuts.is_bore]
         bore = np.nan if follows and start <= self.tools.first_drilled < row else 0.0
         if len(bored):

@@ -8,6 +8,7 @@ from polarcheck.columns.filling import before, fill_down
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Columns, Floats, Mask, Rows, Table, cached_property, is_among
 from polarcheck.foundation.states import Motion
+from polarcheck.geometry.tolerances import ROUNDING
 
 #: A facing move that ends within this radius of X0 leaves a whole face [mm]: the nose of the tool reaches over it.
 CENTER = 1.5
@@ -41,6 +42,10 @@ class Cuts(Table, frozen=True):
     def none(cls) -> Cuts:
         no, never = np.zeros(0), np.zeros(0, bool)
         return cls(np.zeros(0, np.int64), no, no, no, no, no, never, never, never)
+
+
+#: A shorter way along Z shows nothing of where the part lies, and turning begins no farther behind the face [mm].
+_LONG, _BESIDE_FACE = 1.0, 0.5
 
 
 class TurningTools(Columns, frozen=True):
@@ -115,3 +120,39 @@ class TurningTools(Columns, frozen=True):
         cycle = (trace.modal.drilling != 0) | trace.blocks.listed("repetitive_cycle")
         rows = np.flatnonzero((down | (cycle & on_center)) & (trace.mode.section < 0))
         return int(rows[0]) if len(rows) else len(trace)
+
+
+def sense_of_turning(trace: Trace) -> str:
+    """The way along Z into the part that turning shows: plus, minus, or empty where it shows none."""
+    tools = TurningTools(trace)
+    x_before, x, z_before, z = (column[tools.moving_rows] for column in tools.x_and_z)
+    faces = z[(np.abs(z - z_before) <= ROUNDING) & (x <= CENTER) & (x < x_before)]
+    is_along = (np.abs(x - x_before) <= ROUNDING) & (np.abs(z - z_before) > _LONG) & (x > CENTER)
+    begins, ends = z_before[is_along], z[is_along]
+    if not len(faces) or not len(ends):
+        return ""
+    for name, sense in (("plus", 1), ("minus", -1)):
+        face = (faces * sense).min()
+        is_away = ((ends - begins) * sense > 0).all() and (ends * sense).min() > face + _LONG
+        if is_away and (begins * sense).min() <= face + _BESIDE_FACE:
+            return name
+    return ""
+
+
+def z_into_part(trace: Trace) -> str:
+    """The way along Z into the part: plus, minus, or empty where turning and the machine contradict each other."""
+    stated, z = trace.machine.control.z_into_part, trace.path.z
+    outside = (trace.axes.motion == Motion.LINE) & (trace.mode.section < 0)
+    may_rise = bool((outside & (z > trace.path.z_before + _LONG)).any()) or stated == "plus"
+    shown = sense_of_turning(trace) if may_rise else ""
+    return (stated or shown or "minus") if stated == shown or not (stated and shown) else ""
+
+
+def upright(trace: Trace) -> Trace:
+    """The trace for what looks at depths: Z rises away from the part in it, and is not known where that is open."""
+    sense = z_into_part(trace)
+    if sense == "minus":
+        return trace
+    from polarcheck.columns.path.upright import DepthlessPath, UprightPath, with_path
+
+    return with_path(trace, UprightPath if sense else DepthlessPath)

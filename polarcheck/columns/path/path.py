@@ -297,6 +297,11 @@ class ProgrammedPath(Columns, frozen=True):
         """X before the row as a radius [mm]."""
         return self.cycles.before(self._after.real)
 
+    @property
+    def z_sense(self) -> float:
+        """By which Z here is multiplied to become Z as it is written: -1 where it is turned over (path/upright)."""
+        return 1.0
+
     @cached_property
     def z(self) -> Floats:
         """Z after the row [mm]; NaN while unknown."""

@@ -128,6 +128,7 @@ class Control(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     radius_offset_digits: digits of T before those of the tool that number the offset with R; 0: the tool offset has it
     unknown_codes_are_errors: whether the control stops at a G code that is not among the known codes
     x: diameter or radius: what X words are outside the polar mode
+    z_into_part: plus or minus: the sense of Z into the part on the main spindle; empty: turning shows it, else minus
     rotary_rolls_over: whether an angle of the rotary axis outside the mode is reached the shorter way: C350. by -10
     axes: names of the axes in the order of their numbers, which P, Q and parameters count; none where it is not known
     named_axes: axes that are written with = (C2=10.), by the address that each is here; empty where it is not followed
@@ -159,6 +160,7 @@ class Control(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     radius_offset_digits: Annotated[int, msgspec.Meta(ge=0, le=3)]
     unknown_codes_are_errors: bool
     x: Literal["diameter", "radius"]
+    z_into_part: Literal["", "minus", "plus"] = ""
     rotary_rolls_over: bool = False
     axes: list[AxisAddress] = []
     named_axes: dict[AxisName, AxisLetterOrNone] = {}

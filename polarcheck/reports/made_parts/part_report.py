@@ -78,23 +78,24 @@ def in_one_line(tables: Tables) -> str:
     is_whole = all(group[0].shapes for group in groups) and not _missing(trace, 0)
     if not is_whole or not 0 < len(shapes) <= _IN_ONE_LINE:
         return ""
-    sizes = _sizes(trace, int(trace.mode.sections.enter[0]))
+    sizes, into = _sizes(trace, int(trace.mode.sections.enter[0])), tables["upright"].path.z_sense
     parts = []
-    for depth, alike in groupby(shapes, lambda pair: _deepest(pair[0], sizes)):
+    for depth, alike in groupby(shapes, lambda pair: _deepest(pair[0], sizes, into)):
         words = [_words(trace, shape, group[0], short=True) for group, shape in alike]
         parts.append(f"{'; '.join(dict.fromkeys(words))}, {depth}")
     needs = dict.fromkeys(group[0].needs.partition(",")[0] for group in groups if group[0].needs)
     return "; ".join(parts) + (f" ({', '.join(needs)})" if needs else "")
 
 
-def _deepest(group: Sequence[Depth], sizes: Sizes) -> str:
+def _deepest(group: Sequence[Depth], sizes: Sizes, into: float) -> str:
     depths = [depth.z for depth in group if not np.isnan(depth.z)]
-    return f"to Z{sizes(min(depths))}{_floor(group, sizes)}" if depths else "to Z not known"
+    return f"to Z{sizes(_deepest_of(depths, into))}{_floor(group, sizes, into)}" if depths else "to Z not known"
 
 
-def _floor(group: Sequence[Depth], sizes: Sizes) -> str:
+def _floor(group: Sequence[Depth], sizes: Sizes, into: float) -> str:
     """Where the floor of the deepest of these depths ends, if it slopes."""
-    deepest = min((depth for depth in group if not np.isnan(depth.z)), key=lambda depth: depth.z, default=None)
+    known = (depth for depth in group if not np.isnan(depth.z))
+    deepest = min(known, key=lambda depth: depth.z * into, default=None)
     is_sloped = deepest is not None and not np.isnan(deepest.bottom)
     return f", the floor slopes to Z{sizes(deepest.bottom)}" if deepest is not None and is_sloped else ""
 
@@ -122,7 +123,7 @@ def _by_section(trace: Trace, tables: Tables) -> list[MadeShape]:
     report: list[MadeShape] = []
     for section in range(len(trace.mode.sections)):
         of_section = by_first.get(section, [])
-        entries = [*_entries(trace, of_section)]
+        entries = [*_entries(trace, of_section, tables["upright"].path.z_sense)]
         areas = [Area(depth.z, depth.polygon, depth.is_cleared) for depth in of_section if depth.polygon is not None]
         if len(entries) > 1 and len(areas) > 1:
             sizes = _sizes(trace, int(trace.mode.sections.enter[section]))
@@ -275,17 +276,21 @@ def _ribs_and_strips(tables: Tables) -> list[tuple[int, LeftStanding]]:
 # ---- entries ----
 
 
-def _entries(trace: Trace, depths: Sequence[Depth]) -> Iterator[MadeShape]:
-    """One entry for each shape, whatever the number of depths at which it is made."""
+def _entries(trace: Trace, depths: Sequence[Depth], into: float) -> Iterator[MadeShape]:
+    """
+    One entry for each shape, whatever the number of depths at which it is made.
+
+    into: 1 where Z falls into the part, -1 where it rises.
+    """
     for group in merged(depths):
         first = group[0]
         if not first.shapes and first.needs:
             yield _nothing(trace, first.sections, first.needs)
         for shape in first.shapes:
-            yield _entry(trace, group, shape)
+            yield _entry(trace, group, shape, into)
 
 
-def _entry(trace: Trace, group: Sequence[Depth], shape: Shape) -> MadeShape:
+def _entry(trace: Trace, group: Sequence[Depth], shape: Shape, into: float) -> MadeShape:
     first = group[0]
     sizes = _sizes(trace, _row_of(trace, first, shape))
     depths_known = [depth.z for depth in group if not np.isnan(depth.z)]
@@ -293,7 +298,7 @@ def _entry(trace: Trace, group: Sequence[Depth], shape: Shape) -> MadeShape:
     odd = [OddSide(line=int(trace.blocks.line_in_file[side.row]), size=round(side.size, 6)) for side in shape.odd]
     texts = [
         _words(trace, shape, first),
-        _depths_in_words(depths_known, sizes) + _floor(group, sizes),
+        _depths_in_words(depths_known, sizes, into) + _floor(group, sizes, into),
         *_left_in_words(trace, first, sizes),
         *_sections_in_words(trace, first, sections),
     ]
@@ -301,7 +306,7 @@ def _entry(trace: Trace, group: Sequence[Depth], shape: Shape) -> MadeShape:
         line=sections[0].line,
         end_line=sections[0].end_line,
         sections=sections,
-        z=rounded(min(depths_known)) if depths_known else None,
+        z=rounded(_deepest_of(depths_known, into)) if depths_known else None,
         depths=[round(z, 6) for z in depths_known],
         shape=shape.name,
         inside=shape.inside,
@@ -343,15 +348,19 @@ def _angles_in_words(angles: Sequence[float]) -> str:
     return ", ".join(map(angle_in_words, angles))
 
 
-def _depths_in_words(depths: Sequence[float], sizes: Sizes) -> str:
+def _deepest_of(depths: Sequence[float], into: float) -> float:
+    return min(depths, key=lambda z: z * into)
+
+
+def _depths_in_words(depths: Sequence[float], sizes: Sizes, into: float) -> str:
     """`to Z-6.000 in 3 passes, 2.000 each`; the passes of one depth count once."""
     if not depths:
         return "to Z not known"
-    deep = sorted({round(z, 6) for z in depths}, reverse=True)
+    deep = sorted({round(z, 6) for z in depths}, key=lambda z: -z * into)
     text = f"to Z{sizes(deep[-1])}"
     if len(deep) == 1:
         return text
-    steps = -np.diff(deep)
+    steps = -np.diff(deep) * into
     even = f", {sizes(float(steps.mean()))} each" if np.ptp(steps) <= ROUNDING + SAME and len(deep) > 2 else ""
     return f"{text} in {len(deep)} passes from Z{sizes(deep[0])}{even}"
 
@@ -414,7 +423,7 @@ def _why_nothing(tables: Tables, section: int) -> str:
     from polarcheck.reports.made_parts.tool_paths import above_the_face
 
     of_section = trace.mode.section == section
-    if not (of_section & trace.path.cuts & trace.path.on_plane & ~above_the_face(trace)).any():
+    if not (of_section & trace.path.cuts & trace.path.on_plane & ~above_the_face(tables["upright"])).any():
         return "it cuts nothing in the plane"
     if not (of_section & trace.compensation.compensates).any():
         return "its path is nowhere as long as the cutter is wide at one Z"

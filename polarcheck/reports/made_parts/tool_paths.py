@@ -33,7 +33,7 @@ def depths_of_paths(tables: Tables) -> Iterator[Depth]:
     trace: Trace = tables["trace"]
     moves: Moves = tables["tool_center"].moves
     plain = ~trace.mode.anywhere_in_section(trace.compensation.compensates)[moves.row] & trace.path.cuts[moves.row]
-    plain &= ~(_changes_depth(trace) | above_the_face(trace))[moves.row]
+    plain &= ~(_changes_depth(trace) | above_the_face(tables["upright"]))[moves.row]
     chosen = np.flatnonzero(plain & ~np.isnan(moves.start + moves.end) & (moves.length > ZERO))
     if not len(chosen):
         return

@@ -176,12 +176,13 @@ def _in_air(hit: Hit, air_cuts: AirCuts, bar: Bar) -> str:
             first, last = bar.known.face_lines
             lines = f"line {first}" if first == last else f"lines {first} to {last}"
             source = f"turned in {lines}" if first else "[stock]"
-            face = hit.number(bar.known.face)
+            face = hit.number(bar.face_as_written)
             return f"cuts at {z}, above the face at Z{face} ({source}): the section takes nothing off"
         case Reason.OTHERS_BELOW:
             where = of_line(trace, trace.axes.commands_z, row)
             if air_cuts.is_cut_below[row]:
-                return f"cuts at {z}{where}, and other cuts are at Z-{z[1:]}: the sign of Z is missing"
+                other = hit.number(-trace.path.z[row])
+                return f"cuts at {z}{where}, and other cuts are at Z{other}: the sign of Z is missing"
             why = "and the program cuts below Z0 elsewhere: a Z word for the depth is missing"
             return f"cuts at {z}{where}, where the section begins, {why}"
         case Reason.OUTSIDE_BAR:

@@ -62,11 +62,11 @@ def pass_ends_inside_bar(pass_ends: PassEnds) -> Mask:
 def details(hit: Hit, bar: Bar) -> Details:
     from polarcheck.rules.wording.metal import bar_diameter, bar_in_words
 
-    end, z = complex(hit.trace.path.end[hit.row]), float(hit.trace.path.z[hit.row])
+    end, height = complex(hit.trace.path.end[hit.row]), float(bar.trace.path.z[hit.row])
     return {
-        "stock": bar_diameter(hit, bar, z),
+        "stock": bar_diameter(hit, bar, height),
         "plane_x": end.real,
         "plane_c": end.imag,
-        "bar": bar_in_words(hit, bar, z),
+        "bar": bar_in_words(hit, bar, height),
         "end_of_pass": hit.point_off_center(end),
     }

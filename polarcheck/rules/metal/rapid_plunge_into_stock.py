@@ -98,13 +98,16 @@ def details(hit: Hit, workpiece: Workpiece, bar: Bar) -> Details:
     from polarcheck.rules.wording.metal import bar_diameter, bar_in_words
 
     z, radius = hit.trace.path.z[hit.row], workpiece.radius[hit.row]
+    height = float(bar.trace.path.z[hit.row])
     in_bar = workpiece.hits_bar[hit.row]
     return {
         "radius": radius,
         "z": z,
-        "stock": bar_diameter(hit, bar, z) if in_bar else None,
+        "stock": bar_diameter(hit, bar, height) if in_bar else None,
         "cutter": hit.length(radius),
-        "bar_there": f"the bar ({bar_in_words(hit, bar, z)})" if in_bar else "what the pocket still has to take off",
+        "bar_there": f"the bar ({bar_in_words(hit, bar, height)})"
+        if in_bar
+        else "what the pocket still has to take off",
         "depth": hit.number(z),
         "way_down": _way_down(hit, bar, radius, in_bar),
     }

@@ -112,13 +112,13 @@ def rapid_through_part(workpiece: Workpiece, procedure: Procedure) -> Hits:
 
 
 def details(hit: Hit, workpiece: Workpiece) -> Details:
-    from polarcheck.rules.wording.metal import height, through, z_of_move
+    from polarcheck.rules.wording.metal import height_in_words, through, z_of_move
 
     return {
         "radius": workpiece.radius[hit.row],
-        "z": z_of_move(hit),
+        "z": z_of_move(workpiece.trace, hit.row),
         "cutter": hit.length(workpiece.radius[hit.row]),
-        "height": height(hit),
+        "height": height_in_words(hit, workpiece.trace),
         "through": through(hit, workpiece),
         "way_round": "arrive beside the part, or above it"
         if workpiece.arrives[hit.row]

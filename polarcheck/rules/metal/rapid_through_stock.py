@@ -81,17 +81,17 @@ def rapid_through_stock(workpiece: Workpiece) -> Hits:
 
 
 def details(hit: Hit, workpiece: Workpiece, bar: Bar) -> Details:
-    from polarcheck.rules.wording.metal import bar_diameter, bar_in_words, height, through, z_of_move
+    from polarcheck.rules.wording.metal import bar_diameter, bar_in_words, height_in_words, height_of_move, through
 
-    z = z_of_move(hit)
+    height = height_of_move(bar.trace, hit.row)
     return {
         "radius": workpiece.radius[hit.row],
-        "z": z,
-        "stock": bar_diameter(hit, bar, z),
+        "z": height * bar.trace.path.z_sense,
+        "stock": bar_diameter(hit, bar, height),
         "cutter": hit.length(workpiece.radius[hit.row]),
-        "height": height(hit),
+        "height": height_in_words(hit, bar.trace),
         "through": through(hit, workpiece),
-        "bar": bar_in_words(hit, bar, z),
+        "bar": bar_in_words(hit, bar, height),
         "at_depth": _at_depth(hit),
     }
 

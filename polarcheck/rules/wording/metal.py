@@ -12,23 +12,23 @@ from polarcheck.foundation.arrays import Mask
 from polarcheck.rules.hit import Hit
 
 
-def bar_in_words(hit: Hit, bar: Bar, z: float) -> str:
-    """The bar at a depth and where it is known from: `40 mm, [stock]`, `27.7 mm turned in line 11`."""
-    standing = bar.standing(hit.row, z)[-1]
+def bar_in_words(hit: Hit, bar: Bar, height: float) -> str:
+    """The bar at a height (Z of bar.trace), and what says so: `40 mm, [stock]`, `27.7 mm turned in line 11`."""
+    standing = bar.standing(hit.row, height)[-1]
     size, (first, last) = hit.length(standing.diameter), standing.lines
     if standing.source == "turning":
         return f"{size} turned in {f'line {first}' if first == last else f'lines {first} to {last}'}"
     return f"{size}, [stock]" if standing.source == "job" else f"{size}, comment in line {first}"
 
 
-def bar_diameter(hit: Hit, bar: Bar, z: float) -> float:
-    """The diameter of the bar at a depth [mm]."""
-    return bar.standing(hit.row, z)[-1].diameter
+def bar_diameter(hit: Hit, bar: Bar, height: float) -> float:
+    """The diameter of the bar at a height, as Z of bar.trace is [mm]."""
+    return bar.standing(hit.row, height)[-1].diameter
 
 
 def bar_ends_at(hit: Hit, bar: Bar) -> float:
     """The radius of the bar at the depth of the block, the larger where there are two [mm]."""
-    rows, z = np.array([hit.row]), hit.trace.path.z[[hit.row]]
+    rows, z = np.array([hit.row]), bar.trace.path.z[[hit.row]]
     return float(np.where(np.isnan(bar.outer(rows, z)), bar.inner(rows, z), bar.outer(rows, z))[0])
 
 
@@ -38,19 +38,24 @@ def of_line(trace: Trace, writes: Mask, until: int, row: int = -1) -> str:
     return f" of line {int(trace.blocks.line[at])}" if 0 <= at != row else ""
 
 
-def z_of_move(hit: Hit) -> float:
-    """Z at which the tool is in the way: before the block where it rises, or where Z behind it is not known."""
-    before, after = float(hit.trace.path.z_before[hit.row]), float(hit.trace.path.z[hit.row])
+def height_of_move(upright: Trace, row: int) -> float:
+    """The height at which the tool is in the way: before the block where it rises, or is not known behind it."""
+    before, after = float(upright.path.z_before[row]), float(upright.path.z[row])
     return before if after > before or np.isnan(after) else after
 
 
-def height(hit: Hit) -> str:
+def z_of_move(upright: Trace, row: int) -> float:
+    """The same as Z that a program writes."""
+    return height_of_move(upright, row) * upright.path.z_sense
+
+
+def height_in_words(hit: Hit, upright: Trace) -> str:
     """Z at which the cutter is in the way, and the line that says so: `at Z-4 of line 7`, on a way up `up from Z-4`."""
-    path, row = hit.trace.path, hit.row
+    path, row = upright.path, hit.row
     rises = path.z[row] > path.z_before[row]
     is_before = bool(rises or np.isnan(path.z[row]))
     where = of_line(hit.trace, hit.trace.axes.commands_z, row - is_before, row)
-    return f"{'up from' if rises else 'at'} Z{hit.number(z_of_move(hit))}{where}"
+    return f"{'up from' if rises else 'at'} Z{hit.number(z_of_move(upright, row))}{where}"
 
 
 def through(hit: Hit, workpiece: Workpiece) -> str:
