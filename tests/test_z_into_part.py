@@ -48,6 +48,7 @@ def said(text: str, changes: Changes | None = None, stock: float = math.nan) -> 
         program(TURNING, milling("6.", begin="-4.", retract="-4.")),
         program(TURNING, milling("12.")),
         program(TURNING.replace("X18. F100\nZ20.", "X12. F100\nZ8.\nX18.\nZ20."), milling("6.", begin="-2.")),
+        program(TURNING.replace("G0 X22. Z-0.5\nG1 X-1. F100\n", ""), milling("6.")),
         program(TURNING, milling("6."), "T0303\nG97 S800 M3\nG0 X24. Z22.\nG1 X-1. F50\nG0 X60.\n"),
     ],
 )
@@ -90,6 +91,12 @@ def test_the_face_of_the_job_is_as_the_program_writes_it() -> None:
     assert "cuts at Z-6, above the face at Z-0.5 ([stock])" in finding.message
     sound = program(milling("6."))
     assert report_of(sound, "fanuc-30i", TOOL, changes=UP, job=job).findings == []
+
+
+def test_a_tool_that_cuts_on_its_way_out_shows_nothing() -> None:
+    for facing in ("", "G0 X22. Z0\nG1 X-1. F100\nG0 Z2.\n"):
+        out = f"T0202\nG97 S2000 M3\n{facing}G0 X20. Z-20.\nG1 X18. F100\nZ2.\nG0 X30.\nM5\n"
+        assert said(program(out, milling("-6.", begin="2.", retract="2."))) == []
 
 
 def test_a_retract_alone_shows_nothing() -> None:

@@ -123,18 +123,24 @@ class TurningTools(Columns, frozen=True):
 
 
 def sense_of_turning(trace: Trace) -> str:
-    """The way along Z into the part that turning shows: plus, minus, or empty where it shows none."""
+    """
+    The way along Z into the part that turning shows: plus, minus, or empty where it shows none.
+
+    All its ways along the part lead away from the face (Z0 where nothing is faced), and most of them lies behind it: a
+    tool that cuts on its way out of the part begins far behind the face.
+    """
     tools = TurningTools(trace)
     x_before, x, z_before, z = (column[tools.moving_rows] for column in tools.x_and_z)
     faces = z[(np.abs(z - z_before) <= ROUNDING) & (x <= CENTER) & (x < x_before)]
     is_along = (np.abs(x - x_before) <= ROUNDING) & (np.abs(z - z_before) > _LONG) & (x > CENTER)
     begins, ends = z_before[is_along], z[is_along]
-    if not len(faces) or not len(ends):
+    if not len(ends):
         return ""
     for name, sense in (("plus", 1), ("minus", -1)):
-        face = (faces * sense).min()
-        is_away = ((ends - begins) * sense > 0).all() and (ends * sense).min() > face + _LONG
-        if is_away and (begins * sense).min() <= face + _BESIDE_FACE:
+        face = float((faces * sense).min()) if len(faces) else 0.0
+        first, last = begins * sense - face, ends * sense - face
+        is_away = (last > first).all() and last.min() > _LONG
+        if is_away and first.min() <= _BESIDE_FACE and last.max() > -first.min():
             return name
     return ""
 
