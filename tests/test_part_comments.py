@@ -237,6 +237,7 @@ def test_a_title_counts_for_one_shape() -> None:
     assert messages("T0101", HEXAGON, small, title="O1 (HEX 24 AF)") == []
     # Another program may make it.
     assert messages("T0101", HEXAGON, title="O1 (SQ 18)") == []
+    assert messages("T0101", SHARP_RECTANGLE, title="O1 (SQ 40 FLANGE)") == []
     # The nearer comment counts, and roughing leaves something.
     assert messages("T0101 (HEX 22 AF)", HEXAGON, title="O1 (HEX 24 AF)") == []
     assert messages("T0101 (EM8 ROUGH)", HEXAGON, title="O1 (HEX 24 AF)") == []

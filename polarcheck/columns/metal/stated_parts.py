@@ -272,9 +272,12 @@ class PartComments(Columns, frozen=True):
     def _contradictions(
         self, comment: PartComment, size: StatedShape, of_comment: list[Shape]
     ) -> Iterator[Contradiction]:
-        from polarcheck.columns.metal.stated_sizes import comparable, is_regular_polygon, is_size
+        from polarcheck.columns.metal.stated_sizes import comparable, has_side, is_regular_polygon, is_size
 
         pairs = comparable(size, of_comment)
+        if comment.in_title:
+            # A title may speak of what another program makes.
+            pairs = [pair for pair in pairs if pair[0].name != "rectangle" or has_side(size, pair[0])]
         if pairs:
             shape, machined = min(pairs, key=lambda pair: pair[1])
             stated_shape = size.shape if shape.name == "rectangle" else ""
@@ -282,7 +285,6 @@ class PartComments(Columns, frozen=True):
         elif of_comment and size.shape in POLYGONS.values() and all(map(is_regular_polygon, of_comment)):
             shape = of_comment[0]
             across = shape.values["across_flats"]
-            # A title may speak of what another program makes.
             if not comment.in_title or is_size(size, across):
                 yield Contradiction(shape.row, comment.comment, size.size, across, shape.name, size.shape)
 

@@ -17,8 +17,13 @@ def fits(size: StatedShape, shape: Shape) -> bool:
     if size.shape == "keyway":
         return any(is_size(size, width) for _, width in comparable(size, [shape]))
     if size.shape == "square" and shape.name == "rectangle":
-        return all(is_size(size, shape.values[name]) for name in ("width", "length"))
+        return all(is_size(size, side) for side in _sides(shape))
     return any(is_size(size, value) for value in _values(shape, size.is_across_flats))
+
+
+def has_side(size: StatedShape, rectangle: Shape) -> bool:
+    """A side of a rectangle is as long as stated."""
+    return any(is_size(size, side) for side in _sides(rectangle))
 
 
 def is_size(size: StatedShape, value: float) -> bool:
