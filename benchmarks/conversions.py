@@ -32,6 +32,7 @@ from polarcheck.files.settings.of_programs import OfPrograms, Options, on_machin
 from polarcheck.foundation.errors import PolarcheckError, RefusedError  # noqa: E402
 from polarcheck.program.machines import profiles  # noqa: E402
 from polarcheck.rewrite.convert.converting import converted  # noqa: E402
+from polarcheck.rewrite.convert.doubtful_values import KEYS  # noqa: E402
 from polarcheck.rewrite.writing.rewritten_program import rewritten  # noqa: E402
 
 BASE = "fanuc-30i"
@@ -100,7 +101,7 @@ def _for_machine(case: Case, machine: str) -> Case | None:
     settings = _settings(case)
     target = on_machine(settings, machine)
     try:
-        outcome = rewritten(case.name, case.data, settings, lambda original: converted(original, target))
+        outcome = rewritten(case.name, case.data, settings, lambda original: converted(original, target, KEYS))
     except RefusedError:
         return None
     return Case(machine, case.name, outcome.data, case.tools, case.inch)

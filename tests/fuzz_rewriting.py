@@ -43,6 +43,7 @@ from polarcheck.rewrite.compare.terms import Terms
 from polarcheck.rewrite.compensate.centering import centered
 from polarcheck.rewrite.compensate.compensating import Compensating, compensated
 from polarcheck.rewrite.convert.converting import converted
+from polarcheck.rewrite.convert.doubtful_values import KEYS
 from polarcheck.rewrite.roll.rolling import Rolling, rolled
 from polarcheck.rewrite.unroll.unrolled_feeds import FEEDS
 from polarcheck.rewrite.unroll.unrolling import Unrolling, unrolled
@@ -74,16 +75,16 @@ def convert(data: bytes, setup: int) -> Iterable[str]:
     """To another control, for which it is a program of its own, whose words stay; and back."""
     settings = _settings(setup)
     name = _chosen(data, profiles.names())
-    outcome = _rewritten(data, settings, lambda original: converted(original, on_machine(settings, name)))
+    outcome = _rewritten(data, settings, lambda original: converted(original, on_machine(settings, name), KEYS))
     if not isinstance(outcome, Outcome):
         return outcome
     there = on_machine(settings, name)
-    again = _rewritten(outcome.data, there, lambda original: converted(original, on_machine(there, name)))
+    again = _rewritten(outcome.data, there, lambda original: converted(original, on_machine(there, name), KEYS))
     expect(
         not isinstance(again, Outcome) or bool(again.decisions) or _words(again.data) == _words(outcome.data),
         "converted for its own control: it changes",
     )
-    back = _rewritten(outcome.data, there, lambda original: converted(original, on_machine(there, settings.name)))
+    back = _rewritten(outcome.data, there, lambda original: converted(original, on_machine(there, settings.name), KEYS))
     return [f"to {name}", f"{len(outcome.decisions) > 0}", *_endings("back", back)]
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import cmath
+import json
 import math
 import re
 from collections.abc import Callable
@@ -26,6 +27,7 @@ from polarcheck.commands import main
 from polarcheck.files.settings.of_programs import OfPrograms, Options, on_machine
 from polarcheck.rewrite.convert import converting
 from polarcheck.rewrite.convert.converting import converted
+from polarcheck.rewrite.convert.doubtful_values import KEYS
 from polarcheck.rewrite.writing.outcome import Outcome, RefusedError
 from polarcheck.rewrite.writing.pen import Pen
 from polarcheck.rewrite.writing.rewritten_program import rewritten
@@ -115,7 +117,7 @@ REMARK = "(DECIDE: THE LIVE TOOL IS NOT RUNNING IN THE SECTION M133 OR M134 IS M
 def convert(program: str | bytes, source: str, target: str, *tools: str) -> Outcome:
     settings = OfPrograms(Options(machine=source, tools=tools, use_config=False))("")
     data = program.encode() if isinstance(program, str) else program
-    return rewritten("a.nc", data, settings, partial(converted, target=on_machine(settings, target)))
+    return rewritten("a.nc", data, settings, partial(converted, target=on_machine(settings, target), accepted=KEYS))
 
 
 def refused(program: str, source: str, target: str, *tools: str) -> list[tuple[int, str]]:
@@ -516,7 +518,7 @@ def test_programs_of_setters_are_converted(source: str, target: str) -> None:
     for seed in range(1, 7):
         program = drawn(seed, source, FAMILIES[(11 * seed) % len(FAMILIES)])
         settings = OfPrograms(Options(machine=source, tools=tuple(program.tools()), use_config=False))("")
-        work = partial(converted, target=on_machine(settings, target))
+        work = partial(converted, target=on_machine(settings, target), accepted=KEYS)
         try:
             results.append(bool(rewritten("a.nc", program.text().encode(), settings, work).data))
         except RefusedError as error:
@@ -678,3 +680,46 @@ def test_what_would_mean_something_else_is_refused(program: str, target: str, ex
 def test_a_program_that_is_called_and_not_there_is_named() -> None:
     notes = convert(HEAD + "M98 P9001\n" + MILLED + END, "fanuc-30i", "okuma-osp").notes
     assert "line 5: O9001 is not in the file: convert it, too" in notes
+
+
+# ---- values in doubt ----
+
+MILLED_AT_30 = "%\nO1\nG21 G98 G40\nT0101\nG0 X60. Z2. C30.\nG12.1\nG1 X36. C10. F150\nX60. C0\nG13.1\nM30\n%\n"
+
+OF_HAAS = "%\nO1\nG98 G40\nT0101\nG0 X3. Z.1 C0\nG17\nG112\nG1 X1. Y.4 F8.\nX1.5 Y0\nG113\nG18\nM30\n%\n"
+AND_DWELLS = MILLED_AT_30.replace("G13.1", "G13.1\nG4 P1500")
+
+
+@pytest.mark.usefixtures("own_folder")
+@looped(
+    ("program", "source", "target", "keys"),
+    [
+        (MILLED_AT_30, "fanuc-30i", "mitsubishi-m700", ["control.x"]),
+        (MILLED_AT_30.replace("X60. Z2. C30.", "X0 Z2. C0"), "fanuc-30i", "citizen", []),
+        (MILLED_AT_30, "fanuc-30i", "citizen", []),
+        (MILLED_AT_30, "fanuc-30i", "siemens-transmit", ["polar.zero_angle"]),
+        (MILLED_AT_30.replace("C30.", "C0"), "fanuc-30i", "siemens-transmit", []),
+        (OF_HAAS, "haas-lathe", "okuma-osp", ["control.units"]),
+        (MILLED_AT_30.replace("G21", "G20"), "fanuc-30i", "okuma-osp", ["control.units"]),
+        (MILLED_AT_30.replace("G21 ", ""), "fanuc-30i", "haas-lathe", []),
+        (AND_DWELLS, "fanuc-30i", "siemens-transmit", ["feed.dwell_words", "polar.zero_angle"]),
+        (MILLED_AT_30, "fanuc-30i", "own.toml", []),
+    ],
+)  # fmt: skip
+def test_a_value_in_doubt_that_changes_a_number_is_accepted_or_nothing_is_written(
+    program: str, source: str, target: str, keys: list[str]
+) -> None:
+    """A value of the user's own, a code in the program, and a value that both share leave no doubt."""
+    Path("own.toml").write_text('inherits = "mitsubishi-m700"\n[control]\nx = "diameter"\n')
+    Path("a.nc").write_text(program)
+    options = ("a.nc", "--from", source, "--to", target, "--no-config", "--format", "json")
+    done = call(*options)
+    entry = json.loads(done.stdout)["files"][0]
+    named = sorted(
+        re.findall(r"numbers change with ([a-z_.]+)", " ".join(reason["text"] for reason in entry["refusals"]))
+    )
+    assert (named, done.exit_code == 2, entry["written"]) == (keys, bool(keys), None)
+    accepted = call(*options, "--accept", ",".join(keys) or "control.x")
+    assert accepted.exit_code < 2
+    assert sorted(doubt["key"] for doubt in json.loads(accepted.stdout)["files"][0]["doubts"]) == keys
+    assert "expected one of control." in call(*options, "--accept", "control.y").stderr

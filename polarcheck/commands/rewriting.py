@@ -265,6 +265,7 @@ class _Programs:
             decisions=outcome.decisions if outcome else [],
             figures=outcome.figures if outcome else [],
             notes=outcome.notes if outcome else [],
+            doubts=outcome.doubts if outcome else [],
         )
 
 

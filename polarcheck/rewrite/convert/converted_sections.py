@@ -104,9 +104,10 @@ class _Writer:
         self.translation = translation
         self.texts = BlockTexts(self.trace)
         self.words = SectionWords(self.trace, target)
-        self.feeds = SectionFeeds(self.trace, original.tables["tool_center"].moves, target)
+        self.feeds = SectionFeeds(self.trace, original.tables["tool_center"].moves, target, translation.measures.basis)
         self.computed = ComputedBlocks(self.trace, target, translation.measures, self.words)
         self.corners = Corners(self.trace, target)
+        self.basis = translation.measures.basis
         self.is_same = self.words.is_same
         self.has_axes = self.trace.blocks.has(*self.source.axis_words)
         self.blocks: dict[int, list[NewBlock]] = {}
@@ -145,6 +146,7 @@ class _Writer:
                 self._put(row, self._as_written(row))
             return
         pen, turn = self._pen(enter), self._turn(enter)
+        self._note_x(enter, leave)
         self._take_out_around(enter, leave)
         targets = self._targets(rows)
         for row in rows:
@@ -199,7 +201,15 @@ class _Writer:
         if abs(angle) < _SAME_DIRECTION:
             return 1.0 + 0j
         self.turned.append((enter, math.degrees(angle)))
+        self.basis.add("polar.zero_angle", enter)
         return cmath.exp(1j * angle)
+
+    def _note_x(self, enter: int, leave: int) -> None:
+        """Note that X of a section, which is no zero, counts otherwise there."""
+        rows = np.arange(enter, leave)
+        off_axis = self.trace.blocks.has("X", "U")[rows] & (self.trace.path.end[rows].real != 0)
+        if self.source.polar.x != self.target.polar.x and off_axis.any():
+            self.basis.add("polar.x", int(rows[np.argmax(off_axis)]))
 
     def _take_out_around(self, enter: int, leave: int) -> None:
         """Take out the blocks that the source needs around its switches, such as the choice of a plane."""
@@ -227,6 +237,8 @@ class _Writer:
         if row == enter:
             point = complex(trace.path.end[row]) * turn
             angle = float(trace.path.c_angle[row]) * self.source.polar.c_sense * self.target.polar.c_sense
+            if self.source.polar.c_sense != self.target.polar.c_sense and angle and not math.isnan(angle):
+                self.basis.add("polar.zero_angle", row)
             new = pen.enter(point, float(trace.path.z[row]), 0.0 if math.isnan(angle) else angle)
             last = NewBlock(tuple(back), comment)
             return _without_empty(NewBlock(tuple(front)), *new, self.corners.before(row), last)

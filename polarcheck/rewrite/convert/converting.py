@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Container, Iterator, Mapping, Sequence
 
 import numpy as np
 from msgspec.structs import replace
@@ -13,6 +13,7 @@ from polarcheck.foundation.states import Units
 from polarcheck.program.machines.job import Job
 from polarcheck.rewrite.convert.around import around
 from polarcheck.rewrite.convert.converted_sections import sections
+from polarcheck.rewrite.convert.doubtful_values import doubts, note_on_units, said, unaccepted
 from polarcheck.rewrite.convert.translating import Translation
 from polarcheck.rewrite.writing.new_blocks import (
     NewBlock,
@@ -34,12 +35,13 @@ from polarcheck.rules.editing import Replace
 _M_CODE = re.compile(r"M\d+\b")
 
 
-def converted(original: Original, target: Settings) -> Outcome:
+def converted(original: Original, target: Settings, accepted: Container[str] = ()) -> Outcome:
     """
     Return a program as the machine of `target` reads it: its polar sections, and as much around them as both profiles
     know. The others are comments in it, and decisions of the outcome.
 
     target: machine, job and encoding of the new program; offsets of the job are those that the original calls.
+    accepted: keys of the profiles whose values in doubt numbers may rest on, where they differ.
 
     Raises RefusedError where the new program would not do the same, or cannot be written; TooHardError.
     """
@@ -52,6 +54,9 @@ def converted(original: Original, target: Settings) -> Outcome:
     edits += [edit_before(original, block, new, style, target.machine) for block, new in outside.before.items()]
     edits += [edit_behind(original, block, new, style, target.machine) for block, new in outside.behind.items()]
     edits += [*outside.edits, *edits_of_signs(original, target.machine)]
+    in_doubt = list(doubts(translation.measures.basis, trace, original.settings, target))
+    if reasons := unaccepted(in_doubt, accepted):
+        raise RefusedError(reasons)
     data, origin = with_edits(original, edits)
     settings = replace(target, job=_job(original, target, translation))
     decided = outside.decided | inside.decided
@@ -80,12 +85,14 @@ def converted(original: Original, target: Settings) -> Outcome:
         Figure("blocks after", float(len(result.new.trace.text.blocks))),
         Figure("largest distance of the tool center paths", result.deviation, "mm"),
     ]
-    notes = [*_notes(translation.notes), *inside.notes, *result.notes]
+    notes = [f"line {doubt.line}: {said(doubt)}: accepted" for doubt in in_doubt]
+    notes += [*note_on_units(trace, original.settings, target), *_notes(translation.notes)]
+    notes += [*inside.notes, *result.notes]
     notes += [
         f"line {line}: O{number} is not in the file: convert it, too"
         for number, line in translation.calls.missing.items()
     ]
-    return Outcome(data, origin, decisions, figures, notes)
+    return Outcome(data, origin, decisions, figures, notes, in_doubt)
 
 
 def _remarks(original: Original, target: Settings, style: Style, open_orders: Sequence[Refusal]) -> Iterator[Replace]:

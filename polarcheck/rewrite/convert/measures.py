@@ -12,6 +12,7 @@ from polarcheck.columns.trace import Trace
 from polarcheck.foundation.states import Distance, Units
 from polarcheck.program.machines.axis_table import INCREMENTS
 from polarcheck.program.machines.machine import Machine
+from polarcheck.rewrite.convert.doubtful_values import Basis
 from polarcheck.rewrite.convert.number_text import number_of, rescaled, rounded
 from polarcheck.rewrite.writing.outcome import refused_at
 from polarcheck.rewrite.writing.unknown_moves import UnknownMoves
@@ -36,10 +37,15 @@ class AxisWord(msgspec.Struct, frozen=True):
 
 
 class Measures:
-    """The words of one machine that count lengths and angles, as those of another."""
+    """
+    The words of one machine that count lengths and angles, as those of another.
+
+    basis: on which keys of the profiles their changed numbers rest.
+    """
 
     def __init__(self, trace: Trace, target: Machine) -> None:
         self.trace, self.source, self.target = trace, trace.machine, target
+        self.basis = Basis()
         rotary, step = self.source.polar.rotary_words
         self._axes = {**{axis: (axis, False) for axis in INCREMENTS}, rotary: ("C", False)}
         if self.source.control.g_code_system == "A":
@@ -69,7 +75,10 @@ class Measures:
         """Return the factor from a length, or F, of a row to the units of the new program."""
         units = self.trace.lengths.feed_units if of_feed else self.trace.lengths.units
         ratio = _MM_PER_INCH if units[row] == Units.INCH else Fraction(1)
-        return ratio / _MM_PER_INCH if self.writes_inch(row) else ratio
+        ratio = ratio / _MM_PER_INCH if self.writes_inch(row) else ratio
+        if ratio != 1:
+            self.basis.add("control.units", row)
+        return ratio
 
     def least(self, row: int) -> Fraction:
         """The least increment of lengths that the new program writes in a row, in its units."""
@@ -105,10 +114,16 @@ class Measures:
 
     def ratio(self, row: int, word: AxisWord) -> Fraction:
         """What the number of a word is multiplied by."""
+        number = number_of(self.written(word.index))
+        is_zero = number is not None and not Fraction(number)
         if word.axis == "C":
+            if self._c_ratio != 1 and not is_zero:
+                self.basis.add("polar.zero_angle", row)
             return self._c_ratio
-        ratio = self.unit_ratio(row)
-        return ratio * self.x_ratio(row, word.is_step) if word.axis == "X" else ratio
+        ratio, of_x = self.unit_ratio(row), self.x_ratio(row, word.is_step) if word.axis == "X" else Fraction(1)
+        if of_x != 1 and not is_zero:
+            self.basis.add("control.x", row)
+        return ratio * of_x
 
     def x_ratio(self, row: int, is_step: bool = False) -> Fraction:
         """What X outside of the mode is multiplied by where one machine counts a radius."""
@@ -132,6 +147,7 @@ class Measures:
         coordinates = self.trace.coordinates
         if bool(coordinates.is_unpointed[index]) and not bool(coordinates.is_taken_as_pointed[index]):
             ratio *= fraction(self.source.control.least_increment) if is_angle else self.least_read(row)
+            self.basis.add("control.number_without_point", row)
         least = fraction(self.target.control.least_increment) if is_angle else self.least(row)
         return rescaled(written, ratio, least, self.target.control.number_without_point == "least-increment")
 
@@ -147,11 +163,15 @@ class Measures:
         path = self.trace.path
         if axis == "C":
             value, ratio = float(path.c_angle[row]), self._c_ratio
+            if ratio != 1 and value and value == value:
+                self.basis.add("polar.zero_angle", row)
         else:
             value = float(path.x[row] if axis == "X" else path.z[row]) if axis in "XZ" else np.nan
             ratio = 1 / _MM_PER_INCH if self.writes_inch(row) else Fraction(1)
             if axis == "X":
                 ratio /= fraction(RADIUS_FACTOR[self.target.control.x])
+                if self.x_ratio(row) != 1 and value and value == value:
+                    self.basis.add("control.x", row)
         if np.isnan(value) or self.is_lost(row, axis):
             return None
         least = fraction(self.target.control.least_increment) if axis == "C" else self.least(row)

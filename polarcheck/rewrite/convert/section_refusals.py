@@ -12,6 +12,7 @@ from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Mask
 from polarcheck.foundation.states import FeedMode
 from polarcheck.program.machines.machine import Machine
+from polarcheck.rewrite.convert.doubtful_values import Basis
 from polarcheck.rewrite.writing.original import Original
 from polarcheck.rewrite.writing.outcome import Refusal, refusal_at
 from polarcheck.rewrite.writing.pen import Pen
@@ -21,12 +22,14 @@ class SectionFeeds:
     """
     The feeds of a program on another machine.
 
-    moves: moves of the tool center. One machine measures F on the plane, another along the path in space; one at the
-    tool center, another at the contour (polar.feed_measures, codes of feed_at_contour).
+    moves: moves of the tool center. basis: takes the keys on which changed feeds rest.
+
+    One machine measures F on the plane, another along the path in space; one at the tool center, another at the contour
+    (polar.feed_measures, codes of feed_at_contour).
     """
 
-    def __init__(self, trace: Trace, moves: Moves, target: Machine) -> None:
-        self.trace, self.target = trace, target
+    def __init__(self, trace: Trace, moves: Moves, target: Machine, basis: Basis) -> None:
+        self.trace, self.target, self._basis = trace, target, basis
         self._share = np.ones(len(trace))
         of_contour = ~moves.corner & ~np.isnan(moves.plane_share)
         self._share[moves.row[of_contour]] = moves.plane_share[of_contour]
@@ -41,7 +44,10 @@ class SectionFeeds:
         if math.isnan(feed):
             return None
         ours, theirs = float(self._share[row]), self._target_share(row)
-        return feed if math.isclose(ours, theirs, rel_tol=1e-9) else feed * ours / theirs
+        if math.isclose(ours, theirs, rel_tol=1e-9):
+            return feed
+        self._basis.add("polar.feed_measures", row)
+        return feed * ours / theirs
 
     def _target_share(self, row: int) -> float:
         """The share of F with which the tool center will run on the plane."""

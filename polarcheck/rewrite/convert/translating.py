@@ -234,6 +234,8 @@ class Translation:
                 return
             units = self.source.feed.dwell_words.get(letter), self.target.feed.dwell_words.get(letter)
             is_same = word[0] == letter and units[0] == units[1] and self.measures.pointless_is_same
+            if not is_same and Fraction(word[1:]) != Fraction(number):
+                self.measures.basis.add("feed.dwell_words", row)
             result.words.append(self.measures.written(index) if is_same else word)
 
     def _with_arguments(self, row: int, indices: Sequence[int], result: Translated) -> None:

@@ -34,6 +34,22 @@ class Decision(msgspec.Struct, frozen=True):
     text: str
 
 
+class Doubt(msgspec.Struct, frozen=True):
+    """
+    A value of a machine profile in doubt, on which numbers of the new program rest.
+
+    line: the first in the original with such a number. key: of the profile, `control.x`.
+    value, new_value: for the lathes of the original and of the new program; empty for tables.
+    machines: the titles of those for which the value is in doubt.
+    """
+
+    line: int
+    key: str
+    value: str
+    new_value: str
+    machines: list[str]
+
+
 class Figure(msgspec.Struct, frozen=True):
     """A measured value for the report, as the largest distance of two paths. unit: mm, deg/min, empty for counts."""
 
@@ -51,6 +67,7 @@ class Outcome(msgspec.Struct, frozen=True):
     decisions: what is to be decided.
     figures: the measured values, in order.
     notes: lines on what was done where.
+    doubts: values in doubt on which numbers of the new program rest, and which somebody has accepted.
     """
 
     data: bytes
@@ -58,3 +75,4 @@ class Outcome(msgspec.Struct, frozen=True):
     decisions: list[Decision]
     figures: list[Figure]
     notes: list[str]
+    doubts: list[Doubt] = []

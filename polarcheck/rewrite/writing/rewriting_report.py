@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import msgspec
 
-from polarcheck.rewrite.writing.outcome import Decision, Figure
+from polarcheck.rewrite.writing.outcome import Decision, Doubt, Figure
 
 #: The commands that rewrite programs.
 COMMANDS = CONVERT, UNROLL, COMPENSATE, ROLL = "convert", "unroll", "compensate", "roll"
@@ -29,6 +29,7 @@ class Rewriting(msgspec.Struct, frozen=True):
     decisions: what somebody has to decide before it runs, line 0 for the whole program.
     figures: what was measured; null for what is not known.
     notes: what was done where.
+    doubts: of convert, values of the two profiles in doubt on which changed numbers rest.
     """
 
     path: str
@@ -41,6 +42,7 @@ class Rewriting(msgspec.Struct, frozen=True):
     decisions: list[Decision]
     figures: list[Figure]
     notes: list[str]
+    doubts: list[Doubt]
 
 
 class RewritingReport(msgspec.Struct, frozen=True):
