@@ -723,3 +723,20 @@ def test_a_value_in_doubt_that_changes_a_number_is_accepted_or_nothing_is_writte
     assert accepted.exit_code < 2
     assert sorted(doubt["key"] for doubt in json.loads(accepted.stdout)["files"][0]["doubts"]) == keys
     assert "expected one of control." in call(*options, "--accept", "control.y").stderr
+
+
+@pytest.mark.ci
+@looped("target", ["fanuc-30i", "okuma-osp", "siemens-transmit", "mazak-eia", "mitsubishi-m700"])
+def test_marks_of_channels_are_comments_and_waits_are_decided(target: str) -> None:
+    """In a block of their own, at the head of one, behind a move in the mode, and beside a word that stays."""
+    program = "%\n$1\nO1\nG98 G40\nT0101\n$1 G0 X20. Z1. C0\nG12.1 D0 E=C\nG1 X8. Y2. F100\n!2L1 X9.\nX10. Y0 !2L3\n"
+    outcome = convert(program + "G13.1\nM8 !2L2\n!12L4\nM30\n%\n", "citizen", target)
+    pattern = r";.*" if target == "siemens-transmit" else r"\([^)]*\)"
+    words, comments = re.sub(pattern, "", outcome.data.decode()), re.findall(pattern, outcome.data.decode())
+    assert "$" not in words
+    assert "!" not in words
+    for mark in ("!2L1", "!2L3", "!2L2", "!12L4"):
+        assert any(f"DECIDE: {mark}: A WAIT" in comment for comment in comments)
+        assert any(decision.text.startswith(f"{mark}: ") for decision in outcome.decisions)
+    assert sum("$1 is a comment" in note for note in outcome.notes) == 2
+    assert sum("$1" in comment for comment in comments) == 2

@@ -12,6 +12,7 @@ from polarcheck.checking.settings import Settings
 from polarcheck.foundation.states import Units
 from polarcheck.program.machines.job import Job
 from polarcheck.rewrite.convert.around import around
+from polarcheck.rewrite.convert.channel_marks import channel_marks
 from polarcheck.rewrite.convert.converted_sections import sections
 from polarcheck.rewrite.convert.doubtful_values import doubts, note_on_units, said, unaccepted
 from polarcheck.rewrite.convert.translating import Translation
@@ -50,7 +51,9 @@ def converted(original: Original, target: Settings, accepted: Container[str] = (
     style = style_of(trace)
     inside = sections(original, target.machine, style, translation)
     outside = around(original, target, translation, inside.taken)
-    edits = edits_of(original, {**outside.blocks, **inside.blocks}, style, target.machine)
+    marks = channel_marks(original, target, {**outside.blocks, **inside.blocks})
+    blocks = {**outside.blocks, **inside.blocks, **marks.blocks}
+    edits = edits_of(original, blocks, style, target.machine)
     edits += [edit_before(original, block, new, style, target.machine) for block, new in outside.before.items()]
     edits += [edit_behind(original, block, new, style, target.machine) for block, new in outside.behind.items()]
     edits += [*outside.edits, *edits_of_signs(original, target.machine)]
@@ -74,7 +77,9 @@ def converted(original: Original, target: Settings, accepted: Container[str] = (
         added_speeds=translation.added_speeds,
     )
     _require_equal(result, original, target)
-    decisions = sorted(dict.fromkeys((*outside.decisions, *inside.decisions)), key=lambda decision: decision.line)
+    decisions = sorted(
+        dict.fromkeys((*outside.decisions, *inside.decisions, *marks.decisions)), key=lambda decision: decision.line
+    )
     # What an M code is that is to be decided says whether the live tool runs.
     if result.open_orders and not any(_M_CODE.match(decision.text) for decision in decisions):
         edits += _remarks(original, target, style, result.open_orders)
@@ -86,7 +91,7 @@ def converted(original: Original, target: Settings, accepted: Container[str] = (
         Figure("largest distance of the tool center paths", result.deviation, "mm"),
     ]
     notes = [f"line {doubt.line}: {said(doubt)}: accepted" for doubt in in_doubt]
-    notes += [*note_on_units(trace, original.settings, target), *_notes(translation.notes)]
+    notes += [*note_on_units(trace, original.settings, target), *marks.notes, *_notes(translation.notes)]
     notes += [*inside.notes, *result.notes]
     notes += [
         f"line {line}: O{number} is not in the file: convert it, too"

@@ -260,7 +260,8 @@ def _comments(text: Text, index: int, content: str) -> tuple[list[str], str]:
         first, last = int(text.comments.start[number]) - start, int(text.comments.end[number]) - start
         comment = content[first:last]
         is_closed = comment.startswith("(") and comment.endswith(")")
-        comments.append(comment[1:-1] if is_closed else comment[1:].strip())
+        is_mark = comment[:1] not in "(;%"  # of a channel
+        comments.append(comment[1:-1] if is_closed else comment if is_mark else comment[1:].strip())
         bare = bare[:first] + " " * (last - first) + bare[last:]
     return comments, bare
 
