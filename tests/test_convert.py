@@ -740,3 +740,24 @@ def test_marks_of_channels_are_comments_and_waits_are_decided(target: str) -> No
         assert any(decision.text.startswith(f"{mark}: ") for decision in outcome.decisions)
     assert sum("$1 is a comment" in note for note in outcome.notes) == 2
     assert sum("$1" in comment for comment in comments) == 2
+
+
+@pytest.mark.ci
+@looped(("target", "expected"), [
+    ("fanuc-30i", ["G0 X140.", "G1 X100. F100", "X80."]),
+    ("lsis", ["G0 X70.", "G1 X50. F100", "X40."]),
+    ("mazak-integrex", ["G0 X140.", "G10.9 X0", "G1 X50. F100", "G10.9 X1", "X80."]),
+])  # fmt: skip
+def test_the_word_beside_a_switch_of_x_moves_nothing(target: str, expected: list[str]) -> None:
+    """X of G10.9 X1 is no place: it became a move to X1."""
+    program = "O1\nG90 G94 G40 G97\nT0101\nG10.9 X1\nG0 X140. Z5.\nG10.9 X0\nG1 X50. F100\nG10.9 X1\nX80.\nM30\n"
+    lines = convert(program, "mazak-eia", target).data.decode().replace(" Z5.", "").split("\n")
+    assert lines[lines.index(expected[0]) :][: len(expected)] == expected
+
+
+@pytest.mark.ci
+def test_no_tool_is_the_end_of_its_offset() -> None:
+    """T0000 takes no tool away."""
+    program = "%\nO1\nG21 G98\nT0808\nG0 X60. Z2.\nT0000\nT0303\nG0 X50.\nT0300\nM30\n%\n"
+    words = re.findall(r"\b[TD]\d+(?= |\n)", convert(program, "fanuc-30i", "siemens-transmit").data.decode())
+    assert words == ["T8", "D1", "D0", "T3", "D1", "D0"]

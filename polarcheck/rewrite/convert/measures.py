@@ -57,6 +57,11 @@ class Measures:
         }
         self._codes = {unit: bool(target.codes(unit)) for unit in ("inch", "mm")}
         self._c_ratio = Fraction(self.source.polar.c_sense * target.polar.c_sense)
+        #: Radius and diameter are switched as on the other machine.
+        self.same_x_switches = all(
+            getattr(self.source.control, key) == getattr(target.control, key)
+            for key in ("x", "x_radius_words", "x_diameter_words", "x_absolute_diameter_words", "x_without_words")
+        )
         #: Both controls read a number without a point alike.
         self.unknown_moves = UnknownMoves(trace)
         letters = {"X": "X", "Z": "Z", "C": rotary}
@@ -127,6 +132,8 @@ class Measures:
 
     def x_ratio(self, row: int, is_step: bool = False) -> Fraction:
         """What X outside of the mode is multiplied by where one machine counts a radius."""
+        if self.same_x_switches:
+            return Fraction(1)
         steps = self.trace.lengths.x_step_factor
         factor = (steps if is_step and steps is not None else self.trace.lengths.x_factor)[row]
         return fraction(float(factor)) / fraction(RADIUS_FACTOR[self.target.control.x])

@@ -94,7 +94,8 @@ class ToolWords:
 
     def _by_edge(self, row: int, tool: int, offset: int, radius_offset: int, key: str) -> ToolCall:
         changes = row == 0 or int(self.trace.tools.tool[row - 1]) != tool
-        head = (f"T{tool}",) if changes else ()
+        # T0000 cancels the offset; T0 would take the tool away.
+        head = (f"T{tool}",) if changes and tool else ()
         if not offset:
             return ToolCall((*head, "D0"))
         edges = self._edges.setdefault(tool, [])

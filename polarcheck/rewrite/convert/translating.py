@@ -124,11 +124,8 @@ class Translation:
         control = self.source.control
         switches = (*control.x_radius_words, *control.x_diameter_words, *control.x_absolute_diameter_words)
         self._x_switches = {number for word in switches for number in numbers([word.partition(" ")[0]])}
-        #: Radius and diameter are switched as on the other machine.
-        self.same_switches = all(
-            getattr(control, key) == getattr(self.target.control, key)
-            for key in ("x", "x_radius_words", "x_diameter_words", "x_absolute_diameter_words", "x_without_words")
-        )
+        #: The letters of words that stand beside such a code and move nothing: X of G10.9 X1.
+        self._x_switch_letters = {word.partition(" ")[2][:1] for word in switches} - {""}
         self._tool_changes = set(numbers(self.source.m_codes.tool_change))
         self._in_mode = set(numbers(self.target.polar.allowed_codes))
         self._polar_off = set(numbers([*self.source.polar.off, *self.source.polar.ended_by]))
@@ -165,7 +162,7 @@ class Translation:
             self._note(row, f"{' '.join(written)} is left out: {self.target.title} needs no reference return of C")
         elif reason := self.why_not(row):
             result.whole = reason
-        elif bool(self._cycles.has_arguments[row]):
+        elif bool(self._cycles.has_arguments[row]) and not self._beside_x_switch(row):
             self._with_arguments(row, indices, result)
         else:
             self._one_by_one(row, indices, in_steps, result)
@@ -250,7 +247,10 @@ class Translation:
     # ---- words ----
 
     def _one_by_one(self, row: int, indices: Sequence[int], in_steps: bool, result: Translated) -> None:
-        axes = [word for index in indices if (word := self.measures.axis_word(row, index)) is not None]
+        letters = self._x_switch_letters if self._beside_x_switch(row) else set[str]()
+        of_switch = [index for index in indices if self._letter(index) in letters]
+        indices_of_axes = [index for index in indices if index not in of_switch]
+        axes = [word for index in indices_of_axes if (word := self.measures.axis_word(row, index)) is not None]
         lost = [word for word in axes if word.is_step and self._moves[row] and self.measures.is_lost(row, word.axis)]
         if lost:
             step = self.measures.written(lost[0].index)
@@ -261,7 +261,9 @@ class Translation:
         if result.behind:
             result.words.append(self._g.named(self.target.codes("incremental")[0]))
         for index in indices:
-            if index in texts:
+            if index in of_switch:
+                result.words += [self.measures.written(index)] if self.measures.same_x_switches else []
+            elif index in texts:
                 result.words += texts[index]
             else:
                 self._word(row, index, result)
@@ -288,7 +290,7 @@ class Translation:
             result.words.append(written)
         elif letter == "H" and bool(self.trace.blocks.switches_length_offset[row]):
             result.words.append(written)
-        elif self._beside_m_code(row, letter) or self._beside_x_switch(row):
+        elif self._beside_m_code(row, letter):
             result.changed = True
         else:
             self._undecided(row, f"{written}: nothing says what it is on {self.target.title}", result)
@@ -305,7 +307,10 @@ class Translation:
         has_words = any(self._letter(word) not in "GMTF" for word in self.words_of(row))
         key = self._g.key(number, has_words)
         if number in self._x_switches:
-            result.words += [written] if self.same_switches else []
+            if self.measures.same_x_switches:
+                result.words.append(written)
+            else:
+                self._note(row, f"{written} is left out: X is written as {self.target.title} counts it")
             return
         if number in self._polar_off and not key.startswith("plane"):
             result.words += self.target.writing.end.split()
