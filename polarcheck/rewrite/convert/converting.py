@@ -27,7 +27,7 @@ from polarcheck.rewrite.writing.new_blocks import (
 )
 from polarcheck.rewrite.writing.original import Original
 from polarcheck.rewrite.writing.outcome import Decision, Figure, Outcome, Refusal, RefusedError
-from polarcheck.rewrite.writing.reading_back import ReadBack, read_back, require_equal
+from polarcheck.rewrite.writing.reading_back import OF_ORDERS, ReadBack, read_back, require_equal
 from polarcheck.rewrite.writing.style import Style
 from polarcheck.rewrite.writing.style_of import style_of
 from polarcheck.rules.editing import Replace
@@ -81,10 +81,14 @@ def converted(original: Original, target: Settings, accepted: Container[str] = (
         dict.fromkeys((*outside.decisions, *inside.decisions, *marks.decisions)), key=lambda decision: decision.line
     )
     # What an M code is that is to be decided says whether the live tool runs.
-    if result.open_orders and not any(_M_CODE.match(decision.text) for decision in decisions):
-        edits += _remarks(original, target, style, result.open_orders)
+    is_explained = any(_M_CODE.match(decision.text) for decision in decisions)
+    open_orders = [
+        order for order in result.open_orders if not (is_explained and order.text.partition(" ")[0] in OF_ORDERS)
+    ]
+    if open_orders:
+        edits += _remarks(original, target, style, open_orders)
         data, origin = with_edits(original, edits)
-        decisions += [Decision(error.line, error.text) for error in result.open_orders]
+        decisions += [Decision(order.line, order.text) for order in open_orders]
     figures = [
         Figure("blocks before", float(len(trace.text.blocks))),
         Figure("blocks after", float(len(result.new.trace.text.blocks))),

@@ -29,12 +29,16 @@ from polarcheck.rules.rule import Rule, load_all
 #: Times of a section that differ by less than this share, or by less than this [s], are the same.
 _SAME_SHARE, _SAME_TIME = 2e-3, 0.02
 #: Rules about orders to spindles, the C axis and tools: what another lathe needs is to be decided.
-_OF_ORDERS = frozenset(
+OF_ORDERS = frozenset(
     (
         *("c-axis-clamped-in-polar", "c-axis-not-engaged", "c-axis-not-referenced", "live-tool-never-stopped"),
         *("live-tool-stopped-in-cut", "live-tool-without-speed", "main-spindle-running-at-entry"),
         *("no-tool-offset-at-entry", "spindle-code-in-polar"),
     )
+)
+#: Rules about limits of a lathe, by which the same path is too fast on another one: notes.
+_OF_LIMITS = frozenset(
+    ("c-acceleration-above-limit", "c-feed-above-limit", "path-near-center", "x-acceleration-above-limit")
 )
 #: Chords of arcs and the end of the search add no more than this share to a measured distance.
 _SHARE_OF_CHORDS = 0.05
@@ -55,8 +59,8 @@ class ReadBack(msgspec.Struct, frozen=True):
     new: the program as it is read.
     differences: what differs, with lines of the original; empty if the new program may be written.
     deviation: the largest distance of the tool center paths [mm].
-    open_orders: errors about spindles, the C axis or tools, which the user has to decide.
-    notes: what could not be compared and does not matter.
+    open_orders: findings about spindles, the C axis or tools, and warnings, which the user has to decide.
+    notes: what could not be compared and does not matter, and lesser findings that the original does not have.
     """
 
     new: Original
@@ -82,7 +86,8 @@ def read_back(
 
     Compared are, up to the least increment, the path of the tool center on the part with Z, its order, F, C, the state
     at the beginning of each section, the time of each section, the moves outside of sections, dwells, and what codes
-    mean by the lists of both profiles. A check finds no error that the original does not have.
+    mean by the lists of both profiles. A check finds no error that the original does not have. What else it finds on
+    another lathe is to be decided, or a note.
 
     settings: of the new program. origin: for each of its lines the line in the original, from 1.
     decided: lines of the original that are comments in the new program, for somebody to decide. Their moves and orders
@@ -95,15 +100,25 @@ def read_back(
     """
     new = read(original.path, data, settings)
     result = _comparison(original, new, left_out=_without_moves(new, origin, decided), is_rewritten=True)
+    is_same_machine = original.settings.machine == settings.machine
     differences = [*_of_comparison(result, decided, rapid_as_line, other_states, origin)]
     differences += [] if rapid_as_line else _times(result)
-    if original.settings.machine != settings.machine:
+    if not is_same_machine:
         differences += _changed_meanings(original.trace, new.trace, decided, added_speeds, origin)
-    errors = list(_errors(original, new, origin))
-    # The original may start a live tool by a code that its profile does not name, or leave it to the operator.
-    open_orders = [refusal for rule, refusal in errors if rule.name in _OF_ORDERS]
-    differences += [refusal for _, refusal in errors if refusal not in open_orders]
-    notes = [reason.reason for reason in result.not_compared if not reason.matters and "as programmed" in reason.reason]
+    open_orders, notes = list[Refusal](), list[str]()
+    lowest = Severity.ERROR if is_same_machine else Severity.NOTE
+    for rule, severity, refusal in _added_findings(original, new, origin, lowest):
+        is_limit = rule.name in _OF_LIMITS and not is_same_machine
+        # The original may start a live tool by a code that its profile does not name, or leave it to the operator.
+        if rule.name in OF_ORDERS or (severity == Severity.WARNING and not is_limit):
+            open_orders.append(refusal)
+        elif severity == Severity.ERROR and not is_limit:
+            differences.append(refusal)
+        else:
+            notes.append(f"line {refusal.line}: {refusal.text}")
+    notes += [
+        reason.reason for reason in result.not_compared if not reason.matters and "as programmed" in reason.reason
+    ]
     return ReadBack(new, differences[:_LISTED], result.deviation or 0.0, notes, open_orders)
 
 
@@ -162,7 +177,7 @@ def read_back_on_part(
         differences.append(Refusal(line, f"{text} (line {new_line} of the result)"))
     differences += changed_orders(original.trace, new.trace, old_path, new_path, tolerance)
     notes: dict[str, str] = {}
-    for rule, refusal in _errors(original, new, origin):
+    for rule, _, refusal in _added_findings(original, new, origin, Severity.ERROR):
         if rule.group in noted:
             notes.setdefault(rule.name, f"line {refusal.line}: {refusal.text}")
         else:
@@ -282,10 +297,12 @@ def _times(result: Comparison) -> Iterator[Refusal]:
             yield Refusal(section.old.line, f"the section takes {was:.2f} s, and would take {is_now:.2f} s")
 
 
-def _errors(original: Original, new: Original, origin: Sequence[int]) -> Iterator[tuple[Rule, Refusal]]:
-    """Errors of a check that the original does not have, with their rules."""
+def _added_findings(
+    original: Original, new: Original, origin: Sequence[int], lowest: Severity
+) -> Iterator[tuple[Rule, Severity, Refusal]]:
+    """Findings of a check from a severity up that the original does not have, with their rules and severities."""
     rules = load_all()
-    before, after = (_errors_of(program) for program in (original, new))
+    before, after = (_findings_of(program, lowest) for program in (original, new))
     counts_before = Counter(finding.rule for finding in before)
     lines = {(finding.rule, finding.line) for finding in before}
     of_rule: dict[str, list[Finding]] = {}
@@ -295,15 +312,15 @@ def _errors(original: Original, new: Original, origin: Sequence[int]) -> Iterato
         added = [finding for finding in findings if (rule, _line(origin, finding.line)) not in lines]
         for finding in added[: max(len(findings) - counts_before[rule], 0)]:
             text = f"{finding.rule} in line {finding.line} of the result: {finding.message}"
-            yield rules[rule], Refusal(_line(origin, finding.line), text)
+            yield rules[rule], SEVERITIES[finding.severity], Refusal(_line(origin, finding.line), text)
 
 
 def _line(origin: Sequence[int], line: int) -> int:
     return origin[line - 1] if 0 < line <= len(origin) else 0
 
 
-def _errors_of(program: Original) -> list[Finding]:
+def _findings_of(program: Original, lowest: Severity) -> list[Finding]:
     settings = program.settings
     report = check_runs([("", program.tables)], list(load_all().values()), settings.severities, settings.inline)
     findings = [flattened for finding in report.findings for flattened in (finding, *finding.follows)]
-    return [finding for finding in findings if SEVERITIES[finding.severity] >= Severity.ERROR]
+    return [finding for finding in findings if SEVERITIES[finding.severity] >= lowest]
