@@ -26,10 +26,22 @@ if TYPE_CHECKING:
     from polarcheck.api.feed_tables import feeds_text as feeds_text
     from polarcheck.api.lathes import machine as machine
     from polarcheck.api.lathes import machine_names as machine_names
+    from polarcheck.api.pages import plot as plot
+    from polarcheck.api.pages import plot_text as plot_text
     from polarcheck.api.parts import MadePart as MadePart
     from polarcheck.api.parts import part as part
     from polarcheck.api.parts import part_text as part_text
     from polarcheck.api.rendering import render as render
+    from polarcheck.api.rewritings import Rewritten as Rewritten
+    from polarcheck.api.rewritings import compensate as compensate
+    from polarcheck.api.rewritings import compensate_text as compensate_text
+    from polarcheck.api.rewritings import convert as convert
+    from polarcheck.api.rewritings import convert_text as convert_text
+    from polarcheck.api.rewritings import roll as roll
+    from polarcheck.api.rewritings import roll_text as roll_text
+    from polarcheck.api.rewritings import unroll as unroll
+    from polarcheck.api.rewritings import unroll_text as unroll_text
+    from polarcheck.api.traces import Move as Move
     from polarcheck.api.traces import Trace as Trace
     from polarcheck.api.traces import trace as trace
     from polarcheck.api.traces import trace_text as trace_text
@@ -54,15 +66,25 @@ _MODULES = {
     "check_text": "api.checks",
     "compare": "api.comparisons",
     "compare_text": "api.comparisons",
+    "compensate": "api.rewritings",
+    "compensate_text": "api.rewritings",
+    "convert": "api.rewritings",
+    "convert_text": "api.rewritings",
     "feeds": "api.feed_tables",
     "feeds_text": "api.feed_tables",
     "machine": "api.lathes",
     "machine_names": "api.lathes",
     "part": "api.parts",
     "part_text": "api.parts",
+    "plot": "api.pages",
+    "plot_text": "api.pages",
     "render": "api.rendering",
+    "roll": "api.rewritings",
+    "roll_text": "api.rewritings",
     "trace": "api.traces",
     "trace_text": "api.traces",
+    "unroll": "api.rewritings",
+    "unroll_text": "api.rewritings",
     "Comparison": "rewrite.compare.comparison_report",
     "Feeds": "api.feed_tables",
     "Certificate": "rewrite.certify.results",
@@ -70,8 +92,10 @@ _MODULES = {
     "Finding": "foundation.finding",
     "Machine": "program.machines.machine",
     "MadePart": "api.parts",
+    "Move": "api.traces",
     "Part": "program.machines.part_keys",
     "Report": "foundation.finding",
+    "Rewritten": "api.rewritings",
     "Stock": "program.machines.job",
     "Tool": "program.machines.job",
     "Trace": "api.traces",

@@ -453,6 +453,76 @@ def test_a_trace_of_several_channels() -> None:
     assert sorted(set(trace.channel.tolist())) == ["$1", "$2"]
 
 
+def test_a_trace_gives_moves_and_columns_of_one_dimension() -> None:
+    trace = polarcheck.trace("sample_programs/hexagon.nc")
+    moves = list(trace)
+    assert [move.line for move in moves] == trace.line.tolist()
+    assert repr(trace[-1]) == repr(moves[-1]) == repr(trace[np.int64(len(trace) - 1)])
+    assert [move.z for move in trace[2:4]] == [tuple(pair) for pair in trace.z[2:4].tolist()]
+    with pytest.raises(IndexError):
+        trace[len(trace)]
+    columns = trace.to_dict()
+    assert {column.shape for column in columns.values()} == {(len(trace),)}
+    assert np.array_equal(columns["end_x"] + 1j * columns["end_c"], trace.end)
+    assert np.array_equal(columns["c_to"], trace.c_axis[:, 1])
+
+
+@looped("select", [lambda trace: trace, lambda trace: trace[1:], lambda trace: trace[trace.c_feed > 0]])
+def test_columns_are_read_only(select: Any) -> None:
+    trace = select(polarcheck.trace("sample_programs/hexagon.nc"))
+    for column in (*(getattr(trace, name) for name in trace._columns()), *trace.to_dict().values()):
+        with pytest.raises(ValueError, match="read-only"):
+            column[:1] = column[:1]
+
+
+# ---- programs written anew ----
+
+
+@pytest.mark.ci
+def test_the_functions_write_what_the_commands_write(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    source = ROOT / "sample_programs" / "hexagon.nc"
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "a.nc").write_bytes(source.read_bytes())
+    tool: dict[str, Any] = {"tools": {1: 4.0}}
+    cases: list[tuple[Any, list[str]]] = [
+        (polarcheck.convert("a.nc", to="okuma-osp", **tool), ["convert", "--to", "okuma-osp"]),
+        (polarcheck.convert_text(source.read_bytes(), to="okuma-osp", **tool), ["convert", "--to", "okuma-osp"]),
+        (polarcheck.unroll("a.nc", feed="per-minute", chord_error=0.05, **tool),
+         ["unroll", "--feed", "per-minute", "--chord-error", "0.05"]),
+        (polarcheck.compensate("a.nc", center=True, **tool), ["compensate", "--center"]),
+    ]  # fmt: skip
+    for outcome, arguments in cases:
+        command, *rest = arguments
+        done = CliRunner().invoke(main, [command, "a.nc", *rest, "--tool", "1:radius=4"])
+        assert done.stdout_bytes == outcome.data
+        assert done.exit_code == bool(outcome.decisions)
+    plain = polarcheck.unroll_text(source.read_text("utf-8"), feed="per-minute", chord_error=0.05, **tool)
+    assert b"G12.1" in polarcheck.roll_text(plain.data, feed="per-minute", **tool).data
+    page = polarcheck.plot("a.nc")
+    assert "<html" in page
+    assert polarcheck.plot_text(source.read_text("utf-8"), name="a.nc") == page
+
+
+@looped(
+    ("call", "message"),
+    [
+        (lambda: polarcheck.convert_text("M30", to="okum"), "okuma-osp"),
+        (lambda: polarcheck.convert_text("M30", to=3), "to: expected the name of a lathe"),  # type: ignore[arg-type]
+        (lambda: polarcheck.convert_text("M30", to="fanuc", accept="control.y"), "accept: expected one of"),
+        (lambda: polarcheck.unroll_text("M30", chord_error=0), "chord_error: expected a length above 0"),
+        (lambda: polarcheck.unroll_text("M30", feed="slow"), "feed: expected one of"),  # type: ignore[arg-type]
+        (lambda: polarcheck.unroll_text("M30"), "there is no polar section in it"),
+        (lambda: polarcheck.roll_text("M30", keep_c=1), "keep_c: expected True or False"),  # type: ignore[arg-type]
+        (lambda: polarcheck.compensate_text("M30", center=True, side="left"), "with center the program says"),
+        (lambda: polarcheck.plot_text("M30", tols={}), "unknown keyword tols"),  # type: ignore[call-arg]
+    ],
+)
+def test_a_wrong_argument_of_a_rewriter_is_named(call: Any, message: str) -> None:
+    with pytest.raises(polarcheck.errors.PolarcheckError, match=re.escape(message)) as error:
+        call()
+    assert "\n" not in str(error.value)
+
+
 # ---- what is public ----
 
 
@@ -486,7 +556,7 @@ def test_type_checkers_and_python_see_the_same_names() -> None:
 def test_no_module_has_the_name_of_a_function() -> None:
     functions = {name for name in polarcheck.__all__ if inspect.isfunction(getattr(polarcheck, name))}
     modules = {path.stem for path in (ROOT / "polarcheck").iterdir()}
-    assert len(functions) >= 11
+    assert len(functions) >= 21
     assert not functions & modules
 
 

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
-from typing import Literal, TypeAlias, Unpack
+from collections.abc import Iterator, Sequence
+from typing import Any, Literal, Self, TypeAlias, Unpack, overload
 
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
@@ -26,12 +27,41 @@ _STATES = {kind: motion for motion, kind in KINDS.items()}
 _SAGITTA = 4
 
 
+class Move(msgspec.Struct, frozen=True, kw_only=True):
+    """One move of a trace: its value of each column of `Trace`, as a number, a text, or two numbers (from and to)."""
+
+    line: int
+    section: int
+    kind: str
+    start: complex
+    end: complex
+    center: complex
+    z: tuple[float, float]
+    path: str
+    radius: float
+    feed: float
+    x_axis: tuple[float, float]
+    c_axis: tuple[float, float]
+    nearest: float
+    c_feed: float
+    x_feed: float
+    c_acceleration: float
+    x_acceleration: float
+    time: float
+    channel: str
+
+
+#: The names of the two columns that each column of pairs, or of points, becomes.
+_OF_PAIRS = {"z": ("z_before", "z_after"), "x_axis": ("x_from", "x_to"), "c_axis": ("c_from", "c_to")}
+
+
 class Trace(Table, frozen=True, eq=False):
     """
     The moves of a program inside its polar sections, in order: a column for each name of the JSON lines of the trace.
 
-    len(trace) is the number of moves; trace[mask], trace[rows] and trace[5:9] are traces of these moves alone. Unknown
-    numbers are NaN. Plane points are complex, x + 1j*c, X as a radius. The columns of n moves are:
+    len(trace) is the number of moves; trace[mask], trace[rows] and trace[5:9] are traces of these moves alone; trace[3]
+    is a `Move`, and so is each that `for move in trace` gives. Columns are read only. Unknown numbers are NaN. Plane
+    points are complex, x + 1j*c, X as a radius. The columns of n moves are:
 
     line: int64[n], the line of the block; in a program called from another file, that of the call.
     section: int64[n], the number of the polar section, from 0 in each channel.
@@ -83,6 +113,50 @@ class Trace(Table, frozen=True, eq=False):
     file: str
     machine: str
     missing: str
+
+    def __post_init__(self) -> None:
+        for name in self._columns():
+            column = getattr(self, name)
+            if column.flags.writeable:
+                column.setflags(write=False)
+
+    @overload
+    def __getitem__(self, rows: int) -> Move: ...
+
+    @overload
+    def __getitem__(self, rows: NDArray[np.integer[Any]] | NDArray[np.bool_] | slice) -> Self: ...
+
+    def __getitem__(self, rows: Any) -> Move | Self:
+        """Return a move by its number, or the trace of these moves: their numbers, a boolean per move, or a slice."""
+        if not isinstance(rows, int | np.integer):
+            return super().__getitem__(rows)
+        number = range(len(self))[rows]
+        return next(iter(super().__getitem__(slice(number, number + 1))))
+
+    def __iter__(self) -> Iterator[Move]:
+        names = self._columns()
+        for values in zip(*(getattr(self, name).tolist() for name in names), strict=True):
+            fields: dict[str, Any] = dict(zip(names, values, strict=True))
+            pairs = {name: tuple(fields[name]) for name in _OF_PAIRS}
+            yield Move(**{**fields, **pairs})
+
+    def to_dict(self) -> dict[str, NDArray[Any]]:
+        """
+        Return the columns as arrays of one dimension each, for a data frame: `pandas.DataFrame(trace.to_dict())`.
+
+        A point is two columns, `start_x` and `start_c` [mm]; z is `z_before` and `z_after`, x_axis `x_from` and `x_to`,
+        c_axis `c_from` and `c_to`. The others have their names, and all n elements.
+        """
+        columns: dict[str, NDArray[Any]] = {}
+        for name in self._columns():
+            column = getattr(self, name)
+            if column.dtype == complex:
+                columns |= {f"{name}_x": column.real, f"{name}_c": column.imag}
+            elif column.ndim > 1:
+                columns |= dict(zip(_OF_PAIRS[name], column.T, strict=True))
+            else:
+                columns[name] = column
+        return columns
 
     def polyline(self, tolerance: float = 0.01) -> Points:
         """
