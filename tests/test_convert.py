@@ -109,6 +109,8 @@ HAAS = (
     .replace(" C-20.785", " Y-20.785")
     .replace("N160 C0", "N160 Y0")
 )
+#: Without a point F may count 0.001 mm.
+HAAS = re.sub(r"F(\d+)\n", r"F\1.\n", HAAS)
 
 
 REMARK = "(DECIDE: THE C AXIS IS NOT ENGAGED M154 IS MISSING BEFORE G112)\r\n"
@@ -179,7 +181,7 @@ def test_blanks_line_ends_letters_and_comments_stay() -> None:
     )
     assert outcome.data.decode("latin-1") == program.replace(
         "g12.1\r\ng1x40.", f"{REMARK}g17\r\ng112\r\ng1x20."
-    ).replace("c5.", "y5.").replace("g13.1", "g113\r\ng18")
+    ).replace("c5.f200", "y5.f200.").replace("g13.1", "g113\r\ng18")
 
 
 @pytest.mark.nightly
@@ -350,7 +352,7 @@ def test_f_is_that_of_the_way_that_the_control_measures() -> None:
     """Haas measures X, Y and Z: sqrt(3^2 + 4^2) of 4 on the plane, so that 200 there is 250 along the way."""
     program = section("G1 X60. C4. Z-1. F200", "G1 X40. C4.", "G13.1")
     program = program.replace("G13.1\nG13.1", "G13.1")
-    assert "G1 X30. Y4. Z-1. F250\n" in convert(program, SOURCE, "haas-lathe").data.decode()
+    assert "G1 X30. Y4. Z-1. F250.\n" in convert(program, SOURCE, "haas-lathe").data.decode()
 
 
 def test_rapid_traverse_is_a_line_where_the_mode_has_none_and_f_of_before_is_written_again() -> None:
@@ -404,7 +406,7 @@ def test_macros_stay_where_their_words_count_alike() -> None:
         "X50. C0", "END1", "Z2.",
     )  # fmt: skip
     text = convert(program, SOURCE, "haas-lathe").data.decode()
-    assert "WHILE[#1 LT 3]DO1\n#1=#1+1\nG1 Z[-2.*#1] F100\nX20. Y5. F200\nX25. Y0\nEND1\nZ2.\n" in text
+    assert "WHILE[#1 LT 3]DO1\n#1=#1+1\nG1 Z[-2.*#1] F100.\nX20. Y5. F200.\nX25. Y0\nEND1\nZ2.\n" in text
     assert "X[#1+39.] is computed, and has to be another number there: write numbers" in str(
         refused(program.replace("X40.", "X[#1+39.]"), SOURCE, "haas-lathe")
     )
@@ -762,3 +764,16 @@ def test_no_tool_is_the_end_of_its_offset() -> None:
     program = "%\nO1\nG21 G98\nT0808\nG0 X60. Z2.\nT0000\nT0303\nG0 X50.\nT0300\nM30\n%\n"
     words = re.findall(r"\b[TD]\d+(?= |\n)", convert(program, "fanuc-30i", "siemens-transmit").data.decode())
     assert words == ["T8", "D1", "D0", "T3", "D1", "D0"]
+
+
+@pytest.mark.ci
+@looped("target", ["okuma-osp", "haas-lathe", "doosan", "takisawa"])
+def test_f_of_plain_moves_of_c_is_decided_where_it_may_count_otherwise(target: str) -> None:
+    """Once for each F; not where both controls count alike, nor beside moves without C, nor in the mode."""
+    moves = "G0 X50. C30.\nG1 X40. C60. F200\nX30. C90.\nG1 Z-1. F80\nG1 C120. F90\nX40. F70\nX60. C120.\n"
+    outcome = convert(HEAD + "M76\n" + MILLED + moves + "M75\n" + END, "fanuc-30i", target)
+    expected = [] if target == "takisawa" else [(12, "F200"), (15, "F90")]
+    found = [
+        (decision.line, decision.text[:4].rstrip(":")) for decision in outcome.decisions if decision.text[0] == "F"
+    ]
+    assert found == expected

@@ -51,6 +51,7 @@ class Writing(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     behind_end: blocks right behind that
     rapid_in_mode: G0 is written in the mode; where not, a line by rapid_feed stands in its place
     rapid_feed: F of that line [mm/min]
+    feed_point: F is written with a point, without which the control may count parts of a unit
     arcs_by: center, radius: what may be written beside the end of an arc; the first where the program does not decide
     arc_radius: word of the radius of an arc, as R or CR=
     arc_split: largest angle of an arc that is written, within arcs.sweep_limit [deg]
@@ -72,6 +73,7 @@ class Writing(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     behind_end: list[Plain] = []
     rapid_in_mode: bool = False
     rapid_feed: NotNegative
+    feed_point: bool = False
     arcs_by: Annotated[list[Literal["center", "radius"]], msgspec.Meta(min_length=1)]
     arc_radius: Plain
     arc_split: Annotated[float, msgspec.Meta(gt=0, le=360)]

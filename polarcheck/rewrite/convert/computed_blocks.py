@@ -78,6 +78,8 @@ class ComputedBlocks:
             raise refused_at(
                 self.trace, row, f"{written} is computed, and has to be another number there: write numbers"
             )
+        if letter == "F" and number is not None:
+            number = self.measures.with_feed_point(number)
         return f"{name}{'=' * (len(name) > 1 and not name.endswith('='))}{written[1:] if number is None else number}"
 
     def _counted(self, row: int, letter: str, pen: Pen) -> tuple[str, Fraction]:

@@ -165,6 +165,10 @@ class Measures:
             None if number is None or len(number) > _LONGEST else rescaled(number, ratio, _FEED_STEP, needs_point=True)
         )
 
+    def with_feed_point(self, number: str) -> str:
+        """The number of an F with a point, where the other machine may count parts of a unit without one."""
+        return f"{number}." if number.isdigit() and self.target.writing.feed_point else number
+
     def place(self, row: int, axis: str) -> str | None:
         """Where an axis stands at the end of a row, as the other machine reads it; None where that is not known."""
         path = self.trace.path

@@ -9,6 +9,7 @@ import numpy as np
 
 from polarcheck.columns.filling import before
 from polarcheck.columns.trace import Trace
+from polarcheck.foundation.states import FeedMode, Motion
 from polarcheck.program.machines.machine import Machine
 from polarcheck.rewrite.convert.measures import AxisWord, Measures
 from polarcheck.rewrite.convert.number_text import number_of
@@ -51,6 +52,10 @@ class OfLathe:
         if self._lists["coordinate_setting"][row] and self.trace.blocks.has("S")[row]:
             result.append(f"S{self.trace.blocks.word('S')[row]:g}: give the limit of the spindle speed of {title}")
         result += [f"{code}: set this work offset on {title}" for code in self._first_offsets.get(row, ())]
+        if row in self._rotary_feeds:
+            result.append(
+                f"{self._rotary_feeds[row]}: where C moves, F counts otherwise on {title}, or nothing says how"
+            )
         if row in self._changes:
             result.append(f"the tool changes at {self._changes[row]}: choose where the turret of {title} turns free")
         return result
@@ -74,6 +79,23 @@ class OfLathe:
                 seen.add(written)
                 result.setdefault(row, []).append(written)
         return result
+
+    @cached_property
+    def _rotary_feeds(self) -> dict[int, str]:
+        """The first row outside of sections with each F by which C moves, where it may count otherwise -> its F."""
+        trace, ours, theirs = self.trace, self.trace.machine.feed.with_rotary, self.target.feed.with_rotary
+        if ours and ours == theirs:
+            return {}
+        letters = "".join(trace.machine.polar.rotary_words)
+        at_feed = np.isin(trace.axes.motion, (Motion.LINE, Motion.CW, Motion.CCW)) & trace.axes.moves
+        other = (trace.modal.state("feed_mode") == FeedMode.INVERSE_TIME) | trace.modal.in_cycle
+        moves_c = trace.blocks.has(*letters) & (trace.mode.whole_section < 0) & at_feed & ~other
+        rows = np.flatnonzero(moves_c & (trace.path.c_angle != before(trace.path.c_angle, trace.blocks.starts, np.nan)))
+        first: dict[str, int] = {}
+        for row in rows.tolist():
+            number = float(trace.feedrate.feed_number[row] / trace.lengths.feed_scale[row])
+            first.setdefault("F" if number != number else f"F{number:g}", row)
+        return {row: text for text, row in first.items()}
 
     @cached_property
     def _changes(self) -> dict[int, str]:

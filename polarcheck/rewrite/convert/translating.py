@@ -400,7 +400,7 @@ class Translation:
         ratio = self.measures.unit_ratio(row, of_feed=True)
         written = self.measures.written(index)
         if ratio == 1 or self.trace.modal.state("feed_mode")[row] == FeedMode.INVERSE_TIME:
-            result.words.append(written)
+            result.words.append(written[:1] + self.measures.with_feed_point(written[1:]))
             return
         text = self.measures.feed(index, ratio)
         if text is None:

@@ -29,6 +29,7 @@ class Numbers:
     ) -> None:
         self.machine, self.style, self.inch = machine, style, inch
         self.feed_inch = inch if feed_inch is None else feed_inch
+        self.feed_point = style.feed_point or machine.writing.feed_point
         self.line = 0
         control = machine.control
         self.scale = MM_PER_INCH if inch else 1.0
@@ -61,7 +62,7 @@ class Numbers:
 
     def rate(self, value: float) -> str:
         """F as a number in the units of the program, be it 1/min or deg/min: four decimals at most."""
-        return self._checked(f"{value:.4f}", self.style.feed_decimals, self.style.feed_point, counts=self.feed_inch)
+        return self._checked(f"{value:.4f}", self.style.feed_decimals, self.feed_point, counts=self.feed_inch)
 
     def feed(self, feed: float) -> str:
         """F [mm/min] as it is written, in mm or inch per minute."""
@@ -69,7 +70,7 @@ class Numbers:
         text = f"{value:.{_FEED_DECIMALS[self.feed_inch]}f}"
         if not float(text) and feed > 0:
             text = f"{value:.9f}"
-        return self._checked(text, self.style.feed_decimals, self.style.feed_point, counts=self.feed_inch)
+        return self._checked(text, self.style.feed_decimals, self.feed_point, counts=self.feed_inch)
 
     def code(self, code: str) -> str:
         """A G or M code as it is written: G1 or G01."""
