@@ -32,6 +32,7 @@ TABLES = {
 NOT_CHECKED = {
     "macro": "each of its keys has its program in test_macro_keys",
     "writing": "no check reads how programs are written: test_pen",
+    "control.z_into_part": "test_z_into_part",
     "feed.with_rotary": "no check reads F outside of the mode: test_unroll",
     "alarm_codes": "test_an_alarm_is_shown_at_codes_that_its_text_names",
     "notes": "text for `polarcheck machines` and the page of controls",

@@ -25,7 +25,8 @@ def message(
 ) -> str:
     """The one message of a rule."""
     report = report_of(program, machine, *tools, changes=changes, job=job)
-    found = [finding.message for finding in report.findings if finding.rule == rule]
+    every = [one for finding in report.findings for one in (finding, *finding.follows)]
+    found = [finding.message for finding in every if finding.rule == rule]
     assert len(found) == 1
     return found[0]
 

@@ -24,6 +24,8 @@ UnrolledFeed: TypeAlias = RotaryFeed | Literal["stepwise"]
 
 #: The largest lengths that the commands take [mm].
 _LARGEST_LENGTH = 25.4
+#: What stands where no length is given [mm].
+_CHORD_ERROR, _TOLERANCE = 0.005, 0.01
 _A_LENGTH = "a length above 0 and up to 25.4 [mm]"
 
 
@@ -113,7 +115,7 @@ def _converted(call: Call, program: Program, to: PathName, accept: str | Iterabl
 def unroll(
     path: PathName,
     *,
-    chord_error: float = 0.005,
+    chord_error: float = _CHORD_ERROR,
     feed: UnrolledFeed | None = None,
     max_size: int = LARGEST,
     **keywords: Unpack[ExecutionKeywords],
@@ -135,7 +137,7 @@ def unroll(
 def unroll_text(
     text: str | bytes,
     *,
-    chord_error: float = 0.005,
+    chord_error: float = _CHORD_ERROR,
     feed: UnrolledFeed | None = None,
     name: str = NAMELESS,
     **keywords: Unpack[ExecutionKeywords],
@@ -154,7 +156,12 @@ def unroll_text(
 def _unrolled(call: Call, program: Program, chord_error: float, feed: str | None) -> Rewritten:
     from polarcheck.rewrite.unroll.unrolling import FEEDS, Unrolling, unrolled
 
-    within = length(f"{call.function}: chord_error", chord_error, _LARGEST_LENGTH, _A_LENGTH)
+    within = length(
+        f"{call.function}: chord_error",
+        _CHORD_ERROR if chord_error is None else chord_error,
+        _LARGEST_LENGTH,
+        _A_LENGTH,
+    )
     options = Unrolling(within, choice(f"{call.function}: feed", feed, FEEDS, ""))
     return _rewritten(program, lambda original: unrolled(original, options))
 
@@ -163,7 +170,7 @@ def _unrolled(call: Call, program: Program, chord_error: float, feed: str | None
 def roll(
     path: PathName,
     *,
-    tolerance: float = 0.01,
+    tolerance: float = _TOLERANCE,
     feed: RotaryFeed | None = None,
     keep_c: bool = False,
     max_size: int = LARGEST,
@@ -187,7 +194,7 @@ def roll(
 def roll_text(
     text: str | bytes,
     *,
-    tolerance: float = 0.01,
+    tolerance: float = _TOLERANCE,
     feed: RotaryFeed | None = None,
     keep_c: bool = False,
     name: str = NAMELESS,
@@ -207,9 +214,11 @@ def roll_text(
 def _rolled(call: Call, program: Program, tolerance: float, feed: str | None, keep_c: bool) -> Rewritten:
     from polarcheck.rewrite.roll.rolling import Rolling, rolled
 
-    within = length(f"{call.function}: tolerance", tolerance, _LARGEST_LENGTH, _A_LENGTH)
+    within = length(
+        f"{call.function}: tolerance", _TOLERANCE if tolerance is None else tolerance, _LARGEST_LENGTH, _A_LENGTH
+    )
     meaning = choice(f"{call.function}: feed", feed, WITH_ROTARY, "")
-    options = Rolling(within, meaning, flag(f"{call.function}: keep_c", keep_c))
+    options = Rolling(within, meaning, flag(f"{call.function}: keep_c", False if keep_c is None else keep_c))
     return _rewritten(program, lambda original: rolled(original, options))
 
 
@@ -261,7 +270,7 @@ def _compensated(call: Call, program: Program, center: bool, side: str | None) -
     from polarcheck.rewrite.compensate.contours import SIDES
 
     options = Compensating(choice(f"{call.function}: side", side, SIDES, ""))
-    if not flag(f"{call.function}: center", center):
+    if not flag(f"{call.function}: center", False if center is None else center):
         return _rewritten(program, lambda original: compensated(original, options))
     if options.side:
         raise UsageError(f"{call.function}: side is for contours beside a path: with center the program says its sides")

@@ -11,8 +11,6 @@ from typing import TypeVar
 
 import msgspec
 
-from polarcheck.checking.builders_switch import RULE as RULE_OF_SWITCH
-from polarcheck.checking.builders_switch import supposition, with_supposed
 from polarcheck.checking.called_files import in_the_file
 from polarcheck.checking.channel_reports import united
 from polarcheck.checking.engine import Engine, in_order, with_following
@@ -46,6 +44,8 @@ from polarcheck.rules.rule import Hits, Rule, load_all
 from polarcheck.rules.tables import Tables
 
 _SKIP = re.compile(r"\s*(?:N\s*\d+\s*)?/", re.IGNORECASE)
+#: The rule that reports codes that may be a builder's own switches of the mode.
+_OF_SWITCH = "polar-switch-unknown"
 #: Areas checked in every program.
 LOOKED_AT = ("text", "flow", "position")
 
@@ -168,7 +168,9 @@ def _check_channel(
             rest = {"not_evaluated": [], "looked_at": [], "verdict": verdict(report.findings, [])}
             return msgspec.structs.replace(report, **rest), engines
     report, engines = _check_runs_of_channel(channel, rules, severities, inline)
-    if any(finding.rule == RULE_OF_SWITCH for finding in report.findings):
+    if any(finding.rule == _OF_SWITCH for finding in report.findings):
+        from polarcheck.checking.builders_switch import supposition, with_supposed  # imported late: it is rare
+
         for supposed in filter(None, (supposition(tables) for _, tables in channel[:1])):
             of_mode, more = _check_runs_of_channel(supposed.channel, rules, severities, inline)
             engines = [*engines, *more]

@@ -8,6 +8,7 @@ checked. An edit explains the findings that are gone then, if no other finding h
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
@@ -38,6 +39,9 @@ _AS_LIKELY, _NAMED = 0.5, 2
 
 #: What is to be done where nothing is to be written.
 _REMEDIES = {"twice": "without it", "order": "behind the next one"}
+
+#: A word with a number.
+_WORD = re.compile(r"([A-Z]+=?)([-+]?(?:\d+\.?\d*|\.\d+))")
 
 #: A rule and a line at which it fires.
 _Symptom = tuple[str, int]
@@ -194,7 +198,7 @@ def _under(engine: Engine, findings: Sequence[Finding], explanation: _Explained)
         return list(findings)
     line = int(engine.trace.blocks.line[explanation.row])
     others = [finding for finding in findings if finding not in gone]
-    there = [finding for finding in gone if finding.line == line and finding.rule != REPORTS]
+    there = [finding for finding in gone if finding.line == line and _may_lead(finding, explanation)]
     head = _with_remedy(engine, there[0], explanation) if there else _new(engine, explanation)
     symptoms = [
         symptom
@@ -206,9 +210,20 @@ def _under(engine: Engine, findings: Sequence[Finding], explanation: _Explained)
     return [*others, with_following(head, [*head.follows, *symptoms])]
 
 
+def _may_lead(finding: Finding, explanation: _Explained) -> bool:
+    """A finding in the block of the edit may lead: a symptom, or an explanation with the same words."""
+    needed = str(finding.values.get("word_needed", ""))
+    return finding.rule != REPORTS or _numbers(needed) == _numbers(explanation.likely.edit.text)
+
+
+def _numbers(words: str) -> list[tuple[str, float]]:
+    return [(letter, float(number)) for letter, number in _WORD.findall(words)]
+
+
 def _with_remedy(engine: Engine, finding: Finding, explanation: _Explained) -> Finding:
     """The finding, which also says what the edit is."""
-    if (text := explanation.likely.edit.text) and text in finding.message:
+    text = explanation.likely.edit.text
+    if finding.rule == REPORTS or (text and text in finding.message):
         return finding
     message = f"{finding.message}; {_remedies(engine, explanation)} {explanation.likely.becomes}"
     return msgspec.structs.replace(finding, message=message)

@@ -117,6 +117,12 @@ def _levels(begun: str) -> Iterator[Item]:
         yield from (_item(f"{item.value}=", item.help or "", "part") for item in _rules(name))
 
 
+def _in_doubt(begun: str) -> Iterator[Item]:
+    from polarcheck.rewrite.convert.doubtful_values import KEYS
+
+    yield from (_item(key) for key in KEYS if key.startswith(begun))
+
+
 def _outputs(begun: str) -> Iterator[Item]:
     """Yield formats, then files; a drive letter after the format belongs to the file."""
     from polarcheck.reports import formats
@@ -177,6 +183,7 @@ OPTIONS: dict[str, Values] = {
     "FILE.dxf": _drawings,
     "FOLDER": _folders,
     "FORMAT:FILE": _outputs,
+    "KEY": _in_doubt,
     "KEY=VALUE": _keys,
     "LAYER": _nothing,
     "LENGTH": _nothing,

@@ -7,15 +7,19 @@ where it follows the surface, beyond which radius none is left.
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from polarcheck.columns.filling import happened
-from polarcheck.columns.metal.turned_cycles import TurnedCycles
 from polarcheck.columns.metal.turning_tools import ABOVE_ALL, CENTER, INSERT, Cuts, TurningTools
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Columns, Floats, Mask, Rows, cached_property, is_among
 from polarcheck.foundation.states import Motion
 from polarcheck.geometry.tolerances import ROUNDING
+
+if TYPE_CHECKING:
+    from polarcheck.columns.metal.turned_cycles import TurnedCycles
 
 
 class TurnedCuts(Columns, frozen=True):
@@ -26,12 +30,16 @@ class TurnedCuts(Columns, frozen=True):
 
     @cached_property
     def _cycles(self) -> TurnedCycles:
+        from polarcheck.columns.metal.turned_cycles import TurnedCycles  # imported late: most programs do not turn
+
         return TurnedCycles(self.trace, self.tools)
 
     @cached_property
     def unknown_rows(self) -> Rows:
         """Rows in which turning tools go to an unknown place, or of unknown effect: what they cut is not known."""
         trace = self.trace
+        if not self.tools.turns.any():
+            return np.flatnonzero(self.tools.is_lost)
         lost = (trace.blocks.has("X", "U") & np.isnan(trace.path.x)) | (
             trace.blocks.has("Z", "W") & np.isnan(trace.path.z)
         )
