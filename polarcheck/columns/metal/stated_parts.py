@@ -24,7 +24,6 @@ from polarcheck.columns.words.comments import Comments, named_tool
 from polarcheck.columns.words.stock_comments import StockComments
 from polarcheck.foundation.arrays import Columns, Floats, Mask, Rows, cached_property, different, is_among
 from polarcheck.foundation.states import Motion
-from polarcheck.geometry.segments import Curves
 from polarcheck.geometry.shapes.shape import POLYGONS
 
 if TYPE_CHECKING:
@@ -260,8 +259,7 @@ class PartComments(Columns, frozen=True):
 
         Then some shape has this size.
         """
-        overcuts = self.finished.overcuts
-        walls = Curves.concatenated([overcuts.walls[0], overcuts.walls_of_unknown_radius[0]])
+        walls, _ = self.finished.overcuts.walls
         along = walls.end - walls.start
         is_side = ~walls.is_arc & walls.is_known & (np.abs(along) > _SHORTEST)
         direction = along[is_side] / np.abs(along[is_side])
