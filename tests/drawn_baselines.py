@@ -28,6 +28,8 @@ from polarcheck.foundation.finding import FileReport, Finding
 
 RULES = ("polar-switched-in-offset-mode", "rapid-in-polar", "c-feed-above-limit", "arc-end-off-circle")
 KINDS = dict(zip(("offset", "rapid", "feed", "arc"), RULES, strict=True))
+#: The rule that has one finding for a program, wherever the sections with the fault stand.
+ONCE = RULES[0]
 FOLDER = Path("no folder of this name")
 
 
@@ -304,9 +306,9 @@ def disagreement(pair: Pair, its_settings: Settings) -> str:
     found = set()
     for finding in findings:
         begin = max(line for line in begins if line <= finding.line)
-        found.add((finding.rule, begin))
+        found.add((finding.rule, 0 if finding.rule == ONCE else begin))
     # A section begins one block before its Z5.
-    wanted = {(rule, min(at for at in begins if at >= line)) for rule, line in pair.worse}
+    wanted = {(rule, 0 if rule == ONCE else min(at for at in begins if at >= line)) for rule, line in pair.worse}
     if found == wanted:
         return ""
     return f"{pair.edits} {pair.path}: silent and worse {wanted - found}, told and known {found - wanted}"
