@@ -152,7 +152,7 @@ class Strokes(Columns, frozen=True):
 
     @property
     def _faster_than_cut(self) -> dict[int, Rows]:
-        """Strokes into the known bar at several times the F of the cut behind them."""
+        """Strokes from above the face into the known bar at several times the F of the cut behind them."""
         trace = self.trace
         cuts = np.flatnonzero(trace.path.travels & is_among(trace.axes.motion, (Motion.LINE, Motion.CW, Motion.CCW)))
         cuts = np.append(cuts, -1)
@@ -161,6 +161,8 @@ class Strokes(Columns, frozen=True):
         fast = self._feed_of_positioning & (following >= 0) & trace.blocks.has("F")[following]
         fast &= trace.mode.section[following] == trace.mode.section[self.row]
         fast &= feed[following] * _FASTER_THAN_CUT <= feed[self.row]
+        # From depth to depth it goes down in what is cut already, but for the last step.
+        fast &= trace.path.z_before[self.row] >= self.workpiece.top - ROUNDING
         rows = self.row[fast]
         stands = self.workpiece.stands_at(rows, _CORE) if len(rows) else np.zeros(0, bool)
         return {int(row): following[fast][number : number + 1] for number, row in enumerate(rows) if stands[number]}

@@ -31,6 +31,7 @@ if TYPE_CHECKING:
         ),
         "program": ("comment-contradicts-part",),
         "loop": (
+            "side-of-compensation-mirrored",
             "arc-end-off-circle",
             "contour-crosses-itself",
             "incremental-contour-not-closed",

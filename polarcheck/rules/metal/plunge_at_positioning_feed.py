@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     worse=("feed",),
     gouges=True,
     once="feed",
+    subject="size",
     follows={"section": (*OUT_OF_PLACE, "cut-in-air")},
 )
 def plunge_at_positioning_feed(strokes: Strokes) -> Hits:
@@ -25,8 +26,8 @@ def plunge_at_positioning_feed(strokes: Strokes) -> Hits:
 
     A block of Z alone takes the tool down into metal, and has no F: that with which the tool was positioned is still in
     force. The cutter breaks. What was meant is said by the like plunges of the tool, of which two or more have an F, or
-    by the F of the cut behind it where the bar is known and stands there. A plunge beside the bar, or into what is cut
-    already, is not meant.
+    by the F of the cut behind it where the bar is known and stands there. A plunge beside the bar, from one depth to
+    the next, or into what is cut already, is not meant.
 
     Source: builder's guide to G12.1, feed command.
 
