@@ -17,6 +17,8 @@ _LEAST_GAIN = 2.5
 _LEAST_WITNESS, _IF_SHORT, _SHORT = 1.0, 2.0, 4
 #: What each corner that is lost counts, but for the one of a wrong point on a side [coordinates].
 _OF_LOST_CORNER = 2.0
+#: How much less likely an edit of the block before the path is, since it leads to it [coordinates].
+_OF_LEAD = 2.0
 #: Points of all edits of a path together, above which none is searched.
 _MOST_POINTS = 400_000
 
@@ -40,7 +42,8 @@ def likely_edits(trace: Trace, loop: WrittenLoop, most: int) -> list[Likely]:
         return []
     outlines = outlines_of(loop, edits)
     chances = chances_of(outlines, loop.tolerance)
-    total = chances.total + np.array([0.0, *(edit.cost for edit in edits)])
+    cost = [edit.cost + _OF_LEAD * (not edit.corner) for edit in edits]
+    total = chances.total + np.array([0.0, *cost])
     # A shape that loses corners is another shape.
     lost = np.maximum(chances.corners[0] - chances.corners - 1, 0)
     gain = total[0] - total - _OF_LOST_CORNER * lost
