@@ -17,7 +17,8 @@ from polarcheck.checking.engine import Engine, in_order, with_following
 from polarcheck.checking.not_evaluated import all_unevaluated, bounds_not_reported
 from polarcheck.checking.polar_sections import known_stock, polar_sections
 from polarcheck.checking.suppression import UNUSED, divided
-from polarcheck.checking.written_for import RULE, written_for
+from polarcheck.checking.written_for import RULE as OF_OTHER_CONTROL
+from polarcheck.checking.written_for import written_for
 from polarcheck.columns.words.allow_mention import Used, mentions_allow
 from polarcheck.foundation.finding import (
     DESELECTED,
@@ -161,7 +162,7 @@ def _check_channel(
 
     Where the program is written for another control, what this one would make of its words is not worth reporting.
     """
-    saying = [rule for rule in rules if rule.name == RULE]
+    saying = [rule for rule in rules if rule.name == OF_OTHER_CONTROL]
     if saying and any(written_for(tables) for _, tables in channel):
         report, engines = _check_runs_of_channel(channel, saying, severities, inline)
         if report.findings or report.silenced:
@@ -171,7 +172,8 @@ def _check_channel(
     if any(finding.rule == _OF_SWITCH for finding in report.findings):
         from polarcheck.checking.builders_switch import supposition, with_supposed  # imported late: it is rare
 
-        for supposed in filter(None, (supposition(tables) for _, tables in channel[:1])):
+        supposed = supposition(channel[0][1])
+        if supposed is not None:
             of_mode, more = _check_runs_of_channel(supposed.channel, rules, severities, inline)
             engines = [*engines, *more]
             report = with_supposed(report, of_mode, supposed)
@@ -229,8 +231,8 @@ def report_of(engine: Engine, number: int = 0) -> FileReport:
     """Report the findings of one run, and what could not be evaluated. number: of the run, of those of its file."""
     tables, trace = engine.tables, engine.trace
     found = engine.findings()
-    if any(finding.section_line is not None for finding in found):
-        from polarcheck.checking.explanations import explained  # imported late: most files have no finding
+    if any(engine.rules[finding.rule].is_symptom for finding in found):
+        from polarcheck.checking.explanations import explained  # imported late: most files have no symptom
 
         found = explained(engine, found, number)
     findings, silenced = divided(in_order(in_the_file(found, trace, engine.answered, engine.rows_in_calls)))

@@ -8,8 +8,8 @@ checked. An edit explains the findings that are gone then, if no other finding h
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Sequence
+from itertools import islice
 from typing import NamedTuple
 
 import msgspec
@@ -20,6 +20,7 @@ from polarcheck.checking.engine import Engine, with_following
 from polarcheck.columns.contour.correction import Correction
 from polarcheck.columns.contour.likely_edits import Likely, likely_edits
 from polarcheck.columns.contour.written_loop import WrittenLoop, written_loops
+from polarcheck.columns.words.slips import WORD
 from polarcheck.foundation.errors import TooHardError
 from polarcheck.foundation.finding import SEVERITIES, WARNING, Finding, Silenced, Undecided
 from polarcheck.program.execution.runs import runs
@@ -39,9 +40,6 @@ _AS_LIKELY, _NAMED = 0.5, 2
 
 #: What is to be done where nothing is to be written.
 _REMEDIES = {"twice": "without it", "order": "behind the next one"}
-
-#: A word with a number.
-_WORD = re.compile(r"([A-Z]+=?)([-+]?(?:\d+\.?\d*|\.\d+))")
 
 #: A rule and a line at which it fires.
 _Symptom = tuple[str, int]
@@ -104,7 +102,7 @@ class _Search:
         lines = {finding.line for finding in findings}
         rows = np.flatnonzero(np.isin(trace.blocks.line, [*lines]) & (trace.mode.section >= 0))
         sections = np.flatnonzero(np.bincount(trace.mode.section[rows], minlength=1)).tolist()
-        loops = list(written_loops(trace, sections))[:_MOST_LOOPS]
+        loops = list(islice(written_loops(trace, sections), _MOST_LOOPS))
         begins = [max(int(loop.row[0]) - 1, 0) for loop in loops]
         ends = [*(int(loop.row[1]) for loop in loops[1:]), len(trace)]
         reach = [set(trace.blocks.line[slice(*rows)].tolist()) for rows in zip(begins, ends, strict=False)]
@@ -217,7 +215,7 @@ def _may_lead(finding: Finding, explanation: _Explained) -> bool:
 
 
 def _numbers(words: str) -> list[tuple[str, float]]:
-    return [(letter, float(number)) for letter, number in _WORD.findall(words)]
+    return [(letter, float(number)) for letter, number in WORD.findall(words)]
 
 
 def _with_remedy(engine: Engine, finding: Finding, explanation: _Explained) -> Finding:

@@ -11,12 +11,12 @@ import numpy as np
 
 from polarcheck.columns.contour.correction import Correction
 from polarcheck.columns.contour.plane_loops import PlaneLoop
+from polarcheck.columns.contour.written_loop import AxisWords, axis_words
 from polarcheck.columns.trace import Trace
 from polarcheck.columns.words.slips import Slip, plain_number, slip_of
-from polarcheck.foundation.arrays import Floats, Points, cached_property
+from polarcheck.foundation.arrays import Points, cached_property
 from polarcheck.geometry.regularity.symmetric_corners import each_once, is_lonely, missing_places, regular_polygons
 from polarcheck.geometry.regularity.symmetry import Symmetry
-from polarcheck.program.machines.axis_table import INCREMENTS
 
 #: Least number of corners of a contour that repeats itself in a turn, and of one that is only its own mirror image.
 _CORNERS, _MIRRORED_CORNERS = 5, 6
@@ -48,23 +48,6 @@ class _Trial(NamedTuple):
     slip: Slip
     point: Points
     loop: PlaneLoop
-
-
-class _Axis(NamedTuple):
-    """
-    One axis of a loop, a value for each of its n + 1 points.
-
-    word: the executed word in the row, -1 for none. is_step: that is incremental. scale: mm per unit of it.
-    direction: where it points on the plane. digit: half of its last digit [mm].
-    """
-
-    address: str
-    step_address: str
-    word: list[int]
-    is_step: list[bool]
-    scale: list[float]
-    direction: complex
-    digit: float
 
 
 def correction_of(trace: Trace, loop: PlaneLoop, written: Symmetry | None) -> Correction | None:
@@ -154,34 +137,11 @@ class _Search:
     # ---- one word ----
 
     @cached_property
-    def _axes(self) -> list[_Axis]:
-        trace, rows = self.trace, self.loop.row
-        last = int(rows[-1])
-        linear = chr(trace.axes.linear_axis[last])
-        turn = complex(trace.path.frames.turn[last]) if trace.path.frames is not None else 1 + 0j
-        of_virtual = 0.5 if trace.machine.polar.virtual_axis_programming == "diameter" else 1.0
-        scale = trace.lengths.scale[rows]
-        digit = self.loop.last_digit
-        return [
-            self._axis((linear, INCREMENTS[linear]), scale * trace.lengths.x_factor[rows], turn, digit.real),
-            self._axis(trace.axes.virtual_addresses(last), scale * of_virtual, 1j * turn, digit.imag),
-        ]
-
-    def _axis(self, addresses: tuple[str, str], scale: Floats, direction: complex, digit: float) -> _Axis:
-        trace, rows = self.trace, self.loop.row
-        step_of_row = {row: step for step, row in enumerate(rows.tolist())}
-        word, is_step = [-1] * len(rows), [False] * len(rows)
-        for number, address in enumerate(addresses):
-            indices = trace.blocks.word_indices(address)
-            low, high = np.searchsorted(trace.run.row[indices], (rows[0], rows[-1] + 1)).tolist()
-            for index in indices[low:high].tolist():
-                step = step_of_row.get(int(trace.run.row[index]))
-                if step is not None:
-                    word[step], is_step[step] = (
-                        index,
-                        bool(number) or bool(trace.modal.is_step(address)[rows[step]]),
-                    )
-        return _Axis(*addresses, word, is_step, scale.tolist(), direction, digit)
+    def _axes(self) -> tuple[AxisWords, AxisWords]:
+        row = self.loop.row.copy()
+        if row[0] == row[1]:
+            row[0] = -1  # no move leads to the loop: the words of its first block are those of its end
+        return axis_words(self.trace, row)
 
     def _of_words(self, places: Points) -> Iterator[_Trial]:
         """Words of which a slip explains that a point is not at one of these places."""
@@ -213,14 +173,14 @@ class _Search:
                 for corner in np.flatnonzero(np.abs(point - odd[0]) <= tolerance).tolist():
                     away = [(complex(place[0] - point[corner]) / axis.direction).real for axis in axes]
                     words = [
-                        (axis, axis.word[corner], shift)
+                        (axis, int(axis.word[corner]), shift)
                         for axis, shift in zip(axes, away, strict=True)
                         if abs(shift) > tolerance
                     ]
                     if all(word >= 0 and not axis.is_step[corner] for axis, word, _ in words):
                         yield self._elsewhere(corner, complex(place[0]), words)
 
-    def _elsewhere(self, corner: int, place: complex, words: list[tuple[_Axis, int, float]]) -> _Trial:
+    def _elsewhere(self, corner: int, place: complex, words: list[tuple[AxisWords, int, float]]) -> _Trial:
         """The block with other words, and what follows it with them."""
         values, moved, texts = self.trace.run.words.value, self.loop.point.copy(), []
         for axis, word, shift in words:
@@ -230,7 +190,7 @@ class _Search:
         slip = Slip(" ".join(texts), "its corner alone is off the polygon of the others", False)
         return _Trial(corner, words[0][1] if len(words) == 1 else -1, slip, moved, self.loop)
 
-    def _changed(self, axis: _Axis, begin: int, shift: float) -> Iterator[_Trial]:
+    def _changed(self, axis: AxisWords, begin: int, shift: float) -> Iterator[_Trial]:
         """The word of a block so that its point moves by as much; nothing where no slip explains it."""
         slip = self._slip(axis, begin, shift)
         if slip is not None:
@@ -239,14 +199,15 @@ class _Search:
                 end += 1
             moved = self.loop.point.copy()
             moved[begin:end] += shift * axis.direction
-            yield _Trial(begin, axis.word[begin], slip, moved, self.loop)
+            yield _Trial(begin, int(axis.word[begin]), slip, moved, self.loop)
 
-    def _slip(self, axis: _Axis, corner: int, shift: float) -> Slip | None:
+    def _slip(self, axis: AxisWords, corner: int, shift: float) -> Slip | None:
         """The slip that shifts a word of an axis, or leaves it out."""
-        trace, index, step = self.trace, axis.word[corner], shift / axis.scale[corner]
+        trace, index, step = self.trace, int(axis.word[corner]), shift / float(axis.scale[corner])
         # A point at the wrong place gives a word more digits than the others have.
         least = float(trace.lengths.least_increment[self.loop.row[corner]])
-        tolerance = _DIGITS * max(2 * axis.digit / axis.scale[corner], least)
+        half = self.loop.last_digit.imag if axis is self._axes[1] else self.loop.last_digit.real
+        tolerance = _DIGITS * max(2 * half / float(axis.scale[corner]), least)
         if index < 0:
             value = float((self.loop.point[corner] / axis.direction).real) / axis.scale[corner] + step
             return Slip(f"{axis.address}{self._as_elsewhere(axis, value, tolerance)}", "a word is missing", False)
@@ -263,7 +224,7 @@ class _Search:
             return None
         return slip._replace(text=f"{address}{self._as_elsewhere(axis, value + step, tolerance, slip.text)}")
 
-    def _is_of_neighbor(self, axis: _Axis, corner: int, tolerance: float) -> bool:
+    def _is_of_neighbor(self, axis: AxisWords, corner: int, tolerance: float) -> bool:
         value = self.trace.run.words.value
         words = [axis.word[neighbor] for neighbor in (corner - 1, corner + 1) if 0 <= neighbor < len(axis.word)]
         return any(word >= 0 and abs(float(value[word] - value[axis.word[corner]])) <= tolerance for word in words)
@@ -275,7 +236,7 @@ class _Search:
         is_usual = value % _PART_OF_TURN == 0 and 2 * _PART_OF_TURN <= abs(value) <= _FULL_TURN
         return bool(is_usual and len(off_axis) and abs(length) > 2 * off_axis.max())
 
-    def _as_elsewhere(self, axis: _Axis, value: float, tolerance: float, slip: str = "") -> str:
+    def _as_elsewhere(self, axis: AxisWords, value: float, tolerance: float, slip: str = "") -> str:
         """A value as another block of the loop has it, with the sign that it needs."""
         words = self.trace.run.words.value
         sizes = [abs(float(words[word])) for word in axis.word if word >= 0]
@@ -392,7 +353,7 @@ def _becomes(symmetry: Symmetry) -> str:
     return "it would be its own mirror image"
 
 
-def _next_word(axis: _Axis, corner: int) -> int:
+def _next_word(axis: AxisWords, corner: int) -> int:
     """The first block behind one that has a word of an axis; up to it all points have its coordinate."""
     end = corner + 1
     while end < len(axis.word) and axis.word[end] < 0:
@@ -400,7 +361,7 @@ def _next_word(axis: _Axis, corner: int) -> int:
     return end
 
 
-def _writers(axis: _Axis, corner: int) -> Iterator[int]:
+def _writers(axis: AxisWords, corner: int) -> Iterator[int]:
     """The blocks whose word of an axis moves a point, and the block itself where it has none."""
     if axis.word[corner] < 0 and corner:
         yield corner

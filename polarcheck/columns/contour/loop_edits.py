@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 from typing import Literal, NamedTuple
 
@@ -10,12 +9,10 @@ import numpy as np
 
 from polarcheck.columns.contour.written_loop import AxisWords, WrittenLoop
 from polarcheck.columns.trace import Trace
-from polarcheck.columns.words.slips import Slip, plain_number, slips_of
+from polarcheck.columns.words.slips import WORD, Slip, plain_number, slips_of
 from polarcheck.foundation.arrays import Floats, Points
 from polarcheck.geometry.regularity.coincidences import Outlines
 
-#: A word as it is written: its address and its number.
-_WORD = re.compile(r"([A-Za-z]+=?)([-+]?[\d.]+)")
 #: Numbers of a contour; smaller ones are 0, or nobody can tell.
 _LEAST, _GREATEST = 0.02, 2000.0
 #: Numbers that differ by less are one.
@@ -139,7 +136,7 @@ def _parts(trace: Trace, word: int) -> tuple[str, str]:
     """The address and the number of a word as they are written; empty where it is no plain number."""
     words = trace.run.words
     written = trace.run.text.source.excerpt(int(words.start[word]), int(words.end[word]))
-    match = _WORD.fullmatch("".join(written.split()))
+    match = WORD.fullmatch("".join(written.split()))
     return (match[1], match[2]) if match is not None else ("", "")
 
 

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from polarcheck.columns.trace import Trace
-from polarcheck.columns.words.last_digit import half_of_last_digit
+from polarcheck.columns.words.last_digit import half_of_last_digit, same_place
 from polarcheck.foundation.arrays import Floats, Mask, Points, Rows
 from polarcheck.foundation.states import Motion
 from polarcheck.geometry.plane import arc_sweep
@@ -20,8 +20,6 @@ from polarcheck.geometry.regularity.symmetry import Symmetry, symmetry_of
 _FEWEST, _MOST, _WORK, _WORK_OF_LOOP = 4, 64, 60_000, 300
 #: Edges that are as long as another one, as a share of all, where a contour may be regular; and what is as long [mm].
 _ALIKE, _AS_LONG = 0.25, 0.02
-#: Least and greatest distance that counts as the same place [mm], in halves of the last digit.
-_SAME, _SAME_AT_MOST, _DIGITS = 0.01, 0.03, 5
 #: Readings of X by which a contour may be regular: as it is, and as the other of diameter and radius.
 _X_FACTORS = (1.0, 2.0, 0.5)
 #: Moves before a loop closes; arcs and ends of arcs that show by being tangent how X is meant; what is tangent [rad].
@@ -169,13 +167,12 @@ def _different(trace: Trace, rows: Rows, first: Rows, count: Rows) -> Iterator[P
             return
         above = int(travels[max(int(np.searchsorted(travels, rows_of_loop[0])) - 1, 0)])
         digit = complex(half[rows_of_loop[0]])
-        tolerance = float(np.clip(_DIGITS * abs(digit), _SAME, _SAME_AT_MOST))
         yield PlaneLoop(
             np.append(min(above, rows_of_loop[0]), rows_of_loop),
             point,
             turns,
             radius,
             to_center[rows_of_loop],
-            tolerance,
+            same_place(digit),
             digit,
         )

@@ -8,15 +8,13 @@ from typing import NamedTuple
 import numpy as np
 
 from polarcheck.columns.trace import Trace
-from polarcheck.columns.words.last_digit import half_of_last_digit
+from polarcheck.columns.words.last_digit import half_of_last_digit, same_place
 from polarcheck.foundation.arrays import Floats, Mask, Points, Rows
 from polarcheck.foundation.states import STATES, Motion
 from polarcheck.program.machines.axis_table import INCREMENTS
 
 #: Blocks of a path that is looked at.
 _FEWEST, _MOST = 2, 64
-#: Least and greatest distance that counts as the same place [mm], in halves of the last digit.
-_SAME, _SAME_AT_MOST, _DIGITS = 0.01, 0.03, 5
 
 
 class AxisWords(NamedTuple):
@@ -101,28 +99,33 @@ def written_loops(trace: Trace, sections: Sequence[int]) -> Iterator[WrittenLoop
 
 def _loop(trace: Trace, row: Rows) -> WrittenLoop:
     last, own = int(row[-1]), row[1:]
-    linear = chr(trace.axes.linear_axis[last])
-    turn = complex(trace.path.frames.turn[last]) if trace.path.frames is not None else 1 + 0j
-    scale = trace.lengths.scale[row]
-    of_virtual = 0.5 if trace.machine.polar.virtual_axis_programming == "diameter" else 1.0
     kind, arcs = trace.axes.motion[own], trace.machine.arcs
     turns = np.where(kind == Motion.CW, -1, np.where(kind == Motion.CCW, 1, 0)).astype(np.int64)
-    digit = abs(complex(half_of_last_digit(trace)[last]))
     codes = [code for key in STATES["motion"] for code in trace.machine.codes(key)]
     of_arcs = {address: _words(trace, own, address) for address in (arcs.radius_word, "I", "J")}
     return WrittenLoop(
         row,
         complex(trace.path.start[own[0]]),
-        (
-            _axis(trace, row, (linear, INCREMENTS[linear]), scale * trace.lengths.x_factor[row], turn),
-            _axis(trace, row, trace.axes.virtual_addresses(last), scale * of_virtual, 1j * turn),
-        ),
+        axis_words(trace, row),
         turns,
         np.where(turns != 0, trace.lengths.length_of(arcs.radius_word)[own], np.nan),
         np.nan_to_num(trace.path.center - trace.path.start)[own],
         _last(trace, own, trace.blocks.code_indices(*codes)),
         {address: np.where(turns != 0, words, -1) for address, words in of_arcs.items()},
-        float(np.clip(_DIGITS * digit, _SAME, _SAME_AT_MOST)),
+        same_place(complex(half_of_last_digit(trace)[last])),
+    )
+
+
+def axis_words(trace: Trace, row: Rows) -> tuple[AxisWords, AxisWords]:
+    """The words of both axes in these rows of one section; -1 for a row is none."""
+    last = int(row[-1])
+    linear = chr(trace.axes.linear_axis[last])
+    turn = complex(trace.path.frames.turn[last]) if trace.path.frames is not None else 1 + 0j
+    scale = trace.lengths.scale[row]
+    of_virtual = 0.5 if trace.machine.polar.virtual_axis_programming == "diameter" else 1.0
+    return (
+        _axis(trace, row, (linear, INCREMENTS[linear]), scale * trace.lengths.x_factor[row], turn),
+        _axis(trace, row, trace.axes.virtual_addresses(last), scale * of_virtual, 1j * turn),
     )
 
 
@@ -140,7 +143,7 @@ def _last(trace: Trace, row: Rows, words: Rows) -> Rows:
 
 def _axis(trace: Trace, row: Rows, addresses: tuple[str, str], scale: Floats, direction: complex) -> AxisWords:
     absolute, step = (_words(trace, row, address) for address in addresses)
-    word = np.where(absolute >= 0, absolute, step)
-    is_step = np.where(absolute >= 0, trace.modal.is_step(addresses[0])[row], step >= 0)
+    word = np.where(step >= 0, step, absolute)
+    is_step = np.where(step >= 0, True, trace.modal.is_step(addresses[0])[row])
     value = np.where(word >= 0, trace.run.words.value[word], np.nan)
     return AxisWords(*addresses, scale, direction, value, is_step, word)

@@ -9,6 +9,8 @@ from polarcheck.foundation.arrays import Floats, Points, Rows
 
 #: Nobody means a coarser digit than this many least increments: X20. is 20, and no number between 19.5 and 20.5.
 _COARSEST = 10
+#: Least and greatest distance that counts as the same place [mm], in halves of the last digit.
+_SAME, _SAME_AT_MOST, _DIGITS = 0.01, 0.03, 5
 
 
 def half_of_last_digit(trace: Trace) -> Points:
@@ -23,6 +25,11 @@ def half_of_last_digit(trace: Trace) -> Points:
     return np.asarray(
         np.where(trace.mode.section >= 0, (x + 1j * virtual) * trace.lengths.scale / 2, complex("nan+nanj"))
     )
+
+
+def same_place(half_of_digit: complex) -> float:
+    """How far two points may be apart that are the same place [mm]. half_of_digit: of X and the virtual axis [mm]."""
+    return float(np.clip(_DIGITS * abs(half_of_digit), _SAME, _SAME_AT_MOST))
 
 
 def _last_digit(trace: Trace, words: Rows) -> Floats:

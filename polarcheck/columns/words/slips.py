@@ -6,6 +6,8 @@ import re
 from collections.abc import Iterator
 from typing import NamedTuple
 
+#: A word as it is written: its address and its number.
+WORD = re.compile(r"([A-Za-z]+=?)([+-]?+(?:\d++\.?+\d*+|\.\d++))")
 _NUMBER = re.compile(r"([+-]?)(\d*+)(\.?)(\d*+)")
 #: Factors by which a point at another place, or a radius for a diameter, changes a number.
 _POINTS, _FACTORS = (10.0, 0.1, 100.0, 0.01, 1000.0, 0.001), (2.0, 0.5)
