@@ -50,18 +50,20 @@ class ImpliedUnits(Columns, frozen=True):
         trace = self.trace
         if not len(trace.mode.sections):
             return trace.blocks.nowhere
+        # Numbers alone say nothing: a lathe that powers up in the other unit reads them as they are meant.
         of_bodies = np.stack((self.by_cutter, self.by_comment, self.by_bar)).sum(axis=0)
+        says = self._is_judged & (of_bodies > 0)
+        if not says.any():
+            return trace.blocks.nowhere
         of_numbers = np.stack((self.by_digits, self.by_feed, self.by_x)).sum(axis=0)
         # F and X of a small part in mm are those of inches; nothing else is.
         is_small = np.stack((self.by_feed, self.by_x & ~self.in_inch)).sum(axis=0)
         is_selected = trace.blocks.anywhere_in_program(trace.modal.sets("units"))
         count = of_bodies + of_numbers
-        # Numbers alone say nothing: a lathe that powers up in the other unit reads them as they are meant.
         enough = np.where(
             is_selected, (count >= _ENOUGH_AGAINST_CODE) & (count - is_small >= _ENOUGH), count >= _ENOUGH
         )
-        says = self._is_judged & (of_bodies > 0) & enough
-        return np.asarray(says & self._is_first)
+        return np.asarray(says & enough & self._is_first)
 
     @cached_property
     def _is_first(self) -> Mask:

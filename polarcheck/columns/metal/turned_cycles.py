@@ -131,5 +131,7 @@ class TurnedCycles(Columns, frozen=True):
         """Rows of a cycle whose P and Q are the first and the last block of a contour, which stands in the program."""
         trace = self.trace
         both = trace.blocks.has("P") & trace.blocks.has("Q")
+        if not both.any():
+            return both
         numbers = trace.blocks.word("N")
         return np.asarray(both & np.isin(trace.blocks.word("P"), numbers[~np.isnan(numbers)]))

@@ -263,9 +263,11 @@ class Workpiece(Columns, frozen=True):
 
     def stands_at(self, rows: Rows, share: float) -> Mask:
         """Per row of a Z move in a section: it goes down into what stands of the bar, with this share of R already."""
+        if self.bar.known.source == "none":
+            return np.zeros(len(rows), bool)
         moves = self._inside
         moves = moves[np.isin(moves.row, rows) & (moves.row < self._unknown_from)]
-        if self.bar.known.source == "none" or not len(moves):
+        if not len(moves):
             return np.zeros(len(rows), bool)
         self._bound(moves)
         hit, _ = self.hits_on_bar(msgspec.structs.replace(moves, radius=moves.radius * share))

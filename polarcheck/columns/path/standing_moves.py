@@ -21,7 +21,7 @@ def with_standing(trace: Trace, moves: Moves, standing: Mask) -> tuple[Moves, Ro
 
     standing: bool[rows of the trace]. An inserted move ends at the point where it starts; its number is -1.
     """
-    row = np.setdiff1d(np.flatnonzero(standing), moves.row)
+    row = np.flatnonzero(standing & ~trace.blocks.mask_of(moves.row))
     if not len(row):
         return moves, np.arange(len(moves))
     # Each pass of an infeed cycle runs over the same rows again.

@@ -61,6 +61,8 @@ def start_up_sweeps_contour(slots: Slots, feeds: Feeds) -> Hits:
         G13.1
     """
     sweeps = slots.ramp_depth > 0
+    if not sweeps.any():
+        return Hits(sweeps)
     # A high F says nothing of the end of its move, nor does the ramp with which the last pass of a loop has ended.
     by_approach = ~feeds.before_on_plane(sweeps | feeds.is_only_fast)
     return Hits(sweeps, values={"depth": slots.ramp_depth}, follows={"X before": by_approach}, worst=slots.ramp_depth)
