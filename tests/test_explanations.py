@@ -80,6 +80,35 @@ def test_mistakes_in_two_contours_are_two_findings(first: Slip, second: Slip) ->
     assert len(report.findings) == 2
 
 
+#: Contours that are sound to each rule but this one: a corner on the line of its neighbours, blocks exchanged, an arc
+#: that alone is not tangent; a block, what stands in its place, and what is said.
+HEXAGON = ["G42 X36. C0 F200", *"C10.392/X0 C20.785/X-36. C10.392/C-10.392/X0 C-20.785/X36. C-10.392/C0".split("/")]
+CHAMFERED = [
+    "G42 X40. C0 F200",
+    *"C9.5/X19. C20./X-19./X-40. C9.5/C-9.5/X-19. C-20./X19./X40. C-9.5/C0".split("/"),
+]
+
+
+@looped(
+    ("contour", "right", "wrong", "words"),
+    [
+        (HEXAGON, ["X0 C20.785"], ["X0 C10.392"], "with C20.785 it would be a regular hexagon"),
+        (HEXAGON, ["X0 C-20.785"], ["X0 C-10.392"], "with C-20.785 it would be a regular hexagon"),
+        (CHAMFERED, ["X-19.", "X-40. C9.5"], ["X-40. C9.5", "X-19."], "behind the next one"),
+        (ROUNDED, ["G3 X34. C10. R3."], ["G3 X34. C10. R2.8"], "R3."),
+    ],
+)
+def test_what_no_rule_objects_to_is_told_where_the_rest_shows_it(
+    contour: list[str], right: list[str], wrong: list[str], words: str
+) -> None:
+    text = program(contour)
+    slipped = text.replace("\n".join(["", *right, ""]), "\n".join(["", *wrong, ""]))
+    assert slipped != text
+    found = report_of(slipped, "fanuc-30i", "1:radius=2").findings
+    assert [words in finding.message for finding in found] == [True]
+    assert abs(found[0].line - text[: text.index("\n" + right[0])].count("\n") - 2) <= 1
+
+
 #: What is as it was meant, and does not fit the cutter or the control: no word of it is doubted.
 MEANT = [
     ("G98 G0 X100. C0/G12.1/G1 C20. F500/G41 X60. F200/C3./X40./C-3./X60./C-20./G40 X100./G13.1", "interference"),

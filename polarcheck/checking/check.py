@@ -227,11 +227,19 @@ def engine_of(
     return Engine(tables, levels, [rule for rule in active if "allows" not in rule.parameters], known_hits)
 
 
+def _may_be_less_regular(engine: Engine) -> bool:
+    """A contour may be less regular than it was meant to be, though no rule says so."""
+    rule = engine.rules.get("nearly-regular-contour")
+    if rule is None or engine.trace.run.unknown_words or not len(engine.hits(rule).mask):
+        return False
+    return bool(engine.tables["regularity"].likely)
+
+
 def report_of(engine: Engine, number: int = 0) -> FileReport:
     """Report the findings of one run, and what could not be evaluated. number: of the run, of those of its file."""
     tables, trace = engine.tables, engine.trace
     found = engine.findings()
-    if any(engine.rules[finding.rule].is_symptom for finding in found):
+    if any(engine.rules[finding.rule].is_symptom for finding in found) or _may_be_less_regular(engine):
         from polarcheck.checking.explanations import explained  # imported late: most files have no symptom
 
         found = explained(engine, found, number)

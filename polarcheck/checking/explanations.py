@@ -18,7 +18,7 @@ import numpy as np
 from polarcheck.checking.edits import applied, origins
 from polarcheck.checking.engine import Engine, with_following
 from polarcheck.columns.contour.correction import Correction
-from polarcheck.columns.contour.likely_edits import Likely, likely_edits
+from polarcheck.columns.contour.likely_edits import Likely, correction_by, likely_edits
 from polarcheck.columns.contour.written_loop import WrittenLoop, written_loops
 from polarcheck.columns.words.slips import WORD
 from polarcheck.foundation.errors import TooHardError
@@ -37,9 +37,6 @@ REPORTS = "nearly-regular-contour"
 _MOST_LOOPS, _TRIALS, _MOST_ROWS = 8, 5, 20_000
 #: By how much less a second edit may explain, for both to be named [coordinates]; how many are named.
 _AS_LIKELY, _NAMED = 0.5, 2
-
-#: What is to be done where nothing is to be written.
-_REMEDIES = {"twice": "without it", "order": "behind the next one"}
 
 #: A rule and a line at which it fires.
 _Symptom = tuple[str, int]
@@ -69,16 +66,27 @@ def explained(engine: Engine, findings: Sequence[Finding], number: int) -> list[
     """
     trace = engine.trace
     source = trace.text.source
-    symptoms = [finding for finding in findings if _is_symptom(engine, finding)]
-    if not symptoms or REPORTS not in engine.rules or source.parts or source.channel or len(trace) > _MOST_ROWS:
+    if REPORTS not in engine.rules or source.parts or source.channel or len(trace) > _MOST_ROWS:
         return list(findings)
-    search = _Search(engine, number)
-    try:
-        for explanation in search.explanations(symptoms):
-            findings = _under(engine, findings, explanation)
-    except TooHardError:
-        pass  # what was found before stands
-    return list(findings)
+    symptoms = [finding for finding in findings if _is_symptom(engine, finding)]
+    if symptoms:
+        search = _Search(engine, number)
+        try:
+            for explanation in search.explanations(symptoms):
+                findings = _under(engine, findings, explanation)
+        except TooHardError:
+            pass  # what was found before stands
+    return [*findings, *_unobjected(engine, findings)]
+
+
+def _unobjected(engine: Engine, findings: Sequence[Finding]) -> Iterator[Finding]:
+    """What makes a contour more regular to which no rule objects."""
+    if engine.trace.run.unknown_words or not len(engine.hits(engine.rules[REPORTS]).mask):
+        return
+    objects = {line for finding in findings for line in (finding.line, *(other.line for other in finding.follows))}
+    for rows, correction in engine.tables["regularity"].likely:
+        if objects.isdisjoint(engine.trace.blocks.line[rows[0] : rows[-1] + 1].tolist()):
+            yield _new(engine, correction)
 
 
 def _is_symptom(engine: Engine, finding: Finding) -> bool:
@@ -141,10 +149,10 @@ class _Search:
         return found[0]._replace(other=found[1]) if found[1:] else found[0]
 
     def _edits(self, loop: WrittenLoop, likely: Likely) -> list[Replace]:
-        """The edits of the text; none where the block is no plain one."""
+        """The edits of the text; none where its words stand there in another form."""
         run, edit = self.trace.run, likely.edit
         row = int(loop.row[edit.corner])
-        if not is_plain(run, row):
+        if run.text.blocks.is_macro[run.block[row]] or (edit.kind == "twice" and not is_plain(run, row)):
             return []
         if edit.kind == "twice":
             return without(run, row, words_of(run, row))
@@ -197,7 +205,7 @@ def _under(engine: Engine, findings: Sequence[Finding], explanation: _Explained)
     line = int(engine.trace.blocks.line[explanation.row])
     others = [finding for finding in findings if finding not in gone]
     there = [finding for finding in gone if finding.line == line and _may_lead(finding, explanation)]
-    head = _with_remedy(engine, there[0], explanation) if there else _new(engine, explanation)
+    head = _with_remedy(engine, there[0], explanation) if there else _new(engine, _correction(engine, explanation))
     symptoms = [
         symptom
         for finding in gone
@@ -227,12 +235,13 @@ def _with_remedy(engine: Engine, finding: Finding, explanation: _Explained) -> F
     return msgspec.structs.replace(finding, message=message)
 
 
-def _new(engine: Engine, explanation: _Explained) -> Finding:
-    trace, tables = engine.trace, engine.tables
-    likely, row = explanation.likely, explanation.row
-    word = likely.edit.words[0] if len(likely.edit.words) == 1 else -1
-    remedies = _remedies(engine, explanation)
-    correction = Correction(row, word, likely.edit.text, likely.edit.why, remedies, likely.becomes)
+def _correction(engine: Engine, explanation: _Explained) -> Correction:
+    correction = correction_by(explanation.likely, explanation.row)
+    return correction._replace(remedy=_remedies(engine, explanation))
+
+
+def _new(engine: Engine, correction: Correction) -> Finding:
+    trace, tables, row, word = engine.trace, engine.tables, correction.row, correction.word
     tables["regularity"].explained[row] = correction
     at = trace.blocks.words_at(np.array([word][: word >= 0], np.int64))
     hits = Hits(trace.blocks.mask_of(np.array([row])), at=at)
@@ -241,11 +250,7 @@ def _new(engine: Engine, explanation: _Explained) -> Finding:
 
 
 def _remedies(engine: Engine, explanation: _Explained) -> str:
+    remedy = explanation.likely.edit.remedy
     if (other := explanation.other) is None:
-        return _remedy(explanation)
-    return f"{_remedy(explanation)}, or {_remedy(other)} in line {int(engine.trace.blocks.line[other.row])},"
-
-
-def _remedy(explanation: _Explained) -> str:
-    edit = explanation.likely.edit
-    return _REMEDIES.get(edit.kind, f"with {edit.text}")
+        return remedy
+    return f"{remedy}, or {other.likely.edit.remedy} in line {int(engine.trace.blocks.line[other.row])},"

@@ -157,8 +157,9 @@ def with_word(run: Run, row: int, text: str) -> Replace:
 
 
 def in_place_of(run: Run, index: int, text: str) -> Replace:
-    """Another word in the place of one."""
-    return int(run.words.start[index]), int(run.words.end[index]), text
+    """Another word in the place of one; a name before = that is read as its letter, as CR, stays."""
+    start, end = int(run.words.start[index]), int(run.words.end[index])
+    return start, end, text[text.find("=") :] if run.text.source.excerpt(start, start + 1) == "=" else text
 
 
 def without(run: Run, row: int, removed: Iterable[int]) -> list[Replace]:

@@ -10,11 +10,13 @@ from typing import NamedTuple
 import numpy as np
 
 from polarcheck.columns.contour.correction import Correction
+from polarcheck.columns.contour.likely_edits import correction_by, likely_edits
+from polarcheck.columns.contour.loop_edits import outlines_of
 from polarcheck.columns.contour.plane_loops import PlaneLoop
-from polarcheck.columns.contour.written_loop import AxisWords, axis_words
+from polarcheck.columns.contour.written_loop import AxisWords, axis_words, written_loop
 from polarcheck.columns.trace import Trace
-from polarcheck.columns.words.slips import Slip, plain_number, slip_of
-from polarcheck.foundation.arrays import Points, cached_property
+from polarcheck.columns.words.slips import Slip, plain_number
+from polarcheck.foundation.arrays import Points, Rows, cached_property
 from polarcheck.geometry.regularity.symmetric_corners import each_once, is_lonely, missing_places, regular_polygons
 from polarcheck.geometry.regularity.symmetry import Symmetry
 
@@ -30,11 +32,8 @@ _MANY_CORNERS = 8
 _ODD_OF = 6
 #: Corrections that are tried for one loop; ends of a path where it may close; blocks between which one may be missing.
 _MOST_TRIALS, _ENDS, _GAPS = 80, 3, 3
-#: Halves of the last digit by which a number may differ from that of another block.
-_DIGITS = 5
-
-#: An angle in degrees is a multiple of this, from twice as much on.
-_PART_OF_TURN, _FULL_TURN = 15.0, 360.0
+#: Edits that are looked at; how much less they must leave to chance, without and with symmetry; blocks of such a path.
+_MOST_EDITS, _LEAST_GAIN, _GAIN_ALONE, _FEWEST_BLOCKS = 16, 0.5, 3.8, 6
 #: Numbers that differ by less are one.
 _SAME_NUMBER = 1e-6
 _WORD = re.compile(r"([A-Z])([+-]?+(?:\d++\.?+\d*+|\.\d++))")
@@ -50,33 +49,46 @@ class _Trial(NamedTuple):
     loop: PlaneLoop
 
 
-def correction_of(trace: Trace, loop: PlaneLoop, written: Symmetry | None) -> Correction | None:
+class Corrections(NamedTuple):
     """
-    The correction that leaves least free; None where the contour is as it should be, or is no such contour.
+    What may be meant instead of a contour.
+
+    symmetric: that makes it symmetric. likely: that makes it more regular and counts only where no rule objects.
+    """
+
+    symmetric: Correction | None
+    likely: Correction | None
+
+
+def corrections_of(trace: Trace, loop: PlaneLoop, written: Symmetry | None) -> Corrections:
+    """
+    The corrections of a contour; None where it is as it should be, or is no such contour.
 
     written: its symmetry as it is written.
     """
-    return _Search(trace, loop, written).best()
+    search = _Search(trace, loop, written)
+    symmetric = search.best()
+    return Corrections(symmetric, search.likely if symmetric is None else None)
 
 
 class _Search:
     def __init__(self, trace: Trace, loop: PlaneLoop, written: Symmetry | None) -> None:
         self.trace, self.loop, self.tolerance, self.written = trace, loop, loop.tolerance, written
+        self.likely: Correction | None = None
 
     def best(self) -> Correction | None:
         point = each_once(self.loop.point, self.tolerance)
         if len(point) < _CORNERS - 1:
             return None
-        # The ends of leads are no corners, and where leads cross is one.
-        rings = (ring.corner for ring in islice(self.loop.rings, 1))
-        found = [missing_places(points, self.tolerance) for points in (point, point[1:-1], *rings)]
-        places = each_once(np.concatenate(found), self.tolerance)
-        ends = np.append(self.loop.point[:_ENDS], self.loop.point[-_ENDS:])
-        trials = [*self._fitting(self._of_words(np.append(places, ends))), *self._fitting(self._of_steps())]
+        if (correction := self._of_edits()) is not None:
+            return correction
+        trials = [*self._fitting(self._of_steps())] or [*self._fitting(self._of_odd_corner())]
         if not trials:
-            trials = [*self._fitting(self._of_odd_corner())]
-        if not trials and len(places):
-            trials = [*self._fitting(self._of_blocks(places))]
+            # The ends of leads are no corners, and where leads cross is one.
+            rings = (ring.corner for ring in islice(self.loop.rings, 1))
+            found = [missing_places(points, self.tolerance) for points in (point, point[1:-1], *rings)]
+            places = each_once(np.concatenate(found), self.tolerance)
+            trials = [*self._fitting(self._of_blocks(places))] if len(places) else []
         return min(trials, key=lambda trial: trial[:2])[2] if trials else None
 
     def _fitting(self, trials: Iterator[_Trial]) -> Iterator[tuple[int, int, Correction]]:
@@ -134,30 +146,42 @@ class _Search:
         aside = np.abs((written * moved.conj()).imag) / np.maximum(np.abs(written), 1e-9)
         return not bool((changed & (aside > self.tolerance)).any())
 
-    # ---- one word ----
+    @cached_property
+    def _row_of_points(self) -> Rows:
+        """The rows of the points; no move leads to the loop where the words of its first block are those of its end."""
+        row = self.loop.row.copy()
+        if row[0] == row[1]:
+            row[0] = -1
+        return row
 
     @cached_property
     def _axes(self) -> tuple[AxisWords, AxisWords]:
-        row = self.loop.row.copy()
-        if row[0] == row[1]:
-            row[0] = -1  # no move leads to the loop: the words of its first block are those of its end
-        return axis_words(self.trace, row)
+        return axis_words(self.trace, self._row_of_points)
 
-    def _of_words(self, places: Points) -> Iterator[_Trial]:
-        """Words of which a slip explains that a point is not at one of these places."""
-        point, tolerance = self.loop.point, self.tolerance
-        tried: set[tuple[int, int, float]] = set()
-        away = places[None, :] - point[:, None]
-        for number, axis in enumerate(self._axes):
-            local = away / axis.direction
-            along = np.abs(local.imag) <= tolerance * 2
-            for corner, target in np.argwhere(along & (np.abs(local.real) >= 2 * tolerance)).tolist():
-                shift = float(local[corner, target].real)
-                for begin in _writers(axis, corner):
-                    key = (number, begin, round(shift, 2))
-                    if key not in tried:
-                        tried.add(key)
-                        yield from self._changed(axis, begin, shift)
+    # ---- one edit ----
+
+    def _of_edits(self) -> Correction | None:
+        """The likeliest edit that makes the contour symmetric."""
+        loop = written_loop(self.trace, self._row_of_points)
+        for likely in likely_edits(self.trace, loop, _MOST_EDITS, _LEAST_GAIN):
+            edit = likely.edit
+            outline = outlines_of(loop, [edit])
+            point, turns, radius, to_center = (part[1] for part in outline)
+            edited = self.loop._replace(turns=turns, radius=radius, to_center=to_center)
+            slip = Slip(edit.text, edit.why, edit.is_plain, edit.is_common)
+            symmetry = edited.symmetry(point)
+            if symmetry is None:
+                continue
+            correction = correction_by(likely, self._row(edit.corner))
+            is_of_axis = edit.kind not in {"arc", "sense"}
+            if is_of_axis and self._is_better(symmetry, _Trial(edit.corner, -1, slip, point, edited)):
+                return correction._replace(becomes=_becomes(symmetry))
+            is_clear = likely.is_whole and likely.gain >= _GAIN_ALONE and len(loop.turns) >= _FEWEST_BLOCKS
+            if self.likely is None and is_clear:
+                self.likely = correction
+        return None
+
+    # ---- one corner ----
 
     def _of_odd_corner(self) -> Iterator[_Trial]:
         """The words of the one corner that is elsewhere than on the regular polygon of all the others."""
@@ -190,52 +214,6 @@ class _Search:
         slip = Slip(" ".join(texts), "its corner alone is off the polygon of the others", False)
         return _Trial(corner, words[0][1] if len(words) == 1 else -1, slip, moved, self.loop)
 
-    def _changed(self, axis: AxisWords, begin: int, shift: float) -> Iterator[_Trial]:
-        """The word of a block so that its point moves by as much; nothing where no slip explains it."""
-        slip = self._slip(axis, begin, shift)
-        if slip is not None:
-            end = begin + 1
-            while end < len(axis.word) and (axis.word[end] < 0 or axis.is_step[end]):
-                end += 1
-            moved = self.loop.point.copy()
-            moved[begin:end] += shift * axis.direction
-            yield _Trial(begin, int(axis.word[begin]), slip, moved, self.loop)
-
-    def _slip(self, axis: AxisWords, corner: int, shift: float) -> Slip | None:
-        """The slip that shifts a word of an axis, or leaves it out."""
-        trace, index, step = self.trace, int(axis.word[corner]), shift / float(axis.scale[corner])
-        # A point at the wrong place gives a word more digits than the others have.
-        least = float(trace.lengths.least_increment[self.loop.row[corner]])
-        half = self.loop.last_digit.imag if axis is self._axes[1] else self.loop.last_digit.real
-        tolerance = _DIGITS * max(2 * half / float(axis.scale[corner]), least)
-        if index < 0:
-            value = float((self.loop.point[corner] / axis.direction).real) / axis.scale[corner] + step
-            return Slip(f"{axis.address}{self._as_elsewhere(axis, value, tolerance)}", "a word is missing", False)
-        words = trace.run.words
-        value = float(words.value[index])
-        written = trace.run.text.source.excerpt(int(words.start[index]), int(words.end[index])).replace(" ", "")
-        address = written[: len(written) - len(written.lstrip("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz="))]
-        slip = slip_of(written[len(address) :], value + step, tolerance)
-        if slip is None and value and self._is_of_neighbor(axis, corner, tolerance):
-            slip = Slip("", "it is that of the block beside it", False)
-        if slip is None and axis is self._axes[1] and self._looks_like_angle(value, value * axis.scale[corner]):
-            slip = Slip("", "it looks like an angle", False)
-        if slip is None:
-            return None
-        return slip._replace(text=f"{address}{self._as_elsewhere(axis, value + step, tolerance, slip.text)}")
-
-    def _is_of_neighbor(self, axis: AxisWords, corner: int, tolerance: float) -> bool:
-        value = self.trace.run.words.value
-        words = [axis.word[neighbor] for neighbor in (corner - 1, corner + 1) if 0 <= neighbor < len(axis.word)]
-        return any(word >= 0 and abs(float(value[word] - value[axis.word[corner]])) <= tolerance for word in words)
-
-    def _looks_like_angle(self, value: float, length: float) -> bool:
-        """A number is one of the usual angles, and as a length twice as far out as any other point of the loop."""
-        point = self.loop.point
-        off_axis = np.abs(point)[np.abs(np.abs(point.imag) - abs(length)) > self.tolerance]
-        is_usual = value % _PART_OF_TURN == 0 and 2 * _PART_OF_TURN <= abs(value) <= _FULL_TURN
-        return bool(is_usual and len(off_axis) and abs(length) > 2 * off_axis.max())
-
     def _as_elsewhere(self, axis: AxisWords, value: float, tolerance: float, slip: str = "") -> str:
         """A value as another block of the loop has it, with the sign that it needs."""
         words = self.trace.run.words.value
@@ -265,10 +243,6 @@ class _Search:
 
     def _closing(self, corner: int, gap: complex) -> Iterator[_Trial]:
         """Corrections of blocks of increments that close a gap: a word, the block once less, or one more block."""
-        for axis in self._axes:
-            local = gap / axis.direction
-            if axis.word[corner] >= 0 and abs(local.imag) <= 2 * self.tolerance:
-                yield from self._changed(axis, corner, local.real)
         point = self.loop.point
         if abs(point[corner] - point[corner - 1] + gap) <= 2 * self.tolerance and corner > 1:
             moved = point.copy()
@@ -359,14 +333,3 @@ def _next_word(axis: AxisWords, corner: int) -> int:
     while end < len(axis.word) and axis.word[end] < 0:
         end += 1
     return end
-
-
-def _writers(axis: AxisWords, corner: int) -> Iterator[int]:
-    """The blocks whose word of an axis moves a point, and the block itself where it has none."""
-    if axis.word[corner] < 0 and corner:
-        yield corner
-    for begin in range(corner, -1, -1):
-        if axis.word[begin] >= 0:
-            yield begin
-            if not axis.is_step[begin]:
-                return

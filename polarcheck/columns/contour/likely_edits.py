@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from polarcheck.columns.contour.correction import Correction
 from polarcheck.columns.contour.loop_edits import Edit, edits_of, outlines_of
 from polarcheck.columns.contour.written_loop import WrittenLoop
 from polarcheck.columns.trace import Trace
@@ -27,16 +28,29 @@ class Likely(NamedTuple):
     """
     An edit that may be what was meant.
 
-    gain: how many coordinates fewer are as they are by chance. becomes: what the path is then, in words.
+    gain: how many coordinates fewer are as they are by chance. becomes: what the path is then, in words. is_whole: it
+    is closed then, or all of its arcs are tangent, and it was not.
     """
 
     edit: Edit
     gain: float
     becomes: str
+    is_whole: bool
 
 
-def likely_edits(trace: Trace, loop: WrittenLoop, most: int) -> list[Likely]:
-    """The edits that leave least to chance, the likeliest first, each path once; none where none is clearly better."""
+def correction_by(likely: Likely, row: int) -> Correction:
+    """The correction in the block of a row that an edit is."""
+    edit = likely.edit
+    word = edit.words[0] if len(edit.words) == 1 else -1
+    return Correction(row, word, edit.text, edit.why, edit.remedy, likely.becomes)
+
+
+def likely_edits(trace: Trace, loop: WrittenLoop, most: int, least_gain: float = _LEAST_GAIN) -> list[Likely]:
+    """
+    The edits that leave least to chance, the likeliest first, each path once; none where none is clearly better.
+
+    least_gain: how many coordinates fewer are as they are by chance.
+    """
     edits = edits_of(trace, loop)
     if (len(edits) + 1) * len(loop.row) > _MOST_POINTS:
         return []
@@ -51,11 +65,16 @@ def likely_edits(trace: Trace, loop: WrittenLoop, most: int) -> list[Likely]:
     least = _LEAST_WITNESS if len(loop.turns) >= _SHORT else _IF_SHORT
     found: list[int] = []
     for number in np.argsort(-gain, kind="stable").tolist():
-        if len(found) == most or gain[number] < _LEAST_GAIN:
+        if len(found) == most or gain[number] < least_gain:
             break
         if witness[number] >= least and all(_differs(outlines, number, other, loop.tolerance) for other in found):
             found.append(number)
-    return [Likely(edits[number - 1], float(gain[number]), _becomes(chances, number)) for number in found]
+    arcs, ends = chances.corners_at_arcs, chances.is_open
+    whole = ((arcs == 0) & (arcs[0] > 0)) | ((ends == 0) & (ends[0] > 0))
+    return [
+        Likely(edits[number - 1], float(gain[number]), _becomes(chances, number), bool(whole[number]))
+        for number in found
+    ]
 
 
 def _differs(outlines: Outlines, first: int, second: int, tolerance: float) -> bool:

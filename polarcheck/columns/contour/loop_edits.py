@@ -15,12 +15,15 @@ from polarcheck.geometry.regularity.coincidences import Outlines
 
 #: Numbers of a contour; smaller ones are 0, or nobody can tell.
 _LEAST, _GREATEST = 0.02, 2000.0
-#: Numbers that differ by less are one.
-_SAME_NUMBER = 5e-5
+#: Numbers that differ by less are one; a number that is calculated is off by so many last digits of what is written.
+_SAME_NUMBER, _STEPS = 5e-5, 1.5
 #: By how much an edit is less likely, as a number of coordinates that are as they are by chance: a slip that is seldom
 #: made, a number of another block, a word or block that is missing or too many, another sense, a number with more
 #: decimals than what is written, and one of a block that is not beside it.
 _SELDOM, _ELSEWHERE, _OF_BLOCK, _SAME_SIZE, _FINER, _FAR = 0.3, 0.2, 0.4, 0.1, 0.6, 2.5
+
+#: What is to be done where nothing is to be written.
+_REMEDIES = {"twice": "without it", "order": "behind the next one"}
 
 
 class Edit(NamedTuple):
@@ -40,6 +43,21 @@ class Edit(NamedTuple):
     cost: float
     axis: int = 0
     value: float = np.nan
+
+    @property
+    def remedy(self) -> str:
+        """What is to be done, as it stands before what it makes of the contour."""
+        return _REMEDIES.get(self.kind, f"with {self.text}")
+
+    @property
+    def is_common(self) -> bool:
+        """The slip is often made."""
+        return self.cost < _SELDOM
+
+    @property
+    def is_plain(self) -> bool:
+        """The slip is often made, and no other design is likely to differ by it."""
+        return self.cost < _ELSEWHERE
 
 
 def edits_of(trace: Trace, loop: WrittenLoop) -> list[Edit]:
@@ -134,9 +152,7 @@ def _is_same(axis: AxisWords, corner: int) -> bool:
 
 def _parts(trace: Trace, word: int) -> tuple[str, str]:
     """The address and the number of a word as they are written; empty where it is no plain number."""
-    words = trace.run.words
-    written = trace.run.text.source.excerpt(int(words.start[word]), int(words.end[word]))
-    match = WORD.fullmatch("".join(written.split()))
+    match = WORD.fullmatch("".join(trace.run.written(word).split()))
     return (match[1], match[2]) if match is not None else ("", "")
 
 
@@ -155,7 +171,9 @@ def _numbers(written: str, value: float, others: tuple[float, ...], beside: Floa
     known = {round(value / _SAME_NUMBER)}
     is_beside = bool((np.abs(beside - value) < _SAME_NUMBER).any())
     of_others = Slip("", "it is that of the block beside it" if is_beside else "another number is meant", False)
-    slips = [(slip, _cost(slip, written, others)) for slip in slips_of(written)]
+    step = _STEPS * 10.0 ** -_decimals(written)
+    likely = (slip._replace(text=_of_others(float(slip.text), slip.text, others, step)) for slip in slips_of(written))
+    slips = [(slip, _cost(slip, written, others)) for slip in likely]
     for size in others:
         cost = _SELDOM if is_beside else _FAR
         slips += [(of_others._replace(text=plain_number(number)), cost) for number in (size, -size)]
@@ -164,6 +182,12 @@ def _numbers(written: str, value: float, others: tuple[float, ...], beside: Floa
         if key not in known and (_LEAST <= abs(float(slip.text)) <= _GREATEST or not key):
             known.add(key)
             yield slip, cost
+
+
+def _of_others(value: float, text: str, others: tuple[float, ...], step: float) -> str:
+    """A number as another block has it, if it is that but for rounding; else the text."""
+    near = [size for size in others if 0 < abs(size - abs(value)) <= step]
+    return plain_number(float(np.copysign(near[0], value))) if near else text
 
 
 def _cost(slip: Slip, written: str, others: tuple[float, ...]) -> float:

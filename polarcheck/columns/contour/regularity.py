@@ -8,12 +8,13 @@ import numpy as np
 
 from polarcheck.columns.contour.plane_loops import PlaneLoop, loops_of, smooth_share
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Columns, Mask, cached_property
+from polarcheck.foundation.arrays import Columns, Mask, Rows, cached_property
 from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.regularity.symmetry import Symmetry
 
 if TYPE_CHECKING:
     from polarcheck.columns.contour.correction import Correction
+    from polarcheck.columns.contour.correction_search import Corrections
 
 
 #: A regular contour has a higher order of symmetry than a rectangle, and at least this many corners.
@@ -86,19 +87,32 @@ class Regularity(Columns, frozen=True):
     # ---- one word or block ----
 
     @cached_property
-    def corrections(self) -> dict[int, Correction]:
-        """By row what makes a contour regular."""
-        by_row: dict[int, Correction] = {}
-        for loop, written in self._loops:
-            if written is not None and written.is_turned:
-                continue
-            keep_time()
-            from polarcheck.columns.contour.correction_search import correction_of
+    def _corrected(self) -> list[tuple[PlaneLoop, Corrections]]:
+        """The loops with what may be meant instead of them."""
+        loops = [(loop, written) for loop, written in self._loops if written is None or not written.is_turned]
+        if not loops:
+            return []
+        from polarcheck.columns.contour.correction_search import corrections_of
 
-            correction = correction_of(self.trace, loop, written)
-            if correction is not None:
-                by_row.setdefault(correction.row, correction)
+        corrected = []
+        for loop, written in loops:
+            keep_time()
+            corrected.append((loop, corrections_of(self.trace, loop, written)))
+        return corrected
+
+    @cached_property
+    def corrections(self) -> dict[int, Correction]:
+        """By row what makes a contour symmetric."""
+        by_row: dict[int, Correction] = {}
+        for _, found in self._corrected:
+            if found.symmetric is not None:
+                by_row.setdefault(found.symmetric.row, found.symmetric)
         return by_row
+
+    @cached_property
+    def likely(self) -> list[tuple[Rows, Correction]]:
+        """The rows of a contour and what makes it more regular, so that it is told where no rule objects to them."""
+        return [(loop.row, found.likely) for loop, found in self._corrected if found.likely is not None]
 
     @cached_property
     def explained(self) -> dict[int, Correction]:

@@ -94,10 +94,11 @@ def written_loops(trace: Trace, sections: Sequence[int]) -> Iterator[WrittenLoop
         if _FEWEST <= len(own) <= _MOST and key not in blocks:
             blocks.add(key)
             before = np.flatnonzero(travels[: own[0]])
-            yield _loop(trace, np.append(before[-1] if len(before) else -1, own))
+            yield written_loop(trace, np.append(before[-1] if len(before) else -1, own))
 
 
-def _loop(trace: Trace, row: Rows) -> WrittenLoop:
+def written_loop(trace: Trace, row: Rows) -> WrittenLoop:
+    """The path of these rows of one section, the first of them the move before it, -1 for none."""
     last, own = int(row[-1]), row[1:]
     kind, arcs = trace.axes.motion[own], trace.machine.arcs
     turns = np.where(kind == Motion.CW, -1, np.where(kind == Motion.CCW, 1, 0)).astype(np.int64)

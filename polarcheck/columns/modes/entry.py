@@ -219,6 +219,13 @@ class Entry(Columns, frozen=True):
         return np.abs(np.abs(self.radius_in_mode) - left - self.radius_told)
 
     @property
+    def takes_offset_of_other(self) -> Mask:
+        """T calls the tool of a section with the offset of another tool."""
+        tools, row = self.trace.tools, np.arange(len(self.trace))
+        last = np.maximum.accumulate(np.where(tools.calls_tool, row, 0))
+        return tools.takes_offset_of_other & self.trace.blocks.mask_of(last[self.trace.mode.sections.enter])
+
+    @property
     def stock_diameter(self) -> Floats:
         """Diameter of the stock [mm]; NaN if the job states none."""
         return self.trace.lengths.stock_diameter

@@ -176,6 +176,14 @@ class CalledTools(Columns, frozen=True):
         is_other = self.tool != before(self.tool, self.blocks.starts, 0)
         return np.asarray(self.calls_tool & is_other & (self.tool > 0))
 
+    @cached_property
+    def takes_offset_of_other(self) -> Mask:
+        """T with the offset of another tool, which is called with it, too; T is never called with its own: T0103."""
+        call = self.calls_tool & ~self.has_edges & (self.tool > 0)
+        is_own = call & (self.tool == self.tool_offset_number)
+        by_tool = np.isin(np.stack([self.tool, self.tool_offset_number]), self.tool[is_own])
+        return np.asarray(call & ~by_tool[0] & by_tool[1])
+
     def tool_name(self, tool: int) -> str:
         """The name or the number of a tool in force; empty for the one that is there before the first T."""
         return "" if tool == _NO_TOOL else self.run.names.get(tool, str(tool))

@@ -49,7 +49,7 @@ def radii(comments: Comments, tools: CalledTools) -> dict[int, StatedRadius]:
     """
     if not len(comments):
         return {}
-    rows = np.flatnonzero(tools.calls_offset)
+    rows = np.flatnonzero(tools.calls_offset & ~tools.takes_offset_of_other)
     called = comments.run.block[rows]
     of_block: dict[int, list[str]] = {}
     of_tool: dict[int, str] = {}

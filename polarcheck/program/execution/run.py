@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from typing import NamedTuple
 
@@ -16,6 +17,9 @@ from polarcheck.program.reading.words import Text, Words
 
 #: M2, M30, M99: the end of a program.
 _ENDS = (2, 30, 99)
+#: The name before = that is read as a letter, and how far before it begins at most [characters].
+_NAME = re.compile(r"(?<![A-Za-z])[A-Za-z]++(?:\[\w{1,8}\])?\Z")
+_LONGEST = 40
 
 
 class FlowFault(msgspec.Struct, frozen=True):
@@ -124,6 +128,13 @@ class Run(msgspec.Struct, frozen=True):
 
     def __len__(self) -> int:
         return len(self.block)
+
+    def written(self, index: int) -> str:
+        """An executed word as it stands in the file, with the name that is read as its letter: `POS[C]=0`, `CR=5.`."""
+        start, source = int(self.words.start[index]), self.text.source
+        found = source.excerpt(start, int(self.words.end[index]))
+        name = _NAME.search(source.excerpt(max(start - _LONGEST, 0), start)) if found.startswith("=") else None
+        return found if name is None else name[0] + found
 
 
 def straight(text: Text, ends: Iterable[str]) -> Run:

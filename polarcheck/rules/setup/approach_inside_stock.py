@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     subject="size",
     doubts=(("compensation", "first start-up"), ("move", "X before")),
     follows={
+        "tool call": ("offset-of-another-tool",),
         "section": (
             "degrees-in-polar",
             "number-without-point",

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import re
-
 from polarcheck.columns.modes.executed_blocks import ExecutedBlocks
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import stretch
@@ -18,8 +16,6 @@ from polarcheck.rules.quantity import in_row
 
 #: Of what is written [characters].
 _LONGEST = 40
-#: The name before = that is read as a letter: POS[C]=0 as C.
-_NAME = re.compile(r"(?<![A-Za-z])[A-Za-z]++(?:\[\w{1,8}\])?\Z")
 
 
 def short(written: str) -> str:
@@ -52,12 +48,7 @@ def block_and_line(trace: Trace, row: int) -> str:
 
 def executed_word(run: Run, index: int) -> str:
     """An executed word as it is written, without blanks; `:` is O."""
-    table = run.words
-    start, source = int(table.start[index]), run.text.source
-    found = source.excerpt(start, int(table.end[index]))
-    if found.startswith("=") and (name := _NAME.search(source.excerpt(max(start - _LONGEST, 0), start))):
-        found = name[0] + found
-    return short(squeezed(found))
+    return short(squeezed(run.written(index)))
 
 
 def code_of(machine: Machine, key: str) -> str:
