@@ -109,6 +109,21 @@ def test_what_no_rule_objects_to_is_told_where_the_rest_shows_it(
     assert abs(found[0].line - text[: text.index("\n" + right[0])].count("\n") - 2) <= 1
 
 
+@looped(
+    ("right", "wrong"),
+    [("G42 X36. C0 F200", "G42 X3.6 C0 F200"), ("G42 X36. C0 F200", "G42 X46. C0 F200"), ("C0", "X44. C0")],
+)
+def test_a_ramp_that_does_not_end_where_the_contour_ends_is_told_with_both_words(right: str, wrong: str) -> None:
+    lines = [*HEAD[:-2], "G1 X60. F1500", HEAD[-1], *HEXAGON, *TAIL]
+    last = len(lines) - 1 - lines[::-1].index(right)
+    for turn in (as_it_is, mirrored):
+        text = "\n".join(turn([*lines[:last], wrong, *lines[last + 1 :]])) + "\n"
+        (finding,) = report_of(text, "fanuc-30i", "1:radius=2").findings
+        assert finding.rule in {"start-up-off-contour", "nearly-regular-contour"}
+        assert "X36" in finding.message
+    assert said(report_of("\n".join(lines) + "\n", "fanuc-30i", "1:radius=2")) == []
+
+
 #: What is as it was meant, and does not fit the cutter or the control: no word of it is doubted.
 MEANT = [
     ("G98 G0 X100. C0/G12.1/G1 C20. F500/G41 X60. F200/C3./X40./C-3./X60./C-20./G40 X100./G13.1", "interference"),

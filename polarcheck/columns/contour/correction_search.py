@@ -123,14 +123,14 @@ class _Search:
 
     def _is_better(self, symmetry: Symmetry, trial: _Trial) -> bool:
         written, plain = self.written, trial.slip.plain
-        if symmetry.corners < (_CORNERS if symmetry.is_turned else _MIRRORED_CORNERS):
+        if symmetry.corners + symmetry.arcs < (_CORNERS if symmetry.is_turned else _MIRRORED_CORNERS):
             return False
         added = len(trial.point) - len(self.loop.point)
         if written is not None and symmetry.corners_behind_start < written.corners_behind_start + max(added, 0):
             return False
         if added > 0 and symmetry.order <= _HALF_TURN and symmetry.corners < _MANY_CORNERS:
             return False  # a rectangle with a lead comes again after half a turn with one block more
-        before = 2 * symmetry.corners if written is None else written.freedom
+        before = 2 * symmetry.corners + symmetry.arcs if written is None else written.freedom
         if before - symmetry.freedom < (_GAIN if plain or added else _GAIN_IF_UNSURE):
             return False
         if plain:
@@ -173,11 +173,11 @@ class _Search:
             if symmetry is None:
                 continue
             correction = correction_by(likely, self._row(edit.corner))
-            is_of_axis = edit.kind not in {"arc", "sense"}
-            if is_of_axis and self._is_better(symmetry, _Trial(edit.corner, -1, slip, point, edited)):
+            is_symmetric = self._is_better(symmetry, _Trial(edit.corner, -1, slip, point, edited))
+            if is_symmetric and edit.kind not in {"arc", "sense"}:
                 return correction._replace(becomes=_becomes(symmetry))
             is_clear = likely.is_whole and likely.gain >= _GAIN_ALONE and len(loop.turns) >= _FEWEST_BLOCKS
-            if self.likely is None and is_clear:
+            if self.likely is None and (is_symmetric or is_clear):
                 self.likely = correction
         return None
 

@@ -10,6 +10,7 @@ from polarcheck.columns.path.arcs import Arcs
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Columns, Floats, Mask, Points, Rows, cached_property
 from polarcheck.foundation.states import Motion, Side
+from polarcheck.geometry.plane_path import PlanePath
 from polarcheck.geometry.tolerances import SHARE
 
 #: Points nearer than this [mm] are meant to be one point: words are rounded.
@@ -209,9 +210,10 @@ class MisplacedRamps(Columns, frozen=True):
     @cached_property
     def x_of_contour(self) -> Floats:
         """
-        Start-ups that end at half or twice the X at which their contour ends: that X [mm]; NaN elsewhere.
+        Start-ups that end at another X than their contour, which would be closed with it: that X [mm]; NaN elsewhere.
 
-        The contour would be closed with it, and the way out leads back to where the start-up began.
+        The way out leads back to where the start-up began; X is half or twice as large, or the contour goes round the
+        center and does not overlap.
         """
         trace, moves = self.trace, self._moves
         column = np.full(len(trace), np.nan)
@@ -221,19 +223,39 @@ class MisplacedRamps(Columns, frozen=True):
             return column
         cancels = np.flatnonzero(moves.cancels)
         leave = np.append(cancels, n)[np.searchsorted(cancels, starts)]
-        keep = (leave < n) & (leave - starts > _MOVES_OF_LOOP)
-        starts, leave = starts[keep], leave[keep]
-        keep = moves.section[starts] == moves.section[leave]
+        keep = (leave < n) & (leave - starts >= _MOVES_OF_LOOP)
         starts, leave = starts[keep], leave[keep]
         begin, end = moves.end[starts], moves.start[leave]
-        halved = (np.abs(begin.imag - end.imag) <= _SAME) & (np.abs(begin.real) > _SAME)
-        halved &= (np.abs(begin.real * 2 - end.real) <= _SAME) | (np.abs(begin.real - end.real * 2) <= _SAME)
-        halved &= np.abs(moves.start[starts] - moves.end[leave]) <= _SAME
+        off = (moves.section[starts] == moves.section[leave]) & (
+            np.abs(moves.start[starts] - moves.end[leave]) <= _SAME
+        )
+        off &= (np.abs(begin.imag - end.imag) <= _SAME) & (np.abs(begin.real - end.real) > _SAME)
         # The arc that begins at this X is no circle; another one tells of another mistake.
         wrong = np.append(0, np.cumsum(self.arcs.is_no_circle[moves.row]))
-        halved &= wrong[leave] == wrong[np.minimum(starts + 2, leave)]
-        column[moves.row[starts[halved]]] = end.real[halved]
+        off &= wrong[leave] == wrong[np.minimum(starts + 2, leave)]
+        halved = (np.abs(begin.real * 2 - end.real) <= _SAME) | (np.abs(begin.real - end.real * 2) <= _SAME)
+        halved &= (leave - starts > _MOVES_OF_LOOP) & (np.abs(begin.real) > _SAME)
+        for index in np.flatnonzero(off & ~halved)[:_MOST].tolist():
+            off[index] = self._is_closed_but_for_ramp(int(starts[index]) + 1, int(leave[index]))
+        column[moves.row[starts[off]]] = end.real[off]
         return column
+
+    def _is_closed_but_for_ramp(self, first: int, last: int) -> bool:
+        """The moves from first to last, exclusive, go round the center, and neither end lies on the move beside it."""
+        rows, blocks = self._moves.row[first:last], self.trace.blocks
+        if (blocks.has("U", "V", "H") | self.trace.modal.incremental)[rows].any():
+            return False  # what is wrong in one step shifts all that follow
+        path = self.trace.path.moves_of(rows)
+        ends = ((0, complex(path.end[-1])), (-1, complex(path.start[0])))
+        return path.goes_round() and not any(_is_on(path, move, point) for move, point in ends)
+
+
+def _is_on(path: PlanePath, move: int, point: complex) -> bool:
+    """A point lies on a line, or on the circle of an arc."""
+    start, end, center = complex(path.start[move]), complex(path.end[move]), complex(path.center[move])
+    if path.is_arc[move]:
+        return bool(abs(abs(point - center) - abs(start - center)) <= _SAME)
+    return bool(abs(point - start) + abs(point - end) - abs(end - start) <= _SAME)
 
 
 def _mirrors(first: complex, second: complex) -> bool:

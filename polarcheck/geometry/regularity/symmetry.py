@@ -20,14 +20,15 @@ class Symmetry(NamedTuple):
     The symmetry of a ring of n corners.
 
     order: how many turns leave it as it is, within one full turn, 1 for none but that. mirrored: a mirror image does.
-    freedom: how many numbers still say where all corners are; 2 n without any symmetry. corners: n. turns_at_start: one
-    of them is where the path begins.
+    freedom: how many numbers still say where all corners are and how arcs bulge; 2 n and one for each arc without any
+    symmetry. corners: n. arcs: edges that are arcs. turns_at_start: a corner is where the path begins.
     """
 
     order: int
     mirrored: bool
     freedom: int
     corners: int
+    arcs: int
     turns_at_start: bool
 
     @property
@@ -37,8 +38,8 @@ class Symmetry(NamedTuple):
 
     @property
     def fixed(self) -> int:
-        """The number of coordinates of the corners that follow from the others."""
-        return 2 * self.corners - self.freedom
+        """The number of coordinates and bulges that follow from the others."""
+        return 2 * self.corners + self.arcs - self.freedom
 
     @property
     def corners_behind_start(self) -> int:
@@ -53,9 +54,9 @@ class Symmetry(NamedTuple):
 
 def symmetry_of(ring: Ring, tolerance: float) -> Symmetry:
     """The symmetry of a ring. tolerance: how far corners may be off [mm]."""
-    count = len(ring)
+    count, arcs = len(ring), int(np.count_nonzero(ring.bulge))
     if np.isnan(ring.bulge).any() or _is_flat(ring):
-        return Symmetry(1, False, 2 * count, count, ring.turns_at_start)
+        return Symmetry(1, False, 2 * count + arcs, count, arcs, ring.turns_at_start)
     middle = complex(ring.corner.mean())
     order, mirrors = _order(ring, middle, tolerance), _mirrors(ring, middle, tolerance)
     angle = np.angle(mirrors) / 2
@@ -69,7 +70,8 @@ def symmetry_of(ring: Ring, tolerance: float) -> Symmetry:
         freedom = count + (not through) + (not is_aligned)
     else:
         freedom = 2 * count
-    return Symmetry(order, is_mirrored, freedom, count, ring.turns_at_start)
+    freedom += -(-arcs // (order * (1 + is_mirrored)))
+    return Symmetry(order, is_mirrored, freedom, count, arcs, ring.turns_at_start)
 
 
 def _is_flat(ring: Ring) -> bool:

@@ -24,11 +24,12 @@ if TYPE_CHECKING:
 )
 def start_up_off_contour(misplaced_ramps: MisplacedRamps) -> Mask:
     """
-    Start-up with half or twice the X of the contour.
+    Start-up that ends at another X than the contour.
 
-    The ramp ends where the contour begins. With X as a radius in place of the diameter, or the other way, the ramp goes
+    The ramp ends where the contour begins. With a slip in its X, as a radius in place of the diameter, the ramp goes
     through the part, or stops short of it, and the contour begins somewhere else than it ends. It is reported where the
-    contour would be closed with the X that it ends with, and the way out leads back to where the ramp began.
+    contour would be closed with the X that it ends with, and the way out leads back to where the ramp began: X is half
+    or twice as large, or the contour goes round the center and overlaps at neither end.
 
     Source: builder's guide to G12.1, layout of the plane (X on diameter).
 
