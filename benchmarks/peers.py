@@ -26,7 +26,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from measuring import ROOT, SLOW, SLOW_ROUNDS, Taken, apart, exponent, measured, output, ratio, run, table
-from one_fault import FAULTS, GOOD, TOOL
+from peer_faults import FAULTS, GOOD, TOOL
 from stages import stages
 from xy_twin import tool_table, twin
 
@@ -285,17 +285,18 @@ def versions(asked: argparse.Namespace) -> str:
 ONE_SLIP = """\
 ## One slip in a sound program
 
-    python benchmarks/one_slip.py --slips 3000
-    python benchmarks/one_slip.py --sound 1000
+    python benchmarks/slips.py --count 3000 --kinds
+    python benchmarks/slips.py --sound 1500
+    python benchmarks/slips.py --pairs 400
 
 The first draws sound programs as setters and CAM posts write them (`tests/setter_programs.py`), makes one slip in each
-(`tests/single_slips.py`), and prints for each kind of slip how many are spoken about, by a finding or as unverified,
-how many pass, and how many give more than one finding. A simulation that shares no code with polarcheck
-(`tests/metal_simulation.py`) runs both programs: a slip counts where the part comes out otherwise, the control stops or
-metal is met by rapid, and where a check without a drawing could know. `--show-passing FOLDER` writes those that pass,
-`--show-many FOLDER` those with several findings, the slip marked.
-The second checks programs without a slip, without a bar and with five, and prints those that do not pass.
-`benchmarks/two_slips.py` does the same with pairs of slips.
+(`tests/single_slips.py`), and prints how many are spoken about, how many in more than one finding, how many at their
+line, and how many of the values that are named, and of `--unsafe-fixes`, make the part of the sound program. A
+simulation that shares no code with polarcheck (`tests/metal_simulation.py`) runs both programs: a slip counts where the
+part comes out otherwise, the control stops or metal is met by rapid, and where a check without a drawing could know:
+by an alarm, or since the sound contour is more regular, tangent or closed, or another pass or a comment says it
+(`tests/slip_witnesses.py`). `--misses FILE` writes those that are silent, in several findings or given another value.
+The second checks programs without a slip, the third those with two.
 """
 
 
@@ -315,9 +316,10 @@ Of one that needs less memory than what starts it, the peak is that of what star
         "Many files": f"{_MANY} programs of {_BLOCKS_OF_MANY:,} blocks, in one process and in two (`--jobs`).",
         "Growth": "Without a cutter; from 1,000,000 blocks on one run each.",
         "What is found": f"""\
-{len(FAULTS)} programs with one fault each (`benchmarks/one_fault.py`), and the sound one. A reader names a fault where
-what it says, and does not say of the sound program, holds the words that belong to the fault: a generous measure, and
-the faults were chosen here. Readers of mill programs get the twin: a fault of the mode itself cannot stand in it.""",
+{len(FAULTS)} programs with one fault each (`benchmarks/peer_faults.py`), and the sound one. A reader names a fault
+where what it says, and does not say of the sound program, holds the words that belong to the fault: a generous
+measure, and the faults were chosen here. Readers of mill programs get the twin: a fault of the mode itself cannot stand
+in it.""",
         "Where the time goes": """\
 By cProfile, which adds time to each call (`benchmarks/stages.py FILE` does so for any file). A function counts for the
 stage of its module, one of a library or of polarcheck/geometry for the stages that call it.""",

@@ -43,12 +43,21 @@ class Sweep(NamedTuple):
     line: int
 
 
+class Piece(NamedTuple):
+    """A line of a contour as programmed, or an arc where it has a center; ccw: its sense."""
+
+    start: complex
+    end: complex
+    center: complex | None
+    ccw: bool
+
+
 class Outcome(NamedTuple):
     """
     What a program has done.
 
     sweeps: in their order. events: names of what is wrong whatever the drawing says. minutes: of feed moves. c_rate:
-    the highest of the C axis [deg/min]. bar: what stands before.
+    the highest of the C axis [deg/min]. bar: what stands before. paths: the contour of each pass as programmed.
     """
 
     sweeps: list[Sweep]
@@ -56,6 +65,7 @@ class Outcome(NamedTuple):
     minutes: float
     c_rate: float
     bar: Any
+    paths: tuple[tuple[Piece, ...], ...] = ()
 
 
 def simulate(program: Program) -> Outcome:
@@ -116,6 +126,7 @@ class _Run:
         remark = program.dialect.remark
         strip = re.compile(r"\([^)]*\)" if remark[0] == "(" else r";.*")
         self.blocks = [strip.sub("", line.text).strip() for line in program.lines]
+        self.blocks = ["" if block.startswith("/") else block for block in self.blocks]
         self.bar = shapely.Point(0, 0).buffer(program.bar / 2, quad_segs=90)
         self.feed, self.per_minute, self.motion = 0.0, True, "rapid"
         self.scale = 25.4 if self.dialect.starts_in_inch else 1.0
@@ -130,6 +141,7 @@ class _Run:
         self.minutes, self.c_rate = 0.0, 0.0
         self.variables: dict[int, float] = {}
         self.done = 0
+        self.paths: list[tuple[Piece, ...]] = []
 
     # ---- the order of blocks ----
 
@@ -329,6 +341,7 @@ class _Run:
         """Compensates the blocks of a section, and takes off what the cutter sweeps."""
         if not self.pending:
             return
+        self.paths += self.passes()
         blocks = [block for block, *_ in self.pending]
         try:
             run = compensated(self.entry, blocks, Rules(read_ahead=self.dialect.read_ahead))
@@ -362,6 +375,16 @@ class _Run:
         if is_on:
             self.events.add("the offset is not cancelled")
         self.pending = []
+
+    def passes(self) -> list[tuple[Piece, ...]]:
+        """What lies between ramps and the ends of contours, as programmed."""
+        found: list[list[Piece]] = [[]]
+        for block, _, _, _, index, start in self.pending:
+            if self.program.lines[index].role == "contour" and block.kind != "none":
+                found[-1].append(Piece(start, block.end, block.center, block.kind == "ccw"))
+            elif self.program.lines[index].role != "contour" and found[-1]:
+                found.append([])
+        return [tuple(one) for one in found if one]
 
     def sweep(self, move: Move, z_from: float, z_to: float, is_rapid: bool, feed: float, line: int) -> None:
         points = along(move) if abs(move.end - move.start) > 1e-9 or move.center is not None else [move.start]
@@ -458,4 +481,4 @@ class _Run:
             self.events.add("C too fast")
         if self.minutes > 60:
             self.events.add("hours")
-        return Outcome(self.sweeps, frozenset(self.events), self.minutes, self.c_rate, self.bar)
+        return Outcome(self.sweeps, frozenset(self.events), self.minutes, self.c_rate, self.bar, tuple(self.paths))

@@ -402,6 +402,33 @@ def mirrored(contour: Contour) -> Contour:
     return contour._replace(start=contour.start.conjugate(), pieces=pieces, side=side)
 
 
+def led(contour: Contour, form: str, radius: float) -> Contour:
+    """
+    The contour as it is milled from another start, where the form of lead fits it.
+
+    form: "corner": from the corner before its first side; "extension": on its sides extended beyond that corner;
+    "overlap": on beyond its start. radius: of the cutter [mm].
+    """
+    first, last, pieces = contour.pieces[0], contour.pieces[-1], contour.pieces
+    is_round = first.center is not None or last.center is not None
+    if not contour.closed or is_round or len(pieces) < 4:
+        return contour
+    way, reach = first_direction(contour), radius + 1.5
+    if form == "overlap":
+        reach = min(1.5, abs(first.end - contour.start) / 2)
+        return contour._replace(pieces=(*pieces[:-1], Piece(contour.start + way * reach)))
+    corner = pieces[-2].end
+    is_sharp = pieces[-2].center is None and not contour.is_pocket
+    if form not in ("corner", "extension") or not is_sharp:
+        return contour
+    arriving = (corner - pieces[-3].end) / abs(corner - pieces[-3].end)
+    turn = (way / arriving).imag * (1 if contour.side == "right" else -1)
+    if turn <= 0.1:
+        return contour
+    reach = reach if form == "extension" else 0.0
+    return contour._replace(start=corner - way * reach, pieces=(*pieces[:-2], Piece(corner + arriving * reach)))
+
+
 def shifted(contour: Contour, by: float) -> Contour:
     """The contour at a distance on the cutter's side: of a roughing pass, or the path of the cutter's center."""
     sign = -1j if contour.side == "right" else 1j

@@ -24,7 +24,8 @@ class Style(NamedTuple):
 
     repeats: all words in each block, as CAM posts do. repeats_z: Z, too. packed: without spaces. centers: I and J.
     steps: incremental words in contours. zeros: numbers with all their decimals. numbers: N words. lead: how a contour
-    is approached, "normal", "aside" or "arc". from_above: Z goes down in the mode. leaves_at_depth: G13.1 before Z.
+    is approached, "normal", "aside", "arc", or as milled_shapes.led has it. from_above: Z goes down in the mode.
+    leaves_at_depth: G13.1 before Z.
     """
 
     repeats: bool

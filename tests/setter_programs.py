@@ -22,6 +22,7 @@ from milled_shapes import (
     Piece,
     first_direction,
     last_direction,
+    led,
     mirrored,
     shifted,
 )
@@ -130,13 +131,15 @@ LAYOUTS = {
     "spring pass": (*BOSSES, "pocket", "round_pocket"),
     "zigzag": ("zigzag",),
 }
+#: The layouts whose contours may begin and end on an extension, at a corner or beyond their start.
+LED_LAYOUTS = ("single", "depths", "rough and finish", "roughing passes", "spring pass", "boss and pocket")
 FAMILIES = [f"{shape}, {layout}" for layout, shapes in LAYOUTS.items() for shape in shapes]
 MM_RADII = (2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0)
 INCH_RADII = tuple(25.4 * share / 32 for share in (3, 4, 5, 6, 8, 10))
 
 
-def drawn(seed: int, machine: str = "", family: str = "") -> Program:
-    """The program of a seed."""
+def drawn(seed: int, machine: str = "", family: str = "", lead: str = "") -> Program:
+    """The program of a seed; lead: "corner", "extension" or "overlap", on contours and layouts that admit it."""
     draw = random.Random(f"{seed} {family}")  # noqa: S311 - programs that can be written again
     family = family or FAMILIES[seed % len(FAMILIES)]
     shape, _, layout = family.partition(", ")
@@ -170,6 +173,8 @@ def drawn(seed: int, machine: str = "", family: str = "") -> Program:
         style = style._replace(packed=False)
     if dialect.machine == "turning-center" or layout.startswith(("macro", "subprogram")):
         style = style._replace(repeats_z=False)
+    if lead and layout in LED_LAYOUTS:
+        style = style._replace(lead=lead)
     return Maker(seed, family, layout, dialect, style, inch, contour, draw, grid).program()
 
 
@@ -515,7 +520,9 @@ class Maker:
 
     def cut(self, cut: Cut, before: Cut | None) -> None:
         """A section."""
-        pen, style, contour, radius = self.pen, self.style, cut.contour, self.radii[cut.tool]
+        pen, style, radius = self.pen, self.style, self.radii[cut.tool]
+        cut = cut._replace(contour=led(cut.contour, style.lead, radius))
+        contour = cut.contour
         normal = first_direction(contour) * (-1j if contour.side == "right" else 1j)
         start, finish = self.approach(cut, normal, radius)
         inside = contour.is_pocket
@@ -570,7 +577,7 @@ class Maker:
             return far, far
         if contour.is_pocket:
             start = contour.start + normal * (radius + 0.75)
-            return start, start
+            return start, contour.pieces[-1].end + normal * (radius + 0.75)
         if not contour.closed:
             last = last_direction(contour) * (-1j if contour.side == "right" else 1j)
             end = contour.pieces[-1].end
@@ -580,7 +587,10 @@ class Maker:
             away += 1
         start = contour.start + normal * away
         digits = 3 if not self.inch else 4
-        return complex(round(start.real, digits), round(start.imag, digits)), start
+        finish, last = start, last_direction(contour)
+        if abs(last - first_direction(contour)) > 1e-3 or abs(contour.pieces[-1].end - contour.start) > 1e-6:
+            finish = contour.pieces[-1].end + last * (-1j if contour.side == "right" else 1j) * away
+        return complex(round(start.real, digits), round(start.imag, digits)), finish
 
     def passes(
         self, cut: Cut, start: complex, finish: complex, normal: complex, radius: float, from_above: bool
@@ -590,6 +600,9 @@ class Maker:
         lead, first, last = self.leads(contour, normal, radius)
         if lead:
             start = finish = first + normal * max(radius + 2.0, abs(start - contour.start) - abs(first - contour.start))
+        elif self.style.lead == "corner" and abs(first_direction(contour) - last_direction(contour)) > 1e-3:
+            start -= first_direction(contour) * (radius + 1)
+            finish += last_direction(contour) * (radius + 1)
         elif self.style.lead == "aside" and contour.closed and not contour.is_pocket and cut.approach is None:
             start -= first_direction(contour) * self.draw.choice((2.0, 3.0))
         self.go_to(start)

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable
 
 from setter_programs import Program
-from slip_words import NUMBER, Draw, Plant, at, plain, word_changed, words_of
+from slip_words import NUMBER, Draw, Plant, at, plain, words_of
 
 # ---- compensation ----
 
@@ -20,28 +19,6 @@ def side_swapped(program: Program, draw: Draw) -> Program | None:
     return program.changed(
         index, re.sub("G4[12]", lambda m: "G42" if m[0] == "G41" else "G41", program.lines[index].text)
     )
-
-
-def side_late(program: Program, draw: Draw) -> Program | None:
-    """G41 or G42 in the block behind."""
-    places = [
-        index
-        for index in at(program, "ramp")
-        if program.lines[index + 1].role == "contour" and re.search("G4[12]", program.lines[index].text)
-    ]
-    places = [index for index in places if not re.search(r"G10?[23](?!\d)", program.lines[index + 1].text)]
-    if not places:
-        return None
-    index = draw.choice(places)
-    text = program.lines[index].text
-    side = re.search("G4[12]", text)
-    assert side
-    behind = program.lines[index + 1].text
-    number = re.match(r"N\d+ ", behind)
-    first = len(number[0]) if number else 0
-    space = "" if " " not in text else " "
-    behind = behind[:first] + side[0] + space + behind[first:]
-    return program.changed(index + 1, behind).changed(index, text.replace(side[0], "").replace("  ", " ").strip())
 
 
 def cancelled_at_once(program: Program, draw: Draw) -> Program | None:
@@ -61,10 +38,6 @@ def cancelled_at_once(program: Program, draw: Draw) -> Program | None:
 
 
 # ---- depth, index, mode ----
-
-
-def depth_word(change: Callable[[str, Draw], str | None]) -> Plant:
-    return word_changed("Z", change, "plunge", "plunge outside")
 
 
 def deeper(value: str, draw: Draw) -> str | None:
@@ -155,14 +128,6 @@ def z_at_depth_before(program: Program, draw: Draw) -> Program | None:
     return program.changed(index, re.sub(rf"Z{NUMBER}", "Z" + deep[0], program.lines[index].text))
 
 
-def mode_missing(role: str) -> Plant:
-    def plant(program: Program, draw: Draw) -> Program | None:
-        places = at(program, role)
-        return program.changed(draw.choice(places)) if places else None
-
-    return plant
-
-
 def degrees(program: Program, draw: Draw) -> Program | None:
     """The virtual axis as angles of the points."""
     places = at(program, "contour")
@@ -203,6 +168,31 @@ def position_angle_missing(program: Program, draw: Draw) -> Program | None:
 
 
 # ---- tools, feeds, comments ----
+
+
+def text_missing(pattern: str, *roles: str) -> Plant:
+    """A code (regular expression) is missing, with its block where nothing else stands there."""
+
+    def plant(program: Program, draw: Draw) -> Program | None:
+        lines = enumerate(program.lines)
+        places = [i for i, line in lines if re.search(pattern, line.text) and (not roles or line.role in roles)]
+        if not places:
+            return None
+        index = draw.choice(places)
+        text = re.sub(pattern, "", program.lines[index].text, count=1).strip()
+        return program.changed(index, *([text] if text and not re.fullmatch(r"N\d+", text) else []))
+
+    return plant
+
+
+def code_missing(name: str) -> Plant:
+    """The code that the dialect writes for something is missing."""
+
+    def plant(program: Program, draw: Draw) -> Program | None:
+        code = getattr(program.dialect, name)
+        return text_missing(rf"{re.escape(code)}(?![\d.])")(program, draw) if code else None
+
+    return plant
 
 
 def tool_comment(program: Program, draw: Draw) -> Program | None:

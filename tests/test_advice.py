@@ -5,7 +5,6 @@ from __future__ import annotations
 import pytest
 from cases import looped
 from programs import report_of
-from remedy_slips import GRADES, KINDS, judged_slip
 
 HEAD = "O1 / T0101 / G98 G0 X70. Z2. C0 / G12.1 / G1 X60. F1500 / Z-5. / "
 RAMP = "G42 X40. C0 F200 / "
@@ -181,16 +180,6 @@ def test_an_angle_among_the_points_of_a_hexagon(machine: str, axis: str) -> None
     assert (
         f"{axis}60. does not fit the rest of the contour, it looks like an angle: with {axis}10.392" in finding.message
     )
-
-
-@pytest.mark.nightly
-def test_most_advice_leads_back_to_the_slip() -> None:
-    kinds = tuple(KINDS)
-    judged = [judged_slip(seed, kinds) for seed in range(5, 83, 10)]
-    grades = [advice.grade for one in judged if one for advice in one.advice]
-    assert len(grades) >= 5
-    assert not any(one.safe_fix_is_wrong for one in judged if one)
-    assert sum(grade == GRADES[-1] for grade in grades) <= 2
 
 
 @pytest.mark.ci

@@ -18,7 +18,7 @@ import measuring
 import peers
 import stages
 from measuring import exponent, measured, table
-from one_fault import FAULTS, GOOD, TOOL
+from peer_faults import FAULTS, GOOD, TOOL
 from xy_twin import tool_table, twin
 
 pytestmark = pytest.mark.ci

@@ -168,3 +168,29 @@ def test_messages_show_long_statements_in_part() -> None:
     (finding,) = report_of(f"O1\n#1=SQRT[-1{'+0' * 500}]\nM30\n").findings
     assert finding.message.startswith("#1=SQRT[-1+0+0")
     assert len(finding.message) < 200
+
+
+@pytest.mark.nightly
+@looped("machine", ["fanuc", "gsk-988", "siemens-iso"])
+def test_an_if_that_a_control_does_not_know_is_one_finding(machine: str) -> None:
+    is_siemens = machine.startswith("siemens")
+    head = "G0 X80." if is_siemens else "#1=6\nIF [#1 GT 5]\nG0 X80."
+    report = report_of(f"O1\nG21 G40 G97\n{head}\nELSE\nG0 X70.\nENDIF\nM30\n", machine)
+    assert [found.rule for found in report.findings] == ["loop-unbalanced" if is_siemens else "macro-syntax"]
+
+
+@pytest.mark.nightly
+@looped(
+    ("machine", "blocks", "rule"),
+    [
+        ("fanuc", "#2=FOO+1\n#3=FOO*2", "macro-syntax"),
+        ("fanuc", "FOO(1)\nFOO(2)", "bad-number"),
+        ("okuma-osp", "X=FOO\nZ=FOO", "vacant-variable"),
+        ("fanuc", "G1 X#101 F100\nZ#101", "vacant-variable"),
+    ],
+)
+def test_a_name_that_is_not_known_is_one_finding(machine: str, blocks: str, rule: str) -> None:
+    report = report_of(f"O1\nG21 G40 G97\n{blocks}\nM30\n", machine)
+    assert [(found.rule, found.count) for found in report.findings if found.severity != "note"] == [(rule, 2)]
+    other = report_of(f"O1\nG21 G40 G97\n{blocks.replace('FOO', 'BAR', 1).replace('#101', '#102', 1)}\nM30\n", machine)
+    assert [found.rule for found in other.findings if found.severity != "note"] == [rule, rule]
