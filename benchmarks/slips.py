@@ -26,7 +26,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "tests"))
 from setter_dialects import DIALECTS
 from setter_programs import FAMILIES, Program, drawn
 from single_slips import LEADS, SLIPS, Planted, Slip, drawn_slip, planted
-from slip_answers import Answer, answered, changed_lines, report_on, said_of
+from slip_answers import Answer, answered, changed_lines, lines_named, report_on, said_of
 
 from polarcheck.foundation.finding import Finding
 
@@ -49,7 +49,7 @@ class Judged(NamedTuple):
             return "open" if answer.is_open else "silent"
         is_bad = {
             "several": len(answer.findings) > 1,
-            "wrong value": answer.remedy == "wrong" or answer.names == "wrong" != answer.remedy == "right",
+            "wrong value": answer.remedy == "wrong",
             "wrong fix": answer.fix == "wrong",
             "elsewhere": not answer.is_there,
         }
@@ -101,45 +101,49 @@ class Pair(NamedTuple):
 
 
 def pairs(count: int, seed: int) -> list[Pair]:
-    """Pairs of slips, half of them in one contour; each of them alone is told in one finding."""
+    """
+    Pairs of slips, half of them in one contour; each of them alone is told in one finding.
+
+    Both are told where two findings name their lines or are those of each alone, or where one names both lines.
+    """
     found: list[Pair] = []
     kinds = [slip for slip in SLIPS if not re.search("block|swapped|missing|forgotten", slip.name)]
     for number in range(seed, seed + 60 * count):
         draw = random.Random(f"pair {number}")  # noqa: S311 - programs that can be written again
         program = drawn(draw.randrange(10**6), "", draw.choice(FAMILIES), draw.choice(LEADS))
-        pair = _pair(program, draw.sample(kinds, 2), draw)
-        if pair is not None and sum(one.is_one == pair.is_one for one in found) < (count + 1) // 2:
-            found.append(pair)
+        counts = Counter(pair.is_one for pair in found)
+        missing = [is_one for is_one in (True, False) if counts[is_one] < (count + 1 - is_one) // 2]
+        pair = _pair(program, draw.sample(kinds, 2), draw, missing)
+        found += [pair] if pair else []
         if len(found) == count:
             break
     return found
 
 
-def _pair(program: Program, kinds: list[Slip], draw: random.Random) -> Pair | None:
+def _pair(program: Program, kinds: list[Slip], draw: random.Random, missing: list[bool]) -> Pair | None:
     one, two = (planted(kind, program, draw) for kind in kinds)
     if one is None or two is None or len(one.program.lines) != len(two.program.lines):
         return None
     lines = [changed_lines(program, slip.program)[0] for slip in (one, two)]
     if len(lines[0]) != 1 or len(lines[1]) != 1 or lines[0] == lines[1]:
         return None
-    alone = [answered(slip, ()).findings for slip in (one, two)]
+    is_one = _is_one(program, lines[0][0], lines[1][0])
+    if is_one not in missing:
+        return None
+    alone = [said_of(report_on(slip.program)) for slip in (one, two)]
     if any(len(findings) != 1 for findings in alone):
         return None
     index = lines[1][0] - 1
     both = one.program.changed(index, two.program.lines[index].text)
-    findings = [*said_of(report_on(both))]
+    findings = said_of(report_on(both))
     meant = [
-        {i for i, said in enumerate(findings) if said.line in of or said.rule == single[0].rule}
+        {i for i, said in enumerate(findings) if set(of) & lines_named(said) or said.rule == single[0].rule}
         for of, single in zip(lines, alone, strict=True)
     ]
     told = 2 if any(i != j for i in meant[0] for j in meant[1]) else min(1, len(meant[0] | meant[1]))
-    return Pair(
-        (kinds[0].name, kinds[1].name),
-        _is_one(program, lines[0][0], lines[1][0]),
-        both,
-        (lines[0][0], lines[1][0]),
-        told,
-    )
+    if any({*lines[0], *lines[1]} <= lines_named(said) for said in findings):
+        told = 2
+    return Pair((kinds[0].name, kinds[1].name), is_one, both, (lines[0][0], lines[1][0]), told)
 
 
 def _is_one(program: Program, first: int, second: int) -> bool:

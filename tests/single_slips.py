@@ -1,8 +1,7 @@
 """
 Slips that a setter makes in a sound program, one at a time, and whether each does something to the metal or the lathe.
 
-    slip = drawn_slip(7)
-    slip.sound.text(), slip.program.text(), slip.line, slip.witness
+    slip = drawn_slip(7)      # slip.sound, slip.program, slip.line, slip.witness
 
 A slip is counted where the part comes out otherwise, or the control stops, or metal is met by rapid, and where a check
 without a drawing could know it. What it could know it by, is its witness.
@@ -17,28 +16,34 @@ from typing import NamedTuple
 from metal_simulation import RAPID, cuts_the_part, differs, simulate
 from setter_programs import BOSSES, FAMILIES, Program, drawn
 from slip_blocks import (
-    bar_comment,
+    block_doubled,
+    block_moved,
+    block_written,
     cancelled_at_once,
-    code_missing,
+    code_moved,
     contour_at_two_depths,
     deeper,
     degrees,
     ends_inside,
-    entered_again,
     index_word,
-    other_offset,
-    per_minute_missing,
-    per_revolution,
     position_angle_missing,
     retract_missing,
     side_swapped,
+    x_too_small,
+    z_at_depth_before,
+)
+from slip_settings import (
+    bar_comment,
+    code_missing,
+    entered_again,
+    other_offset,
+    per_minute_missing,
+    per_revolution,
     size_comment,
     text_missing,
     tool_comment,
     units_missing,
     unknown_offset,
-    x_too_small,
-    z_at_depth_before,
 )
 from slip_witnesses import witness
 from slip_words import (
@@ -50,11 +55,7 @@ from slip_words import (
     arc_word,
     axes_swapped,
     block_changed,
-    block_doubled,
     block_missing,
-    block_moved,
-    block_written,
-    code_moved,
     digit_doubled,
     digit_lost,
     digit_wrong,
@@ -116,8 +117,7 @@ SLIPS = (
     *(Slip(f"I or J: {name}", arc_word("I", VALUES[name])) for name in ARCS),
     *_values("the depth", "Z", ("plunge", "plunge outside"), ("sign wrong",), knows="cuts only air"),
     *_values("the depth", "Z", ("plunge", "plunge outside"), ("digit doubled", "ten times or a tenth")),
-    *_values("the retract", "Z", ("retract", "lift"), ("sign wrong", "ten times or a tenth")),
-    *_values("the index", "C", ("index",), ("another digit", "digit lost")),
+    *_values("the retract", "Z", ("retract", "lift"), ("sign wrong",)),
     # ---- words of a contour ----
     Slip("neighbour's value in the contour", neighbour),
     Slip("neighbour's value in a subprogram", neighbour, families="subprogram"),
@@ -162,7 +162,7 @@ SLIPS = (
     Slip("G0 for G1 in the plunge", block_changed("G1(?!0|1)", "G0", "plunge")),
     Slip("G0 for G1 in the approach", block_changed("G1(?!0|1)", "G0", "ramp", "approach")),
     Slip("G91 forgotten", text_missing(r"G91 ?")),
-    Slip("G90 forgotten", text_missing(r"(?<!^)G90 ?", "contour", "plunge", "cancel", "ramp")),
+    Slip("G90 forgotten", text_missing("G90 ?", "plunge", "cancel"), "G91 stays in force", True),
     Slip("G91 in the contour", block_changed(r"^(N\d+ ?)?", r"\g<1>G91 ", "contour")),
     # ---- compensation ----
     Slip("G41 for G42", side_swapped, "cuts into the part"),
@@ -185,6 +185,7 @@ SLIPS = (
     Slip("depth far deeper than the other passes", word_changed("Z", deeper, "plunge"), families="depths|ramp"),
     Slip("retract missing", retract_missing),
     Slip("index missing", index_word("missing"), "cuts only air"),
+    Slip("index at an angle of its own", index_word("another digit"), "the steps of the others"),
     Slip("index twice", index_word("twice"), "cuts only air"),
     Slip("contour at two depths", contour_at_two_depths, "Z in the middle of a contour"),
     Slip("approach inside the bar", x_too_small(0.6)),

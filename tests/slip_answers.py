@@ -80,6 +80,12 @@ def said_of(report: FileReport) -> list[Finding]:
     return [finding for finding in report.findings if finding.severity != "note"]
 
 
+def lines_named(finding: Finding) -> set[int]:
+    """The line of a finding, and those that its message names."""
+    named = re.findall(r"\blines? (\d+)((?:, \d+)*)(?: (?:and|to) (\d+))?", finding.message)
+    return {finding.line} | {int(number) for groups in named for number in re.findall(r"\d+", " ".join(groups))}
+
+
 def answered(slip: Planted, before: Sequence[Finding] | None = None) -> Answer:
     """Check a program with a slip; before: what is said of the sound one."""
     sound, program = slip.sound, slip.program

@@ -1,4 +1,4 @@
-"""Slips in the blocks around a contour: compensation, depth, index, the mode, tools, feeds and comments."""
+"""Slips in blocks: missing, twice or at another place; compensation, depth, index and the mode."""
 
 from __future__ import annotations
 
@@ -6,7 +6,77 @@ import math
 import re
 
 from setter_programs import Program
-from slip_words import NUMBER, Draw, Plant, at, plain, words_of
+from slip_words import NUMBER, Draw, Plant, at, digit_wrong, plain, word_changed, words_of
+
+# ---- any block ----
+
+
+def block_doubled(*roles: str) -> Plant:
+    def plant(program: Program, draw: Draw) -> Program | None:
+        places = at(program, *roles)
+        if not places:
+            return None
+        index = draw.choice(places)
+        return program.changed(index, program.lines[index].text, program.lines[index].text)
+
+    return plant
+
+
+def block_moved(by: int, *roles: str) -> Plant:
+    """A block in the place of the one before (-1) or behind (1), and that in its place."""
+
+    def plant(program: Program, draw: Draw) -> Program | None:
+        last = len(program.lines) - 1
+        places = [index for index in at(program, *roles) if 0 <= index + by <= last and _is_plain(program, index, by)]
+        if not places:
+            return None
+        index = draw.choice(places)
+        one, two = program.lines[index], program.lines[index + by]
+        if one.text == two.text:
+            return None
+        return program._replace(
+            lines=tuple({index: two, index + by: one}.get(number, line) for number, line in enumerate(program.lines))
+        )
+
+    return plant
+
+
+def _is_plain(program: Program, index: int, by: int) -> bool:
+    return not re.search("[#O%]|M30|M99", program.lines[index].text + program.lines[index + by].text)
+
+
+def code_moved(code: str, by: int, *roles: str) -> Plant:
+    """A code (regular expression) in the block before (-1) or behind (1)."""
+
+    def plant(program: Program, draw: Draw) -> Program | None:
+        places = [index for index in at(program, *roles) if re.search(code, program.lines[index].text)]
+        places = [index for index in places if _is_plain(program, index, by)]
+        if not places:
+            return None
+        index = draw.choice(places)
+        text, other = program.lines[index].text, program.lines[index + by].text
+        written = re.search(code, text)
+        assert written
+        text = (text[: written.start()] + text[written.end() :]).replace("  ", " ").strip()
+        first = len(re.match(r"(N\d+ ?)?", other)[0])  # type: ignore[index]
+        other = other[:first] + written[0] + " " * (" " in other) + other[first:]
+        return program.changed(index + by, other).changed(index, *([text] if text else []))
+
+    return plant
+
+
+def block_written(text: str, *roles: str) -> Plant:
+    """A block that is not meant, before one of those with these roles."""
+
+    def plant(program: Program, draw: Draw) -> Program | None:
+        places = at(program, *roles)
+        if not places:
+            return None
+        index = draw.choice(places)
+        return program.changed(index, text, program.lines[index].text)
+
+    return plant
+
 
 # ---- compensation ----
 
@@ -69,7 +139,7 @@ def contour_at_two_depths(program: Program, draw: Draw) -> Program | None:
 
 
 def index_word(change: str) -> Plant:
-    """The C of a later section left out, or that of the one before."""
+    """The C of a later section left out, that of the one before, or, where it has equal steps, another one."""
 
     def plant(program: Program, draw: Draw) -> Program | None:
         places = at(program, "index")
@@ -79,6 +149,8 @@ def index_word(change: str) -> Plant:
         if change == "missing":
             return program.changed(index)
         text = program.lines[index].text
+        if change == "another digit":
+            return word_changed("C", digit_wrong, "index")(program, draw) if len(places) > 1 else None
         before = [place for place in places if place < index]
         value = "C0" if not before else re.search(r"C[\d.]+", program.lines[before[-1]].text)[0]  # type: ignore[index]
         return program.changed(index, re.sub(r"C[\d.]+", value, text))
@@ -165,127 +237,6 @@ def position_angle_missing(program: Program, draw: Draw) -> Program | None:
     index = draw.choice(places)
     text = re.sub(r" ?C0(?!\d)", "", program.lines[index].text)
     return program.changed(index, *([text] if re.search("[XZ]", text) else []))
-
-
-# ---- tools, feeds, comments ----
-
-
-def text_missing(pattern: str, *roles: str) -> Plant:
-    """A code (regular expression) is missing, with its block where nothing else stands there."""
-
-    def plant(program: Program, draw: Draw) -> Program | None:
-        lines = enumerate(program.lines)
-        places = [i for i, line in lines if re.search(pattern, line.text) and (not roles or line.role in roles)]
-        if not places:
-            return None
-        index = draw.choice(places)
-        text = re.sub(pattern, "", program.lines[index].text, count=1).strip()
-        return program.changed(index, *([text] if text and not re.fullmatch(r"N\d+", text) else []))
-
-    return plant
-
-
-def code_missing(name: str) -> Plant:
-    """The code that the dialect writes for something is missing."""
-
-    def plant(program: Program, draw: Draw) -> Program | None:
-        code = getattr(program.dialect, name)
-        return text_missing(rf"{re.escape(code)}(?![\d.])")(program, draw) if code else None
-
-    return plant
-
-
-def tool_comment(program: Program, draw: Draw) -> Program | None:
-    """A comment that names another cutter."""
-    places = at(program, "call")
-    index = draw.choice(places)
-    text = program.lines[index].text
-    number = re.match(r"\S+(?: D1)?", text)
-    assert number
-    offset = int(re.search(r"(\d{1,2})(?: D1)?$", number[0])[1])  # type: ignore[index]
-    radius = program.radii.get(offset)
-    if radius is None:
-        return None
-    size = 2 * radius / program.scale * draw.choice((0.5, 1.5, 2.0))
-    word = draw.choice(("END MILL D{}", "EM{}", "D{} END MILL", "CUTTER {}")).format(f"{size:.4g}")
-    return program.changed(index, f"{number[0]} {word.join(program.dialect.remark)}")
-
-
-def size_comment(program: Program, draw: Draw) -> Program | None:
-    places = at(program, "size")
-    if not places:
-        return None
-    change = lambda m: f"{float(m[0]) + draw.choice((2, -2, 3)) * (0.1 if program.inch else 1):.4g}"  # noqa: E731
-    return program.changed(places[0], re.sub(r"[\d.]+", change, program.lines[places[0]].text))
-
-
-def bar_comment(program: Program, draw: Draw) -> Program | None:
-    """A bar that is smaller than the part."""
-    places = at(program, "bar")
-    if not places:
-        return None
-    least = min(program.reach, program.bar) / program.scale * draw.choice((0.5, 0.7, 0.85))
-    return program.changed(places[0], re.sub(r"[\d.]+", f"{least:.3g}", program.lines[places[0]].text))
-
-
-def units_missing(program: Program, draw: Draw) -> Program | None:
-    code = program.dialect.inch if program.inch else program.dialect.metric
-    places = [index for index in at(program, "head") if code and code in program.lines[index].text]
-    if not places or program.inch == program.dialect.starts_in_inch or program.stock is None:
-        return None
-    rest = program.lines[places[0]].text.replace(code, "").strip()
-    return program.changed(places[0], *([rest] if rest else []))
-
-
-def per_revolution(program: Program, draw: Draw) -> Program | None:
-    dialect = program.dialect
-    places = [index for index in at(program, "start") if dialect.per_minute in program.lines[index].text]
-    if not places:
-        return None
-    return program.changed(places[0], program.lines[places[0]].text.replace(dialect.per_minute, dialect.per_revolution))
-
-
-def per_minute_missing(program: Program, draw: Draw) -> Program | None:
-    dialect = program.dialect
-    if not at(program, "turn"):
-        return None
-    places = [index for index in at(program, "start") if dialect.per_minute in program.lines[index].text]
-    return program.changed(places[0]) if places else None
-
-
-def entered_again(program: Program, draw: Draw) -> Program | None:
-    """The mode is left and entered between two passes, where C stands elsewhere."""
-    places = [index for index in at(program, "plunge", "lift") if program.lines[index - 1].role == "cancel"]
-    dialect = program.dialect
-    if not places or not dialect.index or dialect.on != "G12.1" or dialect.before:
-        return None
-    index = draw.choice(places)
-    return program.changed(index, dialect.off, dialect.on, program.lines[index].text)
-
-
-def unknown_offset(program: Program, draw: Draw) -> Program | None:
-    """An offset that has no R."""
-    index = draw.choice(at(program, "call"))
-    text = program.lines[index].text
-    match = re.match(r"(?:N\d+ )?T(\d\d)(\d\d)", text)
-    if not match or program.machine == "okuma-osp" or program.family.endswith(("center path", "zigzag")):
-        return None
-    return program.changed(index, text.replace(match[1] + match[2], f"{match[1]}{int(match[2]) + 20}", 1))
-
-
-def other_offset(program: Program, draw: Draw) -> Program | None:
-    """The offset of the other cutter."""
-    places = at(program, "call")
-    if len(program.radii) < 2 or program.machine in ("siemens-transmit", "okuma-osp"):
-        return None
-    index = draw.choice(places)
-    match = re.search(r"T(\d\d)(\d\d)", program.lines[index].text)
-    if not match:
-        return None
-    other = next(offset for offset in program.radii if offset != int(match[2]))
-    if abs(program.radii[other] - program.radii[int(match[2])]) < 0.3:
-        return None
-    return program.changed(index, program.lines[index].text.replace(match[0], f"T{match[1]}{other:02}"))
 
 
 def ends_inside(program: Program, draw: Draw) -> Program | None:

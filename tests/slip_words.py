@@ -23,7 +23,10 @@ def word_changed(letters: str, change: Callable[[str, Draw], str | None], *roles
 
     def plant(program: Program, draw: Draw) -> Program | None:
         addresses = letters.replace(
-            "C", program.dialect.virtual + program.dialect.virtual_step + ("C" if "position" in " ".join(roles) else "")
+            "C",
+            program.dialect.virtual
+            + program.dialect.virtual_step
+            + ("C" if re.search("position|index", " ".join(roles)) else ""),
         )
         addresses = addresses.replace("X", "XU") if "X" in letters else addresses
         places = []
@@ -154,73 +157,6 @@ def all_words(letter: str) -> Plant:
                 )
                 program = program.changed(index, text)
         return program
-
-    return plant
-
-
-def block_doubled(*roles: str) -> Plant:
-    def plant(program: Program, draw: Draw) -> Program | None:
-        places = at(program, *roles)
-        if not places:
-            return None
-        index = draw.choice(places)
-        return program.changed(index, program.lines[index].text, program.lines[index].text)
-
-    return plant
-
-
-def block_moved(by: int, *roles: str) -> Plant:
-    """A block in the place of the one before (-1) or behind (1), and that in its place."""
-
-    def plant(program: Program, draw: Draw) -> Program | None:
-        last = len(program.lines) - 1
-        places = [index for index in at(program, *roles) if 0 <= index + by <= last and _is_plain(program, index, by)]
-        if not places:
-            return None
-        index = draw.choice(places)
-        one, two = program.lines[index], program.lines[index + by]
-        if one.text == two.text:
-            return None
-        return program._replace(
-            lines=tuple({index: two, index + by: one}.get(number, line) for number, line in enumerate(program.lines))
-        )
-
-    return plant
-
-
-def _is_plain(program: Program, index: int, by: int) -> bool:
-    return not re.search("[#O%]|M30|M99", program.lines[index].text + program.lines[index + by].text)
-
-
-def code_moved(code: str, by: int, *roles: str) -> Plant:
-    """A code (regular expression) in the block before (-1) or behind (1)."""
-
-    def plant(program: Program, draw: Draw) -> Program | None:
-        places = [index for index in at(program, *roles) if re.search(code, program.lines[index].text)]
-        places = [index for index in places if _is_plain(program, index, by)]
-        if not places:
-            return None
-        index = draw.choice(places)
-        text, other = program.lines[index].text, program.lines[index + by].text
-        written = re.search(code, text)
-        assert written
-        text = (text[: written.start()] + text[written.end() :]).replace("  ", " ").strip()
-        first = len(re.match(r"(N\d+ ?)?", other)[0])  # type: ignore[index]
-        other = other[:first] + written[0] + " " * (" " in other) + other[first:]
-        return program.changed(index + by, other).changed(index, *([text] if text else []))
-
-    return plant
-
-
-def block_written(text: str, *roles: str) -> Plant:
-    """A block that is not meant, before one of those with these roles."""
-
-    def plant(program: Program, draw: Draw) -> Program | None:
-        places = at(program, *roles)
-        if not places:
-            return None
-        index = draw.choice(places)
-        return program.changed(index, text, program.lines[index].text)
 
     return plant
 
