@@ -211,7 +211,7 @@ def print_table(results: list[Judged], by_kind: bool) -> None:
         f"spoken about (of {total['slips']} slips of {len(rows)} kinds)": (total["spoken"], total["slips"]),
         "named as not evaluated instead": (total["open"], total["slips"]),
         "in more than one finding": (total["several"], spoken),
-        "at a line of the slip": (total["there"], spoken),
+        "at a line of the slip, or naming it": (total["there"], spoken),
         "a value named": (total["named"], spoken),
         "that of the sound program": (total["right"], total["named"]),
         "it makes the sound part": (total["repairs"], total["named"]),

@@ -14,6 +14,7 @@ import re
 from typing import NamedTuple
 
 from metal_simulation import RAPID, cuts_the_part, differs, simulate
+from setter_dialects import DIALECTS
 from setter_programs import BOSSES, FAMILIES, Program, drawn
 from slip_blocks import (
     block_doubled,
@@ -79,7 +80,7 @@ class Slip(NamedTuple):
 
     plant: makes it in a program, or gives None where it cannot be made. knows: what a check knows it by, in each
     program; "" where that is computed for each. is_real: it matters though the metal is the same, as a wrong comment
-    does. families: a regular expression.
+    does. families, machines: regular expressions of those where it is one.
     """
 
     name: str
@@ -87,6 +88,7 @@ class Slip(NamedTuple):
     knows: str = ""
     is_real: bool = False
     families: str = ""
+    machines: str = ""
 
 
 VALUES = {
@@ -99,6 +101,9 @@ VALUES = {
     "twice": factor_of(2),
     "half": factor_of(0.5),
 }
+#: Where a number without a point counts least increments; where a code engages the C axis.
+_INCREMENTS = "fanuc|doosan|takisawa|colchester|quick|mazak-eia|mitsubishi"
+_ENGAGED = "doosan|colchester|quick|haas|okuma|mazak-eia"
 ARCS = ("sign wrong", "digits swapped", "digit lost", "another digit", "ten times or a tenth", "twice")
 _LINE = r"(?:G10?1(?!\d)|G1(?!\d)) ?"
 
@@ -177,9 +182,9 @@ SLIPS = (
     Slip("G40 a block late", code_moved("G40 ?", 1, "cancel")),
     Slip("G40 a block early", code_moved("G40 ?", -1, "cancel")),
     Slip("offset without R", unknown_offset, "no radius is known"),
-    Slip("offset of the other cutter", other_offset, "the comment, or T with another number"),
-    Slip("T missing", text_missing(r"T\d{2,4}(?: ?D\d)?"), "no offset, or that of the tool before", True),
-    Slip("tool call in the contour", block_written("T0202", "contour"), "T in the mode", True),
+    Slip("offset of the other cutter", other_offset, "the comment"),
+    Slip("T missing beside its comment", block_changed(r"T\d+(?: ?D\d)? (?=\(.*D)", "", "call"), "it", True),
+    Slip("tool call in the contour", block_written("T1717", "contour"), "T in the mode", True, machines="^(?!siem)"),
     # ---- depth, index, ways ----
     Slip("depth missing", block_missing("plunge", "plunge outside"), "cuts only air, or twice the same"),
     Slip("depth far deeper than the other passes", word_changed("Z", deeper, "plunge"), families="depths|ramp"),
@@ -194,13 +199,13 @@ SLIPS = (
     Slip("pass ends inside the bar", ends_inside),
     # ---- the mode ----
     Slip("G12.1 missing", block_missing("on"), "G13.1 without it"),
-    Slip("G12.1 a block late", block_moved(1, "on"), "the plane's axis before the mode"),
+    Slip("G12.1 a block late", block_moved(1, "on")),
     Slip("G12.1 twice", block_doubled("on"), "the mode is on", True),
     Slip("G13.1 missing", block_missing("off"), "the mode is left open"),
     Slip("G13.1 a block early", block_moved(-1, "off")),
     Slip("left and entered again", entered_again, "C stands elsewhere"),
     Slip("C elsewhere at the second section", position_angle_missing, "nobody positioned it"),
-    Slip("G54 in the contour", block_written("G54", "contour"), "a code that the mode refuses", True),
+    Slip("G54 in the contour", block_written("G54", "contour"), "the mode refuses it", True, machines="^(?!siem)"),
     Slip("G28 in the contour", block_written("G28 U0", "contour"), "a code that the mode refuses", True),
     # ---- feed, spindle, units, comments ----
     Slip("unit missing", units_missing, "never reaches its bar, or is all in it", True),
@@ -210,17 +215,15 @@ SLIPS = (
     Slip("F0", block_changed(r"F[\d.]+", "F0", "ramp", "plunge"), "no feed", True),
     Slip("F ten or a hundred times", block_changed(r"F(\d+)(\.?)", r"F\g<1>00\2", "ramp"), "above all others", True),
     Slip("all F missing", block_changed(r" ?F[\d.]+", "", "ramp", "plunge", "approach", every=True), "no feed", True),
-    Slip("C axis not engaged", code_missing("engage"), "the other sections, the manual", True),
-    Slip("C axis not released", code_missing("release"), "the manual", True),
+    Slip("C axis not engaged", code_missing("engage"), "the manual", True, machines=_ENGAGED),
     Slip("live tool not started", code_missing("spindle"), "no spindle", True),
-    Slip("live tool not stopped", code_missing("spindle_off"), "the manual", True),
     Slip("wrong cutter in the comment", tool_comment, "the comment", True),
     Slip("wrong size in the comment", size_comment, "the comment", True),
     Slip("wrong bar in the comment", bar_comment, "the part is larger", True),
-    Slip("constant surface speed", block_written("G96 S200", "on"), "the mode refuses it", True),
+    Slip("constant surface speed", block_written("G96 S200", "on"), "it refuses it", True, machines="^(?!okuma)"),
     Slip("rotation in force", block_written("G68 R45.", "on"), "the mode refuses it", True),
     # ---- text ----
-    Slip("point lost", block_changed(r"(?<=\d)\.(?=\d|\b|[A-Z ]|$)", "", "contour"), "the others have one", True),
+    Slip("point lost", block_changed(r"(?<=\d)\.", "", "contour"), "the others have one", True, machines=_INCREMENTS),
     Slip("comma for point", block_changed(r"(?<=\d)\.(?=\d)", ",", "contour"), "no number", True),
     Slip("letter O for 0", block_changed(r"(?<=[1-9])0(?=\.)", "O", "contour"), "no number", True),
     Slip("dash of print", block_changed(r"(?<=[A-Z])-", "–", "contour", "ramp"), "no number", True),
@@ -282,8 +285,8 @@ def _is_beside(program: Program, changed: Program) -> bool:
 
 
 def _first_change(program: Program, changed: Program) -> int:
-    pairs = zip(program.lines, changed.lines, strict=False)
-    return next((index for index, (one, two) in enumerate(pairs) if one.text != two.text), len(changed.lines))
+    texts = zip(program.text().splitlines(), changed.text().splitlines(), strict=False)
+    return next((index for index, (one, two) in enumerate(texts) if one != two), len(changed.lines))
 
 
 def drawn_slip(seed: int, kinds: tuple[Slip, ...] = SLIPS, machine: str = "") -> Planted | None:
@@ -291,9 +294,12 @@ def drawn_slip(seed: int, kinds: tuple[Slip, ...] = SLIPS, machine: str = "") ->
     draw = random.Random(f"slip {seed}")  # noqa: S311 - programs that can be written again
     slip = kinds[seed % len(kinds)]
     families = [name for name in FAMILIES if re.search(slip.families, name)]
+    machines = [name for name in DIALECTS if re.search(slip.machines, name)] if slip.machines else [""]
     for _ in range(60):
-        program = drawn(draw.randrange(10**6), machine, draw.choice(families), draw.choice(LEADS))
+        program = drawn(
+            draw.randrange(10**6), machine or draw.choice(machines), draw.choice(families), draw.choice(LEADS)
+        )
         with_slip = planted(slip, program, draw)
-        if with_slip is not None:
+        if with_slip:
             return with_slip
     return None

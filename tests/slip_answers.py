@@ -27,8 +27,9 @@ from polarcheck.rules.rule import load_all
 
 _WORD = r"[A-Z]+=?[-+]?(?:\d+\.?\d*|\.\d+)"
 _VALUES = re.compile(
-    rf"(?:\b(?:with|write|or|and) |[;:] )(?P<words>{_WORD}(?: {_WORD})*)(?P<rest>(?: here| in line (?P<line>\d+)"
-    r"| in a block before it)?)(?P<tail> would (?:fit|be tangent|lie)| (?:it|its|all|more|here|in line)\b|$|,| \()"
+    rf"(?:\b(?:with|write|or|and) (?P<words>{_WORD}(?: {_WORD})*)(?P<rest>(?: here| in line (?P<line>\d+)"
+    rf"| in a block before it)?)(?= (?:it|its|all|more|here|in line)\b|$|,| \()"
+    rf"|[;:] (?P<others>{_WORD}(?: {_WORD})*)(?= would (?:fit|be tangent|lie)))"
 )
 _GROUPS = (
     {"G0", "G1", "G2", "G3", "G101", "G102", "G103"},
@@ -44,9 +45,9 @@ class Answer(NamedTuple):
     What is said of a slip.
 
     findings: at or above warning, that the sound program has not. is_open: nothing is said, but the check names what
-    it did not evaluate. is_there: one of them stands at a line of the slip. names: "" where none names a value, else
-    "right" or "wrong". remedy: of the values as they are told, and fix: of --unsafe-fixes: "" where there is none,
-    else "right" or "wrong".
+    it did not evaluate. is_there: one of them stands at a line of the slip or names it. names: "" where none names a
+    value, else "right" or "wrong". remedy: of the values as they are told, and fix: of --unsafe-fixes: "" where there
+    is none, else "right" or "wrong".
     """
 
     findings: tuple[Finding, ...]
@@ -106,7 +107,8 @@ def answered(slip: Planted, before: Sequence[Finding] | None = None) -> Answer:
         lines_fixed = fixed(program)
         fix = "right" if lines_fixed is not None and is_sound(slip, lines_fixed) else "wrong"
     is_open = not findings and report.verdict == "unverified"
-    return Answer(tuple(findings), is_open, any(f.line in lines for f in findings), names, remedy, fix)
+    is_there = any(lines_named(finding) & set(lines) for finding in findings)
+    return Answer(tuple(findings), is_open, is_there, names, remedy, fix)
 
 
 class Value(NamedTuple):
@@ -121,9 +123,9 @@ def values_of(finding: Finding) -> list[Value]:
     """What a message says to write."""
     found = []
     for match in _VALUES.finditer(finding.message):
-        words = tuple(match["words"].split())
+        words = tuple((match["words"] or match["others"]).split())
         line = int(match["line"]) if match["line"] else finding.line
-        found.append(Value(words, line, "block" in match["rest"]))
+        found.append(Value(words, line, "block" in (match["rest"] or "")))
     return found
 
 
@@ -170,8 +172,6 @@ def is_sound(slip: Planted, lines: Iterable[Line]) -> bool:
     program = slip.program._replace(lines=tuple(lines))
     if _bare(program) == _bare(slip.sound):
         return True
-    if slip.slip.is_real:
-        return False
     try:
         one, two = simulate(slip.sound), simulate(program)
     except (ValueError, SyntaxError, ZeroDivisionError, OverflowError):

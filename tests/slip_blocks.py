@@ -50,7 +50,9 @@ def code_moved(code: str, by: int, *roles: str) -> Plant:
 
     def plant(program: Program, draw: Draw) -> Program | None:
         places = [index for index in at(program, *roles) if re.search(code, program.lines[index].text)]
+        group = "G4[012]" if "G4" in code else r"G(0|10?)?[0123](?!\d)"
         places = [index for index in places if _is_plain(program, index, by)]
+        places = [index for index in places if not re.search(group, program.lines[index + by].text)]
         if not places:
             return None
         index = draw.choice(places)

@@ -117,10 +117,10 @@ def other_offset(program: Program, draw: Draw) -> Program | None:
     if len(program.radii) < 2 or program.machine in ("siemens-transmit", "okuma-osp"):
         return None
     index = draw.choice(places)
-    match = re.search(r"T(\d\d)(\d\d)", program.lines[index].text)
+    match = re.search(r"T(\d\d)(\d\d).*D", program.lines[index].text)
     if not match:
         return None
     other = next(offset for offset in program.radii if offset != int(match[2]))
     if abs(program.radii[other] - program.radii[int(match[2])]) < 0.3:
         return None
-    return program.changed(index, program.lines[index].text.replace(match[0], f"T{match[1]}{other:02}"))
+    return program.changed(index, program.lines[index].text.replace(match[1] + match[2], f"{match[1]}{other:02}", 1))
