@@ -211,6 +211,7 @@ class _Run:
         words = self.words(block)
         codes = {f"G{value:g}" for letter, value in words if letter == "G"}
         values = {letter: value for letter, value in words if letter not in "GMSNP"}
+        values |= {letter: values[letter] * dialect.outward for letter in ("Z", "W") if letter in values}
         if dialect.inch and dialect.inch in codes:
             self.scale = 25.4
         if dialect.metric and dialect.metric in codes:

@@ -16,7 +16,7 @@ class Dialect(NamedTuple):
     per_revolution: feed modes. head: the first blocks. calls: M98 and macro statements are written. index: C positioned
     before G12.1 turns the contour. remark: what a comment stands between. cycles: turning cycles of system A.
     starts_in_inch: where a program selects no unit. read_ahead: blocks that the compensation
-    knows in advance.
+    knows in advance. outward: 1 where Z grows away from the part, -1 where it grows into it.
     """
 
     machine: str
@@ -51,6 +51,7 @@ class Dialect(NamedTuple):
     units: tuple[str, ...] = ("mm", "inch")
     starts_in_inch: bool = False
     read_ahead: int = 3
+    outward: int = 1
 
 
 _B = Dialect("", system="B", per_minute="G94", per_revolution="G95", cycles=False, reference="G28 C0")
@@ -94,7 +95,7 @@ DIALECTS = {
         ),
         Dialect(
             "citizen", virtual="Y", virtual_step="V", diameter_inside=False, on="G12.1 D0 E=C", behind=("G17",),
-            spindle="G97 S3000 M13", cycles=False, calls=False,
+            spindle="G97 S3000 M13", cycles=False, calls=False, outward=-1,
         ),
         _B._replace(
             machine="mazak-eia", engage="M200", release="M202", before=("G17 XC",), head=("G90", "G40"),

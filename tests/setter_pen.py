@@ -62,6 +62,10 @@ class Pen:
             return "0"
         return text.replace("0.", ".", 1) if self.scale > 1 and abs(float(text)) < 1 else text
 
+    def height(self, z: float) -> str:
+        """The number of a Z [mm above the face]."""
+        return self.number(z * self.dialect.outward)
+
     def write(self, role: str, *words: str) -> None:
         text = ("" if self.style.packed else " ").join(word for word in words if word)
         if text:
@@ -79,8 +83,8 @@ class Pen:
         if x is not None:
             words.append("X" + self.number(x * (2 if self.dialect.diameter_outside else 1)))
         if z is not None:
-            words.append("Z" + self.number(z))
-            self.z = self.number(z)
+            self.z = self.height(z)
+            words.append("Z" + self.z)
         if c is not None:
             words.append("C" + (f"{c:g}." if c else "0"))
         self.motion = "G0"
@@ -105,7 +109,7 @@ class Pen:
         return self.number(x * (2 if self.dialect.diameter_inside else 1))
 
     def depth(self, z: float, feed: float, role: str = "plunge") -> None:
-        self.z = self.number(z)
+        self.z = self.height(z)
         codes = ("G90",) if self.is_step else ()
         self.is_step = False
         self.write(role, *codes, self._code(self.dialect.line), "Z" + self.z, self.feed_word(feed))

@@ -418,7 +418,7 @@ class Maker:
             return "X" + pen.number(radius * scale)
 
         def z(value: float) -> str:
-            return "Z" + pen.number(value)
+            return "Z" + pen.height(value)
 
         feed = "F.2" if not self.inch else "F.008"
         number = 11
@@ -501,8 +501,8 @@ class Maker:
             pen.rapid("drill", c=360.0 / count * number)
             if not number:
                 pen.rapid("drill", self.bar * 0.3, self.safe)
-            pen.write("drill", "G1", "Z" + pen.number(-12.0), "F50." if not self.inch else "F2.")
-            pen.write("drill", "G0", "Z" + pen.number(self.safe))
+            pen.write("drill", "G1", "Z" + pen.height(-12.0), "F50." if not self.inch else "F2.")
+            pen.write("drill", "G0", "Z" + pen.height(self.safe))
         self.pen.feed = ""
 
     def end(self) -> None:
@@ -521,7 +521,8 @@ class Maker:
     def cut(self, cut: Cut, before: Cut | None) -> None:
         """A section."""
         pen, style, radius = self.pen, self.style, self.radii[cut.tool]
-        cut = cut._replace(contour=led(cut.contour, style.lead, radius))
+        if cut.how == "ramps":
+            cut = cut._replace(contour=led(cut.contour, style.lead, radius))
         contour = cut.contour
         normal = first_direction(contour) * (-1j if contour.side == "right" else 1j)
         start, finish = self.approach(cut, normal, radius)

@@ -42,7 +42,7 @@ def block_moved(by: int, *roles: str) -> Plant:
 
 
 def _is_plain(program: Program, index: int, by: int) -> bool:
-    return not re.search("[#O%]|M30|M99", program.lines[index].text + program.lines[index + by].text)
+    return not re.search("[#O%]|M30|M9[89]|END|WHILE", program.lines[index].text + program.lines[index + by].text)
 
 
 def code_moved(code: str, by: int, *roles: str) -> Plant:

@@ -203,3 +203,20 @@ def test_a_mode_that_is_left_and_entered_again() -> None:
     program = program.replace("Z2. / G13.1 / M30", "G42 X40. F200 / " + SQUARE + "G40 X60. / Z2. / G13.1 / M30")
     found = messages(program)["c-elsewhere-at-entry"]
     assert "nothing moves between G13.1 of line 14 and G12.1: delete both, or write C with the approach" in found
+
+
+@pytest.mark.ci
+@looped(
+    ("arc", "says"),
+    [
+        ("G3 X20. C20. R10. / G0 X0 C30. R10.", "and R belongs to an arc: write G3 and leave F as it is"),
+        ("G0 X20. C20. R10.", "and R belongs to an arc: write G2 or G3 and leave F as it is"),
+        ("G0 X20. C20. I-10. J0", "and I belongs to an arc: write G2 or G3 and leave F as it is"),
+    ],
+)
+def test_g0_beside_words_of_an_arc_is_an_arc(arc: str, says: str) -> None:
+    program = HEAD + RAMP + f"C10. / {arc} / G1 X-40. / C-20. / X40. / C0 / " + END
+    report = report_of(program.replace(" / ", "\n"), "fanuc-30i", "1:radius=4", only=["rapid-in-polar"])
+    [finding] = report.findings
+    assert finding.message.endswith(says)
+    assert finding.fix is None

@@ -84,7 +84,12 @@ class Mirrored(Columns, frozen=True):
             if not candidates.any():
                 break
             candidates &= test(candidates)
-        return np.asarray(candidates & trace.compensation.writes_side)
+        written = candidates & trace.compensation.writes_side
+        # Blocks that run again, as of a subprogram, are right or wrong each time: a way to them is wrong here.
+        blocks = trace.run.block
+        right = np.zeros(int(blocks.max()) + 1, bool)
+        right[blocks[trace.compensation.writes_side & ~candidates]] = True
+        return np.asarray(written & ~right[blocks])
 
     def _comes_out_at_both_ends(self, rows: Mask) -> Mask:
         """All rows of the loops whose start-up and offset cancel run through the part."""

@@ -77,6 +77,16 @@ class AirCuts(Columns, frozen=True):
         enter = self.trace.mode.sections.enter
         return np.append(self.trace.path.z[enter], np.nan)[self.trace.mode.section]
 
+    @cached_property
+    def approach(self) -> Floats:
+        """The Z of the approach to the section of each row [mm]: that of its G12.1, or less where Z has risen to it."""
+        z, before, enter = self.trace.path.z, self.trace.path.z_before, self.trace.mode.sections.enter
+        moves = np.flatnonzero(np.abs(z - before) > ROUNDING)
+        last = np.searchsorted(moves, enter) - 1
+        row = np.append(moves, -1)[last]
+        rises = (last >= 0) & (before[row] < z[enter]) & (before[row] > _ABOVE)
+        return np.append(np.where(rises, before[row], z[enter]), np.nan)[self.trace.mode.section]
+
     def _of_section(self, values: Floats, rows: Mask, fold: np.ufunc, none: float) -> Floats:
         """The least or largest of the values of some rows of each section, for each row of the section."""
         result = np.full(len(self.trace.mode.sections) + 1, none)
@@ -136,17 +146,20 @@ class AirCuts(Columns, frozen=True):
 
     @property
     def _sign_wrong(self) -> Mask:
-        """The cut stands above the entry of its section, above Z0, and Z goes down behind it."""
+        """The cut stands above the approach of its section, above Z0, and Z goes down behind it."""
         trace = self.trace
-        z, entry = trace.path.z, self._entry
+        z, entry = trace.path.z, self.approach
         above = (z > entry + _ABOVE) & (entry > -_ABOVE) & self.walls
         if not above.any():
             return above
         # Z goes down behind it, in the section or with its first move afterwards.
-        down = np.flatnonzero((z < trace.path.z_before - ROUNDING) & (trace.mode.section >= 0))
-        section = trace.mode.section
+        falls = z < trace.path.z_before - ROUNDING
+        down, section = np.flatnonzero(falls & (trace.mode.section >= 0)), trace.mode.section
         latest = np.full(len(trace.mode.sections) + 1, -1)
         np.maximum.at(latest, section[down], down)
+        moves = np.flatnonzero(np.abs(z - trace.path.z_before) > ROUNDING)
+        behind = np.append(moves, -1)[np.searchsorted(moves, trace.mode.sections.last, side="right")]
+        latest[:-1] = np.maximum(latest[:-1], np.where(falls[behind], behind, -1))
         return np.asarray(above & (latest[section] > np.arange(len(trace))))
 
     @property

@@ -21,7 +21,10 @@ if TYPE_CHECKING:
     gouges=True,
     at=("compensation_off",),
     doubts=(("metal", "block"),),
-    follows={"loop": ("inside-arc-smaller-than-radius", "start-up-shorter-than-radius")},
+    follows={
+        "loop": ("inside-arc-smaller-than-radius", "start-up-shorter-than-radius"),
+        "section": ("side-repeated-in-offset-mode",),
+    },
     is_symptom=True,
 )
 def cancel_shorter_than_radius(

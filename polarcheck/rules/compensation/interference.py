@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     gouges=True,
     once="mesh",
     doubts=(("metal", "narrow loop"),),
+    follows={"loop": ("start-up-shorter-than-radius",)},
     is_symptom=True,
 )
 def interference(tool_center: ToolCenter, ramps: Ramps) -> Mask:

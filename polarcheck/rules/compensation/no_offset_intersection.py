@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     worse=("radius",),
     gouges=True,
     doubts=(("metal", "narrow loop"),),
+    follows={"loop": ("start-up-shorter-than-radius", "cancel-shorter-than-radius")},
     is_symptom=True,
 )
 def no_offset_intersection(tool_center: ToolCenter, ramps: Ramps) -> Mask:

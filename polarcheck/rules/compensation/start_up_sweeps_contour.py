@@ -8,6 +8,7 @@ if TYPE_CHECKING:
     from polarcheck.columns.contour.overcuts import Overcuts
     from polarcheck.columns.contour.slots import Slots
     from polarcheck.columns.feed.programmed_feeds import Feeds
+    from polarcheck.columns.path.compensation import CutterCompensation
     from polarcheck.rules.hit import Details, Hit
 
 
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
     },
     is_symptom=True,
 )
-def start_up_sweeps_contour(slots: Slots, feeds: Feeds) -> Hits:
+def start_up_sweeps_contour(slots: Slots, feeds: Feeds, compensation: CutterCompensation) -> Hits:
     """
     Start-up or offset cancel that cuts the contour.
 
@@ -63,6 +64,8 @@ def start_up_sweeps_contour(slots: Slots, feeds: Feeds) -> Hits:
     sweeps = slots.ramp_depth > 0
     if not sweeps.any():
         return Hits(sweeps)
+    # The ramp of the next pass begins where an offset cancel has ended that cuts the contour: both are one mistake.
+    sweeps = sweeps & ~(compensation.starts_up & feeds.before_on_plane(sweeps & compensation.cancels))
     # A high F says nothing of the end of its move, nor does the ramp with which the last pass of a loop has ended.
     by_approach = ~feeds.before_on_plane(sweeps | feeds.is_only_fast)
     return Hits(sweeps, values={"depth": slots.ramp_depth}, follows={"X before": by_approach}, worst=slots.ramp_depth)

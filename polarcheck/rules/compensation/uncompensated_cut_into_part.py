@@ -19,10 +19,10 @@ if TYPE_CHECKING:
     once="loop",
     follows={
         "motion": ("rapid-in-polar",),
-        "block": ("lift-missing-between-cuts",),
+        "block": ("lift-missing-between-cuts", "approach-inside-stock"),
         "X before": ("rapid-through-part",),
         "loop": ("x-not-positive-at-entry",),
-        "section": ("start-up-on-arc", "nearly-regular-contour", "no-offset-intersection"),
+        "section": ("start-up-on-arc", "nearly-regular-contour", "no-offset-intersection", "arc-word-without-arc"),
         "tool call": ("rapid-plunge-into-stock",),
     },
     is_symptom=True,

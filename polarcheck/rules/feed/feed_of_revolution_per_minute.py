@@ -70,7 +70,7 @@ def feed_of_revolution_per_minute(path: ProgrammedPath, feeds: Feeds) -> Mask:
         C10.
         G13.1
     """
-    return path.moves_at_feed & (feeds.is_left_per_revolution | feeds.looks_per_revolution)
+    return path.moves_at_feed & ~feeds.missing & (feeds.is_left_per_revolution | feeds.looks_per_revolution)
 
 
 def details(hit: Hit, feedrate: Feedrate, feeds: Feeds) -> Details:

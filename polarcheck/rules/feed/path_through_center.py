@@ -19,7 +19,10 @@ if TYPE_CHECKING:
     at=("X", "U", "C", "H"),
     doubts=(("move", "X before"),),
     gouges=True,
-    follows={"block": ("uncompensated-cut-into-part", "lift-missing-between-cuts")},
+    follows={
+        "block": ("uncompensated-cut-into-part", "lift-missing-between-cuts"),
+        "loop": ("side-changed-in-offset-mode",),
+    },
     is_symptom=True,
 )
 def path_through_center(path: ProgrammedPath, center: Center, arcs: Arcs) -> Mask:

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
             "helical-arc-in-polar",
             "side-repeated-in-offset-mode",
             "polar-switch-not-alone",
+            "diameter-radius-mixed",
             "degrees-in-polar",
             "number-without-point",
             "bad-number",
@@ -171,7 +172,7 @@ def _in_air(hit: Hit, air_cuts: AirCuts, bar: Bar) -> str:
             why = "and the retract moves nowhere: a Z word for the depth is missing"
             return f"cuts at {z}, where the section begins, {why}"
         case Reason.SIGN_WRONG:
-            above = f"above Z{hit.number(trace.path.z[enter])} of the approach"
+            above = f"above Z{hit.number(air_cuts.approach[row])} of the approach"
             return f"cuts at {z}, {above}, and retracts towards the part: check the sign of Z"
         case Reason.ABOVE_FACE:
             first, last = bar.known.face_lines

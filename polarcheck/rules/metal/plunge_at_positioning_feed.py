@@ -18,7 +18,10 @@ if TYPE_CHECKING:
     gouges=True,
     once="feed",
     subject="size",
-    follows={"section": (*OUT_OF_PLACE, "cut-in-air")},
+    follows={
+        "section": (*OUT_OF_PLACE, "cut-in-air", "approach-inside-stock"),
+        "block": ("uncompensated-cut-into-part",),
+    },
 )
 def plunge_at_positioning_feed(strokes: Strokes) -> Hits:
     """

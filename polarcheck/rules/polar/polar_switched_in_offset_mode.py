@@ -21,7 +21,12 @@ if TYPE_CHECKING:
     once="program",
     doubts=(("compensation", "section"),),
     follows={
-        "section": ("side-repeated-in-offset-mode", "side-changed-in-offset-mode", "block-skip-missing"),
+        "section": (
+            "side-repeated-in-offset-mode",
+            "side-changed-in-offset-mode",
+            "block-skip-missing",
+            "start-up-after-contour",
+        ),
     },
 )
 def polar_switched_in_offset_mode(mode: PolarMode, compensation: CutterCompensation) -> Mask:

@@ -69,9 +69,21 @@ def rapid_in_polar(
 
 
 def details(hit: Hit, compensation: CutterCompensation) -> Details:
+    from polarcheck.rules.wording.arcs import arc_in_force_before
     from polarcheck.rules.wording.written import move_code
 
     line = move_code(hit.trace.machine, "line")
     if not compensation.compensates[hit.row] or compensation.starts_up[hit.row]:
         return {"instead_of_rapid": f"write {line} with a high F"}
-    return {"instead_of_rapid": f"this block lies in a contour with {hit.side}: write {line} and leave F as it is"}
+    word, arc = arc_in_force_before(hit.trace, hit.row)
+    has_arc = f", and {word} belongs to an arc" if word else ""
+    code = arc or (_either_arc(hit) if word else line)
+    return {
+        "instead_of_rapid": f"this block lies in a contour with {hit.side}{has_arc}: write {code} and leave F as it is"
+    }
+
+
+def _either_arc(hit: Hit) -> str:
+    from polarcheck.rules.wording.written import move_code
+
+    return " or ".join(move_code(hit.trace.machine, name) for name in ("arc_clockwise", "arc_counterclockwise"))

@@ -9,6 +9,7 @@ from polarcheck.columns.trace import Trace
 from polarcheck.rules.editing import in_place_of, is_head, is_plain, separator, with_word, words_of, written_word
 from polarcheck.rules.feed_words import feed_below, feed_text, restored, takes_feed
 from polarcheck.rules.repair import FEED, Mended, repair
+from polarcheck.rules.wording.arcs import arc_in_force_before
 
 _RAPID = re.compile(r"(G\s*0*?)0", re.IGNORECASE)
 
@@ -21,7 +22,7 @@ def rapid_in_polar(trace: Trace, tool_center: ToolCenter, row: int, at: list[int
     That is feed.positioning_minimum; without it G1 has the F of the section: the one in force, else that of the next
     move that cuts. An F of the block itself stays, and so does the F of a contour with G41 or G42. Where C would
     turn too fast for it, F is as high as its limit allows. The F from before is written again where cutting goes on.
-    Unsafe: a feed that nobody has chosen.
+    A block with R, I or J was meant as an arc, and stays. Unsafe: a feed that nobody has chosen.
 
     Bad, machine turning-center:
 
@@ -83,6 +84,8 @@ def rapid_in_polar(trace: Trace, tool_center: ToolCenter, row: int, at: list[int
     """
     of_same_code = (trace.modal.motion_word == trace.modal.motion_word[row]) & (np.arange(len(trace)) > row)
     if not is_plain(trace.run, row) or np.any(of_same_code & trace.axes.moves & ~trace.mode.in_polar):
+        return None
+    if arc_in_force_before(trace, row)[0]:
         return None
     edits = []
     for index in at:

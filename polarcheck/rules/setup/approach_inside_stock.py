@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     doubts=(("compensation", "first start-up"), ("move", "X before")),
     follows={
         "tool call": ("offset-of-another-tool",),
+        "block": ("x-not-positive-at-entry",),
         "section": (
             "degrees-in-polar",
             "number-without-point",

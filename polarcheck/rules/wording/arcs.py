@@ -28,6 +28,20 @@ def still_in_force(trace: Trace, row: int) -> str:
     return f": {arc_code(trace, row)} of line {line} is still in force, write {move_code(trace.machine, 'line')}"
 
 
+def arc_in_force_before(trace: Trace, row: int) -> tuple[str, str]:
+    """
+    The first word of an arc in a block, as R, and the code of arcs that was in force before it.
+
+    Both are "" where nothing of an arc stands there; so is the code where no arc was in force.
+    """
+    words = (trace.machine.arcs.radius_word, *trace.axes.center_words(row))
+    word = next((word for word in words if not np.isnan(trace.blocks.word(word)[row])), "")
+    motion = trace.modal.state("motion")[row - 1] if row and word else Motion.LINE
+    names = {int(Motion.CW): "arc_clockwise", int(Motion.CCW): "arc_counterclockwise"}
+    code = move_code(trace.machine, names[int(motion)]) if int(motion) in names else ""
+    return word, code
+
+
 def written_arc(trace: Trace, arcs: Arcs, row: int) -> str:
     """The words of an arc that say where its center is: `R8.`, or `I-4. J0`."""
     blocks, run = trace.blocks, trace.run
