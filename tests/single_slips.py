@@ -223,11 +223,11 @@ SLIPS = (
     Slip("constant surface speed", block_written("G96 S200", "on"), "it refuses it", True, machines="^(?!okuma)"),
     Slip("rotation in force", block_written("G68 R45.", "on"), "the mode refuses it", True),
     # ---- text ----
-    Slip("point lost", block_changed(r"(?<=\d)\.", "", "contour"), "the others have one", True, machines=_INCREMENTS),
+    Slip("point lost", block_changed(r"(?<=[1-9])\.", "", "contour"), "the others have one", True, machines=_INCREMENTS),
     Slip("comma for point", block_changed(r"(?<=\d)\.(?=\d)", ",", "contour"), "no number", True),
     Slip("letter O for 0", block_changed(r"(?<=[1-9])0(?=\.)", "O", "contour"), "no number", True),
     Slip("dash of print", block_changed(r"(?<=[A-Z])-", "–", "contour", "ramp"), "no number", True),
-    Slip("word twice", block_changed(r"([XCY]-?[\d.]+)$", r"\1 \1", "contour"), "twice in a block", True),
+    Slip("word twice", block_changed(r"([XCY])(-?[\d.]+)$", r"\1\2 \g<1>7.", "contour"), "twice in a block", True),
     Slip("stray character", block_changed("$", " ?", "contour"), "no word", True),
 )  # fmt: skip
 

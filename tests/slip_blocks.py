@@ -152,7 +152,7 @@ def index_word(change: str) -> Plant:
             return program.changed(index)
         text = program.lines[index].text
         if change == "another digit":
-            return word_changed("C", digit_wrong, "index")(program, draw) if len(places) > 1 else None
+            return word_changed("C", digit_wrong, "index")(program, draw) if len(places) > 2 else None
         before = [place for place in places if place < index]
         value = "C0" if not before else re.search(r"C[\d.]+", program.lines[before[-1]].text)[0]  # type: ignore[index]
         return program.changed(index, re.sub(r"C[\d.]+", value, text))

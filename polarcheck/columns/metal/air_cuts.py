@@ -130,7 +130,7 @@ class AirCuts(Columns, frozen=True):
     def _depth_missing(self) -> Mask:
         """
         Z stays at its entry above Z0, nothing of Z is written before the cuts, and a Z word alone behind them, the
-        retract, moves nowhere.
+        retract in the mode or behind it, moves nowhere.
         """
         trace = self.trace
         inside = trace.mode.in_polar
@@ -142,7 +142,12 @@ class AirCuts(Columns, frozen=True):
         alone = writes_z & ~trace.axes.moves_plane & (rows > last)
         earlier = trace.mode.anywhere_in_section(writes_z & (rows < first))
         near = (self._entry > _ABOVE) & (self._entry < _FARTHEST)
-        return np.asarray(still & near & trace.mode.anywhere_in_section(alone) & ~earlier)
+        words = np.flatnonzero(trace.axes.commands_z)
+        behind = np.append(words, -1)[np.searchsorted(words, trace.mode.sections.last, side="right")]
+        idle = (behind >= 0) & (np.abs(trace.path.z[behind] - trace.path.z_before[behind]) <= ROUNDING)
+        idle &= ~trace.axes.moves_plane[behind]
+        retracts = trace.mode.anywhere_in_section(alone) | np.append(idle, False)[trace.mode.section]
+        return np.asarray(still & near & retracts & ~earlier)
 
     @property
     def _sign_wrong(self) -> Mask:
