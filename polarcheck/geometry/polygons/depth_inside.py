@@ -8,8 +8,9 @@ import shapely  # type: ignore[import-untyped]
 
 from polarcheck.foundation.arrays import Floats, Mask, Points, Rows
 from polarcheck.geometry.polygons import areas
-from polarcheck.geometry.polygons.faces import coordinates
+from polarcheck.geometry.polygons.faces import coordinates, gathered, lines_of
 from polarcheck.geometry.polygons.finished_part import Contours, FinishedParts, finished_parts
+from polarcheck.geometry.polygons.noding import may_share_stretches
 from polarcheck.geometry.segments import Curves, first_of_its_kind, members, segments
 
 #: How near its ends must come to the farthest point of a contour that ends outside the bar [share].
@@ -79,17 +80,19 @@ def _is_whole(part: FinishedParts, contour: Curves, loops: Rows, tolerance: floa
     whole = _reach(part.start, part.group, count) >= _LEAST * reach
     # Walls that cross again and again bound no part, and their common length would take quadratic time.
     compared = np.flatnonzero(whole & ~part.open & ~shapely.is_empty(part.polygon))
-    whole[compared] &= _retraced(contour, loops[compared], tolerance) <= _RETRACED * length[compared]
+    whole[compared] &= _retraced(contour, loops[compared], part.pitch, tolerance) <= _RETRACED * length[compared]
     return np.asarray((4 * np.pi * np.abs(area) >= _SLIVER * length**2) & whole)
 
 
-def _retraced(contour: Curves, loops: Rows, tolerance: float) -> Floats:
-    """The length [mm] over which each loop runs along earlier blocks of itself."""
+def _retraced(contour: Curves, loops: Rows, pitch: float, tolerance: float) -> Floats:
+    """The length [mm] over which each loop runs along earlier blocks of itself. pitch: as for finished parts."""
     row, group = members(contour.loop, loops)
     chosen = msgspec.structs.replace(contour[row], loop=group)
     walls = segments(chosen[first_of_its_kind(chosen)], tolerance)
-    lines = shapely.linestrings(coordinates(np.stack([walls.start, walls.end], axis=1)))
-    every = shapely.multilinestrings(lines, indices=walls.loop)
+    shifted = walls.shifted(pitch * walls.loop)
+    # The common length of all walls is dear, and most run along no other one.
+    walls = walls[may_share_stretches(shifted.start, shifted.end, walls.loop)]
+    every = gathered(lines_of(walls.start, walls.end), walls.loop, len(loops))
     return np.asarray(shapely.length(every) - shapely.length(areas.with_itself(every)))
 
 

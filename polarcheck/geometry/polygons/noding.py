@@ -46,11 +46,7 @@ def noded(start: Points, end: Points, group: Rows) -> Edges:
 
     group: int[n], from 0, rising. Walls of different groups must not come near each other.
     """
-    nodes, ends = _vertices(np.concatenate([start, end]))
-    a, b = ends[: len(start)], ends[len(start) :]
-    long = np.flatnonzero(a != b)
-    walls = _Walls(nodes, a[long], b[long], group[long])
-    tangled = np.zeros(int(group[-1]) + 1 if len(group) else 0, bool)
+    long, walls, tangled = _walls(start, end, group)
     remaining = CROSSINGS * np.bincount(group, minlength=len(tangled)) + FREE_CROSSINGS
     meetings = [_nothing_in_common()]
     for first, second in _pairs(walls, tangled):
@@ -61,6 +57,31 @@ def noded(start: Points, end: Points, group: Rows) -> Edges:
         keep_time()
     edges = _cut(walls, meetings, tangled)
     return msgspec.structs.replace(edges, wall=long[edges.wall])
+
+
+def _walls(start: Points, end: Points, group: Rows) -> tuple[Rows, _Walls, Mask]:
+    """The walls that have a length, which of all walls they are, and a mask of groups, none of them tangled yet."""
+    nodes, ends = _vertices(np.concatenate([start, end]))
+    a, b = ends[: len(start)], ends[len(start) :]
+    long = np.flatnonzero(a != b)
+    tangled = np.zeros(int(group[-1]) + 1 if len(group) else 0, bool)
+    return long, _Walls(nodes, a[long], b[long], group[long]), tangled
+
+
+def may_share_stretches(start: Points, end: Points, group: Rows) -> Mask:
+    """
+    True for walls that may run along another wall of their group, and for all of a group that crosses too often.
+
+    The arguments are those of `noded`. Walls that only cross or touch are not among them.
+    """
+    long, walls, tangled = _walls(start, end, group)
+    vector = walls.nodes[walls.b] - walls.nodes[walls.a]
+    result = np.zeros(len(start), bool)
+    for first, second in _pairs(walls, tangled):
+        along, other = vector[first], vector[second]
+        parallel = np.abs((along.conj() * other).imag) <= TOUCH * np.maximum(np.abs(along), np.abs(other))
+        result[long[first[parallel]]] = result[long[second[parallel]]] = True
+    return result | tangled[group]
 
 
 def _vertices(points: Points) -> tuple[Points, Rows]:
