@@ -80,22 +80,19 @@ def sides_of(ring: Ring) -> Sides | None:
     line = ring.is_line
     if not ring.closed or np.count_nonzero(line) < 3:
         return None
+    arc = np.flatnonzero(~line)
+    before, after = arc - 1, (arc + 1) % len(ring)
+    rounding, center, normal = ring.radius[arc], ring.center[arc], ring.normal
+    fits = line[before] & line[after] & (ring.sweep[arc] > 0) & (ring.sweep[arc] < np.pi * 0.99)
+    for side in (before, after):
+        inside = ((ring.start[side] - center) * normal[side].conj()).real
+        fits &= np.abs(inside - rounding) <= _TANGENT
+    if not fits.all():
+        return None
     radius = np.zeros(len(ring))
-    for arc in np.flatnonzero(~line).tolist():
-        before, after = arc - 1, (arc + 1) % len(ring)
-        if not (line[before] and line[after]) or not 0 < ring.sweep[arc] < np.pi * 0.99:
-            return None
-        gaps = [abs(_distance(ring, side, ring.center[arc]) - ring.radius[arc]) for side in (before, after)]
-        if max(gaps) > _TANGENT:
-            return None
-        radius[before] = ring.radius[arc]
+    radius[before] = rounding
     rows = np.flatnonzero(line)
     return Sides(ring.start[rows], ring.end[rows], ring.row[rows], radius[rows], np.zeros(len(rows)))
-
-
-def _distance(ring: Ring, side: int, point: complex) -> float:
-    """The distance of a point from the line of a side, above 0 inside."""
-    return float(((ring.start[side] - point) * ring.normal[side].conjugate()).real)
 
 
 def without_chamfers(sides: Sides) -> Sides | None:
