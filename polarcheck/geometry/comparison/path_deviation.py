@@ -235,10 +235,26 @@ def _proven(pieces: _Pieces, largest: float, location: Location, tolerance: floa
     corners = [_corners(line, pair, 0) for line, pair in zip((pieces.old, pieces.new), ends, strict=True)]
     whole = msgspec.structs.replace(pieces, old_at=ends[0], new_at=ends[1])
     precision = max(tolerance * _SHARE, largest * _PRECISION)
+    # However the corners are paired, a point is never nearer to the other path than to the nearest point of it.
+    least = max(
+        _nearest(pieces.new, location.old, location.old_z), _nearest(pieces.old, location.new, location.new_z)
+    )
     try:
-        if is_within(corners[0], corners[1], tolerance, Budget(_CELLS_OF_PROOF)):
+        if least <= tolerance and is_within(corners[0], corners[1], tolerance, Budget(_CELLS_OF_PROOF)):
             return tolerance, location, False
         exact, meeting = frechet(corners[0], corners[1], largest, precision, Budget(_CELLS_OF_WHOLE))
     except OverBudgetError:
         return largest, location, False
     return exact, _location(whole, 0, meeting), True
+
+
+def _nearest(line: Polyline, point: complex, z: float) -> float:
+    """The least distance of a point from a polyline [mm]."""
+    if len(line) == 1:
+        return float(np.hypot(abs(line.point[0] - point), line.z[0] - z))
+    start, vector = line.point[:-1] - point, np.diff(line.point)
+    z_start, rise = line.z[:-1] - z, np.diff(line.z)
+    length = np.abs(vector) ** 2 + rise**2
+    along = -((start.conj() * vector).real + z_start * rise)
+    share = np.clip(np.divide(along, length, out=np.zeros(len(length)), where=length > 0), 0, 1)
+    return float(np.hypot(np.abs(start + share * vector), z_start + share * rise).min())
