@@ -21,6 +21,7 @@ class BlockTexts:
     def __init__(self, trace: Trace) -> None:
         self.trace, self.text = trace, trace.text
         self._comments: dict[int, list[tuple[int, int]]] = {}
+        self._contents: dict[int, str] = {}
         comments = self.text.comments
         for block, start, end in zip(
             comments.block.tolist(), comments.start.tolist(), comments.end.tolist(), strict=True
@@ -81,8 +82,10 @@ class BlockTexts:
 
     def content(self, block: int) -> str:
         """The words of a block as they are written, without N, block skip and comments."""
-        kept = self._without_comments(block, [])
-        return " ".join(_HEAD.sub("", kept, count=1).split())
+        if block not in self._contents:
+            kept = self._without_comments(block, [])
+            self._contents[block] = " ".join(_HEAD.sub("", kept, count=1).split())
+        return self._contents[block]
 
     def rest(self, block: int, row: int) -> str:
         """What of a block is neither comment nor an executed word of this row."""

@@ -30,6 +30,7 @@ class ComputedBlocks:
     def __init__(self, trace: Trace, target: Machine, measures: Measures, words: SectionWords) -> None:
         self.trace, self.target, self.measures, self.words = trace, target, measures, words
         self.source = trace.machine
+        self._has_macros = bool(trace.text.blocks.is_macro.any())
 
     def is_computed(self, row: int) -> bool:
         """A word of the block that says where the tool goes is computed."""
@@ -42,7 +43,7 @@ class ComputedBlocks:
     def has_computed_feed(self, row: int) -> bool:
         """F in force in a row is computed."""
         offset = int(self.trace.feedrate.feed_word[row])
-        if offset < 0:
+        if offset < 0 or not self._has_macros:
             return False
         blocks = self.trace.text.blocks
         block = int(blocks.start.searchsorted(offset, side="right")) - 1

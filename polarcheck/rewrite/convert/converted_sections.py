@@ -60,6 +60,8 @@ _STEPS = {"X": ("X", "U"), "Z": ("Z", "W")}
 #: A plane that is turned by less is not turned [rad].
 _SAME_DIRECTION = 1e-9
 _ELSEWHERE = "the other control places it at another angle"
+#: Numbers of a column, since a name of states is looked up anew for each row.
+_RAPID, _CCW = int(Motion.RAPID), int(Motion.CCW)
 _PLANES = {17: "plane_xy", 18: "plane_zx", 19: "plane_yz"}
 _SIDES = {Side.OFF: "compensation_off", Side.LEFT: "compensation_left", Side.RIGHT: "compensation_right"}
 
@@ -298,13 +300,14 @@ class _Writer:
         if z is not None and math.isnan(z):
             raise refused_at(self.trace, row, "Z is a distance from a place that is not known")
         end = complex(path.end[row]) * turn if travels else None
-        if trace.axes.motion[row] == Motion.RAPID:
+        motion = int(trace.axes.motion[row])
+        if motion == _RAPID:
             self.rapid_rows.append(row)
             return pen.rapid(end, z, codes)
         feed = None if self.computed.has_computed_feed(row) else self.feeds.of_row(row)
         if end is None or not bool(path.is_arc[row]):
             return pen.line(end, z, feed, codes)
-        is_ccw = bool(trace.axes.motion[row] == Motion.CCW)
+        is_ccw = motion == _CCW
         blocks = pen.arc(end, complex(path.center[row]) * turn, is_ccw, z, feed, codes)
         if len(blocks) > 1:
             self.divided_rows.append(row)
@@ -369,9 +372,12 @@ class _Writer:
     def _require_entry(self, enter: int, rows: Sequence[int]) -> None:
         """Raise RefusedError for a section that begins where nobody knows, and whose first moves do not say it."""
         trace, measures = self.trace, self.translation.measures
-        moves = [row for row in rows if row > enter and trace.axes.motion[row] != Motion.NONE]
+        inside = np.array(rows, np.int64)
+        inside = inside[inside > enter]
+        moves: list[int] = inside[trace.axes.motion[inside] != Motion.NONE].tolist()
         for axis in "XZ":
-            first = next((row for row in moves if trace.blocks.has(*_STEPS[axis])[row]), None)
+            has_step = trace.blocks.has(*_STEPS[axis])
+            first = next((row for row in moves if has_step[row]), None)
             if not measures.is_lost(enter, axis) or first is None:
                 continue
             if measures.is_lost(first + 1, axis) or bool(trace.path.is_arc[moves[0]]):

@@ -42,6 +42,10 @@ class SectionWords:
         letters = {*polar.words_beside_switch, polar.direction_word}
         self._beside_switch = {source.address_number(word) for word in letters if len(word) == 1}
         self._virtual = set(trace.axes.virtual_words.tolist())
+        words = trace.run.words
+        self._code: list[int] = code_numbers(words.value).tolist()
+        self._address: list[int] = words.address.tolist()
+        self._keys: dict[int, str] = {}
         self._dwells = trace.blocks.listed("dwell")
         self._has_arguments = ~trace.modal.uses_axes | trace.blocks.codes(*trace.machine.macro.flow_codes)
         self._switch_codes = {*numbers(polar.on), *numbers(polar.off), *numbers(polar.ended_by)}
@@ -68,10 +72,12 @@ class SectionWords:
 
     def key(self, index: int) -> str:
         """The list of codes that a word stands in; empty for a word that is no G code."""
-        words = self.trace.run.words
-        if int(words.address[index]) != ord("G"):
+        if self._address[index] != ord("G"):
             return ""
-        return self._meanings.key(int(code_numbers(words.value[index : index + 1])[0]))
+        code = self._code[index]
+        if code not in self._keys:
+            self._keys[code] = self._meanings.key(code)
+        return self._keys[code]
 
     def divided(self, row: int, words: Sequence[int], is_switch: bool) -> tuple[list[int], list[int]]:
         """
@@ -89,12 +95,9 @@ class SectionWords:
         return geometry, [index for index in words if index not in geometry]
 
     def _is_geometry(self, index: int, is_switch: bool) -> bool:
-        address = int(self.trace.run.words.address[index])
+        address = self._address[index]
         if address == ord("G"):
-            return self.key(index) in _OF_GEOMETRY or self._is_switch_code(index)
+            return self.key(index) in _OF_GEOMETRY or self._code[index] in self._switch_codes
         if is_switch and address in self._beside_switch:
             return True
         return address in self._addresses or index in self._virtual
-
-    def _is_switch_code(self, index: int) -> bool:
-        return int(code_numbers(self.trace.run.words.value[index : index + 1])[0]) in self._switch_codes

@@ -140,11 +140,9 @@ class Translation:
     def words_of(self, row: int) -> list[int]:
         """The executed words of a row without N, O and block skip, in the order in which they are written."""
         low, high = stretch(self.trace.run.row, row, row + 1)
-        address = self.trace.run.words.address
-        return sorted(
-            (index for index in range(low, high) if int(address[index]) not in b"NO/"),
-            key=lambda index: int(self.trace.run.words.start[index]),
-        )
+        words = self.trace.run.words
+        written = zip(words.start[low:high].tolist(), range(low, high), words.address[low:high].tolist(), strict=True)
+        return [index for _, index, address in sorted(written) if address not in b"NO/"]
 
     def words(self, row: int, indices: Sequence[int], in_steps: bool = False) -> Translated:
         """
