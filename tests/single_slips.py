@@ -3,8 +3,7 @@ Slips that a setter makes in a sound program, one at a time, and whether each do
 
     slip = drawn_slip(7)      # slip.sound, slip.program, slip.line, slip.witness
 
-A slip is counted where the part comes out otherwise, or the control stops, or metal is met by rapid, and where a check
-without a drawing could know it. What it could know it by, is its witness.
+A slip is counted where metal or lathe are affected, and a check without a drawing could know it: by its witness.
 """
 
 from __future__ import annotations
@@ -48,6 +47,7 @@ from slip_settings import (
 )
 from slip_witnesses import witness
 from slip_words import (
+    VALUES,
     Draw,
     Plant,
     all_arcs,
@@ -57,16 +57,9 @@ from slip_words import (
     axes_swapped,
     block_changed,
     block_missing,
-    digit_doubled,
-    digit_lost,
-    digit_wrong,
-    factor_of,
     letter_for_other,
     neighbour,
     other_arc,
-    point_moved,
-    sign_changed,
-    swapped,
     word_changed,
     word_missing,
 )
@@ -91,17 +84,6 @@ class Slip(NamedTuple):
     machines: str = ""
 
 
-VALUES = {
-    "sign wrong": sign_changed,
-    "digits swapped": swapped,
-    "digit lost": digit_lost,
-    "digit doubled": digit_doubled,
-    "another digit": digit_wrong,
-    "ten times or a tenth": point_moved,
-    "twice": factor_of(2),
-    "half": factor_of(0.5),
-}
-#: Where a number without a point counts least increments; where a code engages the C axis.
 _INCREMENTS = "fanuc|doosan|takisawa|colchester|quick|mazak-eia|mitsubishi"
 _ENGAGED = "doosan|colchester|quick|haas|okuma|mazak-eia"
 ARCS = ("sign wrong", "digits swapped", "digit lost", "another digit", "ten times or a tenth", "twice")
@@ -223,7 +205,7 @@ SLIPS = (
     Slip("constant surface speed", block_written("G96 S200", "on"), "it refuses it", True, machines="^(?!okuma)"),
     Slip("rotation in force", block_written("G68 R45.", "on"), "the mode refuses it", True),
     # ---- text ----
-    Slip("point lost", block_changed(r"(?<=[1-9])\.", "", "contour"), "the others have one", True, machines=_INCREMENTS),
+    Slip("point lost", block_changed(r"(?<=[1-9])\.", "", "contour"), "the others", True, machines=_INCREMENTS),
     Slip("comma for point", block_changed(r"(?<=\d)\.(?=\d)", ",", "contour"), "no number", True),
     Slip("letter O for 0", block_changed(r"(?<=[1-9])0(?=\.)", "O", "contour"), "no number", True),
     Slip("dash of print", block_changed(r"(?<=[A-Z])-", "–", "contour", "ramp"), "no number", True),
@@ -255,7 +237,7 @@ def planted(slip: Slip, program: Program, draw: Draw) -> Planted | None:
 
 
 def knows(slip: Slip, program: Program, changed: Program) -> str:
-    """What a check could know a slip by; empty where nothing is affected or nothing tells."""
+    """What a check could know a slip by, or ""."""
     if slip.is_real:
         return slip.knows
     sound, other = simulate(program), simulate(changed)

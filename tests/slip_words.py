@@ -118,6 +118,19 @@ def plain(value: float, like: str) -> str:
     return text if float(text) else "0"
 
 
+#: How a number is written wrong.
+VALUES = {
+    "sign wrong": sign_changed,
+    "digits swapped": swapped,
+    "digit lost": digit_lost,
+    "digit doubled": digit_doubled,
+    "another digit": digit_wrong,
+    "ten times or a tenth": point_moved,
+    "twice": factor_of(2),
+    "half": factor_of(0.5),
+}
+
+
 def words_of(text: str, letters: str) -> list[re.Match[str]]:
     return list(re.finditer(rf"([{letters}]){NUMBER}", text))
 

@@ -30,7 +30,7 @@ KINDS = {slip.name: slip for slip in SLIPS}
 
 def test_there_are_enough_families_and_kinds() -> None:
     assert len(FAMILIES) >= 60
-    assert len({slip.name for slip in SLIPS}) >= 150
+    assert len({slip.name for slip in SLIPS}) >= 140
 
 
 @pytest.mark.ci
@@ -110,13 +110,14 @@ def test_words_are_written_as_they_are_told() -> None:
 def test_slips_are_told_once_and_the_remedy_repairs() -> None:
     """What a small run reaches; the page on benchmarks has the large one."""
     total = sum((one.row for one in slips.judged(len(SLIPS), 1)), Counter[str]())
-    assert total["slips"] > 145
-    assert total["spoken"] >= 0.92 * total["slips"]
-    assert total["several"] <= 0.09 * total["spoken"]
-    assert total["repairs"] >= 0.8 * total["named"]
+    assert total["slips"] > 140
+    assert total["spoken"] >= 0.9 * total["slips"]
+    assert total["several"] <= 0.06 * total["spoken"]
+    assert total["there"] >= 0.75 * total["spoken"]
+    assert total["repairs"] >= 0.75 * total["named"]
 
 
 @pytest.mark.nightly
 def test_two_slips_are_both_told() -> None:
     found = slips.pairs(10, 1)
-    assert sum(pair.told == 2 for pair in found) >= 9
+    assert sum(pair.told == 2 for pair in found) >= 8
