@@ -163,6 +163,36 @@ def test_a_section_in_air(turning: str, depth: str) -> None:
 
 
 @pytest.mark.ci
+@looped(
+    ("before", "behind", "rules"),
+    [
+        ("G0 Z-5.", "G0 Z2.", {}),
+        ("G0 Z5.", "G0 Z2.", {"cut-in-air": "warning"}),
+        ("G0 Z5.", "G0 Z20.", {}),
+        ("M8", "G0 Z2.", {"cut-in-air": "warning"}),
+        ("M8", "G0 Z20.", {}),
+    ],
+)
+def test_a_section_in_air_whose_depth_stands_before_the_mode(before: str, behind: str, rules: dict[str, str]) -> None:
+    head = HEAD.replace("/Z-5.", "").replace("G12.1", f"{before}/G12.1")
+    assert found(f"{head}/{CONTOUR}/G40 X60. F1500/G13.1/{behind}/G0 X100. Z50./M30") == rules
+
+
+@pytest.mark.ci
+def test_an_offset_cancel_that_crosses_the_part_is_told_once_for_all_passes() -> None:
+    start = HEAD.removesuffix("/Z-5.")
+    sub = f"O100/{CONTOUR}/G40 X{{}} F1500/M99"
+    calls = f"{start}/G1 Z-3./M98 P100/G1 Z-6./M98 P100/Z2./G13.1/G0 X100. Z50./M30"
+    assert found(f"{calls}/{sub.format('60.')}") == {}
+    mirrored = sub.format("60.").replace("G42", "G41")
+    assert found(f"{calls}/{mirrored}") == {"side-of-compensation-mirrored": "warning"}
+    assert found(f"{calls}/{sub.format('6.')}") == {"start-up-sweeps-contour": "error"}
+    report = report_of(f"O1/{calls}/{sub.format('6.')}/".replace("/", "\n"), "fanuc-30i", "1:radius=4,nose=0")
+    (line,) = {finding.line for finding in report.findings if finding.severity != "note"}
+    assert line == 26
+
+
+@pytest.mark.ci
 @looped(("across", "rules"), [(44, {}), (50, {"cut-in-air": "warning"}), (90, {"cut-in-air": "warning"})])
 def test_a_contour_around_the_bar_cuts_air(across: int, rules: dict[str, str]) -> None:
     """The sides of a square, R4 outside of them, and a bar of 40: of 50 across flats nothing is cut any more."""
