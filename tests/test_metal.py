@@ -185,7 +185,7 @@ def test_an_offset_cancel_that_crosses_the_part_is_told_once_for_all_passes() ->
     calls = f"{start}/G1 Z-3./M98 P100/G1 Z-6./M98 P100/Z2./G13.1/G0 X100. Z50./M30"
     assert found(f"{calls}/{sub.format('60.')}") == {}
     mirrored = sub.format("60.").replace("G42", "G41")
-    assert found(f"{calls}/{mirrored}") == {"side-of-compensation-mirrored": "warning"}
+    assert found(f"{calls}/{mirrored}") == {"side-of-compensation-mirrored": "error"}
     assert found(f"{calls}/{sub.format('6.')}") == {"start-up-sweeps-contour": "error"}
     report = report_of(f"O1/{calls}/{sub.format('6.')}/".replace("/", "\n"), "fanuc-30i", "1:radius=4,nose=0")
     (line,) = {finding.line for finding in report.findings if finding.severity != "note"}
