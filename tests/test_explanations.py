@@ -82,10 +82,19 @@ def test_mistakes_in_two_contours_are_two_findings(first: Slip, second: Slip) ->
 
 #: Contours that are sound to each rule but this one: a corner on the line of its neighbours, blocks exchanged, an arc
 #: that alone is not tangent; a block, what stands in its place, and what is said.
-HEXAGON = ["G42 X36. C0 F200", *"C10.392/X0 C20.785/X-36. C10.392/C-10.392/X0 C-20.785/X36. C-10.392/C0".split("/")]
+HEXAGON = [
+    "G42 X36. C0 F200",
+    "C10.392",
+    "X0 C20.785",
+    "X-36. C10.392",
+    "C-10.392",
+    "X0 C-20.785",
+    "X36. C-10.392",
+    "C0",
+]
 CHAMFERED = [
-    "G42 X40. C0 F200",
-    *"C9.5/X19. C20./X-19./X-40. C9.5/C-9.5/X-19. C-20./X19./X40. C-9.5/C0".split("/"),
+    *("G42 X40. C0 F200", "C9.5", "X19. C20.", "X-19.", "X-40. C9.5"),
+    *("C-9.5", "X-19. C-20.", "X19.", "X40. C-9.5", "C0"),
 ]
 
 

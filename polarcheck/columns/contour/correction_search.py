@@ -176,7 +176,8 @@ class _Search:
             is_symmetric = self._is_better(symmetry, _Trial(edit.corner, -1, slip, point, edited))
             if is_symmetric and edit.kind not in {"arc", "sense"}:
                 return correction._replace(becomes=_becomes(symmetry))
-            is_clear = likely.is_whole and likely.gain >= _GAIN_ALONE and len(loop.turns) >= _FEWEST_BLOCKS
+            is_whole = likely.smooths or (likely.closes and self.written is None)
+            is_clear = is_whole and likely.gain >= _GAIN_ALONE and len(loop.turns) >= _FEWEST_BLOCKS
             if self.likely is None and (is_symmetric or is_clear):
                 self.likely = correction
         return None

@@ -28,14 +28,15 @@ class Likely(NamedTuple):
     """
     An edit that may be what was meant.
 
-    gain: how many coordinates fewer are as they are by chance. becomes: what the path is then, in words. is_whole: it
-    is closed then, or all of its arcs are tangent, and it was not.
+    gain: how many coordinates fewer are as they are by chance. becomes: what the path is then, in words. closes,
+    smooths: it is closed then, or all of its arcs are tangent, and it was not.
     """
 
     edit: Edit
     gain: float
     becomes: str
-    is_whole: bool
+    closes: bool
+    smooths: bool
 
 
 def correction_by(likely: Likely, row: int) -> Correction:
@@ -69,10 +70,11 @@ def likely_edits(trace: Trace, loop: WrittenLoop, most: int, least_gain: float =
             break
         if witness[number] >= least and all(_differs(outlines, number, other, loop.tolerance) for other in found):
             found.append(number)
-    arcs, ends = chances.corners_at_arcs, chances.is_open
-    whole = ((arcs == 0) & (arcs[0] > 0)) | ((ends == 0) & (ends[0] > 0))
+    mended = [(part == 0) & (part[0] > 0) for part in (chances.is_open, chances.corners_at_arcs)]
     return [
-        Likely(edits[number - 1], float(gain[number]), _becomes(chances, number), bool(whole[number]))
+        Likely(
+            edits[number - 1], float(gain[number]), _becomes(chances, number), *(bool(part[number]) for part in mended)
+        )
         for number in found
     ]
 

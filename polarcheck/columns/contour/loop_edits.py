@@ -22,6 +22,9 @@ _SAME_NUMBER, _STEPS = 5e-5, 1.5
 #: decimals than what is written, and one of a block that is not beside it.
 _SELDOM, _ELSEWHERE, _OF_BLOCK, _SAME_SIZE, _FINER, _FAR = 0.3, 0.2, 0.4, 0.1, 0.6, 2.5
 
+#: An angle in degrees is a multiple of this, from twice as much on; what is said of one.
+_PART_OF_TURN, _FULL_TURN = 15.0, 360.0
+_IS_ANGLE = "it looks like an angle"
 #: What is to be done where nothing is to be written.
 _REMEDIES = {"twice": "without it", "order": "behind the next one"}
 
@@ -84,7 +87,8 @@ def _of_axis(trace: Trace, loop: WrittenLoop, number: int) -> Iterator[Edit]:
             continue
         others = () if axis.is_step[corner] else (0.0, *sizes)
         beside = axis.value[max(corner - 1, 0) : corner + 2 : 2] if corner else axis.value[1:2]
-        for slip, cost in _numbers(written, float(axis.value[corner]), others, beside):
+        why = _IS_ANGLE if number and _looks_like_angle(loop, corner) else "another number is meant"
+        for slip, cost in _numbers(written, float(axis.value[corner]), others, beside, why):
             yield Edit("word", corner, (word,), address + slip.text, slip.kind, cost, number, float(slip.text))
         if other.word[corner] < 0:
             letter = other.step_address if axis.is_step[corner] else other.address
@@ -161,23 +165,34 @@ def _sizes(values: Floats) -> tuple[float, ...]:
     return tuple(dict.fromkeys(size for size in np.round(np.abs(values), 4).tolist() if size > 0))
 
 
-def _numbers(written: str, value: float, others: tuple[float, ...], beside: Floats) -> Iterator[tuple[Slip, float]]:
+def _looks_like_angle(loop: WrittenLoop, corner: int) -> bool:
+    """C is one of the usual angles, and as a length twice as far out as any other point of the path."""
+    x, c = loop.axes
+    value, lengths = float(c.value[corner]), np.abs(np.array([axis.value * axis.scale for axis in (x, c)]))
+    lengths[1, corner] = np.nan
+    is_usual = value % _PART_OF_TURN == 0 and 2 * _PART_OF_TURN <= abs(value) <= _FULL_TURN
+    return is_usual and abs(value) * float(c.scale[corner]) > 2 * float(np.fmax.reduce(lengths, None, initial=0.0))
+
+
+def _numbers(
+    written: str, value: float, others: tuple[float, ...], beside: Floats, why: str = "another number is meant"
+) -> Iterator[tuple[Slip, float]]:
     """
     What a number may be instead, each once, with its cost.
 
     others: the sizes of the numbers of all blocks, one of which may be meant. beside: the numbers of the blocks before
-    and behind, one of which may be what is written.
+    and behind, one of which may be what is written. why: the reason for another one.
     """
     known = {round(value / _SAME_NUMBER)}
     is_beside = bool((np.abs(beside - value) < _SAME_NUMBER).any())
-    of_others = Slip("", "it is that of the block beside it" if is_beside else "another number is meant", False)
+    of_others = Slip("", "it is that of the block beside it" if is_beside else why, False)
     step = _STEPS * 10.0 ** -_decimals(written)
     likely = (slip._replace(text=_of_others(float(slip.text), slip.text, others, step)) for slip in slips_of(written))
     slips = [(slip, _cost(slip, written, others)) for slip in likely]
     for size in others:
-        cost = _SELDOM if is_beside else _FAR
+        cost = _SELDOM if is_beside or why == _IS_ANGLE else _FAR
         slips += [(of_others._replace(text=plain_number(number)), cost) for number in (size, -size)]
-    for slip, cost in sorted(slips, key=lambda pair: pair[1]):
+    for slip, cost in sorted(slips, key=lambda pair: (pair[1], pair[0].kind != _IS_ANGLE)):
         key = round(float(slip.text) / _SAME_NUMBER)
         if key not in known and (_LEAST <= abs(float(slip.text)) <= _GREATEST or not key):
             known.add(key)

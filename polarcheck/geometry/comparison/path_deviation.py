@@ -236,9 +236,7 @@ def _proven(pieces: _Pieces, largest: float, location: Location, tolerance: floa
     whole = msgspec.structs.replace(pieces, old_at=ends[0], new_at=ends[1])
     precision = max(tolerance * _SHARE, largest * _PRECISION)
     # However the corners are paired, a point is never nearer to the other path than to the nearest point of it.
-    least = max(
-        _nearest(pieces.new, location.old, location.old_z), _nearest(pieces.old, location.new, location.new_z)
-    )
+    least = max(_nearest(pieces.new, location.old, location.old_z), _nearest(pieces.old, location.new, location.new_z))
     try:
         if least <= tolerance and is_within(corners[0], corners[1], tolerance, Budget(_CELLS_OF_PROOF)):
             return tolerance, location, False

@@ -110,10 +110,20 @@ def chances_of(outlines: Outlines, tolerance: float) -> Chances:
         is_broken.sum(axis=1),
         (is_corner & beside_arc).sum(axis=1),
         (meets & (np.abs(turn) > np.pi - _TANGENT)).sum(axis=1),
-        (ends.min(axis=(1, 2)) > tolerance).astype(np.int64),
+        ((ends.min(axis=(1, 2)) > tolerance) & ~_overlaps(point, turns, tolerance)).astype(np.int64),
         (is_corner & ~beside_arc).sum(axis=1),
         others,
     )
+
+
+def _overlaps(point: Points, turns: Rows, tolerance: float) -> Mask:
+    """The outline ends on its first line, or begins on its last one."""
+    overlaps = np.zeros(len(point), bool)
+    for place, begin, end, turn in ((-1, 0, 1, 0), (0, -2, -1, -1)):
+        way = np.abs(point[:, place] - point[:, begin]) + np.abs(point[:, end] - point[:, place])
+        is_on = way - np.abs(point[:, end] - point[:, begin]) <= tolerance
+        overlaps |= is_on & (turns[:, turn] == 0) & (point.shape[1] > _FEWEST)
+    return overlaps
 
 
 def _sweeps(outlines: Outlines, length: Floats, moves: Mask, tolerance: float) -> tuple[Floats, Mask, Floats]:
