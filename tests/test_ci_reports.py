@@ -222,6 +222,13 @@ def test_sarif_addresses_are_those_of_the_files() -> None:
     assert unquote_to_bytes(address) == os.fsencode(f"nc/part s/{RAW_NAME}")
 
 
+@pytest.mark.parametrize("path", ["/srv/a.nc", "C:/shop/a.nc", "nc/a.nc"])
+def test_only_a_relative_address_has_a_base_in_sarif(path: str) -> None:
+    of = file(finding(), path=path, not_evaluated=[missing()]), unread("No such file", path=path)
+    (result,) = sarif(*of, root="/work", folder="/work")["results"]
+    assert ("uriBaseId" in result["locations"][0]["physicalLocation"]["artifactLocation"]) == (path == "nc/a.nc")
+
+
 def test_sarif_places_and_links_the_section() -> None:
     (result,) = sarif(file(finding(column=4, end_column=8)))["results"]
     place = result["locations"][0]

@@ -80,10 +80,16 @@ def _rule(name: str, rule: Rule | None, finding: Finding) -> dict[str, Any]:
     }
 
 
+def _artifact(file: FileReport, background: Background) -> dict[str, Any]:
+    """Return the address of a file; only a relative one may have a base (SARIF1004 of the multitool)."""
+    address = uri(file.path, background)
+    return {"uri": address} if address.startswith("file:") else {"uri": address, "uriBaseId": _ROOT}
+
+
 def _result(
     finding: Finding, file: FileReport, indices: Mapping[str, int], background: Background, has_silenced: bool
 ) -> dict[str, Any]:
-    artifact = {"uri": uri(file.path, background), "uriBaseId": _ROOT}
+    artifact = _artifact(file, background)
     section = finding.section_line if finding.section_line != finding.line else None
     result: dict[str, Any] = {
         "ruleId": visible(finding.rule),
@@ -159,7 +165,7 @@ def _failures(report: Report, background: Background) -> Iterator[dict[str, Any]
     """Yield a notification for each file that was not checked, and for an interrupted run."""
     for file in report.files:
         if file.verdict == UNREADABLE:
-            location = {"artifactLocation": {"uri": uri(file.path, background), "uriBaseId": _ROOT}}
+            location = {"artifactLocation": _artifact(file, background)}
             about = {"text": visible(f"{file.path}: {file.reason}")}
             yield {"level": "error", "message": about, "locations": [{"physicalLocation": location}]}
     if report.interrupted is not UNSET:
@@ -173,7 +179,7 @@ def _not_evaluated(report: Report, background: Background) -> Iterator[dict[str,
         for gap in file.not_evaluated:
             if gap.matters:
                 rules.setdefault(gap.reason, []).append(gap.rule)
-        location = {"artifactLocation": {"uri": uri(file.path, background), "uriBaseId": _ROOT}}
+        location = {"artifactLocation": _artifact(file, background)}
         for reason, names in rules.items():
             text = visible(f"not evaluated: {reason} ({', '.join(dict.fromkeys(names))})")
             yield {"level": "warning", "message": {"text": text}, "locations": [{"physicalLocation": location}]}
