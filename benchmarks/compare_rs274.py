@@ -29,7 +29,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from polarcheck.foundation.states import Motion, Side
+from polarcheck.foundation.states import Corner, Motion, Side
 from polarcheck.geometry.cutter_compensation.offset_path import Method, Path, Phase, ToolPath, tool_center_path
 
 NAN = complex(math.nan, math.nan)
@@ -119,6 +119,7 @@ def ours(contour: Contour) -> ToolPath:
         radius=np.full(count, contour.radius),
         cancel_vector=np.full(count, NAN),
         stops_reading=np.zeros(count, dtype=np.bool_),
+        corner=np.full(count, Corner.LINES, dtype=np.int16),
     )
     return tool_center_path(path, Method())
 

@@ -142,6 +142,27 @@ def test_neovim_shows_findings_with_the_configuration_of_the_page() -> None:
     assert "rapid-in-polar" in shown
 
 
+@pytest.mark.nightly
+@pytest.mark.skipif(shutil.which("emacs") is None, reason="there is no Emacs here")
+@pytest.mark.skipif(sys.platform == "win32", reason="the page names the executable as Unix does")
+def test_emacs_marks_the_words_of_findings_with_the_configuration_of_the_page() -> None:
+    (init,) = re.findall(r"```elisp\n(.*?)```", (PAGES / "emacs.md").read_text("utf-8"), re.DOTALL)
+    emacs = ["emacs", "--batch", "-f", "package-initialize", "-l"]
+    if subprocess.run([*emacs, "eglot"], capture_output=True, check=False, timeout=60).returncode:
+        pytest.skip("this Emacs has no eglot")
+    command = f'{json.dumps(sys.executable)} "-m" "polarcheck" "server"'
+    Path("init.el").write_text(init.replace('"polarcheck" "server"', command), "utf-8")
+    Path("O0001.nc").write_text(RAPID.replace("G0 C5.", "(\U0001d6fc) G0 C5."), "utf-8")
+    script = """(let ((eglot-sync-connect 60) (tries 0))
+      (find-file "O0001.nc") (run-hooks 'post-command-hook)
+      (while (and (< (setq tries (1+ tries)) 600) (null (flymake-diagnostics))) (accept-process-output nil 0.1))
+      (dolist (mark (flymake-diagnostics))
+        (princ (format "%s %s\n" (buffer-substring (flymake-diagnostic-beg mark) (flymake-diagnostic-end mark))
+          (flymake-diagnostic-text mark)))))"""
+    shown = subprocess.run([*emacs, "init.el", "--eval", script], capture_output=True, text=True, timeout=120).stdout
+    assert re.search(r"^G0 .*rapid-in-polar", shown, re.MULTILINE)
+
+
 @pytest.mark.parametrize("page", sorted(PAGES.glob("*.md")), ids=lambda page: page.stem)
 def test_options_and_links_of_the_pages_are_there(page: Path) -> None:
     text = page.read_text("utf-8")
