@@ -158,7 +158,7 @@ def inside_corners(contour: Contour) -> list[tuple[int, str]]:
     for row in range(1, len(contour.moves) - 1):
         before, after = contour.moves[row : row + 2]
         turn = cmath.phase(after.tangent(after.start) / before.tangent(before.end))
-        if left * turn > 0:
+        if 0 < left * turn < math.pi - TOLERANCE:
             corners.append((row, "".join("L" if m.motion == Motion.LINE else "A" for m in (before, after))))
     return corners
 
@@ -168,6 +168,8 @@ def compare(contour: Contour, tool: ToolPath, other: Other, totals: Counter[str]
     worst = 0.0
     for row, kinds in inside_corners(contour):
         move = np.flatnonzero((tool.row == row) & ~tool.corner & (tool.phase == Phase.OFFSET))
+        if not len(move):  # a groove of twice R, whose floor has no path
+            continue
         apart = np.abs(other.vertices - tool.end[move[0]]).min()
         totals[f"inside {kinds} {'agree' if apart <= TOLERANCE else 'DIFFER'}"] += 1
         worst = max(worst, apart if apart <= TOLERANCE else 0.0)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+import shutil
 import sys
 from pathlib import Path
 
@@ -13,6 +14,7 @@ from programs import ROOT, report_of, said
 
 sys.path.insert(0, str(ROOT / "benchmarks"))
 
+import compare_rs274
 import generate
 import measuring
 import peers
@@ -116,6 +118,13 @@ def test_the_page_is_written_without_any_peer(tmp_path: Path, monkeypatch: pytes
     assert "Not installed there, and left out: LinuxCNC rs274, nc-gcode-interpreter, pygcode, nctab, ncplot7py." in text
     assert re.search(r"^\| polarcheck \| 0 \| 1 \| 1 \|$", text, re.MULTILINE)
     assert len(re.findall(r"^\| total \|", text, re.MULTILINE)) == 3
+
+
+@pytest.mark.nightly
+@pytest.mark.skipif(shutil.which("rs274") is None, reason="there is no LinuxCNC here")
+def test_inside_corners_and_arcs_of_random_contours_are_those_of_linuxcnc(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "argv", ["compare_rs274", "--programs", "300"])
+    assert compare_rs274.main() == 0
 
 
 def test_time_of_libraries_counts_for_the_stages_that_call_them() -> None:

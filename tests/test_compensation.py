@@ -5,6 +5,9 @@ from __future__ import annotations
 import cmath
 import json
 import math
+import shutil
+import sys
+from collections import Counter
 from itertools import pairwise
 
 import numpy as np
@@ -15,11 +18,15 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from msgspec.structs import fields, replace
 from plane_moves import path_of_rows, points_along, turn_of
-from programs import SHARED
+from programs import ROOT, SHARED
 
 from polarcheck.foundation.states import Motion, Side
 from polarcheck.geometry.cutter_compensation.offset_path import Method, Path, Phase, ToolPath, tool_center_path
 from polarcheck.geometry.plane import arc_sweep
+
+sys.path.insert(0, str(ROOT / "benchmarks"))
+
+import compare_rs274
 
 CASES = SHARED / "facts" / "compensation_cases.json"
 NAN = complex(math.nan, math.nan)
@@ -366,6 +373,42 @@ EXAMPLES = {
         "0: 0,-15 | 1: ccw 0,15 | 2: 0,40",
     ),
 }
+
+
+def compensated(program: Program) -> compare_rs274.Contour | None:
+    """What LinuxCNC can run of a program: moves of one R above 0 on one side, a line to begin with, moved to the origin."""
+    path = path_of(program)
+    rows = np.flatnonzero(path.moves & (path.side != Side.OFF))
+    lengths = abs(path.end[rows] - path.start[rows])
+    is_one = len(rows) > 2 and len({*zip(path.side[rows], path.radius[rows], strict=True)}) == 1
+    if (
+        not is_one
+        or path.motion[rows[0]] != Motion.LINE
+        or not 0 < path.radius[rows[0]] < lengths[0]
+        or not lengths.all()
+    ):
+        return None
+    points = path.start, path.end, path.center
+    moves = [
+        compare_rs274.Move(Motion(path.motion[row]), *(of[row] - path.start[rows[0]] for of in points)) for row in rows
+    ]
+    return compare_rs274.Contour(Side(path.side[rows[0]]), float(path.radius[rows[0]]), moves)
+
+
+@pytest.mark.nightly
+@pytest.mark.skipif(shutil.which("rs274") is None, reason="there is no LinuxCNC here")
+def test_fixtures_are_run_as_by_linuxcnc(tmp_path):
+    programs = [read_section(program) for program, *_ in EXAMPLES.values()]
+    if CASES.exists():
+        programs += [read_case(case) for case in json.loads(CASES.read_text())]
+    totals = Counter()
+    for contour in filter(None, map(compensated, programs)):
+        tool, other = compare_rs274.ours(contour), compare_rs274.theirs(contour, "rs274", tmp_path)
+        assert bool(other.error) == compare_rs274.objects(tool), contour
+        if not other.error:
+            compare_rs274.compare(contour, tool, other, totals)
+            assert not [name for name in totals if "DIFFER" in name], contour
+    assert sum(totals.values()) > 8
 
 
 @looped("name", EXAMPLES)
