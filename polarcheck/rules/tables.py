@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from polarcheck.program.machines.machine import Machine
 
 #: What a program, or its job, must have for anything to be found in some tables.
-SECTION, ARC, COMMENT, PART = "section", "arc", "comment", "part"
+SECTION, SECTIONS, ARC, COMMENT, PART = "section", "sections", "arc", "comment", "part"
 
 
 class Maker:
@@ -96,6 +96,7 @@ TABLES = {
     "implied_units": Maker("polarcheck.columns.metal.implied_units:ImpliedUnits", SECTION),
     "strokes": Maker("polarcheck.columns.metal.strokes:Strokes", SECTION),
     "approaches": Maker("polarcheck.columns.metal.approaches:Approaches", SECTION),
+    "earlier_contours": Maker("polarcheck.columns.metal.earlier_contours:EarlierContours", SECTIONS),
     "air_cuts": Maker("polarcheck.columns.metal.air_cuts:AirCuts", SECTION),
     "rapid_contours": Maker("polarcheck.columns.contour.rapid_contours:RapidContours", SECTION),
     "pass_ends": Maker("polarcheck.columns.contour.pass_ends:PassEnds", SECTION),
@@ -139,7 +140,15 @@ _OF_CONTOURS = "polarcheck.columns.contour.", "polarcheck.columns.metal.", "pola
 _UPRIGHT = frozenset(
     {
         *("bar", "milled", "workpiece", "approaches", "air_cuts", "coverage", "part_comments"),
-        *("overcuts", "rapid_contours", "pass_ends", "uncompensated_cuts", "misplaced_ramps", "feed_ranges"),
+        *(
+            "overcuts",
+            "earlier_contours",
+            "rapid_contours",
+            "pass_ends",
+            "uncompensated_cuts",
+            "misplaced_ramps",
+            "feed_ranges",
+        ),
     }
 )
 #: How far a cause reaches, or what one finding stands for: the column whose value its rows have in common; None where
@@ -247,6 +256,7 @@ class Tables(dict[str, Any]):
         is_arc = (trace.axes.motion == Motion.CW) | (trace.axes.motion == Motion.CCW)
         return {
             SECTION: len(trace.mode.sections) > 0,
+            SECTIONS: len(trace.mode.sections) > 1,
             ARC: bool(is_arc.any()),
             COMMENT: len(trace.text.comments) > 0,
             PART: len(trace.job.part) > 0,
