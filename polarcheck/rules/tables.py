@@ -140,15 +140,8 @@ _OF_CONTOURS = "polarcheck.columns.contour.", "polarcheck.columns.metal.", "pola
 _UPRIGHT = frozenset(
     {
         *("bar", "milled", "workpiece", "approaches", "air_cuts", "coverage", "part_comments"),
-        *(
-            "overcuts",
-            "earlier_contours",
-            "rapid_contours",
-            "pass_ends",
-            "uncompensated_cuts",
-            "misplaced_ramps",
-            "feed_ranges",
-        ),
+        *("overcuts", "rapid_contours", "pass_ends", "uncompensated_cuts", "misplaced_ramps", "feed_ranges"),
+        "earlier_contours",
     }
 )
 #: How far a cause reaches, or what one finding stands for: the column whose value its rows have in common; None where
