@@ -420,8 +420,8 @@ def test_each_rule_is_asked_once(monkeypatch: pytest.MonkeyPatch) -> None:
         return hits(one, made)
 
     monkeypatch.setattr(Rule, "hits", noted)
-    program = "(A SECTION WITH AN ARC)\nG98 G0 X60. C0\nG12.1\nG1 X40. F100\nG3 X20. C0 R30.\nG13.1\n"
-    report_of(program, job={"part": [{"shape": "square", "across_flats": 40.0}]})
+    section = "G98 G0 X60. C0\nG12.1\nG1 X40. F100\nG3 X20. C0 R30.\nG13.1\n"
+    report_of(f"(SECTIONS WITH AN ARC)\n{section}{section}", job={"part": [{"shape": "square", "across_flats": 40.0}]})
     off = {name for name, rule in RULES.items() if rule.level(machine_of().severities) == "off"}
     of_allows = {name for name, rule in RULES.items() if rule.group == "silence"}
     assert sorted(order) == sorted(set(RULES) - off - of_allows)
