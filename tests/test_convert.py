@@ -171,6 +171,15 @@ def test_a_plane_without_its_axes_stays_on_its_own_control() -> None:
     assert convert(text, "fagor-8055t", "fagor-8055t").data == text.encode()
 
 
+@looped("block", ["G17 XC M8", "G21 G94 G40 G17 XC", "g17 x c m8"])
+def test_the_axes_of_a_plane_stand_together(block: str) -> None:
+    """G17 XC in a block whose other words are written anew."""
+    text = f"%\nO1\nG21 G94 G40\n{block}\nG0 X60. Z2. C0\nG12.1\nG1 X20. C5. F200\nX30. C0\nG13.1\nM30\n%\n"
+    words = convert(text, "mazak-integrex", "mazak-quick-turn").data.decode().upper()
+    assert "G17 XC" in words
+    assert "X C" not in words
+
+
 def test_blanks_line_ends_letters_and_comments_stay() -> None:
     program = (
         "%\r\no1 (Fl\u00e4che)\r\ng21g98g40\r\n/g0x60.z2.c0\r\ng12.1\r\ng1x40.c5.f200 (a)\r\ng13.1\r\nm30\r\n%\r\n"
