@@ -376,7 +376,7 @@ EXAMPLES = {
 
 
 def compensated(program: Program) -> compare_rs274.Contour | None:
-    """What LinuxCNC can run of a program: moves of one R above 0 on one side, a line to begin with, moved to the origin."""
+    """What LinuxCNC can run of a program: moves of one R above 0 on one side, a line first, moved to the origin."""
     path = path_of(program)
     rows = np.flatnonzero(path.moves & (path.side != Side.OFF))
     lengths = abs(path.end[rows] - path.start[rows])

@@ -241,13 +241,14 @@ class MisplacedRamps(Columns, frozen=True):
         return column
 
     def _is_closed_but_for_ramp(self, first: int, last: int) -> bool:
-        """The moves from first to last, exclusive, go round the center, and neither end lies on the move beside it."""
+        """The moves from first to last, exclusive, go round the center, and neither end lies on any other of them."""
         rows, blocks = self._moves.row[first:last], self.trace.blocks
         if (blocks.has("U", "V", "H") | self.trace.modal.incremental)[rows].any():
             return False  # what is wrong in one step shifts all that follow
         path = self.trace.path.moves_of(rows)
-        ends = ((0, complex(path.end[-1])), (-1, complex(path.start[0])))
-        return path.goes_round() and not any(_is_on(path, move, point) for move, point in ends)
+        inner = range(1, len(path) - 1)
+        ends = ((complex(path.end[-1]), (0, *inner)), (complex(path.start[0]), (*inner, -1)))
+        return path.goes_round() and not any(_is_on(path, move, point) for point, moves in ends for move in moves)
 
 
 def _is_on(path: PlanePath, move: int, point: complex) -> bool:

@@ -63,7 +63,7 @@ def start_up_sweeps_contour(slots: Slots, feeds: Feeds, compensation: CutterComp
     """
     sweeps = slots.ramp_depth > 0
     if not sweeps.any():
-        return Hits(sweeps)
+        return Hits(sweeps, values={"depth": slots.ramp_depth})
     # The ramp of the next pass begins where an offset cancel has ended that cuts the contour: both are one mistake.
     sweeps = sweeps & ~(compensation.starts_up & feeds.before_on_plane(sweeps & compensation.cancels))
     # A high F says nothing of the end of its move, nor does the ramp with which the last pass of a loop has ended.

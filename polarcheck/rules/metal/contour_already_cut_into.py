@@ -29,6 +29,8 @@ def contour_already_cut_into(earlier_contours: EarlierContours) -> Hits:
     turns by half a pitch with polygons of one size, or that take off only a little of the corners, which make twice as
     many sides or chamfers.
 
+    Source: the geometry of both contours alone.
+
     Bad, tool 1:radius=4, tool 2:radius=4:
 
         O1

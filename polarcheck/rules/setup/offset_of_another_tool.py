@@ -63,6 +63,7 @@ def offset_of_another_tool(entry: Entry) -> Mask:
         G40 X60.
         G13.1
     """
+    # Compares nothing: the table compares each T with all others of the program.
     return entry.takes_offset_of_other
 
 
