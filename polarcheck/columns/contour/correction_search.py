@@ -34,6 +34,8 @@ _ODD_OF = 6
 _MOST_TRIALS, _ENDS, _GAPS = 80, 3, 3
 #: Edits that are looked at; how much less they must leave to chance, without and with symmetry; blocks of such a path.
 _MOST_EDITS, _LEAST_GAIN, _GAIN_ALONE, _FEWEST_BLOCKS = 16, 0.5, 3.8, 6
+#: The same with more symmetry, by which so many numbers more are fixed.
+_GAIN_IN_SYMMETRY, _LEAST_FIXED = 2.4, 3
 #: Numbers that differ by less are one.
 _SAME_NUMBER = 1e-6
 _WORD = re.compile(r"([A-Z])([+-]?+(?:\d++\.?+\d*+|\.\d++))")
@@ -139,6 +141,14 @@ class _Search:
         sides_are_parallel = not added and self._keeps_directions(trial.point)
         return symmetry.is_turned and (not sides_are_parallel or (is_meant and trial.slip.is_common))
 
+    def _is_more_symmetric(self, symmetry: Symmetry) -> bool:
+        """More turns and mirrors leave the contour as it is, and it has all of its corners."""
+        written = self.written
+        if written is None or symmetry.corners_behind_start < written.corners_behind_start:
+            return False
+        images = (found.order * (1 + found.mirrored) for found in (written, symmetry))
+        return next(images) < next(images) and written.freedom - symmetry.freedom >= _LEAST_FIXED
+
     def _keeps_directions(self, point: Points) -> bool:
         """No block leads in another direction: a side lies elsewhere, which may be meant."""
         written, moved = np.diff(self.loop.point), np.diff(point)
@@ -178,6 +188,7 @@ class _Search:
                 return correction._replace(becomes=_becomes(symmetry))
             is_whole = likely.smooths or (likely.closes and self.written is None)
             is_clear = is_whole and likely.gain >= _GAIN_ALONE and len(loop.turns) >= _FEWEST_BLOCKS
+            is_clear = is_clear or (likely.gain >= _GAIN_IN_SYMMETRY and self._is_more_symmetric(symmetry))
             if self.likely is None and (is_symmetric or is_clear):
                 self.likely = correction
         return None
