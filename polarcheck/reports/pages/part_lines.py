@@ -11,6 +11,7 @@ import msgspec
 from polarcheck.foundation.finding import FileReport
 from polarcheck.program.reading.excerpt import head, visible
 from polarcheck.reports.json import encoded
+from polarcheck.reports.made_parts.shapes_in_series import in_series
 
 #: The rule that compares a part with its drawing.
 _RULE = "part-differs-from-drawing"
@@ -24,7 +25,7 @@ def part_lines(file: FileReport) -> Iterator[tuple[str, str]]:
         return
     if not file.part:
         yield "", "no polar section"
-    for shape in file.part:
+    for shape in in_series(file.part):
         channel = f"{shape.channel} " if shape.channel else ""
         yield f"{channel}line {shape.line}", shape.text
         for standing in shape.left_standing:
