@@ -396,6 +396,34 @@ def test_a_plane_that_lies_otherwise_is_turned() -> None:
     )
 
 
+@looped(
+    ("c", "direction", "target", "expected"),
+    [
+        ("C0", "C30.", "fanuc-30i", ["G0 C30.", "G12.1"]),
+        ("C30.", "C0", "citizen", ["G0 C0", "G12.1 D0 E=C"]),
+        ("", "C-45.5", "haas-lathe", ["G0 C-45.5", "G17", "G112"]),
+        ("C200.", "C180.", "siemens-transmit", ["G0 C-180.", "DIAMOF", "TRANSMIT"]),
+        ("C390.", "C30.", "fanuc-30i", ["C390.", "G12.1"]),
+    ],
+)
+def test_c_turns_to_where_the_switch_points_the_plane(c: str, direction: str, target: str, expected: list[str]) -> None:
+    program = f"O1\nG94 G40\nG0 X60. Z2.\n{c}\nG137 {direction}\nG17\nG1 X40. Y0 F200\nY20.\nX60.\nG136\nM2\n"
+    outcome = convert(program, "okuma-osp", target)
+    blocks = [re.sub(r" *[(;].*", "", line) for line in outcome.data.decode().splitlines()]
+    begin = blocks.index(expected[0])
+    assert blocks[begin : begin + len(expected)] == expected
+    said = [decision.text for decision in outcome.decisions if "G137" in decision.text]
+    assert len(said) == expected[0].startswith("G0")
+    assert all("where the tool must be clear" in text for text in said)
+
+
+def test_c_turns_by_no_other_move_than_rapid_traverse() -> None:
+    program = "O1\nG94 G40\nG0 X60. Z9. C0\nG1 Z2. F500\nG137 C30.\nG17\nG1 X40. Y0 F200\nG136\nM2\n"
+    assert refused(program, "okuma-osp", "fanuc-30i") == [
+        (5, "C30 beside G137: C stands at 0 deg, and the plane points to 30 deg: position C there by G0 before it")
+    ]
+
+
 @pytest.mark.ci
 def test_outer_corners_need_a_code_and_acute_ones_the_path_of_the_center() -> None:
     square = section("G42 G1 X40. C0 F200", "C20.", "X-40.", "C-20.", "X40.", "C0", "G40 X60.")

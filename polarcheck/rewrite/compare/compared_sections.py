@@ -173,6 +173,9 @@ def outside(trace: Trace, steps: Sequence[Step], rows: Rows, terms: Terms) -> St
             _following_on(here, start, np.where(names, end, np.nan))
             for here, (start, end), names in zip(positions, columns, named, strict=True)
         ]
+        if not np.isnan(direction := _direction_behind(trace, int(rows[-1]))):
+            # The angle beside the switch that ends these rows stands for a move of C there.
+            columns[2][1][-1:] = direction
     (x_from, x_to), (z_from, z_to) = (_without_unknown(*column) for column in columns[:2])
     c_from, c_to = _without_unknown(*columns[2])
     if terms.is_rewritten:
@@ -191,6 +194,13 @@ def outside(trace: Trace, steps: Sequence[Step], rows: Rows, terms: Terms) -> St
     rows_kept = set(rows[~is_left_out].tolist())
     stretch = _stretch(trace, -1, rows, of_stretch, row, [step for step in steps if step.row in rows_kept], needs)
     return msgspec.structs.replace(stretch, c_scale=scale, is_rewritten=terms.is_rewritten)
+
+
+def _direction_behind(trace: Trace, row: int) -> float:
+    """Return the C angle beside a switch in the next row [deg]; NaN where there is none."""
+    following = slice(row + 1, row + 2)
+    angle = trace.path.c_angle[following][trace.mode.enters_with_direction[following]]
+    return float(angle[0]) if len(angle) else np.nan
 
 
 def _without_unknown(start: Floats, end: Floats) -> tuple[Floats, Floats]:

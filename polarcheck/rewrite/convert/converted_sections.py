@@ -13,6 +13,7 @@ import numpy as np
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.states import Motion, Side, Units
 from polarcheck.program.machines.machine import Machine
+from polarcheck.rewrite.compare.terms import ANGLE
 from polarcheck.rewrite.convert.block_texts import BlockTexts
 from polarcheck.rewrite.convert.computed_blocks import ComputedBlocks
 from polarcheck.rewrite.convert.section_refusals import SectionFeeds, refusals
@@ -243,7 +244,8 @@ class _Writer:
                 self.basis.add("polar.zero_angle", row)
             new = pen.enter(point, float(trace.path.z[row]), 0.0 if math.isnan(angle) else angle)
             last = NewBlock(tuple(back), comment)
-            return _without_empty(NewBlock(tuple(front)), *new, self.corners.before(row), last)
+            positioned = self._positioned(row, pen)
+            return _without_empty(positioned, NewBlock(tuple(front)), *new, self.corners.before(row), last)
         if row == leave:
             restored = self.corners.behind(row), self._plane_behind(enter, leave)
             return _without_empty(NewBlock(tuple(words), comment), *pen.leave(), *restored)
@@ -255,6 +257,33 @@ class _Writer:
         if not moves:
             return _without_empty(NewBlock((*codes, *back), comment))
         return [*moves[:-1], NewBlock((*moves[-1].words, *back), comment)]
+
+    def _positioned(self, enter: int, pen: Pen) -> NewBlock:
+        """
+        The block that turns C to where the plane of a section points, and what is to be decided of it.
+
+        Without words where C stands there, and where the switch of the target says the direction itself. Raises
+        RefusedError where no move in rapid traverse leads to the switch.
+        """
+        trace, source, target = self.trace, self.source, self.target
+        word = source.polar.direction_word
+        if not trace.mode.enters_with_direction[enter] or target.polar.direction_word:
+            return NewBlock()
+        angle, before = float(trace.path.c_angle[enter]), float(trace.path.c_angle_before[enter])
+        is_there = abs((angle - before + 180) % 360 - 180) < ANGLE
+        if is_there or math.isnan(angle):
+            return NewBlock()
+        stands = "where C stands is not known" if math.isnan(before) else f"C stands at {before % 360:.6g} deg"
+        text = f"{word}{angle:.6g} beside {source.polar.on[0]}: {stands}, and the plane points to {angle:.6g} deg"
+        moves = np.flatnonzero(trace.path.moves[:enter])
+        if len(moves) and (trace.mode.section[moves[-1]] >= 0 or trace.axes.motion[moves[-1]] != _RAPID):
+            raise refused_at(trace, enter, f"{text}: position C there by G0 before it")
+        new_angle = angle * source.polar.c_sense * target.polar.c_sense
+        axis = target.polar.rotary_address + pen.numbers.angle(new_angle)
+        text += f": {axis} turns C there before the mode begins, where the tool must be clear"
+        self._decide([Decision(self._line(enter), text)])
+        self.decided.add(self._line(enter))
+        return NewBlock((pen.numbers.code("G0"), axis), decision_comment(text))
 
     def _comment(self, row: int, translated: Translated) -> str:
         """
