@@ -462,6 +462,37 @@ def test_a_subprogram_is_called_as_the_other_control_calls_it() -> None:
 # ---- what is to be decided, and what is refused ----
 
 
+def _called(target: str, calls: str) -> list[tuple[str, str]]:
+    """Blocks with T of a program that calls tools on a Siemens control and cuts with the last, and what is decided."""
+    contour = "TRANSMIT\nG17\nG1 X40 Y0 F200\nG42 X30\nY5\nG40 X40\nTRAFOOF\n"
+    program = f"G90 G18 DIAMON G94\n{calls}\nG0 X60 Z2 C0\n{contour}M30\n"
+    edges = [f"{tool}:radius=4" for tool in ("MILL_8/1", "FRAESER/2", "DRILL/1")]
+    outcome = convert(program, "siemens-transmit", target, *edges)
+    words = re.findall(r"^T[0-9]+", outcome.data.decode(), re.MULTILINE)
+    said = [decision.text for decision in outcome.decisions if decision.text[:1] == "T"]
+    return list(zip(words, said, strict=True))
+
+
+@looped(
+    ("target", "calls", "expected"),
+    [
+        ("fanuc-30i", 'T="MILL_8" D1', [("T0101", "MILL_8")]),
+        ("okuma-osp", 'T="MILL_8" D1', [("T010101", "MILL_8")]),
+        ("siemens-iso", 'T="DRILL"\nD1\nG0 X90\nT="FRAESER" D2', [*[("T0101", "DRILL")] * 2, ("T0251", "FRAESER")]),
+        (
+            "haas-lathe",
+            'T="DRILL" D1\nT="MILL_8" D1\nT="DRILL" D1',
+            [("T0101", "DRILL"), ("T0202", "MILL_8"), ("T0101", "DRILL")],
+        ),
+    ],
+)
+def test_a_tool_with_a_name_gets_a_free_number(target: str, calls: str, expected: list[tuple[str, str]]) -> None:
+    found = _called(target, calls)
+    assert [word for word, _ in found] == [word for word, _ in expected]
+    for (word, name), (_, text) in zip(expected, found, strict=True):
+        assert text.startswith(f"{word} stands for the tool {name}: choose the number of its station")
+
+
 @pytest.mark.ci
 def test_what_no_profile_knows_is_a_comment_to_decide() -> None:
     program = HEXAGON.replace("M70", "M70 M77").replace("N200 G0", "N195 G71 U1.5 R.5\nN200 G0")

@@ -43,7 +43,10 @@ class ToolWords:
         self._edges: dict[int, list[int]] = {}
         self._offsets: dict[tuple[int, int], int] = {}
         side = trace.compensation.side
-        self._compensated = set(np.unique(trace.tools.tool[side != Side.OFF]).tolist())
+        used: list[int] = np.unique(trace.tools.tool).tolist()
+        free = (number for number in itertools.count(1) if number not in used)
+        self._number_by_name = dict(zip((tool for tool in used if tool in trace.run.names), free, strict=False))
+        self._compensated = {self._number(tool) for tool in np.unique(trace.tools.tool[side != Side.OFF]).tolist()}
         ours, theirs = self.source, target
         self._is_same = (
             ours.offsets.called_by == theirs.offsets.called_by
@@ -58,10 +61,19 @@ class ToolWords:
         return self._is_same
 
     def call(self, row: int) -> ToolCall:
-        """The words that call in their place what a row calls."""
+        """The words that call in their place what a row calls; for a tool with a name those of a free number."""
+        call, tool = self._call(row), int(self.trace.tools.tool[row])
+        name = self.trace.run.names.get(tool)
+        if name is None or call.refusal:
+            return call
+        words = " ".join(call.words)
+        stands = f"{words} stands for the tool {name}: choose the number of its station"
+        return replace(call, decision=f"{stands}. {call.decision}" if call.decision else stands)
+
+    def _call(self, row: int) -> ToolCall:
         tools = self.trace.tools
-        tool = int(tools.tool[row])
-        if self.trace.run.names or not 0 <= tool <= 99:
+        tool = self._number(int(tools.tool[row]))
+        if not 0 <= tool <= 99:
             return ToolCall(refusal=f"the tool {tools.tool_name(tool)} is no number that both machines can call")
         if bool(tools.has_edges[row]):
             offset, radius_offset = int(tools.edge[row]), int(tools.edge[row])
@@ -93,7 +105,7 @@ class ToolWords:
         return ToolCall((written,), f"{written}: enter the radius of offset {radius_offset} in offset {offset}")
 
     def _by_edge(self, row: int, tool: int, offset: int, radius_offset: int, key: str) -> ToolCall:
-        changes = row == 0 or int(self.trace.tools.tool[row - 1]) != tool
+        changes = row == 0 or self.trace.tools.tool[row - 1] != self.trace.tools.tool[row]
         # T0000 cancels the offset; T0 would take the tool away.
         head = (f"T{tool}",) if changes and tool else ()
         if not offset:
@@ -111,22 +123,22 @@ class ToolWords:
         return ToolCall(words, f"D{edge} of tool {tool}: enter the values of offset {radius_offset}")
 
     def _of_edge(self, tool: int, edge: int, key: str) -> ToolCall:
-        digits = self.target.control.offset_digits
         if not edge:
-            return ToolCall((f"T{tool:02d}{0:0{digits}d}",))
+            return self._by_digits(tool, 0, 0, "")
         offset = tool if edge == 1 else self._offsets.setdefault((tool, edge), self._free_offset())
-        if offset >= 10**digits:
-            return ToolCall(refusal=f"offset {offset} has more digits than T leaves room for")
-        if not self._claim_key(str(offset), key):
-            return ToolCall(refusal=f"offset {offset} is to have the values of several edges")
-        written = f"T{tool:02d}{offset:0{digits}d}"
-        if edge == 1:
-            return ToolCall((written,))
-        return ToolCall((written,), f"{written}: enter the values of edge {edge} of tool {tool} in offset {offset}")
+        call = self._by_digits(tool, offset, offset, key)
+        if edge == 1 or call.refusal:
+            return call
+        text = f"{call.words[0]}: enter the values of edge {edge} of tool {tool} in offset {offset}"
+        return ToolCall(call.words, text)
+
+    def _number(self, tool: int) -> int:
+        """The number by which a tool is called; for one with a name the next one that the program does not use."""
+        return self._number_by_name.get(tool, tool)
 
     def _free_offset(self) -> int:
         """The next offset number that is neither a tool of the program nor taken."""
-        taken = {*self._offsets.values(), *np.unique(self.trace.tools.tool).tolist()}
+        taken = {*self._offsets.values(), *(self._number(tool) for tool in np.unique(self.trace.tools.tool).tolist())}
         return next(number for number in itertools.count(_FIRST_FREE) if number not in taken)
 
     def _claim_key(self, new: str, old: str) -> bool:
