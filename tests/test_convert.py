@@ -180,6 +180,26 @@ def test_the_axes_of_a_plane_stand_together(block: str) -> None:
     assert "X C" not in words
 
 
+@looped(
+    ("before", "behind", "x"),
+    [
+        (["G10.9 X0", "G17 XC"], ["G10.9 X1"], "40."),
+        (["G17 XC", "G10.9 X0"], ["M9", "G10.9 X1"], "40."),
+        (["G10.9 X0"], ["G10.9 X1"], "40."),
+        (["G10.9 X0", "G17 XC", "M8"], ["M9", "G10.9 X1"], "20."),
+        (["G10.9 X0", "G0 X30. Z3."], ["G0 X35. Z50.", "G10.9 X1"], "20."),
+    ],
+)
+def test_x_counts_as_the_code_before_the_mode_says(before: list[str], behind: list[str], x: str) -> None:
+    """A code of X that both machines have is taken out at the switch, and else goes on with its section."""
+    program = section("G1 X20. C0 F200", "C10.", "X30.", head="G21 G94 G40 G17 XC").replace("M76\nG97 S2500 M70\n", "")
+    for switch, blocks in (("G12.1", [*before, "G12.1"]), ("G13.1", ["G13.1", *behind])):
+        program = program.replace(switch, "\n".join(blocks))
+    text = convert(program, "mazak-integrex", "mazak-eia").data.decode()
+    assert f"G1 X{x} C0 F200\nC10.\n" in text
+    assert ("G10.9 X0" in text) == (x == "20.")
+
+
 def test_blanks_line_ends_letters_and_comments_stay() -> None:
     program = (
         "%\r\no1 (Fl\u00e4che)\r\ng21g98g40\r\n/g0x60.z2.c0\r\ng12.1\r\ng1x40.c5.f200 (a)\r\ng13.1\r\nm30\r\n%\r\n"

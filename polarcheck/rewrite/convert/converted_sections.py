@@ -10,6 +10,7 @@ from collections.abc import Sequence
 import msgspec
 import numpy as np
 
+from polarcheck.columns.filling import last_row
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.states import Motion, Side, Units
 from polarcheck.program.machines.machine import Machine
@@ -150,7 +151,7 @@ class _Writer:
             return
         pen, turn = self._pen(enter), self._turn(enter)
         self._note_x(enter, leave)
-        self._take_out_around(enter, leave)
+        self._take_out_around(enter, leave, pen)
         targets = self._targets(rows)
         for row in rows:
             pen.numbers.line = self._line(row)
@@ -214,18 +215,33 @@ class _Writer:
         if self.source.polar.x != self.target.polar.x and off_axis.any():
             self.basis.add("polar.x", int(rows[np.argmax(off_axis)]))
 
-    def _take_out_around(self, enter: int, leave: int) -> None:
-        """Take out the blocks that the source needs around its switches, such as the choice of a plane."""
+    def _take_out_around(self, enter: int, leave: int, pen: Pen) -> None:
+        """
+        Take out the blocks that the source needs around its switches, such as the choice of a plane.
+
+        A code of X that stands elsewhere stays, and so does that behind the section, where both machines have it: then
+        the pen writes X as the code says.
+        """
         trace, writing = self.trace, self.source.writing
-        for texts, rows in (
-            (writing.before[::-1], range(enter - 1, -1, -1)),
-            (writing.behind_end, range(leave + 1, len(trace))),
-        ):
-            for text, row in zip(texts, rows, strict=False):
-                block = int(trace.run.block[row])
-                if self.texts.content(block).upper() != text:
-                    break
-                self._put(row, [])
+        self._take_out(writing.before, range(enter - 1, -1, -1))
+        control = self.source.control
+        switches = trace.blocks.codes(*control.x_radius_words, *control.x_diameter_words)
+        last = int(last_row(switches, trace.blocks.starts)[enter])
+        stays = last >= 0 and self.blocks.get(int(trace.run.block[last])) != []
+        if stays and self.translation.measures.same_x_switches and not self.target.writing.behind_end:
+            pen.factors = round(1 / float(trace.lengths.x_factor[enter])), pen.factors[1]
+            return
+        self._take_out(writing.behind_end, range(leave + 1, len(trace)))
+
+    def _take_out(self, texts: Sequence[str], rows: Sequence[int]) -> None:
+        """Take out the blocks at the beginning of rows that are among the texts, each once."""
+        remaining = list(texts)
+        for row in rows:
+            content = self.texts.content(int(self.trace.run.block[row])).upper()
+            if content not in remaining:
+                return
+            remaining.remove(content)
+            self._put(row, [])
 
     def _row(self, row: int, enter: int, leave: int, pen: Pen, turn: complex) -> list[NewBlock]:
         """The blocks in the place of one."""
