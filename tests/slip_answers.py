@@ -28,7 +28,7 @@ from polarcheck.rules.rule import load_all
 _WORD = r"[A-Z]+=?[-+]?(?:\d+\.?\d*|\.\d+)"
 _VALUES = re.compile(
     rf"(?:\b(?:with|write|or|and) (?P<words>{_WORD}(?: {_WORD})*)(?P<rest>(?: here| in line (?P<line>\d+)"
-    rf"| in a block before it)?)(?= (?:it|its|all|more|here|in line|and leave)\b|$|,| \()"
+    rf"| in a block of its own before this one)?)(?= (?:it|its|all|more|here|in line|and leave)\b|$|,| \()"
     rf"|[;:] (?P<others>{_WORD}(?: {_WORD})*)(?= would (?:fit|be tangent|lie)))"
 )
 _GROUPS = (

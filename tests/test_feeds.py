@@ -264,7 +264,7 @@ def test_the_table_as_text() -> None:
     assert lines[0] == "a.nc on fanuc: C 3600 deg/min"
     assert re.split(r" {2,}", lines[1]) == [*HEADS]
     assert lines[3].split() == ["6", "C-20.", "500", "188", "C", "188.496", "9549", "4.80", "12.77"]
-    assert "with F188 alone" in feeds().stdout
+    assert "with F188 for all cutting" in feeds().stdout
     assert "rapid traverse, 1 block from line 3: give limits.x_rapid" in feeds().stdout
 
 

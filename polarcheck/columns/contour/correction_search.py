@@ -325,7 +325,7 @@ class _Search:
 def _remedy(slip: Slip) -> str:
     """What is to be written where."""
     remedy = f"with {slip.text}" if slip.text else "without it"
-    return f"{remedy} in a block before it" if slip.text and "a block" in slip.kind else remedy
+    return f"{remedy} in a block of its own before this one," if slip.text and "a block" in slip.kind else remedy
 
 
 def _becomes(symmetry: Symmetry) -> str:
@@ -335,7 +335,7 @@ def _becomes(symmetry: Symmetry) -> str:
     if symmetry.is_regular:
         return f"it would be a regular {polygon_name(symmetry.corners)}"
     if symmetry.is_turned:
-        return f"it would be the same after each {360 / symmetry.order:g} deg"
+        return f"it would look the same after each turn of {360 / symmetry.order:g} deg"
     return "it would be its own mirror image"
 
 

@@ -118,7 +118,7 @@ _REASONS: Final[Mapping[FaultKind, str]] = {
     ),
     "sequence-number-not-found": "there is no N{number:.15g} in this program",
     "sequence-number-vacant": "the number to go to is a vacant variable",
-    "label-not-found": "there is no label {label} {where} this block in this program",
+    "label-not-found": "there is no label {label}{where} in this program",
     "label-too-long": (
         "{label} is no sequence name of this control, which has N and {limit} letters or digits at most; give it a "
         "shorter one"

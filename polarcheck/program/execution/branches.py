@@ -109,7 +109,7 @@ def repeat_part(state: State, statement: Statement, block: int) -> int:
     program = state.listing.programs.around(block)
     begin = find_label(state, program, statement.label, block)
     if begin is None:
-        state.add_fault("label-not-found", block, statement, label=statement.label, where="beside")
+        state.add_fault("label-not-found", block, statement, label=statement.label, where="")
         return block + 1
     end = end_of_part(state, program, statement, begin, block)
     if end is None:

@@ -257,7 +257,7 @@ def _find_label(state: State, statement: Statement, block: int) -> int | None:
     if target is None and limit and len(statement.label) - 1 > limit and search is not Search.IF_THERE:
         state.add_fault("label-too-long", block, statement, label=statement.label, limit=limit)
     elif target is None and search is not Search.IF_THERE:
-        where = {Search.FORWARD: "behind", Search.BACKWARD: "before"}.get(search, "beside")
+        where = {Search.FORWARD: " behind this block", Search.BACKWARD: " before this block"}.get(search, "")
         state.add_fault("label-not-found", block, statement, label=statement.label, where=where)
     return target
 

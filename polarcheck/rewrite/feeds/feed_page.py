@@ -109,10 +109,12 @@ def _cost(total: FeedTotal, table: FeedTable) -> str:
     change = (
         f"{abs(total.lost):.1f} s {'more' if total.lost > 0 else 'less'}" if abs(total.lost) >= _SHOWN else "the same"
     )
-    text += f"; cutting takes {total.cutting:.1f} s, with F of this table {total.highest_cutting:.1f} s ({change})"
+    text += f"; cutting takes {total.cutting:.1f} s, or {total.highest_cutting:.1f} s with F of this table ({change})"
     if total.won:
-        limit = f"F{_feed(total.one_feed, table)} alone" if total.one_feed is not None else "one F in each section"
-        text += f", with {limit} {total.one_feed_cutting:.1f} s ({total.won:.1f} s more than with the table)"
+        limit = (
+            "one F in each section" if total.one_feed is None else f"F{_feed(total.one_feed, table)} for all cutting"
+        )
+        text += f", or {total.one_feed_cutting:.1f} s with {limit} ({total.won:.1f} s more than with this table)"
     for gap in total.unknown:
         blocks = f"{gap.blocks} block{'s' * (gap.blocks > 1)}"
         remedy = _REMEDIES.get(gap.reason)

@@ -35,7 +35,7 @@ def c_feed_above_limit(center: Center, tool_center: ToolCenter, machine: Machine
     leaves a part of it for the plane. The nearer the tool center comes to the center of the C axis, the
     faster C must turn for it: F / L, where L is their smallest distance. Above the limit the control stops with an
     alarm or, with automatic override, slows down. Use F < L * R * pi / 180, with R the limit of C in deg/min, or keep
-    away from the center; exactly at the limit it is a warning. limits.c_feed of the profile is R; without it only a
+    away from the center; exactly at the limit it is a warning. R is limits.c_feed of the profile; without it only a
     rate that no C axis cuts with is reported. One finding stands for all blocks that an F word governs, at the one with
     the highest rate.
 

@@ -23,7 +23,7 @@ def feed_above_polar_limit(feedrate: Feedrate, feeds: Feeds, machine: Machine) -
     F above the highest feed of the polar mode.
 
     A parameter of the control limits the feed in the mode: a higher F is clamped at it, and the part takes longer than
-    planned. All rates and times are those of the clamped F. limits.polar_feed of the profile is that parameter. On some
+    planned. All rates and times are those of the clamped F. That parameter is limits.polar_feed of the profile. On some
     controls another parameter switches the clamp, limits.polar_feed_clamps; where it is off, the higher F runs as
     programmed, which is a note. The clamp does not keep C below its own limit: near the center that is an alarm still.
 

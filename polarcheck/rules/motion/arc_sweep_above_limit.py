@@ -29,7 +29,7 @@ def arc_sweep_above_limit(arcs: Arcs, machine: Machine) -> Hits:
     Arc through more degrees than this control takes in one block.
 
     Some controls take the shorter of two arcs for a longer one, or go wrong about its center; posts for them cut arcs
-    at 180, 120 or 90 degrees. Cut the arc into two. arcs.sweep_limit of the profile says where; 360 is no limit. Where
+    at 180, 120 or 90 degrees. Cut the arc into two. The limit is arcs.sweep_limit of the profile; 360 is none. Where
     an arc by radius must be smaller than that (arcs.takes_sweep_limit), one of exactly 180 degrees is a warning: the
     last digit decides which of two arcs it is. A word that chooses the larger arc (arcs.larger_arc_word) is taken.
 

@@ -122,4 +122,4 @@ def _misfit(reading: XReading, large: str) -> str:
         polygon = polygon_name(becomes.corners)
         return f"with all X {large} as large the contour would be a regular {polygon}, as it is written it is not"
     turn = f"{360 / becomes.order:g} deg"
-    return f"with all X {large} as large the contour would be the same after each {turn}, now it is not"
+    return f"with all X {large} as large the contour would look the same after each turn of {turn}, now it does not"
