@@ -17,7 +17,7 @@ from polarcheck.editor.words.at_cursor import CursorWord, word_at
 from polarcheck.editor.words.explained import explained
 from polarcheck.editor.words.in_force import codes_in_force
 from polarcheck.foundation.errors import TooHardError
-from polarcheck.foundation.finding import Finding
+from polarcheck.foundation.finding import Finding, radius_origin
 from polarcheck.foundation.states import FeedMode, Motion, Side
 from polarcheck.foundation.time_limit import time_limit
 from polarcheck.reports.pages import manual
@@ -200,7 +200,7 @@ def _offset(trace: Trace, row: int) -> str:
     if key is None:
         return "none in force"
     radius = in_row(float(trace.compensation.radius[row]), trace.lengths, row)
-    source = f" ({radius_source(trace, row)})" if np.isfinite(radius.value) else ""
+    source = f" ({radius_origin(radius_source(trace, row))})" if np.isfinite(radius.value) else ""
     return f"{key}, R {_text(radius, 'length')}{source}"
 
 

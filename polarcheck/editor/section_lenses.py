@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from lsprotocol import types
 
 from polarcheck.editor.analysis import Analysis
-from polarcheck.foundation.finding import PolarSection
+from polarcheck.foundation.finding import PolarSection, radius_origin
 from polarcheck.foundation.states import MM_PER_INCH
 from polarcheck.program.reading.excerpt import visible
 
@@ -62,4 +62,5 @@ def _radius(section: PolarSection) -> str:
         return f"R of offset {section.offset} not known"
     is_inch = section.units == "inch"
     radius = section.radius / MM_PER_INCH if is_inch else section.radius
-    return f"R {radius:.{4 if is_inch else 3}f} {section.units} (offset {section.offset}, {section.radius_source})"
+    origin = radius_origin(section.radius_source)
+    return f"R {radius:.{4 if is_inch else 3}f} {section.units} (offset {section.offset}, {origin})"

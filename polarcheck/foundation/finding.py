@@ -144,6 +144,11 @@ class NotEvaluated(msgspec.Struct, frozen=True, kw_only=True):
     channel: str | UnsetType = UNSET
 
 
+def radius_origin(source: str) -> str:
+    """The source of a radius (PolarSection.radius_source) as a reader knows it: the job is a file."""
+    return "polarcheck.toml" if source == "job" else source
+
+
 class PolarSection(msgspec.Struct, frozen=True, kw_only=True):
     """
     What the verdict rests on in one polar section; null is unknown or absent.

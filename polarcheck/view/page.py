@@ -17,7 +17,7 @@ from typing import Any
 
 import msgspec
 
-from polarcheck.foundation.finding import SEVERITIES
+from polarcheck.foundation.finding import SEVERITIES, radius_origin
 from polarcheck.program.reading.excerpt import visible
 from polarcheck.view.picture_data import FindingPicture, Mark, Picture, SectionPicture
 
@@ -259,7 +259,7 @@ def _facts(section: SectionPicture) -> Iterator[tuple[str, str]]:
         yield "channel", section.channel
     yield "units", f"{section.units}, X as a {'diameter' if section.diameter else 'radius'}"
     if section.radius is not None:
-        yield "cutter", f"R {_length(section.radius, section)} ({section.radius_source})"
+        yield "cutter", f"R {_length(section.radius, section)} ({radius_origin(section.radius_source)})"
     if section.stock is not None:
         yield "stock", f"{_length(section.stock, section)} across"
     if section.keep_out is not None:

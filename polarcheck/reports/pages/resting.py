@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
+from polarcheck.foundation.finding import radius_origin
 from polarcheck.reports import counted
 from polarcheck.rules.quantity import Quantity
 
@@ -92,7 +93,7 @@ def _radius(section: PolarSection) -> str:
         return "no offset"
     if section.radius is None:
         return f"offset {section.offset}, R not known"
-    return f"offset {section.offset} with R {_length(section.radius, section)} ({section.radius_source})"
+    return f"offset {section.offset} with R {_length(section.radius, section)} ({radius_origin(section.radius_source)})"
 
 
 def _rate(section: PolarSection) -> str:

@@ -16,6 +16,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 
+from polarcheck.foundation.finding import radius_origin
 from polarcheck.program.reading.excerpt import visible
 from polarcheck.view.picture_data import Picture, SectionPicture
 from polarcheck.view.stills.face import Window, draw_face, legend
@@ -260,7 +261,9 @@ def _facts(section: SectionPicture) -> str:
     length = f"{{:.{4 if section.units == 'inch' else 3}f}} {section.units}"
     facts = []
     if section.radius is not None:
-        facts.append(f"cutter R {length.format(section.radius / section.scale)} ({section.radius_source})")
+        facts.append(
+            f"cutter R {length.format(section.radius / section.scale)} ({radius_origin(section.radius_source)})"
+        )
     if section.stock is not None:
         facts.append(f"stock {length.format(section.stock / section.scale)} across")
     if section.c_limit is not None:
