@@ -25,8 +25,8 @@ def contour_not_closed(coverage: Coverage) -> Hits:
     Contour that comes back to its start but for a gap.
 
     The contour goes all round and ends before the point at which it began, nearer than the diameter of the cutter. No
-    tool goes through such a gap on purpose: a coordinate is wrong, or the last block is missing. What stays there hangs
-    on the leads. End the contour where it began, or beyond.
+    tool goes through such a gap on purpose: a coordinate is wrong, or the last block is missing. How much material
+    stays there depends on the leads. End the contour where it began, or beyond.
 
     Source: B-62764EN/01, p. 53 (a contour that ends where it begins).
 

@@ -14,8 +14,8 @@ if TYPE_CHECKING:
 
 @rule(
     WARNING,
-    "{side_in_force} has the cutter on the wrong side: both ramps come through the part, on the other side the whole "
-    "contour is free; {remedy}{or_other_sense}{likewise}",
+    "{side_in_force} has the cutter on the wrong side: both ramps go through the part, and on the other "
+    "side the cutter cuts into none of the contour; {remedy}{or_other_sense}{likewise}",
     values=("code", "radius"),
     worse=("radius",),
     gouges=True,

@@ -14,8 +14,8 @@ if TYPE_CHECKING:
 
 @rule(
     WARNING,
-    "{code} again: it is in force already, and the tool center does not turn into the corner before "
-    "it; delete it, or write {cancel} into the block that leaves the contour before it",
+    "{code} is in force already: written again, it keeps the tool center from turning into the corner before this "
+    "block; delete it, or write {cancel} into the earlier block that leaves the contour",
     values=("code",),
     gouges=True,
     at=("compensation_left", "compensation_right"),

@@ -27,9 +27,10 @@ def feed_of_revolution_per_minute(path: ProgrammedPath, feeds: Feeds) -> Mask:
 
     F is a number, and what it means is modal. After G98 (G94) the number of a feed per revolution stays in force, and
     F.1 is a tenth of a millimeter for each minute: the cutter rubs at one place for hours. Some controls read every F
-    of the mode per minute, whichever was in force before: there, F.1 written again in the mode is that, too. Told where
-    the F in force was written for feed per revolution, and where the program has such an F, or in such a mode has G99
-    (G95) in force, and that of the mode is as small.
+    of the mode per minute, whichever was in force before: there, F.1 written again in the mode is a tenth of a
+    millimeter, too. It is reported where the F in force was written for feed per revolution. On controls that read
+    every F per minute it is also reported where F of the mode is as small as a feed per revolution, and the program has
+    one, or G99 (G95) is in force in the mode.
 
     Source: Mitsubishi M700V programming manual, p. 73: item 8 and note 1; FANUC B-62764EN/01, p. 51.
 

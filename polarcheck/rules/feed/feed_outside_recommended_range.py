@@ -31,8 +31,8 @@ def feed_outside_recommended_range(feed_ranges: FeedRanges, feeds: Feeds) -> Mas
     Which moves cut is seen by the contour: the moves with G41 or G42 in force, and neither a ramp nor a lead in or out.
     Where stock and cutter are given, the cutter must get into the stock; else the move must come as near to the center
     as another one at an F for cutting, or all of the contour must be as fast. A way round the part, as the arc between
-    two flats, is none. Positioning below its own range is nobody's loss: an F between the two is told where the move
-    cuts, and in sections without compensation, of which nobody knows.
+    two flats, is none. Positioning below its own range does no harm: an F between the two ranges is reported only
+    where the move cuts, and in sections without compensation, where it is not known which moves cut.
 
     Source: builder's guide to G12.1, feed and positioning command.
 

@@ -25,10 +25,10 @@ def path_near_center(center: Center, tool_center: ToolCenter, machine: Machine) 
     """
     Path very close to the center of the C axis.
 
-    Half of a half turn of C falls on a way of twice the distance from the center. So close to it C turns at once, the
-    servo lags behind and leaves a mark on the part. Lead the path around, or through no closer than limits.keep_out of
-    the profile. Where the tool stands beside the center and the control makes up for it, polar.center_error, it comes
-    no nearer than that.
+    On a line that passes the center at a distance d, C turns by 90 deg while the tool moves by 2d. So close to the
+    center C turns nearly at once, the servo lags behind and leaves a mark on the part. Lead the path around the center,
+    or pass it no closer than limits.keep_out of the profile. Where the tool stands beside the center and the control
+    makes up for it, polar.center_error, it comes no nearer than that.
 
     Source: FANUC B-62764EN/01, p. 52; parameter 5464.
 

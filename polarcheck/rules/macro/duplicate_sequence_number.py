@@ -12,8 +12,8 @@ if TYPE_CHECKING:
 
 @rule(
     WARNING,
-    "N{number} stands {count} times in this program: the control takes the next one behind the jump, else the"
-    " first; number the target of a jump once",
+    "N{number} stands {count} times in this program: the control takes the next one behind the jump, or the "
+    "first one where none follows; give the target of a jump a number of its own",
     values=("number", "count"),
     worse=("count",),
     over="faults",

@@ -12,8 +12,8 @@ if TYPE_CHECKING:
 
 @rule(
     WARNING,
-    "{rotary} stands where the section before has left it, {turns} from its {switch}: nobody has positioned it, and "
-    "this section comes out turned by as much; {to_position}",
+    "no block positions {rotary} after the section before: it stands {turns} from the {switch} of that section, and "
+    "this section is turned by that angle; {to_position}",
     values=("turned", "c_angle"),
     worse=("turned",),
     over="sections",

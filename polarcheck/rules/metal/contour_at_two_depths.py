@@ -14,8 +14,8 @@ if TYPE_CHECKING:
 
 @rule(
     WARNING,
-    "Z goes from {z_before:length} to {z:length} in the middle of the contour, which is closed only with "
-    "both of its parts",
+    "Z goes from {z_before:length} to {z:length} in the middle of a closed contour: one part of it is cut at "
+    "another depth than the rest",
     values=("z", "z_before"),
     worse=("z:z_before",),
     at=("Z", "W"),

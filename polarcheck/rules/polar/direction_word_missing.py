@@ -14,17 +14,18 @@ if TYPE_CHECKING:
 
 @rule(
     WARNING,
-    "{switch} has no {direction_word}: in which direction of C the new axis points is not told; write "
-    "{direction_word}0 beside it",
+    "{switch} has no {direction_word}, which says in what direction the new axis points; write {direction_word}0 "
+    "beside it",
     at=("on",),
 )
 def direction_word_missing(blocks: ExecutedBlocks, mode: PolarMode, machine: Machine) -> Mask:
     """
     Coordinate conversion without the direction of its first axis.
 
-    On some controls the block that begins the mode says with C at which angle of the C axis X of the new plane points.
-    Without it the control takes an angle that the program does not tell, or stops, and the contour may lie turned on
-    the part. Write G137 C0 where X is to point where it did. Nothing is said where the machine needs no such word.
+    On some controls the block that begins the mode has a C word. It is the angle of the C axis at which X of the new
+    plane points. Without it the control takes an angle that the program does not give, or stops, and the contour may
+    lie turned on the part. Write G137 C0 where X is to point where it did. Nothing is said where the machine needs no
+    such word.
 
     Source: public post for the OSP-P300, which writes C0 at each G137; public notes on the manual of the OSP-P300L.
 

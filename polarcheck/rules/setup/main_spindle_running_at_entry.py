@@ -18,7 +18,7 @@ def main_spindle_running_at_entry(mode: PolarMode, spindles: Spindles, machine: 
 
     The main spindle is the C axis in the mode. It has to be stopped, M5, before it can be engaged and positioned. Many
     lathes start the live tool with M3, too; where the machine profile does not name codes of its own for the live tool,
-    this is a note. In a section on the sub-spindle that is the spindle which has to stand.
+    this is a note. In a section on the sub-spindle it is the sub-spindle that has to stand.
 
     Source: builder's guide to G12.1, sample program.
 
