@@ -35,11 +35,12 @@ from polarcheck.program.execution.run import Remark
 from polarcheck.program.machines.machine import Machine, OwnMachine
 from polarcheck.program.machines.part_keys import DrawnPart
 from polarcheck.program.reading.excerpt import shortened
+from polarcheck.rules.quantity import in_row
 from polarcheck.rules.remedies import option_or_place, place, unlisted_codes
 from polarcheck.rules.rule import Rule
 from polarcheck.rules.tables import Tables, called
 from polarcheck.rules.wording.offsets import offset, to_give
-from polarcheck.rules.wording.written import block_and_line
+from polarcheck.rules.wording.written import block_and_line, point
 
 #: Extra reasons that a rule could not be evaluated.
 _ExtraReasons: TypeAlias = Callable[[Tables, Rule], Iterator["Missing"]]
@@ -376,6 +377,7 @@ def _parts_not_compared(tables: Tables, rule: Rule) -> Iterator[Missing]:
         if isinstance(part, DrawnPart) and part.passed_over:
             reason = f"{compared_with(deviations, number)} shows {part.passed_over}, which was passed over"
             yield Missing(rule.name, SAID, reason, reason, 1, matters=False)
+    yield from _drawings_with_gaps(tables, rule)
     for comparison in deviations.comparisons:
         if comparison.is_partial and comparison.agrees:
             line = int(tables["trace"].blocks.line[comparison.row])
@@ -407,6 +409,23 @@ def _parts_not_compared(tables: Tables, rule: Rule) -> Iterator[Missing]:
         reason = f"{compared_with(deviations, number)} was compared with nothing: {cause}"
         rows = deviations.where if deviations.where.any() else tables["trace"].mode.in_polar
         yield Missing(rule.name, SAID, reason, reason, int(np.count_nonzero(rows)))
+
+
+def _drawings_with_gaps(tables: Tables, rule: Rule) -> Iterator[Missing]:
+    """Report drawings whose curves do not meet, unless the part differs along these."""
+    from polarcheck.rules.wording.drawing import compared_with
+
+    deviations, trace = tables["deviations"], tables["trace"]
+    differing = {comparison.number for comparison in deviations.comparisons if comparison.differs}
+    row = int(trace.mode.sections.enter[0]) if len(trace.mode.sections) else 0
+    for number in range(len(deviations.nominal_parts.parts)):
+        gap = deviations.nominal_parts.gap(number, row)
+        if gap is None or number in differing:
+            continue
+        apart = f"gap {in_row(gap.size, trace.lengths, row):length} at {point(trace, gap.place, row)}"
+        reason = f"the curves of {compared_with(deviations, number)} do not meet: {apart}"
+        reason = f"{reason}; contours were compared along them alone: close the gaps"
+        yield Missing(rule.name, SAID, reason, reason, 1)
 
 
 def _skipped_loops(tables: Tables, rule: Rule, rows: Mask, reason: str, matters: bool = True) -> Iterator[Missing]:

@@ -98,6 +98,8 @@ class AreaComparisons(Columns, frozen=True):
             return f"R or a place of the cutter of line {int(self.trace.blocks.line[unknown[0]])} is not known"
         if not self.nominal_features.cuts_of(part).any():
             return "nothing is milled there"
+        if self.nominal_parts.gap(number, int(self.trace.mode.sections.enter[0])) is not None:
+            return "its curves do not meet, and no contour comes near to them"
         return "its curves do not close, and no contour comes near to them"
 
     def _comparison(

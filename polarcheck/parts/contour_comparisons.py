@@ -138,7 +138,7 @@ class ContourComparisons(Columns, frozen=True):
         if key not in self._known:
             curves = self.nominal_parts.curves(number, scale)
             rings = [number for number, curve in enumerate(curves) if curve[0] == curve[-1]]
-            if not is_closed or not rings:
+            if not is_closed or not rings or self.nominal_parts.gap(number, row) is not None:
                 path = path_of_curves(curves)
                 self._known[key] = [Target(number, part, -1, path, scale, False, len(rings) == len(curves))]
             else:

@@ -111,6 +111,8 @@ class NominalFeatures(Columns, frozen=True):
         from polarcheck.parts.milled_rings import MilledRings
 
         row = int(self.trace.mode.sections.enter[section])
+        if self.nominal_parts.gap(number, row) is not None:
+            return []  # where its corners are is not drawn
         curves = self.nominal_parts.curves(number, self.nominal_parts.unit(number, row))
         curves = [curve * np.exp(1j * angle) for curve in curves]
         rings = {ring: polygon_of(curve) for ring, curve in enumerate(curves) if is_closed(curve)}

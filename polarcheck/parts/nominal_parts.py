@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,6 +12,9 @@ from polarcheck.foundation.arrays import Columns, Mask, Points, cached_property,
 from polarcheck.parts.part_comparison import SAME_Z, TOLERANCE
 from polarcheck.program.machines.job import Job
 from polarcheck.program.machines.part_keys import DrawnPart, Part
+
+if TYPE_CHECKING:
+    from polarcheck.geometry.comparison.gaps import Gap
 
 #: How much farther than what is asked for the metal reaches where the bar is not known, as a share.
 BEYOND = 1.02
@@ -72,6 +76,21 @@ class NominalParts(Columns, frozen=True):
         from polarcheck.parts.nominal_curves import curves_of
 
         return curves_of(part, unit)
+
+    def gap(self, number: int, row: int) -> Gap | None:
+        """The widest gap of a drawing whose curves are rings but for gaps; None for others."""
+        unit = self.unit(number, row)
+        key = number, unit
+        if key not in self._gaps:
+            from polarcheck.geometry.comparison.gaps import widest_gap
+
+            is_drawn = self.job.part[number].drawing is not None
+            self._gaps[key] = widest_gap(self.curves(number, unit)) if is_drawn else None
+        return self._gaps[key]
+
+    @cached_property
+    def _gaps(self) -> dict[tuple[int, float], Gap | None]:
+        return {}
 
     def certain_metal(self, number: int, unit: float) -> float:
         """
