@@ -227,12 +227,14 @@ class ContourComparisons(Columns, frozen=True):
         return not result.agrees and not result.is_other_way_round and result.difference.deep <= result.tolerance
 
     def fit(self, result: Comparison) -> Fit | None:
-        """The change with which the part would agree, or nearly agree; None if there is none."""
+        """The change with which the part would agree, or nearly; None if there is none, or the drawing has gaps."""
         from polarcheck.geometry.comparison.placements import Freedom, better_placement
 
         contour, target = result.contour, result.target
         if result.is_other_way_round or contour is None or target is None:
             return None
+        if self.nominal_parts.gap(result.number, result.row) is not None:
+            return None  # to turn and to shift many curves is dear, and a drawing with gaps is to be mended first
         is_drawn = result.part.drawing is not None
         curves = [target.way]
         if is_drawn and target.is_closed:
