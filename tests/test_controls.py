@@ -635,7 +635,7 @@ def test_an_f_up_to_the_clamp_says_nothing(limit: int) -> None:
 
 HAAS_HEAD = "%\nO1\nG20 G40 G97 G98\nM5\nM154\nT0101\nG17\nP2500 M133\n"
 HAAS_TAIL = "G113\nG18\nG0 Z.1\nM135\nM155\nM30\n%\n"
-HAAS_ABSOLUTE = """G0 X4. C0 Z.1
+HAAS_ABSOLUTE = """G0 X4. C0 Z-.25
 G112
 G1 X1.5 Y0. F15.
 G1 G42 X.875 Y0. F5.
@@ -648,7 +648,7 @@ X.875
 Y0.
 G1 G40 X1.5
 """
-HAAS_STEPS = """{0} G0 X4. C0 Z.1
+HAAS_STEPS = """{0} G0 X4. C0 Z-.25
 G112
 G1 X1.5 Y0. F15.
 {1}

@@ -72,7 +72,7 @@ def _is_turned_by(one: MadeShape, other: MadeShape, step: float) -> bool:
     if "center_x" not in values:
         return one.shape == "keyway"
     center, turned_center = (complex(value["center_x"], value["center_c"]) for value in (values, turned))
-    return abs(center * np.exp(1j * np.radians(step)) - turned_center) <= 2 * SAME
+    return bool(abs(center * np.exp(1j * np.radians(step)) - turned_center) <= 2 * SAME)
 
 
 def _but_turned(shape: MadeShape) -> tuple[object, ...]:
