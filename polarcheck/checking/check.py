@@ -7,7 +7,7 @@ import re
 from collections import Counter
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from itertools import groupby
-from typing import TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 import msgspec
 
@@ -43,6 +43,10 @@ from polarcheck.rules.causes import READ_OTHERWISE
 from polarcheck.rules.other_machine import OtherMachine
 from polarcheck.rules.rule import Hits, Rule, load_all
 from polarcheck.rules.tables import Tables
+
+if TYPE_CHECKING:
+    from polarcheck.columns.contour.correction import Correction
+    from polarcheck.foundation.arrays import Rows
 
 _SKIP = re.compile(r"\s*(?:N\s*\d+\s*)?/", re.IGNORECASE)
 #: The rule that reports codes that may be a builder's own switches of the mode.
@@ -227,22 +231,24 @@ def engine_of(
     return Engine(tables, levels, [rule for rule in active if "allows" not in rule.parameters], known_hits)
 
 
-def _may_be_less_regular(engine: Engine) -> bool:
-    """A contour may be less regular than it was meant to be, though no rule says so."""
+def _less_regular(engine: Engine) -> list[tuple[Rows, Correction]]:
+    """The rows of contours that may be less regular than they were meant to be, and what would mend each."""
     rule = engine.rules.get("nearly-regular-contour")
     if rule is None or engine.trace.run.unknown_words or not len(engine.hits(rule).mask):
-        return False
-    return bool(engine.tables["regularity"].likely)
+        return []
+    likely: list[tuple[Rows, Correction]] = engine.tables["regularity"].likely
+    return likely
 
 
 def report_of(engine: Engine, number: int = 0) -> FileReport:
     """Report the findings of one run, and what could not be evaluated. number: of the run, of those of its file."""
     tables, trace = engine.tables, engine.trace
     found = engine.findings()
-    if any(engine.rules[finding.rule].is_symptom for finding in found) or _may_be_less_regular(engine):
+    less_regular = _less_regular(engine)
+    if less_regular or any(engine.rules[finding.rule].is_symptom for finding in found):
         from polarcheck.checking.explanations import explained  # imported late: most files have no symptom
 
-        found = explained(engine, found, number)
+        found = explained(engine, found, number, less_regular)
     findings, silenced = divided(in_order(in_the_file(found, trace, engine.answered, engine.rows_in_calls)))
     unevaluated = (*bounds_not_reported(tables, _all(findings)), *all_unevaluated(tables, engine.rules.values()))
     not_evaluated = list(dict.fromkeys((*unevaluated, *engine.unlisted)))

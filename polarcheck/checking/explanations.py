@@ -21,6 +21,7 @@ from polarcheck.columns.contour.correction import Correction
 from polarcheck.columns.contour.likely_edits import Likely, correction_by, likely_edits
 from polarcheck.columns.contour.written_loop import WrittenLoop, written_loops
 from polarcheck.columns.words.slips import WORD
+from polarcheck.foundation.arrays import Rows
 from polarcheck.foundation.errors import TooHardError
 from polarcheck.foundation.finding import SEVERITIES, WARNING, Finding, Silenced, Undecided
 from polarcheck.program.execution.runs import runs
@@ -58,11 +59,14 @@ class _Explained(NamedTuple):
     other: _Explained | None = None
 
 
-def explained(engine: Engine, findings: Sequence[Finding], number: int) -> list[Finding]:
+def explained(
+    engine: Engine, findings: Sequence[Finding], number: int, less_regular: Sequence[tuple[Rows, Correction]]
+) -> list[Finding]:
     """
     Return the findings, with those that one edit explains listed under it.
 
-    number: of the run, in the order of program/execution/runs.py.
+    number: of the run, in the order of program/execution/runs.py. less_regular: the rows of contours that an edit makes
+    more regular; those to which no rule objects are findings, too.
     """
     trace = engine.trace
     source = trace.text.source
@@ -76,17 +80,15 @@ def explained(engine: Engine, findings: Sequence[Finding], number: int) -> list[
                 findings = _under(engine, findings, explanation)
         except TooHardError:
             pass  # what was found before stands
-    return [*findings, *_unobjected(engine, findings)]
-
-
-def _unobjected(engine: Engine, findings: Sequence[Finding]) -> Iterator[Finding]:
-    """What makes a contour more regular to which no rule objects."""
-    if engine.trace.run.unknown_words or not len(engine.hits(engine.rules[REPORTS]).mask):
-        return
-    objects = {line for finding in findings for line in (finding.line, *(other.line for other in finding.follows))}
-    for rows, correction in engine.tables["regularity"].likely:
-        if objects.isdisjoint(engine.trace.blocks.line[rows[0] : rows[-1] + 1].tolist()):
-            yield _new(engine, correction)
+    lines = {line for finding in findings for line in (finding.line, *(other.line for other in finding.follows))}
+    return [
+        *findings,
+        *(
+            _new(engine, correction)
+            for rows, correction in less_regular
+            if lines.isdisjoint(trace.blocks.line[rows[0] : rows[-1] + 1].tolist())
+        ),
+    ]
 
 
 def _is_symptom(engine: Engine, finding: Finding) -> bool:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 from itertools import islice
 from typing import NamedTuple
@@ -10,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from polarcheck.columns.contour.correction import Correction
-from polarcheck.columns.contour.likely_edits import correction_by, likely_edits
+from polarcheck.columns.contour.likely_edits import Likely, correction_by, likely_edits
 from polarcheck.columns.contour.loop_edits import outlines_of
 from polarcheck.columns.contour.plane_loops import PlaneLoop
 from polarcheck.columns.contour.written_loop import AxisWords, axis_words, written_loop
@@ -36,9 +35,6 @@ _MOST_TRIALS, _ENDS, _GAPS = 80, 3, 3
 _MOST_EDITS, _LEAST_GAIN, _GAIN_ALONE, _FEWEST_BLOCKS = 16, 0.5, 3.8, 6
 #: The same with more symmetry, by which so many numbers more are fixed.
 _GAIN_IN_SYMMETRY, _LEAST_FIXED = 2.4, 3
-#: Numbers that differ by less are one.
-_SAME_NUMBER = 1e-6
-_WORD = re.compile(r"([A-Z])([+-]?+(?:\d++\.?+\d*+|\.\d++))")
 
 
 class _Trial(NamedTuple):
@@ -99,20 +95,8 @@ class _Search:
             symmetry = trial.loop.symmetry(trial.point)
             if symmetry is not None and self._is_better(symmetry, trial):
                 row, slip = self._row(trial.at), trial.slip
-                rank = number + _MOST_TRIALS * (2 * (not slip.plain) + (not self._is_known(slip.text)))
                 remedy, becomes = _remedy(slip), _becomes(symmetry)
-                yield symmetry.freedom, rank, Correction(row, trial.word, slip.text, slip.kind, remedy, becomes)
-
-    def _is_known(self, text: str) -> bool:
-        """A word stands in a block of another loop, as another pass has it."""
-        word = _WORD.fullmatch(text)
-        if word is None:
-            return False
-        trace = self.trace
-        indices = trace.blocks.word_indices(word[1])
-        rows = trace.run.row[indices]
-        elsewhere = indices[(rows < self.loop.row[0]) | (rows > self.loop.row[-1])]
-        return bool(np.any(np.abs(trace.run.words.value[elsewhere] - float(word[2])) < _SAME_NUMBER))
+                yield symmetry.freedom, number, Correction(row, trial.word, slip.text, slip.kind, remedy, becomes)
 
     def _row(self, corner: int) -> int:
         """The row of a block of the loop; behind the last one, that of the next move."""
@@ -146,8 +130,7 @@ class _Search:
         written = self.written
         if written is None or symmetry.corners_behind_start < written.corners_behind_start:
             return False
-        images = (found.order * (1 + found.mirrored) for found in (written, symmetry))
-        return next(images) < next(images) and written.freedom - symmetry.freedom >= _LEAST_FIXED
+        return written.images < symmetry.images and written.freedom - symmetry.freedom >= _LEAST_FIXED
 
     def _keeps_directions(self, point: Points) -> bool:
         """No block leads in another direction: a side lies elsewhere, which may be meant."""
@@ -186,12 +169,16 @@ class _Search:
             is_symmetric = self._is_better(symmetry, _Trial(edit.corner, -1, slip, point, edited))
             if is_symmetric and edit.kind not in {"arc", "sense"}:
                 return correction._replace(becomes=_becomes(symmetry))
-            is_whole = likely.smooths or (likely.closes and self.written is None)
-            is_clear = is_whole and likely.gain >= _GAIN_ALONE and len(loop.turns) >= _FEWEST_BLOCKS
-            is_clear = is_clear or (likely.gain >= _GAIN_IN_SYMMETRY and self._is_more_symmetric(symmetry))
-            if self.likely is None and (is_symmetric or is_clear):
+            if self.likely is None and (is_symmetric or self._is_clear(likely, symmetry)):
                 self.likely = correction
         return None
+
+    def _is_clear(self, likely: Likely, symmetry: Symmetry) -> bool:
+        """An edit closes the contour, or makes all its arcs tangent or the contour more symmetric, and is no chance."""
+        if likely.gain >= _GAIN_IN_SYMMETRY and self._is_more_symmetric(symmetry):
+            return True
+        is_whole = likely.smooths or (likely.closes and self.written is None)
+        return is_whole and likely.gain >= _GAIN_ALONE and len(self.loop.turns) >= _FEWEST_BLOCKS
 
     # ---- one corner ----
 
@@ -226,19 +213,19 @@ class _Search:
         slip = Slip(" ".join(texts), "its corner alone is off the polygon of the others", False)
         return _Trial(corner, words[0][1] if len(words) == 1 else -1, slip, moved, self.loop)
 
-    def _as_elsewhere(self, axis: AxisWords, value: float, tolerance: float, slip: str = "") -> str:
+    def _as_elsewhere(self, axis: AxisWords, value: float, tolerance: float) -> str:
         """A value as another block of the loop has it, with the sign that it needs."""
         words = self.trace.run.words.value
         sizes = [abs(float(words[word])) for word in axis.word if word >= 0]
         near = [size for size in sizes if abs(size - abs(value)) <= tolerance]
         if near:
             return plain_number(float(np.copysign(min(near, key=lambda size: abs(size - abs(value))), value)))
-        return slip or plain_number(round(value, 3))
+        return plain_number(round(value, 3))
 
     # ---- increments: what is wrong in one shifts all that follow ----
 
     def _of_steps(self) -> Iterator[_Trial]:
-        """Incremental words and blocks with which the path would close."""
+        """Blocks of increments that are missing, or there twice, with which the path would close."""
         axes, point = self._axes, self.loop.point
         count = len(point)
         steps = [step for step in range(1, count) if all(axis.is_step[step] or axis.word[step] < 0 for axis in axes)]
@@ -254,7 +241,7 @@ class _Search:
                         yield from self._closing(step, gap)
 
     def _closing(self, corner: int, gap: complex) -> Iterator[_Trial]:
-        """Corrections of blocks of increments that close a gap: a word, the block once less, or one more block."""
+        """The path with a block once less, or with one more block before it, if that closes the gap."""
         point = self.loop.point
         if abs(point[corner] - point[corner - 1] + gap) <= 2 * self.tolerance and corner > 1:
             moved = point.copy()

@@ -70,10 +70,14 @@ def likely_edits(trace: Trace, loop: WrittenLoop, most: int, least_gain: float =
             break
         if witness[number] >= least and all(_differs(outlines, number, other, loop.tolerance) for other in found):
             found.append(number)
-    mended = [(part == 0) & (part[0] > 0) for part in (chances.is_open, chances.corners_at_arcs)]
+    closes, smooths = ((part == 0) & (part[0] > 0) for part in (chances.is_open, chances.corners_at_arcs))
     return [
         Likely(
-            edits[number - 1], float(gain[number]), _becomes(chances, number), *(bool(part[number]) for part in mended)
+            edits[number - 1],
+            float(gain[number]),
+            _becomes(chances, number),
+            bool(closes[number]),
+            bool(smooths[number]),
         )
         for number in found
     ]

@@ -87,8 +87,8 @@ def _of_axis(trace: Trace, loop: WrittenLoop, number: int) -> Iterator[Edit]:
             continue
         others = () if axis.is_step[corner] else (0.0, *sizes)
         beside = axis.value[max(corner - 1, 0) : corner + 2 : 2] if corner else axis.value[1:2]
-        why = _IS_ANGLE if number and _looks_like_angle(loop, corner) else "another number is meant"
-        for slip, cost in _numbers(written, float(axis.value[corner]), others, beside, why):
+        is_angle = number == 1 and _looks_like_angle(loop, corner)
+        for slip, cost in _numbers(written, float(axis.value[corner]), others, beside, is_angle=is_angle):
             yield Edit("word", corner, (word,), address + slip.text, slip.kind, cost, number, float(slip.text))
         if other.word[corner] < 0:
             letter = other.step_address if axis.is_step[corner] else other.address
@@ -175,22 +175,23 @@ def _looks_like_angle(loop: WrittenLoop, corner: int) -> bool:
 
 
 def _numbers(
-    written: str, value: float, others: tuple[float, ...], beside: Floats, why: str = "another number is meant"
+    written: str, value: float, others: tuple[float, ...], beside: Floats, *, is_angle: bool = False
 ) -> Iterator[tuple[Slip, float]]:
     """
     What a number may be instead, each once, with its cost.
 
     others: the sizes of the numbers of all blocks, one of which may be meant. beside: the numbers of the blocks before
-    and behind, one of which may be what is written. why: the reason for another one.
+    and behind, one of which may be what is written. is_angle: it looks like an angle.
     """
     known = {round(value / _SAME_NUMBER)}
     is_beside = bool((np.abs(beside - value) < _SAME_NUMBER).any())
-    of_others = Slip("", "it is that of the block beside it" if is_beside else why, False)
+    why = "it is that of the block beside it" if is_beside else _IS_ANGLE if is_angle else "another number is meant"
+    of_others = Slip("", why, False)
     step = _STEPS * 10.0 ** -_decimals(written)
     likely = (slip._replace(text=_of_others(float(slip.text), slip.text, others, step)) for slip in slips_of(written))
     slips = [(slip, _cost(slip, written, others)) for slip in likely]
     for size in others:
-        cost = _SELDOM if is_beside or why == _IS_ANGLE else _FAR
+        cost = _SELDOM if is_beside or is_angle else _FAR
         slips += [(of_others._replace(text=plain_number(number)), cost) for number in (size, -size)]
     for slip, cost in sorted(slips, key=lambda pair: (pair[1], pair[0].kind != _IS_ANGLE)):
         key = round(float(slip.text) / _SAME_NUMBER)

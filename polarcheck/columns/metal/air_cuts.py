@@ -94,6 +94,11 @@ class AirCuts(Columns, frozen=True):
         result[-1] = none
         return np.asarray(result[self.trace.mode.section])
 
+    def _behind(self, mask: Mask) -> Rows:
+        """The first row of the mask behind each section; -1 for none."""
+        rows = np.flatnonzero(mask)
+        return np.asarray(np.append(rows, -1)[np.searchsorted(rows, self.trace.mode.sections.last, side="right")])
+
     @cached_property
     def reason(self) -> States:
         """Per row a Reason, at the first cut of a section or pass that takes nothing off."""
@@ -142,8 +147,7 @@ class AirCuts(Columns, frozen=True):
         alone = writes_z & ~trace.axes.moves_plane & (rows > last)
         earlier = trace.mode.anywhere_in_section(writes_z & (rows < first))
         near = (self._entry > _ABOVE) & (self._entry < _FARTHEST)
-        words = np.flatnonzero(trace.axes.commands_z)
-        behind = np.append(words, -1)[np.searchsorted(words, trace.mode.sections.last, side="right")]
+        behind = self._behind(trace.axes.commands_z)
         idle = (behind >= 0) & (np.abs(trace.path.z[behind] - trace.path.z_before[behind]) <= ROUNDING)
         idle &= ~trace.axes.moves_plane[behind]
         retracts = trace.mode.anywhere_in_section(alone) | np.append(idle, False)[trace.mode.section]
@@ -162,8 +166,7 @@ class AirCuts(Columns, frozen=True):
         down, section = np.flatnonzero(falls & (trace.mode.section >= 0)), trace.mode.section
         latest = np.full(len(trace.mode.sections) + 1, -1)
         np.maximum.at(latest, section[down], down)
-        moves = np.flatnonzero(np.abs(z - trace.path.z_before) > ROUNDING)
-        behind = np.append(moves, -1)[np.searchsorted(moves, trace.mode.sections.last, side="right")]
+        behind = self._behind(np.abs(z - trace.path.z_before) > ROUNDING)
         latest[:-1] = np.maximum(latest[:-1], np.where(falls[behind], behind, -1))
         return np.asarray(above & (latest[section] > np.arange(len(trace))))
 

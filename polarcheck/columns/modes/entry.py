@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from polarcheck.columns.filling import before, happened
+from polarcheck.columns.filling import before, happened, last_row
 from polarcheck.columns.modes.origin import Origin
 from polarcheck.columns.path.tool_center import ToolCenter
 from polarcheck.columns.trace import Trace
@@ -221,9 +221,9 @@ class Entry(Columns, frozen=True):
     @property
     def takes_offset_of_other(self) -> Mask:
         """T calls the tool of a section with the offset of another tool."""
-        tools, row = self.trace.tools, np.arange(len(self.trace))
-        last = np.maximum.accumulate(np.where(tools.calls_tool, row, 0))
-        return tools.takes_offset_of_other & self.trace.blocks.mask_of(last[self.trace.mode.sections.enter])
+        trace, tools = self.trace, self.trace.tools
+        calls = last_row(tools.calls_tool, trace.blocks.starts)[trace.mode.sections.enter]
+        return tools.takes_offset_of_other & trace.blocks.mask_of(calls[calls >= 0])
 
     @property
     def stock_diameter(self) -> Floats:

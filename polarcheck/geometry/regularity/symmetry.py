@@ -37,6 +37,11 @@ class Symmetry(NamedTuple):
         return self.order == self.corners
 
     @property
+    def images(self) -> int:
+        """How many turns and mirror images leave it as it is."""
+        return self.order * (1 + self.mirrored)
+
+    @property
     def fixed(self) -> int:
         """The number of coordinates and bulges that follow from the others."""
         return 2 * self.corners + self.arcs - self.freedom
@@ -70,8 +75,8 @@ def symmetry_of(ring: Ring, tolerance: float) -> Symmetry:
         freedom = count + (not through) + (not is_aligned)
     else:
         freedom = 2 * count
-    freedom += -(-arcs // (order * (1 + is_mirrored)))
-    return Symmetry(order, is_mirrored, freedom, count, arcs, ring.turns_at_start)
+    symmetry = Symmetry(order, is_mirrored, freedom, count, arcs, ring.turns_at_start)
+    return symmetry._replace(freedom=freedom + -(-arcs // symmetry.images))
 
 
 def _is_flat(ring: Ring) -> bool:
