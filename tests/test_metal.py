@@ -219,6 +219,17 @@ def test_the_same_section_again() -> None:
     assert found(twice, 2.5) == {}
 
 
+@pytest.mark.ci
+def test_an_angle_that_is_none_but_for_rounding_is_written_as_0() -> None:
+    cut = (
+        "G12.1/G1 Z-6. F800/G42 X54. C-5.5 F100/X18./G2 X7. C0 I0 J5.5/X18. C5.5 I5.5 J0/G1 X54./G40 X63. C0/Z2./G13.1"
+    )
+    program = f"O1/G21 G98 G40/T0101/G97 S3000 M13/G0 X63. Z2. C0/{cut}/G0 X63. Z2./{cut}/G0 C240./{cut}/G0 Z50./M30"
+    report = report_of(program.replace("/", "\n") + "\n", "fanuc-30i", "1:radius=2.5,nose=0")
+    (again,) = (finding.message for finding in report.findings if finding.rule == "cut-in-air")
+    assert "at the same angle of C (0 deg)" in again
+
+
 def test_a_move_of_several_axes_is_said_and_not_judged() -> None:
     """X and Z at once, out of a pocket with little room: whether it clears depends on the lathe."""
     program = f"G21 G98 G40/T0101/G97 S3000 M13/{HOLE}/Z-2./G13.1/G0 X300. Z50./M30"

@@ -198,5 +198,6 @@ def _in_air(hit: Hit, air_cuts: AirCuts, bar: Bar) -> str:
             largest = 2 * bar_ends_at(hit, bar)
             return f"goes to {hit.point_off_center(end)}, far outside the bar of {hit.length(largest)}: check the word"
         case _:
-            angle = float(trace.path.c_angle[enter])
+            # Rounded, so that nothing is no 1.8e-15 and no -0.
+            angle = round(float(trace.path.c_angle[enter]), 3) + 0.0
             return f"this section was cut before at the same angle of C ({angle:g} deg): it takes nothing off; index C"
