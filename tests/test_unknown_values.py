@@ -42,6 +42,7 @@ UNKNOWN = {
     "G in the place of G13.1": ("/G13.1/", "/G#500/"),
     "which work offset": ("G28 H0", "G10 L2 P#500 X1./G28 H0"),
     "X of the tool": ("G28 H0", "G10 P1 X#500/G28 H0"),
+    "which table": ("G28 H0", "G10 L#500 P1 X5./G28 H0"),
 }
 #: Only controls with these system variables.
 OF_VARIABLES = {
@@ -69,6 +70,7 @@ HARMLESS = {
     "a dwell": ("G28 H0", "G4 X#501/G28 H0"),
     "a retract": ("X100. Z50.", "X#501 Z#501"),
     "G behind the section": ("G0 X100.", "G#501 X100."),
+    "the end": ("M30", "M#501"),
     "a work offset by its number": ("G28 H0", "G54.1 P#501/G28 H0"),
     "an argument of a program that nothing calls": ("M30", "M30/O9/G0 X#24/M99"),
 }

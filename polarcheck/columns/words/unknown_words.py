@@ -95,10 +95,10 @@ class UnknownWords(Columns, frozen=True):
 
     @cached_property
     def _sets_tool(self) -> Mask:
-        """Per row: data input of X of an offset that is in force in a section, or of an offset that may be any."""
+        """Per row: data input of X of an offset that is in force in a section, or of any offset, in any table."""
         trace = self.trace
-        of_number = trace.offsets.sets_unknown_offset & trace.blocks.is_unknown("P")
-        sets = of_number | trace.blocks.mask_of(trace.offsets.x_set_to_unknown)
+        of_any = (trace.offsets.sets_unknown_offset & trace.blocks.is_unknown("P")) | trace.blocks.is_unknown("L")
+        sets = of_any | trace.blocks.mask_of(trace.offsets.x_set_to_unknown)
         return np.asarray(sets & trace.blocks.listed("data_input"))
 
     @cached_property

@@ -350,10 +350,10 @@ class Written:
         return np.asarray(words.block[(words.address == ord("N")) & is_among(words.value, called)])
 
     def _ends_in_macro(self, first: int, end: int) -> bool:
-        """True if a macro block ends the program, returns or jumps."""
+        """True if a macro block ends the program, returns or jumps, or may do so by a code that it calculates."""
         macro = np.flatnonzero(self.text.blocks.is_macro[first:end]) + first
         codes = (*self.machine.m_codes.program_end, *self.machine.macro.program_returns)
-        spelled_out = "|".join(rf"{code[0]}\s*0*{re.escape(code[1:])}(?![.\d])" for code in codes)
+        spelled_out = "|".join(rf"{code[0]}\s*(?:[=#\[]|0*{re.escape(code[1:])}(?![.\d]))" for code in codes)
         ends = re.compile(rf"{_JUMP}|{spelled_out}", re.IGNORECASE)
         return any(ends.search(block_text(self.text, int(block))) for block in macro)
 

@@ -217,13 +217,13 @@ def _feed_differs(old: Stretch, first: Rows, new: Stretch, second: Rows, share: 
 
 
 def _feed(part: Part, move: int) -> str:
-    """`F120 mm/min`, `F0.1 mm/rev`, `rapid traverse`."""
+    """`F120 mm/min`, `F0.1 mm/rev`, `rapid traverse`, `F not known`, `no F`."""
     stretch = part.stretch
     if stretch.rapid[move]:
         return "rapid traverse"
     feed = float(stretch.feed[move])
     if np.isnan(feed):
-        return "no F"
+        return "no F" if part.trace.feedrate.feed_word[stretch.row[move]] < 0 else "F not known"
     quantity = part.quantity(feed, int(stretch.row[move]))
     text = quantity.shown("feed")
     if stretch.feed_mode[move] == FeedMode.PER_REVOLUTION:

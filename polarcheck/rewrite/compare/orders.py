@@ -170,7 +170,8 @@ class _Reader:
         """Return token, value and text of a word; None for a word that is compared elsewhere."""
         words, is_special = self._trace.run.words, bool(self._special[row])
         name, value = self._address(int(words.address[index])), float(words.value[index])
-        text = f"{name}{value:.10g}"
+        is_as_written = np.isnan(value) or not name[-1].isalnum()
+        text = executed_word(self._trace.run, index) if is_as_written else f"{name}{value:.10g}"
         if self._is_left_out[index]:
             return None
         if name == "M":

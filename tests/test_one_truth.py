@@ -1,0 +1,253 @@
+"""What one command knows of a program, the others know, too: each fact on three controls, whose words differ."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+from pathlib import Path
+
+import pytest
+from cases import looped
+from click.testing import CliRunner, Result
+from hexagon_program import CONTROLS, CUTTER, HEX
+from programs import report_of, tables_of
+
+from polarcheck.commands import main
+from polarcheck.reports.made_parts.part_report import in_one_line, made_by
+
+#: A hexagon of 36 mm across its flats with R 4 of offset 1; a / stands for the end of a block.
+PROGRAMS = {
+    "fanuc-30i": HEX,
+    "haas-lathe": (
+        "%/O1000/G21 G98 G40/T0101/M154/G28 H0/G97 P3000 M133/G0 X60. Z2. C0/G17/G112/G1 X28. F1000./Z-4. F200./"
+        "G42 X18. Y0 F150./Y10.392/X0 Y20.785/X-18. Y10.392/Y-10.392/X0 Y-20.785/X18. Y-10.392/Y0/G40 X28./Z2. F1000./"
+        "G113/G0 X100. Z50./M135/M155/M30/%"
+    ),
+    "siemens-transmit": (
+        "G90 G40 G71 DIAMON/T1 D1/G94/SETMS(2) S2=3000 M2=3/G0 X60 Z2 C0/DIAMOF/TRANSMIT/G1 X28 F1000/Z-4 F200/"
+        "G42 X18 Y0 F150/Y10.392/X0 Y20.785/X-18 Y10.392/Y-10.392/X0 Y-20.785/X18 Y-10.392/Y0/G40 X28/Z2 F1000/"
+        "TRAFOOF/DIAMON/G0 X100 Z50/M30"
+    ),
+    "okuma-osp": (
+        "O1/G90 G40/G0 X300 Z100/T010101/G94 M110/G97 SB=3000 M13/G0 X60 Z2/G137 C0/G17/G101 X28 F1000/Z-4 F200/"
+        "G42 X18 Y0 F150/Y10.392/X0 Y20.785/X-18 Y10.392/Y-10.392/X0 Y-20.785/X18 Y-10.392/Y0/G40 X28/Z2 F1000/"
+        "G136/G0 X300 Z100/M12/M109/M2"
+    ),
+}
+#: What rests on a variable without a value, by control: what is written, and what is in its place.
+UNKNOWN = {
+    "R of an arc": {
+        "fanuc-30i": ("X0 C20.785/X-36. C10.392", "G3 X0 C20.785 R#500/G1 X-36. C10.392"),
+        "haas-lathe": ("X0 Y20.785/X-18. Y10.392", "G3 X0 Y20.785 R#500/G1 X-18. Y10.392"),
+        "siemens-transmit": ("X0 Y20.785/X-18 Y10.392", "G3 X0 Y20.785 CR=R500/G1 X-18 Y10.392"),
+        "okuma-osp": ("X0 Y20.785/X-18 Y10.392", "G103 X0 Y20.785 L=VC500/G101 X-18 Y10.392"),
+    },
+    "center of an arc": {
+        "fanuc-30i": ("X0 C20.785/X-36. C10.392", "G3 X0 C20.785 I#500 J0/G1 X-36. C10.392"),
+        "haas-lathe": ("X0 Y20.785/X-18. Y10.392", "G3 X0 Y20.785 I#500 J0/G1 X-18. Y10.392"),
+        "siemens-transmit": ("X0 Y20.785/X-18 Y10.392", "G3 X0 Y20.785 I=R500 J0/G1 X-18 Y10.392"),
+    },
+    "a code": {
+        "fanuc-30i": ("F150/C10.392", "F150/G#500 X36. C0/C10.392"),
+        "haas-lathe": ("F150./Y10.392", "F150./G#500 X18. Y0/Y10.392"),
+    },
+    "the depth": {
+        "fanuc-30i": ("Z-4.", "Z-#500"),
+        "haas-lathe": ("Z-4.", "Z-#500"),
+        "siemens-transmit": ("Z-4", "Z=-R500"),
+        "okuma-osp": ("Z-4", "Z=-VC500"),
+    },
+    "the tool": {
+        "fanuc-30i": ("T0101", "T#500"),
+        "haas-lathe": ("T0101", "T#500"),
+        "siemens-transmit": ("T1 D1", "T=R500 D1"),
+    },
+}
+#: Orders that move no axis, by control.
+ORDERS = {
+    "the sense of the live tool": {
+        "fanuc-30i": ("M13", "M14"),
+        "haas-lathe": ("M133", "M134"),
+        "siemens-transmit": ("M2=3", "M2=4"),
+        "okuma-osp": ("M13", "M14"),
+    },
+    "its speed": {
+        "fanuc-30i": ("S3000", "S300"),
+        "haas-lathe": ("P3000", "P300"),
+        "siemens-transmit": ("S2=3000", "S2=300"),
+        "okuma-osp": ("SB=3000", "SB=300"),
+    },
+    "no speed": {
+        "fanuc-30i": ("S3000 M13", "M13"),
+        "haas-lathe": ("P3000 M133", "M133"),
+        "siemens-transmit": ("S2=3000 M2=3", "M2=3"),
+        "okuma-osp": ("SB=3000 M13", "M13"),
+    },
+    "no live tool": {
+        "fanuc-30i": ("S3000 M13", "S3000"),
+        "haas-lathe": ("P3000 M133", ""),
+        "siemens-transmit": ("S2=3000 M2=3", ""),
+        "okuma-osp": ("SB=3000 M13", "SB=3000"),
+    },
+    "no reference of C": {"fanuc-30i": ("G28 H0/", ""), "haas-lathe": ("G28 H0/", "")},
+    "coolant": {
+        control: ("G94" if "94" in text else "G98", ("G94" if "94" in text else "G98") + " M8")
+        for control, text in PROGRAMS.items()
+    },
+}
+#: A word of C that no control needs: with G28 it goes, too.
+C_OF_ENTRY = {
+    "fanuc-30i": (("G28 H0/", ""), ("Z2. C0", "Z2.")),
+    "haas-lathe": (("G28 H0/", ""), ("Z2. C0", "Z2.")),
+    "gsk-988": (("G28 H0/", ""), ("Z2. C0", "Z2.")),
+}
+#: A square with round corners in the place of the hexagon.
+SQUARE = "C12./G3 X24. C18. R6./G1 X-24./G3 X-36. C12. R6./G1 C-12./G3 X-24. C-18. R6./G1 X24./G3 X36. C-12. R6./G1 C0"
+MANIFEST = """title = "Post"
+features = ["contour"]
+[tools.1]
+radius = 4.0
+[controls.lathe]
+machine = "{control}"
+[[case]]
+feature = "contour"
+control = "lathe"
+program = "a.nc"
+golden = "a.jsonl"
+verdict = "{verdict}"
+"""
+#: A point lost, or a number of least increments where others have a point.
+POINTS = {
+    "a corner": ("20.785", "20785"),
+    "depth in a block of its own": ("Z2. C0/", "Z2. C0/G1 Z-15 F400/"),
+    "approach": ("Z2. C0", "Z2 C0"),
+    "retract": ("X100. Z50.", "X100. Z50"),
+}
+
+
+def program(control: str, *changes: tuple[str, str]) -> str:
+    text = PROGRAMS.get(control, HEX)
+    for old, new in changes:
+        assert old in text, old
+        text = text.replace(old, new, 1)
+    return text.replace("/", "\n") + "\n"
+
+
+def pairs(table: dict[str, dict[str, tuple[str, str]]]) -> Sequence[tuple[str, str]]:
+    return [(control, name) for name, changes in table.items() for control in changes]
+
+
+def run(*arguments: str | Path) -> Result:
+    result = CliRunner().invoke(main, [str(argument) for argument in arguments])
+    assert result.exit_code in (0, 1, 2), result.exception
+    return result
+
+
+def written(folder: Path, *texts: str) -> list[Path]:
+    files = [folder / f"{number}.nc" for number in range(len(texts))]
+    for file, text in zip(files, texts, strict=True):
+        file.write_text(text, "utf-8")
+    return files
+
+
+def compared(folder: Path, control: str, old: str, new: str) -> Result:
+    return run("compare", "--machine", control, "--no-config", "--tool", CUTTER, *written(folder, old, new))
+
+
+def certified(folder: Path, control: str, golden: str, text: str, verdict: str = "pass") -> Result:
+    """What certify says of a program with the verdict that it must have, against the golden trace of another one."""
+    manifest, trace = folder / "post.toml", folder / "a.jsonl"
+    trace.unlink(missing_ok=True)
+    for of_case, of_program, options in (("pass", golden, ["--update"]), (verdict, text, [])):
+        manifest.write_text(MANIFEST.format(control=control, verdict=of_case), "utf-8")
+        (folder / "a.nc").write_text(of_program, "utf-8")
+        result = run("certify", manifest, *options)
+        assert trace.exists()
+    return result
+
+
+@looped("control", PROGRAMS)
+def test_the_program_is_sound_and_like_itself(control: str, tmp_path: Path) -> None:
+    text = program(control)
+    report = report_of(text, control, CUTTER)
+    assert (report.verdict, report.findings) == ("pass", [])
+    assert in_one_line(tables_of(text, control, CUTTER)) == "hexagon, 36.000 across flats, to Z-4.000"
+    assert compared(tmp_path, control, text, text).exit_code == 0
+    assert certified(tmp_path, control, text, text).exit_code == 0
+
+
+@pytest.mark.ci
+@looped(("control", "name"), pairs(UNKNOWN))
+def test_a_value_that_is_not_known_is_known_to_no_command(control: str, name: str, tmp_path: Path) -> None:
+    sound, text = program(control), program(control, UNKNOWN[name][control])
+    report = report_of(text, control, CUTTER)
+    assert (report.verdict, [finding.rule for finding in report.findings]) == ("unverified", [])
+    if name != "the tool":
+        (shape, *_) = made_by(tables_of(text, control, CUTTER))
+        assert "not known" in f"{shape.text} {shape.needs}"
+    for old in (text.replace("500", "501"), sound):
+        result = compared(tmp_path, control, old, text)
+        assert result.exit_code > 0
+        assert "not compared, because" in result.stdout
+        assert "nan" not in result.stdout
+    assert certified(tmp_path, control, sound, text, verdict="unverified").exit_code == 1
+    (file,) = written(tmp_path, text)
+    options = ["--no-config", "--tool", CUTTER]
+    target = next(other for other in PROGRAMS if other != control)
+    for command in (
+        ["unroll", "--machine", control],
+        ["compensate", "--center", "--machine", control],
+        ["convert", "--from", control, "--to", target],
+    ):
+        result = run(*command, *options, file)
+        assert (result.exit_code, result.stdout) == (2, ""), command
+
+
+@pytest.mark.ci
+@looped(("control", "name"), pairs(ORDERS))
+def test_another_order_is_another_program(control: str, name: str, tmp_path: Path) -> None:
+    sound, text = program(control), program(control, ORDERS[name][control])
+    assert compared(tmp_path, control, sound, text).exit_code == 1
+    assert certified(tmp_path, control, sound, text).exit_code == 1
+
+
+@pytest.mark.ci
+@looped(
+    ("word", "text"), [("M13", "M#500 has become"), ("F150", "F not known has become F150 mm/min"), ("M30", "M#500")]
+)
+def test_a_difference_shows_what_is_not_known_as_it_is_written(word: str, text: str, tmp_path: Path) -> None:
+    unknown = program("fanuc-30i", (word, f"{word[0]}#500"))
+    result = compared(tmp_path, "fanuc-30i", unknown, program("fanuc-30i"))
+    assert text in result.stdout
+    assert "nan" not in result.stdout
+
+
+@pytest.mark.ci
+@looped("control", C_OF_ENTRY)
+def test_the_same_metal_at_an_unknown_angle_is_not_compared(control: str, tmp_path: Path) -> None:
+    text = program(control, *C_OF_ENTRY[control])
+    result = compared(tmp_path, control, text, text.replace("\nM30", "\n#1=1\nM30"))
+    assert result.exit_code == 2
+    assert "C at its beginning is not known in either" in result.stdout
+    rules = [finding.rule for finding in report_of(text, control, CUTTER).findings]
+    assert "c-angle-unknown-at-entry" in rules
+
+
+@pytest.mark.ci
+@looped(("control", "name"), [*itertools.product(("fanuc-30i", "doosan", "mazak-eia"), POINTS)])
+def test_a_lost_point_is_seen_by_all(control: str, name: str, tmp_path: Path) -> None:
+    engage = [("G28 H0", "M200/G28 H0" if "mazak" in control else "M35/G28 H0")] * (control != "fanuc-30i")
+    sound, text = program(control, *engage), program(control, *engage, POINTS[name])
+    rules = [finding.rule for finding in report_of(text, control, CUTTER).findings if finding.severity != "note"]
+    assert "number-without-point" in rules
+    assert compared(tmp_path, control, sound, text).exit_code == 1
+
+
+@looped("control", CONTROLS)
+def test_what_follows_from_what_is_silenced_is_silenced(control: str) -> None:
+    low, high = HEX.index("C10.392"), HEX.index("/G40 X")
+    silenced = f"G0 {SQUARE.replace('/', ' (POLARCHECK ALLOW RAPID-IN-POLAR TRIED)/', 1)}"
+    for contour in (SQUARE, silenced):
+        report = report_of((HEX[:low] + contour + HEX[high:]).replace("/", "\n") + "\n", control, CUTTER)
+        assert (report.verdict, [finding.rule for finding in report.findings]) == ("pass", [])
+    assert [finding.rule for finding in report.silenced] == ["rapid-in-polar"]
