@@ -338,6 +338,7 @@ USES = {
     "arcs.tolerance": Use(1, ARC.format("I-10.1 J0")),
     "arcs.radius_word": Use("L", ARC.format("R10.")),
     "arcs.corner_words": Use(["R"], CORNERS.format(20, "G40 X60. R1.\nX50. R1.\nC30.\nG13.1"), tools=CUTTER),
+    "arcs.made_corners": Use({",R": "radius"}, FLAT.replace("C10.", "C10. ,R2.")),
     "arcs.sweep_limit": Use(45, ARC.format("I-10. J0")),
     "arcs.takes_sweep_limit": Use(False, HALF, also={"arcs": {"sweep_limit": 180}}),
     "arcs.larger_arc_word": Use("", LARGER_ARC, "okuma-osp"),

@@ -257,7 +257,7 @@ def report_of(engine: Engine, number: int = 0) -> FileReport:
     return FileReport(
         path=text.source.path,
         programs=programs,
-        blocks=len(trace),
+        blocks=trace.run.block_count,
         sections=len(trace.mode.sections),
         verdict=verdict(findings, not_evaluated),
         polar_sections=polar_sections(tables),

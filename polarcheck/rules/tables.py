@@ -212,7 +212,15 @@ class Tables(dict[str, Any]):
         tangency: Tangency
 
     def __init__(self, run: Run, machine: Machine, job: Job) -> None:
-        super().__init__(run=run, text=run.text, words=run.text.words, machine=machine, job=job)
+        given = {"run": run, "text": run.text, "words": run.text.words, "machine": machine, "job": job}
+        super().__init__(given)
+        addresses = [machine.address_number(word) for word in machine.arcs.made_corners]
+        if addresses and any(number in run.words.address for number in addresses):
+            from polarcheck.columns.path.made_corners import with_made_corners
+
+            run = with_made_corners(self["trace"])
+            self.clear()
+            self.update({**given, "run": run})
 
     def __missing__(self, name: str) -> Any:
         if name not in TABLES:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
-from polarcheck.columns.filling import fill_down
+from polarcheck.columns.filling import Scalar, fill_down
 from polarcheck.columns.modes.executed_blocks import ExecutedBlocks
 from polarcheck.columns.modes.modal import ModalStates
 from polarcheck.columns.modes.mode import PolarMode
@@ -35,7 +36,7 @@ class Feedrate(Columns, frozen=True):
         """The last F as a number [mm per min or per revolution]; NaN before the first."""
         written = self.blocks.has("F") & self._takes_feed
         value = np.where(written, self.blocks.word("F") * self.lengths.feed_scale, np.nan)
-        return fill_down(value, written | self.blocks.starts, np.nan)
+        return self._of_corners(fill_down(value, written | self.blocks.starts, np.nan))
 
     @cached_property
     def feed_word(self) -> Rows:
@@ -43,7 +44,14 @@ class Feedrate(Columns, frozen=True):
         words = self.blocks.word_indices("F")
         start = np.full(len(self.run), -1, np.int64)
         start[self.run.row[words]] = self.run.words.start[words]
-        return fill_down(start, (self.blocks.has("F") & self._takes_feed) | self.blocks.starts, -1)
+        return self._of_corners(fill_down(start, (self.blocks.has("F") & self._takes_feed) | self.blocks.starts, -1))
+
+    def _of_corners(self, column: NDArray[Scalar]) -> NDArray[Scalar]:
+        """A column of F in which a corner that the control makes has what the move behind it has."""
+        if (corners := self.run.corners) is not None:
+            column = column.copy()
+            column[corners.row] = column[corners.following]
+        return column
 
     @cached_property
     def _takes_feed(self) -> Mask:

@@ -66,7 +66,12 @@ class Arcs(Columns, frozen=True):
     def _to_center(self, rows: Rows) -> Points:
         """I + jJ of some rows [mm]; what is not written is 0."""
         i, j = self.trace.path.to_center
-        return np.asarray(np.nan_to_num(i[rows]) + 1j * np.nan_to_num(j[rows]))
+        to_center = np.nan_to_num(i[rows]) + 1j * np.nan_to_num(j[rows])
+        if (corners := self.trace.run.corners) is not None:
+            # Where a corner is made, an arc begins elsewhere than its words count from.
+            path, rounded = self.trace.path, np.isin(rows, corners.round)
+            to_center = np.where(rounded, path.center[rows] - path.start[rows], to_center)
+        return np.asarray(to_center)
 
     def _of_arcs(self, rows: Rows, values: Floats) -> Floats:
         """A column of the values of some rows; NaN for others."""
@@ -188,7 +193,8 @@ class Arcs(Columns, frozen=True):
         since a quarter of a circle without its C fits by chance. Arcs by R fit often, so that they speak only where
         there are several, and none of them does.
         """
-        trace, arc = self.trace, np.flatnonzero(self.trace.path.is_arc & ~self.is_off_plane)
+        trace = self.trace
+        arc = np.flatnonzero(trace.path.is_arc & ~self.is_off_plane & ~trace.axes.makes_corner)
         if not len(arc):
             return np.zeros(len(trace), bool)
         tolerance = trace.machine.arcs.tolerance

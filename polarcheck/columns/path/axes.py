@@ -211,7 +211,13 @@ class PlaneAxes(Columns, frozen=True):
     @cached_property
     def has_center(self) -> Mask:
         """Has a word of the center of an arc on the polar plane."""
-        return self.of_linear_axis(lambda axis: self.blocks.has(*self.center_words_along(axis)))
+        has_center = self.of_linear_axis(lambda axis: self.blocks.has(*self.center_words_along(axis)))
+        return has_center | self.makes_corner if self.run.corners is not None else has_center
+
+    @cached_property
+    def makes_corner(self) -> Mask:
+        """A corner that the control makes between two blocks; it has no words."""
+        return self.blocks.nowhere if self.run.corners is None else self.blocks.mask_of(self.run.corners.row)
 
     @cached_property
     def other_center_word(self) -> Floats:
@@ -384,7 +390,7 @@ class PlaneAxes(Columns, frozen=True):
         is_arc = is_among(self.modal.state("motion"), (Motion.CW, Motion.CCW))
         of_plane = self.has_center & ~self.blocks.with_words(self.other_center_words)
         by_center_alone = is_arc & self.blocks.has("I", "J", "K") & (~self.programs_z | of_plane)
-        moves = self.programs_linear_axis | self.programs_virtual_axis | by_center_alone
+        moves = self.programs_linear_axis | self.programs_virtual_axis | by_center_alone | self.makes_corner
         return self.modal.uses_axes & moves & ~self.switches_on
 
     @cached_property
@@ -398,6 +404,8 @@ class PlaneAxes(Columns, frozen=True):
         moves_others = self.modal.uses_axes & self.blocks.has(*self.machine.polar.rotary_words, "Y", "V")
         moving = self.moves_plane | self.commands_z | moves_others
         motion = np.where(self.modal.in_cycle, Motion.CYCLE, self.modal.state("motion"))
+        if self.run.corners is not None:
+            motion[self.run.corners.row] = self.run.corners.motion
         return np.where(moving, motion, Motion.NONE).astype(np.int16)
 
     @cached_property

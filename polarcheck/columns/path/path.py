@@ -250,6 +250,8 @@ class ProgrammedPath(Columns, frozen=True):
         end = np.empty(len(self.run), np.complex128)
         end.real, end.imag = np.where(self.mode.is_followed, x, np.nan), c
         end -= shift
+        if (corners := self.run.corners) is not None:
+            end[corners.ended] = corners.end
         return end, direction
 
     @property
@@ -379,6 +381,8 @@ class ProgrammedPath(Columns, frozen=True):
         radius = self.lengths.length_of(self.machine.arcs.radius_word)[arcs]
         by_radius = polar.center_from_radius(start, end, radius, kind, np.inf)
         center[arcs] = np.where(np.isnan(radius), by_center, by_radius)
+        if (corners := self.run.corners) is not None:
+            center[corners.round] = corners.center
         center[self.shape_is_unknown] = NOWHERE
         return center
 

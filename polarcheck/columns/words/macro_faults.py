@@ -161,6 +161,7 @@ _REMARKS: Final[Mapping[RemarkKind, str]] = {
         "keep one of them in the folders of the job"
     ),
     "not-simulated": "{name} is not simulated",
+    "corner-not-made": "{word} is not simulated: {reason}",
     "return-jumps": "{code} P in the main program jumps and is taken as the end: check what follows it yourself",
 }
 

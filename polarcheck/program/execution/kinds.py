@@ -81,4 +81,5 @@ RemarkKind: TypeAlias = Literal[
     "program-in-several-files",  # likewise
     "return-jumps",  # M99 P in the main program
     "not-simulated",  # a statement of the control's own language
+    "corner-not-made",  # a rounding or a chamfer between two moves
 ]

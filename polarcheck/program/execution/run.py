@@ -10,7 +10,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from polarcheck.foundation.arrays import Mask, Rows, is_among, repeated
+from polarcheck.foundation.arrays import Mask, Points, Rows, States, is_among, repeated
 from polarcheck.program.execution.kinds import FaultKind, RemarkKind
 from polarcheck.program.machines.code_tables import code_numbers, code_set
 from polarcheck.program.reading.words import Text, Words
@@ -94,6 +94,25 @@ class Beside(msgspec.Struct, frozen=True):
     called: frozenset[int | str] = frozenset()
 
 
+class MadeCorners(msgspec.Struct, frozen=True):
+    """
+    Corners that the control makes between two moves of the polar plane: a row without words behind the first of both.
+
+    row, motion: int64[n], int16[n], the rows inserted and their Motion.
+    following: int64[n], the row of the second move, whose F they run at.
+    ended, end: int64[2n], complex128[2n], rows that end elsewhere than their words say, and where [mm].
+    round, center: int64[m], complex128[m], arcs among all these rows, and their centers [mm].
+    """
+
+    row: Rows
+    motion: States
+    following: Rows
+    ended: Rows
+    end: Points
+    round: Rows
+    center: Points
+
+
 class Run(msgspec.Struct, frozen=True):
     """
     The executed blocks of one file in order.
@@ -106,7 +125,8 @@ class Run(msgspec.Struct, frozen=True):
     broken_off: rows at which a bound of the check has ended a program; None where it has ended none. values: the
     values that variables have got, in order, up to a bound. unknown_words: executed word of unknown value -> the
     variable without a value that it rests on, None where it is not known which. never_set: executed word -> the vacant
-    variable that its value is calculated with, and that no block of the file sets.
+    variable that its value is calculated with, and that no block of the file sets. corners: those that the control
+    makes; None where it makes none.
     """
 
     text: Text
@@ -125,9 +145,15 @@ class Run(msgspec.Struct, frozen=True):
     values: Sequence[ValueSet] = ()
     unknown_words: Mapping[int, int | None] = {}
     never_set: Mapping[int, int] = {}
+    corners: MadeCorners | None = None
 
     def __len__(self) -> int:
         return len(self.block)
+
+    @property
+    def block_count(self) -> int:
+        """Executed blocks; a corner that the control makes is none."""
+        return len(self) - (0 if self.corners is None else len(self.corners.row))
 
     def written(self, index: int) -> str:
         """An executed word as it stands in the file, with the name that is read as its letter: `POS[C]=0`, `CR=5.`."""
@@ -135,6 +161,27 @@ class Run(msgspec.Struct, frozen=True):
         found = source.excerpt(start, int(self.words.end[index]))
         name = _NAME.search(source.excerpt(max(start - _LONGEST, 0), start)) if found.startswith("=") else None
         return found if name is None else name[0] + found
+
+
+def with_rows_behind(run: Run, rows: Rows) -> Run:
+    """The run with a row without words behind each of these rows, which rise; it belongs to the same block."""
+
+    def moved(row: int) -> int:
+        return row + int(np.searchsorted(rows, row)) if row > 0 else row
+
+    behind = rows + 1
+    return msgspec.structs.replace(
+        run,
+        row=run.row + np.searchsorted(rows, run.row),
+        block=np.insert(run.block, behind, run.block[rows]),
+        starts=np.insert(run.starts, behind, False),
+        unknown=np.insert(run.unknown, behind, False),
+        depth=np.insert(run.depth, behind, run.depth[rows]),
+        faults=tuple(msgspec.structs.replace(fault, row=moved(fault.row)) for fault in run.faults),
+        assigned={moved(row): assigned for row, assigned in run.assigned.items()},
+        broken_off=None if run.broken_off is None else np.insert(run.broken_off, behind, False),
+        values=[value._replace(row=moved(value.row)) for value in run.values],
+    )
 
 
 def straight(text: Text, ends: Iterable[str]) -> Run:

@@ -27,6 +27,7 @@ from polarcheck.program.machines.value_checks import (
     AxisLetterOrNone,
     AxisName,
     CharacterOrNone,
+    CornerAddress,
     Count,
     Length,
     MarkOrNone,
@@ -198,6 +199,7 @@ class CircularInterpolation(msgspec.Struct, frozen=True, kw_only=True, forbid_un
     sweep_limit: largest angle of one arc [deg]
     takes_sweep_limit: an arc by radius through exactly that angle is certain
     corner_words: words of arcs that in a straight move are the corner at its end
+    made_corners: word -> radius, modal-radius, leg or length (of a chamfer): corners that the control makes in the mode
     """
 
     tolerance: NotNegative
@@ -206,6 +208,7 @@ class CircularInterpolation(msgspec.Struct, frozen=True, kw_only=True, forbid_un
     sweep_limit: Annotated[float, msgspec.Meta(gt=0, le=360)]
     takes_sweep_limit: bool = True
     corner_words: list[Address]
+    made_corners: dict[CornerAddress, Literal["radius", "modal-radius", "leg", "length"]] = {}
 
 
 class Compensation(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

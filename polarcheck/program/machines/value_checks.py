@@ -60,6 +60,9 @@ SpindleWord: TypeAlias = Annotated[
 AxisLetterOrNone: TypeAlias = Annotated[
     str, msgspec.Meta(pattern="^[ABCEHU-Z]?$(?!\\n)", extra={EXPECTED: "the address of an axis, one letter, or none"})
 ]
+CornerAddress: TypeAlias = Annotated[
+    str, msgspec.Meta(pattern="^,[A-Z]$(?!\\n)", extra={EXPECTED: "an address with its comma, as ,R"})
+]
 #: An axis by one letter, or by such a name.
 AxisAddress: TypeAlias = Annotated[
     str,

@@ -22,9 +22,11 @@ def translated(source: Source, native_words: Mapping[str, str], language: str = 
     A blank in such a word matches any number of blanks, also none: `G17 XC` is `G17XC`. language: of its statements.
     Words of a high-level language with arguments, or with more than a number behind =, are not replaced.
     """
-    if not native_words:
+    # An address with a comma is read as part of a statement.
+    words = tuple((word, text) for word, text in native_words.items() if text[:1] != ",")
+    if not words:
         return source
-    pattern, put = _translation(tuple(native_words.items()), language == "high-level")
+    pattern, put = _translation(words, language == "high-level")
     code = pattern.sub(put, source.code.tobytes())
     return replace(source, code=np.frombuffer(code, np.uint8))
 

@@ -8,10 +8,11 @@ if TYPE_CHECKING:
     from polarcheck.columns.modes.executed_blocks import ExecutedBlocks
     from polarcheck.columns.modes.mode import PolarMode
     from polarcheck.foundation.arrays import Mask
+    from polarcheck.program.machines.machine import Machine
 
 
 @rule(WARNING, "chamfer, corner or angle word in the polar mode", at=(",C", ",R", ",A"))
-def corner_word_in_polar(blocks: ExecutedBlocks, mode: PolarMode) -> Mask:
+def corner_word_in_polar(blocks: ExecutedBlocks, mode: PolarMode, machine: Machine) -> Mask:
     """
     Chamfer or corner by ,C ,R or ,A in the polar mode.
 
@@ -48,4 +49,5 @@ def corner_word_in_polar(blocks: ExecutedBlocks, mode: PolarMode) -> Mask:
         G1 X-40.
         G13.1
     """
-    return mode.in_polar & blocks.has(",C", ",R", ",A")
+    made = machine.arcs.made_corners
+    return mode.in_polar & blocks.has(*(word for word in (",C", ",R", ",A") if word not in made))
