@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 import pytest
 from cases import looped
 from programs import report_of, said, tables_of, trace_of
@@ -130,3 +131,63 @@ def test_what_cycles_take_off_is_not_lost(turned: str) -> None:
     tables = tables_of(head + turned + mill, "fanuc", "3:radius=4", job={"stock": {"diameter": 62.0}})
     known = tables["bar"].known
     assert (known.source, known.smallest, known.largest) == ("turning", 44, 44)
+
+
+_SIEMENS = """DIAMON
+T1 D1
+G95 G90 G96 S200 M3
+G0 X66 Z2
+{turning}
+G0 X100 Z50
+M5
+T8 D1
+G94 G97 S2=1000 M2=3
+DIAMOF
+G0 X70 Z2 C0
+TRANSMIT
+G17
+G0 X26 Y0
+G0 Z-5
+G1 G42 X15 Y1 F300
+Y15
+X-15
+Y-15
+X15
+Y1
+G40 X35
+G0 Z5
+TRAFOOF
+M2=5
+M30
+"""
+
+
+@looped(
+    "turning",
+    [
+        'CYCLE95("CONTOUR",2,0.1,0.2,,0.3,0.2,0.1,9,,,0.5)',
+        "CYCLE951(0,0,20,30,20,30,2,1,0.1,0.1,12,0,0,0,0,0.2,0,2)",
+        'CYCLE62("CONTOUR",1,,)\nCYCLE952("P",,"",2101311,0.2,,0,1,0.1,0.1)',
+        "CYCLE93(66,-5,8,20,,,,,,,,0.2,0.2,2,1,5)",
+        'G1 X60 F.2\nZ-30\nG0 X66\nZ2\nCYCLE95("CONTOUR",2,0.1,0.2)',
+        'CYCLE95("CONTOUR",2,0.1,0.2)\nG0 X66 Z2\nG1 X60 F.2\nZ-30\nG0 X66',
+    ],
+)
+@looped("stock", [{"stock": {"diameter": 62.0}}, {}])
+def test_what_a_cycle_of_siemens_leaves_of_the_bar_is_not_known(turning: str, stock: dict[str, object]) -> None:
+    """It cuts nobody knows where: not even that the mill goes down into the bar can be told."""
+    program = _SIEMENS.format(turning=turning)
+    tables = tables_of(program, "siemens-transmit", "8:radius=4,nose=0", job=stock)
+    known = tables["bar"].known
+    assert (math.isnan(known.smallest), known.largest) == (True, pytest.approx(62 if stock else NAN, nan_ok=True))
+    cycles = tables["trace"].run.unknown
+    assert cycles.any()
+    assert np.isnan(tables["trace"].path.x[cycles]).all()
+    assert report_of(program, "siemens-transmit", "8:radius=4,nose=0", job=stock).findings == []
+
+
+def test_the_same_mill_goes_down_into_a_bar_that_no_cycle_has_turned() -> None:
+    found = report_of(
+        _SIEMENS.format(turning="G0 X66"), "siemens-transmit", "8:radius=4", job={"stock": {"diameter": 62.0}}
+    )
+    assert "approach-inside-stock" in [rule for _, rule in said(found)]

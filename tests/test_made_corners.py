@@ -18,6 +18,8 @@ from polarcheck.foundation.states import Motion
 from polarcheck.geometry.made_corners import CornerPairs
 from polarcheck.geometry.plane_path import PlanePath
 from polarcheck.reports.made_parts.part_report import in_one_line
+from polarcheck.rewrite.feeds.feed_edits import with_feeds
+from polarcheck.rewrite.feeds.table import feed_table
 
 MACHINE = "siemens-transmit"
 HEAD = "T8 D1\nG94 S2=1000 M2=3\nDIAMOF\nG0 X60 C0 Z5\nTRANSMIT\nG17\nG1 Z-5 F200\n"
@@ -278,6 +280,8 @@ _NOT_MADE = [
     ("Y15\nX-20\nY-15\nX20\nY1 RND=2\n", "RND=2 is not simulated: cutter compensation changes"),
     ("Y15\nX-20\nY-15\nX20\nY1 RNDM=2\n", "RNDM=2 is not simulated: cutter compensation changes"),
     ("Y15 CHR=2\nG3 X-20 Y15 CR=21\nG1 Y-15\nX20\nY1\n", "CHR=2 is not simulated: how the control lays a chamfer"),
+    ("Y15 RND=-4\nX-20\nY-15\nX20\nY1\n", "RND=-4 is not simulated: a size below 0"),
+    ("Y15\nX-20 CHF=-1\nY-15\nX20\nY1\n", "CHF=-1 is not simulated: a size below 0"),
     ("Y15 RND=2\nY-15\nX20\nY1\n", "RND=2 is not simulated: it is too large"),
     ("Y15 RND=R99\nX-20\nY-15\nX20\nY1\n", ""),
 ]
@@ -319,3 +323,19 @@ def test_a_lathe_may_make_corners_by_words_with_a_comma() -> None:
     assert "1 corner R4.000, 1 chamfered 3.000, 2 sharp" in in_one_line(tables)
     assert "corner-word-in-polar" not in {rule for _, rule in said(report_of(program, "fanuc", TOOL, changes=changes))}
     assert [line for line, rule in said(report_of(program, "fanuc", TOOL)) if rule == "corner-word-in-polar"] == [6, 7]
+
+
+def test_the_feed_of_a_corner_is_that_of_the_block_behind_it() -> None:
+    """The feed table counts the corner among what this block runs, and its F is low enough for both."""
+    program = HEAD + _PLAIN.format("Y15 RND=4\nX-20\nY-15\nX20\nY1\n") + TAIL
+    limit = {"limits": {"c_feed": 620.0}}
+    tables = tables_of(program, MACHINE, TOOL, changes=limit)
+    assert [(row.line, row.runs) for row in feed_table(tables).rows] == [(line, 1) for line in range(7, 15)]
+    new = with_feeds("-", program.encode(), [tables], None)
+    assert new is not None
+    assert new.left == [9]  # words behind = are not edited
+    for text, corners, lines in ((program, 1, {9, 10, 11, 12, 13}), (new.data, 0, {9})):
+        edited = tables_of(text, MACHINE, TOOL, changes=limit)
+        exceeds, trace = edited["tool_center"].exceeds_c_feed_limit, edited["trace"]
+        assert np.count_nonzero(exceeds & trace.axes.makes_corner) == corners
+        assert set(trace.blocks.line[exceeds].tolist()) == lines

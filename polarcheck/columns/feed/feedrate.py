@@ -48,10 +48,15 @@ class Feedrate(Columns, frozen=True):
 
     def _of_corners(self, column: NDArray[Scalar]) -> NDArray[Scalar]:
         """A column of F in which a corner that the control makes has what the move behind it has."""
+        return column if self.run.corners is None else column[self.feed_row]
+
+    @cached_property
+    def feed_row(self) -> Rows:
+        """The row whose F each row runs at: its own; of a corner that the control makes that of the move behind it."""
+        rows = np.arange(len(self.run))
         if (corners := self.run.corners) is not None:
-            column = column.copy()
-            column[corners.row] = column[corners.following]
-        return column
+            rows[corners.row] = corners.following
+        return rows
 
     @cached_property
     def _takes_feed(self) -> Mask:

@@ -30,6 +30,7 @@ _NOT_BETWEEN_MOVES = "the corner is not one between two moves at feed on the pol
 _SIDE_CHANGES = "cutter compensation changes in the next move"
 _NO_ROOM = "it is too large for the moves beside it, and how far the control reduces it is not known"
 _BESIDE_ARC = "how the control lays a chamfer beside an arc is not known"
+_BELOW_ZERO = "a size below 0 makes no corner"
 _NOT_KNOWN = "a move beside it is not known"
 
 
@@ -53,7 +54,7 @@ def with_made_corners(trace: Trace) -> Run:
     trace: of the run without them.
     """
     sizes = _sizes(trace)
-    wanted = trace.mode.in_polar & ((sizes.radius > 0) | (sizes.leg > 0) | (sizes.length > 0))
+    wanted = trace.mode.in_polar & ((sizes.radius != 0) | (sizes.leg != 0) | (sizes.length != 0))
     rows = np.flatnonzero(wanted & trace.path.travels)
     following = _following(trace, rows)
     is_corner = following >= 0
@@ -82,7 +83,7 @@ def _sizes(trace: Trace) -> _Sizes:
     sets_modal = blocks.has(address.get("modal-radius", "")) | blocks.starts
     in_force = fill_down(np.where(sets_modal, modal, 0.0), sets_modal, 0.0)
     is_modal = (radius == 0) & (leg == 0) & (length == 0)
-    has_radius = radius > 0
+    has_radius = radius != 0
     return _Sizes(
         np.where(is_modal, in_force, radius), np.where(has_radius, 0, leg), np.where(has_radius, 0, length), is_modal
     )
@@ -103,8 +104,8 @@ def _made(trace: Trace, rows: Rows, following: Rows, sizes: _Sizes) -> tuple[Mas
     """Which corners are made, all of them, and by row why one is not."""
     path, side = trace.path, trace.compensation.side
     before, after = path.moves_of(rows), path.moves_of(following)
-    radius = np.where(sizes.radius[rows] > 0, sizes.radius[rows], np.nan)
-    leg = np.where(sizes.leg[rows] > 0, sizes.leg[rows], leg_of_length(before, after, sizes.length[rows]))
+    radius = np.where(sizes.radius[rows] != 0, sizes.radius[rows], np.nan)
+    leg = np.where(sizes.leg[rows] != 0, sizes.leg[rows], leg_of_length(before, after, sizes.length[rows]))
     pairs = CornerPairs(before, after, radius, leg)
     made = pairs.made()
     at_end, at_start = pairs.cut_off(made)
@@ -117,6 +118,7 @@ def _made(trace: Trace, rows: Rows, following: Rows, sizes: _Sizes) -> tuple[Mas
     choices = (
         (pairs.is_straight & is_known, ""),
         (~is_known, _NOT_KNOWN),
+        ((radius < 0) | (leg < 0), _BELOW_ZERO),
         (side[rows] != side[following], _SIDE_CHANGES),
         (is_chamfer & (before.is_arc | after.is_arc), _BESIDE_ARC),
         (~(fits[rows] & fits[following]), _NO_ROOM),

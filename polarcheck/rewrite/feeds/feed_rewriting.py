@@ -43,6 +43,8 @@ def feed_words(tables: Tables) -> FeedWords:
         return FeedWords((), (), ())
     # As a number of F in force, whatever it is per: outside the mode it stays as it was.
     requested = np.where(lowered, highest_feed, trace.feedrate.written_feed)
+    # A corner that the control makes runs at the F of the move behind it.
+    np.fmin.at(requested, trace.feedrate.feed_row, requested)
     return _Plan(trace, requested).words()
 
 
@@ -52,7 +54,7 @@ class _Plan:
     def __init__(self, trace: Trace, requested: Floats) -> None:
         self.trace = trace
         self.wanted = requested
-        self.moving = takes_feed(trace.axes)
+        self.moving = takes_feed(trace.axes) & ~trace.axes.makes_corner
         self.writes = trace.blocks.has("F") & (trace.feedrate.feed_word == self._own_word)
         self.lowest: set[int] = set()
         self.writes_points = writes_points(trace.blocks, trace.lengths, trace.run)

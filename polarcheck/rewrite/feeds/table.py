@@ -199,7 +199,8 @@ class _Columns:
         trace, rows = self.trace, np.flatnonzero(self.feeds.cuts)
         if not len(rows):
             return []
-        key = trace.mode.section[rows] * (int(trace.run.block.max()) + 1) + trace.run.block[rows]
+        block = trace.run.block[trace.feedrate.feed_row]
+        key = trace.mode.section[rows] * (int(block.max()) + 1) + block[rows]
         _, first, of_row, runs = np.unique(key, return_index=True, return_inverse=True, return_counts=True)
         ordinal = np.argsort(np.argsort(first))[of_row]
         first, runs = np.sort(first), runs[np.argsort(first)]
@@ -212,6 +213,7 @@ class _Columns:
             return folded
 
         starts = np.append(0, np.cumsum(runs)[:-1])
+        corners = of_block(np.add, trace.axes.makes_corner.astype(np.float64))
         with np.errstate(all="ignore"):
             feed, slowest = of_block(np.maximum, self.feed), of_block(np.minimum, self.feed)
             most = of_block(np.maximum, np.where(np.isnan(self.highest), np.inf, self.highest))
@@ -222,10 +224,10 @@ class _Columns:
         several &= ~np.isnan(feed) & ~np.isnan(self.highest[worst])
         return [
             FeedRow(
-                line=int(trace.blocks.line_in_file[row]),
-                block=_text(trace, row),
+                line=int(trace.blocks.line_in_file[trace.feedrate.feed_row[row]]),
+                block=_text(trace, int(trace.feedrate.feed_row[row])),
                 section=int(trace.mode.section[row]),
-                runs=int(runs[index]),
+                runs=int(runs[index] - corners[index]),
                 feed=rounded(feed[index]),
                 highest=rounded(self.highest[row]),
                 limited_by=str(self.names[row]),

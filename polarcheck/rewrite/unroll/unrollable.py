@@ -92,6 +92,7 @@ def _of_rows(tables: Tables) -> Iterator[tuple[int, str]]:
     off_circle[moves.row[(moves.kind != Motion.LINE) & (off_by > trace.machine.arcs.tolerance)]] = True
     unknown_moves = UnknownMoves(trace)
     lost = unknown_moves.lost("X") | unknown_moves.lost(trace.machine.polar.rotary_address)
+    corner_words = [word for word in (",R", ",C", ",A") if word not in trace.machine.arcs.made_corners]
     checks: list[tuple[Mask, str]] = [
         (infeed | backwards, "the passes of an infeed cycle are not unrolled"),
         (trace.run.unknown & within, "what this block does is not known"),
@@ -105,7 +106,7 @@ def _of_rows(tables: Tables) -> Iterator[tuple[int, str]]:
         (within & trace.blocks.listed(*_ELSEWHERE), "a code in the mode leads to other coordinates"),
         (within & unknown_moves.is_skip, "axis words beside this code are no end of a move"),
         (lost & mode.enters, "where the tool stands is not known, behind a block whose axis words a macro may take"),
-        (within & trace.blocks.has(",R", ",C", ",A"), "a corner or an angle by ,R ,C or ,A is not followed"),
+        (within & trace.blocks.has(*corner_words), "a corner or an angle by ,R ,C or ,A is not followed"),
         (center.interferes, "the tool center would run against the program"),
         (center.no_intersection, "the paths of the tool center do not meet"),
         (center.movement_missing, "the control does not know the next move in time"),
