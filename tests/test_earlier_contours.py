@@ -1,9 +1,10 @@
-"""Two tools on one part: what an earlier section takes off a polygon that a later one finishes."""
+"""Two tools on one part: what an earlier section takes off a contour that a later one finishes."""
 
 from __future__ import annotations
 
 import cmath
 import math
+from typing import NamedTuple
 
 import pytest
 from programs import report_of
@@ -84,3 +85,117 @@ def test_a_face_that_is_turned_between_begins_another_part() -> None:
     turning = "T0303\nG97 S1500 M3\nG0 X60. Z-10.\nG99 G1 X-1. F.15\nG0 X60. Z50.\nG98 M5"
     assert losses(section(1, 6, 26.0), section(2, 6, 28.0)) == [pytest.approx(1)]
     assert losses(section(1, 6, 26.0), turning, section(2, 6, 28.0)) == []
+
+
+# ---- any closed contour ----
+
+
+class Loop(NamedTuple):
+    """A closed contour: corners in a row, counterclockwise; rounded by a radius [mm]."""
+
+    corners: list[complex]
+    radius: float = 0.0
+    inside: bool = False
+
+
+def rectangle(length: float, width: float, radius: float = 0.0, *, inside: bool = False, at: complex = 0) -> Loop:
+    x, c = length / 2, width / 2
+    return Loop([at + x - 1j * c, at + x + 1j * c, at - x + 1j * c, at - x - 1j * c], radius, inside)
+
+
+def circle(diameter: float, *, inside: bool = False, at: complex = 0) -> Loop:
+    """A circle is a square whose corners meet."""
+    return rectangle(diameter, diameter, diameter / 2, inside=inside, at=at)
+
+
+def milled(tool: int, loop: Loop, c: float = 0, z: float = -6) -> str:
+    """A section with a lead to the middle of the last side; a boss is run clockwise, a pocket the other way."""
+    order = loop.corners if loop.inside else [*reversed(loop.corners)]
+    code, center = ("G3", sum(loop.corners) / len(order)) if loop.inside else ("G2", 0)
+    blocks = []
+    for number, corner in enumerate(order):
+        first, last = (
+            corner + (beside - corner) / abs(beside - corner) * loop.radius
+            for beside in (order[number - 1], order[(number + 1) % len(order)])
+        )
+        blocks.append(f"G1 X{2 * first.real:.4f} C{first.imag:.4f}")
+        if loop.radius:
+            blocks.append(f"{code} X{2 * last.real:.4f} C{last.imag:.4f} R{loop.radius:.4f}")
+    middle = (order[-1] + order[0]) / 2
+    ahead = (order[0] - order[-1]) / abs(order[0] - order[-1])
+    start = center + 1 if loop.inside else middle + 9j * ahead - 9 * ahead
+    begin, touch = (f"X{2 * point.real:.4f} C{point.imag:.4f}" for point in (start, middle))
+    approach = f"T0{tool}0{tool}\nG97 S2000 M13\nG0 X80. C{c} Z2.\nG12.1\nG1 {begin} F900\nZ{z:.1f} F200"
+    retract = f"G40 {begin}\nZ2.\nG1 X80. C0 F1500\nG13.1\nG0 Z50."
+    return "\n".join([approach, f"G41 {touch} F400", *blocks, f"G1 {touch}", retract])
+
+
+def pocket(length: float, width: float, radius: float = 6.0) -> Loop:
+    return rectangle(length, width, radius, inside=True)
+
+
+@pytest.mark.parametrize(
+    ("rough", "finish", "c", "loss"),
+    [
+        (rectangle(29, 19), rectangle(30, 20), 0, 0.5),
+        (rectangle(30.6, 20.6), rectangle(30, 20), 90, 4.7),
+        (rectangle(29, 19, 3), rectangle(30, 20, 3), 180, 0.5),
+        (circle(26), circle(26.4), 0, 0.2),
+        (circle(26.4, inside=True), circle(26, inside=True), 0, 0.2),
+        (pocket(30.6, 20.6), pocket(30, 20), 0, 0.3),
+        # One wall of the roughing is 1.3 mm nearer than the others.
+        (Loop([15.3 - 10.3j, 15.3 + 10.3j, -14 + 10.3j, -14 - 10.3j]), rectangle(30, 20), 0, 1.0),
+    ],
+)
+def test_a_wall_that_is_gone_is_told(rough: Loop, finish: Loop, c: float, loss: float) -> None:
+    assert losses(milled(1, rough), milled(2, finish, c)) == [pytest.approx(loss, abs=0.005)]
+
+
+def test_a_contour_of_another_shape_in_what_is_cleared_is_told() -> None:
+    hexagon = section(1, 6, 24.0)
+    assert losses(hexagon, milled(2, circle(28))) == [pytest.approx(14 - 12 / math.cos(math.pi / 6), abs=0.005)]
+    assert losses(hexagon, milled(2, circle(28), z=-6.8)) == []
+
+
+def test_an_eccentric_contour_at_another_c_is_told() -> None:
+    """Its points turn about X0: one that lies 14 mm off it by 14 * 5 deg, of which 0.2 mm were left."""
+    loss = 2 * 8 * math.sin(math.radians(2.5)) - 0.2
+    assert losses(milled(1, circle(12.4, at=8)), milled(2, circle(12, at=8), 5)) == [pytest.approx(loss, abs=0.005)]
+    assert losses(milled(1, circle(12.4, at=8)), milled(2, circle(12, at=8))) == []
+
+
+@pytest.mark.parametrize(
+    "sections",
+    [
+        [milled(1, rectangle(30.6, 20.6)), milled(2, rectangle(30, 20), 180)],
+        [milled(1, circle(26.4)), milled(2, circle(26), 40)],
+        [milled(1, circle(28)), section(2, 6, 27.0)],
+        [section(1, 6, 27.0), milled(2, circle(28))],
+        [milled(1, pocket(30, 20)), milled(2, pocket(30.6, 20.6))],
+        # Clearing on, inward and outward.
+        [milled(1, circle(size, inside=True)) for size in (40, 30, 20)],
+        [milled(1, circle(size)) for size in (30, 36, 42)],
+        # Slots that cross, and pins beside each other.
+        [
+            milled(tool, pocket(30 + size, 9 + size, 4.45 + size / 2), c)
+            for tool, size in ((1, 0), (2, 0.3))
+            for c in (0, 90)
+        ],
+        [milled(1 + (c > 0), circle(12, at=14), c) for c in (0, 120, 240)],
+        # A step, a groove above, and a floor that is finished beside its wall.
+        [milled(1, rectangle(29, 19), z=-4), milled(2, rectangle(30, 20))],
+        [milled(1, rectangle(29, 19), z=-9), milled(2, rectangle(30, 20))],
+        [section(1, 6, 26.4, z=-5.8), section(2, 6, 26.6), section(2, 6, 26.0)],
+        [section(1, 6, 26.4, z=-5.8), section(2, 6, 26.6)],
+    ],
+)
+def test_allowances_clearing_and_steps_are_sound(sections: list[str]) -> None:
+    assert losses(*sections) == []
+
+
+def test_an_allowance_in_z_is_one_floor_and_an_unknown_radius_is_not_evaluated() -> None:
+    rough, finish = milled(1, rectangle(29, 19), z=-5.6), milled(2, rectangle(30, 20))
+    assert losses(rough, finish) == [pytest.approx(0.5)]
+    program = "\n".join(["O1", "G21 G98", "G28 H0", rough.replace("T0101", "T0303"), finish, "M30"])
+    report = report_of(f"{program}\n", "fanuc-30i", "2:radius=3,nose=0")
+    assert "contour-already-cut-into" in [entry.rule for entry in report.not_evaluated]

@@ -1,48 +1,56 @@
-"""Regular polygons that a section has cut into before another section of the same depth finishes them."""
+"""Contours of which a section has cut away the walls or the corners before another section of the same depth."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from polarcheck.columns.contour.overcuts import Overcuts
 from polarcheck.columns.metal.bar import Bar
+from polarcheck.columns.metal.finished import Finished
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Columns, Floats, Mask, Rows, cached_property, different
-from polarcheck.geometry.segments import Curves
-from polarcheck.geometry.tolerances import CORNER, ROUNDING
+from polarcheck.foundation.arrays import Columns, Floats, Mask, cached_property, different
+from polarcheck.geometry.tolerances import ROUNDING
+
+if TYPE_CHECKING:
+    from polarcheck.geometry.outline import Outline
+    from polarcheck.geometry.polygons.lost_walls import Likeness, Samples, Standing
 
 #: Walls of a contour and of what has been cut before differ by wear and rounding [mm]; C differs by rounding [deg].
 _SAME_SIZE, _SAME_ANGLE = 0.05, 0.5
-#: Two sections of one floor end at the same Z within this [mm].
-_SAME_FLOOR = 0.2
-#: A polygon larger or smaller by this share is another part of the workpiece.
-_OTHER_SIZE = 0.25
-#: By half of a pitch, a polygon with walls so much farther out, or that loses less of its corners, makes chamfers [mm].
-_MOST_LEFT, _CHAMFER = 1.0, 0.5
-#: A program with more contours than this is not searched.
-_MOST_POLYGONS = 100
+#: Two sections of one floor end at the same Z within this [mm], or within this share of their depth, but no more.
+_SAME_FLOOR, _SHARE_OF_DEPTH, _MOST_ON_FLOOR = 0.2, 0.1, 0.5
+#: A tool that comes again so much farther out clears on; a floor is finished so far beside its wall [mm].
+_MOST_LEFT, _BESIDE_WALL = 1.0, 0.3
+#: By half of a pitch, a polygon that loses a smaller share of its corners makes chamfers.
+_CHAMFER = 0.5
+#: A shorter block is no wall [mm].
+_SHORT = 1.0
+#: A program with more sections than this is not searched.
+_MOST_SECTIONS = 100
 
 
-class Polygon(NamedTuple):
+class Contour(NamedTuple):
     """
-    A regular polygon around X0 that is kept.
+    A closed contour at the floor of a section.
 
-    row: int[walls]. section: its number. sides: how many. distance: of the walls from X0 [mm]. angle: of one normal in
-    the frame of the part, from 0 to one pitch [deg]. reach: the farthest point of the walls from X0 [mm]. z: of the
-    contour [mm]. left: metal that R leaves for another tool [mm].
+    row: of its first block. section: its number. tool: as called. z: [mm]. radius: R of the cutter [mm]. left: metal
+    that R leaves for another tool [mm]. inside: it is a pocket. standing: what all contours of its section and depth
+    leave. outline, samples: of this contour. All in the frame of the part.
     """
 
-    row: Rows
+    row: int
     section: int
-    sides: int
-    distance: float
-    angle: float
-    reach: float
+    tool: int
     z: float
+    radius: float
     left: float
+    inside: bool
+    standing: Standing
+    outline: Outline
+    samples: Samples
 
 
 class EarlierContours(Columns, frozen=True):
@@ -51,10 +59,19 @@ class EarlierContours(Columns, frozen=True):
     trace: Trace
     overcuts: Overcuts
     bar: Bar
+    finished: Finished
+
+    @cached_property
+    def compared(self) -> Mask:
+        """Rows of contours in programs of which several tools mill contours."""
+        trace = self.trace
+        rows = np.flatnonzero(trace.compensation.offset_mode)
+        several = len(different(trace.tools.tool[rows])) > 1 and len(different(trace.mode.section[rows])) > 1
+        return np.asarray(trace.compensation.offset_mode & several)
 
     @cached_property
     def loss(self) -> Floats:
-        """By row of a contour, how much of its corners an earlier section has cut off [mm]; 0 for nothing."""
+        """By row of a contour, how much of its walls or corners an earlier section has cut off [mm]; 0 for nothing."""
         column = np.zeros(len(self.trace))
         for row, (_, loss) in self._hits.items():
             column[row] = loss
@@ -67,97 +84,155 @@ class EarlierContours(Columns, frozen=True):
     @cached_property
     def _hits(self) -> dict[int, tuple[int, float]]:
         """By the first row of a later contour, the first row of the earlier one, and what is lost [mm]."""
-        polygons = [*self._polygons()]
+        pairs = self._pairs
         hits: dict[int, tuple[int, float]] = {}
-        for number, later in enumerate(polygons):
+        if not pairs:
+            return hits
+        contours = [*self._contours({section for pair in pairs for section in pair})]
+        for later in contours:
             losses = [
-                (self._loss(polygon, later), int(polygon.row[0]))
-                for polygon in polygons[:number]
-                if self._is_one_part(polygon, later)
+                (self._loss(contour, later, contours), contour.row)
+                for contour in contours
+                if (contour.section, later.section) in pairs
             ]
             loss, row = max(losses, default=(0.0, -1))
             if loss > _SAME_SIZE:
-                hits[int(later.row[0])] = row, loss
+                hits[later.row] = row, loss
         return hits
 
-    def _polygons(self) -> Iterator[Polygon]:
-        """The polygons at the floor of each section, in the order of the program."""
-        walls, left = self.overcuts.walls
+    @cached_property
+    def _pairs(self) -> set[tuple[int, int]]:
+        """
+        Sections that mill one part of the workpiece to one floor, with other tools or other sizes.
+
+        No turning tool has made another face between them.
+        """
+        walls, _ = self.overcuts.walls
         trace = self.trace
         section = trace.mode.section[walls.row]
-        long = walls.is_known & ~walls.is_arc & (np.abs(walls.end - walls.start) > CORNER)
-        z = trace.path.z[walls.row]
-        floor = np.full(len(trace.mode.sections), np.inf)
-        np.fmin.at(floor, section, z)
-        long &= trace.path.knows_section_entry[section] & (z <= floor[section] + ROUNDING)
-        walls, left = walls[long], left[long]
-        begins = np.flatnonzero(np.diff(walls.loop, prepend=-1))
-        if not 0 < len(begins) <= _MOST_POLYGONS:
-            return
-        for first, end in zip(begins, np.append(begins[1:], len(walls)), strict=True):
-            polygon = self._polygon(walls[first:end], left[first:end])
-            if polygon is not None:
-                yield polygon
-
-    def _polygon(self, walls: Curves, left: Mask) -> Polygon | None:
-        """The regular polygon of the walls of one loop, leads left out."""
-        along = walls.end - walls.start
-        normal = along / np.abs(along) * np.where(left, 1j, -1j)
-        distance = (walls.start * normal.conj()).real
-        # Leads lie at other distances than the sides.
-        sides = np.array([np.abs(distance - one) <= _SAME_SIZE / 2 for one in distance])
-        side = sides[np.argmax(sides.sum(axis=1))]
-        angle = np.degrees(np.angle(normal[side])) % 360
-        directions = different(np.rint(angle / _SAME_ANGLE) * _SAME_ANGLE % 360)
-        count = len(directions)
-        if count < 3 or np.ptp(np.diff(directions)) > 2 * _SAME_ANGLE or distance[side][0] <= 0:
-            return None
-        pitch = 360 / count
-        if abs(directions[1] - directions[0] - pitch) > _SAME_ANGLE:
-            return None
-        row, size = walls.row[side], float(distance[side].mean())
-        corner = size / np.cos(np.pi / count)
-        ends = np.abs(np.append(walls.start[side], walls.end[side]))
-        # Leads may continue a side beyond its corners, and the bar may cut them off.
-        reach = min(float(np.max(ends, initial=0.0, where=ends <= corner + _SAME_SIZE)), corner)
-        if not np.isnan(self.overcuts.bar):
-            reach = max(min(reach, self.overcuts.bar / 2), size)
-        trace, section = self.trace, int(self.trace.mode.section[row[0]])
-        turned = float(angle[0] + trace.path.section_entry[section]) % pitch
-        metal_left = float(trace.offsets.metal_left[row[0]])
-        return Polygon(row, section, count, size, turned, reach, float(trace.path.z[row[0]]), metal_left)
-
-    def _is_one_part(self, earlier: Polygon, later: Polygon) -> bool:
-        """Two sections finish the same part of the workpiece, and no turning tool has made another face between."""
-        trace = self.trace
-        first, last = int(earlier.row[0]), int(later.row[0])
-        origin = trace.modal.state("work_offset")
-        return bool(
-            earlier.section != later.section
-            and earlier.sides == later.sides
-            and abs(earlier.z - later.z) <= _SAME_FLOOR
-            and abs(earlier.distance / later.distance - 1) <= _OTHER_SIZE
-            and trace.blocks.program[first] == trace.blocks.program[last]
-            and origin[first] == origin[last]
-            and trace.modal.on_sub_spindle[first] == trace.modal.on_sub_spindle[last]
-            and not self.bar.tools.turns[first:last].any()
+        count = len(trace.mode.sections)
+        floor = np.full(count, np.inf)
+        np.fmin.at(floor, section, trace.path.z[walls.row])
+        at_floor = trace.path.z[walls.row] <= floor[section] + ROUNDING
+        walls, section = walls[at_floor], section[at_floor]
+        numbers, first = np.unique(section, return_index=True)
+        if not 1 < len(numbers) <= _MOST_SECTIONS:
+            return set()
+        reach = np.zeros(count)
+        np.fmax.at(reach, section, np.abs(walls.end))
+        row = walls.row[first]
+        turns = np.cumsum(self.bar.tools.turns)
+        face = np.stack(
+            [
+                trace.blocks.program[row],
+                trace.modal.state("work_offset")[row],
+                trace.modal.on_sub_spindle[row],
+                turns[row],
+            ]
         )
+        floor, reach, tool = floor[numbers], reach[numbers], trace.tools.tool[row]
+        depth = np.abs(floor - (0.0 if np.isnan(self.bar.known.face) else self.bar.known.face))
+        one_floor = np.clip(_SHARE_OF_DEPTH * depth, _SAME_FLOOR, _MOST_ON_FLOOR)
+        differs = (tool[:, None] != tool) | (np.abs(reach[:, None] - reach) > _SAME_SIZE)
+        together = (face[:, :, None] == face[:, None, :]).all(axis=0) & differs
+        together &= np.abs(floor[:, None] - floor) <= np.minimum(one_floor[:, None], one_floor) + ROUNDING
+        known = trace.path.knows_section_entry[numbers]
+        earlier, later = np.nonzero(np.triu(together & known[:, None] & known, 1))
+        return set(zip(numbers[earlier].tolist(), numbers[later].tolist(), strict=True))
 
-    def _loss(self, earlier: Polygon, later: Polygon) -> float:
-        """How far corners or walls of the later polygon lie beyond the walls of the earlier one [mm]."""
-        pitch = 360 / later.sides
-        # The angle between the normals, from 0 to half of a pitch.
-        turn = abs((later.angle - earlier.angle + pitch / 2) % pitch - pitch / 2)
-        wall = earlier.distance + earlier.left
-        if turn <= _SAME_ANGLE:
-            return later.distance - wall
-        # The corner of the later one nearest to the normal of the earlier one.
-        to_corner = np.arccos(min(later.distance / later.reach, 1.0))
-        loss = float(later.reach * np.cos(max(0.0, abs(np.radians(turn) - to_corner))) - wall)
-        is_smaller = earlier.distance - later.distance > _SAME_SIZE
-        if turn < pitch / 2 - _SAME_ANGLE:
-            is_another_tool = self.trace.tools.tool[earlier.row[0]] != self.trace.tools.tool[later.row[0]]
-            return loss if is_smaller or is_another_tool else 0.0
-        # Half of a pitch makes twice as many sides, or chamfers, where it is meant to.
-        is_finish = is_smaller and earlier.distance - later.distance <= _MOST_LEFT
-        return loss if is_finish and loss >= _CHAMFER * (later.reach - later.distance) else 0.0
+    def _contours(self, sections: set[int]) -> Iterator[Contour]:
+        """The closed contours at the floor of these sections, in the order of the program."""
+        from polarcheck.geometry.polygons.lost_walls import samples_of, standing_of
+
+        trace = self.trace
+        levels = [level for level in self.finished.levels if level.section in sections and not np.isnan(level.z)]
+        for section in sorted({level.section for level in levels}):
+            level = min((one for one in levels if one.section == section), key=lambda one: one.z)
+            if level.open or level.tangled or not len(level.outline):
+                continue
+            level = self.finished.in_frame_of_part(level)
+            standing = standing_of(level.polygon, level.outline)
+            # Where the bar cuts off corners, the walls between them are one contour.
+            chain = np.where(level.outline.closed[level.outline.chain], level.outline.chain, -1)
+            for number in dict.fromkeys(chain.tolist()):
+                outline = level.outline[chain == number]
+                samples = samples_of(outline)
+                row = int(outline.row.min())
+                yield Contour(
+                    row=row,
+                    section=section,
+                    tool=int(trace.tools.tool[row]),
+                    z=level.z,
+                    radius=level.radius,
+                    left=float(trace.offsets.metal_left[row]),
+                    inside=number >= 0 and bool(outline.twice_swept.sum() < 0),
+                    standing=standing,
+                    outline=outline,
+                    samples=samples,
+                )
+
+    def _loss(self, earlier: Contour, later: Contour, contours: list[Contour]) -> float:
+        """How far walls or corners of the later contour lie beyond what the earlier one leaves [mm]."""
+        gone = self._gone(earlier, later)
+        if gone.max() <= _SAME_SIZE:
+            return 0.0
+        # What a section takes off afterwards the contour was not to keep.
+        for contour in contours:
+            if (later.section, contour.section) in self._pairs:
+                gone = np.where(self._gone(contour, later) > _SAME_SIZE, 0.0, gone)
+        like = self._likeness(earlier, later)
+        if like is None:
+            is_air = gone.min() > _SAME_SIZE and gone.max() + 2 * (later.radius - earlier.radius) <= _SAME_SIZE
+            return float(gone.min()) if is_air else 0.0
+        if not like.is_aligned:
+            return float(gone.max()) if self._is_elsewhere(earlier, later, float(gone.max()), contours) else 0.0
+        offset = min(like.offset - earlier.left, float(gone.max()))
+        if offset > _SAME_SIZE:
+            clears_on = earlier.tool == later.tool and offset > _MOST_LEFT
+            cuts_floor = later.z < earlier.z - _SAME_SIZE and offset <= _BESIDE_WALL
+            return 0.0 if clears_on or cuts_floor or offset >= earlier.radius else offset
+        return self._lost_block(later, gone) if like.offset - earlier.left < -_SAME_SIZE else 0.0
+
+    def _gone(self, contour: Contour, other: Contour) -> Floats:
+        """How far points of the other contour lie beyond what the first one leaves [mm], where its cutter reaches."""
+        from polarcheck.geometry.polygons.lost_walls import beyond
+
+        gone = beyond(other.samples.point, contour.standing) - contour.left
+        return np.where(gone <= 2 * contour.radius, gone, 0.0)
+
+    @cached_property
+    def _likenesses(self) -> dict[tuple[int, int], Likeness | None]:
+        return {}
+
+    def _likeness(self, earlier: Contour, later: Contour) -> Likeness | None:
+        """The turns and the offset that lay the later contour along the earlier one."""
+        from polarcheck.geometry.polygons.lost_walls import likeness
+
+        key = earlier.row, later.row
+        if key not in self._likenesses:
+            self._likenesses[key] = likeness(later.samples, later.outline, earlier.standing)
+        return self._likenesses[key]
+
+    def _is_elsewhere(self, earlier: Contour, later: Contour, loss: float, contours: list[Contour]) -> bool:
+        """The earlier contour is the later one at another C, and the two make no other shape together."""
+        like = self._likeness(earlier, later)
+        pairs = [(earlier, one) for one in contours] + [(one, later) for one in contours]
+        likenesses = [self._likeness(*pair) for pair in pairs if (pair[0].section, pair[1].section) in self._pairs]
+        # Two slots that cross, each with a contour before it.
+        if like is None or any(one is not None and one.is_aligned for one in likenesses):
+            return False
+        left, pitch = -like.offset, 360 / len(like.turns)
+        if len(like.turns) > 2 and like.turn >= pitch / 2 - _SAME_ANGLE:
+            # Half of a pitch makes twice as many sides, or chamfers, where it is meant to.
+            distance = np.abs(later.samples.point)
+            return _SAME_SIZE < left <= _MOST_LEFT and loss >= _CHAMFER * float(np.ptp(distance))
+        return left > _SAME_SIZE or (not later.inside and earlier.tool != later.tool)
+
+    def _lost_block(self, later: Contour, gone: Floats) -> float:
+        """The least loss along a whole block [mm] of a contour for which metal is left elsewhere."""
+        element = later.samples.element
+        is_end = (np.diff(element, prepend=-1) != 0) | (np.diff(element, append=-1) != 0)
+        least = np.full(len(later.outline), np.inf)
+        np.minimum.at(least, element[~is_end], gone[~is_end])
+        least[later.outline.length < _SHORT] = 0.0
+        return float(np.max(least, initial=0.0, where=np.isfinite(least)))

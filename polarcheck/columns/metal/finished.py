@@ -90,7 +90,7 @@ class Finished(Columns, frozen=True):
         """The levels of single sections, in the frame of the part, that levels of several sections are joined from."""
         rows = [level.walls.row for level in of_part if len(level.sections) > 1]
         together = set(np.concatenate(rows).tolist()) if rows else set()
-        return [self._turned(level) for level in levels if int(level.walls.row[0]) in together]
+        return [self.in_frame_of_part(level) for level in levels if int(level.walls.row[0]) in together]
 
     @cached_property
     def meant(self) -> list[Level]:
@@ -122,15 +122,15 @@ class Finished(Columns, frozen=True):
             groups.setdefault(key, []).append(level)
         result: list[Level] = []
         for group in groups.values():
-            turned = [self._turned(level) for level in group]
+            turned = [self.in_frame_of_part(level) for level in group]
             if len({level.section for level in group}) > 1:
                 joined = self._joined(turned)
                 turned = turned if joined is None else [joined]
             result += turned
         return sorted(result, key=lambda level: int(level.walls.row[0]))
 
-    def _turned(self, level: Level) -> Level:
-        """The level in the frame of the part."""
+    def in_frame_of_part(self, level: Level) -> Level:
+        """The level turned by C at G12.1; as it is where that is not known."""
         from polarcheck.geometry.polygons.standing_metal import turned
 
         angle = float(self.trace.path.section_entry[level.section])

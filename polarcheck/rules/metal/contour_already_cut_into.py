@@ -6,7 +6,9 @@ from polarcheck.rules.rule import WARNING, Hits, rule
 
 if TYPE_CHECKING:
     from polarcheck.columns.metal.earlier_contours import EarlierContours
+    from polarcheck.columns.path.compensation import CutterCompensation
     from polarcheck.rules.hit import Details, Hit
+    from polarcheck.rules.rule import Needs
 
 
 @rule(
@@ -19,15 +21,16 @@ if TYPE_CHECKING:
 )
 def contour_already_cut_into(earlier_contours: EarlierContours) -> Hits:
     """
-    Polygon of which another section of the same depth has cut off the corners or the walls before.
+    Contour of which another section of the same depth has cut off corners or walls before.
 
     Roughing and finishing stand at different C, or the roughing is smaller than the finished size: the part has lost
     metal that the finished contour was to keep. Compare C at both G12.1, and both sizes.
 
-    Compared are regular polygons around X0 with the same number of sides whose sections end at the same Z, without
-    turning between them. Not reported are polygons of other depths, as those of chamfers; turns by whole pitches; and
-    turns by half a pitch with polygons of one size, or that take off only a little of the corners, which make twice as
-    many sides or chamfers.
+    Compared are closed contours whose sections end at one Z, without turning between them, and whose outlines are alike
+    but for C, an allowance and single walls; and contours that run in what another one has cleared. Not reported are
+    contours of other depths, as those of chamfers; a tool that clears on beside its own contour; what a later section
+    takes off; and regular shapes turned by half a pitch that have one size, or lose only a little of their corners:
+    they make twice as many sides or chamfers.
 
     Source: the geometry of both contours alone.
 
@@ -101,6 +104,10 @@ def contour_already_cut_into(earlier_contours: EarlierContours) -> Hits:
     """
     loss = earlier_contours.loss
     return Hits(loss > 0, values={"depth": loss})
+
+
+def needs(compensation: CutterCompensation, earlier_contours: EarlierContours) -> Needs:
+    return earlier_contours.compared, {"radius": compensation.radius}
 
 
 def details(hit: Hit, earlier_contours: EarlierContours) -> Details:
