@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from polarcheck.columns.metal.air_cuts import AirCuts
+from polarcheck.columns.metal.air_cuts import AirCuts, block_of_depth
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Columns, Floats, Mask, Rows, Table, cached_property
 from polarcheck.geometry.tolerances import ROUNDING
@@ -58,7 +58,7 @@ class PassDepths(Columns, frozen=True):
 
     @cached_property
     def expected(self) -> Floats:
-        """Per row: Z that would be in step with the other passes, at a pass that is off; NaN elsewhere [mm]."""
+        """Per row: Z in step with the other passes, at the row that tells of one that is off; NaN elsewhere [mm]."""
         expected = np.full(len(self.trace), np.nan)
         for row, z in self._off():
             expected[row] = z
@@ -66,7 +66,7 @@ class PassDepths(Columns, frozen=True):
 
     @cached_property
     def is_off(self) -> Mask:
-        """Rows with the first cut of a pass that is off."""
+        """Rows with the first cut of a pass that is off, or with its Z where that stands before a call."""
         return ~np.isnan(self.expected)
 
     def _off(self) -> Iterator[tuple[int, float]]:
@@ -87,7 +87,7 @@ class PassDepths(Columns, frozen=True):
             row = int(passes.row[group[number]])
             scale = float(self.trace.lengths.scale[row])
             if len(z) >= _LEAST or _is_slip(z[number] / scale, value / scale):
-                yield row, value
+                yield block_of_depth(self.trace, row), value
 
 
 def _is_slip(written: float, intended: float) -> bool:

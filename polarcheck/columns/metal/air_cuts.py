@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from polarcheck.columns.filling import last_row
 from polarcheck.columns.metal.bar import Bar
 from polarcheck.columns.metal.workpiece import Workpiece
 from polarcheck.columns.trace import Trace
@@ -101,7 +102,10 @@ class AirCuts(Columns, frozen=True):
 
     @cached_property
     def reason(self) -> States:
-        """Per row a Reason, at the first cut of a section or pass that takes nothing off."""
+        """
+        Per row a Reason, at the first cut of a section or pass that takes nothing off; at its Z where that is wrong and
+        stands in another program.
+        """
         trace = self.trace
         reason = np.zeros(len(trace), np.int16)
         if not self.walls.any():
@@ -121,7 +125,11 @@ class AirCuts(Columns, frozen=True):
         outside = np.flatnonzero(reason == Reason.OUTSIDE_BAR)
         reason[outside[1:]] = Reason.NOT_IN_AIR
         first = trace.mode.first_in_section(reason > 0)
-        return np.where(first, reason, 0).astype(np.int16)
+        reason = np.where(first, reason, 0).astype(np.int16)
+        for row in np.flatnonzero(reason == Reason.SIGN_WRONG).tolist():
+            reason[row] = Reason.NOT_IN_AIR
+            reason[block_of_depth(trace, row)] = Reason.SIGN_WRONG
+        return reason
 
     @cached_property
     def _highest(self) -> Floats:
@@ -350,6 +358,12 @@ class AirCuts(Columns, frozen=True):
         result = (idle[enter] > idle[since]) & (turns[enter] == turns[since])
         result[:1] = False
         return np.asarray(result)
+
+
+def block_of_depth(trace: Trace, row: int) -> int:
+    """The row that writes the Z of a cut, where it stands before the call of what cuts; else the row itself."""
+    written = int(last_row(trace.axes.commands_z & trace.mode.in_polar, trace.mode.enters)[row])
+    return written if written >= 0 and trace.run.depth[written] < trace.run.depth[row] else row
 
 
 def _direction(section: Rows) -> Rows:

@@ -48,6 +48,8 @@ def part_of(report: FileReport, runs: Sequence[tuple[str, Tables]]) -> FileRepor
 
 #: More shapes than these are no line.
 _IN_ONE_LINE = 4
+#: Words for a round or a chamfer at the end of a block, as they are named where they are not simulated.
+_CORNER_WORDS = ("RND=", "RNDM=", "CHF=", "CHR=")
 #: More angles than these are given by their first and last one, if their steps are the same [deg].
 _IN_A_LIST, _SAME_STEP = 8, 1e-3
 
@@ -147,7 +149,24 @@ def _by_section(trace: Trace, tables: Tables) -> list[MadeShape]:
 
 
 def _missing(trace: Trace, section: int) -> str:
-    """The reason why the contour of a section is incomplete: the line of the first block with an unknown end."""
+    """Why the contour of a section is not what the program writes: a way that is not known, corners by words."""
+    return "; ".join(filter(None, (_unknown_way(trace, section), _sharp_corners(trace, section))))
+
+
+def _sharp_corners(trace: Trace, section: int) -> str:
+    """The lines of corners and chamfers that words ask for and that are not simulated."""
+    run = trace.run
+    blocks = [one.block for one in run.remarks if one.kind == "not-simulated" and one.values["name"] in _CORNER_WORDS]
+    written = trace.blocks.has(",R", ",C") | (np.isin(run.block, blocks) if blocks else False)
+    lines = trace.blocks.line_in_file[(trace.mode.section == section) & written]
+    if not len(lines):
+        return ""
+    where = ", ".join(map(str, dict.fromkeys(lines.tolist())))
+    return f"corners not simulated: the rounds and chamfers of line{'s' * (len(lines) > 1)} {where} are left out"
+
+
+def _unknown_way(trace: Trace, section: int) -> str:
+    """The line of the first block of a section with an unknown end."""
     compensates = trace.compensation.compensates
     mills = np.where(trace.mode.anywhere_in_section(compensates), compensates, trace.path.cuts)
     mills |= trace.path.shape_is_unknown

@@ -5,11 +5,13 @@ from typing import TYPE_CHECKING
 from polarcheck.rules.rule import ERROR, rule
 
 if TYPE_CHECKING:
+    from polarcheck.columns.metal.bar import Bar
     from polarcheck.columns.modes.executed_blocks import ExecutedBlocks
     from polarcheck.columns.modes.mode import PolarMode
     from polarcheck.columns.modes.mode_words import ModeWords
     from polarcheck.columns.modes.tools import CalledTools
     from polarcheck.columns.path.compensation import CutterCompensation
+    from polarcheck.columns.trace import Trace
     from polarcheck.foundation.arrays import Mask
     from polarcheck.program.execution.run import Run
     from polarcheck.program.machines.machine import Machine
@@ -18,7 +20,7 @@ if TYPE_CHECKING:
 
 @rule(
     ERROR,
-    "tool offset changed in the polar mode by {changed_by}; write it {outside}",
+    "tool offset changed in the polar mode by {changed_by}{beside_part}; write it {outside}",
     values=("changed_by",),
     at=("T", "D", "data_input"),
 )
@@ -68,10 +70,12 @@ def offset_changed_in_polar(
     return calls_another | writes_one | assigns_one
 
 
-def details(hit: Hit, tools: CalledTools, run: Run, machine: Machine) -> Details:
+def details(hit: Hit, tools: CalledTools, run: Run, machine: Machine, upright: Trace, bar: Bar) -> Details:
+    from polarcheck.rules.wording.metal import turret_at_depth
     from polarcheck.rules.wording.offsets import called_tool
 
     if hit.row in run.assigned:
-        return {"changed_by": run.assigned[hit.row].name}
-    calls = tools.calls_offset[hit.row]
-    return {"changed_by": called_tool(tools, hit.row) if calls else machine.codes("data_input")[0]}
+        return {"changed_by": run.assigned[hit.row].name, "beside_part": ""}
+    if not tools.calls_offset[hit.row]:
+        return {"changed_by": machine.codes("data_input")[0], "beside_part": ""}
+    return {"changed_by": called_tool(tools, hit.row), "beside_part": turret_at_depth(hit, upright, bar, hit.row)}

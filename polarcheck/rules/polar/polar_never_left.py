@@ -5,8 +5,10 @@ from typing import TYPE_CHECKING
 from polarcheck.rules.rule import ERROR, rule
 
 if TYPE_CHECKING:
+    from polarcheck.columns.metal.bar import Bar
     from polarcheck.columns.modes.executed_blocks import ExecutedBlocks
     from polarcheck.columns.modes.mode import PolarMode
+    from polarcheck.columns.trace import Trace
     from polarcheck.foundation.arrays import Mask
     from polarcheck.rules.hit import Details, Hit
 
@@ -75,8 +77,9 @@ def polar_never_left(mode: PolarMode) -> Mask:
     return ~mode.sections.left
 
 
-def details(hit: Hit, blocks: ExecutedBlocks, mode: PolarMode) -> Details:
+def details(hit: Hit, blocks: ExecutedBlocks, mode: PolarMode, upright: Trace, bar: Bar) -> Details:
     from polarcheck.rules.places import block_in_line
+    from polarcheck.rules.wording.metal import turret_at_depth
     from polarcheck.rules.wording.written import switch_off
 
     leave = int(mode.sections.leave[hit.index])
@@ -84,4 +87,5 @@ def details(hit: Hit, blocks: ExecutedBlocks, mode: PolarMode) -> Details:
     if leave >= len(blocks) or blocks.starts[leave]:
         return {"other_line": None, "missing_before": f"{off} is missing at the end of the program"}
     line, block = hit.line(leave), block_in_line(hit.trace.run, leave, _BLOCK_LENGTH)
-    return {"other_line": line, "missing_before": f"{off} is missing before line {line}, {block}"}
+    beside_part = turret_at_depth(hit, upright, bar, leave)
+    return {"other_line": line, "missing_before": f"{off} is missing before line {line}, {block}{beside_part}"}

@@ -9,6 +9,7 @@ from polarcheck.columns.metal.bar import Bar
 from polarcheck.columns.metal.workpiece import Workpiece
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Mask
+from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.rules.hit import Hit
 
 
@@ -62,3 +63,11 @@ def through(hit: Hit, workpiece: Workpiece) -> str:
     """`through`, or `if X moves first, through`, of a move of several axes at once."""
     may_miss = workpiece.may_miss_part if workpiece.hits_part[hit.row] else workpiece.may_miss_bar
     return "(if X is faster than Z or C) through" if may_miss[hit.row] else "through"
+
+
+def turret_at_depth(hit: Hit, upright: Trace, bar: Bar, row: int) -> str:
+    """`, and the turret turns beside the part at Z-5`: a T word calls another tool with the cutter below the face."""
+    face = 0.0 if np.isnan(bar.known.face) else bar.known.face
+    if not (hit.trace.tools.changes_tool[row] and upright.path.z_before[row] < face - ROUNDING):
+        return ""
+    return f", and the turret turns beside the part at Z{hit.number(hit.trace.path.z_before[row])}"
