@@ -370,7 +370,7 @@ class Writer:
             self.write(f"G1 {word('X', 2 * start)} C0. F900", "lead")
             self.write(f"{word('Z', depth)} F60", "depth")
             self.write(f"G3 {word('X', 2 * start)} C0. {word('I', -start)} J0. F200", "contour")
-            self.write("Z2. F900", "lift")
+            self.write("G1 Z2. F900", "lift")
         self.leave()
 
     def slot(self, tool: int, radius: float, c: float, depths: tuple[float, ...]) -> None:
@@ -390,3 +390,141 @@ class Writer:
 def drawn(seed: int) -> Program:
     """The program of a seed."""
     return Writer(seed).program()
+
+
+# ---- slips ----
+
+#: Blocks in the place of one; none for a block that is left out.
+Change = Callable[[Program, int, random.Random], "list[str] | None"]
+
+
+class Kind(NamedTuple):
+    """A kind of slip: in blocks of some roles, of programs of some shapes, of tools of these numbers."""
+
+    roles: tuple[str, ...]
+    change: Change
+    shapes: tuple[str, ...] = SHAPES
+    fits: Callable[[Program], bool] = lambda program: True
+
+
+def _words(text: str) -> dict[str, str]:
+    return {one[0]: one[1:] for one in text.split()}
+
+
+def _scaled(address: str, factor: float, least: float = 0.5) -> Change:
+    def change(program: Program, index: int, draw: random.Random) -> list[str] | None:
+        text = program.lines[index].text
+        written = _words(text).get(address)
+        if written is None or abs(float(written)) < least:
+            return None
+        return [text.replace(address + written, word(address, float(written) * factor))]
+
+    return change
+
+
+def _moved(address: str, by: float) -> Change:
+    """Nearer to X0 by a length, of X on the diameter."""
+
+    def change(program: Program, index: int, draw: random.Random) -> list[str] | None:
+        text = program.lines[index].text
+        value = float(_words(text).get(address, "0"))
+        if abs(value) <= by:
+            return None
+        return [text.replace(address + _words(text)[address], word(address, value - math.copysign(by, value)))]
+
+    return change
+
+
+def _swapped(address: str) -> Change:
+    def change(program: Program, index: int, draw: random.Random) -> list[str] | None:
+        text = program.lines[index].text
+        written = _words(text).get(address, "")
+        whole = written.lstrip("-").partition(".")[0]
+        if len(whole) != 2 or abs(int(whole[0]) - int(whole[1])) < 2:
+            return None
+        return [text.replace(address + written, address + written.replace(whole, whole[::-1], 1))]
+
+    return change
+
+
+def _text(old: str, new: str) -> Change:
+    def change(program: Program, index: int, draw: random.Random) -> list[str] | None:
+        text = program.lines[index].text
+        return [text.replace(old, new)] if old in text else None
+
+    return change
+
+
+def _without(program: Program, index: int, draw: random.Random) -> list[str] | None:
+    return []
+
+
+def _with(block: str) -> Change:
+    return lambda program, index, draw: [program.lines[index].text, block]
+
+
+def _has_two_tools(program: Program) -> bool:
+    return len(program.radii) == 2
+
+
+def _rough_at_c20(program: Program, index: int, draw: random.Random) -> list[str] | None:
+    return ["C20."] if program.lines[index].section == 1 else None
+
+
+def _is_turned_far(program: Program) -> bool:
+    return program.raw >= program.spigot + 6 and program.shape in ("polygon", "rectangle", "flats", "slots")
+
+
+def _has_several(program: Program) -> bool:
+    return max(line.section for line in program.lines) > 1 and len(program.radii) == 1
+
+
+_BOSS, _OPEN = ("polygon", "rectangle"), ("flats", "slots")
+KINDS: dict[str, Kind] = {
+    "lead inside the bar": Kind(("lead",), _moved("X", 12.0), ("slots",)),
+    "lead of a flat inside the bar": Kind(("lead",), _scaled("C", 0.3), ("flats",)),
+    "depth ten times": Kind(("depth",), _scaled("Z", 10), SHAPES, lambda p: p.raw >= p.spigot + 6),
+    "sign of the depth": Kind(("depth",), _scaled("Z", -1)),
+    "depth is missing": Kind(("depth",), _without),
+    "lift is missing": Kind(("lift",), _without, ("slots",), lambda p: sum(one.role == "lift" for one in p.lines) > 1),
+    "lift goes down": Kind(("lift",), _scaled("Z", -1), ("slots",)),
+    "rapid traverse below the face": Kind(("above",), _text("Z2.", "Z-2."), ("pocket",)),
+    "contour X ten times": Kind(("contour",), _scaled("X", 10), _BOSS),
+    "contour C ten times": Kind(("contour",), _scaled("C", 10), _BOSS),
+    "contour X without its sign": Kind(("contour",), _scaled("X", -1), _BOSS),
+    "contour C without its sign": Kind(("contour",), _scaled("C", -1), _BOSS),
+    "contour X as a radius": Kind(("contour",), _scaled("X", 0.5), _BOSS),
+    "contour X doubled": Kind(("contour",), _scaled("X", 2), _BOSS),
+    "contour C doubled": Kind(("contour",), _scaled("C", 2), _BOSS),
+    "digits of X swapped": Kind(("contour",), _swapped("X"), _BOSS),
+    "digits of C swapped": Kind(("contour",), _swapped("C"), _BOSS),
+    "corner is missing": Kind(("contour",), _without, _BOSS),
+    "G42 for G41": Kind(("ramp",), _text("G41", "G42"), (*_BOSS, "flats")),
+    "G41 is missing": Kind(("ramp",), _text("G41 ", ""), (*_BOSS, "flats")),
+    "G40 is missing": Kind(("cancel",), _text("G40 ", ""), (*_BOSS, "flats")),
+    "index is missing": Kind(("index",), _without, _OPEN, _has_several),
+    "roughing at another C": Kind(("index",), _rough_at_c20, _BOSS, _has_two_tools),
+    "spigot too short": Kind(("spigot",), _scaled("Z", 0.1), SHAPES, _is_turned_far),
+    "spigot too thick": Kind(("spigot",), _moved("X", -14.0), SHAPES, _is_turned_far),
+    "G13.1 is missing": Kind(("off",), _without),
+    "G12.1 is missing": Kind(("on",), _without),
+    "turret turns in the mode": Kind(("contour",), _with("T0808"), (*_BOSS, "flats")),
+    "unit of the program": Kind(("head",), _text("G21", "G20")),
+    "lead at depth in rapid traverse": Kind(("lead",), _text("G1 ", "G0 ")),
+}
+
+
+def slipped(program: Program, name: str) -> Program | None:
+    """The program with a slip of this kind; None where it has no place for one."""
+    kind, draw = KINDS[name], random.Random(f"{program.seed} {name}")
+    if program.shape not in kind.shapes or not kind.fits(program):
+        return None
+    places = [index for index, line in enumerate(program.lines) if line.role in kind.roles]
+    draw.shuffle(places)
+    for index in places:
+        texts = kind.change(program, index, draw)
+        if texts is not None and texts != [program.lines[index].text]:
+            line = program.lines[index]
+            changed = tuple(line._replace(text=text) for text in texts)
+            return program._replace(lines=(*program.lines[:index], *changed, *program.lines[index + 1 :]))
+    return None

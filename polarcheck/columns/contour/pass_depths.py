@@ -19,6 +19,8 @@ _LEAST, _FEWEST = 3, 2
 _SKIPPED = 1.5
 #: Points that are nearer than this are one [mm].
 _SAME = 2e-3
+#: A depth is far below the turning if it is as many times as deep, and steep if it is as many times the cutter's width.
+_BEYOND, _STEEP = 2.0, 2.5
 
 
 class Passes(Table, frozen=True):
@@ -60,7 +62,7 @@ class PassDepths(Columns, frozen=True):
     def expected(self) -> Floats:
         """Per row: Z in step with the other passes, at the row that tells of one that is off; NaN elsewhere [mm]."""
         expected = np.full(len(self.trace), np.nan)
-        for row, z in self._off():
+        for row, z in (*self._beyond_turning, *self._in_steps()):
             expected[row] = z
         return expected
 
@@ -69,7 +71,34 @@ class PassDepths(Columns, frozen=True):
         """Rows with the first cut of a pass that is off, or with its Z where that stands before a call."""
         return ~np.isnan(self.expected)
 
-    def _off(self) -> Iterator[tuple[int, float]]:
+    @property
+    def _beyond_turning(self) -> Iterator[tuple[int, float]]:
+        """
+        Passes far below all that is turned, much deeper in one step than the cutter is wide, and the Z with the point a
+        digit to the left, which lies in what is turned.
+
+        One of these alone may be meant: a shaft is milled across its shoulder, a wall is milled in one pass.
+        """
+        passes, bar = self.passes, self.air_cuts.bar
+        turned = bar.deepest_turned
+        if not len(passes) or not np.isfinite(turned):
+            return
+        section, z = self.trace.mode.section[passes.row], passes.z * bar.trace.path.z_sense
+        step = np.where(np.diff(section, prepend=-1) == 0, np.append(0.0, z[:-1]), 0.0) - z
+        width = 2 * self.air_cuts.workpiece.radius[passes.row]
+        deep = (z < _BEYOND * turned) & (z / 10 > turned) & (step > _STEEP * width)
+        for row, z in zip(passes.row[deep].tolist(), passes.z[deep].tolist(), strict=True):
+            yield block_of_depth(self.trace, row), z / 10
+
+    @cached_property
+    def is_beyond_turning(self) -> Mask:
+        """Of the rows that are off, those that are too deep for the bar, not for the other passes."""
+        mask = np.zeros(len(self.trace), bool)
+        mask[[row for row, _ in self._beyond_turning if row not in dict(self._in_steps())]] = True
+        return mask
+
+    def _in_steps(self) -> Iterator[tuple[int, float]]:
+        """Passes out of step with the others of their contour, and the Z that would fit."""
         passes = self.passes
         if len(passes) < _FEWEST:
             return

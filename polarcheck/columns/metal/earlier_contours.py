@@ -174,7 +174,7 @@ class EarlierContours(Columns, frozen=True):
     def _loss(self, earlier: Contour, later: Contour, contours: list[Contour]) -> float:
         """How far walls or corners of the later contour lie beyond what the earlier one leaves [mm]."""
         gone = self._gone(earlier, later)
-        if gone.max() <= _SAME_SIZE:
+        if earlier.inside != later.inside or gone.max() <= _SAME_SIZE:
             return 0.0
         # What a section takes off afterwards the contour was not to keep.
         for contour in contours:

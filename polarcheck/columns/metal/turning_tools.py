@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from polarcheck.columns.filling import before, fill_down
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Columns, Floats, Mask, Rows, Table, cached_property, is_among
 from polarcheck.foundation.states import Motion
@@ -74,18 +73,12 @@ class TurningTools(Columns, frozen=True):
     @cached_property
     def x_and_z(self) -> tuple[Floats, Floats, Floats, Floats]:
         """
-        X before and after each row, Z before and after each row of turning tools.
+        X before and after each row, Z before and after each row.
 
-        A cycle ends where it began (B-63944EN, canned cycles): X and Z are those before it.
+        A cycle ends where it began (columns/path/cycle_ends.py).
         """
-        trace, call = self.trace, self.tool_call
-        begins = np.diff(call, prepend=-1) != 0
-        cycle = trace.modal.in_cycle | trace.blocks.listed("repetitive_cycle")
-        places: list[Floats] = []
-        for value in (np.where(cycle, np.nan, axis) for axis in (trace.path.x, trace.path.z)):
-            after = fill_down(value, ~np.isnan(value) | begins, np.nan)
-            places += [before(after, begins, np.nan), after]
-        return places[0], places[1], places[2], places[3]
+        path = self.trace.path
+        return path.x_before, path.x, path.z_before, path.z
 
     @cached_property
     def _feeds(self) -> Mask:

@@ -6,13 +6,14 @@ from polarcheck.rules.rule import WARNING, rule
 
 if TYPE_CHECKING:
     from polarcheck.columns.contour.pass_depths import PassDepths
+    from polarcheck.columns.metal.bar import Bar
     from polarcheck.foundation.arrays import Mask
     from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     WARNING,
-    "this pass is cut at Z{depth}, out of step with the others of its contour: Z{in_step} would fit",
+    "this pass is cut at Z{depth}, {out_of_step}: Z{in_step} would fit",
     values=("z", "z_needed"),
     worse=("z:z_needed",),
     follows={"section": ("cut-in-air",)},
@@ -23,7 +24,9 @@ def pass_depth_differs(pass_depths: PassDepths) -> Mask:
 
     A contour is milled in several passes, each as much deeper as the last, and one of them is several times as deep or
     out of order: a digit or the point of its Z is wrong. The cutter takes the whole depth at once, or the passes behind
-    it take nothing. At least three passes of the same contour must show the step.
+    it take nothing. At least three passes of the same contour must show the step. A pass is told, too, that goes far
+    below all that the program turns, in one step several times as deep as the cutter is wide, where its Z with the
+    point one digit to the left lies in what is turned.
 
     Source: builder's guide to G12.1, order of a section.
 
@@ -77,6 +80,17 @@ def pass_depth_differs(pass_depths: PassDepths) -> Mask:
     return pass_depths.is_off
 
 
-def details(hit: Hit, pass_depths: PassDepths) -> Details:
-    z, needed = hit.trace.path.z[hit.row], pass_depths.expected[hit.row]
-    return {"z": z, "z_needed": needed, "depth": hit.number(z), "in_step": hit.number(needed)}
+def details(hit: Hit, pass_depths: PassDepths, bar: Bar) -> Details:
+    path = hit.trace.path
+    z, needed = path.z[hit.row], pass_depths.expected[hit.row]
+    out_of_step = "out of step with the others of its contour"
+    if pass_depths.is_beyond_turning[hit.row]:
+        turned = bar.deepest_turned * bar.trace.path.z_sense
+        out_of_step = f"in one step far below what is turned, which ends at Z{hit.number(turned)}"
+    return {
+        "z": z,
+        "z_needed": needed,
+        "depth": hit.number(z),
+        "out_of_step": out_of_step,
+        "in_step": hit.number(needed),
+    }
