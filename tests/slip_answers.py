@@ -27,7 +27,7 @@ from polarcheck.rules.rule import load_all
 
 _WORD = r"[A-Z]+=?[-+]?(?:\d+\.?\d*|\.\d+)"
 _VALUES = re.compile(
-    rf"(?:\b(?:with|write|or|and) (?P<words>{_WORD}(?: {_WORD})*)(?P<rest>(?: here| in line (?P<line>\d+)"
+    rf"(?:(?<!min )\b(?:with|write|or|and) (?P<words>{_WORD}(?: {_WORD})*)(?P<rest>(?: here| in line (?P<line>\d+)"
     rf"| in a block of its own before this one)?)(?= (?:it|its|all|more|here|in line|and leave)\b|$|,| \()"
     rf"|[;:] (?P<others>{_WORD}(?: {_WORD})*)(?= would (?:fit|be tangent|lie)))"
 )
@@ -112,11 +112,16 @@ def answered(slip: Planted, before: Sequence[Finding] | None = None) -> Answer:
 
 
 class Value(NamedTuple):
-    """Words that a message says to write, in which line (from 1), in a block of their own or not."""
+    """
+    Words that a message says to write, in which lines (from 1), in a block of their own or not.
+
+    word: the word in whose place they stand, "" where the message names none.
+    """
 
     words: tuple[str, ...]
-    line: int
+    lines: tuple[int, ...]
     is_block: bool
+    word: str = ""
 
 
 def values_of(finding: Finding) -> list[Value]:
@@ -125,18 +130,29 @@ def values_of(finding: Finding) -> list[Value]:
     for match in _VALUES.finditer(finding.message):
         words = tuple((match["words"] or match["others"]).split())
         line = int(match["line"]) if match["line"] else finding.line
-        found.append(Value(words, line, "block" in (match["rest"] or "")))
+        word = str(finding.values.get("word", "")) if line == finding.line else ""
+        also = re.search(r"likewise in lines? (\d+(?:(?:, | and )\d+)*)", finding.message[match.end() :])
+        lines = (line, *(map(int, re.findall(r"\d+", also[1])) if also else ()))
+        found.append(Value(words, lines, "block" in (match["rest"] or ""), word))
     return found
 
 
 def written(program: Program, value: Value) -> tuple[Line, ...]:
     """The program with the words as they are told."""
-    index = min(value.line, len(program.lines)) - 1
-    line = program.lines[index]
-    if value.is_block:
-        new = line._replace(text=" ".join(value.words), role="contour")
-        return (*program.lines[:index], new, *program.lines[index:])
-    text = line.text
+    lines = program.lines
+    for number in value.lines:
+        index = min(number, len(lines)) - 1
+        line = lines[index]
+        if value.is_block:
+            return (*lines[:index], line._replace(text=" ".join(value.words), role="contour"), *lines[index:])
+        lines = (*lines[:index], line._replace(text=_with_words(line.text, value)), *lines[index + 1 :])
+    return lines
+
+
+def _with_words(text: str, value: Value) -> str:
+    is_letter = len(value.words) == 1 and re.fullmatch(_WORD, value.word) and value.word[0] != "G"
+    if is_letter and value.word[0] != value.words[0][0] and value.word in text:
+        return text.replace(value.word, value.words[0], 1)
     for word in value.words:
         group = next((group for group in _GROUPS if word in group), {word})
         letter = re.match("[A-Z]+=?", word)
@@ -150,7 +166,7 @@ def written(program: Program, value: Value) -> tuple[Line, ...]:
             text = f"{number[0]}{word} {text[number.end() :]}"
         else:
             text = f"{text} {word}"
-    return tuple(one._replace(text=text) if i == index else one for i, one in enumerate(program.lines))
+    return text
 
 
 def fixed(program: Program) -> tuple[Line, ...] | None:

@@ -99,9 +99,9 @@ def test_words_are_written_as_they_are_told() -> None:
     program = drawn(3, "fanuc-30i", "hexagon, single", "extension")
     index = next(i for i, line in enumerate(program.lines) if line.role == "contour")
     for value, text in (
-        (Value(("X9.",), index + 1, is_block=False), "X9."),
-        (Value(("G3",), index + 1, is_block=False), "G3 "),
-        (Value(("X9.", "C8."), index + 1, is_block=True), "X9. C8."),
+        (Value(("X9.",), (index + 1,), is_block=False), "X9."),
+        (Value(("G3",), (index + 1,), is_block=False), "G3 "),
+        (Value(("X9.", "C8."), (index + 1,), is_block=True), "X9. C8."),
     ):
         assert text in written(program, value)[index].text
 
