@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 from cases import looped
 from programs import tables_of
@@ -14,14 +15,14 @@ UNITS = {"G21": (1.0, "20.", "200", "10.", "60."), "G20": (25.4, "1.", "8.", ".5
 
 
 def off(levels: list[float], code: str) -> dict[int, float]:
-    """The passes that are off by their number, and the Z that each would have."""
+    """The passes that are off by the number of their Z, and the Z that each would have."""
     scale, across, feed, radius, away = UNITS[code]
     passes = "".join(BLOCKS.format(f"{z / scale:.5f}", across, feed, radius, away) for z in levels)
     text = f"O1\n{code} G98 T0101\nG0 X{away} Z.2 C0\nG12.1\nG1 X{away} F{feed}\n{passes}Z.2\nG13.1\n"
     tables = tables_of(text, "fanuc", f"1:radius={4 / scale:.5f}")
     depths = tables["pass_depths"]
-    rows = {int(row): number for number, row in enumerate(depths.passes.row, 1)}
-    return {rows[row]: float(depths.expected[row]) for row in rows if depths.is_off[row]}
+    lines = tables["trace"].blocks.line
+    return {(int(lines[row]) - 2) // 4: float(depths.expected[row]) for row in np.flatnonzero(depths.is_off).tolist()}
 
 
 @looped("code", UNITS)
@@ -43,7 +44,7 @@ def off(levels: list[float], code: str) -> dict[int, float]:
         ([-2, -4, -5, -8], {}),
         # Twice at one depth is one pass.
         ([-2, -4, -4, -8], {}),
-        ([-2, -4, -4, -6, -80], {4: -8}),
+        ([-2, -4, -4, -6, -80], {5: -8}),
         # Up again.
         ([-2, -4, -3, -8], {3: -6}),
     ],

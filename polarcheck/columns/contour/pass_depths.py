@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from polarcheck.columns.metal.air_cuts import AirCuts, block_of_depth
+from polarcheck.columns.metal.air_cuts import AirCuts
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Columns, Floats, Mask, Rows, Table, cached_property
 from polarcheck.geometry.tolerances import ROUNDING
@@ -60,15 +60,15 @@ class PassDepths(Columns, frozen=True):
 
     @cached_property
     def expected(self) -> Floats:
-        """Per row: Z in step with the other passes, at the row that tells of one that is off; NaN elsewhere [mm]."""
+        """Per row: Z in step with the other passes, where a pass that is off goes to its Z; NaN elsewhere [mm]."""
         expected = np.full(len(self.trace), np.nan)
         for row, z in (*self._beyond_turning, *self._in_steps()):
-            expected[row] = z
+            expected[self._row_of_infeed(row)] = z
         return expected
 
     @cached_property
     def is_off(self) -> Mask:
-        """Rows with the first cut of a pass that is off, or with its Z where that stands before a call."""
+        """Rows that go to the Z of a pass that is off."""
         return ~np.isnan(self.expected)
 
     @property
@@ -88,14 +88,20 @@ class PassDepths(Columns, frozen=True):
         width = 2 * self.air_cuts.workpiece.radius[passes.row]
         deep = (z < _BEYOND * turned) & (z / 10 > turned) & (step > _STEEP * width)
         for row, z in zip(passes.row[deep].tolist(), passes.z[deep].tolist(), strict=True):
-            yield block_of_depth(self.trace, row), z / 10
+            yield row, z / 10
 
     @cached_property
     def is_beyond_turning(self) -> Mask:
         """Of the rows that are off, those that are too deep for the bar, not for the other passes."""
         mask = np.zeros(len(self.trace), bool)
-        mask[[row for row, _ in self._beyond_turning if row not in dict(self._in_steps())]] = True
+        of_steps = dict(self._in_steps())
+        mask[[self._row_of_infeed(row) for row, _ in self._beyond_turning if row not in of_steps]] = True
         return mask
+
+    def _row_of_infeed(self, row: int) -> int:
+        """The row that goes to the Z of a pass, which may stand before a call; its first cut where none does."""
+        infeeds = np.flatnonzero(self.trace.path.moves_z[: row + 1])
+        return int(infeeds[-1]) if len(infeeds) else row
 
     def _in_steps(self) -> Iterator[tuple[int, float]]:
         """Passes out of step with the others of their contour, and the Z that would fit."""
@@ -116,7 +122,7 @@ class PassDepths(Columns, frozen=True):
             row = int(passes.row[group[number]])
             scale = float(self.trace.lengths.scale[row])
             if len(z) >= _LEAST or _is_slip(z[number] / scale, value / scale):
-                yield block_of_depth(self.trace, row), value
+                yield row, value
 
 
 def _is_slip(written: float, intended: float) -> bool:

@@ -286,6 +286,11 @@ class Tangency(Columns, frozen=True):
             number[rows] = np.unique(keys, axis=1, return_inverse=True)[1].reshape(-1)
         return number
 
+    def alike(self, row: int) -> Mask:
+        """Misfits that the mistake of this one explains, and that need its R."""
+        needed = self.radius_needed
+        return np.asarray((self.size == self.size[row]) & (np.abs(needed - needed[row]) <= self.radius_tolerance[row]))
+
 
 def _shares_circle(center: complex, radius: float, centers: Points, radii: Floats) -> bool:
     """One of the other arcs lies on the same circle, so that the corners between them are cut off from it."""

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 @rule(
     WARNING,
-    "{word} turns a corner of {corner:whole} deg at an end of the arc; {word_needed} would {fit}",
+    "{word} turns a corner of {corner:whole} deg at an end of the arc; {word_needed} would {fit}{likewise}",
     values=("corner", "arc_radius", "arc_radius_needed", "word", "word_needed"),
     worse=("corner",),
     at=("R", "I", "J"),
@@ -108,6 +108,7 @@ def details(hit: Hit, arcs: Arcs, tangency: Tangency) -> Details:
         "word": written_arc(hit.trace, arcs, hit.row),
         "word_needed": _needed(hit, by_radius, tangency),
         "fit": "lie on one circle with the other arcs" if on_circle else "be tangent to the blocks before and after it",
+        "likewise": hit.likewise(tangency.alike(hit.row)) if by_radius else "",
     }
 
 

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 @rule(
     WARNING,
-    "this pass is cut at Z{depth}, {out_of_step}: Z{in_step} would fit",
+    "the pass at Z{depth} {out_of_step}: Z{in_step} would fit",
     values=("z", "z_needed"),
     worse=("z:z_needed",),
     follows={"section": ("cut-in-air",)},
@@ -40,9 +40,9 @@ def pass_depth_differs(pass_depths: PassDepths) -> Mask:
         G42 X20. C0 F200
         G3 I-10.
         G1 G40 X60.
-        Z-40.
+        Z-40.             (expect: pass-depth-differs)
         G42 X20. C0
-        G3 I-10.          (expect: pass-depth-differs)
+        G3 I-10.
         G1 G40 X60.
         Z-6.
         G42 X20. C0
@@ -81,16 +81,13 @@ def pass_depth_differs(pass_depths: PassDepths) -> Mask:
 
 
 def details(hit: Hit, pass_depths: PassDepths, bar: Bar) -> Details:
-    path = hit.trace.path
-    z, needed = path.z[hit.row], pass_depths.expected[hit.row]
-    out_of_step = "out of step with the others of its contour"
+    from polarcheck.columns.words.slips import plain_number
+
+    z, needed = hit.trace.path.z[hit.row], float(pass_depths.expected[hit.row])
+    out_of_step = "is out of step with the others of its contour"
     if pass_depths.is_beyond_turning[hit.row]:
         turned = bar.deepest_turned * bar.trace.path.z_sense
-        out_of_step = f"in one step far below what is turned, which ends at Z{hit.number(turned)}"
-    return {
-        "z": z,
-        "z_needed": needed,
-        "depth": hit.number(z),
-        "out_of_step": out_of_step,
-        "in_step": hit.number(needed),
-    }
+        out_of_step = f"goes in one step far below what is turned, which ends at Z{hit.number(turned)}"
+    # To be written, so with a point: without one some controls read an increment.
+    in_step = plain_number(needed / float(hit.trace.lengths.scale[hit.row]))
+    return {"z": z, "z_needed": needed, "depth": hit.number(z), "out_of_step": out_of_step, "in_step": in_step}
