@@ -20,6 +20,11 @@ CENTERED = [
     re.sub(r"R3\.", center, line)
     for line, center in zip(ROUNDED, ("", "", "I-3. J0", "", "I0 J-3.", "", "I3. J0", "", "I0 J3.", ""), strict=True)
 ]
+#: The first one in distances.
+STEPS = [
+    *("G42 X40. F200", "H7.", "G3 U-6. H3. R3.", "G1 U-68.", "G3 U-6. H-3. R3."),
+    *("G1 H-14.", "G3 U6. H-3. R3.", "G1 U68.", "G3 U6. H3. R3.", "G1 H7."),
+]
 #: A contour, its block, what stands in the place of that, and the words that are meant.
 Slip = tuple[list[str], str, str, str]
 Turn = Callable[[list[str]], list[str]]
@@ -157,3 +162,44 @@ def test_a_rule_that_is_not_run_explains_nothing() -> None:
     text = program([wrong if line == right else line for line in contour])
     (finding,) = report_of(text, "fanuc-30i", "1:radius=2", only=["arc-end-off-circle"]).findings
     assert finding.message.endswith("difference is allowed")
+
+
+@looped(
+    ("contour", "right", "wrong", "line", "words"),
+    [
+        # G40 a block late.
+        (ROUNDED, ["G40 X60. F1500", "Z2."], ["X60. F1500", "G40 Z2."], 18, "with G40 in line 17 it would fit"),
+        # A block that is run only with block skip off.
+        (ROUNDED, ["G3 X34. C10. R3."], ["/G3 X34. C10. R3."], 10, "without the / of line 9 it would fit"),
+    ],
+)
+def test_a_block_elsewhere_is_named_where_all_findings_come_from_it(
+    contour: list[str], right: list[str], wrong: list[str], line: int, words: str
+) -> None:
+    text = program(contour)
+    slipped = text.replace("\n".join(["", *right, ""]), "\n".join(["", *wrong, ""]))
+    assert slipped != text
+    (finding,) = [found for found in report_of(slipped, "fanuc-30i", "1:radius=2").findings if found.severity != "note"]
+    assert words in finding.message
+    assert finding.line == line
+
+
+@looped(
+    ("contour", "right", "wrong", "words"),
+    [
+        # A value of the block beside it in a distance: what closes the path.
+        (STEPS, "G3 U-6. H3. R3.", "G3 U-68. H3. R3.", "U-6."),
+        (STEPS, "G1 U-68.", "G1 U-86.", "U-68."),
+        # A word that is written twice, and what is meant instead of it, are one finding.
+        (ROUNDED, "G1 X-34.", "G1 X-34. X7.", "X-34."),
+    ],
+)
+def test_what_was_meant_is_named_with_the_finding_about_the_word(
+    contour: list[str], right: str, wrong: str, words: str
+) -> None:
+    lines = [wrong if line == right else line for line in contour]
+    (finding,) = [
+        one for one in report_of(program(lines), "fanuc-30i", "1:radius=2").findings if one.severity != "note"
+    ]
+    assert finding.line == len(HEAD) + lines.index(wrong) + 1
+    assert words in finding.message

@@ -8,17 +8,18 @@ checked. An edit explains the findings that are gone then, if no other finding h
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import islice
 from typing import NamedTuple
 
 import msgspec
 import numpy as np
 
+from polarcheck.checking.code_edits import CodeEdit, exchanged, ramp_edits, unskipped
 from polarcheck.checking.edits import applied, origins
 from polarcheck.checking.engine import Engine, with_following
 from polarcheck.columns.contour.correction import Correction
-from polarcheck.columns.contour.likely_edits import Likely, correction_by, likely_edits
+from polarcheck.columns.contour.likely_edits import LEAST_IF_WHOLE, Likely, correction_by, likely_edits
 from polarcheck.columns.contour.written_loop import WrittenLoop, written_loops
 from polarcheck.columns.words.slips import WORD
 from polarcheck.foundation.arrays import Rows
@@ -26,7 +27,7 @@ from polarcheck.foundation.errors import TooHardError
 from polarcheck.foundation.finding import SEVERITIES, WARNING, Finding, Silenced, Undecided
 from polarcheck.program.execution.runs import runs
 from polarcheck.program.reading.source import read_source
-from polarcheck.rules.editing import Replace, content_of, in_place_of, is_plain, with_word, without, words_of
+from polarcheck.rules.editing import Replace, in_place_of, is_plain, with_word, without, words_of
 from polarcheck.rules.other_machine import OtherMachine
 from polarcheck.rules.places import PLACES
 from polarcheck.rules.rule import Hits
@@ -38,6 +39,14 @@ REPORTS = "nearly-regular-contour"
 _MOST_LOOPS, _TRIALS, _MOST_ROWS = 8, 5, 20_000
 #: By how much less a second edit may explain, for both to be named [coordinates]; how many are named.
 _AS_LIKELY, _NAMED = 0.5, 2
+#: By how much less one may explain that removes all findings of a path, where likelier ones leave some [coordinates].
+_LESS_LIKELY = 1.5
+
+#: So many rules must find something that a code in another block explains, in a path of so many blocks: the geometry
+#: does not speak for it.
+_RULES_OF_CODE, _BLOCKS_OF_CODE = 2, 4
+#: Rules of rates: no code that stands elsewhere explains them.
+_OF_RATES = "c-feed-above-limit", "c-acceleration-above-limit", "x-acceleration-above-limit"
 
 #: A rule and a line at which it fires.
 _Symptom = tuple[str, int]
@@ -81,14 +90,12 @@ def explained(
         except TooHardError:
             pass  # what was found before stands
     lines = {line for finding in findings for line in (finding.line, *(other.line for other in finding.follows))}
-    return [
-        *findings,
-        *(
-            _new(engine, correction)
-            for rows, correction in less_regular
-            if lines.isdisjoint(trace.blocks.line[rows[0] : rows[-1] + 1].tolist())
-        ),
-    ]
+    unexplained = []
+    for rows, correction in less_regular:
+        if lines.isdisjoint(trace.blocks.line[rows[0] : rows[-1] + 1].tolist()):
+            unexplained.append(_new(engine, correction))
+            lines.add(unexplained[-1].line)
+    return [*findings, *unexplained]
 
 
 def _is_symptom(engine: Engine, finding: Finding) -> bool:
@@ -121,34 +128,71 @@ class _Search:
             own = {(finding.rule, finding.line) for finding in findings if finding.line in own_lines}
             if not own <= known:
                 others = (other for other in reach if other is not own_lines and other & lines)
-                found = self._explained(loop, set[int]().union(*others) - own_lines)
+                found = self._explained(loop, own_lines, set[int]().union(*others) - own_lines)
                 if found is not None:
                     known |= found.gone
                     self.mended += found.edits
                     self.symptoms = found.left
                     yield found
 
-    def _explained(self, loop: WrittenLoop, others: set[int]) -> _Explained | None:
+    def _explained(self, loop: WrittenLoop, own: set[int], others: set[int]) -> _Explained | None:
         """
         The likeliest edit that removes symptoms and brings none; None for none, or for too many alike.
 
-        others: the lines of other paths with a symptom, where another one may come, as by a comparison of passes.
+        One that removes all symptoms of the path comes before one that leaves some. own: the lines of the path. others:
+        those of other paths with a symptom, where another one may come, as by a comparison of passes.
         """
-        found: list[_Explained] = []
-        for likely in likely_edits(self.trace, loop, _TRIALS):
-            if found and found[0].likely.gain - likely.gain > _AS_LIKELY:
+        whole = self._by_codes(unskipped(self.trace, loop.row[1:]), own, others, 1)
+        partly: list[_Explained] = []
+        for likely in () if whole else likely_edits(self.trace, loop, _TRIALS, LEAST_IF_WHOLE):
+            best, reach = (whole, _AS_LIKELY) if whole else (partly, _LESS_LIKELY)
+            if best and best[0].likely.gain - likely.gain > reach:
                 break
             edits = self._edits(loop, likely)
-            if not edits or self.rows_left < len(self.trace):
-                continue
-            self.rows_left -= len(self.trace)
-            left = self._left_by(edits)
-            if left is not None and self.symptoms - left and all(line in others for _, line in left - self.symptoms):
-                row = int(loop.row[likely.edit.corner])
-                found.append(_Explained(likely, row, edits, self.symptoms - left, left))
-        if not found or len(found) > _NAMED:
+            found = self._tried(likely, int(loop.row[likely.edit.corner]), edits, others) if edits else None
+            if found is not None and own.isdisjoint(line for _, line in found.left):
+                whole.append(found)
+            elif found is not None and likely.is_clear:
+                partly.append(found)
+        rules = {rule for rule, line in self.symptoms if line in own}
+        if not whole and len(rules) >= _RULES_OF_CODE and len(loop.turns) >= _BLOCKS_OF_CODE:
+            lines = {line for rule, line in self.symptoms if line in own and rule not in _OF_RATES}
+            rows = np.flatnonzero(np.isin(self.trace.blocks.line, [*lines]))
+            whole = self._by_codes(ramp_edits(self.trace, loop.row[1:], rows), own, others, _RULES_OF_CODE)
+        best = whole or partly
+        best = [found for found in best if best[0].likely.gain - found.likely.gain <= _AS_LIKELY]
+        if not best or len(best) > _NAMED:
             return None
-        return found[0]._replace(other=found[1]) if found[1:] else found[0]
+        return best[0]._replace(other=best[1]) if best[1:] else best[0]
+
+    def _by_codes(
+        self, edits: Iterable[list[CodeEdit]], own: set[int], others: set[int], least: int
+    ) -> list[_Explained]:
+        """
+        Edits that change no number and remove all symptoms of a path; of those that say the same the first one.
+
+        least: rules whose findings are to be gone.
+        """
+        whole = []
+        for alike in edits:
+            for row, edit, replaced in alike:
+                found = self._tried(Likely(edit, 0.0, "it would fit", False, False, True), row, replaced, others)
+                if found is None or not own.isdisjoint(line for _, line in found.left):
+                    continue
+                if len({rule for rule, _ in found.gone}) >= least:
+                    whole.append(found)
+                    break
+        return whole
+
+    def _tried(self, likely: Likely, row: int, edits: list[Replace], others: set[int]) -> _Explained | None:
+        """The program with an edit: None where no symptom is gone, or another one has come but in `others`."""
+        if self.rows_left < len(self.trace):
+            return None
+        self.rows_left -= len(self.trace)
+        left = self._left_by(edits)
+        if left is None or self.symptoms <= left or any(line not in others for _, line in left - self.symptoms):
+            return None
+        return _Explained(likely, row, edits, self.symptoms - left, left)
 
     def _edits(self, loop: WrittenLoop, likely: Likely) -> list[Replace]:
         """The edits of the text; none where its words stand there in another form."""
@@ -160,10 +204,7 @@ class _Search:
             return without(run, row, words_of(run, row))
         if edit.kind == "order":
             following = int(loop.row[edit.corner + 1])
-            blocks = int(run.block[row]), int(run.block[following])
-            (start, end), (other_start, other_end) = (content_of(run.text, block) for block in blocks)
-            excerpt = run.text.source.excerpt
-            return [(start, end, excerpt(other_start, other_end)), (other_start, other_end, excerpt(start, end))]
+            return exchanged(self.trace, row, following)
         if not edit.words:
             return [with_word(run, row, edit.text)]
         if len(edit.words) == 1:
@@ -178,9 +219,8 @@ class _Search:
         if data is None:
             return None
         states = runs(read_source(data, source.path, source.encoding), self.trace.machine, engine.tables["job"])
-        if self.number >= len(states):
-            return None
-        tables = Tables(states[self.number][1], self.trace.machine, engine.tables["job"])
+        # Without its last sign of block skip a program runs once.
+        tables = Tables(states[min(self.number, len(states) - 1)][1], self.trace.machine, engine.tables["job"])
         tables.give("other_machine", OtherMachine(tables))
         trial = Engine(tables, engine.severities, self.rules)
         origin = origins(source, tables["trace"].text.source, edits)
@@ -205,8 +245,9 @@ def _under(engine: Engine, findings: Sequence[Finding], explanation: _Explained)
     if not gone:
         return list(findings)
     line = int(engine.trace.blocks.line[explanation.row])
-    others = [finding for finding in findings if finding not in gone]
     there = [finding for finding in gone if finding.line == line and _may_lead(finding, explanation)]
+    there = [*(finding for finding in findings if _is_of_word(engine, finding, explanation)), *there]
+    others = [finding for finding in findings if finding not in (*gone, *there[:1])]
     head = _with_remedy(engine, there[0], explanation) if there else _new(engine, _correction(engine, explanation))
     symptoms = [
         symptom
@@ -218,10 +259,21 @@ def _under(engine: Engine, findings: Sequence[Finding], explanation: _Explained)
     return [*others, with_following(head, [*head.follows, *symptoms])]
 
 
+def _is_of_word(engine: Engine, finding: Finding, explanation: _Explained) -> bool:
+    """A finding about the writing of the one word that the edit replaces: it is the mistake, and no symptom."""
+    rule = engine.rules.get(finding.rule)
+    if rule is None or rule.over != "words" or len(explanation.likely.edit.words) != 1:
+        return False
+    start = explanation.edits[0][0]
+    column = start - int(engine.trace.text.source.line_starts[finding.line - 1]) + 1
+    return finding.line == finding.end_line and finding.column <= column < finding.end_column
+
+
 def _may_lead(finding: Finding, explanation: _Explained) -> bool:
-    """A finding in the block of the edit may lead: a symptom, or an explanation with the same words."""
+    """A finding in the block of the edit may lead: a symptom, or one that names the words of the edit."""
     needed = str(finding.values.get("word_needed", ""))
-    return finding.rule != REPORTS or _numbers(needed) == _numbers(explanation.likely.edit.text)
+    names_none = not needed and finding.rule != REPORTS
+    return names_none or _numbers(needed) == _numbers(explanation.likely.edit.text)
 
 
 def _numbers(words: str) -> list[tuple[str, float]]:
@@ -230,8 +282,9 @@ def _numbers(words: str) -> list[tuple[str, float]]:
 
 def _with_remedy(engine: Engine, finding: Finding, explanation: _Explained) -> Finding:
     """The finding, which also says what the edit is."""
-    text = explanation.likely.edit.text
-    if finding.rule == REPORTS or (text and text in finding.message):
+    edit = explanation.likely.edit
+    stated = edit.how or edit.text
+    if finding.rule == REPORTS or (stated and stated in finding.message):
         return finding
     message = f"{finding.message}; {_remedies(engine, explanation)} {explanation.likely.becomes}"
     return msgspec.structs.replace(finding, message=message)
@@ -255,4 +308,5 @@ def _remedies(engine: Engine, explanation: _Explained) -> str:
     remedy = explanation.likely.edit.remedy
     if (other := explanation.other) is None:
         return remedy
-    return f"{remedy}, or {other.likely.edit.remedy} in line {int(engine.trace.blocks.line[other.row])},"
+    edit, line = other.likely.edit, int(engine.trace.blocks.line[other.row])
+    return f"{remedy}, or {edit.remedy}{'' if edit.how else f' in line {line}'},"

@@ -14,6 +14,10 @@ from polarcheck.geometry.regularity.coincidences import Chances, Outlines, chanc
 
 #: An edit must leave so much less to chance than what is written.
 _LEAST_GAIN = 2.5
+#: The same where all findings of the path are gone with it; an edit of less must be told apart by more than that.
+LEAST_IF_WHOLE = 0.9
+#: Corners at arcs of a contour in which all other arcs are tangent.
+_MOST_CORNERS = 2
 #: So much of it must be other than arcs that reach their ends; in a path of few blocks more.
 _LEAST_WITNESS, _IF_SHORT, _SHORT = 1.0, 2.0, 4
 #: What each corner that is lost counts, but for the one of a wrong point on a side [coordinates].
@@ -29,7 +33,7 @@ class Likely(NamedTuple):
     An edit that may be what was meant.
 
     gain: how many coordinates fewer are as they are by chance. becomes: what the path is then, in words. closes,
-    smooths: it is closed then, or all of its arcs are tangent, and it was not.
+    smooths: it is closed then, or all of its arcs are tangent, and it was not. is_clear: the gain alone speaks for it.
     """
 
     edit: Edit
@@ -37,6 +41,7 @@ class Likely(NamedTuple):
     becomes: str
     closes: bool
     smooths: bool
+    is_clear: bool
 
 
 def correction_by(likely: Likely, row: int) -> Correction:
@@ -63,13 +68,22 @@ def likely_edits(trace: Trace, loop: WrittenLoop, most: int, least_gain: float =
     lost = np.maximum(chances.corners[0] - chances.corners - 1, 0)
     gain = total[0] - total - _OF_LOST_CORNER * lost
     witness = chances.without_broken_arcs[0] - chances.without_broken_arcs
+    # A gain that is not clear must be more than lengths and points that are alike.
+    is_better = np.any([part < part[0] for part in chances[:4]], axis=0)
     least = _LEAST_WITNESS if len(loop.turns) >= _SHORT else _IF_SHORT
     found: list[int] = []
     for number in np.argsort(-gain, kind="stable").tolist():
         if len(found) == most or gain[number] < least_gain:
             break
-        if witness[number] >= least and all(_differs(outlines, number, other, loop.tolerance) for other in found):
+        is_sure = gain[number] >= _LEAST_GAIN or least_gain < LEAST_IF_WHOLE or is_better[number]
+        if (
+            is_sure
+            and witness[number] >= least
+            and all(_differs(outlines, number, other, loop.tolerance) for other in found)
+        ):
             found.append(number)
+    if found and _leaves_corner(chances, outlines, found[0]):
+        return []
     closes, smooths = ((part == 0) & (part[0] > 0) for part in (chances.is_open, chances.corners_at_arcs))
     return [
         Likely(
@@ -78,9 +92,17 @@ def likely_edits(trace: Trace, loop: WrittenLoop, most: int, least_gain: float =
             _becomes(chances, number),
             bool(closes[number]),
             bool(smooths[number]),
+            bool(gain[number] >= _LEAST_GAIN),
         )
         for number in found
     ]
+
+
+def _leaves_corner(chances: Chances, outlines: Outlines, number: int) -> bool:
+    """An edit mends an arc and leaves a corner at one of its ends, where nearly all arcs are tangent: more is wrong."""
+    corners, arcs = int(chances.corners_at_arcs[number]), int(np.count_nonzero(outlines.turns[number]))
+    mends = chances.broken_arcs[number] < chances.broken_arcs[0]
+    return bool(mends and 0 < corners <= _MOST_CORNERS and arcs >= _MOST_CORNERS + corners)
 
 
 def _differs(outlines: Outlines, first: int, second: int, tolerance: float) -> bool:

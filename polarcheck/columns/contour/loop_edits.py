@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Iterator
 from typing import Literal, NamedTuple
 
@@ -35,10 +36,11 @@ class Edit(NamedTuple):
 
     kind: what it changes. corner: the block, 0 for the move before. words: the executed words that it replaces. text:
     what is written instead, or put behind the last word. why: the slip. cost: how unlikely the slip is. axis: of a
-    word, 0 for X. value: its number, for a word of an arc the factor.
+    word, 0 for X. value: its number, for a word of an arc the factor. how: what is to be done, where it is more than to
+    write the text.
     """
 
-    kind: Literal["word", "missing", "letter", "exchanged", "arc", "sense", "twice", "order"]
+    kind: Literal["word", "missing", "letter", "exchanged", "arc", "sense", "twice", "order", "code"]
     corner: int
     words: tuple[int, ...]
     text: str
@@ -46,11 +48,12 @@ class Edit(NamedTuple):
     cost: float
     axis: int = 0
     value: float = np.nan
+    how: str = ""
 
     @property
     def remedy(self) -> str:
         """What is to be done, as it stands before what it makes of the contour."""
-        return _REMEDIES.get(self.kind, f"with {self.text}")
+        return self.how or _REMEDIES.get(self.kind, f"with {self.text}")
 
     @property
     def is_common(self) -> bool:
@@ -75,6 +78,7 @@ def edits_of(trace: Trace, loop: WrittenLoop) -> list[Edit]:
 def _of_axis(trace: Trace, loop: WrittenLoop, number: int) -> Iterator[Edit]:
     axis, other = loop.axes[number], loop.axes[1 - number]
     sizes, on_circle = _sizes(axis.value[~axis.is_step]), _on_circles(trace, loop, number)
+    gap = _gap(loop, number)
     for corner, word in enumerate(axis.word.tolist()):
         if word < 0:
             values = dict.fromkeys(signed for size in (0.0, *sizes) for signed in (size, -size))
@@ -86,10 +90,16 @@ def _of_axis(trace: Trace, loop: WrittenLoop, number: int) -> Iterator[Edit]:
         if not address:
             continue
         others = () if axis.is_step[corner] else (0.0, *sizes)
-        beside = axis.value[max(corner - 1, 0) : corner + 2 : 2] if corner else axis.value[1:2]
+        neighbors = axis.value[max(corner - 1, 0) : corner + 2 : 2] if corner else axis.value[1:2]
+        beside = tuple(neighbors[~np.isnan(neighbors)].tolist())
         is_angle = number == 1 and _looks_like_angle(loop, corner)
         for slip, cost in _numbers(written, float(axis.value[corner]), others, beside, is_angle=is_angle):
             yield Edit("word", corner, (word,), address + slip.text, slip.kind, cost, number, float(slip.text))
+        if axis.is_step[corner] and corner and abs(gap) > 2 * loop.tolerance:
+            value = float(axis.value[corner]) + gap / float(axis.scale[corner])
+            value = round(value, max(_decimals(plain_number(size)) for size in axis.value[~np.isnan(axis.value)]))
+            text = address + plain_number(value)
+            yield Edit("word", corner, (word,), text, "another number is meant", _SELDOM, number, value)
         if other.word[corner] < 0:
             letter = other.step_address if axis.is_step[corner] else other.address
             text = letter + "=" * address.endswith("=") + written
@@ -99,6 +109,12 @@ def _of_axis(trace: Trace, loop: WrittenLoop, number: int) -> Iterator[Edit]:
             text = f"{address}{parts[1]} {parts[0]}{written}"
             why = f"the numbers of {address.strip('=')} and {parts[0].strip('=')} are exchanged"
             yield Edit("exchanged", corner, words, text, why, 0.0)
+
+
+def _gap(loop: WrittenLoop, number: int) -> float:
+    """How far along an axis the path ends before its start [mm]."""
+    ends = loop.points([axis.value[None] for axis in loop.axes], [axis.is_step[None] for axis in loop.axes])[0]
+    return float((complex(ends[0] - ends[-1]) / loop.axes[number].direction).real)
 
 
 def _on_circles(trace: Trace, loop: WrittenLoop, number: int) -> dict[int, tuple[float, ...]]:
@@ -123,7 +139,7 @@ def _of_arcs(trace: Trace, loop: WrittenLoop, address: str) -> Iterator[Edit]:
         had = float(trace.run.words.value[word]) if word >= 0 else 0.0
         letters, written = _parts(trace, word) if word >= 0 else ("", "")
         if letters and had:
-            for slip, cost in _numbers(written, had, (0.0, *_sizes(values)), values):
+            for slip, cost in _numbers(written, had, (0.0, *_sizes(values)), tuple(values.tolist())):
                 if (value := float(slip.text)) or axis:
                     text, factor = letters + slip.text, value / had
                     yield Edit("arc", block + 1, (word,), text, slip.kind, cost, axis, factor)
@@ -174,17 +190,18 @@ def _looks_like_angle(loop: WrittenLoop, corner: int) -> bool:
     return is_usual and abs(value) * float(c.scale[corner]) > 2 * float(np.fmax.reduce(lengths, None, initial=0.0))
 
 
+@functools.lru_cache(maxsize=256)
 def _numbers(
-    written: str, value: float, others: tuple[float, ...], beside: Floats, *, is_angle: bool = False
-) -> Iterator[tuple[Slip, float]]:
+    written: str, value: float, others: tuple[float, ...], beside: tuple[float, ...], *, is_angle: bool = False
+) -> tuple[tuple[Slip, float], ...]:
     """
-    What a number may be instead, each once, with its cost.
+    What a number may be instead, each once, with its cost; kept, since a trial asks for nearly all of them again.
 
     others: the sizes of the numbers of all blocks, one of which may be meant. beside: the numbers of the blocks before
     and behind, one of which may be what is written. is_angle: it looks like an angle.
     """
     known = {round(value / _SAME_NUMBER)}
-    is_beside = bool((np.abs(beside - value) < _SAME_NUMBER).any())
+    is_beside = any(abs(number - value) < _SAME_NUMBER for number in beside)
     why = "it is that of the block beside it" if is_beside else _IS_ANGLE if is_angle else "another number is meant"
     of_others = Slip("", why, False)
     step = _STEPS * 10.0 ** -_decimals(written)
@@ -193,11 +210,13 @@ def _numbers(
     for size in others:
         cost = _SELDOM if is_beside or is_angle else _FAR
         slips += [(of_others._replace(text=plain_number(number)), cost) for number in (size, -size)]
+    found = []
     for slip, cost in sorted(slips, key=lambda pair: (pair[1], pair[0].kind != _IS_ANGLE)):
         key = round(float(slip.text) / _SAME_NUMBER)
         if key not in known and (_LEAST <= abs(float(slip.text)) <= _GREATEST or not key):
             known.add(key)
-            yield slip, cost
+            found.append((slip, cost))
+    return tuple(found)
 
 
 def _of_others(value: float, text: str, others: tuple[float, ...], step: float) -> str:

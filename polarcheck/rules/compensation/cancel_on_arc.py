@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     subject="move",
     doubts=(("metal", "block"),),
     follows={"compensation": ("compensation-without-contour",)},
+    is_symptom=True,
 )
 def cancel_on_arc(path: ProgrammedPath, compensation: CutterCompensation) -> Mask:
     """

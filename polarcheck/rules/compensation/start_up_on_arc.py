@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     at=("compensation_left", "compensation_right", "arc_clockwise", "arc_counterclockwise"),
     subject="move",
     doubts=(("metal", "block"),),
+    is_symptom=True,
 )
 def start_up_on_arc(path: ProgrammedPath, compensation: CutterCompensation) -> Mask:
     """

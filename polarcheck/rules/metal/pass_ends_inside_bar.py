@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     subject="metal",
     once="section",
     follows={"compensation": ("start-up-sweeps-contour", "nearly-regular-contour", "passes-differ")},
+    is_symptom=True,
 )
 def pass_ends_inside_bar(pass_ends: PassEnds) -> Mask:
     """

@@ -1,0 +1,122 @@
+"""
+Codes and blocks of a contour that may stand a block too early or too late, or be left out.
+
+These edits change no number, so that nothing is solved: each is only tried (checking/explanations.py).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from polarcheck.columns.contour.loop_edits import Edit
+from polarcheck.columns.trace import Trace
+from polarcheck.foundation.arrays import Rows
+from polarcheck.rules.editing import Replace, content_of, is_head, is_plain, separator, without, words_of
+
+#: Moves of a path from either end within which a finding may come from the ramp there.
+_NEAR = 2
+#: Blocks between a path and the code of its ramp.
+_AWAY = 3
+
+
+class CodeEdit(NamedTuple):
+    """An edit of a path that changes no number: the row of its block, what is said of it, and the edits of the text."""
+
+    row: int
+    edit: Edit
+    edits: list[Replace]
+
+
+def exchanged(trace: Trace, row: int, following: int) -> list[Replace]:
+    """The edits that exchange the blocks of two rows."""
+    run = trace.run
+    (start, end), (other_start, other_end) = (content_of(run.text, int(run.block[at])) for at in (row, following))
+    excerpt = run.text.source.excerpt
+    return [(start, end, excerpt(other_start, other_end)), (other_start, other_end, excerpt(start, end))]
+
+
+def ramp_edits(trace: Trace, own: Rows, rows: Rows) -> Iterator[list[CodeEdit]]:
+    """
+    The edits at the ends of a path near which there are findings; those of a list say the same, the first is simplest.
+
+    own: the rows of the path. rows: those of the findings.
+    """
+    machine = trace.machine
+    if not len(rows):
+        return
+    if rows.min() <= own[min(_NEAR, len(own)) - 1]:
+        codes = [*machine.codes("compensation_left"), *machine.codes("compensation_right")]
+        yield from _around(trace, _last(trace, codes, int(own[0]) - _AWAY, int(own[0])))
+    if rows.max() >= own[-min(_NEAR, len(own))]:
+        word = _last(trace, [*machine.codes("compensation_off")], int(own[-1]) - 1, int(own[-1]) + _AWAY)
+        yield from _absolute(trace, word)
+        yield from _around(trace, word)
+
+
+def _last(trace: Trace, codes: list[str], first: int, last: int) -> int:
+    """The last executed word with one of these codes in rows from the first to the last; -1 for none."""
+    words = trace.blocks.code_indices(*codes)
+    rows = trace.run.row[words]
+    return int(words[(rows >= first) & (rows <= last)].max(initial=-1))
+
+
+def _around(trace: Trace, word: int) -> Iterator[list[CodeEdit]]:
+    """The code in the block before or behind its own, and both blocks exchanged."""
+    row, code = int(trace.run.row[word]), trace.run.written(word).strip()
+    for other in (row - 1, row + 1):
+        if word >= 0 and _are_beside(trace, row, other):
+            first, second = sorted((row, other))
+            slip = f"it stands a block too {'late' if other < row else 'early'}"
+            how = f"with {code} in line {int(trace.blocks.line[other])}"
+            moved = [_at_head(trace, other, code), *without(trace.run, row, [word])]
+            order = Edit("order", 0, (), "", "it stands before the block that should be before it", 0.0)
+            yield [
+                CodeEdit(row, Edit("code", 0, (word,), code, slip, 0.0, how=how), moved),
+                CodeEdit(first, order, exchanged(trace, first, second)),
+            ]
+
+
+def _absolute(trace: Trace, word: int) -> Iterator[list[CodeEdit]]:
+    """G90 in the block of a code where G91 is in force."""
+    row, codes = int(trace.run.row[word]), [*trace.machine.codes("absolute")]
+    if word >= 0 and codes and trace.modal.is_step("X")[row] and is_plain(trace.run, row):
+        edit = Edit("code", 0, (), codes[0], f"{codes[0]} is missing", 0.0)
+        yield [CodeEdit(row, edit, [_at_head(trace, row, codes[0])])]
+
+
+def unskipped(trace: Trace, own: Rows) -> Iterator[list[CodeEdit]]:
+    """The sign of block skip taken away from a block that is skipped in the path, or beside it."""
+    run, text = trace.run, trace.run.text
+    rows = np.arange(max(int(own[0]) - 1, 0), min(int(own[-1]) + 2, len(trace)))
+    for row in rows[1:][np.diff(run.block[rows]) > 1].tolist():
+        start, end = content_of(text, int(run.block[row]) - 1)
+        content = text.source.excerpt(start, end)
+        if content.startswith("/") and run.depth[row] == run.depth[row - 1]:
+            how = f"without the / of line {text.source.line_of(start)}"
+            edit = Edit("code", 0, (), "", "a block before it is skipped", 0.0, how=how)
+            sign = len(content) - len(content[1:].lstrip("0123456789"))
+            yield [CodeEdit(row, edit, [(start, start + sign, "")])]
+
+
+def _at_head(trace: Trace, row: int, code: str) -> Replace:
+    """A code put before the words of a row, behind N and /."""
+    run, blank = trace.run, separator(trace.run, row)
+    heads = [index for index in words_of(run, row) if is_head(run, index)]
+    if heads:
+        end = int(run.words.end[heads[-1]])
+        return end, end, blank + code
+    start = content_of(run.text, int(run.block[row]))[0]
+    return start, start, code + blank
+
+
+def _are_beside(trace: Trace, row: int, other: int) -> bool:
+    """Two rows are blocks of one program and section that stand one behind the other, and can be edited."""
+    run, section = trace.run, trace.mode.section
+    if not 0 <= other < len(trace) or run.depth[row] != run.depth[other] or section[row] != section[other]:
+        return False
+    is_switch = trace.mode.enters[max(row, other)] or trace.mode.enters[min(row, other)]
+    is_next = abs(int(run.block[row]) - int(run.block[other])) == 1
+    return bool(is_next and not is_switch and is_plain(run, row) and is_plain(run, other))
