@@ -117,6 +117,9 @@ STATES: dict[str, dict[str, int]] = {
     "mirror": {"mirror_image": OF_CODE, "mirror_image_off": 0},
     "modal_call": {"modal_macro_calls": OF_CODE, "modal_macro_calls_each_block": OF_CODE, "modal_macro_cancel": 0},
 }
+#: The motion of a move that is followed -> its code list; the meaning of F -> its code list.
+MOVES = {state: key for key, state in STATES["motion"].items() if state != Motion.CYCLE}
+FEED_MODES = {state: key for key, state in STATES["feed_mode"].items()}
 
 #: The lists of codes beside which axis words are no end point of a move: dwell, offsets, references, shifts, calls.
 NO_MOVE = (

@@ -11,7 +11,7 @@ from polarcheck.columns.modes.sections import Marks, Sections, find_sections, se
 from polarcheck.columns.modes.tools import CalledTools
 from polarcheck.columns.path.axes import PlaneAxes
 from polarcheck.foundation.arrays import Columns, Mask, Rows, cached_property, is_among
-from polarcheck.foundation.states import Motion, Side
+from polarcheck.foundation.states import STATES, Motion, Side
 from polarcheck.program.execution.run import Run
 from polarcheck.program.machines.code_tables import code_numbers, code_set
 from polarcheck.program.machines.machine import Machine
@@ -37,7 +37,7 @@ class PolarMode(Columns, frozen=True):
         m_codes = self.machine.m_codes
         cutting = is_among(self.axes.motion, (Motion.LINE, Motion.CW, Motion.CCW))
         polar = self.machine.polar
-        planes = {code for key in ("plane_xy", "plane_zx", "plane_yz") for code in self.machine.codes(key)}
+        planes = {code for key in STATES["plane"] for code in self.machine.codes(key)}
         # Where G0 can stand in the mode, one with the second axis does.
         rapid_stands = "G0" in polar.allowed_codes and polar.virtual_axis != polar.rotary_address
         in_rapid = (self.axes.motion == Motion.RAPID) & self.axes.programs_virtual_axis & rapid_stands

@@ -9,7 +9,7 @@ import numpy as np
 from polarcheck.columns.filling import before, fill_down
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Floats, Mask, Rows
-from polarcheck.foundation.states import MM_PER_INCH, FeedMode, Units
+from polarcheck.foundation.states import MM_PER_INCH, MOVES, STATES, FeedMode, Units
 from polarcheck.program.machines.axis_table import FIRST_NAMED, OF_SPINDLE
 from polarcheck.program.machines.code_tables import code_set
 from polarcheck.rules.wording.written import executed_word
@@ -23,9 +23,8 @@ _OF_CALLS = "PLQH"
 _LENGTHS = ("X", "Y", "Z", "U", "V", "W", "I", "J", "K", "R")
 #: Lists of G codes whose states are compared as moves, feeds and entries, not as orders.
 _OF_STATES = (
-    *("rapid", "line", "arc_clockwise", "arc_counterclockwise", "plane_xy", "plane_zx", "plane_yz"),
-    *("compensation_off", "compensation_left", "compensation_right", "inch", "mm"),
-    *("feed_inverse_time", "feed_per_minute", "feed_per_revolution", "absolute", "incremental"),
+    *MOVES.values(),
+    *(key for group in ("plane", "side", "units", "feed_mode", "distance") for key in STATES[group]),
 )
 #: M codes that mean the same on every lathe, and whose effect no table of states shows.
 _EVERYWHERE = ("M0", "M1", "M7", "M8", "M9")

@@ -11,12 +11,12 @@ import numpy as np
 
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Mask
-from polarcheck.foundation.states import STATES, Motion, Units
+from polarcheck.foundation.states import STATES, Units
 from polarcheck.rewrite.compare.compared_sections import NOWHERE
 from polarcheck.rewrite.compensate.pieces import Piece
 from polarcheck.rewrite.writing.new_blocks import NewBlock
 from polarcheck.rewrite.writing.outcome import refused_at
-from polarcheck.rewrite.writing.pen import Pen
+from polarcheck.rewrite.writing.pen import MOTION_CODES, Pen
 from polarcheck.rewrite.writing.style import Style
 from polarcheck.rules.editing import is_head, is_plain, words_of, written_word
 
@@ -25,7 +25,6 @@ _GROUPS = ("motion", "side", "distance")
 _CODES = {0: "G1", 1: "G3", -1: "G2"}
 #: A word with a number, also of an address with several letters, as CR=5.
 _NUMBER = re.compile(r"[A-Za-z]*=?[-+]?[\d.]+")
-_STATES = {int(Motion.RAPID): "G0", int(Motion.LINE): "G1", int(Motion.CW): "G2", int(Motion.CCW): "G3"}
 
 
 class Stroke(msgspec.Struct, frozen=True):
@@ -130,7 +129,7 @@ class _Writer:
         between = slice(self.last + 1, first)
         if self.motion and not (self.sets_motion[between] | trace.axes.moves[between]).any():
             return self.motion
-        return _STATES.get(int(trace.modal.state("motion")[first - 1]), "")
+        return MOTION_CODES.get(int(trace.modal.state("motion")[first - 1]), "")
 
     def _steps(self, row: int) -> tuple[str, ...]:
         """Return the code for absolute coordinates if incremental distances are in force."""
@@ -174,7 +173,7 @@ class _Writer:
             if self.sets_motion[following] or trace.run.starts[following]:
                 return
             if trace.axes.moves[following]:
-                motion = _STATES.get(int(trace.axes.motion[following]), "")
+                motion = MOTION_CODES.get(int(trace.axes.motion[following]), "")
                 if motion and motion != code:
                     indices = [index for index in words_of(trace.run, following) if not is_head(trace.run, index)]
                     words = [written_word(trace.run, index) for index in indices]

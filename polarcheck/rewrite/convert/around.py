@@ -12,7 +12,7 @@ import numpy as np
 from polarcheck.checking.settings import Settings
 from polarcheck.columns.filling import fill_down
 from polarcheck.foundation.arrays import Rows
-from polarcheck.foundation.states import Motion
+from polarcheck.foundation.states import MOVES
 from polarcheck.program.machines.machine import Machine
 from polarcheck.rewrite.convert.block_texts import BlockTexts
 from polarcheck.rewrite.convert.heads import Heads, writes_numbers
@@ -42,9 +42,6 @@ def is_without_effect(content: str, machine: Machine) -> bool:
         if effect == "none" and (fnmatchcase(plain, name) or numbered == name):
             return True
     return False
-
-
-_MOTIONS = {Motion.RAPID: "rapid", Motion.LINE: "line", Motion.CW: "arc_clockwise", Motion.CCW: "arc_counterclockwise"}
 
 
 class Around(msgspec.Struct, frozen=True):
@@ -205,12 +202,12 @@ class _Writer:
         trace, motion = self.trace, int(self.trace.modal.state("motion")[row])
         if bool(trace.modal.sets("motion")[row]):
             self._has_lost_motion = bool(result.whole)
-        if result.whole or not (self._from_section[row] or self._has_lost_motion) or motion not in _MOTIONS:
+        if result.whole or not (self._from_section[row] or self._has_lost_motion) or motion not in MOVES:
             return
         moves = trace.modal.uses_axes[row] and trace.blocks.has(*trace.machine.axis_words)[row]
         if not moves or bool(trace.modal.in_cycle[row]):
             return
-        code = self.target.codes(_MOTIONS[Motion(motion)])[0]
+        code = self.target.codes(MOVES[motion])[0]
         result.words.insert(len(result.behind), code)
         result.changed, self._has_lost_motion = True, False
 

@@ -8,16 +8,14 @@ from fractions import Fraction
 
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import stretch
-from polarcheck.foundation.states import Motion
 from polarcheck.program.machines.machine import Machine
 from polarcheck.rewrite.convert.measures import Measures, fraction
 from polarcheck.rewrite.convert.number_text import number_of
 from polarcheck.rewrite.convert.section_words import SectionWords
 from polarcheck.rewrite.writing.outcome import refused_at
-from polarcheck.rewrite.writing.pen import Pen
+from polarcheck.rewrite.writing.pen import MOTION_CODES, Pen
 
 _PLAIN_FEED = re.compile(r"F\s*+=?\s*+[\d.]", re.IGNORECASE)
-_MOTIONS = {Motion.RAPID: "G0", Motion.LINE: "G1", Motion.CW: "G2", Motion.CCW: "G3"}
 
 
 class ComputedBlocks:
@@ -52,7 +50,7 @@ class ComputedBlocks:
 
     def motion(self, row: int) -> str:
         """The code of the motion of a row: G1."""
-        code = _MOTIONS.get(Motion(int(self.trace.axes.motion[row])), "")
+        code = MOTION_CODES.get(int(self.trace.axes.motion[row]), "")
         if code == "G0" and not self.target.writing.rapid_in_mode:
             raise refused_at(self.trace, row, "rapid traverse in the mode to a computed place is not converted")
         return code

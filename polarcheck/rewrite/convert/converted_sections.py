@@ -12,7 +12,7 @@ import numpy as np
 
 from polarcheck.columns.filling import last_row
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.states import Motion, Side, Units
+from polarcheck.foundation.states import STATES, Motion, Side, Units
 from polarcheck.program.machines.machine import Machine
 from polarcheck.rewrite.compare.terms import ANGLE
 from polarcheck.rewrite.convert.block_texts import BlockTexts
@@ -65,7 +65,6 @@ _ELSEWHERE = "the other control places it at another angle"
 #: Numbers of a column, since a name of states is looked up anew for each row.
 _RAPID, _CCW = int(Motion.RAPID), int(Motion.CCW)
 _PLANES = {17: "plane_xy", 18: "plane_zx", 19: "plane_yz"}
-_SIDES = {Side.OFF: "compensation_off", Side.LEFT: "compensation_left", Side.RIGHT: "compensation_right"}
 
 
 class Inside(msgspec.Struct, frozen=True):
@@ -374,7 +373,7 @@ class _Writer:
 
     def _sides(self, geometry: Sequence[int]) -> list[str]:
         """The codes of cutter compensation in a block, as the other machine has them."""
-        keys = [key for index in geometry if (key := self.words.key(index)) in _SIDES.values()]
+        keys = [key for index in geometry if (key := self.words.key(index)) in STATES["side"]]
         return [self.target.codes(key)[0] for key in keys]
 
     def _call(self, row: int) -> list[str] | None:

@@ -14,14 +14,13 @@ from polarcheck.program.machines.machine import Machine
 from polarcheck.rewrite.convert.g_meanings import GMeanings
 from polarcheck.rewrite.convert.measures import Measures
 
+#: Cycles whose words are the same on all controls that have them.
+_PLAIN_CYCLES = ("turning_cycle", "threading_cycle", "facing_cycle", "drilling_cycle")
 #: Lists of codes beside which the other words are arguments: all of them are the same on both machines, or none is.
 WITH_ARGUMENTS = (
+    *_PLAIN_CYCLES,
     "data_input",
-    "turning_cycle",
-    "threading_cycle",
-    "facing_cycle",
     "repetitive_cycle",
-    "drilling_cycle",
     "motion_not_followed",
     "scaling",
     "rotation",
@@ -39,16 +38,7 @@ WITH_ARGUMENTS = (
     "modal_macro_calls_each_block",
 )
 #: Those of them that stay in force, and thread cutting.
-_CYCLES = (
-    "turning_cycle",
-    "threading_cycle",
-    "facing_cycle",
-    "drilling_cycle",
-    "motion_not_followed",
-    "thread_cutting",
-)
-#: Cycles whose words are the same on all controls that have them.
-_PLAIN_CYCLES = ("turning_cycle", "threading_cycle", "facing_cycle", "drilling_cycle")
+_CYCLES = (*_PLAIN_CYCLES, "motion_not_followed", "thread_cutting")
 
 
 class CycleWords:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import msgspec
 
+from polarcheck.foundation.states import MOVES, STATES
 from polarcheck.program.machines.code_lists import GCodes, GCodeSystem, numbers
 from polarcheck.program.machines.code_tables import code, spelled
 from polarcheck.program.machines.machine import Machine
@@ -18,49 +19,8 @@ _NOT_OF_MEANING = (
     "data_input_work_offset",
     "data_input_tool_offset",
 )
-#: Lists whose codes all do the same: where the other machine has another code in its list, that is written.
-_OF_ONE_MEANING = (
-    "rapid",
-    "line",
-    "arc_clockwise",
-    "arc_counterclockwise",
-    "plane_xy",
-    "plane_zx",
-    "plane_yz",
-    "compensation_off",
-    "compensation_left",
-    "compensation_right",
-    "corner_by_arc",
-    "corner_by_intersection",
-    "feed_inverse_time",
-    "feed_per_minute",
-    "feed_per_revolution",
-    "feed_on_plane",
-    "feed_in_space",
-    "feed_as_machine",
-    "feed_at_center",
-    "feed_at_contour",
-    "feed_at_inner_contour",
-    "constant_surface_speed",
-    "constant_surface_speed_off",
-    "drilling_cycle_off",
-    "scaling_off",
-    "rotation_off",
-    "mirror_image_off",
-    "tool_length_offset_off",
-    "dwell",
-    "inch",
-    "mm",
-    "absolute",
-    "incremental",
-)
 #: Lists whose effect is compared when the program is read back: the other control may lack the code.
-_COMPARED = (
-    *("corner_by_arc", "corner_by_intersection", "feed_on_plane", "feed_in_space", "feed_as_machine"),
-    *("feed_at_center", "feed_at_contour", "feed_at_inner_contour"),
-)
-#: Lists whose codes mean that with other words beside them, and something else alone.
-_WITH_WORDS = ("coordinate_setting",)
+_COMPARED = (*STATES["corner"], *STATES["feed_axes"], *STATES["arc_feed"])
 #: List that ends a state -> list that begins it. Where the other control cannot begin it, the end is dropped.
 _ENDS = {
     "drilling_cycle_off": "drilling_cycle",
@@ -69,6 +29,16 @@ _ENDS = {
     "mirror_image_off": "mirror_image",
     "tool_length_offset_off": "tool_length_offset",
 }
+#: Lists whose codes all do the same: where the other machine has another code in its list, that is written.
+_OF_ONE_MEANING = (
+    *MOVES.values(),
+    *_COMPARED,
+    *(key for group in ("plane", "side", "feed_mode", "distance", "units", "speed") for key in STATES[group]),
+    *_ENDS,
+    "dwell",
+)
+#: Lists whose codes mean that with other words beside them, and something else alone.
+_WITH_WORDS = ("coordinate_setting",)
 _LISTS = tuple(key for key in (*GCodes.__struct_fields__, *GCodeSystem.__struct_fields__) if key not in _NOT_OF_MEANING)
 
 

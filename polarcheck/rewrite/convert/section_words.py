@@ -5,16 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from polarcheck.columns.trace import Trace
+from polarcheck.foundation.states import MOVES, STATES
 from polarcheck.program.machines.code_lists import numbers
 from polarcheck.program.machines.code_tables import code_numbers
 from polarcheck.program.machines.machine import Machine
 from polarcheck.rewrite.convert.g_meanings import GMeanings
 
 #: Lists of codes that the moves say themselves.
-_OF_GEOMETRY = (
-    *("rapid", "line", "arc_clockwise", "arc_counterclockwise", "absolute", "incremental"),
-    *("plane_xy", "plane_zx", "plane_yz", "compensation_off", "compensation_left", "compensation_right"),
-)
+_OF_GEOMETRY = (*MOVES.values(), *STATES["distance"], *STATES["plane"], *STATES["side"])
 #: Keys of the profile by which the geometry of sections is written.
 _OF_CONTROL = (
     *("least_increment", "least_increment_inch", "number_without_point", "motion_codes", "native_words"),

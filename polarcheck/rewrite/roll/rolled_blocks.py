@@ -9,7 +9,7 @@ import numpy as np
 
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import stretch
-from polarcheck.foundation.states import MM_PER_INCH, FeedMode, Motion, Units
+from polarcheck.foundation.states import FEED_MODES, MM_PER_INCH, STATES, FeedMode, Motion, Units
 from polarcheck.program.machines.code_tables import code_set
 from polarcheck.rewrite.roll.entries import Entry
 from polarcheck.rewrite.roll.following import Following, x_factor
@@ -21,13 +21,6 @@ from polarcheck.rewrite.writing.outcome import Refusal, RefusedError
 from polarcheck.rewrite.writing.pen import Pen
 from polarcheck.rewrite.writing.style import Style
 from polarcheck.rules.editing import is_plain
-
-_PLANES = ("plane_xy", "plane_zx", "plane_yz")
-_FEED_CODES = {
-    FeedMode.INVERSE_TIME: "feed_inverse_time",
-    FeedMode.PER_MINUTE: "feed_per_minute",
-    FeedMode.PER_REVOLUTION: "feed_per_revolution",
-}
 
 
 def restored(trace: Trace, following: Following, last: int, pen: Pen, *, is_line: bool) -> list[NewBlock]:
@@ -63,7 +56,7 @@ def restored(trace: Trace, following: Following, last: int, pen: Pen, *, is_line
 
 def feed_code(pen: Pen, mode: FeedMode) -> str:
     """The code of what F is. Raises RefusedError where the machine has none."""
-    codes = pen.machine.codes(_FEED_CODES[mode])
+    codes = pen.machine.codes(FEED_MODES[mode])
     if not codes:
         raise RefusedError([Refusal(pen.numbers.line, f"no code for that F is known: {pen.machine.title}")])
     return in_case(pen, pen.numbers.code(codes[0]))
@@ -77,7 +70,7 @@ def in_case(pen: Pen, word: str) -> str:
 def _plane(trace: Trace, following: Following, last: int, pen: Pen) -> list[str]:
     """The code of the plane that was in force, where the section leaves another one and arcs follow."""
     machine, writing = trace.machine, trace.machine.writing
-    planes = {code: key for key in _PLANES for code in machine.codes(key)}
+    planes = {code: key for key in STATES["plane"] for code in machine.codes(key)}
     blocks = (*writing.before, writing.switch, *writing.behind, writing.end, *writing.behind_end)
     after = [planes[word] for block in blocks for word in block.split() if word in planes]
     state = int(trace.modal.state("plane")[last])

@@ -8,19 +8,18 @@ import numpy as np
 
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import stretch
-from polarcheck.foundation.states import NO_MOVE
+from polarcheck.foundation.states import MOVES, NO_MOVE, STATES
 from polarcheck.program.machines.code_tables import NO_CODE, code_set
 from polarcheck.rewrite.writing.outcome import refused_at
 from polarcheck.rules.editing import is_head, is_plain, words_of, written_word
 
+_GROUPS = ("plane", "side", "corner", "feed_mode", "feed_axes", "arc_feed", "distance")
 #: Lists of G codes to drop: they mean nothing without the mode, or the new blocks write their own.
 _DROPPED = (
-    "rapid", "line", "arc_clockwise", "arc_counterclockwise", "plane_xy", "plane_zx", "plane_yz", "compensation_off",
-    "compensation_left", "compensation_right", "corner_by_arc", "corner_by_intersection", "feed_inverse_time",
-    "feed_per_minute", "feed_per_revolution", "feed_on_plane", "feed_in_space", "feed_as_machine", "feed_at_center",
-    "feed_at_contour", "feed_at_inner_contour", "absolute", "incremental", "frame_shift", "frame_shift_added",
-    "frame_rotation", "frame_rotation_added",
-)  # fmt: skip
+    *MOVES.values(),
+    *(key for group in _GROUPS for key in STATES[group]),
+    *("frame_shift", "frame_shift_added", "frame_rotation", "frame_rotation_added"),
+)
 #: Why a block with a word that a statement computes is refused.
 _COMPUTED = "a word of this block cannot be written without the statement around it"
 

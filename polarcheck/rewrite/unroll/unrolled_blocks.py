@@ -10,22 +10,17 @@ import numpy as np
 
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Floats, Mask, cached_property, stretch
-from polarcheck.foundation.states import Distance, FeedMode, Motion, Units
+from polarcheck.foundation.states import FEED_MODES, Distance, FeedMode, Motion, Units
 from polarcheck.rewrite.unroll.axis_blocks import Steps
 from polarcheck.rewrite.unroll.remaining_words import RemainingWords
 from polarcheck.rewrite.unroll.unrollable import Stretch
 from polarcheck.rewrite.writing.new_blocks import NewBlock, comments_of
 from polarcheck.rewrite.writing.outcome import refused_at
+from polarcheck.rewrite.writing.pen import MOTION_CODES
 from polarcheck.rewrite.writing.style import Style
 from polarcheck.rewrite.writing.written_numbers import Numbers
 from polarcheck.rules.editing import written_word
 
-_FEED_CODES = {
-    FeedMode.INVERSE_TIME: "feed_inverse_time",
-    FeedMode.PER_MINUTE: "feed_per_minute",
-    FeedMode.PER_REVOLUTION: "feed_per_revolution",
-}
-_MOTIONS = {int(Motion.RAPID): "G0", int(Motion.LINE): "G1"}
 #: X1= in the place of X.
 _NAMED = re.compile(r"[A-Z]+[0-9]*=", re.IGNORECASE)
 
@@ -154,8 +149,8 @@ class Writer:
         if self._has_feed and not math.isnan(feed):
             words.append(self._feed_word(self._numbers(row), feed))
         motion = int(trace.modal.state("motion")[row])
-        if motion in _MOTIONS and self._is_motion_taken_over(row):
-            words.append(self._motion_word(row, _MOTIONS[motion]))
+        if motion in (Motion.RAPID, Motion.LINE) and self._is_motion_taken_over(row):
+            words.append(self._motion_word(row, MOTION_CODES[motion]))
         words = [word for word in (*words, *self._remaining.of_row(row)) if word]
         return [self._block(words)] if words else []
 
@@ -181,7 +176,7 @@ class Writer:
             words.append(self._first_code(row, "absolute" if distance == Distance.ABSOLUTE else "incremental"))
             self._distance = distance
         if mode is not None and mode != self._mode:
-            words.append(self._first_code(row, _FEED_CODES[mode]))
+            words.append(self._first_code(row, FEED_MODES[mode]))
             self._mode, self._feed = int(mode), ""
         return words
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+from polarcheck.foundation.states import Motion
 from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.program.machines.machine import Machine
 from polarcheck.rewrite.writing.new_blocks import NewBlock
@@ -13,6 +14,8 @@ from polarcheck.rewrite.writing.style import PLAIN, Style
 from polarcheck.rewrite.writing.written_arcs import Arc, arc_between, nearest_center, nearest_radius
 from polarcheck.rewrite.writing.written_numbers import Numbers
 
+#: The code of each motion, as the functions of Pen take it.
+MOTION_CODES = {int(Motion.RAPID): "G0", int(Motion.LINE): "G1", int(Motion.CW): "G2", int(Motion.CCW): "G3"}
 #: How often an arc is halved where its words would not come near enough: into 64 parts.
 _HALVINGS = 6
 #: Points that differ by less are one [mm].

@@ -8,7 +8,7 @@ import numpy as np
 
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Mask, Rows
-from polarcheck.foundation.states import Motion
+from polarcheck.foundation.states import MOVES, Motion
 from polarcheck.program.reading.words import Text
 from polarcheck.rewrite.writing.style import PLAIN, Style
 
@@ -142,7 +142,7 @@ def _repeats(trace: Trace) -> tuple[bool, bool, bool]:
         return False, False, False
     same = np.zeros(len(rows), bool)
     same[1:] = trace.axes.motion[rows][1:] == trace.axes.motion[rows][:-1]
-    motion = blocks.listed("rapid", "line", "arc_clockwise", "arc_counterclockwise")[rows]
+    motion = blocks.listed(*MOVES.values())[rows]
     lines = trace.axes.motion[rows] == Motion.LINE
     still = (path.start[rows].real == path.end[rows].real) | (path.start[rows].imag == path.end[rows].imag)
     both = (trace.axes.programs_linear_axis & trace.axes.has_virtual_word)[rows]

@@ -7,13 +7,10 @@ import numpy as np
 from polarcheck.columns.filling import happened
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Mask, Rows
-from polarcheck.foundation.states import Distance
+from polarcheck.foundation.states import MOVES, Distance
 from polarcheck.program.machines.code_lists import expanded, is_code
 from polarcheck.program.machines.m_codes import OF_EVERY_LATHE, MCodes
 from polarcheck.program.machines.machine import Machine
-
-#: Lists of the codes of motion: beside one of them the axis words of a block are its end.
-_MOTIONS = ("rapid", "line", "arc_clockwise", "arc_counterclockwise")
 
 
 class UnknownMoves:
@@ -32,7 +29,9 @@ class UnknownMoves:
         machine = trace.machine
         self._has_axes = blocks.has(*machine.axis_words)
         g_words, m_words = (self._unlisted(letter) for letter in "GM")
-        is_special = ~trace.modal.uses_axes | blocks.codes(*machine.control.motion_codes) | blocks.listed(*_MOTIONS)
+        is_special = ~trace.modal.uses_axes | blocks.codes(*machine.control.motion_codes)
+        # Beside a code of motion the axis words of a block are its end.
+        is_special |= blocks.listed(*MOVES.values())
         self.word = np.full(count, -1, np.int64)
         rows = trace.run.row
         m_words = m_words[trace.run.words.start[m_words] < self._first_axis(count)[rows[m_words]]]

@@ -2,7 +2,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from polarcheck.foundation.states import Motion
+from polarcheck.foundation.states import MOVES, Motion
 from polarcheck.rules.rule import ERROR, Hits, graded, rule
 
 if TYPE_CHECKING:
@@ -102,7 +102,6 @@ def details(hit: Hit, uncompensated_cuts: UncompensatedCuts) -> Details:
     trace, row = hit.trace, hit.row
     into, place = uncompensated_cuts.cuts.deepest(row)
     depth, z = uncompensated_cuts.depth[row], trace.path.z[row]
-    key = {Motion.RAPID: "rapid", Motion.LINE: "line", Motion.CW: "arc_clockwise", Motion.CCW: "arc_counterclockwise"}
     goes = f"goes {hit.length(depth)} deep into"
     if depth >= hit.radius:
         goes = "leads through" if trace.path.travels[row] or not trace.mode.in_polar[row] else "goes down into"
@@ -112,7 +111,7 @@ def details(hit: Hit, uncompensated_cuts: UncompensatedCuts) -> Details:
         "plane_c": place.imag,
         "z": z,
         "other_line": hit.line(into),
-        "bare": f"{trace.machine.codes(key[Motion(int(trace.axes.motion[row]))])[0]} without compensation",
+        "bare": f"{trace.machine.codes(MOVES[int(trace.axes.motion[row])])[0]} without compensation",
         "from_point": _from_point(hit),
         "goes": goes,
         "part": f"the part that the contour of line {hit.line(into)} leaves, at {hit.point(place)} Z{hit.number(z)}",

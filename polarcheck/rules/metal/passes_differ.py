@@ -2,7 +2,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from polarcheck.foundation.states import Motion
+from polarcheck.foundation.states import MOVES
 from polarcheck.rules.causes import FAULTS_OF_CONTOUR
 from polarcheck.rules.rule import WARNING, rule
 
@@ -113,8 +113,7 @@ def _difference(hit: Hit, arcs: Arcs, other: int) -> str:
         ends = hit.point_off_center(here), hit.point_off_center(there)
         return f"this block ends at {ends[0]}, line {line} at {ends[1]}"
     if trace.path.is_arc[row] and trace.path.is_arc[other]:
-        lists = {int(Motion.CW): "arc_clockwise", int(Motion.CCW): "arc_counterclockwise"}
-        codes = [trace.machine.codes(lists[int(trace.axes.motion[at])])[0] for at in (row, other)]
+        codes = [trace.machine.codes(MOVES[int(trace.axes.motion[at])])[0] for at in (row, other)]
         arc, its = (f"{code} {written_arc(trace, arcs, at)}" for code, at in zip(codes, (row, other), strict=True))
         return f"this block is {arc}, line {line} {its}"
     return f"this block is another move than line {line}"

@@ -6,7 +6,7 @@ import numpy as np
 
 from polarcheck.columns.path.arcs import Arcs
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.states import Motion
+from polarcheck.foundation.states import MOVES, Motion
 from polarcheck.program.machines.machine import Machine
 from polarcheck.program.machines.own_language import shown
 from polarcheck.rules.wording.written import move_code, written
@@ -37,8 +37,7 @@ def arc_in_force_before(trace: Trace, row: int) -> tuple[str, str]:
     words = (trace.machine.arcs.radius_word, *trace.axes.center_words(row))
     word = next((word for word in words if not np.isnan(trace.blocks.word(word)[row])), "")
     motion = trace.modal.state("motion")[row - 1] if row and word else Motion.LINE
-    names = {int(Motion.CW): "arc_clockwise", int(Motion.CCW): "arc_counterclockwise"}
-    code = move_code(trace.machine, names[int(motion)]) if int(motion) in names else ""
+    code = move_code(trace.machine, MOVES[int(motion)]) if motion in (Motion.CW, Motion.CCW) else ""
     return word, code
 
 
