@@ -8,7 +8,7 @@ from __future__ import annotations
 import cmath
 import math
 from collections.abc import Container, Iterator, Sequence
-from itertools import groupby, pairwise
+from itertools import pairwise
 
 import msgspec
 import numpy as np
@@ -20,7 +20,7 @@ from polarcheck.rewrite.compensate.chosen_sections import Section
 from polarcheck.rewrite.compensate.contour_rings import Ring, rings_of
 from polarcheck.rewrite.compensate.parallel import NEAR, NoContourError, contour_beside
 from polarcheck.rewrite.compensate.pieces import Piece
-from polarcheck.rewrite.compensate.section_moves import Move, runs
+from polarcheck.rewrite.compensate.section_moves import Move, consecutive, runs
 from polarcheck.rewrite.compensate.sides import Swept, points_along, standing_share
 
 #: A line that turns by more at its end leads to what follows [rad].
@@ -97,8 +97,7 @@ def uncovered(trace: Trace, section: Section, covered: Container[int]) -> Iterat
     for low, high in _at_depth(trace, section.moves):
         numbers = [n for n in range(low, high) if n not in covered and not _is_in_air(section, section.moves[n].piece)]
         leads = _MOVES_OF_LEAD if any(number in covered for number in range(low, high)) else 1
-        for _, group in groupby(enumerate(numbers), lambda pair: pair[1] - pair[0]):
-            path = [number for _, number in group]
+        for path in consecutive(numbers):
             # Between two contours one move leads away and another one to the next.
             ends = (path[0] - 1 in covered) + (path[-1] + 1 in covered)
             if len(path) > leads * max(ends, 1):
@@ -178,7 +177,7 @@ def _open_spans(section: Section, low: int, high: int) -> list[tuple[int, int]]:
     leads = [_is_in_air(section, piece) for piece in pieces]
     if np.isnan(section.bar):
         arrives = [_comes_from_outside(section, *pair) for pair in pairwise(pieces)] + [False]
-        backwards = [_back(piece) for piece in pieces]
+        backwards = [piece.back for piece in pieces]
         leaves = [False] + [_comes_from_outside(section, after, before) for before, after in pairwise(backwards)]
         is_outside = False
         for index in range(len(pieces)):
@@ -188,10 +187,7 @@ def _open_spans(section: Section, low: int, high: int) -> list[tuple[int, int]]:
         for index in (0, len(pieces) - 1):
             leads[index] |= low + index in ends and len(pieces) > 1
     numbers = [low + index for index, is_lead in enumerate(leads) if not is_lead]
-    groups = [
-        [number for _, number in group] for _, group in groupby(enumerate(numbers), lambda pair: pair[1] - pair[0])
-    ]
-    return [(group[0], group[-1]) for group in groups]
+    return [(group[0], group[-1]) for group in consecutive(numbers)]
 
 
 def _has_leads(section: Section, pieces: Sequence[Piece]) -> bool:
@@ -199,7 +195,7 @@ def _has_leads(section: Section, pieces: Sequence[Piece]) -> bool:
     Return True if a path starts with a line that leads to it and ends with one that leads away; moves aside may precede
     them.
     """
-    backwards = [_back(piece) for piece in reversed(pieces)]
+    backwards = [piece.back for piece in reversed(pieces)]
     return all(
         any(_comes_from_outside(section, *pair) for pair in pairwise(path[:_MOVES_OF_LEAD]))
         for path in (pieces, backwards)
@@ -211,10 +207,6 @@ def _comes_from_outside(section: Section, piece: Piece, following: Piece) -> boo
     nearer = abs(piece.start) - abs(piece.end) >= section.radius
     turn = cmath.phase(following.leaving / (piece.arriving or 1.0)) if piece.center is None else 0.0
     return nearer and abs(turn) >= _CORNER
-
-
-def _back(piece: Piece) -> Piece:
-    return msgspec.structs.replace(piece, start=piece.end, end=piece.start, turning=-piece.turning)
 
 
 def _is_in_air(section: Section, piece: Piece) -> bool:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from itertools import groupby
 
 import msgspec
 import numpy as np
@@ -14,7 +13,8 @@ from polarcheck.foundation.arrays import Mask
 from polarcheck.foundation.states import STATES, Units
 from polarcheck.rewrite.compare.compared_sections import NOWHERE
 from polarcheck.rewrite.compensate.pieces import Piece
-from polarcheck.rewrite.writing.new_blocks import NewBlock
+from polarcheck.rewrite.compensate.section_moves import consecutive
+from polarcheck.rewrite.writing.new_blocks import NewBlock, next_move_in_motion
 from polarcheck.rewrite.writing.outcome import refused_at
 from polarcheck.rewrite.writing.pen import MOTION_CODES, Pen
 from polarcheck.rewrite.writing.style import Style
@@ -54,8 +54,7 @@ def new_blocks(trace: Trace, strokes: Strokes, style: Style) -> dict[int, list[N
     """
     writer = _Writer(trace, style)
     rows = sorted(strokes)
-    groups = [[row for _, row in group] for _, group in groupby(enumerate(rows), lambda pair: pair[1] - pair[0])]
-    for group in groups:
+    for group in consecutive(rows):
         writer.write(group, strokes)
     writer.require_once(rows)
     return writer.blocks
@@ -168,17 +167,12 @@ class _Writer:
         """
         Write the code of the next move if that move took it over from before the rewritten rows and it has changed.
         """
-        trace = self.trace
-        for following in range(row + 1, len(trace)):
-            if self.sets_motion[following] or trace.run.starts[following]:
-                return
-            if trace.axes.moves[following]:
-                motion = MOTION_CODES.get(int(trace.axes.motion[following]), "")
-                if motion and motion != code:
-                    indices = [index for index in words_of(trace.run, following) if not is_head(trace.run, index)]
-                    words = [written_word(trace.run, index) for index in indices]
-                    self._put(following, [NewBlock((pen.numbers.code(motion), *words))])
-                return
+        trace, following = self.trace, next_move_in_motion(self.trace, row)
+        motion = "" if following is None else MOTION_CODES.get(int(trace.axes.motion[following]), "")
+        if following is not None and motion and motion != code:
+            indices = [index for index in words_of(trace.run, following) if not is_head(trace.run, index)]
+            words = [written_word(trace.run, index) for index in indices]
+            self._put(following, [NewBlock((pen.numbers.code(motion), *words))])
 
     def require_once(self, rows: Sequence[int]) -> None:
         """Raise RefusedError if a rewritten block also runs in other rows."""

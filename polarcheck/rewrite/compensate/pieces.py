@@ -77,6 +77,11 @@ class Piece(msgspec.Struct, frozen=True):
         spoke = cmath.rect(abs(first) + share * (last - abs(first)), cmath.phase(first))
         return self.center + spoke * cmath.exp(1j * self.turning * self.sweep * share)
 
+    @property
+    def back(self) -> Piece:
+        """The same piece from its end to its start."""
+        return msgspec.structs.replace(self, start=self.end, end=self.start, turning=-self.turning)
+
     def replaced(self, start: complex | None = None, end: complex | None = None) -> Piece:
         """Return the piece with another start or end on the same line or circle."""
         piece = msgspec.structs.replace(

@@ -118,8 +118,8 @@ def _open(contour: Contour, path: list[Piece], enters: int, leaves: int) -> Ramp
     if enters < 0:
         path = _rest_after(path, _stretch(path, radius))
     if leaves < 0:
-        backwards = _reversed(path)
-        path = _reversed(_rest_after(backwards, _stretch(backwards, radius)))
+        backwards = [piece.back for piece in reversed(path)]
+        path = [piece.back for piece in reversed(_rest_after(backwards, _stretch(backwards, radius)))]
     return Ramped(contour_beside(path, contour.aside), enters, leaves, back)
 
 
@@ -198,10 +198,3 @@ def _rest_after(path: Sequence[Piece], stretch: float) -> list[Piece]:
             return [piece.replaced(start=piece.at(stretch / piece.length)), *path[number + 1 :]]
         stretch -= piece.length
     return []
-
-
-def _reversed(path: Sequence[Piece]) -> list[Piece]:
-    return [
-        msgspec.structs.replace(piece, start=piece.end, end=piece.start, turning=-piece.turning)
-        for piece in reversed(path)
-    ]

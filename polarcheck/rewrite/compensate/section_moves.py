@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import groupby
 
 import msgspec
 import numpy as np
@@ -52,6 +53,12 @@ def of_section(trace: Trace, moves: Moves, section: int) -> list[Move]:
         piece = Piece(start, end, center if turning else None, turning, full, number)
         result.append(Move(row, piece, begin, until, code != Motion.RAPID))
     return result
+
+
+def consecutive(numbers: Sequence[int]) -> list[list[int]]:
+    """Return the runs of ascending numbers in which each is the next one."""
+    groups = groupby(enumerate(numbers), lambda pair: pair[1] - pair[0])
+    return [[number for _, number in group] for _, group in groups]
 
 
 def runs(trace: Trace, moves: Sequence[Move]) -> list[tuple[int, int]]:

@@ -121,10 +121,7 @@ def _of_rows(trace: Trace) -> Iterator[Refusal]:
         ((feed_mode == FeedMode.INVERSE_TIME) & moving, "inverse time in the mode is not converted"),
     ]
     for hits, text in checks:
-        rows = np.flatnonzero(hits)
-        numbers = mode.section[rows]
-        for row in rows[np.append(True, np.diff(numbers) != 0)[: len(rows)]].tolist():
-            yield refusal_at(trace, row, text)
+        yield from (refusal_at(trace, row, text) for row in np.flatnonzero(mode.first_in_section(hits)).tolist())
 
 
 def _of_words(trace: Trace) -> Iterator[Refusal]:

@@ -117,21 +117,14 @@ def _of_rows(tables: Tables) -> Iterator[tuple[int, str]]:
         ((without_feed | alone) & ~per_minute, "F is not per minute, so that the speed of the tool is not known"),
         (without_feed | alone, "F is missing"),
     ]  # fmt: skip
-    for row in _first_of_sections(trace, without_radius):
+    for row in np.flatnonzero(mode.first_in_section(without_radius)).tolist():
         missing = to_give(trace.tools, trace.machine, row, "radius")
         yield row, f"R of {called_tool(trace.tools, row)} is not known: {missing}"
-    for row in _first_of_sections(trace, within & (unknown_moves.word >= 0)):
+    for row in np.flatnonzero(mode.first_in_section(within & (unknown_moves.word >= 0))).tolist():
         word = written_word(trace.run, int(unknown_moves.word[row]))
         yield row, f"{word} may be a macro that takes these axis words: the profile does not say what it does"
     for hits, text in checks:
-        yield from ((row, text) for row in _first_of_sections(trace, hits))
-
-
-def _first_of_sections(trace: Trace, hits: Mask) -> list[int]:
-    rows = np.flatnonzero(hits)
-    section = trace.mode.section[rows]
-    first: list[int] = rows[np.append(True, np.diff(section) != 0)[: len(rows)]].tolist()
-    return first
+        yield from ((row, text) for row in np.flatnonzero(mode.first_in_section(hits)).tolist())
 
 
 def _of_section(trace: Trace, section: Stretch) -> Iterator[Refusal]:

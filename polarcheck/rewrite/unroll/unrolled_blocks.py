@@ -14,7 +14,7 @@ from polarcheck.foundation.states import FEED_MODES, Distance, FeedMode, Motion,
 from polarcheck.rewrite.unroll.axis_blocks import Steps
 from polarcheck.rewrite.unroll.remaining_words import RemainingWords
 from polarcheck.rewrite.unroll.unrollable import Stretch
-from polarcheck.rewrite.writing.new_blocks import NewBlock, comments_of
+from polarcheck.rewrite.writing.new_blocks import NewBlock, comments_of, next_move_in_motion
 from polarcheck.rewrite.writing.outcome import refused_at
 from polarcheck.rewrite.writing.pen import MOTION_CODES
 from polarcheck.rewrite.writing.style import Style
@@ -149,20 +149,10 @@ class Writer:
         if self._has_feed and not math.isnan(feed):
             words.append(self._feed_word(self._numbers(row), feed))
         motion = int(trace.modal.state("motion")[row])
-        if motion in (Motion.RAPID, Motion.LINE) and self._is_motion_taken_over(row):
+        if motion in (Motion.RAPID, Motion.LINE) and next_move_in_motion(trace, row) is not None:
             words.append(self._motion_word(row, MOTION_CODES[motion]))
         words = [word for word in (*words, *self._remaining.of_row(row)) if word]
         return [self._block(words)] if words else []
-
-    def _is_motion_taken_over(self, row: int) -> bool:
-        """The next move behind a row has no code of motion of its own."""
-        trace = self.trace
-        for following in range(row + 1, len(trace)):
-            if trace.modal.sets("motion")[following] or trace.blocks.starts[following]:
-                return False
-            if trace.axes.moves[following]:
-                return True
-        return False
 
     def _block(self, words: Sequence[str], remaining: Sequence[str] = ()) -> NewBlock:
         written = (word.lower() if self.style.lower_case else word for word in words if word)

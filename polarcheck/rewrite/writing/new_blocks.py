@@ -10,6 +10,7 @@ import msgspec
 import numpy as np
 
 from polarcheck.checking.edits import applied, origins
+from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import stretch
 from polarcheck.program.machines.machine import Machine
 from polarcheck.program.reading import source
@@ -119,6 +120,16 @@ def comments_of(text: Text, index: int) -> list[str]:
     """The comments of a block without their signs."""
     start, end = int(text.blocks.start[index]), int(text.blocks.end[index])
     return _comments(text, index, text.source.excerpt(start, end))[0]
+
+
+def next_move_in_motion(trace: Trace, row: int) -> int | None:
+    """The next row that moves, if it takes over the motion in force behind a row; None without such a row."""
+    for following in range(row + 1, len(trace)):
+        if trace.modal.sets("motion")[following] or trace.blocks.starts[following]:
+            return None
+        if trace.axes.moves[following]:
+            return following
+    return None
 
 
 def edits_of_signs(original: Original, machine: Machine) -> list[Replace]:
