@@ -299,7 +299,7 @@ def _new(engine: Engine, correction: Correction) -> Finding:
     trace, tables, row, word = engine.trace, engine.tables, correction.row, correction.word
     tables["regularity"].explained[row] = correction
     at = trace.blocks.words_at(np.array([word][: word >= 0], np.int64))
-    hits = Hits(trace.blocks.mask_of(np.array([row])), at=at)
+    hits = Hits(trace.blocks.mask_of([row]), at=at)
     place = PLACES["rows"](tables, row)
     return engine.answered(engine.finding(engine.rules[REPORTS], place, hits, 1), place.block)
 

@@ -75,9 +75,7 @@ class Deviations(Columns, frozen=True):
     @cached_property
     def differs(self) -> Mask:
         """Rows at which the largest difference of a part lies."""
-        column = np.zeros(len(self.trace), bool)
-        column[list(self._worst)] = True
-        return column
+        return self.trace.blocks.mask_of(list(self._worst))
 
     @cached_property
     def largest(self) -> Floats:

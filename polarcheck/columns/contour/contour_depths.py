@@ -47,7 +47,7 @@ class ContourDepths(Columns, frozen=True):
         until = np.searchsorted(np.cumsum(~joined), np.cumsum(~joined)[begins], side="right")
         chosen = np.flatnonzero(until - begins > 1)[:_MOST]
         rows = [self._break_of(int(begins[which]), int(until[which])) for which in chosen.tolist()]
-        return trace.blocks.mask_of(np.array([row for row in rows if row is not None], np.int64))
+        return trace.blocks.mask_of([row for row in rows if row is not None])
 
     def _break_of(self, begin: int, until: int) -> int | None:
         """The row in which Z moves between two passes that close a ring together; None where they close none."""

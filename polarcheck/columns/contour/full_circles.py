@@ -113,4 +113,4 @@ class FullCircles(Columns, frozen=True):
     @cached_property
     def is_misplaced(self) -> Mask:
         """Rows of these circles."""
-        return self.trace.blocks.mask_of(np.array(sorted(self.intended), np.int64))
+        return self.trace.blocks.mask_of(sorted(self.intended))

@@ -92,9 +92,7 @@ class MisplacedRamps(Columns, frozen=True):
         rows &= count - trace.path.cuts - np.where(since >= 0, count[since], 0) >= _MOVES_OF_CONTOUR
         rows &= ~(trace.offsets.radius_of_offset == 0)
         candidates = np.flatnonzero(rows)[:_MOST]
-        rows = np.zeros(len(trace), bool)
-        rows[[row for row in candidates.tolist() if self._has_witness(row, int(since[row]))]] = True
-        return rows
+        return trace.blocks.mask_of([row for row in candidates.tolist() if self._has_witness(row, int(since[row]))])
 
     def _has_witness(self, row: int, since: int) -> bool:
         trace, moves = self.trace, self._moves

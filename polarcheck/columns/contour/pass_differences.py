@@ -77,7 +77,7 @@ class PassDifferences(Columns, frozen=True):
     @cached_property
     def differs(self) -> Mask:
         """Rows that differ."""
-        return self.trace.blocks.mask_of(np.array(sorted(self.found), np.int64))
+        return self.trace.blocks.mask_of(sorted(self.found))
 
     @cached_property
     def _groups(self) -> list[tuple[_Stretch, Rows]]:

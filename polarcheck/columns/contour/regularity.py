@@ -122,7 +122,7 @@ class Regularity(Columns, frozen=True):
     @cached_property
     def is_wrong(self) -> Mask:
         """Rows with a word that makes a contour irregular, or before which a block is missing."""
-        return self.trace.blocks.mask_of(np.array(sorted(self.corrections), np.int64))
+        return self.trace.blocks.mask_of(sorted(self.corrections))
 
     @cached_property
     def wrong_words(self) -> Mask:

@@ -95,9 +95,7 @@ class Senses(Columns, frozen=True):
             return np.asarray(_SLACK + digit * (1 / shortest + 1 / apart + 1 / half_chord))
 
     def _column(self, arcs: Mask) -> Mask:
-        rows = np.zeros(len(self.trace), bool)
-        rows[self._moving[self._arc[arcs]]] = True
-        return rows
+        return self.trace.blocks.mask_of(self._moving[self._arc[arcs]])
 
     @cached_property
     def is_tangent(self) -> Mask:

@@ -146,9 +146,7 @@ class Dynamics:
     @cached_property
     def on_path(self) -> Mask:
         """Rows with moves of the tool center at F."""
-        rows = np.zeros(len(self.trace), bool)
-        rows[self.moves.row[self.at_feed]] = True
-        return rows
+        return self.trace.blocks.mask_of(self.moves.row[self.at_feed])
 
     @cached_property
     def time(self) -> Floats:
@@ -225,8 +223,7 @@ class Dynamics:
         trace, missing = self.trace, np.isnan(self.time)
         rapid = trace.axes.motion == Motion.RAPID
         needs_feed = missing & ~rapid & ~self.dwells & ~trace.modal.in_cycle & ~self._returns
-        no_radius = np.zeros(len(trace), bool)
-        no_radius[self.moves.row[~self.moves.is_of_tool]] = True
+        no_radius = trace.blocks.mask_of(self.moves.row[~self.moves.is_of_tool])
         no_radius &= np.isnan(trace.compensation.radius_of_move)
         reasons = []
         for reason, mask in (

@@ -176,9 +176,7 @@ class Feeds(Columns, frozen=True):
         number, section = trace.feedrate.feed_number[rows], trace.mode.section[rows]
         new = np.ones(len(rows), bool)
         new[1:] = (number[1:] != number[:-1]) | (section[1:] != section[:-1])
-        mask = np.zeros(len(trace), bool)
-        mask[rows[new]] = True
-        return mask
+        return trace.blocks.mask_of(rows[new])
 
     def first_at_each(self, mask: Mask) -> Mask:
         """The first row of a mask at each F in each section."""

@@ -292,7 +292,7 @@ class AirCuts(Columns, frozen=True):
         repeats = same[begins] & (count >= 2 * period[begins])
         # What moves the origin or an offset may give each of them a depth of its own.
         sets = trace.blocks.listed("data_input", "local_shift", "coordinate_setting", "work_offset") | trace.run.unknown
-        sets |= trace.blocks.mask_of(np.array(sorted(trace.run.assigned), np.int64))
+        sets |= trace.blocks.mask_of(sorted(trace.run.assigned))
         writes_z, has_set = np.cumsum(trace.axes.commands_z), np.cumsum(sets)
         first = rows[begins[repeats]]
         origin = earlier[begins[repeats]]

@@ -141,9 +141,7 @@ class Approaches(Columns, frozen=True):
     @cached_property
     def approaches(self) -> Mask:
         """Rows where the cutter goes down for a cut that reaches the rim of the bar."""
-        mask = np.zeros(len(self.trace), bool)
-        mask[self._index[1]] = True
-        return mask
+        return self.trace.blocks.mask_of(self._index[1])
 
     @cached_property
     def distance(self) -> Floats:

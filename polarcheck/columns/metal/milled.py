@@ -82,8 +82,7 @@ class Milled(Columns, frozen=True):
         """Rows that cut, and whose R or place is not known."""
         trace, moves = self.trace, self.tool_center.moves
         cuts = trace.mode.in_polar & trace.path.cuts & self.is_along_z
-        is_known = np.zeros(len(trace), bool)
-        is_known[moves.row[moves.is_of_tool & ~np.isnan(moves.start + moves.end)]] = True
+        is_known = trace.blocks.mask_of(moves.row[moves.is_of_tool & ~np.isnan(moves.start + moves.end)])
         return np.asarray(cuts & (np.isnan(self.radius) | ~is_known))
 
     @property

@@ -112,9 +112,7 @@ class PartComments(Columns, frozen=True):
     @property
     def contradicts(self) -> Mask:
         """The rows of contradictions."""
-        mask = np.zeros(len(self.trace), bool)
-        mask[[*self.contradictions]] = True
-        return mask
+        return self.trace.blocks.mask_of([*self.contradictions])
 
     @property
     def stated(self) -> Floats:

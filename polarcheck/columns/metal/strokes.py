@@ -98,7 +98,7 @@ class Strokes(Columns, frozen=True):
     @cached_property
     def lacks_lift(self) -> Mask:
         """Rows of these moves."""
-        return self.trace.blocks.mask_of(np.array(sorted(self.unlifted), np.int64))
+        return self.trace.blocks.mask_of(sorted(self.unlifted))
 
     # ---- the feed ----
 
@@ -170,4 +170,4 @@ class Strokes(Columns, frozen=True):
     @cached_property
     def is_too_fast(self) -> Mask:
         """Rows of these strokes."""
-        return self.trace.blocks.mask_of(np.array(sorted(self.too_fast), np.int64))
+        return self.trace.blocks.mask_of(sorted(self.too_fast))

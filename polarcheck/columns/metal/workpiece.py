@@ -465,9 +465,7 @@ class Workpiece(Columns, frozen=True):
     # ---- columns ----
 
     def _mask(self, rows: Rows) -> Mask:
-        mask = np.zeros(len(self.trace), bool)
-        mask[rows] = True
-        return mask
+        return self.trace.blocks.mask_of(rows)
 
     @cached_property
     def hits_part(self) -> Mask:
@@ -502,8 +500,7 @@ class Workpiece(Columns, frozen=True):
         if not len(walls):
             return mask
         pockets = np.zeros(len(trace.mode.sections) + 1, bool)
-        is_wall = np.zeros(len(trace), bool)
-        is_wall[walls.row] = True
+        is_wall = trace.blocks.mask_of(walls.row)
         first = trace.mode.first_in_section(is_wall)
         pockets[trace.mode.section[walls.row[self._walls_of_pockets & first[walls.row]]]] = True
         moving = trace.mode.first_in_section(trace.mode.in_polar & trace.axes.moves)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from itertools import pairwise
 
 import numpy as np
@@ -338,8 +338,9 @@ class ExecutedBlocks(Lookups):
         """M02, M30."""
         return self.codes(*self.machine.m_codes.program_end)
 
-    def mask_of(self, rows: Rows) -> Mask:
+    def mask_of(self, rows: Rows | Sequence[int]) -> Mask:
         """Per row: whether it is one of these; those beyond the last are left out."""
+        rows = np.asarray(rows, np.int64)
         mask = np.zeros(len(self.run), bool)
         mask[rows[rows < len(self.run)]] = True
         return mask

@@ -41,8 +41,7 @@ def exceeds_highest_speed(trace: Trace) -> Mask:
     if trace.machine.m_codes.live_tool_on:
         return above
     last = np.maximum.accumulate(np.where(written | trace.blocks.starts, np.arange(len(trace)), 0))
-    cuts = np.zeros(len(trace), bool)
-    cuts[last[trace.path.cuts]] = True
+    cuts = trace.blocks.mask_of(last[trace.path.cuts])
     return above & cuts
 
 

@@ -234,8 +234,7 @@ class ToolOffsets(Columns, frozen=True):
         number = np.where(is_tool_offset, number_in_p - base * (plain & is_geometry), 0).astype(np.int64)
         # Mills give lengths as they give radii: in R.
         alone = np.isin(kind, offsets.radius_alone)
-        as_mill = np.zeros(len(self.run), bool)
-        as_mill[rows[alone]] = True
+        as_mill = self.blocks.mask_of(rows[alone])
         of_length = ~plain & ~alone & self.blocks.anywhere_in_program(as_mill)[rows]
         steps = self.modal.incremental[rows]
         settings = []

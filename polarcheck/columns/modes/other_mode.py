@@ -168,7 +168,7 @@ class OtherMode(Columns, frozen=True):
     def other_axes_written(self, row: int) -> list[str]:
         """The second axes of the moves in the mode that a row begins, where this control has another."""
         polar, switch = self.trace.machine.polar, self.switch(row)
-        beginning = self.trace.blocks.mask_of(np.array([row]))
+        beginning = self.trace.blocks.mask_of([row])
         within = self._within(beginning, self._ends(switch)) & ~beginning
         if np.any(within & self.trace.blocks.has(*polar.virtual_axes)):
             return []
@@ -181,7 +181,7 @@ class OtherMode(Columns, frozen=True):
         axes of the moves behind it. One speaks for all that read it alike.
         """
         switch = self.switch(row)
-        within = self._within(self.trace.blocks.mask_of(np.array([row])), self._ends(switch))
+        within = self._within(self.trace.blocks.mask_of([row]), self._ends(switch))
         addresses = {chr(self.trace.run.words.address[index]) for index in np.flatnonzero(self.trace.run.row == row)}
 
         def reads(profile: Profile) -> bool:

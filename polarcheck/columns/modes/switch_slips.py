@@ -104,7 +104,7 @@ class SwitchSlips(Columns, frozen=True):
     @cached_property
     def begins(self) -> Mask:
         """Rows with a slip."""
-        return self.trace.blocks.mask_of(np.array(sorted(self.slips), np.int64))
+        return self.trace.blocks.mask_of(sorted(self.slips))
 
     @cached_property
     def within(self) -> Mask:
@@ -119,7 +119,7 @@ class SwitchSlips(Columns, frozen=True):
         """Rows with a slip that a code behind it, or the mode, shows to be one."""
         rows = [row for row, slip in self.slips.items() if not slip.is_of_builder]
         rows = [row for row in rows if self.slips[row].is_answered or self.trace.mode.in_polar[row]]
-        return self.trace.blocks.mask_of(np.array(sorted(rows), np.int64))
+        return self.trace.blocks.mask_of(sorted(rows))
 
     @cached_property
     def words(self) -> Mask:
@@ -127,8 +127,9 @@ class SwitchSlips(Columns, frozen=True):
         first, second = self._forms
         codes = [*first, *second, *(f"G{int(form[1:]) - 1}" for form in first if len(form) == _DIGITS)]
         index = self.trace.blocks.code_indices(*codes)
-        is_slip = np.zeros(len(self.trace), bool)
-        is_slip[[row for slip in self.slips.values() for row in (slip.row, slip.answer) if row >= 0]] = True
+        is_slip = self.trace.blocks.mask_of(
+            [row for slip in self.slips.values() for row in (slip.row, slip.answer) if row >= 0]
+        )
         return self.trace.blocks.words_at(index[is_slip[self.trace.run.row[index]]])
 
     @cached_property

@@ -299,8 +299,9 @@ class Infeed(Columns, frozen=True):
     @cached_property
     def judged_by_radius(self) -> Mask:
         """G12.1 with an E whose passes depend on R: along a closed contour with G41 or G42."""
-        rows = np.zeros(len(self.trace), bool)
-        rows[[row for row, (contour, _) in self._contours.items() if self._is_compensated(contour)]] = True
+        rows = self.trace.blocks.mask_of(
+            [row for row, (contour, _) in self._contours.items() if self._is_compensated(contour)]
+        )
         return np.asarray(rows & (self.gap == 0))
 
     def _is_compensated(self, contour: Rows) -> bool:

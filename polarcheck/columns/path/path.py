@@ -521,9 +521,7 @@ class ProgrammedPath(Columns, frozen=True):
         here, following = rows[:-1], rows[1:]
         plunges = self.moves_z[following] & ~self.travels[following] & (self.z[following] < self.z[here])
         plunges &= self.mode.section[here] == self.mode.section[following]
-        mask = np.zeros(len(self.run), bool)
-        mask[here[plunges & (self.z[here] > 0) & (self.z_before[here] > 0)]] = True
-        return mask
+        return self.blocks.mask_of(here[plunges & (self.z[here] > 0) & (self.z_before[here] > 0)])
 
     @cached_property
     def moves(self) -> Mask:

@@ -198,6 +198,4 @@ class Ramps(Columns, frozen=True):
             near = np.diff((tool_center.stretch[moving][above], tool_center.stretch[moving]), axis=0)[0] <= 1
             hangs |= near & (above < rows) & (trace.mode.section[moving[above]] == trace.mode.section[moving])
         hangs[:-1] |= (np.diff(trace.mode.section[moving]) == 0) & cause[1:]
-        consequence = np.zeros(len(trace), bool)
-        consequence[moving[hangs]] = True
-        return consequence
+        return trace.blocks.mask_of(moving[hangs])

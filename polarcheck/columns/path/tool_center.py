@@ -84,9 +84,7 @@ class ToolCenter:
 
     def _in_trace(self, in_path: Mask) -> Mask:
         """A mask over the rows of the trace from a mask over the rows of the path."""
-        rows = np.zeros(len(self.trace), bool)
-        rows[self._rows[in_path]] = True
-        return rows
+        return self.trace.blocks.mask_of(self._rows[in_path])
 
     @cached_property
     def inside_arc_too_small(self) -> Mask:

@@ -35,8 +35,7 @@ class Trial(Overcuts):
     @cached_property
     def faulty(self) -> Mask:
         """Rows that the control would refuse, that would cut into the part, or of which this is unknown."""
-        faulty = np.zeros(len(self.trace), bool)
-        faulty[self.sweeps.row] = True
+        faulty = self.trace.blocks.mask_of(self.sweeps.row)
         return faulty | self.fails
 
     @cached_property
@@ -74,6 +73,4 @@ class Trial(Overcuts):
         far = np.where(trace.compensation.starts_up, trace.path.start, trace.path.end)[ramp]
         ramps = np.where(self._at_depth[ramp], far, contour_at), contour_at
         depth = depth_inside(*self.walls, ramps, self._loop_of_ramps[ramp], tolerance, _ROUNDINGS * tolerance)
-        result = np.zeros(len(trace), bool)
-        result[ramp[depth > _ROUNDINGS * tolerance]] = True
-        return result
+        return trace.blocks.mask_of(ramp[depth > _ROUNDINGS * tolerance])

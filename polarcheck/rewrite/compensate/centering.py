@@ -104,8 +104,7 @@ def _strokes(trace: Trace, moves: Moves, compensated: Mask) -> Strokes:
     """
     writes = trace.compensation.writes_side | trace.compensation.writes_cancel
     result: dict[int, list[Stroke]] = {row: [] for row in np.flatnonzero(writes & compensated).tolist()}
-    changed = np.zeros(len(trace), bool)
-    changed[moves.row[moves.phase != Phase.CANCELLED]] = True
+    changed = trace.blocks.mask_of(moves.row[moves.phase != Phase.CANCELLED])
     for row in np.flatnonzero(changed & compensated & trace.path.on_plane).tolist():
         result.setdefault(row, [])
     for section in np.unique(trace.mode.section[list(result)]).tolist():

@@ -205,8 +205,7 @@ def _said_by_moves(trace: Trace) -> Mask:
     keys = [key for group in _GROUPS for key in STATES[group]]
     codes = dict.fromkeys(code for key in keys for code in machine.codes(key))
     written = np.concatenate([words, trace.axes.virtual_words, blocks.code_indices(*codes)])
-    mask = np.zeros(len(trace.run.words), bool)
-    mask[written.astype(np.int64)] = True
+    mask = trace.blocks.words_at(written.astype(np.int64))
     # P, Q or X beside a dwell count seconds.
     return mask & ~blocks.listed("dwell")[trace.run.row]
 

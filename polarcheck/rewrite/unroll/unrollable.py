@@ -74,18 +74,15 @@ def _of_rows(tables: Tables) -> Iterator[tuple[int, str]]:
     moves, mode, path = center.moves, trace.mode, trace.path
     within = mode.in_polar
     without_radius = within & (trace.compensation.side != Side.OFF) & np.isnan(trace.offsets.radius_of_offset)
-    unknown = np.zeros(len(trace), bool)
-    unknown[moves.row[~moves.known | np.isnan(moves.length)]] = True
+    unknown = trace.blocks.mask_of(moves.row[~moves.known | np.isnan(moves.length)])
     # The reason stands before its consequences.
     unknown &= ~mode.anywhere_in_section(without_radius)
-    without_feed = np.zeros(len(trace), bool)
-    without_feed[moves.row[~(moves.feed > 0)]] = True
+    without_feed = trace.blocks.mask_of(moves.row[~(moves.feed > 0)])
     without_feed &= trace.axes.motion != Motion.RAPID
     alone = path.moves_z & within & (trace.axes.motion != Motion.RAPID) & ~(trace.feedrate.feed > 0)
     per_minute = trace.feedrate.per_minute | (trace.feedrate.feed_mode == FeedMode.PER_MINUTE)
     order = np.append(False, np.diff(moves.row) < 0)[: len(moves)]
-    backwards = np.zeros(len(trace), bool)
-    backwards[moves.row[order]] = True
+    backwards = trace.blocks.mask_of(moves.row[order])
     infeed = trace.blocks.has(trace.machine.polar.infeed_word) & mode.enters
     off_circle = np.zeros(len(trace), bool)
     off_by = np.abs(np.abs(moves.start - moves.center) - np.abs(moves.end - moves.center))
