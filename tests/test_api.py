@@ -76,7 +76,7 @@ def test_check_of_several_processes_is_the_same(samples: None) -> None:
     assert polarcheck.check(paths, processes=2) == polarcheck.check(paths)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_part_gives_what_the_command_gives(samples: None) -> None:
     files = by_command("part", *SAMPLES, "--format", "json")["files"]
     assert [json.loads(msgspec.json.encode(polarcheck.part(name))) for name in SAMPLES] == files

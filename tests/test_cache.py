@@ -328,6 +328,7 @@ def git_takes() -> list[str]:
     return subprocess.run(words, capture_output=True, text=True, check=True).stdout.split()
 
 
+@pytest.mark.one_in(5)
 @pytest.mark.ci
 @pytest.mark.parametrize("after", range(5))
 def test_a_full_disk_leaves_no_cache_that_git_takes_in(

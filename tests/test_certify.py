@@ -202,7 +202,7 @@ def test_a_fault_of_one_control_is_none_of_the_other_that_runs_its_golden_trace(
     assert re.match(r"line \d+: 0\.100 mm from contour/lathe-7", reasons("contour/lathe-8")[0])
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_the_start_angle_of_the_whole_part_is_free(example: Path) -> None:
     manifest = example.read_text("utf-8").replace("turned = 0.0\n", "")
     example.write_text(manifest, "utf-8")
@@ -400,6 +400,7 @@ def test_an_update_says_what_changes_and_keeps_what_fails(example: Path) -> None
     assert certify(example, "--update", "--case", "contour/lathe-7").stderr == "golden/contour.jsonl: unchanged\n"
 
 
+@pytest.mark.one_in(3)
 @pytest.mark.ci
 @pytest.mark.parametrize(
     ("golden", "said"),

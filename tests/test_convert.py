@@ -604,7 +604,7 @@ REASONS = (
 )
 
 
-@pytest.mark.one_in(3)
+@pytest.mark.one_in(7)
 @pytest.mark.ci
 @pytest.mark.parametrize("target", [SOURCE, "okuma-osp", "siemens-transmit", "haas-lathe", "mitsubishi-m700", "hurco"])
 @pytest.mark.parametrize("source", ["doosan", "haas-lathe", "okuma-osp", "siemens-transmit"])
@@ -623,6 +623,7 @@ def test_programs_of_setters_are_converted(source: str, target: str) -> None:
     assert sum(results) >= 3
 
 
+@pytest.mark.one_in(3)
 @pytest.mark.corpus
 @pytest.mark.ci
 @pytest.mark.skipif(not CORPUS.is_dir(), reason="the corpus is not there")

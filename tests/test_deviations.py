@@ -378,7 +378,7 @@ def test_nothing_agrees_by_less_than_the_last_digit(code: str, across: float, wi
     assert found.text.startswith(f"agrees with the square asked for within {within} (tolerance ")
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_arcs_are_bulges_in_a_file_and_agreement_is_told_with_its_worst_place(tmp_path: Path) -> None:
     """A D shaft of 30 with its flat 9 from the center."""
     half = math.acos(9 / 15)
@@ -407,7 +407,7 @@ def test_arcs_are_bulges_in_a_file_and_agreement_is_told_with_its_worst_place(tm
 PAGE = Path(__file__).parent.parent / "docs" / "drawing.md"
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @pytest.mark.skipif(not PAGE.exists(), reason="the pages lie in a checkout")
 @pytest.mark.parametrize(("command", "slip"), [("check", "-8.610"), ("part", "-8.660")])
 def test_the_page_shows_what_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, command: str, slip: str) -> None:
@@ -512,7 +512,7 @@ def messages(text: str, part: Any) -> list[str]:
     return [one.message for one in report_of(text, "fanuc-30i", "1:radius=2", job=job, only=[RULE]).findings]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("off", [0.1, 0.5])
 def test_of_two_pockets_alike_the_one_that_is_off_is_compared_with_its_own(off: float) -> None:
     """It is not off by 30 mm, where the other one lies; and it is no fault of the disc that it lies in."""

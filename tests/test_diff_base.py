@@ -537,6 +537,7 @@ def test_nothing_of_a_changed_submodule_is_run_or_written(plant: str, way: str) 
     assert not has_run()
 
 
+@pytest.mark.nightly
 def test_a_submodule_of_which_git_says_nothing_counts_as_changed() -> None:
     """Its commit is not there, as in a clone that is shallow; its configuration is broken; it is no repository."""
     with_submodule()

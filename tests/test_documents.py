@@ -26,7 +26,7 @@ STATEMENTS = [
 BEYOND = re.compile(r"beyond a static check: \S+")
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_every_fault_has_a_test() -> None:
     """Each row of the tables of faults names at least one, and each that is named is one."""
     faults, *_ = RELIABILITY.partition("<!-- mutation scores: begin -->")
@@ -62,7 +62,7 @@ def test_statements_of_the_five_documents_are_numbered_in_order() -> None:
         assert own == list(range(1, len(own) + 1))
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_each_statement_is_covered_by_what_there_is() -> None:
     """A rule, a test, a column, a key of a machine, a field of the trace; or a reason why no check can cover it."""
     tables = tables_of("G98 G0 X40. C0\nG12.1\nG1 X30. F100\nC5.\nG13.1\n")

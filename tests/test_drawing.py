@@ -214,6 +214,7 @@ def grid(space: Any) -> None:
     space.add_blockref("b", (0, 0), dxfattribs={"row_count": 30000, "column_count": 30000, "row_spacing": 1})
 
 
+@pytest.mark.one_in(5)
 @pytest.mark.ci
 @pytest.mark.parametrize(
     ("draw", "said"),

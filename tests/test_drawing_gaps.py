@@ -72,7 +72,7 @@ def reasons(found: FileReport) -> list[str]:
     return [entry.reason for entry in found.not_evaluated if entry.rule == RULE and entry.matters]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(("count", "gap"), [(12, 0.001), (12, 0.02), (12, 0.5), (60, 0.02), (60, 0.5), (120, 0.1)])
 @looped("unit", [1.0, MM_PER_INCH])
 def test_a_ring_with_gaps_is_compared_along_its_curves(tmp_path: Path, count: int, gap: float, unit: float) -> None:

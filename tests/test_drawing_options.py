@@ -128,7 +128,7 @@ def test_what_makes_no_sense_is_refused_in_one_line(tmp_path: Path) -> None:
     assert result.stderr.endswith("polarcheck.toml:4: part.1.layers: a drawing has layers, a shape has none\n")
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_a_tolerance_that_nothing_takes_is_said(tmp_path: Path) -> None:
     path = tmp_path / "O1.NC"
     path.write_text(program(polygon(6, 13.5)))
@@ -141,7 +141,7 @@ def test_a_tolerance_that_nothing_takes_is_said(tmp_path: Path) -> None:
         assert run(command, path, "--tool", "1:radius=4", "--tolerance", "0.1", "--drawing", drawing).stderr == ""
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_one_file_with_two_layers_is_two_parts(tmp_path: Path) -> None:
     path = tmp_path / "O1.NC"
     path.write_text(two_contours())

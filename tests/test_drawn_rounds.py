@@ -107,7 +107,7 @@ def outcome(found: FileReport) -> str:
     return "error" if found.findings else (reasons or "pass")
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("name", list(CIRCLES))
 @looped("stock", [None, 50.0, 42.0])
 @looped("text", [HALF, BIT], ids=["half", "bit"])
@@ -135,6 +135,7 @@ def test_a_circle_of_two_splines_is_too_large() -> None:
     assert bulge == pytest.approx(0.367, abs=1e-3)
 
 
+@pytest.mark.ci
 @looped("size", [20.05, 20.5, 24.0])
 def test_a_curve_that_lies_beyond_the_bar_is_compared_with_nothing(size: float) -> None:
     """It touches the bar where splines meet; with more of the drawing within the bar, that is compared."""
@@ -146,7 +147,7 @@ def test_a_curve_that_lies_beyond_the_bar_is_compared_with_nothing(size: float) 
     assert "beyond" not in outcome(report(FLATS, flats(15, 20.5), 40.0))
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("arc", [None, cubic], ids=["arcs", "splines"])
 @looped("stock", [None, 40.0, 50.0])
 @looped("text", [FLATS, WITH_ARC], ids=["flats", "with an arc"])
@@ -163,7 +164,7 @@ def test_an_arc_between_two_walls_is_milled_whole(stock: float | None, expected:
     assert expected in outcome(report(WITH_SHARE, flats(15, 20), stock))
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(("stock", "expected"), [(None, "runs outside"), (1.25, "pass"), (1.29, "pass"), (1.4, "runs outside")])
 @looped("unit", ["inch", "mm"])
 def test_an_arc_outside_of_the_round_is_in_air_where_the_bar_shows_it(

@@ -99,6 +99,7 @@ def test_a_signal_after_the_report_ends_the_process_in_a_line(number: int, statu
     assert "1 file" in report
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_a_signal_that_is_ignored_stays_so(number: int) -> None:
     ignoring = partial(heed, signal.SIG_IGN, signal.SIG_IGN)

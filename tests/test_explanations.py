@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 
+import pytest
 from cases import looped
 from programs import report_of, said
 
@@ -65,6 +66,7 @@ def as_it_is(lines: list[str]) -> list[str]:
     return lines
 
 
+@pytest.mark.ci
 @looped(("turn", "slip"), [*((as_it_is, slip) for slip in SLIPS), *((mirrored, slip) for slip in OF_ONE_AXIS)])
 def test_one_finding_in_the_block_says_what_to_write(turn: Turn, slip: Slip) -> None:
     contour, right, wrong, word = slip

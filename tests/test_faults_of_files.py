@@ -124,7 +124,7 @@ def test_what_is_no_size_is_told(size: str) -> None:
     assert "expected a size above 0, such as 512MB" in result.stderr
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @of_posix
 @pytest.mark.parametrize(
     ("redirected", "names"),
@@ -168,7 +168,7 @@ def test_devices_sockets_and_pipes_without_a_writer_are_refused(monkeypatch: pyt
         assert call("trace", path).exit_code == 2
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @of_posix
 @pytest.mark.parametrize(
     ("redirected", "names"),
@@ -184,7 +184,7 @@ def test_what_the_shell_hands_over_is_read_to_its_end(redirected: str, names: li
     assert (ended.returncode, ended.stderr, checked(ended.stdout)) == (1, b"", names)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @pytest.mark.skipif(shutil.which("bash") is None or sys.platform == "win32", reason="needs bash")
 def test_process_substitution_is_read_to_its_end() -> None:
     make("a.nc")
@@ -420,7 +420,7 @@ SHOWN = [r"a\xff.nc", r"a\\xff.nc", r"a\\\\xff.nc", r"ü\xff.nc", "nl\n.nc", "ta
 SHOWN += ["\u202e.nc", "   .nc", "n" * 252 + ".nc", r"a\xed\xa0\x80.nc", r"b\.nc", "*.nc", "$(x);'\".nc", " "]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @of_linux
 @pytest.mark.parametrize("locale", ["C.UTF-8", "C"])
 def test_names_of_any_bytes_are_checked_and_shown_apart(locale: str) -> None:
@@ -533,6 +533,7 @@ def test_a_program_that_two_lathes_share_is_checked_for_each() -> None:
 # ---- surroundings ----
 
 
+@pytest.mark.one_in(4)
 @pytest.mark.ci
 @of_posix
 @pytest.mark.parametrize(

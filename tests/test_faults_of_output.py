@@ -64,6 +64,7 @@ def bounded(name: str, most: int) -> Callable[[], None]:
 # ---- the user's files ----
 
 
+@pytest.mark.nightly
 def test_a_report_never_takes_the_place_of_what_is_checked() -> None:
     Path("link.json").symlink_to("a.nc")
     os.link("a.nc", "twin.json")
@@ -78,6 +79,7 @@ def test_a_report_never_takes_the_place_of_what_is_checked() -> None:
         assert Path("a.nc").read_text() == RAPID
 
 
+@pytest.mark.nightly
 def test_nor_of_what_settles_how_it_is_checked() -> None:
     Path("own").mkdir()
     texts = {
@@ -98,6 +100,7 @@ def test_nor_of_what_settles_how_it_is_checked() -> None:
     assert {name: Path(name).read_text() for name in texts} == texts
 
 
+@pytest.mark.one_in(5)
 @pytest.mark.parametrize("name", ["new.nc", "O1234", "O1234.bak", "pyproject.toml", "x.MPF"])
 def test_nor_has_it_the_name_of_a_program(name: str) -> None:
     status, _, told = run("check", "b.nc", "-o", f"json:{name}")
@@ -106,6 +109,7 @@ def test_nor_has_it_the_name_of_a_program(name: str) -> None:
     assert not Path(name).exists()
 
 
+@pytest.mark.nightly
 def test_two_reports_have_two_files() -> None:
     status, _, told = run("check", "b.nc", *ONLY, "-o", "json:r.json", "-o", "concise:./r.json")
     assert (status, told) == (2, "polarcheck: -o r.json: two reports would be written to this file\n")
@@ -119,6 +123,7 @@ def test_two_reports_have_two_files() -> None:
 # ---- what cannot be written ----
 
 
+@pytest.mark.one_in(5)
 @posix
 @pytest.mark.parametrize(
     "arguments",
@@ -130,6 +135,7 @@ def test_a_full_disk_behind_standard_output_is_one_line(arguments: tuple[str, ..
     assert (status, told) == (2, "polarcheck: standard output: No space left on device\n")
 
 
+@pytest.mark.nightly
 @posix
 def test_standard_output_may_be_closed() -> None:
     status, _, told = run("check", "b.nc", *ONLY, "-o", "json:r.json", preexec_fn=partial(os.close, 1))
@@ -198,6 +204,7 @@ def test_a_pipe_that_the_shell_has_opened_gets_the_report() -> None:
     assert Path("link").is_symlink()
 
 
+@pytest.mark.one_in(4)
 @posix
 @pytest.mark.parametrize("by_pipe", [True, False])
 @pytest.mark.parametrize(("output", "number"), [("/dev/stdout", 1), ("/dev/stderr", 2)])
@@ -218,6 +225,7 @@ def test_a_report_goes_behind_what_a_standard_stream_holds(output: str, number: 
     assert ("error: G0 cannot be used" in text) == (number == 1)
 
 
+@pytest.mark.nightly
 @posix
 def test_a_descriptor_that_cannot_be_written_is_one_line() -> None:
     for output, said in (
@@ -272,6 +280,7 @@ def test_a_kill_leaves_the_old_report_or_the_new_one() -> None:
         assert Path("r.json").read_text() in whole
 
 
+@pytest.mark.nightly
 def test_two_runs_may_write_one_report() -> None:
     Path("more.nc").write_text(RAPID * 200)
     running = [start("check", name, *ONLY, "-o", "json:r.json") for name in ("a.nc", "b.nc", "more.nc", "a.nc")]
@@ -285,6 +294,7 @@ def test_two_runs_may_write_one_report() -> None:
 # ---- interrupts ----
 
 
+@pytest.mark.nightly
 @posix
 @pytest.mark.parametrize(
     ("number", "status", "how"), [(signal.SIGINT, 130, "interrupted"), (signal.SIGTERM, 143, "terminated")]

@@ -173,7 +173,7 @@ def test_inch_and_mm_have_the_same_table() -> None:
 # ---- the program with it ----
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @settings(max_examples=15, deadline=None)
 @given(st.one_of(contours(), helices()), st.integers(0, 5), st.randoms(use_true_random=False))
 def test_the_table_in_its_program_leaves_no_finding_and_no_block_slower_than_it_must_be(

@@ -225,7 +225,7 @@ def test_return_with_p_goes_to_the_caller() -> None:
     np.testing.assert_array_equal(trace.blocks.word("X")[trace.blocks.has("X")], [5.0, 2.0])
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_an_endless_program_is_no_fault_of_those_behind_it() -> None:
     """The statements of the whole file were counted: every program behind a run-in cycle was endless, too."""
     endless = "O{0}\nN10 G0 X50.\nX60.\n#1=#1+1\nGOTO10\nM30\n"

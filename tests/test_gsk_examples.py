@@ -152,7 +152,7 @@ def test_centers_are_i_and_j_where_x_is_the_linear_axis(words: str, rule: str | 
     assert judged(twin) == ([] if rule is None else [(block(twin, "N160"), rule)])
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("program", [SINGLE, CYCLE], ids=["single", "cycle"])
 def test_diameter_or_radius_is_a_parameter(program: str) -> None:
     assert judged(program, parameters={"5450#6": 0}) == []

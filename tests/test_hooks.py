@@ -91,6 +91,7 @@ def test_a_commit_with_a_faulty_program_is_stopped(tmp_path: Path, monkeypatch: 
     assert commit(tmp_path) == (True, {"polarcheck": "Passed", "polarcheck-config": "Skipped"})
 
 
+@pytest.mark.nightly
 def test_what_the_job_file_excludes_is_no_matter_of_the_hook(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     with_hooks(tmp_path)
@@ -100,6 +101,7 @@ def test_what_the_job_file_excludes_is_no_matter_of_the_hook(tmp_path: Path, mon
     assert commit(tmp_path) == (True, {"polarcheck": "Passed", "polarcheck-config": "Passed"})
 
 
+@pytest.mark.nightly
 def test_a_commit_that_changes_the_lathe_checks_all_programs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     with_hooks(tmp_path)

@@ -26,7 +26,7 @@ def findings(program: str, head: str, machine: str, job: dict[str, Any]) -> list
     return [(one.line, one.message.partition(":")[0]) for one in report.findings if one.severity != "note"]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("program", "head", "job", "said"),
     [

@@ -111,7 +111,7 @@ def test_lengths_are_in_the_units_of_the_job_file_or_of_the_program(tmp_path: Pa
         agrees(path, "--tool", f"1:radius={radius}")
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_the_bar_bounds_flats_and_cuts_corners_off(tmp_path: Path) -> None:
     path = tmp_path / "O1.NC"
     job = tmp_path / "polarcheck.toml"

@@ -88,6 +88,7 @@ def test_it_ends_in_another_thread_too() -> None:
     assert [str(error)[:30] for error in raised] == ["the check of this file takes l"]
 
 
+@pytest.mark.nightly
 def test_the_steps_after_it_are_left_alone() -> None:
     squares = shapely.box(np.arange(50), 0, np.arange(50) + 2, 2)
     for _ in range(3):
@@ -120,6 +121,7 @@ def test_a_step_that_waits_for_the_processor_goes_on(monkeypatch: pytest.MonkeyP
         wait_for(lambda: watch._was_requested)
 
 
+@pytest.mark.nightly
 def test_a_step_that_is_late_ends_no_step_of_another_thread() -> None:
     """GEOS has one flag for all threads, and the first step that looks at it ends."""
     angles = np.arange(300) * 2.4

@@ -156,6 +156,7 @@ def test_processes_that_are_spawned_get_all_they_need() -> None:
     assert by_processes(tasks, 2, "spawn") == list(batch.one_by_one(tasks))
 
 
+@pytest.mark.nightly
 @linux
 def test_standard_input_stands_among_many_files() -> None:
     make(4)
@@ -165,6 +166,7 @@ def test_standard_input_stands_among_many_files() -> None:
     assert run("check", *paths, *ONLY, "--jobs", "2", "--format", "concise", input=RAPID) == one
 
 
+@pytest.mark.nightly
 @linux
 def test_a_pipe_of_the_shell_stands_among_many_files() -> None:
     make(4)
@@ -200,6 +202,7 @@ def test_a_file_that_ends_its_process_is_told_and_the_others_are_whole(monkeypat
     assert unreadable(found) == {"f/004.nc": "could not be checked: its process ended"}
 
 
+@pytest.mark.nightly
 @linux
 def test_all_files_that_end_their_process_are_told(monkeypatch: pytest.MonkeyPatch) -> None:
     make(12)
@@ -213,6 +216,7 @@ def test_all_files_that_end_their_process_are_told(monkeypatch: pytest.MonkeyPat
     assert [bool(outcome.failure) for outcome in found] == [True] * 6 + [False] * 6
 
 
+@pytest.mark.nightly
 @linux
 def test_a_process_that_ends_beside_others_costs_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     make(30)
@@ -297,6 +301,7 @@ def test_a_bug_that_cannot_be_sent_is_told_all_the_same() -> None:
     assert (type(told), str(told), told.__notes__) == (RuntimeError, "OddError: 1 and 2", ["while checking a.nc"])
 
 
+@pytest.mark.nightly
 @linux
 @pytest.mark.parametrize("fails", ["at once", "to start"])
 def test_without_processes_this_one_checks(fails: str, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -367,6 +372,7 @@ def test_what_may_have_ended_a_process_is_not_checked_by_this_one(monkeypatch: p
     assert [f"{path}: {reason}" for path, reason in unreadable(found).items()] == lost
 
 
+@pytest.mark.nightly
 @linux
 def test_a_process_that_dies_within_an_answer_stops_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     """The thread of the executor waits for the rest of the answer then, and sees nothing else."""
@@ -443,6 +449,7 @@ def begun(*more: str, **options: Any) -> tuple[subprocess.Popen[str], list[int],
     return running, children(running.pid), shown
 
 
+@pytest.mark.one_in(4)
 @linux
 @pytest.mark.parametrize(
     ("number", "status", "how"), [(signal.SIGINT, 130, "interrupted"), (signal.SIGTERM, 143, "terminated")]
@@ -476,6 +483,7 @@ def test_an_interrupt_keeps_what_is_finished(number: int, status: int, how: str,
     assert report["summary"]["unreadable"] == 0
 
 
+@pytest.mark.nightly
 @linux
 def test_nobody_is_left_behind_where_the_first_process_is_killed() -> None:
     running, workers, _ = begun()
@@ -564,6 +572,7 @@ def test_large_files_do_not_wait_for_each_other(monkeypatch: pytest.MonkeyPatch)
     assert forms_of(planned("f"), 0.001, monkeypatch) == (0, 3)
 
 
+@pytest.mark.nightly
 @looped("value", ["-1", "two", "1.5", "", "1025", "\u0663"])
 def test_a_number_of_jobs_that_is_none_is_refused(value: str) -> None:
     Path("a.nc").write_text(GOOD)
@@ -572,6 +581,7 @@ def test_a_number_of_jobs_that_is_none_is_refused(value: str) -> None:
     assert "expected a number of processes up to 1024, or auto" in told
 
 
+@pytest.mark.nightly
 @looped("value", ["0", "auto", "AUTO", "1", "7"])
 def test_a_number_of_jobs_is_taken(value: str) -> None:
     Path("a.nc").write_text(GOOD)

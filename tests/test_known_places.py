@@ -110,7 +110,7 @@ def test_a_rounding_difference_is_no_growth(old: str, new: str, said: str) -> No
     assert all(f"worse than in the baseline: {said} [" in line for line in lines)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_more_blocks_of_a_fault_are_told() -> None:
     create(a=near_center("400."))
     write(a=near_center("400.", "C5.\nC-5.\n"))
@@ -129,7 +129,7 @@ def test_one_fault_that_a_file_has_once_and_then_four_times_is_told() -> None:
     assert line.endswith("[stray-character]")
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_what_is_worse_is_neither_new_nor_gone_and_an_update_takes_it() -> None:
     create(a=arc("40.2"))
     write(a=arc("96."))
@@ -230,7 +230,7 @@ def test_a_long_program_is_known_by_a_part_of_its_blocks() -> None:
     assert len(told()) == 1
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_pairs_that_are_drawn() -> None:
     """`python tests/drawn_baselines.py 5000` takes more of them."""
     assert list(drawn_baselines.faults(0, 25)) == []
@@ -267,7 +267,7 @@ def test_an_outline_leaves_out_what_says_nothing() -> None:
 # ---- the command ----
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_a_job_file_names_the_baseline() -> None:
     write(sub_of_a=arc("40.2"))
     Path("sub/polarcheck.toml").write_text('baseline = "known.json"\n')
@@ -308,7 +308,7 @@ def test_what_is_gone_fails_only_on_demand() -> None:
     assert call(*options, "--fail-on-stale").exit_code == 0
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_an_entry_of_an_unknown_rule_is_told_with_its_line() -> None:
     create(a=arc("40.2"))
     Path(FILE).write_text(Path(FILE).read_text().replace("arc-end-off-circle", "arc-end-of-circle"))

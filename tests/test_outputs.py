@@ -139,6 +139,7 @@ def test_no_command_takes_the_place_of_what_settles_how_it_runs(command: str, na
         assert said in refused(*(word.format(output) for word in WRITING[command]))
 
 
+@pytest.mark.one_in(3)
 @pytest.mark.ci
 @pytest.mark.parametrize("options", [(), ("--jobs", "2"), ("--no-cache",)])
 def test_what_only_the_check_finds_stays_too(options: tuple[str, ...]) -> None:

@@ -143,6 +143,7 @@ def test_choosing_shows_the_same_move_everywhere(opened: Opened) -> None:
     assert [circle["x0"], circle["x1"]] == pytest.approx([2 * (float(end[0] or 0) + side) for side in (-4.0, 4.0)])
 
 
+@pytest.mark.nightly
 def test_keys_step_through_moves_and_findings(opened: Opened) -> None:
     lines = []
     keys = ["ArrowRight", "ArrowRight", "ArrowLeft", "End", "Home", "ArrowDown", "ArrowDown", "ArrowUp"]
@@ -178,6 +179,7 @@ def test_colors_scales_and_hatching(opened: Opened) -> None:
     assert not [title for title in buttons if re.search("cloud|share|edit|link", title or "", re.IGNORECASE)], buttons
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("size", ["A4", "Letter"])
 def test_it_prints(browser: Any, address: str, size: str, tmp_path: Path) -> None:
     found = Opened(browser, address)

@@ -202,6 +202,7 @@ def click(use: Opened, x: float, c: float) -> None:
     use.page.mouse.up()
 
 
+@pytest.mark.nightly
 def test_a_link_leads_to_its_line_and_follows_what_is_chosen(use: Opened) -> None:
     page = use.page
     address = page.url.partition("#")[0]
@@ -413,6 +414,7 @@ def test_sections_side_by_side_the_drawing_and_the_list_of_keys(use: Opened) -> 
     assert not page.locator("#keys").is_visible()
 
 
+@pytest.mark.nightly
 def test_the_line_of_the_worst_finding_is_in_sight_and_remains_there(browser: Any, tmp_path: Path) -> None:
     """Before anything is chosen, and where what is known of the chosen finding leaves less room for the program."""
     found = [finding("too fast", line=300, move=3, why="It cannot turn so fast. " * 12)]

@@ -157,7 +157,7 @@ def test_a_path_that_is_short_enough_is_left_as_it_is() -> None:
     assert len(section_of(HEXAGON, "8:radius=4").tool.x) == 10
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_50_000_short_blocks_make_a_small_picture_that_is_near() -> None:
     count = 50_000
     angle = 2 * np.pi * np.arange(1, count + 1) / count

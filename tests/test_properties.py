@@ -142,6 +142,7 @@ def test_spelling_changes_nothing(moves: list[Move], data: st.DataObject) -> Non
     assert [(f.line, f.rule, f.values) for f in ours.findings] == [(f.line, f.rule, f.values) for f in theirs.findings]
 
 
+@pytest.mark.nightly
 @given(contours())
 @example(AT_CENTER)
 @example(THROUGH_CENTER)
@@ -151,6 +152,7 @@ def test_incremental_twin_has_the_same_path(moves: list[Move]) -> None:
     same_path(moves_of(program(moves), FANUC), moves_of(program(moves, incremental=True), FANUC))
 
 
+@pytest.mark.nightly
 @given(contours())
 @example(AT_CENTER)
 @example(THROUGH_CENTER)
@@ -161,6 +163,7 @@ def test_inch_twin_has_the_same_path(moves: list[Move]) -> None:
     same_path(moves_of(program(moves), FANUC), moves_of(program(moves, unit=25.4), FANUC), point=2e-8)
 
 
+@pytest.mark.nightly
 @given(contours())
 @settings(max_examples=EXAMPLES, deadline=None)
 def test_radius_twin_has_the_same_path(moves: list[Move]) -> None:
@@ -229,6 +232,7 @@ def test_a_rounded_square_is_followed_at_its_distance(corner: float, radius: flo
     np.testing.assert_allclose(np.abs(table.end - table.center)[arcs], corner + radius, atol=1e-9)
 
 
+@pytest.mark.nightly
 @given(coordinate(0.5, 25), coordinate(0.1, 12))
 @settings(max_examples=EXAMPLES, deadline=None)
 def test_mirroring_swaps_the_sides(corner: float, radius: float) -> None:
@@ -282,6 +286,7 @@ def test_splitting_a_move_changes_no_finding(moves: list[Move]) -> None:
     assert {(f.rule, f.severity) for f in ours.findings} == {(f.rule, f.severity) for f in theirs.findings}
 
 
+@pytest.mark.nightly
 @given(st.binary(max_size=400))
 @settings(max_examples=200, deadline=None)
 def test_any_bytes_give_a_report(data: bytes) -> None:

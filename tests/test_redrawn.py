@@ -67,7 +67,7 @@ def test_words_of_a_family_are_what_its_cutters_leave(family: str) -> None:
     assert [(seed, found) for seed in range(SHARE) if (found := of_family(family, seed))] == []
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @pytest.mark.parametrize("family", FAMILIES)
 def test_words_of_many_programs_are_what_their_cutters_leave(family: str) -> None:
     assert [(seed, found) for seed in range(SHARE, MANY) if (found := of_family(family, seed))] == []

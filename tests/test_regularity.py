@@ -42,7 +42,7 @@ def sound_contour(seed: int) -> tuple[Contour, Style, list[str]] | None:
     return None if findings(blocks, contour, how) else (contour, how, blocks)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @pytest.mark.parametrize("name", SLIPS)
 def test_most_slips_in_a_regular_contour_are_noticed(name: str) -> None:
     noticed = written = 0
@@ -65,7 +65,7 @@ def test_most_slips_in_a_regular_contour_are_noticed(name: str) -> None:
     assert noticed >= 0.7 * written
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_what_differs_on_purpose_is_silent() -> None:
     for seed in range(40):
         draw = random.Random(seed)  # noqa: S311

@@ -271,7 +271,7 @@ def test_a_long_line_is_cut_around_the_fault() -> None:
     assert excerpt("X" * 60, 55, 60, 60) == Excerpt("X" * 60, 55, 5)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @given(st.text(max_size=80), st.integers(0, 90), st.integers(1, 20), st.integers(20, 60))
 def test_excerpts_of_anything_are_one_harmless_line(line: str, start: int, length: int, room: int) -> None:
     shown = excerpt(line, start, start + length, room)

@@ -88,7 +88,7 @@ def test_a_contour_of_lines_and_arcs_comes_back_with_as_many_of_them_and_its_f(n
     assert told["largest distance of the ends of the blocks from the new path"] == pytest.approx(measured, abs=1e-3)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_a_free_contour_is_passed_within_the_tolerance() -> None:
     angle = np.linspace(0, math.tau, 801)
     points = (20 + 2 * np.sin(5 * angle) + 0.7 * np.sin(13 * angle + 1)) * np.exp(1j * angle)
@@ -102,7 +102,7 @@ def test_a_free_contour_is_passed_within_the_tolerance() -> None:
     assert counts[0.02] < counts[0.005] < 120
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_twenty_thousand_blocks_are_few() -> None:
     angle = np.linspace(0, math.tau, 20_001)
     points = (20 + 2 * np.sin(5 * angle) + 0.7 * np.sin(13 * angle + 1)) * np.exp(1j * angle)
@@ -259,7 +259,7 @@ def test_a_section_without_the_mode_and_back_is_the_same_contour(machine: str, i
 # ---- where the section begins ----
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_c_goes_to_0_above_the_part_so_that_the_coordinates_are_those_of_the_drawing() -> None:
     text = cam_contour(slot())
     outcome = roll(text)
@@ -294,7 +294,7 @@ def test_a_plane_that_stands_still_on_the_part_needs_no_c() -> None:
 # ---- F ----
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_f_is_lower_near_the_center_and_the_line_is_divided_for_it() -> None:
     points = np.array([complex(1, y) for y in np.arange(-15, 15.01, 0.1)])
     angle = np.abs(np.diff(np.unwrap(np.angle(points))))

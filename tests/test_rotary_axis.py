@@ -254,7 +254,7 @@ def test_a_named_axis_beside_the_switch(words: str) -> None:
     assert trace.path.center_shift[trace.mode.sections.enter[0]] == (5j if "5." in words else 0)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(("name", "number"), [("A", 4), ("C2", 5)])
 def test_q_names_another_rotary_axis(name: str, number: int) -> None:
     """Its words are lengths in its section, where C moves by itself; what angle it enters at is not followed."""

@@ -24,7 +24,7 @@ def found(call: str, tool: str) -> list[str]:
     return [finding.rule for finding in report.findings]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     "call",
     [

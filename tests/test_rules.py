@@ -78,7 +78,7 @@ def own_severities(name: str) -> list[list[str]]:
     return [[finding.severity for finding in report.findings] for report in reports]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_severities_are_the_golden_ones(snapshot: SnapshotAssertion) -> None:
     """A line for each rule: what it is listed with, and what it gives in each of its examples."""
     lines = [

@@ -300,6 +300,7 @@ run()
 """
 
 
+@pytest.mark.nightly
 @pytest.mark.asyncio
 async def test_a_bug_or_a_long_check_is_not_the_end() -> None:
     async with session(*ONLY_RAPID, command=("-c", TROUBLED)) as client:
@@ -358,6 +359,7 @@ def spoken(given: bytes) -> tuple[int, bytes, bytes]:
     return done.returncode, done.stdout, done.stderr
 
 
+@pytest.mark.one_in(5)
 @pytest.mark.parametrize(
     ("given", "code"),
     [
@@ -376,6 +378,7 @@ def test_it_ends_with_its_editor(given: bytes, code: int) -> None:
     assert out == b"" or out.startswith(b"Content-Length: ")
 
 
+@pytest.mark.nightly
 def test_broken_messages_end_nothing() -> None:
     broken = b"Content-Length: 3\r\n\r\n{]}" + b"Content-Length: 2\r\n\r\n[]" + message(method="no/such")
     unknown = message(id=7, method="textDocument/hover", params={"textDocument": 5})
@@ -384,6 +387,7 @@ def test_broken_messages_end_nothing() -> None:
     assert out.count(b'"id": 2') == 1
 
 
+@pytest.mark.nightly
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
 @pytest.mark.parametrize(("number", "code"), [("SIGTERM", 143), ("SIGINT", 130)])
 def test_it_ends_when_it_is_told_to(number: str, code: int) -> None:
@@ -400,6 +404,7 @@ def test_it_ends_when_it_is_told_to(number: str, code: int) -> None:
         assert running.wait(PATIENCE) == code
 
 
+@pytest.mark.nightly
 @pytest.mark.skipif(sys.platform == "win32", reason="pipes of POSIX")
 def test_an_editor_that_reads_no_more_is_gone() -> None:
     pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
@@ -412,6 +417,7 @@ def test_an_editor_that_reads_no_more_is_gone() -> None:
         assert running.wait(PATIENCE) == 1
 
 
+@pytest.mark.nightly
 @pytest.mark.skipif(sys.platform == "win32", reason="a shell of POSIX closes streams")
 def test_without_streams_it_says_who_starts_it() -> None:
     command = f"{sys.executable} -m polarcheck server <&-"

@@ -414,6 +414,7 @@ def drawn_request(seed: int) -> bytes:
     return begin + rest + draw.choice([b"", b" HTTP/1.1\r\n" + RIGHT, b"\r\n\r\n"])
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("count", [150, pytest.param(4000, marks=pytest.mark.ci)])
 def test_drawn_bytes_end_nothing_and_print_nothing(
     attacker: Attacker, count: int, capfd: pytest.CaptureFixture[str]

@@ -289,7 +289,7 @@ def test_no_message_has_words_of_custom_macro(block: str) -> None:
 # ---- blanks in numbers, and lists of axes ----
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("block", ["G1 X-10 10", "G1 X-5.1 0", "X5. 1", "N20 G1 Y4 .5 ; 3 4", "X1\t2"])
 def test_a_blank_inside_a_number_is_a_syntax_error(block: str) -> None:
     assert "bad-number" in rules(report(block))
@@ -346,7 +346,7 @@ def test_x_of_the_owner_is_that_of_programs_without_a_word(
 # ---- spindles by their number ----
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("before", "is_said"),
     [
@@ -373,7 +373,7 @@ def test_a_spindle_with_a_speed_is_started_by_its_number(before: str, is_said: b
 # ---- quotes of print ----
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("encoding", ["utf-8", "cp1252", "utf-16"])
 @looped(
     "block",

@@ -200,7 +200,7 @@ def beside_samples(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @pytest.mark.usefixtures("beside_samples")
 def test_those_on_sample_programs_run() -> None:
     lines = {line for page in written_pages() for line, _ in commands(page) if SAMPLES in line}

@@ -320,7 +320,7 @@ NAMES = [
 MACRO_TEXT = st.lists(st.sampled_from(SIGNS + NAMES), max_size=40).map("".join)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @given(block=st.one_of(MACRO_TEXT, st.text(max_size=60)))
 @settings(max_examples=400, deadline=None)
 def test_reading_and_running_never_fail(block: str) -> None:

@@ -41,6 +41,7 @@ def read(data: bytes) -> tuple[ElementTree.Element, str]:
     return root, "\n".join(node.text or "" for node in root.iter() if not isinstance(node.tag, str))
 
 
+@pytest.mark.nightly
 def test_a_picture_has_the_width_of_a_page_and_says_what_is_wrong() -> None:
     make(a__nc=GROOVE)
     result = call("plot", "a.nc", *RADIUS, "--png", "a.png", "--svg", "a.svg")
@@ -62,6 +63,7 @@ def test_a_picture_has_the_width_of_a_page_and_says_what_is_wrong() -> None:
     assert (Path("b.PNG").read_bytes(), Path("b.svg").read_bytes()) == (data, Path("a.svg").read_bytes())
 
 
+@pytest.mark.nightly
 def test_sections_stand_one_below_the_other_and_can_be_chosen() -> None:
     make(a__nc=TWO)
     assert call("plot", "a.nc", *RADIUS, "--svg", "a.svg").exit_code == 0
@@ -130,6 +132,7 @@ def colors(root: ElementTree.Element) -> set[str]:
     return {match for node in root.iter() for match in re.findall("stroke: (#[0-9a-f]{6})", node.get("style", ""))}
 
 
+@pytest.mark.nightly
 def test_all_that_is_known_of_a_section_is_drawn() -> None:
     moves = msgspec.structs.replace(
         hexagon().moves,

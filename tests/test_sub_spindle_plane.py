@@ -36,7 +36,7 @@ def told(report: FileReport) -> list[str]:
     return [each.reason for each in report.not_evaluated if "sub-spindle" in each.reason]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("mirrored", [False, True])
 def test_where_the_profile_says_that_it_is_programmed_as_the_main_spindle_it_is_judged_whole(mirrored: bool) -> None:
     main, sub = (DOOSAN.format(of, contour(mirrored=mirrored), of) for of in ("", "1"))
@@ -121,7 +121,7 @@ def test_a_mazak_names_the_axes_of_its_sub_spindle_otherwise(
     assert "nothing of it is judged" in reason
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("on", ["G12.1", "G12.1 P2"])
 def test_a_sub_spindle_of_a_mazak_with_the_usual_axes_is_followed_but_for_its_sides(on: str) -> None:
     program = MAZAK.format("G94 G90", "M300", "M3 S3000", "G17 XC", on, contour()).replace("U0", "C0")

@@ -159,7 +159,7 @@ def hits(tables: Tables, name: str) -> Any:
     return load_all()[name].hits(tables).mask
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @settings(deadline=None)
 @given(st.lists(st.tuples(st.sampled_from(["G1", "G2", "G3"]), WORDS), max_size=8))
 def test_no_circle_is_what_one_of_five_rules_says(blocks: list[tuple[str, dict[str, str]]]) -> None:
@@ -206,7 +206,7 @@ DIRECTIONS = st.integers(0, 359).filter(lambda degrees: abs(degrees % 90 - 45) >
 """Of the centers of quarters that move X and C by more than the tolerance."""
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @settings(deadline=None)
 @given(st.lists(st.tuples(st.integers(1, 19), DIRECTIONS), min_size=2, max_size=6))
 def test_a_program_for_the_other_reading_is_known_by_its_arcs(quarters: list[tuple[int, int]]) -> None:

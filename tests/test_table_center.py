@@ -74,7 +74,7 @@ def test_moves_that_stop_at_the_center() -> None:
 STEPS = st.integers(-3, 3)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @settings(deadline=None)
 @given(st.lists(st.tuples(STEPS, STEPS), min_size=1, max_size=8))
 def test_lines_through_the_center_are_those_of_a_plain_loop(points: list[tuple[int, int]]) -> None:

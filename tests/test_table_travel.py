@@ -76,7 +76,7 @@ def test_where_the_tool_center_is_not_known_x_is_not() -> None:
 WAYS = st.lists(st.sampled_from(["X70.", "X80.", "X90.", "X-10.", "Z-20.", "Z-21.", "Z30.", "M8", "M30", "Z0 X99."]))
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @settings(deadline=None)
 @given(WAYS)
 def test_each_way_out_is_told_once_as_a_plain_loop_tells_it(blocks: list[str]) -> None:

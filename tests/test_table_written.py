@@ -207,7 +207,7 @@ BLOCKS = st.lists(
 )
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @given(st.lists(BLOCKS, max_size=6))
 @settings(max_examples=100, deadline=None)
 def test_repeated_words_are_those_that_a_count_finds(blocks: list[list[tuple[str, str]]]) -> None:

@@ -69,7 +69,7 @@ def test_without_any_time_a_check_ends_and_says_so(family: str) -> None:
     assert left <= set(said(report)) | following
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_the_limit_is_kept_wherever_it_runs_out() -> None:
     """A few milliseconds end anywhere: in a table, in a trial, in a message."""
     program = FAMILIES["overcut-loops"].make(400)
@@ -115,6 +115,7 @@ BEYOND = {
 }
 
 
+@pytest.mark.one_in(3)
 @pytest.mark.ci
 @pytest.mark.parametrize("case", BEYOND)
 def test_a_loop_beyond_all_bounds_is_left_out_alone(case: str) -> None:
@@ -199,7 +200,7 @@ def all_rules(report: FileReport) -> set[str]:
     return {one.rule for finding in report.findings for one in (finding, *finding.follows)}
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_what_is_not_looked_for_is_said_without_weight(monkeypatch: pytest.MonkeyPatch) -> None:
     from polarcheck.geometry.material_left import ribs, strips
 
@@ -353,6 +354,7 @@ def test_points_are_compared_in_portions(monkeypatch: pytest.MonkeyPatch) -> Non
 # ---- whole processes ----
 
 
+@pytest.mark.one_in(6)
 @pytest.mark.ci
 @pytest.mark.skipif(sys.platform == "win32", reason="no limit of address space there")
 @pytest.mark.parametrize(
@@ -416,6 +418,7 @@ GIVEN_UP = {
 }
 
 
+@pytest.mark.one_in(4)
 @pytest.mark.parametrize(
     "share", [0.5, pytest.param(0.1, marks=pytest.mark.ci), pytest.param(0.9, marks=pytest.mark.ci)]
 )
@@ -467,7 +470,7 @@ def spin(seconds: float) -> None:
         pass
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @pytest.mark.parametrize("is_seen_by_others", [True, False])
 def test_the_time_of_a_limit_is_that_of_its_thread(is_seen_by_others: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     """Others read it; where only the thread itself can, they see the work of the process since."""

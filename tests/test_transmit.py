@@ -253,7 +253,7 @@ def of_two_tools(tool: str, off: str, leave: str = "G40 ", cancel: str = "", at:
     return said(report_of(program, MACHINE, "8:radius=4,nose=0", "9:radius=3,nose=0"))
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("tool", ["T9 D1", 'T="DRILL" D1', "T9", "T9 D1 S2=500", "T9\nM6\nD1"])
 def test_a_tool_is_taken_in_the_mode_without_compensation(tool: str) -> None:
     assert of_two_tools(tool, "TRAFOOF") == []

@@ -48,6 +48,7 @@ def hexagon(spigot: str, x: str = "46.", z: str = "-6.") -> str:
 INSIDE = [("approach-inside-stock", "error")]
 
 
+@pytest.mark.ci
 @looped("spigot", list(SPIGOTS))
 @looped("stock", [{"diameter": 50}, {"diameter": 56, "face": 1}, {"hexagon": 44}, {"diameter": 50, "bore": 8}, {}])
 def test_the_approach_clears_what_was_turned(spigot: str, stock: dict[str, float]) -> None:
@@ -55,7 +56,7 @@ def test_the_approach_clears_what_was_turned(spigot: str, stock: dict[str, float
     assert told(hexagon(spigot, x="40."), **stock) == INSIDE
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("spigot", list(SPIGOTS))
 def test_below_the_spigot_the_bar_counts(spigot: str) -> None:
     assert told(hexagon(spigot, z="-15."), diameter=50) == INSIDE
@@ -102,6 +103,7 @@ POCKET = "G0 Z{z}/C0/X{x}/G12.1/G1 X10. C3. F500/Z-3. F40/X8. F80/X10./Z2. F500/
 FLAT = "G0 Z2./C0/X{x}/G12.1/G1 X{out} C0 F1500/C24./Z-3. F300/X20. F200/C-24./X{out} F1500/Z2./G13.1/G0 Z50./M5/M30"
 
 
+@pytest.mark.ci
 @looped("x", ["34.", "43.6", "20."])
 @looped("z", ["2.", "20."])
 def test_above_the_face_nothing_is_hit(x: str, z: str) -> None:
@@ -114,6 +116,7 @@ def test_above_the_face_nothing_is_hit(x: str, z: str) -> None:
 SLOT = "X60. C{c}/Z-4. F500/X{end} F90/Z2. F1500/"
 
 
+@pytest.mark.ci
 @looped("cs", [("6.",), ("6.", "-6."), ("-6.", "6."), ("6.", "0", "-6."), ("2.", "-2.")])
 @looped("end", ["14.", "20.", "0"])
 def test_slots_that_are_lifted_out_of_are_sound(cs: tuple[str, ...], end: str) -> None:

@@ -161,7 +161,7 @@ def test_the_chord_error_is_held(chord_error: str) -> None:
     assert 0.7 * float(chord_error) <= largest(blocks, contour.distance) <= float(chord_error)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("name", "place"),
     [
@@ -446,7 +446,7 @@ def test_a_program_in_a_file_is_kept() -> None:
     assert Path("a.nc").read_text() == unrolled(CONTOURS["slot"].program)[0]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_a_long_section_has_a_block_for_each_short_line() -> None:
     """20,000 lines around the center, each within the chord error of one block."""
     turns = np.exp(1j * 0.02 * np.arange(20_000)) * (15 + 10 * np.sin(0.0013 * np.arange(20_000)))
@@ -460,7 +460,7 @@ def test_a_long_section_has_a_block_for_each_short_line() -> None:
 _POINT = st.builds(complex, st.integers(-40_000, 40_000), st.integers(-40_000, 40_000)).map(lambda point: point / 1000)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @given(st.lists(_POINT, min_size=1, max_size=6), st.sampled_from(list(METHODS)), st.sampled_from(["3600", "20000"]))
 @settings(max_examples=25, deadline=None, phases=[Phase.explicit, Phase.generate])
 def test_any_lines_are_followed_in_order(points: list[complex], method: str, limit: str) -> None:

@@ -215,7 +215,7 @@ def test_a_wrong_reason_is_one_line(written: str, told: str) -> None:
 # ---- warnings over a run ----
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_warnings_are_counted_over_the_programs_that_share_the_limit() -> None:
     warned = "severities = { rapid-in-polar = 'warning' }\n"
     for folder, most in (("one", 1), ("two", 2)):

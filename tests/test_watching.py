@@ -92,6 +92,7 @@ def test_what_changes_is_checked_again_and_the_rest_is_shown_as_it_was() -> None
         assert found.end() == 0
 
 
+@pytest.mark.nightly
 def test_settings_and_called_programs_count() -> None:
     Path("f").mkdir()
     Path("subs").mkdir()
@@ -112,6 +113,7 @@ def test_settings_and_called_programs_count() -> None:
         assert found.end(signal.SIGTERM) == 143
 
 
+@pytest.mark.nightly
 def test_an_interrupt_of_the_first_round_ends_it_too() -> None:
     Path("f").mkdir()
     for number in range(12):
@@ -129,6 +131,7 @@ def test_standard_input_cannot_be_watched() -> None:
     )  # fmt: skip
 
 
+@pytest.mark.one_in(3)
 @pytest.mark.parametrize("other", ["--fix", "--diff", "--diff-base=HEAD"])
 def test_one_look_is_not_watched(other: str) -> None:
     Path("a.nc").write_text(GOOD)
@@ -136,6 +139,7 @@ def test_one_look_is_not_watched(other: str) -> None:
     assert run("check", "a.nc", "--watch", other) == (2, "", said)
 
 
+@pytest.mark.nightly
 def test_a_first_run_that_cannot_begin_ends_it() -> None:
     Path("polarcheck.toml").write_text("nonsense = 1\n")
     Path("a.nc").write_text(GOOD)
@@ -185,6 +189,7 @@ def test_only_what_has_changed_is_checked() -> None:
     assert again() == ["f/a.nc", "f/b.nc", "f/e.nc"]
 
 
+@pytest.mark.nightly
 def test_a_job_file_beside_the_programs_is_named_once() -> None:
     Path("a.nc").write_text(RAPID)
     Path("polarcheck.toml").write_text("strict = false\n")

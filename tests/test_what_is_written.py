@@ -166,7 +166,7 @@ QUIET: Mapping[str, Sequence[Sequence[str]]] = {
 }
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_a_command_that_is_not_asked_for_a_file_writes_none(folder: Path) -> None:
     """No file, no connection, no process; `plot` and `init` are there to write, `server` is for editors."""
     assert tuple(QUIET) == NAMES
@@ -199,7 +199,7 @@ def test_what_is_written_is_what_was_asked_for(folder: Path) -> None:
         assert (run.network, run.processes) == ([], []), command
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_a_check_writes_its_cache_and_the_key_of_it(folder: Path) -> None:
     """Beside the job file, and in the folder of caches of the user; the second run writes no more."""
     first, second, elsewhere = runs(
@@ -231,7 +231,7 @@ def test_git_is_the_only_process(folder: Path) -> None:
     assert (run.written, run.network) == (set(), [])
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 def test_a_picture_writes_the_list_of_fonts_of_matplotlib(folder: Path) -> None:
     (run,) = runs(folder, [("plot", "a.nc", "--png", "a.png")])
     assert "a.png" in run.written

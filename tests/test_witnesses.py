@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 
+import pytest
 from cases import looped
 from programs import report_of, said
 
@@ -73,6 +74,7 @@ def slipped(program: str, before: str, after: str) -> str:
     return program.replace(before, after, 1)
 
 
+@pytest.mark.ci
 @looped(
     ("program", "before", "after", "line", "rule"),
     [

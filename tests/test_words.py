@@ -403,7 +403,7 @@ def as_meant(program: str, text: Text) -> str:
     return "".join(shown)
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @given(GARBAGE)
 @example(["X1.", ";", "X", "Z-2.5"])
 @settings(max_examples=300, deadline=None)

@@ -38,7 +38,7 @@ def said(text: str, changes: Changes | None = None, stock: float = math.nan) -> 
     return [f"{finding.rule}: {finding.message}" for finding in report.findings]
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped("stock", [math.nan, 18.0, 20.0, 26.0])
 @looped(
     "text",
@@ -58,7 +58,7 @@ def test_sound_programs(stock: float, text: str) -> None:
     assert said(mirrored(text), stock=stock) == []
 
 
-@pytest.mark.ci
+@pytest.mark.nightly
 @looped(
     ("text", "rule", "word"),
     [

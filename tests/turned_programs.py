@@ -67,7 +67,7 @@ class Writer:
 
     def __init__(self, seed: int) -> None:
         self.seed = seed
-        self.draw = random.Random(seed)
+        self.draw = random.Random(seed)  # noqa: S311
         self.lines: list[Line] = []
         self.section = -1
         draw = self.draw
@@ -259,7 +259,7 @@ class Writer:
         radius = draw.choice((3.0, 4.0, 5.0, 6.0))
         if shape in ("polygon", "rectangle"):
             corners = self.polygon() if shape == "polygon" else self.rectangle()
-            nearest = min(abs(((a + b) / 2)) for a, b in zip(corners, [*corners[1:], corners[0]], strict=True))
+            nearest = min(abs((a + b) / 2) for a, b in zip(corners, [*corners[1:], corners[0]], strict=True))
             radius = max(radius, math.ceil((size / 2 - nearest) / 2 + 0.6))
             if draw.random() < 0.35:
                 self.boss(1, radius, [corner * (1 + 0.3 / nearest) for corner in corners], depths)
@@ -516,7 +516,7 @@ KINDS: dict[str, Kind] = {
 
 def slipped(program: Program, name: str) -> Program | None:
     """The program with a slip of this kind; None where it has no place for one."""
-    kind, draw = KINDS[name], random.Random(f"{program.seed} {name}")
+    kind, draw = KINDS[name], random.Random(f"{program.seed} {name}")  # noqa: S311
     if program.shape not in kind.shapes or not kind.fits(program):
         return None
     places = [index for index, line in enumerate(program.lines) if line.role in kind.roles]
