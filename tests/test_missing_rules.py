@@ -474,7 +474,7 @@ def test_an_origin_that_is_set_to_what_is_not_known(blocks: str, cause: str) -> 
     report = report_of(program)
     assert [finding.rule for finding in report.findings] == []
     [entry] = [entry for entry in report.not_evaluated if entry.rule == "origin-off-center"]
-    assert entry.reason.startswith(f"where X0 lies is not known: {cause} sets X to what is not known; give its")
+    assert entry.reason.startswith(f"where X0 lies is not known: {cause} sets X to a value that is not known; give its")
     assert report.verdict == "unverified"
     given = report_of(program, job={"run": {"variables": {"500": 0.0, "501": 0.0, "5021": 0.0, "5221": 0.0}}})
     assert not given.not_evaluated

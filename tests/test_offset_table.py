@@ -81,7 +81,7 @@ def test_of_two_blocks_for_one_value_the_last_counts() -> None:
         (f"{LATHE}T0808\n", f"{NAME}:4: expected a block such as G10 P10008 R0.375 Q0, found T0808"),
         (f"%\n{LATHE}G10 L50\n", f"{NAME}:5: P, the number of the offset, is missing: G10 L50"),
         (f"{LATHE}G10 L3 P1 R5.\n", f"{NAME}:4: L is known of 1, 2, 10 to 13 and 20: G10 L3 P1 R5."),
-        (f"{LATHE}G10 P8 C.1\n", f"{NAME}:4: C changes R by a step, of what is not known: G10 P8 C.1"),
+        (f"{LATHE}G10 P8 C.1\n", f"{NAME}:4: C changes R by a step, and R before it is not known: G10 P8 C.1"),
         (f"{LATHE}G10 P[#1] R5.\n", f"{NAME}:4: expected a block such as"),
         (f"{LATHE}G10 G91 P1 R5.\n", f"{NAME}:4: expected a block such as"),
         (f"{LATHE}G10 P10009 R4000.\n", f"{NAME}:4: offset 9: radius: expected a number from -1000 to 1000"),

@@ -238,12 +238,14 @@ def test_what_is_set_in_the_mode_is_one_finding_and_changes_nothing_else() -> No
     [
         (
             "G10 P8 R#500",
-            "G10 P8 R#500 in line 3 sets what is not known; give its variables as [run.variables] in polarcheck.toml, "
+            "G10 P8 R#500 in line 3 sets it to a value that is not known; give its variables as [run.variables] in "
+            "polarcheck.toml, "
             "or write the number",
         ),
         (
             "#2908=#501/2",
-            "#2908=#501/2 in line 3 sets what is not known; give its variables as [run.variables] in polarcheck.toml, "
+            "#2908=#501/2 in line 3 sets it to a value that is not known; give its variables as [run.variables] in "
+            "polarcheck.toml, "
             "or write the number",
         ),
         (

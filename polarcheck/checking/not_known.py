@@ -123,7 +123,7 @@ def _not_known_from_program(trace: Trace, row: int, setter: int, what: str, key:
     missing = f"no {what} for offset {offset(trace.tools, row)}"
     if unknown >= 0:
         block = block_and_line(trace, unknown)
-        return f"{missing}: {block} sets what is not known; {of_variables(trace.machine)}"
+        return f"{missing}: {block} sets it to a value that is not known; {of_variables(trace.machine)}"
     setting = block_and_line(trace, setter)
     return f"{missing}: {setting} sets wear or a difference alone; {to_give(trace.tools, trace.machine, row, key)}"
 
@@ -171,7 +171,7 @@ def _position(tables: Tables, row: int) -> str:
 def _origin(tables: Tables, row: int) -> str:
     causes = " and ".join(tables["entry"].origin.unknown_causes(row))
     remedy = of_variables(tables["trace"].machine)
-    return f"where X0 lies is not known: {causes} sets X to what is not known; {remedy}"
+    return f"where X0 lies is not known: {causes} sets X to a value that is not known; {remedy}"
 
 
 def _feed(tables: Tables, row: int) -> str:

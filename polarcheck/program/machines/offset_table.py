@@ -158,7 +158,7 @@ def _of_block(line: int, block: str, words: dict[str, str], has_radii: bool) -> 
         why = "L" if kind is not None and "P" in words and "C" not in words else "C" if "C" in words else "P"
         said = {
             "L": "L is known of 1, 2, 10 to 13 and 20",
-            "C": "C changes R by a step, of what is not known",
+            "C": "C changes R by a step, and R before it is not known",
             "P": "P, the number of the offset, is missing",
         }
         raise NotUnderstoodError(line, f"{said[why]}: {_short(block)}", True)

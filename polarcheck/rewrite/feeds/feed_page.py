@@ -97,7 +97,7 @@ def _cells(row: FeedRow, table: FeedTable, loads: bool) -> list[str]:
 
 def _totals(table: FeedTable) -> Iterator[str]:
     if any(row.several for row in table.rows):
-        yield "* its runs have different F, or need it; this is the lowest"
+        yield "* its runs have, or need, different F; this is the lowest"
     for section in table.sections:
         yield f"section of line {section.line}: {_cost(section, table)}"
     yield f"program: {_cost(table.program, table)}"
@@ -105,7 +105,7 @@ def _totals(table: FeedTable) -> Iterator[str]:
 
 def _cost(total: FeedTotal, table: FeedTable) -> str:
     """Return the times of a section or program, what the table would change, and why a time is not known."""
-    text = f"takes {total.time:.1f} s{' and what is not known' if total.unknown else ''}"
+    text = f"takes {total.time:.1f} s{' and a time that is not known' if total.unknown else ''}"
     change = (
         f"{abs(total.lost):.1f} s {'more' if total.lost > 0 else 'less'}" if abs(total.lost) >= _SHOWN else "the same"
     )

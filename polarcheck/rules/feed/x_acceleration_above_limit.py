@@ -28,10 +28,9 @@ def x_acceleration_above_limit(feedrate: Feedrate, center: Center, feeds: Feeds)
     """
     Feed too high for the acceleration of X.
 
-    Where the tool passes the center, X comes in, turns back, and goes out again, be the contour ever so straight. The
-    nearer it passes, the shorter is the way in which it does: on a line X needs F^2 / d, with d the distance of the
-    line from the center. The slide lags behind, and the middle of the line is not straight. Half of F is a quarter of
-    that.
+    Where the tool passes the center, X comes in, turns back and goes out again, even on a straight line. The nearer it
+    passes, the shorter is the way in which it does: on a line X needs F^2 / d, with d the distance of the line from the
+    center. The slide lags behind, and the middle of the line is not straight. Half of F is a quarter of that.
 
     Source: the second derivative of the distance from the center along the path; the limit is limits.x_acceleration
     of the profile.

@@ -21,8 +21,8 @@ def ambiguous_precedence(faults: Faults) -> Mask:
     """
     Order of calculation that is taught in two ways.
 
-    AND ranks with * and /, OR and XOR rank with + and -; but other pages put all three last. Where an expression mixes
-    them without brackets, controls and readers may differ. Brackets say what is meant.
+    Some pages of manuals rank AND with * and /, and OR and XOR with + and -; other pages rank all three last. Where an
+    expression mixes them without brackets, controls and readers may differ. Brackets say what is meant.
 
     Source: FANUC B-62754EN/01, chapter 16.3.
 

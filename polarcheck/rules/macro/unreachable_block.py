@@ -18,8 +18,8 @@ def unreachable_block(faults: Faults) -> Hits:
     """
     Blocks that no run of the program comes to.
 
-    Behind a GOTO, M30 or M99 and without an N number that anything jumps to: left over, or a jump goes to the wrong
-    place. Said once for each stretch of such blocks, and only where every condition of the program is known.
+    The blocks stand behind a GOTO, M30 or M99, and no jump leads to them: they are left over, or a jump goes to the
+    wrong place. Said once for each stretch of such blocks, and only where every condition of the program is known.
 
     A loop that counts from a number of the program to a number of its condition and never runs is a warning: what it
     cuts is missing. The comparison or a sign is wrong.

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 )
 def c_elsewhere_at_entry(entry_angles: EntryAngles) -> Mask:
     """
-    Second section at another angle of C than the first, which nobody has positioned.
+    Second section at another angle of C, without a block that positions C.
 
     The angle of C at G12.1 becomes the direction of X on the plane. A section leaves C wherever its last point lies:
     after X40. C20. that is 45 deg. If the next G12.1 follows without a C word, its whole shape is turned by as much

@@ -33,9 +33,9 @@ def incremental_contour_not_closed(increments: Increments) -> Hits:
     """
     Contour in increments that ends beside its start.
 
-    U and H, or G91, add up. A wrong digit in one of them shifts all that follows, and the contour ends a little off the
-    point where it began. Reported is a gap that is more than the rounding of all its words, and less than a tenth of
-    the contour; a contour that runs on over its start is closed.
+    Increments, by U and H or with G91, add up. A wrong digit in one of them shifts all that follows, and the contour
+    ends a little off the point where it began. Reported is a gap that is more than the rounding of all its words, and
+    less than a tenth of the contour; a contour that runs on over its start is closed.
 
     Source: B-62764EN/01, p. 53 (a contour that ends where it begins); p. 51 (U and H are increments).
 

@@ -13,8 +13,8 @@ if TYPE_CHECKING:
 
 @rule(
     WARNING,
-    "{block} moves to the next cut at Z{depth}; before the like cut of line {other_line} the tool is lifted: a Z above "
-    "the part is missing before this block",
+    "{block} moves to the next cut at Z{depth}; before the similar cut of line {other_line} the tool is lifted: a Z "
+    "above the part is missing before this block",
     values=("z", "other_line"),
     gouges=True,
     follows={"section": OUT_OF_PLACE},

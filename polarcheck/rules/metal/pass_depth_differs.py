@@ -22,11 +22,11 @@ def pass_depth_differs(pass_depths: PassDepths) -> Mask:
     """
     One pass of a contour far off the steps of the others.
 
-    A contour is milled in several passes, each as much deeper as the last, and one of them is several times as deep or
-    out of order: a digit or the point of its Z is wrong. The cutter takes the whole depth at once, or the passes behind
-    it take nothing. At least three passes of the same contour must show the step. A pass is told, too, that goes far
-    below all that the program turns, in one step several times as deep as the cutter is wide, where its Z with the
-    point one digit to the left lies in what is turned.
+    A contour is milled in several passes, each deeper than the last by the same step, and one of them is several steps
+    deeper or out of order: a digit or the point of its Z is wrong. The cutter takes the whole depth at once, or the
+    passes behind it take nothing. At least three passes of the same contour must show the step. A pass is told, too,
+    that goes far below all that the program turns, in one step several times as deep as the cutter is wide, where its Z
+    with the point one digit to the left lies in what is turned.
 
     Source: builder's guide to G12.1, order of a section.
 

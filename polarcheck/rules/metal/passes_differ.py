@@ -29,10 +29,10 @@ def passes_differ(pass_differences: PassDifferences) -> Mask:
     """
     Pass of a contour that differs from another pass of it in one block.
 
-    The same contour is cut at several depths, or in several sections, and one word of one pass is another: a digit, a
-    sign, a block that is missing. The wall has a step there. Of several passes the one that differs from the others is
-    reported, of two the later one. Passes that differ as a whole, as with an allowance, are not compared, and a side
-    that is moved on one level may be meant.
+    The same contour is cut at several depths, or in several sections, and one pass is unlike the others in one word: a
+    digit or a sign is wrong, or a block is missing. The wall has a step there. Of several passes the one that differs
+    from the others is reported, of two the later one. Passes that differ as a whole, as with an allowance, are not
+    compared, and a side that is moved on one level may be meant.
 
     Source: B-62764EN/01, p. 53 (a contour in several passes).
 

@@ -28,9 +28,9 @@ def start_up_after_contour(path: ProgrammedPath, misplaced_ramps: MisplacedRamps
     """
     G41 or G42 one or more blocks late.
 
-    G41 and G42 belong into the move that leads to the contour. One block later that move has run without them, the
-    cutter stands with its center on the contour and is R deep in the part, and the first side of the contour serves as
-    the ramp. It shows where the contour ends at a point that a block before G41 or G42 has reached, or where the block
+    G41 and G42 belong in the move that leads to the contour. One block later that move has run without them, the cutter
+    stands with its center on the contour and is R deep in the part, and the first side of the contour serves as the
+    ramp. It shows where the contour ends at a point that a block before G41 or G42 has reached, or where the block
     before them is the mirror image of the way out.
 
     Source: builder's guide to G12.1, cutter compensation (ramp on with the move onto the part).

@@ -34,11 +34,11 @@ def arc_end_off_circle(arcs: Arcs, machine: Machine) -> Hits:
     """
     Arc whose end is not on its circle.
 
-    I and J lead from the start of the arc to its center, I along X and J along the virtual axis, both as they are and
-    not on the diameter. From there the end must be as far away as the start. Beyond the tolerance the control stops
-    with an alarm; older ones go on straight, others spiral. A word of the virtual axis that is missing, or an X that is
-    not on the diameter, shows here. Several such arcs of a contour are one finding: an end that is wrong is the start
-    of the next arc.
+    I and J lead from the start of the arc to its center, I along X and J along the virtual axis, both as radii, never
+    as diameters. From there the end must be as far away as the start. Beyond the tolerance the control stops with an
+    alarm; older ones go on straight, others spiral. A word of the virtual axis that is missing, or an X that is not on
+    the diameter, shows here. Several such arcs of a contour are one finding: an end that is wrong is the start of the
+    next arc.
 
     Source: FANUC B-62754EN/01, p. 67; parameter 3410; alarm 020.
 

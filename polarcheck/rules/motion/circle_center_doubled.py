@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 @rule(
     WARNING,
-    "full circle with {arc} round {written_center}; with {word_needed} it is one round {intended_center}",
+    "full circle with {arc} around {written_center}; with {word_needed} it is a circle around {intended_center}",
     values=("arc_radius", "arc_radius_needed", "word_needed", "other_line"),
     subject="",
     doubts=NO_SUCH_ARC,

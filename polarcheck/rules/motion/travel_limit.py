@@ -26,7 +26,7 @@ def travel_limit(path: ProgrammedPath, travel: Travel, machine: Machine) -> Mask
     Move beyond the travel of X or Z.
 
     In the mode X of the machine is the distance of the tool center from the center of C, never negative, and largest
-    where the contour is farthest out: for the corner of a square more than X says. Outside the mode it is X as
+    where the contour is farthest out: at the corner of a square it is larger than X there. Outside the mode it is X as
     programmed. Limits are those of the profile in the coordinates of the program; without them nothing is looked at.
 
     Source: limits.x_minimum to limits.z_maximum of the machine profile; FANUC B-62764EN/01, p. 51.

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 )
 def linear_axis_never_programmed(blocks: ExecutedBlocks, modal: ModalStates, axes: PlaneAxes, mode: PolarMode) -> Mask:
     """
-    Section whose linear axis is another than X, written in X.
+    Section that is written in X although its linear axis is another.
 
     P beside G12.1, or a parameter (5460, on Mitsubishi 1533), makes Y or Z the linear axis of the polar plane. X is one
     of the other axes then: it moves by itself, and the rotary axis turns about a linear axis that stands still. Write

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 @rule(
     ERROR,
-    "{code} is in force at {switch}; {code_needed} must be, write it before or right behind",
+    "{code} is in force at {switch}, and {code_needed} must be: write it before {switch} or right behind",
     values=("code", "code_needed"),
     at=("on",),
     once="plane",

@@ -29,7 +29,7 @@ def polar_never_entered(axes: PlaneAxes, procedure: Procedure, switch_slips: Swi
     """
     G13.1 after a contour that no G12.1 began.
 
-    Cutter compensation and moves of C at feed belong into the polar mode. Without its G12.1 the control takes C as an
+    Cutter compensation and moves of C at feed belong in the polar mode. Without its G12.1 the control takes C as an
     angle, and compensates in another plane or stops: the shape is not cut. Write G12.1 behind the positioning, before
     G41 or G42. Without them an arc of C tells the same, and so do moves of X and C at feed that lead right up to the
     G13.1, or to a retract before it where a block moves both, unless C would lie far outside X as a length, as in a

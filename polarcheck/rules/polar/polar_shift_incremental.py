@@ -19,9 +19,9 @@ def polar_shift_incremental(blocks: ExecutedBlocks, switch_words: SwitchWords) -
     """
     Center of the polar plane shifted by an incremental word.
 
-    Beside G12.1 some controls take where the center of the rotary axis lies, in X and in the rotary axis. Only absolute
-    words count there. U or H, or X and C while G91 is in force, shift nothing or by what nobody meant. Write X and C,
-    or leave them out where the origin is the center.
+    Some controls take the position of the center of the rotary axis beside G12.1, by words of X and of the rotary axis.
+    Only absolute words count there. U or H, or X and C while G91 is in force, shift nothing or by what nobody meant.
+    Write X and C, or leave them out where the origin is the center.
 
     Source: GSK 988, description of G12.1 IP P Q E.
 

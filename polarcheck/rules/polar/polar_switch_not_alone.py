@@ -20,10 +20,10 @@ def polar_switch_not_alone(mode_words: ModeWords, switch_words: SwitchWords) -> 
     """
     G12.1 or G13.1 not in a block of its own.
 
-    What the control does with other words beside them is not specified: they may be ignored, or be read already on the
-    polar plane or no longer there. Only a sequence number, the block skip sign and comments may share the block, and
-    beside G12.1 the words that this control takes there (polar.words_beside_switch). A G13.1 outside the mode, as at
-    the head of a program for safety, is not meant.
+    What the control does with other words beside them is not specified: they may be ignored, or be read on the polar
+    plane, or outside of it. Only a sequence number, the block skip sign and comments may share the block, and beside
+    G12.1 the words that this control takes there (polar.words_beside_switch). A G13.1 outside the mode, as at the head
+    of a program for safety, is not meant.
 
     The message names the controls that take such words beside G12.1: P is the spindle or the axis there, and in
     LinuxCNC, whose G12.1 is no polar mode, the number of the kinematics.

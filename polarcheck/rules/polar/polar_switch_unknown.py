@@ -14,9 +14,9 @@ def polar_switch_unknown(switch_slips: SwitchSlips) -> Hits:
     """
     Code that is meant to switch the polar mode and does not.
 
-    The point of G12.1 is lost, G121, or the digit behind it, G12. The control stops at the code, or knows it as
-    something else: the mode does not begin, and C of the contour is an angle. The same holds for G13.1, with which the
-    mode does not end. Write the code with its point.
+    G121 is G12.1 without its point, and G12 is G12.1 without its last digit. The control stops at the code, or knows it
+    as something else: the mode does not begin, and C of the contour is an angle. The same holds for G13.1, with which
+    the mode does not end. Write the code with its point.
 
     Where G121 is answered by G120, the builder may have given the mode codes of its own: then polar.on and polar.off of
     a machine profile name them. Until then the contour is judged as if they did, and its findings are conditional.

@@ -27,9 +27,9 @@ def rapid_in_polar(
     """
     Rapid traverse in the polar mode.
 
-    The control stops with an alarm at a block with G0, and just so at a move without a code of its own while G0 is
-    still in force, as it is after the approach. Positioning in the mode is done in G1 with a high feed, around 30 to 60
-    inch per minute.
+    The control stops with an alarm at a block with G0, and at a move without a code of its own while G0 is still in
+    force, as after the approach. Positioning in the mode is done in G1 with a high feed, around 30 to 60 inch per
+    minute.
 
     Source: builder's guide to G12.1; FANUC B-62764EN/01, p. 51; 30i alarm list, PS0146.
 

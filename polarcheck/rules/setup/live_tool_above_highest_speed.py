@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 @rule(
     WARNING,
     "{S} is above the highest speed of the live tool, {limit:whole}: the control holds it there or stops, and each "
-    "tooth takes more of F than meant; write S{limit:whole}, and lower F with it",
+    "tooth takes a thicker chip than intended; write S{limit:whole}, and lower F with it",
     values=("speed", "limit"),
     worse=("speed",),
     at=("S",),

@@ -22,9 +22,9 @@ def live_tool_never_stopped(blocks: ExecutedBlocks, procedure: Procedure, machin
     """
     Live tool not stopped after the polar mode.
 
-    A cutter that still turns when the turret indexes, or when the door is opened at the end, is a danger to the one who
-    stands there and to what it swings past; lathes with an interlock wait for ever. Stop the live tool on the retract:
-    `Z.1 M35`. It is a note at the end of the program, which on most lathes stops it, too.
+    A cutter that still turns when the turret indexes, or when the door is opened at the end, endangers the operator and
+    all that it passes; a lathe with an interlock waits for ever. Stop the live tool on the retract: `Z.1 M35`. It is a
+    note at the end of the program, which on most lathes stops it, too.
 
     Source: builder's guide to G12.1, sample program: retract Z-axis and stop milling spindle.
 

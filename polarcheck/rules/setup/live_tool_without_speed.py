@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 @rule(
     WARNING,
-    "{code} starts the live tool, and no S above 0 that was given for it is in force: it turns at another speed, or "
+    "{code} starts the live tool, and no S above 0 is in force for it: it turns at another speed, or "
     "not at all; write S before it",
     values=("code",),
     once="program",

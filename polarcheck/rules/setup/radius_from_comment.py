@@ -16,9 +16,9 @@ def radius_from_comment(tools: CalledTools, offsets: ToolOffsets) -> Mask:
     """
     Cutter radius taken from a comment.
 
-    Asked for with --radius-from-comments (or radius_from_comments in polarcheck.toml): where the job knows no radius
-    for an offset, the one that the comment beside its T word names is used. What follows holds only if the offset table
-    says the same. Give it with --tool, or read the table in with --offsets.
+    With --radius-from-comments (or radius_from_comments in polarcheck.toml) the radius in the comment beside a T word
+    is taken where the job gives none for the offset. What follows holds only if the offset table says the same. Give it
+    with --tool, or read the table in with --offsets.
 
     Where every ramp of a section is shorter than that radius, the comment tells the cutter and the program is the path
     of its center: R is taken as 0 there. The ramps may as well be too short, which only the offset table can tell.

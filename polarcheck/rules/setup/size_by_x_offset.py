@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 )
 def size_by_x_offset(offsets: ToolOffsets) -> Mask:
     """
-    Size of what is milled adjusted by the X offset.
+    Milled size that is adjusted by the X offset.
 
     In the polar mode C turns the part about the center of the spindle, where X0 must stay the center of the cutter. An
     X offset that is changed, as it is after turning, displaces the shape on every side of the part instead of making it

@@ -8,15 +8,15 @@ if TYPE_CHECKING:
     from polarcheck.columns.words.allow_comments import Allows
 
 
-@rule(WARNING, "this allow comment is not heeded: {fault}", over="allows")
+@rule(WARNING, "this allow comment has no effect: {fault}", over="allows")
 def allow_not_understood(allows: Allows) -> Hits:
     """
     Allow comment that means nothing.
 
-    Behind ALLOW stands the name of a rule, or of a group of rules; several with commas between. There is no allow
-    without a name. A post or a control may have cut the comment or dropped its lower case letters: then the name is
-    gone or is another one. What the comment was to silence is told as if it were not there; of several names those
-    that are known count. ALLOW-FILE stands at the head of a program, before its first block.
+    ALLOW takes the name of a rule, or of a group of rules; commas part several names. There is no allow without a name.
+    A post or a control may have cut the comment or dropped its lower case letters: then the name is gone or is another
+    one. What the comment was to silence is told as if it were not there; of several names those that are known count.
+    ALLOW-FILE stands at the head of a program, before its first block.
 
     Source: polarcheck, docs/silence.md.
 

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 
 @rule(
     NOTE,
-    "{names}: there is nothing to silence here; take it out of the allow comment",
+    "{names}: there is nothing to silence here; delete it from the allow comment",
     values=("names",),
     over="allows",
 )

@@ -9,13 +9,14 @@ if TYPE_CHECKING:
     from polarcheck.foundation.arrays import Mask
 
 
-@rule(NOTE, "say behind the names why this is right: who reads it next must decide whether it still is", over="allows")
+@rule(NOTE, "write the reason behind the names: the next reader must decide whether it still holds", over="allows")
 def allow_without_reason(allows: Allows) -> Mask:
     """
     Allow comment without a reason.
 
-    The comment is heeded. But whoever finds it in a year cannot tell a proven exception from a finding that somebody
-    wanted to be rid of. A few words behind the names are enough: PROVEN ON L7, STOCK IS 40.
+    The comment silences its rules, and does not say why that is right. Whoever finds it in a year cannot tell a
+    proven exception from a finding that somebody wanted to be rid of. A few words behind the names are enough: PROVEN
+    ON L7, STOCK IS 40.
 
     Source: polarcheck, docs/silence.md.
 
