@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+import json
+import math
 import re
 import shutil
 from collections.abc import Callable, Iterator
+from importlib import resources
 from pathlib import Path
 from typing import Any
 
+import msgspec
 import pytest
 from pictures_by_hand import finding, hexagon, notch, picture
 
+from polarcheck.view.packing import packed
 from polarcheck.view.page import page
 
 playwright = pytest.importorskip("playwright.sync_api")
@@ -212,3 +217,42 @@ def test_without_scripts_findings_are_read(browser: Any, address: str) -> None:
     assert found.locator("noscript p").is_visible()
     assert not found.locator(".drawings").is_visible()
     context.close()
+
+
+#: Columns of every kind that a page packs, and values that it leaves as they are.
+COLUMNS: dict[str, Any] = {
+    "lengths": [round(0.1 * number**1.5 - 7, 4) for number in range(50)],
+    "rates": [math.pi * number for number in range(50)],
+    "nulls": [None, *range(40), None, None, 0.25],
+    "nothing": [None] * 40,
+    "large": [2.0**60, *range(40)],
+    "points": [[number / 8, None if number % 7 else -number] for number in range(40)],
+    "centers": [None, *([number, 0.5] for number in range(40))],
+    "rings": [[[[0.5, number], [1.0, -1.0]]] for number in range(40)],
+    "flags": [True, False] * 20,
+    "texts": ["7", "8"] * 20,
+    "empty": [[] for _ in range(40)],
+}
+
+
+def test_packed_columns_come_out_as_they_went_in(opened: Opened) -> None:
+    script = resources.files("polarcheck.view").joinpath("browser", "data.js").read_text("utf-8")
+    unpack = f"(text) => {{ {script} return JSON.stringify(unpacked(JSON.parse(text))); }}"
+    told = opened.page.evaluate(unpack, json.dumps(packed(COLUMNS)))
+    assert json.loads(told, parse_int=float) == COLUMNS
+    left = [name for name, column in packed(COLUMNS).items() if column == COLUMNS[name]]
+    assert left == ["rates", "large", "centers", "rings", "flags", "texts", "empty"]
+
+
+def test_a_long_program_is_drawn_from_packed_data(browser: Any, address: str, tmp_path: Path) -> None:
+    source = [f"N{number} G1 X{number}." for number in range(1, 20_001)]
+    long = msgspec.structs.replace(picture(hexagon()), source=source, source_lines=len(source))
+    text = page([long], library=plotly.get_plotlyjs())
+    assert '<script type="text/plain" id="data">' in text
+    assert len(text) < len(page([picture(hexagon())], library=plotly.get_plotlyjs())) + sum(map(len, source)) / 2
+    (tmp_path / "long.html").write_text(text, "utf-8")
+    found = Opened(browser, (tmp_path / "long.html").as_uri())
+    found.page.wait_for_selector(".rates .main-svg")
+    assert found.said == []
+    assert found.asked == [(tmp_path / "long.html").as_uri()]
+    found.page.close()

@@ -19,11 +19,13 @@ import msgspec
 
 from polarcheck.foundation.finding import SEVERITIES, radius_origin
 from polarcheck.program.reading.excerpt import visible
+from polarcheck.view.packing import data_element
 from polarcheck.view.picture_data import FindingPicture, Mark, Picture, SectionPicture
 
 #: The scripts; each may use those before it.
 _SCRIPTS = (
     "words",
+    "data",
     "state",
     "theme",
     "colors",
@@ -70,8 +72,6 @@ _POLICY = (
 )
 #: What a page that is served may do beside: hear from its server of the next version.
 CONNECTED = "; connect-src 'self'"
-#: Characters that could end a script in HTML, or that a script must not contain.
-_IN_SCRIPT = str.maketrans({mark: f"\\u{ord(mark):04x}" for mark in "<>&\u2028\u2029"})
 _NO_SCRIPTS = "The pictures need a browser that runs scripts; all findings are in the table."
 
 
@@ -144,7 +144,7 @@ def script_hash(script: str) -> str:
 
 
 def _data(pictures: Sequence[Picture]) -> str:
-    """Return the data of the pictures as JSON that is safe in HTML, without what the page says in words already."""
+    """Return the element with the data of the pictures, without what the page says in words already."""
     names = ("findings", "sections", "source", "source_line", "source_lines")
     drawn = [
         {
@@ -154,7 +154,7 @@ def _data(pictures: Sequence[Picture]) -> str:
         }
         for picture in pictures
     ]
-    return msgspec.json.encode(drawn).decode().translate(_IN_SCRIPT)
+    return data_element(drawn)
 
 
 def _without_markup(value: Any) -> Any:

@@ -7,12 +7,11 @@ const VIEWS = [
   playersView,
 ];
 
-function start() {
+function start(pictures) {
   const hover = element("dl");
   hover.id = "hover";
   hover.hidden = true;
   document.body.append(hover);
-  const pictures = JSON.parse(document.getElementById("data").textContent);
   if (typeof Plotly === "undefined" && pictures.some(({ sections }) => sections.length)) {
     document.querySelector("main").prepend(element("p", "The library that draws is missing beside this page."));
     return;
@@ -37,4 +36,4 @@ function start() {
   embedded(state, memory);
 }
 
-start();
+withData(start);
