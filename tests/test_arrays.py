@@ -7,7 +7,7 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from polarcheck.foundation.arrays import computed, different, is_among, is_uniform, repeated
+from polarcheck.foundation.arrays import computed, different, first_of_each, is_among, is_uniform, repeated
 
 NUMBERS = st.lists(st.one_of(st.integers(-5, 5).map(float), st.floats(allow_nan=False)), max_size=9)
 
@@ -16,6 +16,13 @@ NUMBERS = st.lists(st.one_of(st.integers(-5, 5).map(float), st.floats(allow_nan=
 @given(NUMBERS)
 def test_different_values_are_those_of_numpy(values: list[float]) -> None:
     assert different(np.array(values)).tolist() == np.unique(values).tolist()
+
+
+@given(NUMBERS)
+def test_the_first_of_each_value_is_that_of_numpy(values: list[float]) -> None:
+    _, *expected = np.unique(values, return_index=True, return_inverse=True)
+    for found, of_numpy in zip(first_of_each(np.array(values)), expected, strict=True):
+        assert found.tolist() == of_numpy.tolist()
 
 
 @pytest.mark.ci

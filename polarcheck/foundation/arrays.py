@@ -127,6 +127,21 @@ def different(values: NDArray[_Number]) -> NDArray[_Number]:
     return rising[np.append(True, rising[1:] != rising[:-1])] if len(rising) else rising
 
 
+def first_of_each(values: NDArray[Any]) -> tuple[Rows, Rows]:
+    """
+    Return the index of the first of each distinct value, by rising value, and the number of the value of each element.
+
+    None of the values may be NaN. As np.unique, whose stable sort takes twice as long.
+    """
+    order = values.argsort()
+    ordered = values[order]
+    begins = np.ones(len(values), bool)
+    np.not_equal(ordered[1:], ordered[:-1], out=begins[1:])
+    number = np.empty(len(values), np.int64)
+    number[order] = np.cumsum(begins) - 1
+    return np.minimum.reduceat(order, np.flatnonzero(begins)) if len(values) else order, number
+
+
 def is_among(values: NDArray[Any], choices: Sequence[float | str]) -> Mask:
     """Return a mask of the values that are among the choices."""
     if len(choices) <= _FEW:

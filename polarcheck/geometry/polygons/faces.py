@@ -16,7 +16,7 @@ import numpy as np
 import shapely  # type: ignore[import-untyped]
 from numpy.typing import NDArray
 
-from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, Table, ranges
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, Table, first_of_each, ranges
 from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.polygons import areas
 from polarcheck.geometry.polygons.noding import Edges, merged, noded
@@ -127,7 +127,7 @@ class _Lines(Table, frozen=True):
 def _distinct(edges: Edges, walls: Walls) -> tuple[Edges, _Sides]:
     """Each distinct edge, with the tool sides of all its walls."""
     low, high = np.minimum(edges.start, edges.end), np.maximum(edges.start, edges.end)
-    _, first, which = np.unique(low * len(edges.nodes) + high, return_index=True, return_inverse=True)
+    first, which = first_of_each(low * len(edges.nodes) + high)
     turned = edges.start > edges.end
     left, right = walls.left[edges.wall], walls.right[edges.wall]
     low_side = np.bincount(which, np.where(turned, right, left)) > 0

@@ -13,7 +13,7 @@ import msgspec
 import numpy as np
 import shapely  # type: ignore[import-untyped]
 
-from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, Table, ranges
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, Table, first_of_each, ranges
 from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.tolerances import CROSSINGS, FREE_CROSSINGS, TOUCH
 
@@ -90,7 +90,7 @@ def _vertices(points: Points) -> tuple[Points, Rows]:
     across, up = np.rint(points.real / unit).astype(np.int64), np.rint(points.imag / unit).astype(np.int64)
     # Two odd numbers without a common pattern: different points have different sums but for a chance of 2 ** -64.
     key = across.view(np.uint64) * np.uint64(0x9E3779B97F4A7C15) + up.view(np.uint64) * np.uint64(0xC2B2AE3D27D4EB4F)
-    _, first, which = np.unique(key, return_index=True, return_inverse=True)
+    first, which = first_of_each(key)
     return points[first], which
 
 
@@ -161,7 +161,7 @@ def _pairs(walls: _Walls, tangled: Mask) -> Iterator[tuple[Rows, Rows]]:
         return
     runs = _runs(walls)
     group, size = walls.group[runs.first], runs.size
-    box, boxes_of_walls = _boxes(walls, runs.first), _boxes(walls, np.arange(len(walls.a)))
+    boxes = box, _ = _boxes(walls, runs.first), _boxes(walls, np.arange(len(walls.a)))
     tree = shapely.STRtree(shapely.box(*box))
     remaining = _PAIRS * np.bincount(walls.group, minlength=len(tangled)) + _FREE_PAIRS
     begin, step = 0, _LEAST_AT_A_TIME
@@ -185,7 +185,7 @@ def _pairs(walls: _Walls, tangled: Mask) -> Iterator[tuple[Rows, Rows]]:
         tangled |= remaining < 0
         for part in _shares(size[run] * size[second]):
             kept = part[~tangled[group[run[part]]]]
-            yield _each_wall(walls, boxes_of_walls, runs, run[kept], second[kept])
+            yield _each_wall(walls, boxes, runs, run[kept], second[kept])
 
 
 #: Least x and c, greatest x and c [mm].
@@ -209,22 +209,38 @@ def _shares(count: Rows) -> list[Rows]:
     return np.split(np.arange(len(count)), np.flatnonzero(np.diff(share)) + 1)
 
 
-def _each_wall(walls: _Walls, boxes: _Boxes, runs: _Runs, run: Rows, second: Rows) -> tuple[Rows, Rows]:
-    """Pairs of a wall of one run and a wall of the other that may meet."""
-    first, size = runs.first, runs.size
-    count = size[run] * size[second]
-    pair, index = ranges(count)
-    i = first[run[pair]] + index // size[second[pair]]
-    j = first[second[pair]] + index % size[second[pair]]
-    left, below, right, above = boxes
-    kept = (left[i] <= right[j]) & (left[j] <= right[i])  # most pairs end here
-    i, j = i[kept], j[kept]
-    kept = (below[i] <= above[j]) & (below[j] <= above[i])
+def _each_wall(walls: _Walls, boxes: tuple[_Boxes, _Boxes], runs: _Runs, run: Rows, second: Rows) -> tuple[Rows, Rows]:
+    """Pairs of a wall of one run and a wall of the other that may meet. boxes: of the runs, and of the walls."""
+    of_runs, of_walls = boxes
+    i, count = _within(of_walls, of_runs, runs, run, second)
+    j, second_count = _within(of_walls, of_runs, runs, second, run)
+    pair, index = ranges(count * second_count)
+    i = i[(np.cumsum(count) - count)[pair] + index // second_count[pair]]
+    j = j[(np.cumsum(second_count) - second_count)[pair] + index % second_count[pair]]
+    kept = _overlap(of_walls, i, of_walls, j)
     i, j = i[kept], j[kept]
     kept = ~_lies_aside(walls, i, j)
     i, j = i[kept], j[kept]
     kept = ~_lies_aside(walls, j, i)
     return i[kept], j[kept]
+
+
+def _within(of_walls: _Boxes, of_runs: _Boxes, runs: _Runs, run: Rows, other: Rows) -> tuple[Rows, Rows]:
+    """The walls of each run whose boxes overlap that of the other run, run after run, and how many each run has."""
+    pair, index = ranges(runs.size[run])
+    wall = runs.first[run][pair] + index
+    kept = _overlap(of_walls, wall, of_runs, other[pair])
+    return wall[kept], np.bincount(pair[kept], minlength=len(run))
+
+
+def _overlap(boxes: _Boxes, i: Rows, others: _Boxes, j: Rows) -> Mask:
+    """True where box i overlaps box j of the others."""
+    (left, below, right, above), (least, lowest, most, highest) = boxes, others
+    result = (left[i] <= most[j]) & (least[j] <= right[i])
+    rest = np.flatnonzero(result)  # most pairs end here
+    i, j = i[rest], j[rest]
+    result[rest] = (below[i] <= highest[j]) & (lowest[j] <= above[i])
+    return np.asarray(result)
 
 
 def _lies_aside(walls: _Walls, i: Rows, j: Rows) -> Mask:
