@@ -257,6 +257,8 @@ class OtherMode(Columns, frozen=True):
         if not len(bare):
             return mask
         begins, ends = spans(self.trace.text.source, name)
+        if not len(begins):
+            return mask
         start = words.start[bare]
         mask[bare] = np.searchsorted(begins, start, side="right") > np.searchsorted(ends, start, side="right")
         return mask

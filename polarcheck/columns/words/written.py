@@ -139,8 +139,15 @@ class Written:
 
     def _in_broken_block(self, index: Rows) -> Mask:
         """True for words in a block with anything unreadable: its other words are not reliable."""
-        broken = np.concatenate((self.words.block[self.words.is_unreadable], self.text.strays.block))
-        return np.isin(self.words.block[index], broken)
+        return self._broken_blocks[self.words.block[index]]
+
+    @cached_property
+    def _broken_blocks(self) -> Mask:
+        """Per block of the file: anything in it is unreadable."""
+        mask = np.zeros(len(self.text.blocks), bool)
+        mask[self.words.block[self.words.is_unreadable]] = True
+        mask[self.text.strays.block] = True
+        return mask
 
     def first_beyond(self, counted: Mask, limit: int) -> Mask:
         """The first counted word of each block that exceeds the limit."""
@@ -169,10 +176,10 @@ class Written:
         head = np.flatnonzero(np.append(True, block[1:] != block[:-1]))
         # The sum of bits equals their bitwise or if all are different.
         differs = np.add.reduceat(bits, head) != np.bitwise_or.reduceat(bits, head)
+        differs &= ~self._broken_blocks[block[head]]
         if not differs.any():
             return index[:0]
-        chosen = index[np.repeat(differs, np.diff(np.append(head, len(index)))) & (bits > 0)]
-        return chosen[~self._in_broken_block(chosen)]
+        return index[np.repeat(differs, np.diff(np.append(head, len(index)))) & (bits > 0)]
 
     def _again(self, index: Rows, kind: NDArray[Any]) -> tuple[Rows, Rows]:
         """Words that follow a word of the same kind in their block, and the word before each of them."""

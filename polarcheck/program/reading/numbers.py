@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import enum
 
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
@@ -73,6 +74,9 @@ def read_numbers(code: Bytes, start: Positions, end: Positions) -> Numbers:
 
     code: signs, digits and points there, and another character behind each number.
     """
+    written = np.flatnonzero(end > start)
+    if 2 * len(written) < len(start):  # text in no parentheses
+        return _with_empty(len(start), written, read_numbers(code, start[written], end[written]))
     first = code[start]
     signed = (first == _MINUS) | (first == _PLUS) | (first == DASH)
     length = end - start - signed
@@ -104,6 +108,16 @@ def read_numbers(code: Bytes, start: Positions, end: Positions) -> Numbers:
     numbers.value[empty] = np.nan
     numbers.fault[empty] = NumberFault.NO_DIGITS
     return numbers
+
+
+def _with_empty(count: int, index: Positions, numbers: Numbers) -> Numbers:
+    """These numbers at their index among `count` ones, the others of which have no characters."""
+    nothing = np.zeros(count, np.int32)
+    fault = np.full(count, NumberFault.NO_DIGITS, np.uint8)
+    result = Numbers(np.full(count, np.nan), nothing, nothing.copy(), np.zeros(count, bool), fault)
+    for column, written in zip(msgspec.structs.astuple(result), msgspec.structs.astuple(numbers), strict=True):
+        column[index] = written
+    return result
 
 
 def _eight_digits(eight: Masks) -> Floats:

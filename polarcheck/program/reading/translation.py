@@ -57,8 +57,10 @@ def _beginning(words: Collection[bytes]) -> bytes:
 
 def spans(source: Source, word: str) -> tuple[Positions, Positions]:
     """The starts and ends (exclusive) of a native word in a source."""
-    pattern = re.compile(_pattern(word.upper().encode("latin-1")), re.IGNORECASE)
-    places = [match.span() for match in pattern.finditer(source.code.tobytes())]
+    native, code = word.upper().encode("latin-1").strip(), source.code.tobytes()
+    if _BLANKS.split(native)[0] not in code.upper():  # a hundred times as fast as the pattern
+        return np.zeros(0, np.int64), np.zeros(0, np.int64)
+    places = [match.span() for match in re.compile(_pattern(native), re.IGNORECASE).finditer(code)]
     begins, ends = np.array(places, np.int64).reshape(-1, 2).T
     return begins, ends
 

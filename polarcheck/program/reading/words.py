@@ -243,7 +243,7 @@ _DECIMAL_COMMA = re.compile(rb"(?<=[0-9]),(?=[0-9])")
 #: Size of the pieces of a text that are read at once [characters]: they fit into the cache, which is faster.
 _PIECE = 1 << 18
 #: Where a longer line may be cut: before a word, but not before a corner word (,C ,R ,A).
-_CUT = re.compile(rb"[\nBD-QS-Zbd-qs-z]")
+_CUT = re.compile(rb"[\nBD-QS-Zbd-qs-z]|(?<=[A-Za-z0-9.])[ACRacr]")
 
 
 class _Piece(msgspec.Struct, frozen=True):
