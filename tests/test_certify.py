@@ -145,6 +145,16 @@ def test_another_path_fails(example: Path, file: str, before: str, after: str, s
         ("M13", "M14", "line 7: G97 S3000 M13 has become G97 S3000 M14 against golden/contour.jsonl"),
         ("S3000", "S3100", "line 7: G97 S3000 M13 has become G97 S3100 M13 against golden/contour.jsonl"),
         ("G28 H0\n", "", "G28 H0 is missing against golden/contour.jsonl"),
+        (
+            "X100.000 Z50",
+            "X90.000 Z50",
+            "line 23: rapid to X50 Z50 C0 has become rapid to X45 Z50 C0 against golden/contour.jsonl",
+        ),
+        (
+            "M5\n",
+            "M5\nG1 X80. Z5. F100\n",
+            "line 6: line to X40 Z5 C0 F100 mm/min is added against golden/contour.jsonl",
+        ),
         ("G28 H0\n", "G28 H0\nM8\n", "line 7: M8 is added against golden/contour.jsonl"),
         ("G12.1\n", "G4 X.5\nG12.1\n", "line 9: G4 X0.5 is added against golden/contour.jsonl"),
     ],
@@ -165,14 +175,19 @@ def test_an_order_elsewhere_on_the_path_fails(example: Path) -> None:
 
 
 @pytest.mark.ci
-def test_a_golden_trace_without_orders_is_one_of_the_path(example: Path) -> None:
+@pytest.mark.parametrize("orders", [True, False])
+def test_a_golden_trace_of_an_earlier_version_is_to_be_written_anew(example: Path, orders: bool) -> None:
     golden = Path("golden/contour.jsonl")
-    lines = golden.read_text("utf-8").splitlines(keepends=True)
-    golden.write_text("".join(line for line in lines if '"order"' not in line), "utf-8")
+    text = golden.read_text("utf-8")
+    old = [line for line in text.splitlines(keepends=True)[1:] if orders or '"order"' not in line]
+    golden.write_text("".join(old), "utf-8")
     edit(CONTOUR, "M13", "M14")
     (case,) = json.loads(certify(example, "--case", "contour/lathe-7", "--format", "json").stdout)["cases"]
-    assert (case["state"], case["reasons"]) == ("pass", [])
-    assert case["remarks"] == ["golden/contour.jsonl holds no orders, such as M codes and speeds: --update adds them"]
+    said = "golden/contour.jsonl is of an earlier version, without what stands outside: certify --update"
+    assert (case["state"], case["reasons"], case["remarks"]) == ("no golden trace", [said], [])
+    edit(CONTOUR, "M14", "M13")
+    assert certify(example, "--update", "--case", "contour/lathe-7").exit_code == 0
+    assert golden.read_text("utf-8") == text
 
 
 @pytest.mark.ci
@@ -208,8 +223,11 @@ def test_the_start_angle_of_the_whole_part_is_free(example: Path) -> None:
     example.write_text(manifest, "utf-8")
     edit(ROUND, "X70.000 Z2.000 C0.0", "X70.000 Z2.000 C30.0")
     assert reasons("arc-above-180/lathe-8") == []
+    against = "against golden/arc-above-180.jsonl"
     assert reasons("arc-above-180/lathe-7") == [
-        "section 1: it is turned by 30.000 deg against golden/arc-above-180.jsonl"
+        f"section 1: it is turned by 30.000 deg {against}",
+        f"line 8: rapid to X35 Z2 C0 has become rapid to X35 Z2 C30 {against}",
+        f"line 19: rapid to X50 Z50 C0 has become rapid to X50 Z50 C30 {against}",
     ]
 
 

@@ -1,6 +1,6 @@
 """
-Golden traces: the moves of the tool center and the orders beside them, a line each, as
-`trace --path tool --format jsonl --golden` writes them.
+Golden traces: the moves of the tool center in polar sections, the orders beside them and the moves outside, a line
+each, as `trace --path tool --format jsonl --golden` writes them.
 """
 
 from __future__ import annotations
@@ -17,19 +17,25 @@ from polarcheck.columns.trace import Trace
 from polarcheck.foundation import bounded
 from polarcheck.foundation.decoding import json_decoder
 from polarcheck.foundation.errors import CertificateError
+from polarcheck.foundation.states import Motion
 from polarcheck.program.reading import files
 from polarcheck.reports.pages import executed
 from polarcheck.reports.pages.executed import Move
 from polarcheck.reports.pages.trace_report import without_lines
+from polarcheck.rewrite.compare.compared_sections import outside
 from polarcheck.rewrite.compare.comparison_report import Difference
 from polarcheck.rewrite.compare.order_differences import listed, order_differences
-from polarcheck.rewrite.compare.orders import Step, steps
+from polarcheck.rewrite.compare.orders import Step, feed_unit, steps
+from polarcheck.rewrite.compare.terms import ANGLE, Terms
 from polarcheck.rules.quantity import rounded
 
 #: Of a golden trace [bytes]: 200,000 moves take 90 MB.
 _LARGEST = 100_000_000
 #: How a line begins that holds an order.
 _ORDER = b'{"order":'
+#: The first line: the version of the format. Version 1 had neither this line nor the moves outside of sections.
+_HEAD = '{"golden":2}\n'
+_MOTIONS = {Motion.RAPID: "rapid", Motion.LINE: "line", Motion.CW: "cw", Motion.CCW: "ccw"}
 _Pair = tuple[float | None, float | None]
 
 
@@ -50,7 +56,7 @@ class GoldenMove(msgspec.Struct, frozen=True):
 
 class GoldenOrder(msgspec.Struct, frozen=True):
     """
-    What a block orders beside its moves: tools, speeds, M codes, references, dwells, cycles.
+    What a block orders beside its moves: tools, speeds, M codes, references, dwells, cycles; or its move outside.
 
     order: as it is reported. tokens: its codes, and the addresses of its values. values: lengths in mm, X as a radius;
     null is not known. section: the number of the section, from 0 in each channel. at: where the tool stands in it,
@@ -75,16 +81,18 @@ class GoldenOrder(msgspec.Struct, frozen=True):
 
 
 class GoldenTrace(msgspec.Struct, frozen=True):
-    """The moves of a path, and the orders beside them."""
+    """The moves of a path, and the orders beside them. is_old: of a version without the moves outside of sections."""
 
     moves: Sequence[Move] | Sequence[GoldenMove] = ()
     orders: Sequence[GoldenOrder] = ()
+    is_old: bool = False
 
 
 def orders_of(trace: Trace) -> Iterator[GoldenOrder]:
     """Yield the orders of a channel in the order in which they run, with their lines."""
     channel, z_before = trace.text.source.channel, before(trace.path.z, trace.blocks.starts, np.nan)
-    for step in steps(trace, is_same_machine=True):
+    in_order = [*steps(trace, is_same_machine=True), *_moves_outside(trace)]
+    for step in sorted(in_order, key=lambda step: step.row):
         section = int(trace.mode.section[step.row])
         begun = int(np.searchsorted(trace.mode.sections.enter, step.row, side="right"))
         point, z = trace.path.start[step.row], float(z_before[step.row])
@@ -98,6 +106,23 @@ def orders_of(trace: Trace) -> Iterator[GoldenOrder]:
             channel=channel or UNSET,
             line=int(trace.blocks.line_in_file[step.row]),
         )
+
+
+def _moves_outside(trace: Trace) -> Iterator[Step]:
+    """Yield the moves outside of sections: X as a radius, Z [mm], C [deg] where each ends, and F of those at feed."""
+    moves = outside(trace, (), np.arange(len(trace)), Terms(ANGLE))
+    path, lines = moves.path, trace.blocks.line_in_file[moves.row].tolist()
+    places = zip(path.end.imag.tolist(), path.end.real.tolist(), (path.z_end / moves.c_scale).tolist(), strict=True)
+    motions = trace.axes.motion[moves.row].tolist()
+    for index, (row, line, place) in enumerate(zip(moves.row.tolist(), lines, places, strict=True)):
+        tokens, values = ["X", "Z", "C"], [*place]
+        if not moves.rapid[index]:
+            tokens.append(f"F{feed_unit(int(moves.feed_mode[index]))}")
+            values.append(float(moves.feed[index]))
+        known = zip(tokens, values, strict=True)
+        words = [f"{token[0]}{round(value, 4) + 0.0:g}{token[1:]}" for token, value in known if value == value]
+        motion = _MOTIONS[Motion(motions[index])]
+        yield Step(row, line, (motion, *tokens), tuple(values), f"{motion} to {' '.join(words)}")
 
 
 def changed_orders(ours: GoldenTrace, golden: GoldenTrace, tolerance: float, title: str) -> Iterator[str]:
@@ -126,6 +151,7 @@ def _distance(order: GoldenOrder, other: GoldenOrder) -> float:
 
 def lines(moves: Iterable[Move], orders: Iterable[GoldenOrder]) -> Iterator[str]:
     """Yield a line for each move and order, without the line of its block, which renumbering and comments change."""
+    yield _HEAD
     yield from executed.as_jsonl(without_lines(iter(moves)))
     for order in orders:
         yield msgspec.json.encode(msgspec.structs.replace(order, line=UNSET)).decode() + "\n"
@@ -141,7 +167,8 @@ def read(path: Path) -> GoldenTrace:
     of_moves, of_orders = json_decoder(GoldenMove), json_decoder(GoldenOrder)
     moves: list[GoldenMove] = []
     orders: list[GoldenOrder] = []
-    for number, line in enumerate(data.splitlines(), 1):
+    is_old = not data.startswith(_HEAD.encode())
+    for number, line in enumerate(data.splitlines()[not is_old :], 1 + (not is_old)):
         is_order = line.startswith(_ORDER)
         try:
             if is_order:
@@ -151,7 +178,7 @@ def read(path: Path) -> GoldenTrace:
         except (msgspec.DecodeError, UnicodeDecodeError) as error:
             what = "an order" if is_order else "a move"
             raise CertificateError(f"{title}:{number}: expected {what} of a golden trace: {error}") from None
-    return GoldenTrace(moves, orders)
+    return GoldenTrace(moves, orders, is_old)
 
 
 def is_golden(path: Path) -> bool:

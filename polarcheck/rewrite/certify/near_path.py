@@ -66,8 +66,8 @@ def with_golden(
             if change is not None:
                 line, now, before = change
                 comparison.reasons.append(f"line {line}: F is {_feed(now)}, in {title} {_feed(before)}")
-    if not golden_trace.orders and our_trace.orders:
-        comparison.remarks.append(f"{title} holds no orders, such as M codes and speeds: --update adds them")
+    if golden_trace.is_old:
+        comparison.reasons.append(f"{title} is of an earlier version, without what stands outside: certify --update")
     elif comparison.deviation is not None or not comparison.reasons:
         comparison.reasons.extend(changed_orders(our_trace, golden_trace, tolerance, title))
     return comparison

@@ -73,6 +73,8 @@ def _updated(loaded: Loaded, entry: Certified) -> tuple[str, bool]:
 def _change(loaded: Loaded, entry: Certified) -> str:
     """Return what a new golden trace changes, in one line."""
     before = golden.read(loaded.beside(entry.case.golden or ""))
+    if before.is_old:
+        return "rewritten: with the moves outside of polar sections"
     ours, tolerance = entry.run.golden_trace(loaded.path_of(entry.case)), loaded.tolerance(entry.case)
     compared = near_path.with_golden(ours, before, entry.run.sense, tolerance, "the golden trace before")
     deviation = compared.deviation

@@ -56,6 +56,11 @@ def speed_in_force(trace: Trace) -> Floats:
     return fill_down(np.where(written, trace.blocks.word("S"), np.nan), written | trace.blocks.starts, np.nan)
 
 
+def feed_unit(feed_mode: int) -> str:
+    """Return ` mm/min` or ` mm/rev` for a FeedMode; empty for another one."""
+    return _FEED_MODES.get(feed_mode, "")
+
+
 def special_rows(trace: Trace) -> Mask:
     """
     Return a mask of the rows whose axis words are not the end of a plain move: cycles, references, shifts, dwells,
@@ -198,7 +203,7 @@ class _Reader:
         """
         feedrate = self._trace.feedrate
         feed = float(np.nan_to_num(feedrate.feed_number[row]))
-        mode = _FEED_MODES.get(int(feedrate.feed_mode[row]), "")
+        mode = feed_unit(int(feedrate.feed_mode[row]))
         return f"F{mode}", feed, f"F{feed:.10g}{mode}"
 
     def _length(self, name: str, row: int, value: float) -> float:

@@ -1,0 +1,73 @@
+"""What comes of converting a program for another control, by the simulated lathe: equal, to decide, refused, or wrong."""
+
+from __future__ import annotations
+
+import re
+from typing import NamedTuple
+
+import msgspec
+from post_styles import Drawn
+from simulated_lathe import differences, steps
+
+from polarcheck.checking.settings import Settings
+from polarcheck.files.settings.of_programs import OfPrograms, Options, on_machine
+from polarcheck.foundation.errors import RefusedError
+from polarcheck.rewrite.convert.converting import converted
+from polarcheck.rewrite.convert.doubtful_values import KEYS
+from polarcheck.rewrite.writing.outcome import Outcome
+from polarcheck.rewrite.writing.rewritten_program import rewritten
+
+EQUAL, TO_DECIDE, REFUSED, NEEDLESS, WRONG = "equal", "to decide", "refused truly", "refused needlessly", "wrong"
+#: The reasons that are true: what the target has no function for, a value that is not known, what a person must decide.
+TRUE_REASONS = (
+    ("goes round outer corners otherwise", "the other control goes round outer corners otherwise"),
+    ("is a statement of a language", "a macro statement for a control with another language"),
+    ("Z cannot move in an arc", "a helix for a control whose arcs have no Z"),
+    ("how .* writes that is not known", "a subprogram for a control whose calls are not known"),
+    ("Z cannot move beside the axes", "Z beside the axes of the plane for a control that forbids it"),
+)
+
+
+class Conversion(NamedTuple):
+    """What has come of it, and why."""
+
+    what: str
+    why: tuple[str, ...] = ()
+
+
+def settings_of(program: Drawn) -> Settings:
+    """The lathe and the tools of a program."""
+    settings = OfPrograms(Options(machine=program.machine, tools=program.tools, use_config=False))("")
+    job = msgspec.structs.replace(settings.job, units="inch" if program.inch else "mm")
+    return msgspec.structs.replace(settings, job=job)
+
+
+def conversion(program: Drawn, target: str) -> Conversion:
+    """Convert a program, run both on their lathes, and compare what they do; all values in doubt are accepted."""
+    settings = settings_of(program)
+    try:
+        outcome = rewritten(
+            program.name,
+            program.text.encode(),
+            settings,
+            lambda original: converted(original, on_machine(settings, target), KEYS),
+        )
+    except RefusedError as error:
+        texts = [refusal.text for refusal in error.refusals]
+        if kind := next((kind for pattern, kind in TRUE_REASONS if re.search(pattern, "\n".join(texts))), ""):
+            return Conversion(REFUSED, (kind,))
+        return Conversion(NEEDLESS, tuple(texts))
+    found = differences_of(program, target, outcome)
+    if found:
+        return Conversion(WRONG, tuple(found))
+    return Conversion(TO_DECIDE if outcome.decisions else EQUAL)
+
+
+def differences_of(program: Drawn, target: str, outcome: Outcome) -> list[str]:
+    """What the new program does otherwise, but where a comment in it or a note says that something is other there."""
+    told = {decision.line for decision in outcome.decisions}
+    left_out = (re.match(r"line (\d+): .* is left out", note) for note in outcome.notes)
+    told |= {int(match[1]) for match in left_out if match}
+    told_there = frozenset(line for line, origin in enumerate(outcome.origin, 1) if origin in told)
+    ours, theirs = steps(program.text, program.machine), steps(outcome.data.decode("latin-1"), target)
+    return differences(ours, theirs, frozenset(told), told_there)[0]
