@@ -67,7 +67,7 @@ class Writer:
 
     def __init__(self, seed: int) -> None:
         self.seed = seed
-        self.draw = random.Random(seed)  # noqa: S311
+        self.draw = random.Random(seed)  # noqa: S311 - programs that can be drawn again
         self.lines: list[Line] = []
         self.section = -1
         draw = self.draw
@@ -428,7 +428,7 @@ def _moved(address: str, by: float) -> Change:
     def change(program: Program, index: int, draw: random.Random) -> list[str] | None:
         text = program.lines[index].text
         value = float(_words(text).get(address, "0"))
-        if abs(value) <= by:
+        if abs(value) <= abs(by):
             return None
         return [text.replace(address + _words(text)[address], word(address, value - math.copysign(by, value)))]
 
@@ -467,56 +467,69 @@ def _has_two_tools(program: Program) -> bool:
     return len(program.radii) == 2
 
 
+def _has_one_tool(program: Program) -> bool:
+    return len(program.radii) == 1
+
+
 def _rough_at_c20(program: Program, index: int, draw: random.Random) -> list[str] | None:
     return ["C20."] if program.lines[index].section == 1 else None
 
 
-def _is_turned_far(program: Program) -> bool:
-    return program.raw >= program.spigot + 6 and program.shape in ("polygon", "rectangle", "flats", "slots")
+def _is_deep(program: Program) -> bool:
+    """Ten times the depth is far below the spigot and several times as deep as the cutter is wide."""
+    deep = min(float(_words(line.text)["Z"]) for line in program.lines if line.role == "depth") * 10
+    return program.raw >= program.spigot + 6 and deep < min(program.low, -6 * max(program.radii.values()))
 
 
-def _has_several(program: Program) -> bool:
-    return max(line.section for line in program.lines) > 1 and len(program.radii) == 1
+def _longer(program: Program, index: int, draw: random.Random) -> list[str] | None:
+    """`Z-33.7` for `Z-3.7`, where that is ten times as much or more."""
+    text = program.lines[index].text
+    written = _words(text)["Z"]
+    return [text.replace("Z" + written, "Z-" + written[1] + written[1:])] if written[1] not in "0." else None
 
 
-_BOSS, _OPEN = ("polygon", "rectangle"), ("flats", "slots")
+def _is_turned_at_once(program: Program) -> bool:
+    return program.raw >= program.spigot + 6 and sum(line.role == "spigot" for line in program.lines) == 1
+
+
+_BOSS, _OPEN, _ONE, _WITH_G41 = ("polygon", "rectangle"), ("slots",), ("polygon",), ("polygon", "rectangle", "flats")
 KINDS: dict[str, Kind] = {
     "lead inside the bar": Kind(("lead",), _moved("X", 12.0), ("slots",)),
-    "lead of a flat inside the bar": Kind(("lead",), _scaled("C", 0.3), ("flats",)),
-    "depth ten times": Kind(("depth",), _scaled("Z", 10), SHAPES, lambda p: p.raw >= p.spigot + 6),
+    "depth ten times": Kind(("depth",), _scaled("Z", 10), SHAPES, _is_deep),
+    "digit too many in the depth": Kind(("depth",), _longer, SHAPES, _is_deep),
     "sign of the depth": Kind(("depth",), _scaled("Z", -1)),
     "depth is missing": Kind(("depth",), _without),
-    "lift is missing": Kind(("lift",), _without, ("slots",), lambda p: sum(one.role == "lift" for one in p.lines) > 1),
-    "lift goes down": Kind(("lift",), _scaled("Z", -1), ("slots",)),
     "rapid traverse below the face": Kind(("above",), _text("Z2.", "Z-2."), ("pocket",)),
-    "contour X ten times": Kind(("contour",), _scaled("X", 10), _BOSS),
-    "contour C ten times": Kind(("contour",), _scaled("C", 10), _BOSS),
-    "contour X without its sign": Kind(("contour",), _scaled("X", -1), _BOSS),
-    "contour C without its sign": Kind(("contour",), _scaled("C", -1), _BOSS),
-    "contour X as a radius": Kind(("contour",), _scaled("X", 0.5), _BOSS),
-    "contour X doubled": Kind(("contour",), _scaled("X", 2), _BOSS),
-    "contour C doubled": Kind(("contour",), _scaled("C", 2), _BOSS),
-    "digits of X swapped": Kind(("contour",), _swapped("X"), _BOSS),
-    "digits of C swapped": Kind(("contour",), _swapped("C"), _BOSS),
-    "corner is missing": Kind(("contour",), _without, _BOSS),
-    "G42 for G41": Kind(("ramp",), _text("G41", "G42"), (*_BOSS, "flats")),
-    "G41 is missing": Kind(("ramp",), _text("G41 ", ""), (*_BOSS, "flats")),
-    "G40 is missing": Kind(("cancel",), _text("G40 ", ""), (*_BOSS, "flats")),
-    "index is missing": Kind(("index",), _without, _OPEN, _has_several),
+    "rapid traverse far below the face": Kind(("above",), _text("Z2.", "Z-20."), ("pocket",)),
+    "contour X ten times": Kind(("contour",), _scaled("X", 10), _ONE, _has_one_tool),
+    "contour C ten times": Kind(("contour",), _scaled("C", 10), _ONE, _has_one_tool),
+    "contour X without its sign": Kind(("contour",), _scaled("X", -1), _ONE, _has_one_tool),
+    "contour C without its sign": Kind(("contour",), _scaled("C", -1), _ONE, _has_one_tool),
+    "contour X as a radius": Kind(("contour",), _scaled("X", 0.5), _ONE, _has_one_tool),
+    "contour X doubled": Kind(("contour",), _scaled("X", 2), _ONE, _has_one_tool),
+    "contour C doubled": Kind(("contour",), _scaled("C", 2), _ONE, _has_one_tool),
+    "contour C halved": Kind(("contour",), _scaled("C", 0.5), _ONE, _has_one_tool),
+    "digits of X swapped": Kind(("contour",), _swapped("X"), _ONE, _has_one_tool),
+    "digits of C swapped": Kind(("contour",), _swapped("C"), _ONE, _has_one_tool),
+    "corner is missing": Kind(("contour",), _without, _ONE, _has_one_tool),
+    "G42 for G41": Kind(("ramp",), _text("G41", "G42"), _WITH_G41),
+    "G41 is missing": Kind(("ramp",), _text("G41 ", ""), _WITH_G41),
+    "G40 is missing": Kind(("cancel",), _text("G40 ", ""), _WITH_G41),
+    "block of G40 is missing": Kind(("cancel",), _without, _WITH_G41),
     "roughing at another C": Kind(("index",), _rough_at_c20, _BOSS, _has_two_tools),
-    "spigot too short": Kind(("spigot",), _scaled("Z", 0.1), SHAPES, _is_turned_far),
-    "spigot too thick": Kind(("spigot",), _moved("X", -14.0), SHAPES, _is_turned_far),
+    "spigot too short": Kind(("spigot",), _scaled("Z", 0.1), _OPEN, _is_turned_at_once),
+    "spigot too thick": Kind(("spigot",), _moved("X", -14.0), _OPEN, _is_turned_at_once),
     "G13.1 is missing": Kind(("off",), _without),
     "G12.1 is missing": Kind(("on",), _without),
-    "turret turns in the mode": Kind(("contour",), _with("T0808"), (*_BOSS, "flats")),
+    "turret turns in the mode": Kind(("contour",), _with("T0808"), _WITH_G41),
     "unit of the program": Kind(("head",), _text("G21", "G20")),
-    "lead at depth in rapid traverse": Kind(("lead",), _text("G1 ", "G0 ")),
+    "lead in rapid traverse": Kind(("lead",), _text("G1 ", "G0 ")),
 }
 
 
 def slipped(program: Program, name: str) -> Program | None:
     """The program with a slip of this kind; None where it has no place for one."""
-    kind, draw = KINDS[name], random.Random(f"{program.seed} {name}")  # noqa: S311
+    kind, draw = KINDS[name], random.Random(f"{program.seed} {name}")  # noqa: S311 - slips that can be drawn again
     if program.shape not in kind.shapes or not kind.fits(program):
         return None
     places = [index for index, line in enumerate(program.lines) if line.role in kind.roles]

@@ -105,6 +105,11 @@ class MisplacedRamps(Columns, frozen=True):
         leaves_from, leaves_to = trace.path.start[row], trace.path.end[row]
         before_end = np.append(moves.start[first : first + 1], moves.end[first : last - 1])
         closes = bool(np.any(np.abs(before_end - leaves_from) <= _SAME))
+        # A contour that runs on past its start ends on its first wall.
+        begin, end = (column[first : max(last - _MOVES_OF_LOOP, first)] for column in (moves.start, moves.end))
+        aside = np.abs(begin - leaves_from) + np.abs(end - leaves_from) - np.abs(end - begin)
+        is_line = trace.axes.motion[moves.row[first : first + len(begin)]] == Motion.LINE
+        closes |= bool(np.any(is_line & (aside <= _SAME**2)))
         # Above Z0 nothing is cut on most programs: only a contour that closes shows there that one is meant.
         in_air = float(trace.path.z[row]) > 0
         return closes or (

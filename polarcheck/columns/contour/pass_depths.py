@@ -74,8 +74,8 @@ class PassDepths(Columns, frozen=True):
     @property
     def _beyond_turning(self) -> Iterator[tuple[int, float]]:
         """
-        Passes far below all that is turned, much deeper in one step than the cutter is wide, and the Z with the point a
-        digit to the left, which lies in what is turned.
+        Passes far below what is turned, or where the bar is wider, much deeper in one step than the cutter is wide, and
+        the Z with the point a digit to the left, which lies in what is turned.
 
         One of these alone may be meant: a shaft is milled across its shoulder, a wall is milled in one pass.
         """
@@ -86,7 +86,8 @@ class PassDepths(Columns, frozen=True):
         section, z = self.trace.mode.section[passes.row], passes.z * bar.trace.path.z_sense
         step = np.where(np.diff(section, prepend=-1) == 0, np.append(0.0, z[:-1]), 0.0) - z
         width = 2 * self.air_cuts.workpiece.radius[passes.row]
-        deep = (z < _BEYOND * turned) & (z / 10 > turned) & (step > _STEEP * width)
+        is_wider = bar.inner(passes.row, z) > bar.inner(passes.row, z / 10) + width / 4
+        deep = ((z < _BEYOND * turned) | is_wider) & (z / 10 > turned) & (step > _STEEP * width)
         for row, z in zip(passes.row[deep].tolist(), passes.z[deep].tolist(), strict=True):
             yield row, z / 10
 

@@ -157,9 +157,11 @@ class Bar(Columns, frozen=True):
     @cached_property
     def deepest_turned(self) -> float:
         """The lowest Z that a turning tool cuts before the first section [mm]; inf without any."""
-        rows = self.tools.moving_rows
-        rows = rows[: np.searchsorted(rows, self.trace.mode.sections.enter[0])]
-        return float(np.nanmin(np.append(self.trace.path.z[rows], np.inf)))
+        enter = self.trace.mode.sections.enter[0]
+        rows, cuts = self.tools.moving_rows, self.turned_cuts.cuts
+        of_moves = self.trace.path.z[rows[rows < enter]]
+        of_cycles = cuts.low[(cuts.row < enter) & cuts.is_surface & np.isfinite(cuts.low)]
+        return float(np.nanmin(np.concatenate([of_moves, of_cycles, [np.inf]])))
 
     # ---- what is turned before a row ----
 

@@ -52,10 +52,10 @@ class Procedure(Columns, frozen=True):
 
     @property
     def _turns(self) -> Mask:
-        """Moves of the virtual axis at feed outside sections."""
+        """Moves of the virtual axis at feed outside sections; full circles about a center with J name it alone."""
         trace, mode = self.trace, self.trace.machine.polar
         turns = trace.blocks.has(mode.virtual_axis, mode.virtual_axis_incremental) & (trace.mode.section < 0)
-        turns &= trace.path.moves_c if self._is_rotary else True
+        turns &= (trace.path.moves_c | (self._is_arc & trace.blocks.has("J"))) if self._is_rotary else True
         return np.asarray(turns & is_among(trace.axes.motion, _AT_FEED))
 
     @property

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     "the pass at Z{depth} {out_of_step}: Z{in_step} would fit",
     values=("z", "z_needed"),
     worse=("z:z_needed",),
-    follows={"section": ("cut-in-air",)},
+    follows={"section": ("cut-in-air", "approach-inside-stock")},
 )
 def pass_depth_differs(pass_depths: PassDepths) -> Mask:
     """
@@ -25,8 +25,8 @@ def pass_depth_differs(pass_depths: PassDepths) -> Mask:
     A contour is milled in several passes, each deeper than the last by the same step, and one of them is several steps
     deeper or out of order: a digit or the point of its Z is wrong. The cutter takes the whole depth at once, or the
     passes behind it take nothing. At least three passes of the same contour must show the step. A pass is told, too,
-    that goes far below all that the program turns, in one step several times as deep as the cutter is wide, where its Z
-    with the point one digit to the left lies in what is turned.
+    that goes far below what the program turns, or to where the bar is wider, in one step several times as deep as the
+    cutter is wide, where its Z with the point one digit to the left lies in what is turned.
 
     Source: builder's guide to G12.1, order of a section.
 
@@ -87,7 +87,7 @@ def details(hit: Hit, pass_depths: PassDepths, bar: Bar) -> Details:
     out_of_step = "is out of step with the others of its contour"
     if pass_depths.is_beyond_turning[hit.row]:
         turned = bar.deepest_turned * bar.trace.path.z_sense
-        out_of_step = f"goes in one step far below what is turned, which ends at Z{hit.number(turned)}"
+        out_of_step = f"goes in one step far below what is turned there (the turning ends at Z{hit.number(turned)})"
     # To be written, so with a point: without one some controls read an increment.
     in_step = plain_number(needed / float(hit.trace.lengths.scale[hit.row]))
     return {"z": z, "z_needed": needed, "depth": hit.number(z), "out_of_step": out_of_step, "in_step": in_step}
