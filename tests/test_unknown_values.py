@@ -6,6 +6,7 @@ import itertools
 import re
 from pathlib import Path
 
+import numpy as np
 import pytest
 from cases import looped
 from click.testing import CliRunner
@@ -241,3 +242,26 @@ def test_a_variable_that_nothing_sets_is_told_once() -> None:
 def test_a_vacant_variable_is_the_cause_of_the_contour() -> None:
     report = report_of(hexagon(("C20.785", "C#101")), "fanuc-30i", CUTTER)
     assert [finding.rule for finding in report.findings] == ["vacant-variable"]
+
+
+FLATS = (
+    "O1000/G21 G98 G40/T0101/G97 S3000 M13/G28 H0/G0 X70. Z2. C0/Z-4./G12.1/G1 G42 X36. C-40. F150/C40./G40 X70./"
+    "X80. F1000/C0/G13.1/G0 Z2./C90./X70./Z-4./G12.1/G1 G42 X36. C-40. F150/C40./G40 X70./X80. F1000/C0/G13.1/"
+    "G0 Z50./G0 X100./M5/M30"
+)
+
+
+@looped(("control", "word"), [*itertools.product(("fanuc-30i", "gsk-988", "doosan"), ("C90.", "G13.1"))])
+def test_what_lies_between_two_sections_is_no_fault_of_either(control: str, word: str) -> None:
+    engaged = FLATS.replace("G28 H0", "M35/G28 H0") if control == "doosan" else FLATS
+    assert report_of(engaged.replace("/", "\n"), control, CUTTER).verdict == "pass"
+    program = engaged.replace(word, f"{word[0]}#500", 1).replace("/", "\n")
+    report = report_of(program, control, CUTTER)
+    assert (report.verdict, [finding.rule for finding in report.findings]) == ("unverified", [])
+
+
+def test_an_axis_is_nowhere_from_an_unknown_word_on() -> None:
+    rows = "O1000/G98 G0 X10. Z5. C30./X#500/X20./Z#500/Z20./C#500/C20./H#500/M30"
+    path = tables_of(rows.replace("/", "\n"), "fanuc-30i", CUTTER)["trace"].path
+    unknown = [np.flatnonzero(np.isnan(column[1:])).tolist() for column in (path.x, path.z, path.c_angle)]
+    assert unknown == [[1], [3], [5, 7, 8]]

@@ -263,6 +263,7 @@ class AirCuts(Columns, frozen=True):
             if len(count) > 1 and count.min() < count.max():
                 repeated[members[later]] = True
             repeated[members[later & self._idle_index[members]]] = True
+        repeated[:-1] &= trace.path.knows_section_entry
         return repeated[trace.mode.section]
 
     @property

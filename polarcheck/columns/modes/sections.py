@@ -17,8 +17,8 @@ class Marks(msgspec.Struct, frozen=True):
     tools_in_mode: tool changes that can stand in the mode as well, of a section that its G13.1 ends.
     stops: M1, between two tools or in the work of one. rapid: G0 is written. cuts: a cutting move with a word of the
     virtual axis. moves: any move in the plane that can stand in the mode. returns: M99 of a program that something
-    elsewhere may call. broken_off: the last row of a program that a bound has ended. rapid_stands: G0 can stand in the
-    mode, whose axes have addresses of their own.
+    elsewhere may call, or what may be G13.1. broken_off: the last row of a program that a bound has ended.
+    rapid_stands: G0 can stand in the mode, whose axes have addresses of their own.
     """
 
     on: Mask
@@ -109,7 +109,7 @@ def find_sections(marks: Marks) -> Sections:
     rapid_after = _first_after(np.flatnonzero(marks.tool_ends | marks.outside | marks.rapid), last_move, count)
     intended = np.minimum(np.where(is_empty, outside, rapid_after), limit)
     last_return = _last_before(np.flatnonzero(marks.returns), end)
-    returned = ((by_end & (last_return >= last_cut) & (intended > last_return)) | (by_bound & ~forgotten))[final]
+    returned = ((forgotten & (last_return >= last_cut) & (intended > last_return)) | (by_bound & ~forgotten))[final]
     return Sections(
         enter[~repeated],
         np.where(forgotten, intended, end)[final],

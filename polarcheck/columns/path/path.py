@@ -561,9 +561,10 @@ class ProgrammedPath(Columns, frozen=True):
         if self.machine.polar.plane_is_fixed:
             moving |= self.modal.uses_axes & self.mode.enters
         written, stepped = self.blocks.has(axis) & moving, self.blocks.has(increment) & moving
-        is_step = self.modal.is_step(axis)
-        absolute = np.where(written & ~is_step, self.coordinates.angle_of(axis), np.nan)
-        turn = np.where(written & is_step, self.coordinates.angle_of(axis), 0.0)
+        angle, is_step = self.coordinates.angle_of(axis), self.modal.is_step(axis)
+        absolute = np.where(written & ~is_step, angle, np.nan)
+        # From a word of unknown value on C is not known, as X and Z are not.
+        turn = np.where(written & (is_step | np.isnan(angle)), angle, 0.0)
         return absolute, turn + np.where(stepped, self.coordinates.angle_of(increment), 0.0)
 
     @cached_property
