@@ -153,3 +153,27 @@ def test_a_path_that_is_too_long_is_a_reason(monkeypatch: pytest.MonkeyPatch) ->
     monkeypatch.setattr(polyline, "CHORDS_OF_FILE", 4)
     for reason, *_ in (golden(square(), square()), other(square(), square())[0]):
         assert "too long to compare" in reason or "mm from" in reason
+
+
+def plunged(z: float) -> list[Move]:
+    """The square, and Z alone behind it."""
+    x = square()[-1]["end"]
+    return [*square(), {**square()[-1], "start": x, "end": x, "z": [-3.0, z], "c_axis": [None, None]}]
+
+
+def test_z_alone_belongs_to_a_golden_trace() -> None:
+    assert golden(plunged(2.0), plunged(2.0)) == []
+    assert any("mm from a.jsonl" in reason for reason in golden(plunged(-9.0), plunged(2.0)))
+    assert any("mm from a.jsonl" in reason for reason in golden(plunged(-9.0), square()))
+
+
+def test_a_golden_trace_of_an_earlier_version_holds_no_z_alone() -> None:
+    traces = [msgspec.convert(moves, list[GoldenMove]) for moves in (plunged(2.0), square())]
+    compared = with_golden(GoldenTrace(traces[0]), GoldenTrace(traces[1], is_old=True), 1, TOLERANCE, "a.jsonl")
+    assert [reason.endswith("certify --update") for reason in compared.reasons] == [True]
+
+
+def test_rapid_traverse_is_no_feed() -> None:
+    slow, fast = square(x_feed=100.0), square(x_feed=None)
+    assert golden(fast, slow) == ["line 0: F is rapid traverse, in a.jsonl 200 mm/min"]
+    assert golden(square(x_feed=None, feed=300.0), fast) == []

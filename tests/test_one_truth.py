@@ -90,6 +90,14 @@ ORDERS = {
         "okuma-osp": ("SB=3000 M13", "SB=3000"),
     },
     "no reference of C": {"fanuc-30i": ("G28 H0/", ""), "haas-lathe": ("G28 H0/", "")},
+    "the mode again": {
+        "fanuc-30i": ("G12.1", "G12.1/G12.1"),
+        "haas-lathe": ("G112", "G112/G112"),
+        "okuma-osp": ("G137 C0", "G137 C0/G137 C0"),
+    },
+    "a feed below 0": {
+        control: ("F150", "F=-150" if control.startswith("siemens") else "F-150") for control in PROGRAMS
+    },
     "coolant": {
         control: ("G94" if "94" in text else "G98", ("G94" if "94" in text else "G98") + " M8")
         for control, text in PROGRAMS.items()
@@ -220,6 +228,53 @@ def test_a_difference_shows_what_is_not_known_as_it_is_written(word: str, text: 
     result = compared(tmp_path, "fanuc-30i", unknown, program("fanuc-30i"))
     assert text in result.stdout
     assert "nan" not in result.stdout
+
+
+#: What a reader takes as meant, and a control does not.
+MISREAD = {
+    "a dash of print": ("-20.785", "\u201320.785"),
+    "a letter": ("20.785", "2O.785"),
+    "a comma": ("20.785", "20,785"),
+    "a stray character": ("20.785", "20.785 ?"),
+}
+
+
+@pytest.mark.ci
+@looped(("control", "name"), [*itertools.product(("fanuc-30i", "haas-lathe", "siemens-transmit"), MISREAD)])
+def test_what_a_control_cannot_read_is_not_compared(control: str, name: str, tmp_path: Path) -> None:
+    sound, text = program(control), program(control, MISREAD[name])
+    assert report_of(text, control, CUTTER).verdict == "fail"
+    result = compared(tmp_path, control, sound, text)
+    assert (result.exit_code, "characters that the control cannot read" in result.stdout) == (2, True)
+
+
+#: Moves of Z alone, and others in rapid traverse; and those that are the same.
+OF_Z = {
+    "fanuc-30i": ("/Z2. F1000", "/Z-7. F1000", "/Z2. F1500", "/Z0. F1000/Z2."),
+    "haas-lathe": ("/Z2. F1000.", "/Z-7. F1000.", "/G0 Z2.", "/Z0. F1000./Z2."),
+    "siemens-transmit": ("/Z2 F1000", "/Z-7 F1000", "/Z2 F1500", "/Z0 F1000/Z2"),
+    "okuma-osp": ("/Z2 F1000", "/Z-7 F1000", "/Z2 F1500", "/Z0 F1000/Z2"),
+}
+
+
+@pytest.mark.ci
+@looped("control", OF_Z)
+def test_moves_of_z_alone_are_those_of_the_path(control: str, tmp_path: Path) -> None:
+    sound, (old, deeper, other_feed, divided) = program(control), OF_Z[control]
+    for new, code in ((deeper, 1), (other_feed, 1), (divided, 0)):
+        text = program(control, (old, new))
+        assert compared(tmp_path, control, sound, text).exit_code == code
+        assert certified(tmp_path, control, sound, text).exit_code == code
+
+
+@pytest.mark.ci
+@looped("control", ["fanuc-30i", "fanuc-16i", "doosan"])
+def test_a_feed_of_an_unknown_unit_is_not_that_of_a_known_one(control: str, tmp_path: Path) -> None:
+    engage = [("G28 H0", "M35/G28 H0")] * (control == "doosan")
+    sound, text = program(control, *engage), program(control, *engage, ("G98 ", ""))
+    assert [finding.rule for finding in report_of(text, control, CUTTER).findings] == ["feed-mode-unknown"]
+    result = compared(tmp_path, control, sound, text)
+    assert (result.exit_code, "no code says whether F is per minute" in result.stdout) == (2, True)
 
 
 @pytest.mark.ci

@@ -87,7 +87,7 @@ def trace(
             _show_all(_table(paths, which, on_terminal))
             return status
         items: Iterator[Any] = chain.from_iterable(
-            executed.moves(*of_run, which) if which else executed.rows(*of_run) for of_run in paths
+            executed.moves(*of_run, which, has_z_alone=golden) if which else executed.rows(*of_run) for of_run in paths
         )
         if golden and which and form == "jsonl":
             from polarcheck.rewrite.certify.golden import lines, orders_of

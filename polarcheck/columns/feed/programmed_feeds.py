@@ -36,10 +36,10 @@ class Feeds(Columns, frozen=True):
 
     @cached_property
     def missing(self) -> Mask:
-        """No F was ever given, or F0 is in force. Blocks before an excerpt may have given one."""
+        """No F was ever given, or none above 0 is in force. Blocks before an excerpt may have given one."""
         trace = self.trace
         given = happened(trace.blocks.has("F") | trace.run.unknown, trace.blocks.starts)
-        return np.asarray((~given & ~self._in_excerpt) | (trace.feedrate.feed_number == 0))
+        return np.asarray((~given & ~self._in_excerpt) | (trace.feedrate.feed_number <= 0))
 
     @cached_property
     def _in_excerpt(self) -> Mask:

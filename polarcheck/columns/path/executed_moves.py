@@ -6,6 +6,7 @@ import numpy as np
 
 from polarcheck.columns.feed.dynamics import Dynamics
 from polarcheck.columns.path.moves import programmed_moves, z_along
+from polarcheck.columns.path.standing_moves import with_z_alone
 from polarcheck.columns.path.tool_center import ToolCenter
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Floats, Mask, Rows
@@ -47,10 +48,21 @@ class ExecutedMoves(PlanePath, frozen=True, eq=False):
     time: Floats
 
 
-def executed_moves(trace: Trace, tool_center: ToolCenter, path: str) -> ExecutedMoves:
-    """Return the moves of the tool center path ("tool") or of the programmed path ("programmed")."""
+def executed_moves(trace: Trace, tool_center: ToolCenter, path: str, *, has_z_alone: bool = False) -> ExecutedMoves:
+    """
+    Return the moves of the tool center path ("tool") or of the programmed path ("programmed").
+
+    has_z_alone: a block that moves Z alone is a move, too. Its nearest, rates and time are NaN, but for x_feed, which
+    is 0 at feed.
+    """
     runs = Dynamics(trace, tool_center) if path == TOOL else programmed_moves(trace)
     table = runs.moves if isinstance(runs, Dynamics) else runs
+    rates = {name: getattr(runs, name) for name in ("c_feed", "x_feed", "c_acceleration", "x_acceleration")}
+    rates |= {"nearest": table.nearest, "time": runs.move_time if isinstance(runs, Dynamics) else runs.time}
+    if has_z_alone:
+        table, number = with_z_alone(trace, table)
+        rates = {name: np.append(values, np.nan)[number] for name, values in rates.items()}
+        rates["x_feed"] = np.where((number < 0) & trace.path.moves_at_feed[table.row], 0.0, rates["x_feed"])
     return ExecutedMoves(
         *table.shape,
         row=table.row,
@@ -62,10 +74,5 @@ def executed_moves(trace: Trace, tool_center: ToolCenter, path: str) -> Executed
         feed=table.feed,
         x_axis=np.abs(np.stack((table.start, table.end), axis=1)),
         c_axis=np.stack(table.c_angles, axis=1),
-        nearest=table.nearest,
-        c_feed=runs.c_feed,
-        x_feed=runs.x_feed,
-        c_acceleration=runs.c_acceleration,
-        x_acceleration=runs.x_acceleration,
-        time=runs.move_time if isinstance(runs, Dynamics) else runs.time,
+        **rates,
     )

@@ -15,6 +15,11 @@ from polarcheck.foundation.states import Motion
 from polarcheck.geometry.cutter_compensation.offset_path import Phase
 
 
+def with_z_alone(trace: Trace, moves: Moves) -> tuple[Moves, Rows]:
+    """Insert the blocks of polar sections that move Z alone. Return the moves, and the number of each, -1 for those."""
+    return with_standing(trace, moves, (trace.mode.section >= 0) & trace.path.moves_z & ~trace.path.travels)
+
+
 def with_standing(trace: Trace, moves: Moves, standing: Mask) -> tuple[Moves, Rows]:
     """
     Insert rows in which the tool stands still on the plane, as of Z alone. Return the moves, and the number of each.

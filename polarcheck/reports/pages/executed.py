@@ -27,7 +27,8 @@ class Move(msgspec.Struct, frozen=True):
     section: the number of the section, from 0 in each channel.
     kind: "line", "cw" or "ccw".
     start, end, center: plane points [x, c], x as a radius [mm].
-    z: Z before and after [mm]. A block that moves Z alone is no move; the next move begins at the Z where it ends.
+    z: Z before and after [mm]. A block that moves Z alone is a move in golden traces only; the next move begins at
+        the Z where it ends.
     path: the requested path, "tool" or "programmed". A move of the tool path is "programmed" if it runs in offset mode,
         start-up and offset cancel included, and R or the position is unknown. Without G41 and G42 both paths coincide.
     radius: R of the offset in force, used or not [mm].
@@ -73,9 +74,13 @@ def _point(value: complex) -> list[float | None]:
     return [rounded(value.real), rounded(value.imag)]
 
 
-def moves(trace: Trace, tool_center: ToolCenter, path: str) -> Iterator[Move]:
-    """Yield the moves of the tool center path ("tool") or of the programmed path ("programmed"), in order."""
-    table = executed_moves(trace, tool_center, path)
+def moves(trace: Trace, tool_center: ToolCenter, path: str, *, has_z_alone: bool = False) -> Iterator[Move]:
+    """
+    Yield the moves of the tool center path ("tool") or of the programmed path ("programmed"), in order.
+
+    has_z_alone: with the blocks that move Z alone, as golden traces have them.
+    """
+    table = executed_moves(trace, tool_center, path, has_z_alone=has_z_alone)
     for index in range(len(table)):
         center = table.center[index]
         yield Move(

@@ -102,7 +102,7 @@ def _executed(report: FileReport, path: str, settings: Settings, data: bytes, pa
         for _, tables in check.read(data, settings.machine, job, files.display_path(path), settings.encoding):
             trace, tool_center = tables["trace"], tables["tool_center"]
             for name in paths:
-                moves[name] += executed.moves(trace, tool_center, name)
+                moves[name] += executed.moves(trace, tool_center, name, has_z_alone=True)
             orders += orders_of(trace)
             unknown.append(executed.without_radius(trace, tool_center))
             sense = tool_center.moves.c_axis.sense

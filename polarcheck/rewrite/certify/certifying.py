@@ -231,8 +231,9 @@ def _golden(loaded: Loaded, case: Case, of_case: CaseRun) -> _Compared:
 
 
 def path_of_run(of_case: CaseRun, name: str) -> ToolPath:
-    """Return the path of a program by its name, tool or programmed."""
-    return tool_path(of_case.moves[name], of_case.sense)
+    """Return the path of a program by its name, tool or programmed; controls lift Z in the mode or behind it."""
+    path = tool_path(of_case.moves[name], of_case.sense)
+    return path[~path.is_z_alone]
 
 
 def _compared_with_reference(loaded: Loaded, case: Case, case_runs: Mapping[str, CaseRun]) -> _Compared:

@@ -33,7 +33,8 @@ from polarcheck.rules.quantity import rounded
 _LARGEST = 100_000_000
 #: How a line begins that holds an order.
 _ORDER = b'{"order":'
-#: The first line: the version of the format. Version 1 had neither this line nor the moves outside of sections.
+#: The first line: the version of the format. Version 1 had neither this line nor the moves outside of sections, nor
+#: those of Z alone.
 _HEAD = '{"golden":2}\n'
 _MOTIONS = {Motion.RAPID: "rapid", Motion.LINE: "line", Motion.CW: "cw", Motion.CCW: "ccw"}
 _Pair = tuple[float | None, float | None]
@@ -51,6 +52,7 @@ class GoldenMove(msgspec.Struct, frozen=True):
     path: str
     feed: float | None
     c_axis: _Pair
+    x_feed: float | None = 0.0
     channel: str = ""
 
 

@@ -58,6 +58,8 @@ def with_golden(
             return 0.0, f"it is turned by {apart:.3f} deg against {title}"
         return 0.0, ""
 
+    if golden_trace.is_old:
+        ours = ours[~ours.is_z_alone]
     comparison = _compared(ours, golden, tolerance, title, turned_by)
     if not comparison.reasons and comparison.deviation is not None:
         for number in range(len(ours.turned)):
@@ -65,7 +67,7 @@ def with_golden(
             change = _feed_change(mine, theirs, tolerance)
             if change is not None:
                 line, now, before = change
-                comparison.reasons.append(f"line {line}: F is {_feed(now)}, in {title} {_feed(before)}")
+                comparison.reasons.append(f"line {line}: F is {now}, in {title} {before}")
     if golden_trace.is_old:
         comparison.reasons.append(f"{title} is of an earlier version, without what stands outside: certify --update")
     elif comparison.deviation is not None or not comparison.reasons:
@@ -210,11 +212,12 @@ def _wrapped(angle: float) -> float:
     return (angle + 180) % 360 - 180
 
 
-def _feed(value: float) -> str:
-    return "not known" if np.isnan(value) else f"{value:g} mm/min"
+def _feed(path: ToolPath, move: int) -> str:
+    feed = float(path.feed[move])
+    return "rapid traverse" if path.rapid[move] else "not known" if np.isnan(feed) else f"{feed:g} mm/min"
 
 
-def _feed_change(mine: ToolPath, theirs: ToolPath, tolerance: float) -> tuple[int, float, float] | None:
+def _feed_change(mine: ToolPath, theirs: ToolPath, tolerance: float) -> tuple[int, str, str] | None:
     """
     Return the line of the first move with another F than the golden trace has there, and both F; None without any.
 
@@ -222,8 +225,10 @@ def _feed_change(mine: ToolPath, theirs: ToolPath, tolerance: float) -> tuple[in
     """
     ours, golden, length = common_pieces(mine.space(), theirs.space())
     now, before = mine.feed[ours], theirs.feed[golden]
-    differs = (length > 2 * tolerance) & ~np.isclose(now, before, rtol=_SAME_FEED, atol=0, equal_nan=True)
+    is_rapid, was_rapid = mine.rapid[ours], theirs.rapid[golden]
+    differs = ~np.isclose(now, before, rtol=_SAME_FEED, atol=0, equal_nan=True) & ~(is_rapid & was_rapid)
+    differs = (differs | (is_rapid != was_rapid)) & (length > 2 * tolerance)
     if not differs.any():
         return None
     first = int(np.argmax(differs))
-    return int(mine.line[ours[first]]), float(now[first]), float(before[first])
+    return int(mine.line[ours[first]]), _feed(mine, ours[first]), _feed(theirs, golden[first])

@@ -23,6 +23,7 @@ class ToolPath(PlanePath, frozen=True):
     section: number of the polar section, counted over all channels.
     z_from, z_to: Z before and after [mm].
     feed: F [mm/min].
+    rapid: in rapid traverse.
     is_programmed: the programmed path in the place of the tool's, since R is unknown.
     turned: float64[sections], angle of the plane of each section on the part [deg]; NaN unknown.
     """
@@ -34,6 +35,7 @@ class ToolPath(PlanePath, frozen=True):
     z_from: Floats
     z_to: Floats
     feed: Floats
+    rapid: Mask
     is_programmed: Mask
     turned: Floats
 
@@ -44,6 +46,11 @@ class ToolPath(PlanePath, frozen=True):
     def space(self, turned: float = 0.0) -> SpacePath:
         """Return the moves for a comparison, turned about the center of C by an angle [deg]."""
         return SpacePath(*self.turned_by(np.exp(1j * np.radians(turned))).shape, self.z_from, self.z_to)
+
+    @property
+    def is_z_alone(self) -> Mask:
+        """Moves that stand still on the plane."""
+        return np.asarray((self.start == self.end) & ~self.is_arc)
 
     @property
     def farthest(self) -> float:
@@ -75,6 +82,7 @@ def tool_path(moves: Sequence[Move] | Sequence[GoldenMove], sense: int = 1) -> T
         z_from=_numbers([move.z[0] for move in moves]),
         z_to=_numbers([move.z[1] for move in moves]),
         feed=_numbers([move.feed for move in moves]),
+        rapid=np.array([move.x_feed is None and move.feed is not None for move in moves], bool),
         is_programmed=np.array([move.path == "programmed" for move in moves], bool),
         turned=turned,
     )

@@ -9,7 +9,7 @@ import numpy as np
 
 from polarcheck.columns.filling import before, happened
 from polarcheck.columns.path.moves import Moves, programmed_moves, z_along
-from polarcheck.columns.path.standing_moves import with_standing
+from polarcheck.columns.path.standing_moves import with_z_alone
 from polarcheck.columns.path.tool_center import ToolCenter
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, States
@@ -70,8 +70,8 @@ def of_sections(
     """
     if not len(trace.mode.sections):
         return []
-    of_tool = _with_z_alone(trace, tool_center.moves)
-    plain = _with_z_alone(trace, programmed_moves(trace))
+    of_tool, _ = with_z_alone(trace, tool_center.moves)
+    plain, _ = with_z_alone(trace, programmed_moves(trace))
     steps_of = _by_section(trace, steps)
     result = []
     for number in range(len(trace.mode.sections)):
@@ -125,12 +125,6 @@ def _stretch(
         steps=steps,
         needs=needs,
     )
-
-
-def _with_z_alone(trace: Trace, moves: Moves) -> Moves:
-    """Return the moves with the blocks that move only Z between them."""
-    alone = (trace.mode.section >= 0) & trace.path.moves_z & ~trace.path.travels
-    return with_standing(trace, moves, alone)[0]
 
 
 def _turned(trace: Trace, moves: Moves, section: int) -> tuple[SpacePath, bool]:

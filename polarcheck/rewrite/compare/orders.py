@@ -77,7 +77,7 @@ def steps(trace: Trace, *, is_same_machine: bool, with_sides: bool = True) -> li
 
     is_same_machine: both revisions are for the same machine. Otherwise only M codes count that mean the same on every
     lathe: which others a contour needs depends on the lathe.
-    with_sides: G40 to G42 and D count, too; False where the path of the tool center shows them.
+    with_sides: G40 to G42, D and G12.1 in the mode count, too; False where the path of the tool center shows them.
     """
     reader = _Reader(trace, is_same_machine, with_sides)
     return list(filter(None, map(reader.step, _rows(trace, is_same_machine).tolist())))
@@ -110,10 +110,11 @@ def _words_of_moves(trace: Trace) -> set[str]:
 
 
 def _sets_state(trace: Trace) -> Mask:
-    """Return a mask of the G words whose state is compared elsewhere."""
+    """Return a mask of the G words whose state is compared elsewhere; G12.1 in the mode sets none."""
     words = [word for key in _OF_STATES for word in trace.machine.codes(key)]
     words += [*trace.machine.polar.on, *trace.machine.polar.off]
-    return code_set([word for word in words if word.startswith("G") and " " not in word])[trace.blocks.g_codes]
+    sets = code_set([word for word in words if word.startswith("G") and " " not in word])[trace.blocks.g_codes]
+    return np.asarray(sets & ~trace.mode.enters_again[trace.run.row[trace.blocks.g_words]])
 
 
 def _turns_side(trace: Trace) -> Mask:
@@ -149,7 +150,8 @@ class _Reader:
         self._special = special_rows(trace)
         self._turns_side = _turns_side(trace) & with_sides
         self._is_left_out = trace.run.words.is_unreadable | _of_calls(trace)
-        self._is_left_out[trace.blocks.g_words[_sets_state(trace)]] = True
+        is_seen = _sets_state(trace) | (trace.mode.enters_again[trace.run.row[trace.blocks.g_words]] & (not with_sides))
+        self._is_left_out[trace.blocks.g_words[is_seen]] = True
         self._in_force: dict[str, float] = {}
 
     def step(self, row: int) -> Step | None:

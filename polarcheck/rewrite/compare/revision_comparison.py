@@ -51,11 +51,14 @@ def has_same_words(old: Trace, new: Trace) -> bool:
     """
     Return True if the programs have the same words in the same blocks, but for N and comments.
 
-    X10 is not X10., since controls read them differently. Comments count where R is taken from them. Blocks with macro
-    statements count by their characters. A word that the control cannot read is like no other.
+    X10 is not X10., since controls read them differently, nor X1O. or X10. beside a stray character. Comments count
+    where R is taken from them. Blocks with macro statements count by their characters. A word that the control cannot
+    read is like no other.
     """
     first, second = old.text, new.text
     if first.words.is_unreadable.any() or second.words.is_unreadable.any():
+        return False
+    if _spans(first, first.strays) != _spans(second, second.strays) or len(first.letters) != len(second.letters):
         return False
     if old.job.radius_from_comments and _spans(first, first.comments) != _spans(second, second.comments):
         return False
@@ -68,7 +71,7 @@ def has_same_words(old: Trace, new: Trace) -> bool:
 
 def _columns(text: Text) -> Iterator[NDArray[np.generic]]:
     words = text.words[text.words.address != ord("N")]
-    yield from (words.address, np.nan_to_num(words.value, nan=np.inf), words.has_point)
+    yield from (words.address, np.nan_to_num(words.value, nan=np.inf), words.has_point, words.fault)
     # Where blocks begin.
     yield np.diff(words.block, prepend=-1) != 0
 
@@ -210,6 +213,11 @@ class _Runs:
             if unreadable:
                 count = "a word" if unreadable == 1 else f"{unreadable} words"
                 yield NotCompared(f"{name}: {count} that the control cannot read: polarcheck check names them")
+            written = tables["written"]
+            if any(count.any() for count in (written.stray_count, written.wrong_dash_count, written.letter_count)):
+                reason = f"{name}: characters that the control cannot read: polarcheck check names them"
+                yield NotCompared(reason, matters=not self._terms.is_kept)
+        yield from self._other_feed_mode()
         yield from self._other_unknown_values()
         if self._is_same_machine:
             return
@@ -224,6 +232,16 @@ class _Runs:
             where = f"line {first.old_line} (old)" if first.old_line else f"line {first.new_line} (new)"
             reason = f"where codes as {first.old or first.new} of {where} put the coordinates on another lathe"
             yield NotCompared(f"{reason} is not compared", matters=not self._terms.is_rewritten)
+
+    def _other_feed_mode(self) -> Iterator[NotCompared]:
+        """Yield an entry where one program alone leaves it to the lathe what F means."""
+        is_open = [
+            bool((tables["feeds"].mode_is_unknown & trace.path.moves_at_feed).any())
+            for tables, trace in zip(self._tables, self._traces, strict=True)
+        ]
+        if is_open[0] != is_open[1]:
+            reason = f"{'old' if is_open[0] else 'new'}: no code says whether F is per minute or per revolution"
+            yield NotCompared(reason, matters=not self._terms.is_kept)
 
     def _other_unknown_values(self) -> Iterator[NotCompared]:
         """

@@ -23,8 +23,8 @@ def feed_missing_in_polar(mode: PolarMode, path: ProgrammedPath, feeds: Feeds) -
     """
     Cutting move without a feed.
 
-    No F stands above this block, or F0 does. The control stops with an alarm at the first G1, G2 or G3 that moves,
-    be it Z alone. It is reported once in a program, with the lines in which other sections lack it.
+    No F stands above this block, or F0 or a negative one does. The control stops with an alarm at the first G1, G2 or
+    G3 that moves, be it Z alone. It is reported once in a program, with the lines in which other sections lack it.
 
     Source: FANUC alarm 011; Mitsubishi alarm P62.
 
@@ -41,6 +41,14 @@ def feed_missing_in_polar(mode: PolarMode, path: ProgrammedPath, feeds: Feeds) -
         G98 G0 X60. C0
         G12.1
         G1 X40. F0        (expect: feed-missing-in-polar)
+        C10. F200
+        G13.1
+
+    Bad:
+
+        G98 G0 X60. C0
+        G12.1
+        G1 X40. F-200     (expect: feed-missing-in-polar)
         C10. F200
         G13.1
 
