@@ -14,30 +14,37 @@ from setter_programs import drawn
 
 from polarcheck.commands import main
 
-_WORD = re.compile(r"(?<![A-Z#=])([GXYZCUVWHIJKRFT])(-?\d+\.?\d*|-?\.\d+)(?![\d.])")
-_COMMENT = re.compile(r"\([^)]*\)")
-#: These have variables of their own, and other words for them.
-_OTHER_LANGUAGES = ("siemens", "okuma", "hurco")
+_WORD = re.compile(r"(?<![A-Z#=])([GXYZCUVWHIJKRFT])()(-?\d+\.?\d*|-?\.\d+)(?![\d.])")
+_NAMED = re.compile(r"(?<![A-Z=])(CR|[XYZCIJLF])(=?)(-?\d+\.?\d*|-?\.\d+)(?![\d.])")
+_COMMENT = re.compile(r"\([^)]*\)|;.*")
+#: By the beginning of a machine: its words, and a variable of it; None where it has none that a program can name.
+_LANGUAGES = {"siemens-transmit": (_NAMED, "=R{}"), "okuma": (_NAMED, "=VC{}"), "siemens": None, "hurco": None}
 _CHANGED = 3
+_MACHINES = ("", "", "siemens-transmit", "okuma-osp")
 
 
 def programs_of(seed: int) -> tuple[str, list[str], str, list[tuple[str, str]]]:
     """A machine, its cutters, a sound program, and the same with one word of a section as #900 and as #901."""
-    program = drawn(seed)
+    program = drawn(seed, _MACHINES[seed % len(_MACHINES)])
     text, machine, tools = program.text(), program.machine, program.tools()
-    if machine.startswith(_OTHER_LANGUAGES) or report_of(text, machine, *tools).verdict != "pass":
+    language = next((value for name, value in _LANGUAGES.items() if machine.startswith(name)), (_WORD, "#{}"))
+    if language is None or report_of(text, machine, *tools).verdict != "pass":
         return machine, tools, text, []
+    pattern, variable = language
     trace, lines = tables_of(text, machine, *tools)["trace"], text.splitlines()
     places = [
         (line - 1, match)
         for line in sorted({int(line) for line in trace.blocks.line[trace.mode.in_polar]})
-        for match in _WORD.finditer(_COMMENT.sub(lambda comment: " " * len(comment[0]), lines[line - 1]))
+        for match in pattern.finditer(_COMMENT.sub(lambda comment: " " * len(comment[0]), lines[line - 1]))
     ]
     chosen = random.Random(seed).sample(places, min(_CHANGED, len(places)))  # noqa: S311
     changed = []
     for line, match in chosen:
-        head, tail = lines[line][: match.start(2)], lines[line][match.end() :]
-        both = ("\n".join([*lines[:line], f"{head}#{number}{tail}", *lines[line + 1 :]]) for number in (900, 901))
+        head, tail = lines[line][: match.end(1)], lines[line][match.end() :]
+        both = (
+            "\n".join([*lines[:line], f"{head}{variable.format(number)}{tail}", *lines[line + 1 :]])
+            for number in (900, 901)
+        )
         changed.append((next(both) + "\n", next(both) + "\n"))
     return machine, tools, text, changed
 
@@ -55,7 +62,9 @@ def test_a_check_never_passes_and_names_no_other_fault(seed: int) -> None:
 @looped("seed", range(120), one_in=12)
 def test_no_comparison_says_the_same_and_no_rewriter_writes(seed: int, tmp_path: Path) -> None:
     machine, tools, sound, changed = programs_of(seed)
-    options = ["--machine", machine, "--no-config", *(option for tool in tools for option in ("--tool", tool))]
+    of_tools = ["--no-config", *(option for tool in tools for option in ("--tool", tool))]
+    options = ["--machine", machine, *of_tools]
+    target = "fanuc-30i" if machine == "haas-lathe" else "haas-lathe"
     for texts in changed:
         files = [str(tmp_path / f"{number}.nc") for number in range(3)]
         for file, text in zip(files, (*texts, sound), strict=True):
@@ -64,6 +73,14 @@ def test_no_comparison_says_the_same_and_no_rewriter_writes(seed: int, tmp_path:
             result = CliRunner().invoke(main, ["compare", *options, files[0], other])
             assert result.exit_code in (1, 2), texts[0]
             assert "the same" not in result.stdout, texts[0]
-        for command in (["unroll"], ["compensate", "--center"]):
-            result = CliRunner().invoke(main, [*command, *options, files[0]])
-            assert (result.exit_code, result.stdout) == (2, ""), texts[0]
+        for command in (
+            ["unroll", *options],
+            ["compensate", *options],
+            ["compensate", "--center", *options],
+            ["roll", *options],
+            ["convert", "--from", machine, "--to", target, *of_tools],
+        ):
+            result = CliRunner().invoke(main, [*command, files[0]])
+            assert (result.exit_code, result.stdout) == (2, ""), (command, texts[0])
+        result = CliRunner().invoke(main, ["check", "--fix", "--unsafe-fixes", *options, files[0]])
+        assert Path(files[0]).read_text("utf-8") == texts[0], result.output

@@ -59,7 +59,7 @@ def with_golden(
         return 0.0, ""
 
     if golden_trace.is_old:
-        ours = ours[~ours.is_z_alone]
+        ours, golden = (path[~path.is_z_alone] for path in (ours, golden))
     comparison = _compared(ours, golden, tolerance, title, turned_by)
     if not comparison.reasons and comparison.deviation is not None:
         for number in range(len(ours.turned)):
