@@ -39,7 +39,10 @@ class UnknownMoves:
         for words in (m_words, g_words):
             words = words[(self._has_axes & ~is_special)[rows[words]]]
             self.word[rows[words]] = words
-        self.is_skip = self._has_axes & blocks.listed("axis_words_no_move")
+        control = machine.control
+        # X beside G10.9 says what X words count, and moves nothing.
+        switches = (word.partition(" ")[0] for word in (*control.x_radius_words, *control.x_diameter_words))
+        self.is_skip = self._has_axes & blocks.listed("axis_words_no_move") & ~blocks.codes(*switches)
         enters = np.append(np.diff(trace.run.depth) > 0, False)[:count]
         self._is_call = blocks.codes(*machine.macro.call_codes) & ~enters
 
