@@ -14,7 +14,7 @@ from polarcheck.program.machines.job import Job
 from polarcheck.rewrite.convert.around import around
 from polarcheck.rewrite.convert.channel_marks import channel_marks
 from polarcheck.rewrite.convert.converted_sections import sections
-from polarcheck.rewrite.convert.doubtful_values import doubts, note_on_units, said, unaccepted
+from polarcheck.rewrite.convert.doubtful_values import SENSE_OF_Z, doubts, note_on_units, said, unaccepted
 from polarcheck.rewrite.convert.translating import Translation
 from polarcheck.rewrite.writing.new_blocks import (
     NewBlock,
@@ -62,6 +62,10 @@ def converted(original: Original, target: Settings, accepted: Container[str] = (
         raise RefusedError(reasons)
     data, origin = with_edits(original, edits)
     settings = replace(target, job=_job(original, target, translation))
+    if sense := next((doubt.value for doubt in in_doubt if doubt.key == SENSE_OF_Z), ""):
+        # Somebody has said that Z as it stands is right there.
+        control = replace(target.machine.control, z_into_part=sense)
+        settings = replace(settings, machine=replace(target.machine, control=control))
     decided = outside.decided | inside.decided
     # Speeds are compared word by word: S of before stays in force beside P of M133.
     is_other_spindle = bool(decided) or bool(translation.roles.of_live_tool.any())

@@ -1,23 +1,28 @@
-"""The values of two profiles on which numbers of a new program rest, and those of them that are in doubt."""
+"""The values of two profiles on which a new program rests: those in doubt, and the sense of Z where it differs."""
 
 from __future__ import annotations
 
 from collections.abc import Container, Iterator
 
 import msgspec
+import numpy as np
 
 from polarcheck.checking.settings import Settings
+from polarcheck.columns.metal.turning_tools import z_into_part
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.states import Units
 from polarcheck.program.machines.machine import Machine
 from polarcheck.program.machines.own_language import shown
 from polarcheck.rewrite.writing.outcome import Doubt, Refusal
 
+#: Z stays as it is: where it grows into the part on one lathe alone, somebody has to say that this is right.
+SENSE_OF_Z = "control.z_into_part"
 #: Keys on which the numbers of a new program may rest.
 KEYS = (
     "control.number_without_point",
     "control.units",
     "control.x",
+    SENSE_OF_Z,
     "feed.dwell_words",
     "polar.feed_measures",
     "polar.x",
@@ -38,7 +43,7 @@ class Basis(msgspec.Struct):
 def doubts(basis: Basis, trace: Trace, source: Settings, target: Settings) -> Iterator[Doubt]:
     """
     Yield the values in doubt that differ between two lathes and make a number of the new program another one, in the
-    order of lines.
+    order of lines; then the sense of Z where that differs.
 
     trace: of the original, for `source`.
     """
@@ -59,6 +64,11 @@ def doubts(basis: Basis, trace: Trace, source: Settings, target: Settings) -> It
         ]
         if ours != theirs and of:
             yield Doubt(int(trace.blocks.line_in_file[row]), key, _shown(ours), _shown(theirs), of)
+    named = np.flatnonzero(trace.blocks.has("Z", "W"))
+    ours, theirs = z_into_part(trace), target.machine.control.z_into_part or "minus"
+    if len(named) and ours and ours != theirs:
+        line = int(trace.blocks.line_in_file[named[0]])
+        yield Doubt(line, SENSE_OF_Z, ours, theirs, [source.machine.title, target.machine.title])
 
 
 def note_on_units(trace: Trace, source: Settings, target: Settings) -> list[str]:
@@ -87,6 +97,10 @@ def unaccepted(found: list[Doubt], accepted: Container[str]) -> list[Refusal]:
 
 def said(doubt: Doubt) -> str:
     """Return in words which numbers rest on a value in doubt."""
+    if doubt.key == SENSE_OF_Z:
+        ours, theirs = doubt.machines
+        here = f"{doubt.value} Z on {ours} and {doubt.new_value} Z on {theirs}"
+        return f"the way into the part is {here}, and Z stays as it is ({SENSE_OF_Z})"
     values = f" ({doubt.value} becomes {doubt.new_value})" if doubt.value else ""
     return f"numbers change with {doubt.key}{values}, which is in doubt for {' and for '.join(doubt.machines)}"
 
