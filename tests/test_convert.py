@@ -200,6 +200,23 @@ def test_x_counts_as_the_code_before_the_mode_says(before: list[str], behind: li
     assert ("G10.9 X0" in text) == (x == "20.")
 
 
+def test_a_code_of_x_with_a_word_beside_it_moves_nothing() -> None:
+    """Behind G10.9 X0 C stands where it stood, so that an Okuma can be told."""
+    head = "G21 G94 G40\nG0 X60. Z2. C0\nG10.9 X0"
+    program = section("G1 X20. C0 F200", "C10.", "X30.", head=head).replace("M76\nG97 S2500 M70\n", "")
+    assert "G137 C0" in convert(program, "mazak-integrex", "okuma-osp").data.decode()
+
+
+def test_tools_of_a_fagor_are_called_by_t_and_d() -> None:
+    """T0101 would be tool 101 there."""
+    program = "O1\nG21 G98 G40\nT0303\nG0 X60. Z2. C0\nG12.1\nG1 X36. C10. F150\nX60. C0\nG13.1\nT0300\nM30\n"
+    outcome = convert(program, "fanuc-30i", "fagor-8055t", "3:radius=4")
+    assert "T3 D3" in outcome.data.decode()
+    assert "T0" not in outcome.data.decode().replace("DECIDE: T0", "")
+    outcome = convert(program.replace("T0303", "T0305"), "fanuc-30i", "fagor-8055t", "5:radius=4")
+    assert any(decision.text.startswith("T0305") for decision in outcome.decisions)
+
+
 def test_blanks_line_ends_letters_and_comments_stay() -> None:
     program = (
         "%\r\no1 (Fl\u00e4che)\r\ng21g98g40\r\n/g0x60.z2.c0\r\ng12.1\r\ng1x40.c5.f200 (a)\r\ng13.1\r\nm30\r\n%\r\n"
@@ -791,8 +808,8 @@ AND_DWELLS = MILLED_AT_30.replace("G13.1", "G13.1\nG4 P1500")
     ("program", "source", "target", "keys"),
     [
         (MILLED_AT_30, "fanuc-30i", "mitsubishi-m700", ["control.x"]),
-        (MILLED_AT_30.replace("X60. Z2. C30.", "X0 Z2. C0"), "fanuc-30i", "citizen", []),
-        (MILLED_AT_30, "fanuc-30i", "citizen", []),
+        (MILLED_AT_30.replace("X60. Z2. C30.", "X0 Z2. C0"), "fanuc-30i", "citizen", ["control.z_into_part"]),
+        (MILLED_AT_30.replace(" Z2.", ""), "fanuc-30i", "citizen", []),
         (MILLED_AT_30, "fanuc-30i", "siemens-transmit", ["polar.zero_angle"]),
         (MILLED_AT_30.replace("C30.", "C0"), "fanuc-30i", "siemens-transmit", []),
         (OF_HAAS, "haas-lathe", "okuma-osp", ["control.units"]),
@@ -812,7 +829,10 @@ def test_a_value_in_doubt_that_changes_a_number_is_accepted_or_nothing_is_writte
     done = call(*options)
     entry = json.loads(done.stdout)["files"][0]
     named = sorted(
-        re.findall(r"numbers change with ([a-z_.]+)", " ".join(reason["text"] for reason in entry["refusals"]))
+        re.findall(
+            r"(?:numbers change with |Z stays as it is \()([a-z_.]+)",
+            " ".join(reason["text"] for reason in entry["refusals"]),
+        )
     )
     assert (named, done.exit_code == 2, entry["written"]) == (keys, bool(keys), None)
     accepted = call(*options, "--accept", ",".join(keys) or "control.x")

@@ -111,7 +111,8 @@ class CalledTools(Columns, frozen=True):
     @cached_property
     def tool(self) -> Rows:
         """Tool number in force, 0 before the first; one with a name has a number of its own (run.names)."""
-        number = self._t // self._most_plain
+        # Where D calls the offset, T is the tool alone; of an offset by D that of the tool is assumed.
+        number = self._t if self.machine.offsets.called_by == "d-word" else self._t // self._most_plain
         plain = np.where(self._names_radius_offset, number % 10**_TOOL_DIGITS, number)
         return np.where(self.has_edges, self._t, plain)
 

@@ -12,7 +12,7 @@ class Offsets(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     How tool offsets are called, and offsets that a program sets by itself: by data input, whose lists stand in
     [g_codes], and by system variables.
 
-    called_by: last-digits of T; edge: T is the tool, and D its edge; or tool-change: T beside M6 is tool and offset
+    called_by: last-digits of T; edge: T the tool, D its edge; tool-change: T beside M6 is tool and offset; or d-word
     edge_after_tool: edge that a T without D calls: its number, 0 for none, -1 for the number that was in force
     called_in_polar: where a program may call another one in the polar mode: never, or without-compensation
     allowance_word: address of what is added to R while cutter compensation is in force; or none
@@ -31,7 +31,7 @@ class Offsets(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     work_offset_step: how much higher the variable of each following work offset is
     """
 
-    called_by: Literal["last-digits", "edge", "tool-change"]
+    called_by: Literal["last-digits", "edge", "tool-change", "d-word"]
     edge_after_tool: Annotated[int, msgspec.Meta(ge=-1, le=99_999)]
     called_in_polar: Literal["never", "without-compensation"]
     allowance_word: AddressOrNone

@@ -82,9 +82,16 @@ class ToolWords:
         key = tools.offset_key(int(tools.offset_number[row]))
         if self.target.offsets.called_by == "edge":
             return self._by_edge(row, tool, offset, radius_offset, key)
+        if self.target.offsets.called_by == "d-word":
+            return self._by_d_word(tool, offset, radius_offset, key)
         if bool(tools.has_edges[row]):
             return self._of_edge(tool, offset, key)
         return self._by_digits(tool, offset, radius_offset, key)
+
+    def _by_d_word(self, tool: int, offset: int, radius_offset: int, key: str) -> ToolCall:
+        if tool and tool == offset == radius_offset and self._claim_key(str(offset), key):
+            return ToolCall((f"T{tool}", f"D{offset}"))
+        return ToolCall(decision=f"T{tool:02d}{offset:02d}: {self.target.title} calls tool and offset by T and D")
 
     def _by_digits(self, tool: int, offset: int, radius_offset: int, key: str) -> ToolCall:
         control = self.target.control

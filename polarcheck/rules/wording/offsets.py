@@ -71,8 +71,8 @@ def to_give(tools: CalledTools, machine: Machine, row: int, key: str) -> str:
 
 
 def example(machine: Machine) -> str:
-    """How an offset is called, for a message: `T0808`, `T8 D1`, or `T08 M6`."""
-    return {"edge": "T8 D1", "tool-change": "T08 M6"}.get(machine.offsets.called_by, "T0808")
+    """How an offset is called, for a message: `T0808`, `T8 D1`, `T8 D8` or `T08 M6`."""
+    return {"edge": "T8 D1", "tool-change": "T08 M6", "d-word": "T8 D8"}.get(machine.offsets.called_by, "T0808")
 
 
 def job_scale(trace: Trace, row: int) -> float:
