@@ -2,7 +2,7 @@
 Programs in the styles of posts and of people, drawn by a seed: 100 of them for lathes of five makers of controls.
 
 A style says how the words look and what stands around them; a lathe says which words there are. What is milled and
-turned is the same kind of work in all of them: turning, contours with and without compensation, pockets, several depths,
+turned is the same kind of work in all of them: turning, contours with and without compensation, pockets, depths,
 sections at several angles of C, holes on the face.
 """
 
@@ -58,18 +58,18 @@ LATHES = (
     Lathe("doosan", engage="M35", release="M34", behind="G18", split=120),
     Lathe("haas-lathe", virtual="Y", diameter=False, before="G17", on="G112", off="G113", after="G18", engage="M154",
           release="M155", start="G97 P{speed} M133", stop="M135", rapids=True, loops=True, split=120),
-    Lathe("siemens-transmit", "S", "Y", False, radius="CR=", before="DIAMOF", on="TRANSMIT", behind="G17", off="TRAFOOF",
-          after="DIAMON", reference="", start="S3={speed} M3=3", stop="M3=5", spin="S{speed} M3", units=("G710", "G700"),
-          rapids=True, turn_feed="G95", minute_feed="G94", home="", calls=False, loops=False, comment="; {}",
-          tool="T{0} D1", drilling=""),
+    Lathe("siemens-transmit", "S", "Y", False, radius="CR=", before="DIAMOF", on="TRANSMIT", behind="G17",
+          off="TRAFOOF", after="DIAMON", reference="", start="S3={speed} M3=3", stop="M3=5", spin="S{speed} M3",
+          units=("G710", "G700"), rapids=True, turn_feed="G95", minute_feed="G94", home="", calls=False, loops=False,
+          comment="; {}", tool="T{0} D1", drilling=""),
     Lathe("okuma-osp", "B", "Y", False, "G101", ("G102", "G103"), "L", False, "", "G137 C0", "G17", "G136", "", "M110",
           "M109", "", "G97 SB={speed} M13", "M12", "G97 S{speed} M3", ("", ""), False, "G95", "G94", "", False, False,
           split=90, tool="T{0:02d}{0:02d}{0:02d}", drilling=""),
     Lathe("mazak-quick-turn", before="G17 XC", engage="M200", release="M202", reference="", start="G97 S{speed} M203",
           stop="M205", split=120),
     Lathe("mazak-integrex", "B", "C", False, before="G10.9 X0\nG17 XC", after="G10.9 X1", engage="M200", release="M202",
-          reference="", start="G97 S{speed} M3", stop="M5", spin="G97 S{speed} M203", turn_feed="G95", minute_feed="G94",
-          home="G28 X0 Z0", tool="T{0:02d}.01 M6"),
+          reference="", start="G97 S{speed} M3", stop="M5", spin="G97 S{speed} M203", turn_feed="G95",
+          minute_feed="G94", home="G28 X0 Z0", tool="T{0:02d}.01 M6"),
 )  # fmt: skip
 BY_MACHINE = {lathe.machine: lathe for lathe in LATHES}
 
@@ -101,7 +101,7 @@ def drawn(seed: int) -> Drawn:
     """Return the program of a seed."""
     lathe = LATHES[seed % len(LATHES)]
     style = STYLES[(seed // len(LATHES) + seed) % len(STYLES)]
-    return _Writer(lathe, style, random.Random(seed)).program(f"{style} {seed}")
+    return _Writer(lathe, style, random.Random(seed)).program(f"{style} {seed}")  # noqa: S311
 
 
 class _Writer:
@@ -245,7 +245,7 @@ class _Writer:
         lathe = self.lathe
         units = lathe.units[self.inch]
         takes_percent = lathe.system != "S" and lathe.machine != "okuma-osp"
-        if takes_percent and self.style != "by hand" or self.random.random() < 0.3 and takes_percent:
+        if (takes_percent and self.style != "by hand") or (self.random.random() < 0.3 and takes_percent):
             self.lines.append("%")
         comment = lathe.comment.format
         if lathe.system == "S":
@@ -307,7 +307,7 @@ class _Writer:
         self.go("G0", radius)
         self.go("G1", None, -12.0, None, self.feed(0.25, per_turn=True))
         if self.style in ("gibbscam", "esprit"):
-            self.block("G3" if lathe.machine != "okuma-osp" else "G3", f"X{self.value(2 * radius + 4)}",
+            self.block("G3", f"X{self.value(2 * radius + 4)}",
                        f"Z{self.value(-14.0)}", f"{lathe.radius}{self.value(2.0)}")  # fmt: skip
             self.motion = "G3"
         self.go("G1", radius + 3)

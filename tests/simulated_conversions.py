@@ -1,4 +1,4 @@
-"""What comes of converting a program for another control, by the simulated lathe: equal, to decide, refused, or wrong."""
+"""What comes of converting a program, by the simulated lathe: equal, to decide, refused, or wrong."""
 
 from __future__ import annotations
 

@@ -31,12 +31,13 @@ class Control:
     """
     What the words of a control mean.
 
-    system: of its G codes: A, B, C or S, Siemens. on, off: of the mode. virtual: address of the virtual axis. x, x_in_mode:
-    X words count twice the radius (2) or once (1), in the mode as before it (0). lies: the plane lies where C stands at the switch ("switch"), where C0 is ("c0"),
-    or where the word C beside the switch points ("word"). sense: of C against the angle of the plane. increments: a length
-    without a point counts 0.001 mm. in_space: F is along the way with Z. codes: G codes with other numbers. orders: M code
-    -> state and value; also: what else it does. live_speed: the address of its speed. dwells: address -> seconds, or None: a length.
-    comments: what begins and ends one. words: of its own -> what they are here.
+    system: of its G codes: A, B, C or S, Siemens. on, off: of the mode. virtual: address of the virtual axis.
+    x, x_in_mode: X words count twice the radius (2) or once (1), in the mode as before it (0). lies: the plane lies
+    where C stands at the switch ("switch"), where C0 is ("c0"), or where the word C beside the switch points ("word").
+    sense: of C against the angle of the plane. increments: a length without a point counts 0.001 mm. in_space: F is
+    along the way with Z. codes: G codes with other numbers. orders: M code -> state and value; also: what else it does.
+    live_speed: the address of its speed. dwells: address -> seconds, or None: a length. comments: what begins and ends
+    one. words: of its own -> what they are here.
     """
 
     system: str = "A"
@@ -74,7 +75,8 @@ def _orders(engage: str = "", release: str = "", live: str = "", stop: str = "",
 
 _FANUC = Control(orders=_orders(), increments=True)
 _MAZAK = Control("B", ("G12.1",), ("G13.1",), orders=_orders("M200", "M202", clamp="M210", unclamp="M212"), words=(
-    (r"G17\s*(XC|UH|X\s*C)", "G17"), (r"G10\.9\s*X0", "DIAMOF"), (r"G10\.9\s*X1", "DIAMON")), increments=True, x_in_mode=0)  # fmt: skip
+    (r"G17\s*(XC|UH|X\s*C)", "G17"), (r"G10\.9\s*X0", "DIAMOF"), (r"G10\.9\s*X1", "DIAMON")),
+    increments=True, x_in_mode=0)  # fmt: skip
 _INTEGREX = {**_orders("M200", "M202", "M3 M4", "M5", clamp="M210", unclamp="M212"), "M203": ("main", "cw"),
              "M204": ("main", "ccw"), "M205": ("main", "off")}  # fmt: skip
 CONTROLS = {
@@ -89,7 +91,7 @@ CONTROLS = {
     "colchester": Control(orders=_orders("M109", "M110", clamp="M89", unclamp="M90"), increments=True),
     "doosan": Control(orders=_orders("M35", "M34", clamp="M89", unclamp="M90"), increments=True),
     "turning-center": Control(
-        orders=_orders("M35", "M34", "M33"), also={code: ("live", "off") for code in ("M35", "M5")}, increments=True,
+        orders=_orders("M35", "M34", "M33"), also=dict.fromkeys(("M35", "M5"), ("live", "off")), increments=True,
         inch=True,
     ),
     "haas-lathe": Control(
@@ -105,8 +107,8 @@ CONTROLS = {
     "siemens-transmit": Control(
         "S", ("TRANSMIT",), ("TRAFOOF",), "Y", x=1, x_in_mode=0, lies="c0", sense=-1, in_space=True, live_speed="S3=",
         radius="CR=", dwells={"F": 1.0}, comments=";.*", orders=_orders(), words=(
-            (r"C\s*=\s*DC\(([^)]*)\)", r"C\1"), (r"SPOS\s*=\s*", "C"), (r"\bM1=", "M"), (r"\bS1=", "S"), (r"\bM17\b", "RTS"),
-            (r"\bT\s*=\s*(\d+)\b", r"T\1")),
+            (r"C\s*=\s*DC\(([^)]*)\)", r"C\1"), (r"SPOS\s*=\s*", "C"), (r"\bM1=", "M"), (r"\bS1=", "S"),
+            (r"\bM17\b", "RTS"), (r"\bT\s*=\s*(\d+)\b", r"T\1")),
     ),
     "mazak-eia": _MAZAK,
     "mazak-quick-turn": Control(
@@ -140,8 +142,9 @@ _OF_ALL = {
 _OF_ALL |= {f"G{number}": "origin" for number in range(54, 60)} | {f"G{number}": "cycle" for number in range(70, 77)}
 _OF_ALL |= {f"G{number}": f"motion {number}" for number in range(81, 90)}
 _OF_SYSTEM = {
-    "A": {"G20": "unit inch", "G21": "unit mm", "G98": "feed minute", "G99": "feed turn", "G50": "set", "G90": "motion 90",
-          "G92": "motion 92", "G94": "motion 94", "G32": "motion 32", "G390": "absolute", "G391": "steps"},
+    "A": {"G20": "unit inch", "G21": "unit mm", "G98": "feed minute", "G99": "feed turn", "G50": "set",
+          "G90": "motion 90", "G92": "motion 92", "G94": "motion 94", "G32": "motion 32", "G390": "absolute",
+          "G391": "steps"},
     "B": {"G20": "unit inch", "G21": "unit mm", "G94": "feed minute", "G95": "feed turn", "G90": "absolute",
           "G91": "steps", "G92": "set", "G77": "motion 90", "G78": "motion 92", "G79": "motion 94", "G33": "motion 32"},
     "C": {"G70": "unit inch", "G71": "unit mm", "G94": "feed minute", "G95": "feed turn", "G90": "absolute",
@@ -160,8 +163,8 @@ class Step:
     What the lathe does.
 
     what: rapid, line, arc, tool, dwell, reference, or the code of a cycle. line: in the program, from 1.
-    values: name -> value and the line that has set it. In the mode a move has its end on the part (`re`, `im`), else x and
-    c; x is a radius [mm], c [deg]; an arc has its center and `sweep` [deg]. feed is along the plane [mm/min, mm].
+    values: name -> value and the line that has set it. In the mode a move has its end on the part (`re`, `im`), else x
+    and c; x is a radius [mm], c [deg]; an arc has its center and `sweep` [deg]. feed is along the plane [mm/min, mm].
     """
 
     what: str
@@ -180,7 +183,7 @@ class _Lathe:
         self.control = control
         self.codes = {**_OF_ALL, **_OF_SYSTEM[control.system]}
         self.lines = [self._plain(line) for line in text.upper().replace("\r", "").split("\n")]
-        self.known: dict[str, tuple[float | str, int]] = {name: ("off", 0) for name in _STATES}
+        self.known: dict[str, tuple[float | str, int]] = dict.fromkeys(_STATES, ("off", 0))
         self.known |= {"side": ("40", 0), "origin": ("G54", 0)}
         self.known |= {"x": (_ABSENT, 0), "z": (_ABSENT, 0), "c": (_ABSENT, 0), "feed": (_ABSENT, 0)}
         self.inch = self.feed_inch = control.inch
@@ -591,7 +594,7 @@ def differences(
         if first and second and _same_kind(first, second):
             names = _different(first, second)
             open_names = [name for name in names if not _is_told(name, first, second, told, told_there)]
-            if not names or not open_names and first.line not in told:
+            if not names or (not open_names and first.line not in told):
                 excused += len(names)
                 i, j = i + 1, j + 1
                 continue
