@@ -17,7 +17,7 @@ from programs import report_of, said, tables_of
 from polarcheck.foundation.states import Motion
 from polarcheck.geometry.made_corners import CornerPairs
 from polarcheck.geometry.plane_path import PlanePath
-from polarcheck.reports.made_parts.part_report import in_one_line
+from polarcheck.reports.made_parts.part_report import in_one_line, made_by
 from polarcheck.rewrite.feeds.feed_edits import with_feeds
 from polarcheck.rewrite.feeds.table import feed_table
 
@@ -294,6 +294,8 @@ def test_a_corner_that_is_not_known_is_not_evaluated(contour: str, reason: str) 
     assert report.verdict != "pass"
     assert not reason or [one.startswith(reason) for one in reasons] == [True]
     assert "corner-word-in-polar" not in {rule for _, rule in said(report)}
+    needs = {shape.needs for shape in made_by(tables_of(HEAD + _PLAIN.format(contour) + TAIL, MACHINE, TOOL))}
+    assert not reason or all(one and one.startswith("corners not simulated: the rounds") for one in needs)
 
 
 @looped(

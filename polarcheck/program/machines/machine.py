@@ -210,6 +210,11 @@ class CircularInterpolation(msgspec.Struct, frozen=True, kw_only=True, forbid_un
     corner_words: list[Address]
     made_corners: dict[CornerAddress, Literal["radius", "modal-radius", "leg", "length"]] = {}
 
+    @property
+    def corners_not_made(self) -> list[str]:
+        """Words of a corner between two moves that the control does not make in the mode."""
+        return [word for word in (",R", ",C") if word not in self.made_corners]
+
 
 class Compensation(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """

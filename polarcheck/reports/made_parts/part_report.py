@@ -156,8 +156,10 @@ def _missing(trace: Trace, section: int) -> str:
 def _sharp_corners(trace: Trace, section: int) -> str:
     """The lines of corners and chamfers that words ask for and that are not simulated."""
     run = trace.run
-    blocks = [one.block for one in run.remarks if one.kind == "not-simulated" and one.values["name"] in _CORNER_WORDS]
-    written = trace.blocks.has(",R", ",C") | (np.isin(run.block, blocks) if blocks else False)
+    blocks = [
+        one.block for one in run.remarks if one.kind == "corner-not-made" or one.values.get("name") in _CORNER_WORDS
+    ]
+    written = trace.blocks.has(*trace.machine.arcs.corners_not_made) | (np.isin(run.block, blocks) if blocks else False)
     lines = trace.blocks.line_in_file[(trace.mode.section == section) & written]
     if not len(lines):
         return ""

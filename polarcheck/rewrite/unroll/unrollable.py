@@ -89,7 +89,7 @@ def _of_rows(tables: Tables) -> Iterator[tuple[int, str]]:
     off_circle[moves.row[(moves.kind != Motion.LINE) & (off_by > trace.machine.arcs.tolerance)]] = True
     unknown_moves = UnknownMoves(trace)
     lost = unknown_moves.lost("X") | unknown_moves.lost(trace.machine.polar.rotary_address)
-    corner_words = [word for word in (",R", ",C", ",A") if word not in trace.machine.arcs.made_corners]
+    corner_words = (*trace.machine.arcs.corners_not_made, ",A")
     checks: list[tuple[Mask, str]] = [
         (infeed | backwards, "the passes of an infeed cycle are not unrolled"),
         (trace.run.unknown & within, "what this block does is not known"),

@@ -49,5 +49,4 @@ def corner_word_in_polar(blocks: ExecutedBlocks, mode: PolarMode, machine: Machi
         G1 X-40.
         G13.1
     """
-    made = machine.arcs.made_corners
-    return mode.in_polar & blocks.has(*(word for word in (",C", ",R", ",A") if word not in made))
+    return mode.in_polar & blocks.has(*machine.arcs.corners_not_made, ",A")
