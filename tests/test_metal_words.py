@@ -50,3 +50,13 @@ def test_corners_that_are_not_simulated_are_not_shown_sharp() -> None:
     expected = "corners not simulated: the rounds and chamfers of lines 11, 12 are left out"
     assert {shape.needs for shape in made_by(tables)} == {expected}
     assert in_one_line(tables) == ""
+
+
+def test_an_engraving_makes_grooves_and_no_islands() -> None:
+    frame = "X4. F200/C5./X10./C2./Z1. F500/X0 C-3./Z-.2 F60/G3 X0 C-7. R2. F200/G3 X0 C-3. R2./G1 Z1. F500/"
+    program = f"{HEAD}X10. C2./Z-.2 F60/{frame}X-8. C2./Z-.2 F60/C6./Z2./G13.1/M30/".replace("/", "\n")
+    engraved = made_by(tables_of(program, "fanuc-30i", "1:radius=.2,nose=0"))
+    assert {(shape.shape, shape.z) for shape in engraved} == {("groove", -0.2)}
+    # Deeper, it is a boss within its groove.
+    milled = made_by(tables_of(program.replace("Z-.2", "Z-2."), "fanuc-30i", "1:radius=.2,nose=0"))
+    assert {shape.shape for shape in milled} > {"groove"}

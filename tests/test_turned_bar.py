@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 from cases import looped
 from programs import report_of, tables_of
+from turned_programs import KINDS, Program, drawn, slipped
 
 HEAD = "G21 G40/T0303/G97 S1500 M3/"
 AWAY = "/G0 X120. Z50./M5"
@@ -155,3 +156,48 @@ def test_a_contour_that_comes_round_ends_inside_the_bar_and_leaves_nothing() -> 
     assert (
         told(f"G21 G98 G40{MILL}G0 X60. Z2. C0/G12.1/{contour.replace('C15.058', 'C4.058')}", 5, diameter=40.775) != []
     )
+
+
+def test_the_page_shows_the_bar_that_each_section_meets() -> None:
+    """Two hexagons, the second on a spigot that is turned between them; the third goes below the spigot."""
+    from test_pictures import drawn_of
+
+    wide, near = HEXAGON.format(x="64.", z="-3."), HEXAGON.format(x="46.", z="-6.")
+    deep = HEXAGON.format(x="64.", z="-15.")
+    up, turning = "/Z2. F1500/G13.1/G0 Z50./M5/T0303/G97 S1500 M3/", SPIGOTS["moves"].removeprefix(FACING)
+    again = "/Z2. F1500/G13.1/G0 Z50./M5" + MILL
+    program = HEAD + FACING + AWAY[1:] + MILL + wide + up + turning + MILL + near + again + deep + END
+    sections = drawn_of(
+        f"O1\n{program.replace('/', chr(10))}\n",
+        "1:radius=6,nose=0",
+        machine="fanuc-30i",
+        job={"stock": {"diameter": 50.0}},
+    ).sections
+    sizes = [max(abs(complex(*point)) for point in section.bar[0]) for section in sections]
+    assert sizes == [pytest.approx(radius, abs=0.05) for radius in (25, 15, 25)]
+
+
+# ---- programs that turn first, drawn at random ----
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_sound_programs_that_turn_first_are_told_nothing(seed: int) -> None:
+    program = drawn(seed)
+    assert report_words(program) == []
+
+
+@pytest.mark.ci
+@looped("seed", range(40, 400))
+def test_more_sound_programs_that_turn_first_are_told_nothing(seed: int) -> None:
+    assert report_words(drawn(seed)) == []
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_slip_against_the_metal_is_told(kind: str) -> None:
+    slips = (slipped(drawn(seed), kind) for seed in range(6000, 6400))
+    assert report_words(next(slip for slip in slips if slip is not None)) != []
+
+
+def report_words(program: Program) -> list[str]:
+    report = report_of(program.text(), "fanuc-30i", *program.tools, job={"stock": program.stock})
+    return [one.rule for one in report.findings if one.severity != "note"]

@@ -338,7 +338,8 @@ class Writer:
             self.write(f"G1 {word('Z', depth)} F300", "depth")
             self.write(f"G41 {word('X', 2 * before.real)} {word('C', before.imag)} F250", "ramp")
             for corner in [*corners, corners[0], corners[0] + along * 0.5]:
-                self.write(f"{word('X', 2 * corner.real)} {word('C', corner.imag)}", "contour")
+                role = "contour" if corner in corners else "overlap"
+                self.write(f"{word('X', 2 * corner.real)} {word('C', corner.imag)}", role)
             out = corners[0] + along * 0.5 + 1j * along * (self.spigot / 2 + radius)
             self.write(f"G40 {word('X', 2 * out.real)} {word('C', out.imag)} F1500", "cancel")
             if depth != depths[-1]:
@@ -467,8 +468,10 @@ def _has_two_tools(program: Program) -> bool:
     return len(program.radii) == 2
 
 
-def _has_one_tool(program: Program) -> bool:
-    return len(program.radii) == 1
+def _shows_corner(program: Program) -> bool:
+    """One tool cuts six sides or more: of a square any corner may be meant, and what a roughing leaves is finished."""
+    passes = sum(line.role == "depth" for line in program.lines)
+    return len(program.radii) == 1 and sum(line.role == "contour" for line in program.lines) >= 7 * passes
 
 
 def _rough_at_c20(program: Program, index: int, draw: random.Random) -> list[str] | None:
@@ -501,17 +504,17 @@ KINDS: dict[str, Kind] = {
     "depth is missing": Kind(("depth",), _without),
     "rapid traverse below the face": Kind(("above",), _text("Z2.", "Z-2."), ("pocket",)),
     "rapid traverse far below the face": Kind(("above",), _text("Z2.", "Z-20."), ("pocket",)),
-    "contour X ten times": Kind(("contour",), _scaled("X", 10), _ONE, _has_one_tool),
-    "contour C ten times": Kind(("contour",), _scaled("C", 10), _ONE, _has_one_tool),
-    "contour X without its sign": Kind(("contour",), _scaled("X", -1), _ONE, _has_one_tool),
-    "contour C without its sign": Kind(("contour",), _scaled("C", -1), _ONE, _has_one_tool),
-    "contour X as a radius": Kind(("contour",), _scaled("X", 0.5), _ONE, _has_one_tool),
-    "contour X doubled": Kind(("contour",), _scaled("X", 2), _ONE, _has_one_tool),
-    "contour C doubled": Kind(("contour",), _scaled("C", 2), _ONE, _has_one_tool),
-    "contour C halved": Kind(("contour",), _scaled("C", 0.5), _ONE, _has_one_tool),
-    "digits of X swapped": Kind(("contour",), _swapped("X"), _ONE, _has_one_tool),
-    "digits of C swapped": Kind(("contour",), _swapped("C"), _ONE, _has_one_tool),
-    "corner is missing": Kind(("contour",), _without, _ONE, _has_one_tool),
+    "contour X ten times": Kind(("contour",), _scaled("X", 10), _ONE, _shows_corner),
+    "contour C ten times": Kind(("contour",), _scaled("C", 10), _ONE, _shows_corner),
+    "contour X without its sign": Kind(("contour",), _scaled("X", -1), _ONE, _shows_corner),
+    "contour C without its sign": Kind(("contour",), _scaled("C", -1), _ONE, _shows_corner),
+    "contour X as a radius": Kind(("contour",), _scaled("X", 0.5), _ONE, _shows_corner),
+    "contour X doubled": Kind(("contour",), _scaled("X", 2), _ONE, _shows_corner),
+    "contour C doubled": Kind(("contour",), _scaled("C", 2), _ONE, _shows_corner),
+    "contour C halved": Kind(("contour",), _scaled("C", 0.5), _ONE, _shows_corner),
+    "digits of X swapped": Kind(("contour",), _swapped("X"), _ONE, _shows_corner),
+    "digits of C swapped": Kind(("contour",), _swapped("C"), _ONE, _shows_corner),
+    "corner is missing": Kind(("contour",), _without, _ONE, _shows_corner),
     "G42 for G41": Kind(("ramp",), _text("G41", "G42"), _WITH_G41),
     "G41 is missing": Kind(("ramp",), _text("G41 ", ""), _WITH_G41),
     "G40 is missing": Kind(("cancel",), _text("G40 ", ""), _WITH_G41),

@@ -14,6 +14,7 @@ from polarcheck.checking.not_followed import (
     contours_outside,
     depths_not_known,
     extrudes,
+    face_not_known,
     names_not_followed,
     names_not_known,
     not_simulated,
@@ -171,7 +172,7 @@ def unexecuted(tables: Tables) -> Iterator[NotEvaluated]:
     ):
         if count:
             yield NotEvaluated(rule="all", reason=reason, blocks=count)
-    for reason, count in depths_not_known(trace):
+    for reason, count in (*depths_not_known(trace), *face_not_known(trace, tables["bar"])):
         yield NotEvaluated(rule="all", reason=reason, blocks=count, matters=False)
 
 

@@ -5,11 +5,15 @@ from __future__ import annotations
 import itertools
 from collections.abc import Iterator
 
+import numpy as np
+
+from polarcheck.columns.metal.bar import Bar
 from polarcheck.columns.metal.turning_tools import z_into_part
 from polarcheck.columns.modes.other_mode import OtherMode
 from polarcheck.columns.path.infeed import Infeed
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Rows
+from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.program.machines.axis_table import NOT_NAMED
 from polarcheck.program.machines.machine import Machine
 from polarcheck.rules.remedies import place
@@ -116,6 +120,19 @@ def depths_not_known(trace: Trace) -> Iterator[tuple[str, int]]:
         yield (
             f"control.z_into_part is {trace.machine.control.z_into_part}, and turning cuts the other way along Z: "
             "what is above and below the face is not known",
+            len(trace.mode.sections),
+        )
+
+
+def face_not_known(trace: Trace, bar: Bar) -> Iterator[tuple[str, int]]:
+    """The sections of a known bar whose face is not known, and of which none cuts below Z0."""
+    if not len(trace.mode.sections) or bar.known.source == "none" or not np.isnan(bar.known.face):
+        return
+    z = bar.trace.path.z[trace.mode.in_polar & trace.path.cuts]
+    if np.isfinite(z).any() and np.nanmin(z) >= -ROUNDING:
+        yield (
+            "the face of the bar is not known, and no section cuts below Z0: where cutters go into the bar was not "
+            "looked at; give [stock] face",
             len(trace.mode.sections),
         )
 

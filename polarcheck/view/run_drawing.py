@@ -24,7 +24,7 @@ from polarcheck.view.finding_views import Face, Spot, Spots, Wanted, with_follow
 from polarcheck.view.picture_data import Drawn, FindingLocation, Key, Mark, PartPicture, SectionPicture, key_of
 
 if TYPE_CHECKING:
-    from polarcheck.columns.metal.bar import Known
+    from polarcheck.columns.metal.bar import Bar
     from polarcheck.parts.made_depths import Depth
 from collections.abc import Iterable
 
@@ -213,7 +213,7 @@ def _sections(run: int, tables: Tables, spots: Sequence[Spot], requested: Wanted
             lambda: list(left_marks(trace, tables["coverage"], levels)), "what is left standing", remarks
         ),
     ]
-    bar, face = _bar(tables), Face(moves)
+    face = Face(moves)
     depths: list[Depth] = []
     with contextlib.suppress(TooHardError):  # `makes` says so
         depths = depths_of(tables)
@@ -229,7 +229,9 @@ def _sections(run: int, tables: Tables, spots: Sequence[Spot], requested: Wanted
         shapes = [shape for shape in makes if _is_of(shape, section)]
         pictures = list(parts(trace, section_levels, tolerance))
         return pictures + _unless_too_hard(
-            lambda: list(swept_parts(trace, depths, number, bar, tolerance, shapes)), "what the cutter leaves", remarks
+            lambda: list(swept_parts(trace, depths, number, _bar(tables, number), tolerance, shapes)),
+            "what the cutter leaves",
+            remarks,
         )
 
     return [
@@ -248,7 +250,7 @@ def _sections(run: int, tables: Tables, spots: Sequence[Spot], requested: Wanted
                     nominal=partial(drawn_parts, tables, number),
                     marks=[mark for of_section, mark in marks if of_section == number],
                     makes=list(dict.fromkeys(_in_words(shape) for shape in makes if _is_of(shape, section))),
-                    bar=bar,
+                    bar=_bar(tables, number),
                     face=float(tables["bar"].face_as_written),
                     window=windows.get(number, math.inf),
                 ),
@@ -259,10 +261,20 @@ def _sections(run: int, tables: Tables, spots: Sequence[Spot], requested: Wanted
     ]
 
 
-def _bar(tables: Tables) -> tuple[float, float]:
-    """Return the diameter of the bar before milling, its largest where there are two, and of its bore [mm]."""
-    stock: Known = tables["bar"].known
-    return stock.smallest if np.isnan(stock.largest) else stock.largest, stock.bore
+def _bar(tables: Tables, number: int) -> tuple[float, float]:
+    """
+    Return the diameter of the bar that a section meets, and of its bore [mm].
+
+    The largest between its deepest cut and the face, as turning has left it before the section; NaN if unknown.
+    """
+    bar: Bar = tables["bar"]
+    mode = bar.trace.mode
+    enter = mode.sections.enter[number : number + 1]
+    z = bar.trace.path.z[mode.section == number]
+    # Where Z is not known it is the largest of all.
+    deepest = np.array([-np.inf if np.isnan(z).all() else np.nanmin(z)])
+    inner, outer = bar.inner(enter, deepest), bar.outer(enter, deepest)
+    return 2 * float(np.where(np.isnan(outer), inner, outer)[0]), float(bar.bore(enter)[0])
 
 
 def _is_of(shape: MadeShape, section: PolarSection) -> bool:

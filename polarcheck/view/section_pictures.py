@@ -81,7 +81,7 @@ class Extras(msgspec.Struct, frozen=True):
     nominal: returns the part of the job, likewise.
     marks: areas that are overcut or left standing.
     makes: the shapes that the section makes, in words.
-    bar: the outside diameter of the bar before milling, and of its bore; NaN if unknown [mm].
+    bar: the outside diameter of the bar that the section meets, and of its bore; NaN if unknown [mm].
     face: Z of the face of the bar; NaN if unknown [mm].
     window: the narrowest window in which a finding of it is shown; inf if none has one [mm].
     """

@@ -184,17 +184,23 @@ class AirCuts(Columns, frozen=True):
         face = self.bar.known.face
         if np.isnan(face):
             return np.zeros(len(self.trace), bool)
-        compensated = self.trace.compensation.compensates
-        return np.asarray(np.where(compensated, self.trace.path.z, self._lowest) > face + _ABOVE)
+        return np.asarray(np.where(self._is_contour, self.trace.path.z, self._lowest) > face + _ABOVE)
+
+    @cached_property
+    def _is_contour(self) -> Mask:
+        """Rows in offset mode, and full circles: others without compensation may lead to the contour."""
+        path = self.trace.path
+        is_circle = ~np.isnan(path.center) & (np.abs(path.end - path.start) <= _SAME)
+        return np.asarray(self.trace.compensation.compensates | is_circle)
 
     @property
     def _others_below(self) -> Mask:
         """
         The cut stands no lower than the entry of its section above Z0, and other cuts or the turning go below Z0.
 
-        Without compensation that counts of all cuts of the section: some may be on the way to it.
+        Without compensation that counts of all cuts of the section but full circles: some may be on the way to it.
         """
-        height = np.where(self.trace.compensation.compensates, self.trace.path.z, self._lowest)
+        height = np.where(self._is_contour, self.trace.path.z, self._lowest)
         stays = (height >= self._entry - ROUNDING) & (height > _CLEAR)
         lowest = np.full(len(self.trace.mode.sections) + 1, np.inf)
         np.minimum.at(lowest, self.trace.mode.section[self.walls], self.trace.path.z[self.walls])

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from polarcheck.columns.contour.overcuts import level_of_rows
+from polarcheck.columns.filling import last_row
 from polarcheck.foundation.arrays import Floats, Mask, Rows
 from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.segments import Curves
@@ -22,6 +23,10 @@ if TYPE_CHECKING:
     from polarcheck.columns.metal.milled import Milled
     from polarcheck.columns.path.moves import Moves
     from polarcheck.columns.trace import Trace
+
+
+#: R of an engraver, at most, and how deep it goes [mm].
+_ENGRAVER, _ENGRAVED = 0.5, 1.0
 
 
 def depths_of_paths(tables: Tables) -> Iterator[Depth]:
@@ -72,6 +77,9 @@ def _depth(trace: Trace, moves: Moves, chosen: Rows, cutter: float) -> Depth:
     ]
     bar = float(trace.lengths.stock_diameter[row])
     shapes, polygon, is_cleared, swept = _shapes_and_areas(Curves.concatenated(parts), cutter, bar)
+    if cutter <= _ENGRAVER and -_ENGRAVED <= z * trace.path.z_sense < 0:
+        # What stands within letters and frames is no shape of a drawing.
+        shapes = [shape for shape in shapes if shape.name == "groove" or shape.is_open] or shapes
     return Depth(sections, z, cutter, shapes, polygon=polygon, is_cleared=is_cleared, swept=swept)
 
 
@@ -85,14 +93,18 @@ def above_the_face(trace: Trace) -> Mask:
     Rows in the air, one for each: where G0 is not allowed, G1 takes the tool to its place.
 
     They are no deeper than the tool came to the section, before the face of the part, at Z0, and their section goes on
-    to Z0 or deeper. Where the whole section lies on one side of Z0 the face is unknown, and there are no such rows.
+    to Z0 or deeper; or a Z word alone has lifted the tool to above Z0. Where the whole section lies on one side of Z0
+    the face is unknown, and there are no such rows.
     """
     inside = np.flatnonzero(trace.mode.section >= 0)
     deepest = np.full(len(trace.mode.sections), np.inf)
     np.fmin.at(deepest, trace.mode.section[inside], trace.path.z[inside])
     above = np.zeros(len(trace), bool)
     section, z = trace.mode.section[inside], trace.path.z[inside]
-    above[inside] = (z > 0) & (z >= trace.path.z[trace.mode.sections.enter[section]]) & (deepest[section] <= 0)
+    moved = last_row(trace.path.moves_z, trace.mode.enters)[inside]
+    is_lifted = (trace.path.z[moved] > trace.path.z_before[moved]) & (trace.path.z_before[moved] < 0) & (moved >= 0)
+    comes_from = trace.path.z[trace.mode.sections.enter[section]]
+    above[inside] = (z > 0) & ((z >= comes_from) | is_lifted) & (deepest[section] <= 0)
     return above
 
 

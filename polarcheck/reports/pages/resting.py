@@ -75,6 +75,8 @@ def _stock(stock: KnownStock, sections: Sequence[PolarSection]) -> str:
         source = "turning" if stock.face_line else "job"
         face = _stock_length(stock.face, inch).partition(" ")[0]
         facts.append(f"face at Z{face} {_known_by(source, stock.face_line, stock.face_end_line)}")
+    elif stock.diameter is not None:
+        facts.append("face not known, taken at Z0 where sections cut below it")
     return ", ".join(facts)
 
 
