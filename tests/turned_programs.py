@@ -468,6 +468,10 @@ def _has_two_tools(program: Program) -> bool:
     return len(program.radii) == 2
 
 
+def _of_roughing(program: Program, index: int, draw: random.Random) -> list[str] | None:
+    return _scaled("X", 0.8, 5.0)(program, index, draw) if program.lines[index].section == 1 else None
+
+
 def _shows_corner(program: Program) -> bool:
     """One tool cuts six sides or more: of a square any corner may be meant, and what a roughing leaves is finished."""
     passes = sum(line.role == "depth" for line in program.lines)
@@ -521,9 +525,9 @@ KINDS: dict[str, Kind] = {
     "block of G40 is missing": Kind(("cancel",), _without, _WITH_G41),
     "roughing at another C": Kind(("index",), _rough_at_c20, _BOSS, _has_two_tools),
     "spigot too short": Kind(("spigot",), _scaled("Z", 0.1), _OPEN, _is_turned_at_once),
-    "spigot too thick": Kind(("spigot",), _moved("X", -14.0), _OPEN, _is_turned_at_once),
+    "roughing too far in": Kind(("contour",), _of_roughing, _BOSS, _has_two_tools),
     "G13.1 is missing": Kind(("off",), _without),
-    "G12.1 is missing": Kind(("on",), _without),
+    "G12.1 is missing": Kind(("on",), _without, ("pocket", *_WITH_G41)),
     "turret turns in the mode": Kind(("contour",), _with("T0808"), _WITH_G41),
     "unit of the program": Kind(("head",), _text("G21", "G20")),
     "lead in rapid traverse": Kind(("lead",), _text("G1 ", "G0 ")),
