@@ -28,7 +28,8 @@ from polarcheck.rules.rule import load_all
 _WORD = r"[A-Z]+=?[-+]?(?:\d+\.?\d*|\.\d+)"
 _VALUES = re.compile(
     rf"(?:(?<!min )\b(?:with|write|or|and) (?P<words>{_WORD}(?: {_WORD})*)(?P<rest>(?: here| in line (?P<line>\d+)"
-    rf"| in a block of its own before this one)?)(?= (?:it|its|all|more|here|in line|and leave)\b|$|,| \()"
+    rf"| not here but in line (?P<moved>\d+)| in a block of its own before this one)?)"
+    rf"(?= (?:it|its|all|more|here|in line|and leave)\b|$|,| \()"
     rf"|[;:] (?P<others>{_WORD}(?: {_WORD})*)(?= would (?:fit|be tangent|lie)))"
 )
 _GROUPS = (
@@ -115,13 +116,15 @@ class Value(NamedTuple):
     """
     Words that a message says to write, in which lines (from 1), in a block of their own or not.
 
-    word: the word in whose place they stand, "" where the message names none.
+    word: the word in whose place they stand, "" where the message names none. out_of: the line that they leave, 0 for
+    none.
     """
 
     words: tuple[str, ...]
     lines: tuple[int, ...]
     is_block: bool
     word: str = ""
+    out_of: int = 0
 
 
 def values_of(finding: Finding) -> list[Value]:
@@ -129,17 +132,22 @@ def values_of(finding: Finding) -> list[Value]:
     found = []
     for match in _VALUES.finditer(finding.message):
         words = tuple((match["words"] or match["others"]).split())
-        line = int(match["line"]) if match["line"] else finding.line
+        line = int(match["line"] or match["moved"] or finding.line)
         word = str(finding.values.get("word", "")) if line == finding.line else ""
         also = re.search(r"likewise in lines? (\d+(?:(?:, | and )\d+)*)", finding.message[match.end() :])
         lines = (line, *(map(int, re.findall(r"\d+", also[1])) if also else ()))
-        found.append(Value(words, lines, "block" in (match["rest"] or ""), word))
+        out_of = finding.line if match["moved"] else 0
+        found.append(Value(words, lines, "block" in (match["rest"] or ""), word, out_of))
     return found
 
 
 def written(program: Program, value: Value) -> tuple[Line, ...]:
     """The program with the words as they are told."""
     lines = program.lines
+    if value.out_of:
+        left = value.out_of - 1
+        text = re.sub(rf"(?<![A-Z]){value.words[0]}(?![\d.]) ?", "", lines[left].text, count=1)
+        lines = (*lines[:left], lines[left]._replace(text=text), *lines[left + 1 :])
     for number in value.lines:
         index = min(number, len(lines)) - 1
         line = lines[index]

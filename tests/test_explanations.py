@@ -170,7 +170,13 @@ def test_a_rule_that_is_not_run_explains_nothing() -> None:
     ("contour", "right", "wrong", "line", "words"),
     [
         # G40 a block late.
-        (ROUNDED, ["G40 X60. F1500", "Z2."], ["X60. F1500", "G40 Z2."], 18, "with G40 in line 17 it would fit"),
+        (
+            ROUNDED,
+            ["G40 X60. F1500", "Z2."],
+            ["X60. F1500", "G40 Z2."],
+            18,
+            "with G40 not here but in line 17 it would fit",
+        ),
         # A block that is run only with block skip off.
         (ROUNDED, ["G3 X34. C10. R3."], ["/G3 X34. C10. R3."], 10, "without the / of line 9 it would fit"),
     ],

@@ -70,7 +70,7 @@ def _around(trace: Trace, word: int) -> Iterator[list[CodeEdit]]:
         if word >= 0 and _are_beside(trace, row, other):
             first, second = sorted((row, other))
             slip = f"it stands a block too {'late' if other < row else 'early'}"
-            how = f"with {code} in line {int(trace.blocks.line[other])}"
+            how = f"with {code} not here but in line {int(trace.blocks.line[other])}"
             moved = [_at_head(trace, other, code), *without(trace.run, row, [word])]
             order = Edit("order", 0, (), "", "it stands before the block that should be before it", 0.0)
             yield [

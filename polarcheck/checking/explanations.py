@@ -57,7 +57,7 @@ class _Explained(NamedTuple):
     An edit that explains findings.
 
     row: of its block. edits: of the text. gone: the symptoms that it removes. left: those that are there with it.
-    other: a second one that is as likely.
+    other: a second one that is as likely. is_named: False where several values of the block do so, and none is named.
     """
 
     likely: Likely
@@ -66,6 +66,7 @@ class _Explained(NamedTuple):
     gone: frozenset[_Symptom]
     left: frozenset[_Symptom]
     other: _Explained | None = None
+    is_named: bool = True
 
 
 def explained(
@@ -161,8 +162,11 @@ class _Search:
             whole = self._by_codes(ramp_edits(self.trace, loop.row[1:], rows), own, others, _RULES_OF_CODE)
         best = whole or partly
         best = [found for found in best if best[0].likely.gain - found.likely.gain <= _AS_LIKELY]
-        if not best or len(best) > _NAMED:
+        if not best:
             return None
+        if len(best) > _NAMED:
+            is_one = bool(whole) and all(found.row == best[0].row for found in best)
+            return best[0]._replace(is_named=False, edits=[], left=self.symptoms) if is_one else None
         return best[0]._replace(other=best[1]) if best[1:] else best[0]
 
     def _by_codes(
@@ -246,6 +250,8 @@ def _under(engine: Engine, findings: Sequence[Finding], explanation: _Explained)
         return list(findings)
     line = int(engine.trace.blocks.line[explanation.row])
     there = [finding for finding in gone if finding.line == line and _may_lead(finding, explanation)]
+    if not explanation.is_named and not there:
+        return list(findings)
     there = [*(finding for finding in findings if _is_of_word(engine, finding, explanation)), *there]
     others = [finding for finding in findings if finding not in (*gone, *there[:1])]
     head = _with_remedy(engine, there[0], explanation) if there else _new(engine, _correction(engine, explanation))
@@ -262,9 +268,10 @@ def _under(engine: Engine, findings: Sequence[Finding], explanation: _Explained)
 def _is_of_word(engine: Engine, finding: Finding, explanation: _Explained) -> bool:
     """A finding about the writing of the one word that the edit replaces: it is the mistake, and no symptom."""
     rule = engine.rules.get(finding.rule)
-    if rule is None or rule.over != "words" or len(explanation.likely.edit.words) != 1:
+    words = explanation.likely.edit.words
+    if rule is None or rule.over != "words" or len(words) != 1 or not explanation.is_named:
         return False
-    start = explanation.edits[0][0]
+    start = int(engine.trace.run.words.start[words[0]])
     column = start - int(engine.trace.text.source.line_starts[finding.line - 1]) + 1
     return finding.line == finding.end_line and finding.column <= column < finding.end_column
 
@@ -284,7 +291,7 @@ def _with_remedy(engine: Engine, finding: Finding, explanation: _Explained) -> F
     """The finding, which also says what the edit is."""
     edit = explanation.likely.edit
     stated = edit.how or edit.text
-    if finding.rule == REPORTS or (stated and stated in finding.message):
+    if finding.rule == REPORTS or not explanation.is_named or (stated and stated in finding.message):
         return finding
     message = f"{finding.message}; {_remedies(engine, explanation)} {explanation.likely.becomes}"
     return msgspec.structs.replace(finding, message=message)
