@@ -19,6 +19,7 @@ _LISTED = 3
     values=("count",),
     worse=("count",),
     over="words",
+    doubts=(("position", "loop"),),
 )
 def word_repeated(written: Written) -> Hits:
     """
