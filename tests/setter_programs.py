@@ -138,6 +138,17 @@ MM_RADII = (2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0)
 INCH_RADII = tuple(25.4 * share / 32 for share in (3, 4, 5, 6, 8, 10))
 
 
+def _without_half_circles(contour: Contour) -> Contour:
+    """The contour for a control that takes less than half a circle in one block."""
+    pieces: list[Piece] = []
+    for start, piece in zip(contour.points(), contour.pieces, strict=False):
+        if piece.center is not None and abs(start + piece.end - 2 * piece.center) < 1e-6:
+            turned = (start - piece.center) * (1j if piece.ccw else -1j)
+            pieces.append(piece._replace(end=piece.center + turned))
+        pieces.append(piece)
+    return contour._replace(pieces=tuple(pieces))
+
+
 def drawn(seed: int, machine: str = "", family: str = "", lead: str = "") -> Program:
     """The program of a seed; lead: "corner", "extension" or "overlap", on contours and layouts that admit it."""
     draw = random.Random(f"{seed} {family}")  # noqa: S311 - programs that can be written again
@@ -153,6 +164,8 @@ def drawn(seed: int, machine: str = "", family: str = "", lead: str = "") -> Pro
     inch = draw.choice(dialect.units) == "inch" if draw.random() < 0.35 or "mm" not in dialect.units else False
     grid = _grid(draw, inch)
     contour = SHAPES[shape](draw, grid)
+    if not dialect.centers:
+        contour = _without_half_circles(contour)
     is_closed_boss = contour.closed and contour.side == "right"
     repeats = draw.random() < 0.25
     style = Style(
