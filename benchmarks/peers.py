@@ -2,7 +2,7 @@
 polarcheck beside other readers of NC programs: time and memory of whole processes, and what each of them finds.
 
     python benchmarks/peers.py --rs274 FILE --python FILE --nctab FILE --ncplot7py FOLDER -o docs/benchmarks.md
-        [--before FILE]
+        [--before FILE] [--note WORDS]
 
 A peer is found by its option, by RS274, PEERS_PYTHON, NCTAB or NCPLOT7PY in the environment, or on the search path; one
 that is not there is left out, which the page says. All are run in turn, round by round, so that they see the same
@@ -18,6 +18,7 @@ import os
 import platform
 import re
 import shutil
+import statistics
 import sys
 import tempfile
 from collections.abc import Sequence
@@ -25,13 +26,15 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import NamedTuple
 
+from contour_costs import CASES, Cost, cost
 from measuring import ROOT, SLOW, SLOW_ROUNDS, Taken, apart, exponent, measured, output, ratio, run, table
 from peer_faults import FAULTS, GOOD, TOOL
 from stages import stages
 from xy_twin import tool_table, twin
 
 #: How polarcheck checks files as a user would, and in one process.
-CHECK_FILES = (sys.executable, "-m", "polarcheck", "check", "--no-config", "--fail-on", "never", "-q")
+_POLARCHECK = (sys.executable, "-m", "polarcheck")
+CHECK_FILES = (*_POLARCHECK, "check", "--no-config", "--fail-on", "never", "-q")
 CHECK = (*CHECK_FILES, "--jobs", "1")
 WITHOUT, WITH = "polarcheck", "polarcheck, with compensation and overcut"
 BEFORE = ", before"
@@ -41,6 +44,11 @@ SIZES = (1_000, 10_000, 50_000, 200_000, 1_000_000, 5_000_000)
 LARGE = 1_000_000
 #: Of the files that are checked by several processes.
 _MANY, _BLOCKS_OF_MANY = 40, 10_000
+#: Of the program that other commands than `check` are given, and letters of a line without anything else.
+_BLOCKS_OF_COMMANDS, _LETTERS = 20_000, 12_000_000
+#: Limits of a contour [s], [GB].
+_LIMITS = 120, 8
+_REGEX = "a bare regex"
 
 REGEX = "import re, sys; re.findall(rb'([A-Z])([-+]?[0-9.]+)', open(sys.argv[1], 'rb').read())"
 INTERPRETER = "import sys, nc_gcode_interpreter as n; n.nc_to_dataframe(open(sys.argv[1]).read())"
@@ -88,7 +96,7 @@ def peers(asked: argparse.Namespace, folder: Path) -> dict[str, Peer]:
     found = {
         WITHOUT: Peer("lathe", CHECK),
         WITH: Peer("lathe", [*CHECK, *cutters(2)], "LinuxCNC rs274, G41/G42"),
-        "a bare regex": Peer("lathe", [sys.executable, "-c", REGEX]),
+        _REGEX: Peer("lathe", [sys.executable, "-c", REGEX]),
     }
     if asked.before:
         older = by_older(asked.before, CHECK)
@@ -153,14 +161,15 @@ def speed(asked: argparse.Namespace, folder: Path) -> str:
     taken = measured({name: [*peer.command, str(paths[peer.kind])] for name, peer in readers.items()}, asked.rounds)
     size = paths["lathe"].stat().st_size
     return table(
-        ["reader", "input", "runs", "CPU s", "clock s", "CPU to rs274", "peak MB", "peak per byte", "exit"],
-        [_row(name, readers[name], one, taken.get(readers[name].rs274), size) for name, one in taken.items()],
+        ["reader", "input", "runs", "CPU s", "clock s", "to rs274", "to a regex", "peak MB", "peak per byte", "exit"],
+        [_row(name, readers[name], taken, size) for name in taken],
     )
 
 
-def _row(name: str, peer: Peer, one: Taken, rs274: Taken | None, size: int) -> list[str]:
-    beside = f"{ratio(one.cpus, rs274.cpus):.2f}" if rs274 else "-"
-    figures = f"{one.cpu:.2f}", f"{one.clock:.2f}", beside, f"{one.peak / 1e6:.0f}", f"{one.peak / size:.0f}"
+def _row(name: str, peer: Peer, taken: dict[str, Taken], size: int) -> list[str]:
+    one = taken[name]
+    beside = [f"{ratio(one.cpus, taken[base].cpus):.2f}" if base in taken else "-" for base in (peer.rs274, _REGEX)]
+    figures = f"{one.cpu:.2f}", f"{one.clock:.2f}", *beside, f"{one.peak / 1e6:.0f}", f"{one.peak / size:.0f}"
     return [name, peer.kind, str(one.runs), *figures, str(one.status)]
 
 
@@ -205,6 +214,66 @@ def many(asked: argparse.Namespace, folder: Path) -> str:
     return table(["processes", "clock s", "to one process", "CPU s"], rows)
 
 
+def commands(asked: argparse.Namespace, folder: Path) -> str:
+    """Other commands beside the check of the same program, and what its page takes."""
+    program = str(generated(folder, min(_BLOCKS_OF_COMMANDS, asked.blocks)))
+    page_of_program, page_of_sample = folder / "page.html", folder / "sample.html"
+    options = ["--no-config", *cutters(2)]
+    taken = measured(
+        {
+            "check": [*CHECK, *cutters(2), program],
+            "part": [*_POLARCHECK, "part", *options, program],
+            "convert --to haas-lathe": [*_POLARCHECK, "convert", *options, "--to", "haas-lathe", program],
+            "plot": [*_POLARCHECK, "plot", *options, program, "-o", str(page_of_program)],
+        },
+        asked.rounds,
+    )
+    rows = [
+        [name, f"{one.cpu:.2f}", f"{ratio(one.cpus, taken['check'].cpus):.2f}", f"{one.peak / 1e6:.0f}"]
+        for name, one in taken.items()
+    ]
+    sample = str(ROOT / "sample_programs" / "hexagon.nc")
+    run([*_POLARCHECK, "plot", "--no-config", sample, "-o", str(page_of_sample)])
+    if not (page_of_program.exists() and page_of_sample.exists()):
+        return table(["command", "CPU s", "to the check", "peak MB"], rows)
+    above = page_of_program.stat().st_size - page_of_sample.stat().st_size
+    told = table(["command", "CPU s", "to the check", "peak MB"], rows)
+    return f"{told}\nThe page of `plot` has {above / 1e6:.2f} MB more than that of a sample program.\n"
+
+
+def long_line(asked: argparse.Namespace, folder: Path) -> str:
+    """A file that is one line of one letter."""
+    letters = min(_LETTERS, 60 * asked.blocks)
+    rows = []
+    for letter in "AX":
+        path = folder / f"{letter}.nc"
+        path.write_text(letter * letters, "ascii")
+        one = measured({"check": [*CHECK, "--max-size", "512MB", str(path)]}, min(asked.rounds, SLOW_ROUNDS))["check"]
+        rows.append([f"{letters:,} times {letter}", f"{one.cpu:.2f}", f"{one.peak / 1e6:.0f}"])
+    return table(["line", "CPU s", "peak MB"], rows)
+
+
+def contours(asked: argparse.Namespace, folder: Path) -> str:
+    """Contours that are hard to judge, with the R of a cutter beside without."""
+    rows = []
+    for name, case in CASES.items():
+        path = folder / f"contour_{name}.nc"
+        path.write_bytes(case.make())
+        runs = [
+            [cost(path, radius, *_LIMITS) for radius in (0.0, case.radius)]
+            for _ in range(1 if asked.quick else min(asked.rounds, SLOW_ROUNDS))
+        ]
+        bare, using = ([one for one in column if isinstance(one, Cost)] for column in zip(*runs, strict=True))
+        if len(bare) < len(runs) or len(using) < len(runs):
+            rows.append([name, "above a limit", "-", "-", "-"])
+            continue
+        times = [[one.time for one in column] for column in (bare, using)]
+        peak = statistics.median(one.peak for one in using)
+        rows.append([name, *(f"{statistics.median(one):.2f}" for one in times)])
+        rows[-1] += [f"{ratio(times[1], times[0]):.2f}", f"{peak / 1e6:.0f}"]
+    return table(["contour", "CPU s", "with R", "ratio", "peak MB"], rows)
+
+
 def growth(asked: argparse.Namespace, folder: Path) -> str:
     """Programs of more and more blocks, and the exponents of time and memory."""
     sizes = [size for size in SIZES if size <= asked.blocks or not asked.quick]
@@ -223,6 +292,9 @@ def growth(asked: argparse.Namespace, folder: Path) -> str:
     time_of = exponent(sizes[last:], [one.cpu for one in taken[last:]])
     peak_of = exponent(sizes[last:], [one.peak for one in taken[last:]])
     grows = f"CPU grows with the power {time_of:.2f} of the blocks, the peak with {peak_of:.2f}"
+    if {LARGE, *sizes[:4]} <= {*sizes}:
+        a_block = {size: one.cpu / size for size, one in zip(sizes, taken, strict=True)}
+        grows += f"; a block of {LARGE:,} takes {a_block[LARGE] / a_block[sizes[3]]:.2f} of one of {sizes[3]:,}"
     return f"{told}\nFrom {sizes[last]:,} blocks on {grows}.\n"
 
 
@@ -230,7 +302,7 @@ def findings(asked: argparse.Namespace, folder: Path) -> str:
     """On how many programs with one fault each reader says what it does not say of the sound one, and names it."""
     (folder / "compensated.tbl").write_text(tool_table(4.0))
     readers = peers(asked, folder)
-    for name in (WITH, WITHOUT + BEFORE, WITH + BEFORE, "a bare regex", "LinuxCNC rs274"):
+    for name in (WITH, WITHOUT + BEFORE, WITH + BEFORE, _REGEX, "LinuxCNC rs274"):
         readers.pop(name, None)
     readers["polarcheck"] = Peer("lathe", [*CHECK[:4], "--no-config", "--tool", TOOL])
     rows = []
@@ -300,9 +372,17 @@ The second checks programs without a slip, the third those with two.
 """
 
 
+def _processor() -> str:
+    """The name of the processor, as Linux has it."""
+    with contextlib.suppress(OSError):
+        if match := re.search(r"model name\s*:\s*(.+)", Path("/proc/cpuinfo").read_text()):
+            return match[1]
+    return platform.processor() or platform.machine()
+
+
 def page(asked: argparse.Namespace, parts: dict[str, str]) -> str:
     """The page of Markdown."""
-    machine = f"{os.cpu_count()} cores, CPython {platform.python_version()}, NumPy {version('numpy')}"
+    machine = f"{os.cpu_count()} cores of {_processor()}, CPython {platform.python_version()}, NumPy {version('numpy')}"
     names = ("LinuxCNC rs274", "nc-gcode-interpreter", "pygcode", "nctab", "ncplot7py")
     missing = [name for name in names if name not in parts["Whole processes"]]
     left_out = f" Not installed there, and left out: {', '.join(missing)}." if missing else ""
@@ -314,6 +394,11 @@ what polarcheck with a cutter is put beside. A reader that takes longer than {SL
 Of one that needs less memory than what starts it, the peak is that of what starts it.{left_out}""",
         "Small files": "On the clock, since that is what somebody waits for at a commit.",
         "Many files": f"{_MANY} programs of {_BLOCKS_OF_MANY:,} blocks, in one process and in two (`--jobs`).",
+        "Other commands": f"""\
+The program of `benchmarks/generate.py` with {min(_BLOCKS_OF_COMMANDS, asked.blocks):,} blocks and a cutter of R 2.""",
+        "Long lines": "A file that is one line of one letter.",
+        "Contours": """\
+Those of `benchmarks/contour_costs.py`, which says what is hard about each; without the start of the process.""",
         "Growth": "Without a cutter; from 1,000,000 blocks on one run each.",
         "What is found": f"""\
 {len(FAULTS)} programs with one fault each (`benchmarks/peer_faults.py`), and the sound one. A reader names a fault
@@ -339,7 +424,7 @@ on {machine}; medians of {asked.rounds} rounds, in each of which every command r
 ratios are medians of those of each round.
 What they write goes to /dev/null, and polarcheck keeps no results of earlier runs.
 {older}{beside}
-Ratios carry over to another machine, seconds do not.
+{asked.note}
 
 {text}
 {ONE_SLIP}"""
@@ -352,6 +437,12 @@ def main() -> None:
         parser.add_argument(f"--{name}")
     parser.add_argument("--before", metavar="FILE", help="a Python that has an older polarcheck")
     parser.add_argument("--before-is", default="an earlier commit", metavar="WORDS", help="which one that is")
+    parser.add_argument(
+        "--note",
+        default="Ratios differ between machines, too.",
+        metavar="WORDS",
+        help="what else the page says of its figures",
+    )
     parser.add_argument("--blocks", type=int, default=200_000)
     parser.add_argument("--rounds", type=int, default=7)
     parser.add_argument("--quick", action="store_true", help="nothing larger than --blocks")
@@ -365,6 +456,9 @@ def main() -> None:
             "Whole processes": speed(asked, folder),
             "Small files": small(asked, folder),
             "Many files": many(asked, folder),
+            "Other commands": commands(asked, folder),
+            "Long lines": long_line(asked, folder),
+            "Contours": contours(asked, folder),
             "Growth": growth(asked, folder),
             "What is found": findings(asked, folder),
             "Where the time goes": both_stages(asked, folder),

@@ -109,6 +109,7 @@ def test_the_page_is_written_without_any_peer(tmp_path: Path, monkeypatch: pytes
         monkeypatch.delenv(name, raising=False)
     monkeypatch.setenv("PATH", str(tmp_path))
     monkeypatch.setattr(peers, "FAULTS", dict([next(iter(FAULTS.items()))]))
+    monkeypatch.setattr(peers, "CASES", {"hexagon": peers.CASES["hexagon"]})
     monkeypatch.setattr(peers, "_MANY", 2)
     monkeypatch.setattr(peers, "_BLOCKS_OF_MANY", 1000)
     page = tmp_path / "page.md"
@@ -117,6 +118,8 @@ def test_the_page_is_written_without_any_peer(tmp_path: Path, monkeypatch: pytes
     text = page.read_text()
     assert "Not installed there, and left out: LinuxCNC rs274, nc-gcode-interpreter, pygcode, nctab, ncplot7py." in text
     assert re.search(r"^\| polarcheck \| 0 \| 1 \| 1 \|$", text, re.MULTILINE)
+    for name in ("hexagon", "plot", "60,000 times A"):
+        assert re.search(rf"^\| {name} \| \d+\.\d\d \|", text, re.MULTILINE), name
     assert len(re.findall(r"^\| total \|", text, re.MULTILINE)) == 3
 
 
