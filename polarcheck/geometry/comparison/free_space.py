@@ -77,23 +77,25 @@ Reached = dict[Edge, tuple[Edge | None, Interval]]
 
 
 def frechet(
-    old: Sequence[Corner], new: Sequence[Corner], upper: float, precision: float, budget: Budget
+    old: Sequence[Corner], new: Sequence[Corner], upper: float, precision: float, budget: Budget, lower: float = 0.0
 ) -> tuple[float, Meeting]:
     """
     Return the Fréchet distance of two polylines [mm], and where two points have to be so far apart.
 
-    upper: a distance that is known to suffice [mm]. precision: the result is at most this much above the distance [mm].
+    upper: a distance that is known to suffice [mm]. lower: one that it certainly reaches, but for rounding [mm].
+    precision: the result is at most this much above the distance [mm].
     Raises OverBudgetError.
     """
     at_start = Meeting(old[0], new[0], 0, 0)
     at_end = Meeting(old[-1], new[-1], max(len(old) - 2, 0), max(len(new) - 2, 0))
     farther = max(at_start, at_end, key=lambda meeting: meeting.distance)
     low, high = farther.distance, upper
-    if is_within(old, new, low, budget):
+    lower -= 2 * _NOISE
+    if low >= lower and is_within(old, new, low, budget):
         return low, farther
     while high - low > precision:
         middle = (low + high) / 2
-        if is_within(old, new, middle, budget):
+        if middle >= lower and is_within(old, new, middle, budget):
             high = middle
         else:
             low = middle

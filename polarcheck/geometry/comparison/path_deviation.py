@@ -240,7 +240,7 @@ def _proven(pieces: _Pieces, largest: float, location: Location, tolerance: floa
     try:
         if least <= tolerance and is_within(corners[0], corners[1], tolerance, Budget(_CELLS_OF_PROOF)):
             return tolerance, location, False
-        exact, meeting = frechet(corners[0], corners[1], largest, precision, Budget(_CELLS_OF_WHOLE))
+        exact, meeting = frechet(corners[0], corners[1], largest, precision, Budget(_CELLS_OF_WHOLE), least)
     except OverBudgetError:
         return largest, location, False
     return exact, _location(whole, 0, meeting), True
