@@ -42,6 +42,8 @@ class TurnedCycles(Columns, frozen=True):
     @property
     def is_lost(self) -> Mask:
         """Rows whose cycle ends where nobody knows."""
+        if not self._begins_cycle.any():
+            return self.trace.blocks.nowhere
         return np.asarray(self._is_of_cycle & np.isnan(self._cycle_x + self._cycle_z))
 
     @cached_property
@@ -57,6 +59,8 @@ class TurnedCycles(Columns, frozen=True):
     @property
     def _is_of_cycle(self) -> Mask:
         """Blocks that make a cycle cut."""
+        if not self._begins_cycle.any():
+            return self.trace.blocks.nowhere
         return np.asarray((self._kind_of_cycle > 0) & self.trace.blocks.has("X", "Z", *INCREMENTS.values()))
 
     @cached_property

@@ -7,7 +7,7 @@ import numpy as np
 from polarcheck.columns.modes.executed_blocks import ExecutedBlocks
 from polarcheck.columns.modes.tools import CalledTools
 from polarcheck.columns.words.comments import Comments, named_tool
-from polarcheck.foundation.arrays import Columns, Mask, Rows, cached_property
+from polarcheck.foundation.arrays import Columns, Mask, Rows, cached_property, repeated
 from polarcheck.program.execution.run import Run
 
 
@@ -31,13 +31,14 @@ class ToolComments(Columns, frozen=True):
 
     @cached_property
     def _beside(self) -> tuple[Rows, Rows]:
-        comment, named = np.full(len(self.run), -1, np.int64), np.full(len(self.run), -1, np.int64)
+        nothing = repeated(np.int64(-1), len(self.run))
         calls = np.flatnonzero(self.tools.calls_tool & (self.tools.tool > 0) & ~self.run.unknown)
         if not len(calls) or not len(self.comments):
-            return comment, named
+            return nothing, nothing
         of_block = self._comments_of_block(self.run.block[calls])
         if not of_block:
-            return comment, named
+            return nothing, nothing
+        comment, named = nothing.copy(), nothing.copy()
         tools, offsets, blocks = (
             c[calls].tolist() for c in (self.tools.tool, self.tools.offset_number, self.run.block)
         )
