@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, TypeVar
 import msgspec
 
 from polarcheck.checking.called_files import in_the_file
-from polarcheck.checking.channel_reports import united
 from polarcheck.checking.engine import Engine, in_order, with_following
 from polarcheck.checking.not_evaluated import all_unevaluated, bounds_not_reported
 from polarcheck.checking.polar_sections import known_stock, polar_sections
@@ -33,6 +32,7 @@ from polarcheck.foundation.finding import (
     PolarSection,
     Undecided,
 )
+from polarcheck.foundation.patterns import lazy_pattern
 from polarcheck.program.execution.run import is_code
 from polarcheck.program.execution.runs import runs
 from polarcheck.program.machines.job import Job
@@ -48,7 +48,7 @@ if TYPE_CHECKING:
     from polarcheck.columns.contour.correction import Correction
     from polarcheck.foundation.arrays import Rows
 
-_SKIP = re.compile(r"\s*(?:N\s*\d+\s*)?/", re.IGNORECASE)
+_SKIP = lazy_pattern(r"\s*(?:N\s*\d+\s*)?/", re.IGNORECASE)
 #: The rule that reports codes that may be a builder's own switches of the mode.
 _OF_SWITCH = "polar-switch-unknown"
 #: Areas checked in every program.
@@ -104,7 +104,11 @@ def check_runs(
     reports = [(_source(engine.tables), _with_unused(report, engine, rules, used)) for report, (engine, *_) in checked]
     if len(reports) == 1 and not deselected:
         return reports[0][1]
-    report = united(reports) if len(reports) > 1 else reports[0][1]
+    report = reports[0][1]
+    if len(reports) > 1:
+        from polarcheck.checking.channel_reports import united
+
+        report = united(reports)
     findings = in_order(report.findings)
     missing = [NotEvaluated(rule=DESELECTED, reason=line, blocks=report.blocks) for line in deselected]
     not_evaluated = [*report.not_evaluated, *missing]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 import textwrap
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -11,6 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from msgspec import UNSET
 
 from polarcheck.foundation.finding import DESELECTED, FAIL, PASS, UNREADABLE, UNVERIFIED
+from polarcheck.foundation.patterns import lazy_pattern
 from polarcheck.program.reading.excerpt import excerpt, visible, without_commands
 from polarcheck.reports import SEVERITIES, Background, Parts, counted, of_each, painted, settings_lines
 from polarcheck.reports.pages.resting import resting
@@ -30,7 +30,7 @@ _RESTING = 3
 _ASSUMED = 20
 #: How many places are listed for each reason for "not evaluated".
 _PLACES = 3
-_SENTENCE_END = re.compile(r"(?<!\be\.g\.)(?<!\bi\.e\.)(?<!\bp\.)(?<=[.?!])\s+(?=[A-Z0-9(])")
+_SENTENCE_END = lazy_pattern(r"(?<!\be\.g\.)(?<!\bi\.e\.)(?<!\bp\.)(?<=[.?!])\s+(?=[A-Z0-9(])")
 
 
 class _Page(NamedTuple):

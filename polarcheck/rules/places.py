@@ -10,6 +10,7 @@ import numpy as np
 
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Mask, Rows, stretch
+from polarcheck.foundation.patterns import lazy_pattern
 from polarcheck.program.execution.run import Run
 from polarcheck.program.machines.code_lists import numbers
 from polarcheck.program.machines.code_tables import code_numbers
@@ -18,11 +19,11 @@ from polarcheck.program.reading.words import Text
 from polarcheck.rules.tables import SPANS, Tables
 
 #: A % with what else stands on its line, and blanks.
-_MARK = re.compile(r"(?:%[^\r\n]*)?[\0-\x20\x7f\xa0]*")
+_MARK = lazy_pattern(r"(?:%[^\r\n]*)?[\0-\x20\x7f\xa0]*")
 
 
 #: A name of two letters or more, or a variable by its number, behind an address and = or for itself.
-_NAME = re.compile(r"(?:[A-Z]=?(?=#)|[A-Z]=)?([A-Z][A-Z_][A-Z0-9_]*|#\d+)")
+_NAME = lazy_pattern(r"(?:[A-Z]=?(?=#)|[A-Z]=)?([A-Z][A-Z_][A-Z0-9_]*|#\d+)")
 #: Of a name [characters].
 _NAME_LENGTH = 40
 #: Faults that stand at the name of which something is not known.

@@ -8,7 +8,6 @@ import numpy as np
 
 from polarcheck.columns.contour.passes import Passes, numbered
 from polarcheck.columns.trace import Trace
-from polarcheck.columns.words.slips import plain_number, slip_of
 from polarcheck.foundation.arrays import Columns, Mask, Points, Rows, cached_property
 
 #: Points nearer to each other than this [mm] are the same, and how far off a point is that differs.
@@ -197,6 +196,8 @@ class PassDifferences(Columns, frozen=True):
         words = float(blocks.word(address)[row]), float(blocks.word(address)[second_row])
         if np.isnan(sum(words)):
             return False
+        from polarcheck.columns.words.slips import plain_number, slip_of  # few passes differ
+
         slip = slip_of(plain_number(words[0]), words[1], _SAME)
         return slip is not None and (slip.plain or len(plain_number(words[0]).strip("-").replace(".", "")) >= _FINE)
 

@@ -10,6 +10,8 @@ to slow down here: what the servo adds is not known. Neither are tool changes an
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import msgspec
 import numpy as np
 
@@ -18,8 +20,11 @@ from polarcheck.columns.path.tool_center import ToolCenter
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Floats, Mask, Rows, cached_property, is_among
 from polarcheck.foundation.states import FeedMode, Motion
-from polarcheck.geometry import automatic_override, polar
+from polarcheck.geometry import polar
 from polarcheck.geometry.tolerances import SHARE, ZERO
+
+if TYPE_CHECKING:
+    from polarcheck.geometry.automatic_override import Pieces
 
 #: Why the time of a row is not known, in the order in which it is said: the first that holds.
 NOT_EXECUTED, PER_REVOLUTION, NO_FEED, RAPIDS, RADIUS, DWELL_IN_TURNS, DWELL, CYCLE, POSITION = (
@@ -79,8 +84,10 @@ class Dynamics:
         return np.asarray(self.at_feed & (self.moves.c_feed > self.c_limit * (1 + SHARE)))
 
     @cached_property
-    def pieces(self) -> automatic_override.Pieces:
+    def pieces(self) -> Pieces:
         """The moves on which it acts, parted where it begins and ends; `move` is of all moves."""
+        from polarcheck.geometry import automatic_override  # few machines slow down at the center
+
         chosen = self.moves[self.is_slowed]
         with_override = automatic_override.pieces(*chosen.shape, chosen.plane_feed, self.c_limit)
         return msgspec.structs.replace(with_override, move=np.flatnonzero(self.is_slowed)[with_override.move])

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import re
-
 import numpy as np
 
 from polarcheck.columns.filling import last_row
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Rows, repeated
+from polarcheck.foundation.patterns import lazy_pattern
 from polarcheck.program.machines.axis_table import OF_SPINDLE
 
-_FUNCTION = re.compile(r"([MS])\s*(\d+)\s*=")
+_FUNCTION = lazy_pattern(r"([MS])\s*(\d+)\s*=")
 #: Longest text up to the = of such a word [characters].
 _LENGTH = 16
 _STARTS = (3, 4)

@@ -13,7 +13,6 @@ from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Columns, Floats, Mask, Rows, cached_property, different, repeated
 from polarcheck.program.machines.code_lists import numbers
 from polarcheck.program.machines.offset_calls import steps_above
-from polarcheck.program.machines.own_language import shown
 
 #: Numbers of further work offsets begin here: G54.1 P1 is 1001.
 _EXTENDED = 1000
@@ -253,11 +252,16 @@ class Origin(Columns, frozen=True):
             *((x, functools.partial(self._of_offset, setter)) for x, setter in offsets),
             (self.trace.path.local_shift, lambda row: self._code("local_shift")),
             (self.coordinate_setting, lambda row: self._code("coordinate_setting")),
-            (self.frame, lambda row: shown(self.trace.machine.control.native_words, self._code("frame_shift"))),
+            (self.frame, self._frame_code),
         )
 
     def _of_offset(self, setter: Rows, row: int) -> str:
         return self._set_in(row, int(setter[row]))
+
+    def _frame_code(self, row: int) -> str:
+        from polarcheck.program.machines.own_language import shown  # few programs shift their frame
+
+        return shown(self.trace.machine.control.native_words, self._code("frame_shift"))
 
     def causes(self, row: int) -> list[str]:
         """Names of the causes of the shift in a row: a work offset, G10, a variable, G52, G50."""

@@ -10,10 +10,11 @@ import numpy as np
 from polarcheck.columns.filling import before, fill_down
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Columns, Mask, Rows, cached_property
+from polarcheck.foundation.patterns import lazy_pattern
 from polarcheck.program.machines.code_lists import FRAME_LISTS
 
 #: The head of a structure of several blocks, its other branches and its end; no IF with a jump or an assignment.
-_STRUCTURE = re.compile(rb"^[/0-9N ]*(IF(?![^\n]*(?:GOTO|THEN[ ]*[^\s]))|ELSEIF|ELSE|ENDIF)(?![A-Z])", re.MULTILINE)
+_STRUCTURE = lazy_pattern(rb"^[/0-9N ]*(IF(?![^\n]*(?:GOTO|THEN[ ]*[^\s]))|ELSEIF|ELSE|ENDIF)(?![A-Z])", re.MULTILINE)
 
 
 class Since(Columns, frozen=True):

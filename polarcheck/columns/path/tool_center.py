@@ -17,7 +17,6 @@ from polarcheck.columns.words.last_digit import half_of_last_digit
 from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, cached_property
 from polarcheck.foundation.states import Motion, Side
 from polarcheck.geometry.cutter_compensation.offset_path import Path, ToolPath
-from polarcheck.geometry.rounding import kept_ends, may_turn_back
 from polarcheck.geometry.tolerances import SHARE
 
 #: The share of R that must fit beside a stretch of many blocks for their rounding to be what is wrong.
@@ -99,6 +98,8 @@ class ToolCenter:
     @cached_property
     def _kept(self) -> Mask:
         """The rows of the path at whose ends the contour bends by more than the rounding of its points."""
+        from polarcheck.geometry.rounding import kept_ends  # asked for where the tool would run back
+
         path = self._programmed
         return kept_ends(path.start, path.end, _goes_on(path), self._half_of_last_digit)
 
@@ -133,6 +134,8 @@ class ToolCenter:
         straight = tool_center_path(self.trace, stretches)
         faulty = straight.interferes | straight.no_intersection | straight.inside_arc_too_small
         by_rounding = self._in_trace(self._path.interferes & ~faulty[np.searchsorted(rows, np.arange(len(kept)))])
+        from polarcheck.geometry.rounding import may_turn_back
+
         # Among many such blocks a few that rounding may well turn round tell nothing, whatever is left of them.
         short = self._in_trace(may_turn_back(path.start, path.end, self._half_of_last_digit, path.radius))
         really = self.interferes & short & ~by_rounding

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 from typing import NamedTuple
 
+from polarcheck.foundation.patterns import lazy_pattern
+
 #: A word as it is written: its address and its number.
-WORD = re.compile(r"([A-Za-z]+=?)([+-]?+(?:\d++\.?+\d*+|\.\d++))")
-_NUMBER = re.compile(r"([+-]?)(\d*+)(\.?)(\d*+)")
+WORD = lazy_pattern(r"([A-Za-z]+=?)([+-]?+(?:\d++\.?+\d*+|\.\d++))")
+_NUMBER = lazy_pattern(r"([+-]?)(\d*+)(\.?)(\d*+)")
 #: Factors by which a point at another place, or a radius for a diameter, changes a number.
 _POINTS, _FACTORS = (10.0, 0.1, 100.0, 0.01, 1000.0, 0.001), (2.0, 0.5)
 

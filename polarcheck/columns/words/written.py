@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from polarcheck.foundation.arrays import Mask, Rows, cached_property, is_among, repeated
+from polarcheck.foundation.patterns import lazy_pattern
 from polarcheck.program.execution.programs import block_text, find_programs
 from polarcheck.program.machines.code_lists import is_code
 from polarcheck.program.machines.code_tables import NO_CODE, code_numbers, code_set, modal_tables
@@ -32,10 +33,10 @@ _UNSURE_GROUPS = ("scaling", "rotation", "mirror")
 #: Cycles whose codes in system A other systems and mills write beside G0 and G1, in another meaning.
 _OF_OTHER_SYSTEMS = ("turning_cycle", "threading_cycle", "facing_cycle")
 #: The two languages of a Siemens control.
-_LANGUAGES = re.compile(r"(?<![A-Z0-9])G29[01](?![0-9.])", re.IGNORECASE)
-_PARAMETER = re.compile(r"[A-Z]\s?[-+]?[.\d]", re.IGNORECASE)
-_COMMENT = re.compile(rb"\([^)\n]*+\)?")
-_LETTER_OR_DIGIT = re.compile(rb"[0-9A-Za-z\x80-\xff]")
+_LANGUAGES = lazy_pattern(r"(?<![A-Z0-9])G29[01](?![0-9.])", re.IGNORECASE)
+_PARAMETER = lazy_pattern(r"[A-Z]\s?[-+]?[.\d]", re.IGNORECASE)
+_COMMENT = lazy_pattern(rb"\([^)\n]*+\)?")
+_LETTER_OR_DIGIT = lazy_pattern(rb"[0-9A-Za-z\x80-\xff]")
 #: RTS returns in user tasks.
 _JUMP = r"GOTO|GO\s*\d|(?<![A-Z0-9])RTS(?![A-Z0-9])"
 

@@ -19,6 +19,7 @@ from polarcheck.files.settings.job_layers import Merged
 from polarcheck.files.settings.selection import Rules
 from polarcheck.foundation.errors import MachineError, UsageError
 from polarcheck.foundation.finding import Decided
+from polarcheck.foundation.patterns import lazy_pattern
 from polarcheck.foundation.record import Remembered, note, recorded
 from polarcheck.program.machines import profiles, toml_text
 from polarcheck.program.machines.job import Job, PunchedTool, Running, check_tools, check_work_offsets, with_tool
@@ -499,7 +500,7 @@ def _profile(name: str, over: Sequence[profiles.Change], catalogue: Rules) -> pr
 
 
 #: .5 and 4., which TOML does not read.
-_SHORT_NUMBER = re.compile(r"[-+]?(?:[0-9]{1,9}\.|\.[0-9]{1,9})")
+_SHORT_NUMBER = lazy_pattern(r"[-+]?(?:[0-9]{1,9}\.|\.[0-9]{1,9})")
 
 
 def toml_value(text: str) -> Any:

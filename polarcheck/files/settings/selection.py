@@ -8,6 +8,7 @@ from functools import partial
 from typing import Any, NamedTuple
 
 from polarcheck.foundation.errors import MachineError, UsageError, suggestion
+from polarcheck.foundation.patterns import lazy_pattern
 from polarcheck.program.machines.job import Job, level_of, names_of
 from polarcheck.program.machines.machine import Machine
 from polarcheck.program.machines.profiles import Profile
@@ -15,7 +16,7 @@ from polarcheck.rules import rule as all_rules
 from polarcheck.rules.rule import Rule
 
 LEVELS = ("error", "warning", "note", "off")
-_ALARM = re.compile(r"([A-Za-z]{0,3})\s?0*(\d{1,9})")
+_ALARM = lazy_pattern(r"([A-Za-z]{0,3})\s?0*(\d{1,9})")
 
 Rules = dict[str, Rule]
 #: Returns the place of a key of a job: `polarcheck.toml:12`.

@@ -16,6 +16,7 @@ import msgspec
 
 from polarcheck.foundation import bounded, record
 from polarcheck.foundation.arrays import cached_property
+from polarcheck.foundation.patterns import lazy_pattern
 from polarcheck.program.execution.listing import Listing
 from polarcheck.program.execution.programs import ProgramName, Programs, find_programs, read_text
 from polarcheck.program.execution.run import Beside
@@ -31,16 +32,16 @@ _MOST_LOOKED_FOR = 100
 _MOST_READ = 4
 #: Endings of copies that were put aside.
 _OF_BACKUPS = frozenset((".bak", ".old", ".orig", ".sav", ".tmp", ".new"))
-_NAME = re.compile(r"[A-Za-z0-9+_.-]{1,64}")
+_NAME = lazy_pattern(r"[A-Za-z0-9+_.-]{1,64}")
 #: In one line, and nothing of it read again: a file of blank lines is no reason to wait.
-_OWN_NAME = re.compile(
+_OWN_NAME = lazy_pattern(
     r"^[^\S\n]*+(?:[O:][^\S\n]*+(\d{1,15}(?!\d)|<[^>\n]*+>)|%(?:_N_)?(\w{1,32})_[MS]PF\s*$)",
     re.MULTILINE | re.IGNORECASE | re.ASCII,
 )
 #: The line that begins a tape. Behind a head it would end the program.
-_TAPE_MARK = re.compile(r"[\s\0]*+(?:\$[^%\n]*+)?%[^\n]*+\n")
+_TAPE_MARK = lazy_pattern(r"[\s\0]*+(?:\$[^%\n]*+)?%[^\n]*+\n")
 #: A name that stands at the head as the call has it: OFACE.
-_BARE_NAME = re.compile(r"O[A-Z][A-Z0-9]*+", re.IGNORECASE | re.ASCII)
+_BARE_NAME = lazy_pattern(r"O[A-Z][A-Z0-9]*+", re.IGNORECASE | re.ASCII)
 
 
 class MovedFolder(str):

@@ -16,6 +16,7 @@ import msgspec
 import numpy as np
 
 from polarcheck.foundation.arrays import Mask, cached_property, stretch
+from polarcheck.foundation.patterns import lazy_pattern
 from polarcheck.program.execution.run import begins_program, is_code
 from polarcheck.program.machines.machine import Machine
 from polarcheck.program.reading.source import PRINTED_QUOTES, Source
@@ -24,7 +25,7 @@ from polarcheck.program.reading.words import Text, read_words
 
 #: No control has a program or sequence number of so many digits; beyond it, values are only about right.
 _NUMBER_LIMIT = 1e15
-_DECIMAL_COMMA = re.compile(r"(?<=[0-9]),(?=[0-9])")
+_DECIMAL_COMMA = lazy_pattern(r"(?<=[0-9]),(?=[0-9])")
 #: Compiled where they are looked for, since most programs jump nowhere.
 _SEQUENCE_NUMBER = r"[\s/]*(?:/\s*\d\s*)?(?:[O:]\s*\d+\s*)?N\s*(\d+)"
 #: A label: ANF: at the head of a block or behind its number, or a sequence name, N with letters.

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Mapping, Sequence
 from typing import NamedTuple
 
@@ -11,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from polarcheck.foundation.arrays import Mask, Points, Rows, States, is_among, repeated
+from polarcheck.foundation.patterns import lazy_pattern
 from polarcheck.program.execution.kinds import FaultKind, RemarkKind
 from polarcheck.program.machines.code_tables import code_numbers, code_set
 from polarcheck.program.reading.words import Text, Words
@@ -18,7 +18,7 @@ from polarcheck.program.reading.words import Text, Words
 #: M2, M30, M99: the end of a program.
 _ENDS = (2, 30, 99)
 #: The name before = that is read as a letter, and how far before it begins at most [characters].
-_NAME = re.compile(r"(?<![A-Za-z])[A-Za-z]++(?:\[\w{1,8}\])?\Z")
+_NAME = lazy_pattern(r"(?<![A-Za-z])[A-Za-z]++(?:\[\w{1,8}\])?\Z")
 _LONGEST = 40
 
 

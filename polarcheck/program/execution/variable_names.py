@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-import re
 from typing import Final
 
+from polarcheck.foundation.patterns import lazy_pattern
+
 #: #112=: the number of a variable that custom macro sets, in the bytes of a text.
-ASSIGNED: Final = re.compile(rb"#[ \t]*+(\d{1,6})[ \t]*+=")
+ASSIGNED: Final = lazy_pattern(rb"#[ \t]*+(\d{1,6})[ \t]*+=")
 #: Variables that have a name stand above all that have a number.
 FIRST_VARIABLE: Final = 20_000_000
 #: The number of R0 among the variables: parameters that every program shares.

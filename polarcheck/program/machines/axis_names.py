@@ -8,13 +8,13 @@ counts. Keys that the profile contains are not changed.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Mapping, Sequence
 from itertools import zip_longest
 from typing import Any, TypeGuard
 
 import msgspec
 
+from polarcheck.foundation.patterns import lazy_pattern
 from polarcheck.program.machines.axis_table import INCREMENTS, axis_of, is_rotary
 from polarcheck.program.machines.parameters import Origin
 
@@ -22,7 +22,7 @@ from polarcheck.program.machines.parameters import Origin
 _USUAL = "C"
 _INCREMENTAL = "H"
 #: An axis that is written with =.
-_NAME = re.compile("[ABCHU-Z][A-Z]{0,5}[0-9]{1,2}")
+_NAME = lazy_pattern("[ABCHU-Z][A-Z]{0,5}[0-9]{1,2}")
 _KEYS = ("rotary_address", "rotary_incremental", "virtual_axis", "virtual_axis_incremental")
 
 

@@ -10,6 +10,7 @@ from typing import Annotated, Any, ClassVar, Literal
 import msgspec
 
 from polarcheck.foundation.errors import JobError, UsageError, suggestion
+from polarcheck.foundation.patterns import lazy_pattern
 from polarcheck.program.machines.machine import Machine
 from polarcheck.program.machines.offset_keys import OffsetKey, canonical, is_plain_number
 from polarcheck.program.machines.part_keys import Part
@@ -325,8 +326,8 @@ def _expected_number(option: str) -> str:
     return f"--tool {option}: expected NUMBER:KEY=VALUE as in 8:radius=0.375"
 
 
-_QUOTED = re.compile(r'"([^"]+)"(/[0-9]+)?')
-_LIKE_NUMBER = re.compile(r"[-+.]++[0-9.]*+|[0-9.]++")
+_QUOTED = lazy_pattern(r'"([^"]+)"(/[0-9]+)?')
+_LIKE_NUMBER = lazy_pattern(r"[-+.]++[0-9.]*+|[0-9.]++")
 
 
 def _plain_number(written: str, option: str) -> str | None:

@@ -8,6 +8,7 @@ from os import PathLike
 from typing import Any
 
 from polarcheck.foundation import bounded
+from polarcheck.foundation.patterns import lazy_pattern
 
 #: Of a job file or machine file, which have some kB [bytes].
 LARGEST = 1_000_000
@@ -19,30 +20,30 @@ _LARGEST_NUMBER = 10**_DIGITS
 _TOO_LONG = f"a whole number has at most {_DIGITS} digits"
 _SHOWN = 40
 
-_STRING_OR_COMMENT = re.compile(
+_STRING_OR_COMMENT = lazy_pattern(
     r'"""(?:[^\\]|\\.)*?(?:"""|\\?\Z)' + r"|'''.*?(?:'''|\Z)" + r'|"(?:[^"\\\n]|\\.)*+"?' + r"|'[^'\n]*+'?|#[^\n]*+",
     re.DOTALL,
 )
 # tomllib takes time and memory by the square of the parts. Nothing here goes back, which would cost the same.
-_LONG_KEY = re.compile(rf"(?<![\w-])[\w-]++(?:[ \t]*+\.[ \t]*+[\w-]++){{{_LEVELS}}}", re.ASCII)
-_LONG_NUMBER = re.compile(r"(?<![\d_])\d[\d_]{1000,}+")
+_LONG_KEY = lazy_pattern(rf"(?<![\w-])[\w-]++(?:[ \t]*+\.[ \t]*+[\w-]++){{{_LEVELS}}}", re.ASCII)
+_LONG_NUMBER = lazy_pattern(r"(?<![\d_])\d[\d_]{1000,}+")
 
 #: 3401#0, the bit of a parameter, as a key without quotes.
 _BIT = r"^[ \t]*+(\w{1,20}#\w{1,20})[ \t]*+="
 
 #: 1,5 for 1.5.
-_COMMA = re.compile(r"=[ \t]*+([-+]?\d{1,9}+),(\d{1,9}+)[ \t]*+(?:#.*)?$")
+_COMMA = lazy_pattern(r"=[ \t]*+([-+]?\d{1,9}+),(\d{1,9}+)[ \t]*+(?:#.*)?$")
 #: .5, 4., 08, 3/16 and 1 3/16 as a value, be it with a unit behind it.
-_NUMBER = re.compile(
+_NUMBER = lazy_pattern(
     r"[=\[,][ \t]*+([-+]?)(?:(?:(\d{1,9})[ \t-]+)?(\d{1,9})[ \t]*+/[ \t]*+(\d{1,9})|(\d{0,9})\.?(\d{0,9}))"
     r"[ \t]*+(mm|inches|inch|in|\"|'')?[ \t]*+(?=[,\]}#]|$)",
     re.IGNORECASE,
 )
 #: M35 without quotes.
-_UNQUOTED = re.compile(r"[=\[,][ \t]*+([A-Za-z][\w.-]{0,20}+)[ \t]*+(?:[,\]#]|$)")
+_UNQUOTED = lazy_pattern(r"[=\[,][ \t]*+([A-Za-z][\w.-]{0,20}+)[ \t]*+(?:[,\]#]|$)")
 
 #: A key without its value, as a commented line of a written file is when only its # was taken away.
-_BARE = re.compile(r"[ \t]*+([\w.-]{1,40}+)[ \t]*+=[ \t]*+(?:#.*)?$")
+_BARE = lazy_pattern(r"[ \t]*+([\w.-]{1,40}+)[ \t]*+=[ \t]*+(?:#.*)?$")
 
 
 def read_toml(path: str | PathLike[str], what: str, *, pipes: bool = False) -> dict[str, Any]:

@@ -7,12 +7,13 @@ import unicodedata
 
 import msgspec
 
+from polarcheck.foundation.patterns import lazy_pattern
 from polarcheck.program.reading.file_names import code, with_characters
 
 _TAB = 4
 _CUT = "..."
 #: Commands in the log of a CI job: `::` at the head of a line, also behind blanks, and `##[` or `##vso[` anywhere.
-_COMMAND = re.compile(r"^([^\S\n]*+):(?=:)|##([A-Za-z]*+)\[", re.MULTILINE)
+_COMMAND = lazy_pattern(r"^([^\S\n]*+):(?=:)|##([A-Za-z]*+)\[", re.MULTILINE)
 #: How many characters before the fault are shown of a line that is too long.
 _BEFORE = 24
 

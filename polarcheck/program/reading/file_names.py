@@ -5,14 +5,15 @@ from __future__ import annotations
 import re
 
 from polarcheck.foundation.errors import escaped
+from polarcheck.foundation.patterns import lazy_pattern
 
 #: Bytes that the locale has no character for, as Python holds them.
-_BYTES = re.compile("[\udc80-\udcff]+")
+_BYTES = lazy_pattern("[\udc80-\udcff]+")
 _FIRST_BYTE = 0xDC00
 #: Looks like a character that was spelled out.
-_SPELLED = re.compile(r"\\[xuU]")
+_SPELLED = lazy_pattern(r"\\[xuU]")
 #: A character that was spelled out in a name.
-_PARTS = re.compile(r"\\(?:(\\)|x([0-9a-f]{2})|u([0-9a-f]{4}))")
+_PARTS = lazy_pattern(r"\\(?:(\\)|x([0-9a-f]{2})|u([0-9a-f]{4}))")
 
 
 def spelled(name: str) -> str:

@@ -14,6 +14,7 @@ import re
 import msgspec
 import numpy as np
 
+from polarcheck.foundation.patterns import lazy_pattern
 from polarcheck.program.reading.source import LF, PRINTED_QUOTES, Bytes, Positions
 from polarcheck.program.reading.surroundings import Ranges
 
@@ -77,31 +78,31 @@ _NAME = rb"(?![A-Z][OI]{1,20}+(?![A-Z0-9_]))[A-Z_$][A-Z_][A-Z0-9_$]*+"
 #: No control has longer labels. Without a limit a long run would be scanned again from each of its letters.
 _LABEL = rb"[A-Z_][A-Z0-9_]{1,60}+[ \t]*+:"
 _BLANK = b" \t\r\0"
-_HEAD_OF_FILE = re.compile(rb"[ \t\r\0]*+\$[^%\n]*+%[ \t\r\0]*+")
-_CONTINUATION = re.compile(rb"\n[ \t\r\0]*+\$(?![^%\n]*+%)")
-_PROGRAM = re.compile(rb"[ \t\r\0]*+(O[A-Z][A-Z0-9]{0,15}+)[ \t\r\0]*+")
+_HEAD_OF_FILE = lazy_pattern(rb"[ \t\r\0]*+\$[^%\n]*+%[ \t\r\0]*+")
+_CONTINUATION = lazy_pattern(rb"\n[ \t\r\0]*+\$(?![^%\n]*+%)")
+_PROGRAM = lazy_pattern(rb"[ \t\r\0]*+(O[A-Z][A-Z0-9]{0,15}+)[ \t\r\0]*+")
 #: A sequence name: N and up to four letters and digits. NOEX runs a block without stopping at it.
 SEQUENCE_NAME = r"(?<![A-Z0-9_$])N(?!OEX(?![A-Z0-9]))[A-Z][A-Z0-9]{0,3}+(?![A-Z0-9_.=\[])"
-_SEQUENCE_NAME = re.compile(SEQUENCE_NAME.encode())
-_BEFORE_LABEL = re.compile(rb"[ \t\r\0]*+(?:/[ \t]*+\d?+[ \t\r\0]*+)?+")
+_SEQUENCE_NAME = lazy_pattern(SEQUENCE_NAME.encode())
+_BEFORE_LABEL = lazy_pattern(rb"[ \t\r\0]*+(?:/[ \t]*+\d?+[ \t\r\0]*+)?+")
 #: An opening parenthesis of arguments: behind a name or a sign. _NEAR: how far before it is looked [characters].
-_BEFORE_ARGUMENTS = re.compile(
+_BEFORE_ARGUMENTS = lazy_pattern(
     rb"(?:[=+\-*/,<>]|(?<![A-Z0-9_$])(?:PROC[ \t]++[A-Z]|(?>[A-Z0-9_$]*?[A-Z_$][A-Z_])[A-Z0-9_$]*+))[ \t]*+\(\Z"
 )
 _NEAR = 64
 #: A comma between digits; and what decides whether it is a decimal point: a string, the value of AC(..), brackets.
-_COMMA = re.compile(rb"(?<=[0-9]),(?=[0-9])")
-_OF_COMMAS = re.compile(
+_COMMA = lazy_pattern(rb"(?<=[0-9]),(?=[0-9])")
+_OF_COMMAS = lazy_pattern(
     rb'"[^"\n]*+"?|(?<![A-Z_])(?:[AID]C|ACP|ACN)[ \t]*+\([-+ \t]*+[0-9]++(,)(?=[0-9]++[ \t]*+\))'
     rb"|[()\[\]]|(?<=[0-9]),(?=[0-9])"
 )
-_STRING = re.compile(rb'"[^"\n]*+"?')
-_PRINTED_QUOTE = re.compile(b"[" + bytes(PRINTED_QUOTES) + b"]")
+_STRING = lazy_pattern(rb'"[^"\n]*+"?')
+_PRINTED_QUOTE = lazy_pattern(b"[" + bytes(PRINTED_QUOTES) + b"]")
 _DOUBLE = b"[" + bytes(code for code, plain in PRINTED_QUOTES.items() if plain == '"') + b"]"
 _IN_PRINTED_QUOTES = _DOUBLE + rb"(?>[^\n]*?" + _DOUBLE + b")"
 _FLAGS = re.IGNORECASE | re.MULTILINE
 #: The line before a program of an archive: %_N_SHAFT_MPF. The character before the name is _ or %.
-_HEAD = re.compile(rb"[ \t\0]*+%[ \t]*+(?:_N_)?([A-Z0-9_]{1,32}?)_(?:MPF|SPF)[ \t\r\0]*+\Z")
+_HEAD = lazy_pattern(rb"[ \t\0]*+%[ \t]*+(?:_N_)?([A-Z0-9_]{1,32}?)_(?:MPF|SPF)[ \t\r\0]*+\Z")
 
 
 def extract_statements(code: Bytes, language: str) -> Extracted:

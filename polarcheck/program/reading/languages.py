@@ -12,10 +12,12 @@ import re
 
 import msgspec
 
+from polarcheck.foundation.patterns import lazy_pattern
+
 #: How much of a file is examined: other languages show near the head; preview pictures of slicers are shorter.
 _LOOKED_AT = 100_000
-_COMMENT = re.compile(rb"\([^)\n]*+\)?")
-_REMARK = re.compile(rb";[^\n]*+")
+_COMMENT = lazy_pattern(rb"\([^)\n]*+\)?")
+_REMARK = lazy_pattern(rb";[^\n]*+")
 _LINE = rb"^[ \t]*+(?:/?[ \t]*+N?\d++[ \t]++)?"
 
 

@@ -12,6 +12,7 @@ import re
 import numpy as np
 
 from polarcheck.foundation.arrays import different
+from polarcheck.foundation.patterns import lazy_pattern
 from polarcheck.program.reading.source import DASH, LF, Bytes, Positions
 
 _SEMICOLON, _SMALL = ord(";"), 0x20
@@ -33,20 +34,20 @@ _SIGN = rb"[-+\x96]"
 _NUMBER = rb"[-+\x96.\s]*+\d[-+\x96.\d\s]*+"
 _HEAD = rb"\s*+(?:/\s*+\d?+\s*+)*+(?:N\s*+\d++\s*+(?:/\s*+\d?+\s*+)*+)?+"
 #: An address with a number in which letters stand; an I with a number of its own is an address.
-_WORD = re.compile(
+_WORD = lazy_pattern(
     rb"([A-Z:])(" + _SIGN + rb"?(?:[OI]++|[\d.])(?:[\d.O]|I(?!\s*+(?:" + _SIGN + rb"|\.?[\dO])))*+)", re.IGNORECASE
 )
 #: A block in which every address has digits.
-_BLOCK = re.compile(rb"\s*+(?:/\s*+\d?+\s*+|(?:,?[A-Z]|:)" + _NUMBER + rb")*+[*$!&\s]*+", re.IGNORECASE)
+_BLOCK = lazy_pattern(rb"\s*+(?:/\s*+\d?+\s*+|(?:,?[A-Z]|:)" + _NUMBER + rb")*+[*$!&\s]*+", re.IGNORECASE)
 #: Macro statements.
-_OTHER = re.compile(
+_OTHER = lazy_pattern(
     rb".*?(?:[#\[\]=]|G\s*+O\s*+T\s*+O)|" + _HEAD + rb"(?:D\s*+O\s*+\d|G\s*+O\s*+\d++\s*+\Z)",
     re.IGNORECASE | re.DOTALL,
 )
-_PROGRAM_AFTER_NUMBER = re.compile(_HEAD + rb"[O:]\d++\s*+", re.IGNORECASE)
-_NUMBERED_WORD = re.compile(rb"[A-Z]\s*+" + _SIGN + rb"?+(?:\d|\.\d)", re.IGNORECASE)
+_PROGRAM_AFTER_NUMBER = lazy_pattern(_HEAD + rb"[O:]\d++\s*+", re.IGNORECASE)
+_NUMBERED_WORD = lazy_pattern(rb"[A-Z]\s*+" + _SIGN + rb"?+(?:\d|\.\d)", re.IGNORECASE)
 #: A program number behind the end of the program before it, and the offset number of old mills, T1O1.
-_OTHER_O = re.compile(rb"M0*+(?:2|30|99)O\d{4,8}|T\d++O\d++", re.IGNORECASE)
+_OTHER_O = lazy_pattern(rb"M0*+(?:2|30|99)O\d{4,8}|T\d++O\d++", re.IGNORECASE)
 #: Addresses of which a word may be letters alone, as XO; the second where another word of the block has digits; the
 #: third with a letter right behind, as in G1 XOZ5., which POS1 and LOT5 are not.
 _OF_ZERO, _OF_ZERO_BESIDE, _OF_ZERO_BEFORE_LETTER = b"MXYZCUW", b"MXYZABCUVWIJKRFSHDPQE", b"XYZCUW"

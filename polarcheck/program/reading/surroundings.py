@@ -15,6 +15,7 @@ import msgspec
 import numpy as np
 
 from polarcheck.foundation.arrays import Mask, Table, is_among
+from polarcheck.foundation.patterns import lazy_pattern
 from polarcheck.program.reading.source import CR, LF, Bytes, Positions
 
 BLANKS = bytes(character for character in (*range(33), 0x7F, 0xA0) if character != LF)
@@ -28,11 +29,11 @@ _NAME_LENGTH = 32
 _MARK_LIMIT = 10_000
 
 _BLANK = rb"[\0-\x09\x0b-\x20\x7f]*+"
-_PROGRAM_HEAD = re.compile(rb"\n" + _BLANK + rb"(?:[O:]" + _BLANK + rb"\d|O?<)", re.IGNORECASE)
-_BLOCK_HEAD = re.compile(
+_PROGRAM_HEAD = lazy_pattern(rb"\n" + _BLANK + rb"(?:[O:]" + _BLANK + rb"\d|O?<)", re.IGNORECASE)
+_BLOCK_HEAD = lazy_pattern(
     rb"\n" + _BLANK + rb"(?:N[\d ]++)?+(?:/\d?)?+" + _BLANK + rb"[GMTXZ][ \t]*+[-+.]?\d", re.IGNORECASE
 )
-_READS_AS_BLOCKS = re.compile(
+_READS_AS_BLOCKS = lazy_pattern(
     rb"(?:[\s;/]*+[A-Z]\s*+[-+]?(?:\d++\.?+\d*+|\.\d++|[#\[][-+*/#\[\]\w.]*+))*+[\s;]*+", re.IGNORECASE
 )
 

@@ -9,10 +9,11 @@ from collections.abc import Callable, Collection, Mapping
 import numpy as np
 from msgspec.structs import replace
 
+from polarcheck.foundation.patterns import lazy_pattern
 from polarcheck.program.machines.code_lists import is_code
 from polarcheck.program.reading.source import Positions, Source
 
-_BLANKS = re.compile(rb"[ \t]+")
+_BLANKS = lazy_pattern(rb"[ \t]+")
 
 
 def translated(source: Source, native_words: Mapping[str, str], language: str = "custom-macro") -> Source:

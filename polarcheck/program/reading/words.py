@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from functools import cached_property
 from typing import Any
 
@@ -11,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from polarcheck.foundation.arrays import Floats, Mask, Table, is_among
+from polarcheck.foundation.patterns import lazy_pattern
 from polarcheck.program.reading.characters import KINDS, Character
 from polarcheck.program.reading.language_blocks import extract_statements
 from polarcheck.program.reading.letters import read_as_digits
@@ -239,11 +239,11 @@ def _is_reported(table: _Piece, code: Bytes, is_macro: Mask, starts: Positions) 
     return np.asarray(reported)
 
 
-_DECIMAL_COMMA = re.compile(rb"(?<=[0-9]),(?=[0-9])")
+_DECIMAL_COMMA = lazy_pattern(rb"(?<=[0-9]),(?=[0-9])")
 #: Size of the pieces of a text that are read at once [characters]: they fit into the cache, which is faster.
 _PIECE = 1 << 18
 #: Where a longer line may be cut: before a word, but not before a corner word (,C ,R ,A).
-_CUT = re.compile(rb"[\nBD-QS-Zbd-qs-z]|(?<=[A-Za-z0-9.])[ACRacr]")
+_CUT = lazy_pattern(rb"[\nBD-QS-Zbd-qs-z]|(?<=[A-Za-z0-9.])[ACRacr]")
 
 
 class _Piece(msgspec.Struct, frozen=True):
@@ -451,7 +451,7 @@ def _mark_alignment(words: Words, code: Bytes) -> None:
     words.address[heads[words.block[heads + 1] == words.block[heads]]] = ord("N")
 
 
-_BLANK_INSIDE = re.compile(rb"(?<=[0-9.])[ \t]++(?=[0-9.])")
+_BLANK_INSIDE = lazy_pattern(rb"(?<=[0-9.])[ \t]++(?=[0-9.])")
 
 
 def _mark_blanks(words: Words, code: Bytes) -> None:

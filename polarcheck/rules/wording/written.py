@@ -8,7 +8,6 @@ from polarcheck.foundation.arrays import stretch
 from polarcheck.program.execution.run import Run
 from polarcheck.program.machines.code_tables import code_numbers, spelled
 from polarcheck.program.machines.machine import Machine
-from polarcheck.program.machines.own_language import shown
 from polarcheck.program.reading.excerpt import shortened
 from polarcheck.program.reading.words import Text
 from polarcheck.rules.places import Place, block_in_line, squeezed
@@ -70,20 +69,26 @@ def point(trace: Trace, place: complex, row: int) -> str:
 
 def switch(blocks: ExecutedBlocks, machine: Machine, row: int) -> str:
     """The code in this row that switches the polar mode on or off, as in G12.1 or G113."""
-    return shown(machine.control.native_words, _switch(blocks, machine, row))
+    return _shown(machine, _switch(blocks, machine, row))
 
 
 def switch_off(blocks: ExecutedBlocks, machine: Machine, row: int) -> str:
     """The code that ends the mode which the code in this row begins: G113 for G112."""
     polar = machine.polar
     code = dict(zip(polar.on, polar.off, strict=False)).get(_switch(blocks, machine, row), polar.off[0])
-    return shown(machine.control.native_words, code)
+    return _shown(machine, code)
 
 
 def switch_on(blocks: ExecutedBlocks, machine: Machine, row: int) -> str:
     """The code that begins the mode which the code in this row ends: G112 for G113."""
     polar = machine.polar
     code = dict(zip(polar.off, polar.on, strict=False)).get(_switch(blocks, machine, row), polar.on[0])
+    return _shown(machine, code)
+
+
+def _shown(machine: Machine, code: str) -> str:
+    from polarcheck.program.machines.own_language import shown  # asked for by messages alone
+
     return shown(machine.control.native_words, code)
 
 
