@@ -621,3 +621,23 @@ def test_a_machine_without_feed_per_minute_is_told_in_words() -> None:
     changes = {"g_code_system_a": {"feed_per_minute": []}}
     told = [found.message for found in report_of(program, "fanuc", changes=changes, only=["feed"]).findings]
     assert any("feed per minute" in message for message in told)
+
+
+def test_a_profile_is_parsed_once_and_anew_when_it_has_changed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "lathe.toml"
+    path.write_text("[limits]\nc_feed = 36\n")
+    read = profiles._built_in.__wrapped__
+    monkeypatch.setattr("sys.dont_write_bytecode", True)
+    assert read(path) == {"limits": {"c_feed": 36}}
+    assert [*tmp_path.iterdir()] == [path]
+    monkeypatch.setattr("sys.dont_write_bytecode", False)
+    assert read(path) == {"limits": {"c_feed": 36}}
+    (kept,) = tmp_path.rglob("*.msgpack")
+    assert [*kept.parent.iterdir()] == [kept]
+    with monkeypatch.context() as patch:
+        patch.setattr("tomllib.loads", lambda text: pytest.fail("parsed again"))
+        assert read(path) == {"limits": {"c_feed": 36}}
+    path.write_text("[limits]\nc_feed = 37\n")
+    assert read(path) == {"limits": {"c_feed": 37}}
+    kept.write_bytes(kept.read_bytes()[:-3])
+    assert read(path) == {"limits": {"c_feed": 37}}
