@@ -258,7 +258,7 @@ LATE = (
     *("polarcheck.program.execution.macro", "polarcheck.view", "polarcheck.rewrite.fixes", "polarcheck.editor"),
 )
 #: Modules of the package beside those of rules, of which each takes a third of a millisecond: 232 are what the path of
-#: a program with one compensated contour goes through, and a few more may come. Tests run without the cache (4 more).
+#: a program with one compensated contour goes through, and a few more may come. Tests run without the cache (2 more).
 MODULES_OF_A_SMALL_CHECK = 238
 
 

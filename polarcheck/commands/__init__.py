@@ -27,6 +27,7 @@ from polarcheck.commands.output import (
     say,
     say_lines,
 )
+from polarcheck.files.cache import repeats
 from polarcheck.foundation import ending, record
 from polarcheck.foundation.errors import PolarcheckError, RuleError
 from polarcheck.foundation.memory import keep_room_for_numpy
@@ -139,7 +140,7 @@ class Commands(click.Group):
     def invoke(self, ctx: click.Context) -> Any:
         """Run a command; an unexpected exception is a bug of polarcheck, never a finding."""
         try:
-            with record.recorded():
+            with record.recorded(has_states=repeats.is_noting()):
                 return super().invoke(ctx)
         except (click.ClickException, click.Abort, click.exceptions.Exit):
             raise

@@ -44,6 +44,8 @@ _OF_OUTPUT = (
 _FORMATS = formats()
 #: The formats that count what the walks did not read; for others standard error does.
 _WITH_SUMMARY = ("text", "short", "github", "json", "jsonl")
+#: The formats that name files as the command line does, whatever repository they are in.
+_OF_FILES = ("text", "short", "concise", "json", "jsonl")
 
 
 @click.command
@@ -283,7 +285,16 @@ def _check(arguments: _Arguments, seen: watching.Seen | None) -> int:
     live_report.end(report, checked.lines)
     if not arguments.quiet:
         _warn_of_the_rest(form, report)
+    if checked.stopped is None and baselines is None and cache is not None and _prints_alone(arguments, form, seen):
+        cache.keep_run(arguments.paths, status)
     return status
+
+
+def _prints_alone(arguments: _Arguments, form: str, seen: watching.Seen | None) -> bool:
+    """Return True if a run does no more than print a report that rests on files, and on nothing of git."""
+    writes = arguments.outputs or arguments.fixes.fix or arguments.fixes.diff or arguments.cluster
+    is_narrowed = arguments.diff_base is not None or arguments.changed is not None or seen is not None
+    return form in _OF_FILES and not writes and not is_narrowed
 
 
 def _options(arguments: _Arguments) -> Options:

@@ -11,6 +11,7 @@ from typing import TextIO
 
 import click
 
+from polarcheck.files.cache import repeats
 from polarcheck.foundation.errors import OutputError
 
 ON_WINDOWS = os.name == "nt"
@@ -38,6 +39,7 @@ def show(text: str | bytes, color: bool | None = None, to_error: bool = False) -
         from polarcheck.program.reading.excerpt import without_commands
 
         text = without_commands(text)
+    repeats.note(text, to_error=to_error)
     if to_error:
         with contextlib.suppress(OSError, ValueError):
             click.echo(text, nl=False, err=True, color=color)
@@ -51,6 +53,7 @@ def show(text: str | bytes, color: bool | None = None, to_error: bool = False) -
         click.echo(text, nl=False, color=color)
         sys.stdout.flush()
     except OSError as error:
+        repeats.drop()
         abandon_output()
         if nobody_reads(error):
             return False
@@ -122,6 +125,7 @@ def _write_error(line: str) -> None:
     text = without_commands(visible(line))
     if len(text) > _LONGEST:
         text = f"{text[:_HEAD]} ... {text[-_TAIL:]}"
+    repeats.note(f"{text}\n", to_error=True)
     # If standard error is closed, only the exit code reports the error.
     with contextlib.suppress(OSError, ValueError):
         click.echo(text, err=True)

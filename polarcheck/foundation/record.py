@@ -120,6 +120,21 @@ def recorded(*, has_states: bool = False) -> Iterator[Record]:
             outer.include(record)
 
 
+@contextlib.contextmanager
+def unrecorded() -> Iterator[None]:
+    """Record nothing of what the code inside reads."""
+    token = _RECORD.set(None)
+    try:
+        yield
+    finally:
+        _RECORD.reset(token)
+
+
+def current() -> Record | None:
+    """Return the record of the code around the call; None if nothing is recorded."""
+    return _RECORD.get()
+
+
 def note(*paths: Path_) -> None:
     """Record files or folders; call it before they are looked for."""
     record = _RECORD.get()

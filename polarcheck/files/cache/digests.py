@@ -1,16 +1,12 @@
-"""Digests of what an outcome depends on: the code, the settings of a program, its content."""
+"""Digests of the settings with which a program is judged."""
 
 from __future__ import annotations
 
 import enum
-import os
 import re
 import struct
-import sys
 from collections.abc import Iterator, Mapping, Sequence, Set
-from functools import cache
 from hashlib import blake2b
-from importlib.util import find_spec
 from pathlib import Path
 from types import FunctionType
 from typing import Any
@@ -18,47 +14,16 @@ from typing import Any
 import msgspec
 
 from polarcheck.checking.settings import Settings
-from polarcheck.foundation.version import __version__
 from polarcheck.rules.rule import Rule
 
 #: Bytes of a digest.
 SIZE = 16
 #: Fields of Settings that say where values come from; the values themselves stand in the other fields.
 _PLACES = ("read", "job_file", "baseline_named_by")
-#: Libraries that compute results.
-_LIBRARIES = ("numpy", "shapely", "msgspec")
-_FOLDER = Path(__file__).parents[2]
 
 
 class NoDigestError(Exception):
     """Raised for a value of a type without a digest; what depends on it is not cached."""
-
-
-@cache
-def of_code() -> bytes:
-    """Return the digest of the program that judges: version, size and time of each of its files, libraries, Python."""
-    digest = blake2b(digest_size=SIZE // 2)
-    for part in (__version__, sys.version, sys.platform, *sorted(_states(str(_FOLDER)))):
-        digest.update(part.encode("utf-8", "surrogatepass") + b"\0")
-    for name in _LIBRARIES:
-        spec = find_spec(name)
-        if spec is not None and spec.origin:
-            status = Path(spec.origin).stat()
-            digest.update(
-                f"{name} {spec.origin} {status.st_size} {status.st_mtime_ns}\0".encode("utf-8", "surrogatepass")
-            )
-    return digest.digest()
-
-
-def _states(folder: str) -> Iterator[str]:
-    """Yield a text for each source file below a folder: its path, size and time."""
-    with os.scandir(folder) as entries:
-        for entry in entries:
-            if entry.name.endswith((".py", ".toml", ".so", ".pyd")):
-                status = entry.stat()
-                yield f"{entry.path} {status.st_size} {status.st_mtime_ns}"
-            elif "." not in entry.name and entry.name != "__pycache__" and entry.is_dir():
-                yield from _states(entry.path)
 
 
 def of_settings(settings: Settings) -> bytes:

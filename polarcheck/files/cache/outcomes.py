@@ -13,7 +13,8 @@ import msgspec
 
 from polarcheck.checking.settings import Settings
 from polarcheck.files.batch.tasks import Basis, Outcome, Task
-from polarcheck.files.cache import digests
+from polarcheck.files.cache import digests, repeats
+from polarcheck.files.cache.code_digest import code_digest
 from polarcheck.files.cache.store import NAME, Store, folder_key, user_key
 from polarcheck.foundation import record
 from polarcheck.foundation.bounded import read_file
@@ -55,6 +56,8 @@ class Cache:
 
     def __init__(self, most: int, folder: str | None = None) -> None:
         """most: bytes of a program. folder: of the cache, instead of one beside each job file."""
+        #: True while each outcome comes from the cache, or has gone into it.
+        self._is_whole = True
         self._most = most
         self._folder = folder
         self._key = user_key() if folder is None else folder_key(folder)
@@ -73,6 +76,7 @@ class Cache:
 
     def _merged(self, tasks: Sequence[Task], check: Check) -> Generator[Outcome, None, None]:
         if self._key is None:
+            self._is_whole = False
             with check(tasks) as fresh:
                 yield from fresh
             return
@@ -88,9 +92,20 @@ class Cache:
                     # After an interrupt the outcomes that are finished come without those that are missing.
                     if slot is not None and outcome.report is not None and outcome.report.path == task.title:
                         self._keep(outcome, *slot)
+                    else:
+                        self._is_whole = False
                     yield outcome
             finally:
                 self._write(-1)
+
+    def keep_run(self, paths: Sequence[str], status: int) -> None:
+        """
+        Let the run that ends now be repeated, if each of its outcomes is in the cache.
+
+        paths: the arguments of the command line. status: the exit code.
+        """
+        if self._is_whole and all(map(os.path.isfile, paths)):
+            repeats.keep(status)
 
     def _slot(self, task: Task) -> tuple[Store, bytes] | None:
         """Return where the outcome of a task is kept; None for standard input, pipes and settings without a digest."""
@@ -123,7 +138,7 @@ class Cache:
             folder = os.path.join(parent, NAME)  # noqa: PTH118
         if folder not in self._stores:
             assert self._key is not None
-            self._stores[folder] = Store(folder, digests.of_code(), self._key, links=self._folder is not None)
+            self._stores[folder] = Store(folder, code_digest(), self._key, links=self._folder is not None)
         return self._stores[folder]
 
     def _known(self, task: Task, store: Store, digest: bytes) -> bytes | None:
@@ -150,7 +165,9 @@ class Cache:
 
     def _keep(self, outcome: Outcome, store: Store, digest: bytes) -> None:
         data = _encoded(outcome)
-        if data is not None:
+        if data is None:
+            self._is_whole = False
+        else:
             store.put(digest, data)
             self._write(_AT_A_TIME)
 

@@ -16,10 +16,7 @@ import sys
 from hashlib import blake2b
 from pathlib import Path
 
-import msgspec
-
-from polarcheck.foundation import bounded
-from polarcheck.foundation.decoding import msgpack_decoder
+from polarcheck.foundation import bounded, record
 
 NAME = ".polarcheck_cache"
 #: The largest file, of 256; entries that have not been used for the longest time go first [bytes].
@@ -27,7 +24,9 @@ LARGEST = 1_000_000
 _SEAL, _KEY = 32, 32
 _KEY_NAME = "cache-key"
 _IS_VERSION = re.compile(r"[0-9a-f]{16}")
-_IS_SHARD = re.compile(r"[0-9a-f]{2}\.cache|\.[0-9a-f]{16}\.new")
+#: The largest run that can be repeated, of 256 [bytes].
+LARGEST_RUN = 200_000
+_IS_SHARD = re.compile(r"(run)?[0-9a-f]{2}\.cache|\.[0-9a-f]{16}\.new")
 _TAG = (
     "Signature: 8a477f597d28d172789f06886806bc55\n"
     "# This folder is a cache of polarcheck, and can be deleted. For information about cache directory tags see:\n"
@@ -79,6 +78,8 @@ class Store:
 
     def write(self) -> None:
         """Write the new entries beside those that other processes have written meanwhile; mend the folder."""
+        import msgspec  # a run that is repeated does without
+
         new, self._new = self._new, {}
         with contextlib.suppress(OSError):
             if not new and os.path.isdir(self._root):  # noqa: PTH112
@@ -88,8 +89,26 @@ class Store:
                     return
                 merged = self._merged(shard, entries)
                 self._shards[shard] = merged
-                data = msgspec.msgpack.encode(merged)
-                _replace(self._path(shard), self._seal(shard, data) + data)
+                self._write_sealed(shard, msgspec.msgpack.encode(merged))
+
+    @property
+    def has_entries(self) -> bool:
+        """Return True if this version of the code has written something here."""
+        return self._is_own_folder()
+
+    def run(self, digest: bytes) -> bytes | None:
+        """Return the bytes of a whole run; None if there are none."""
+        with contextlib.suppress(OSError, ValueError):
+            data = self._sealed(f"run{_shard(digest)}", LARGEST_RUN + len(digest))
+            if data.startswith(digest):
+                return data[len(digest) :]
+        return None
+
+    def put_run(self, digest: bytes, data: bytes) -> None:
+        """Write the bytes of a whole run, in the place of another one whose digest begins with the same byte."""
+        if len(data) < LARGEST_RUN:
+            with contextlib.suppress(OSError):
+                self._write_sealed(f"run{_shard(digest)}", digest + data)
 
     def _merged(self, shard: str, new: Entries) -> Entries:
         """Return the entries of a file: the new ones, those that this run has used, then the others while they fit."""
@@ -107,25 +126,34 @@ class Store:
         return dict(reversed(merged.items()))
 
     def _read(self, shard: str) -> Entries:
+        from polarcheck.foundation.decoding import msgpack_decoder
+
         try:
-            if not self._is_own_folder():
-                return {}
-            data = bounded.read_file(self._path(shard), 2 * LARGEST, "")
-            if data[:_SEAL] != self._seal(shard, data[_SEAL:]):
-                return {}
-            return msgpack_decoder(Entries).decode(data[_SEAL:])
+            return msgpack_decoder(Entries).decode(self._sealed(shard, 2 * LARGEST))
         except (OSError, ValueError):  # a ValueError is that of msgspec, too
             return {}
+
+    def _sealed(self, name: str, limit: int) -> bytes:
+        """Return the content of a file; raises OSError or ValueError if there is none, or its seal is broken."""
+        if not self._is_own_folder():
+            raise ValueError("another folder")
+        data = _read_file(self._path(name), _SEAL + limit)
+        if data[:_SEAL] != self._seal(name, data[_SEAL:]):
+            raise ValueError("another seal")
+        return data[_SEAL:]
+
+    def _write_sealed(self, name: str, data: bytes) -> None:
+        _replace(self._path(name), self._seal(name, data) + data)
 
     def _is_own_folder(self) -> bool:
         """Return False if the folder, or that of the version in it, is a link: it may lead anywhere."""
         return (self._links or _is_folder(self._root)) and _is_folder(self._folder)
 
-    def _path(self, shard: str) -> str:
-        return os.path.join(self._folder, f"{shard}.cache")  # noqa: PTH118
+    def _path(self, name: str) -> str:
+        return os.path.join(self._folder, f"{name}.cache")  # noqa: PTH118
 
-    def _seal(self, shard: str, data: bytes) -> bytes:
-        return blake2b(data, digest_size=_SEAL, key=self._key, person=self._version + shard.encode()).digest()
+    def _seal(self, name: str, data: bytes) -> bytes:
+        return blake2b(data, digest_size=_SEAL, key=self._key, person=self._version + name.encode()).digest()
 
     def _prepared(self) -> bool:
         """Make the folders; return False if they cannot be used."""
@@ -172,6 +200,12 @@ def _shard(digest: bytes) -> str:
     return digest[:1].hex()
 
 
+def _read_file(path: str, limit: int) -> bytes:
+    """Return the content of a file of the cache, on which no report depends. Raises OSError."""
+    with record.unrecorded():
+        return bounded.read_file(path, limit, "")
+
+
 def _is_folder(path: str) -> bool:
     try:
         return stat.S_ISDIR(os.lstat(path).st_mode)
@@ -202,7 +236,7 @@ def _content(path: str) -> bytes:
     """Return the content of a small file; empty for a link and for what cannot be read."""
     with contextlib.suppress(OSError):
         if not os.path.islink(path):  # noqa: PTH114
-            return bounded.read_file(path, len(_TAG), "")
+            return _read_file(path, len(_TAG))
     return b""
 
 
@@ -250,5 +284,5 @@ def _read_key(path: str) -> bytes:
     """Return the key in a file; empty if there is none. Raises OSError for what is no file."""
     if not os.path.lexists(path):
         return b""
-    key = bounded.read_file(path, _KEY, "")
+    key = _read_file(path, _KEY)
     return key if len(key) == _KEY else b""
