@@ -245,9 +245,9 @@ class Tables(dict[str, Any]):
         """Add a table that was made elsewhere."""
         self[name] = table
 
-    def may_hold(self, names: Iterable[str]) -> bool:
+    def may_hold(self, names: tuple[str, ...]) -> bool:
         """Return False where one of these tables holds nothing since the program has nothing that it is about."""
-        return all(self._has[what] for name in names if name in TABLES for what in TABLES[name].only_with)
+        return all(self._has[what] for what in _only_with(names))
 
     # `cached_property` and `is_among` of arrays would load NumPy, which `explain` and `rules` do without.
     @functools.cached_property
@@ -266,6 +266,12 @@ class Tables(dict[str, Any]):
     def computed(self) -> Iterator[tuple[str, Any]]:
         """The tables computed so far, by name."""
         return iter(self.items())
+
+
+@functools.cache
+def _only_with(names: tuple[str, ...]) -> tuple[str, ...]:
+    """Return what a program needs so that each of these tables holds something."""
+    return tuple({what for name in names if name in TABLES for what in TABLES[name].only_with})
 
 
 def of_contours(names: Iterable[str]) -> bool:

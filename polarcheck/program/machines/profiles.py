@@ -90,6 +90,18 @@ def load(
     """
     over = [("the command line or job", changes)] if isinstance(changes, Mapping) else changes or []
     over = [(title, table) for title, table in over if table]
+    if not over and contents is None and name in names():
+        return _built_in_profile(name)
+    return _load(name, over, contents)
+
+
+@functools.cache
+def _built_in_profile(name: str) -> Profile:
+    """Return a built-in machine as it is; nobody changes it."""
+    return _load(name, [], None)
+
+
+def _load(name: str, over: list[Change], contents: dict[str, Any] | None) -> Profile:
     tables: list[tuple[str, dict[str, Any]]] = []
     requested: str | None = name
     folder = Path()
