@@ -22,8 +22,9 @@ if TYPE_CHECKING:
     from polarcheck.checking.settings import Settings
     from polarcheck.editor.analysis import Analysis, SettingsOf
 
-#: The least and the most pause after the last key before a check begins; in between, the time of the last check [s].
-_PAUSE, _LONGEST_PAUSE = 0.25, 2.0
+#: The least and the most pause after the last key before a check begins; in between, the time of the last check [s]:
+#: checks of a program that is typed take half of a processor at most.
+_PAUSE, _LONGEST_PAUSE = 0.03, 2.0
 
 Result = TypeVar("Result")
 
