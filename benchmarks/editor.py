@@ -22,6 +22,8 @@ from typing import Any
 
 Json = dict[str, Any]
 
+#: How the time from a change to its diagnostics is named.
+AFTER_A_KEY = "diagnostics after a key"
 #: Requests about a place: the method, and what stands in the line before the cursor is there.
 CURSOR = (
     ("textDocument/hover", ""),
@@ -126,7 +128,7 @@ def measured(blocks: int, rounds: int, folder: Path) -> dict[str, list[float]]:
                 begin = time.perf_counter()
                 change(client, uri, version, line, (0, 0), " ")
                 client.marks(version)
-                note("diagnostics after a key", begin)
+                note(AFTER_A_KEY, begin)
             client.ask("textDocument/hover", {**document, "position": {"line": 0, "character": 0}})
     return times
 

@@ -26,6 +26,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import NamedTuple
 
+import editor
 from contour_costs import CASES, Cost, cost
 from measuring import ROOT, SLOW, SLOW_ROUNDS, Taken, apart, exponent, measured, output, ratio, run, table
 from peer_faults import FAULTS, GOOD, TOOL
@@ -49,6 +50,10 @@ _BLOCKS_OF_COMMANDS, _LETTERS = 20_000, 12_000_000
 #: Limits of a contour [s], [GB].
 _LIMITS = 120, 8
 _REGEX = "a bare regex"
+#: Copies of a sample program, and blocks of the program that is typed.
+_SAMPLES, _KEY_BLOCKS = 600, 500
+#: Lets a command use the results of earlier runs, which the others do not.
+_WITH_CACHE = ("env", "-u", "POLARCHECK_NO_CACHE")
 
 REGEX = "import re, sys; re.findall(rb'([A-Z])([-+]?[0-9.]+)', open(sys.argv[1], 'rb').read())"
 INTERPRETER = "import sys, nc_gcode_interpreter as n; n.nc_to_dataframe(open(sys.argv[1]).read())"
@@ -174,7 +179,7 @@ def _row(name: str, peer: Peer, taken: dict[str, Taken], size: int) -> list[str]
 
 
 def small(asked: argparse.Namespace, folder: Path) -> str:
-    """A small file, and what a commit hook checks, on the clock."""
+    """Small files, the same file again from the cache, what a commit hook checks, and an editor, on the clock."""
     program = str(ROOT / "sample_programs" / "hexagon.nc")
     changed = []
     for number in range(20):
@@ -185,9 +190,13 @@ def small(asked: argparse.Namespace, folder: Path) -> str:
         "polarcheck, a sample program": [program],
         "polarcheck, a program of 500 blocks": [str(changed[0])],
         "polarcheck, 20 programs of 500 blocks": [*map(str, changed)],
+        f"polarcheck, {_SAMPLES} sample programs in one process": ["--jobs", "1", *samples(folder, program)],
     }
+    again = [*_WITH_CACHE, *CHECK_FILES[:-1], "--cache-dir", str(folder / "cache"), program]
     commands = {"`import click, numpy`": [sys.executable, "-c", "import click, numpy"]}
     commands |= {name: [*CHECK_FILES, *files] for name, files in inputs_of.items()}
+    commands["polarcheck, a sample program again, with its report"] = again
+    run(again)
     if asked.before:
         older = by_older(asked.before, CHECK_FILES)
         commands |= {name + BEFORE: [*older, *files] for name, files in inputs_of.items()}
@@ -197,7 +206,19 @@ def small(asked: argparse.Namespace, folder: Path) -> str:
         [name, f"{found.clock * 1000:.0f}", *(f"{ratio(found.clocks, other.clocks):.2f}" for other in (base, one))]
         for name, found in taken.items()
     ]
+    key = editor.measured(_KEY_BLOCKS, 4 * asked.rounds, folder)[editor.AFTER_A_KEY]
+    clock = statistics.median(key)
+    to_both = (f"{clock / 1000 / other.clock:.2f}" for other in (base, one))
+    rows.append([f"{editor.AFTER_A_KEY}, a program of {_KEY_BLOCKS} blocks in an editor", f"{clock:.0f}", *to_both])
     return table(["command", "clock ms", "to the import", "to one program"], rows)
+
+
+def samples(folder: Path, program: str) -> list[str]:
+    """Copies of a sample program."""
+    paths = [folder / f"sample_{number}.nc" for number in range(_SAMPLES)]
+    for path in paths:
+        shutil.copyfile(program, path)
+    return [*map(str, paths)]
 
 
 def many(asked: argparse.Namespace, folder: Path) -> str:

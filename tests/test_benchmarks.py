@@ -111,6 +111,7 @@ def test_the_page_is_written_without_any_peer(tmp_path: Path, monkeypatch: pytes
     monkeypatch.setattr(peers, "FAULTS", dict([next(iter(FAULTS.items()))]))
     monkeypatch.setattr(peers, "CASES", {"hexagon": peers.CASES["hexagon"]})
     monkeypatch.setattr(peers, "_MANY", 2)
+    monkeypatch.setattr(peers, "_SAMPLES", 2)
     monkeypatch.setattr(peers, "_BLOCKS_OF_MANY", 1000)
     page = tmp_path / "page.md"
     monkeypatch.setattr(sys, "argv", ["peers", "--blocks", "1000", "--rounds", "1", "--quick", "-o", str(page)])
