@@ -16,7 +16,7 @@ from polarcheck.columns.modes.sections import Sections
 from polarcheck.columns.path.center import Center
 from polarcheck.columns.path.ramps import Ramps
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Floats, Mask, Rows
+from polarcheck.foundation.arrays import Floats, Mask, Rows, mask_at
 from polarcheck.foundation.errors import TooHardError
 from polarcheck.foundation.finding import FileReport, KnownStock, PolarSection
 from polarcheck.foundation.states import Units
@@ -188,8 +188,7 @@ def _written(text: Text) -> Iterator[str]:
     """Yield the G and M codes of a text, each once."""
     for letter in "GM":
         numbers = code_numbers(text.words.value[text.words.address == ord(letter)])
-        present = np.zeros(CODE_LIMIT + 1, bool)
-        present[numbers] = True
+        present = mask_at(CODE_LIMIT + 1, numbers)
         yield from (f"{letter}{number / 10:g}" for number in present[:-1].nonzero()[0].tolist())
 
 

@@ -118,6 +118,24 @@ def stretch(column: NDArray[np.signedinteger[Any]], first: int, end: int) -> tup
     return low, high
 
 
+def mask_at(count: int, places: NDArray[Any] | Sequence[int]) -> Mask:
+    """Return a mask of so many elements that is True at some places, given by number or as a mask."""
+    mask = np.zeros(count, bool)
+    mask[places] = True
+    return mask
+
+
+def column_at(count: int, places: NDArray[Any] | Sequence[int], values: Any, remaining: complex) -> NDArray[Any]:
+    """
+    Return a column of so many elements with these values at some places, given by number or as a mask.
+
+    remaining: the value elsewhere; its type is that of the column.
+    """
+    column = np.full(count, remaining)
+    column[places] = values
+    return column
+
+
 # np.unique and, for some arguments, np.isin import numpy.ma, 10 % of the time of a small check.
 
 
@@ -151,8 +169,6 @@ def is_among(values: NDArray[Any], choices: Sequence[float | str]) -> Mask:
             matches |= values == (int(value) if isinstance(value, int) else value)
         return matches
     if values.dtype == np.uint8:
-        table = np.zeros(256, bool)
-        table[np.array(choices, np.intp)] = True
-        return np.asarray(table[values])
+        return np.asarray(mask_at(256, np.array(choices, np.intp))[values])
     ordered = np.sort(np.array(choices))
     return np.asarray(ordered[np.minimum(ordered.searchsorted(values), len(ordered) - 1)] == values)

@@ -9,7 +9,7 @@ from __future__ import annotations
 import msgspec
 import numpy as np
 
-from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, Table, ranges
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, Table, mask_at, ranges
 from polarcheck.geometry.segments import Curves, first_of_its_kind, segments
 from polarcheck.geometry.tolerances import TOUCH
 
@@ -246,6 +246,4 @@ def may_leave_strips(start: Points, end: Points, of: Rows, radius: Floats) -> Ma
     same = (axis[1:] == axis[:-1]) & (level[1:] == level[:-1])
     step, limit = np.diff(apart), radius[level[1:]]
     is_wide = same & (step > 2 * limit + WITNESS) & (step < _SLANT * 3 * limit)
-    result = np.zeros(len(radius), bool)
-    result[level[1:][is_wide]] = True
-    return result
+    return mask_at(len(radius), level[1:][is_wide])

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, Table, first_of_each, ranges
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, Table, first_of_each, mask_at, ranges
 from polarcheck.foundation.errors import TooHardError
 from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.plane_path import PlanePath
@@ -112,9 +112,7 @@ def first_of_its_kind(curves: Curves) -> Mask:
         key = (key + column.astype(np.int64).view(np.uint64)) * np.uint64(0x9E3779B97F4A7C15)
         key ^= key >> np.uint64(29)
     first, _ = first_of_each(key)
-    result = np.zeros(len(curves), bool)
-    result[first] = True
-    return result
+    return mask_at(len(curves), first)
 
 
 def boxes(curves: Curves, first: Rows) -> Floats:

@@ -16,7 +16,7 @@ from polarcheck.columns.metal.coverage import Coverage, Left
 from polarcheck.columns.metal.finished import Level
 from polarcheck.columns.path.moves import Moves
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Floats, Points, Rows
+from polarcheck.foundation.arrays import Floats, Points, Rows, mask_at
 from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.polygons import areas
 from polarcheck.geometry.polygons.faces import GRID
@@ -103,8 +103,7 @@ def _deepest(trace: Trace, cuts: CutsOfRows) -> CutsOfRows:
     ]
     order = order[np.lexsort((-cuts.depth[order], trace.mode.section[cuts.row[order]]))]
     section = trace.mode.section[cuts.row[order]]
-    is_chosen = np.zeros(len(cuts.row), bool)
-    is_chosen[order[np.arange(len(order)) - np.searchsorted(section, section) < MOST]] = True
+    is_chosen = mask_at(len(cuts.row), order[np.arange(len(order)) - np.searchsorted(section, section) < MOST])
     return cuts[is_chosen]
 
 

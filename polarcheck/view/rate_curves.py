@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, Table
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, Table, column_at
 from polarcheck.geometry import rates as of_moves
 from polarcheck.geometry.plane_path import SpacePath
 from polarcheck.view.drawn_moves import SectionMoves
@@ -74,8 +74,7 @@ def path_segments(table: SectionMoves, chosen: Rows) -> Segments:
     slowed = (of_path >= 0) & np.append(table.dynamics.is_slowed, False)[of_path]
     plain = chosen[~slowed & ~np.isnan(time[chosen])]
     # The number of the chosen move of each piece, -1 for other moves.
-    number = np.full(len(table.dynamics.moves) + 1, -1)
-    number[of_path] = chosen
+    number = column_at(len(table.dynamics.moves) + 1, of_path, chosen, -1)
     number[-1] = -1
     move = number[pieces.move]
     part = np.flatnonzero(move >= 0)

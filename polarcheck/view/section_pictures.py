@@ -14,7 +14,7 @@ import numpy as np
 from polarcheck.columns.contour.overcuts import curves_of
 from polarcheck.columns.path.moves import Moves
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Floats, Mask, Rows, States
+from polarcheck.foundation.arrays import Floats, Mask, Rows, States, mask_at
 from polarcheck.foundation.arrays import Points as PlanePoints
 from polarcheck.foundation.finding import PolarSection
 from polarcheck.foundation.states import MM_PER_INCH
@@ -198,9 +198,7 @@ def _side_of_x(moves: Moves, is_fixed: bool) -> int:
 
 
 def _mask(chosen: Rows, count: int) -> Mask:
-    mask = np.zeros(count, bool)
-    mask[chosen] = True
-    return mask
+    return mask_at(count, chosen)
 
 
 def _plane_points(moves: Moves, role: States) -> PlanePoints:

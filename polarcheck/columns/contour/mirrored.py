@@ -10,7 +10,7 @@ from polarcheck.columns.path.ramps import Ramps
 from polarcheck.columns.path.tool_center import OtherRadius, ToolCenter
 from polarcheck.columns.path.trial import Trial
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Columns, Mask, Rows, cached_property
+from polarcheck.foundation.arrays import Columns, Mask, Rows, cached_property, mask_at
 from polarcheck.foundation.time_limit import keep_time
 
 #: Share of R that is taken for a cutter that goes in everywhere.
@@ -39,8 +39,7 @@ class Mirrored(Columns, frozen=True):
 
     def _any(self, rows: Mask) -> Mask:
         """All rows of the loops with any of these rows."""
-        has_row = np.zeros(int(self._loop[-1]) + 1, bool)
-        has_row[self._loop[rows]] = True
+        has_row = mask_at(int(self._loop[-1]) + 1, self._loop[rows])
         return has_row[self._loop]
 
     @cached_property
@@ -87,8 +86,7 @@ class Mirrored(Columns, frozen=True):
         written = candidates & trace.compensation.writes_side
         # Blocks that run again, as of a subprogram, are right or wrong each time: a way to them is wrong here.
         blocks = trace.run.block
-        right = np.zeros(int(blocks.max()) + 1, bool)
-        right[blocks[trace.compensation.writes_side & ~candidates]] = True
+        right = mask_at(int(blocks.max()) + 1, blocks[trace.compensation.writes_side & ~candidates])
         return np.asarray(written & ~right[blocks])
 
     def _comes_out_at_both_ends(self, rows: Mask) -> Mask:

@@ -11,7 +11,17 @@ from polarcheck.columns.filling import before
 from polarcheck.columns.path.moves import Moves, programmed_moves
 from polarcheck.columns.path.tool_center import ToolCenter
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, Table, cached_property, different, repeated
+from polarcheck.foundation.arrays import (
+    Floats,
+    Mask,
+    Points,
+    Rows,
+    Table,
+    cached_property,
+    column_at,
+    different,
+    repeated,
+)
 from polarcheck.foundation.states import Side
 from polarcheck.geometry.cutter_compensation.offset_path import Phase
 from polarcheck.geometry.tolerances import ADJUSTMENT, ROUNDING
@@ -317,9 +327,7 @@ class Overcuts:
             moves_z[ramp] == moves_z[wall[ramp]],
             (z_of_ramp <= z_of_wall + ROUNDING) | (z_of_ramp < -ROUNDING),
         )
-        mask = np.zeros(len(trace), bool)
-        mask[ramp] = deep
-        return mask
+        return column_at(len(trace), ramp, deep, False)
 
     @cached_property
     def bar(self) -> float:

@@ -9,7 +9,7 @@ import numpy as np
 
 from polarcheck.columns.trace import Trace
 from polarcheck.columns.words.last_digit import half_of_last_digit, same_place
-from polarcheck.foundation.arrays import Floats, Mask, Points, Rows
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, column_at
 from polarcheck.foundation.states import Motion
 from polarcheck.geometry.plane import arc_sweep
 from polarcheck.geometry.regularity.rings import Ring, rings_in
@@ -138,9 +138,7 @@ def _as_long_as_another(length: Floats, stretch: Rows) -> Mask:
     """Blocks beside which their stretch has another one as long."""
     order = np.lexsort((length, stretch))
     near = (np.diff(length[order]) <= _AS_LONG) & (np.diff(stretch[order]) == 0)
-    alike = np.zeros(len(length), bool)
-    alike[order] = np.append(near, False) | np.append(False, near)
-    return alike
+    return column_at(len(length), order, np.append(near, False) | np.append(False, near), False)
 
 
 def _different(trace: Trace, rows: Rows, first: Rows, count: Rows) -> Iterator[PlaneLoop]:

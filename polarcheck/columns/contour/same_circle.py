@@ -10,7 +10,7 @@ from polarcheck.columns.contour.passes import Passes
 from polarcheck.columns.path.arcs import Arcs
 from polarcheck.columns.trace import Trace
 from polarcheck.columns.words.slips import plain_number, slip_of
-from polarcheck.foundation.arrays import Columns, Floats, Mask, Points, Rows, States, cached_property
+from polarcheck.foundation.arrays import Columns, Floats, Mask, Points, Rows, States, cached_property, column_at
 from polarcheck.foundation.states import Motion
 from polarcheck.geometry.plane import cross
 
@@ -69,8 +69,7 @@ class SameCircle(Columns, frozen=True):
         columns = np.column_stack([way.view(np.float64), passes.center[arcs].real, passes.center[arcs].imag])
         keys = np.column_stack([np.round(columns / _SAME), section[arcs]])
         order = np.lexsort(keys.T)
-        number = np.zeros(len(arcs), np.int64)
-        number[order[1:]] = np.cumsum(np.any(np.diff(keys[order], axis=0) != 0, axis=1))
+        number = column_at(len(arcs), order[1:], np.cumsum(np.any(np.diff(keys[order], axis=0) != 0, axis=1)), 0)
         count = int(number.max(initial=-1)) + 1
         runs = [np.bincount(number[is_back == back], minlength=count) > 0 for back in (False, True)]
         both[arcs] = (runs[0] & runs[1])[number]

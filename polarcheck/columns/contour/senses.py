@@ -7,7 +7,17 @@ import numpy as np
 from polarcheck.columns.path.arcs import Arcs
 from polarcheck.columns.trace import Trace
 from polarcheck.columns.words.last_digit import half_of_last_digit
-from polarcheck.foundation.arrays import Columns, Floats, Mask, Points, Rows, States, cached_property, is_among
+from polarcheck.foundation.arrays import (
+    Columns,
+    Floats,
+    Mask,
+    Points,
+    Rows,
+    States,
+    cached_property,
+    column_at,
+    is_among,
+)
 from polarcheck.foundation.states import Motion
 from polarcheck.geometry.plane import angle_between
 
@@ -132,9 +142,7 @@ class Senses(Columns, frozen=True):
     @cached_property
     def corner(self) -> Floats:
         """The smaller of the turns at the ends of an arc [deg]; NaN for other rows."""
-        column = np.full(len(self.trace), np.nan)
-        column[self._moving[self._arc]] = np.degrees(self._turns[1])
-        return column
+        return column_at(len(self.trace), self._moving[self._arc], np.degrees(self._turns[1]), np.nan)
 
 
 def _tangents(start: Points, end: Points, center: Points, motion: States) -> tuple[Points, Points]:

@@ -14,7 +14,7 @@ from polarcheck.columns.contour.same_circle import IntendedArcs, SameCircle
 from polarcheck.columns.path.arcs import Arcs
 from polarcheck.columns.trace import Trace
 from polarcheck.columns.words.slips import plain_number, slip_of
-from polarcheck.foundation.arrays import Columns, Floats, Mask, Points, Rows, cached_property, different
+from polarcheck.foundation.arrays import Columns, Floats, Mask, Points, Rows, cached_property, column_at, different
 from polarcheck.foundation.states import Motion, Units
 from polarcheck.geometry.plane import angle_between
 
@@ -226,9 +226,7 @@ class Tangency(Columns, frozen=True):
         return self._column(self._intended.move)
 
     def _of_meant(self, values: Floats) -> Floats:
-        column = np.full(len(self.trace), np.nan)
-        column[self.passes.row[self._intended.move]] = values
-        return column
+        return column_at(len(self.trace), self.passes.row[self._intended.move], values, np.nan)
 
     @cached_property
     def radius_needed(self) -> Floats:
@@ -238,9 +236,9 @@ class Tangency(Columns, frozen=True):
     @cached_property
     def center_needed(self) -> Points:
         """Its center [mm]."""
-        column = np.full(len(self.trace), complex("nan+nanj"))
-        column[self.passes.row[self._intended.move]] = self._intended.center
-        return column
+        return column_at(
+            len(self.trace), self.passes.row[self._intended.move], self._intended.center, complex("nan+nanj")
+        )
 
     @cached_property
     def radius_tolerance(self) -> Floats:
@@ -269,8 +267,7 @@ class Tangency(Columns, frozen=True):
         number = np.full(len(self.trace), -1)
         rows = np.flatnonzero(self.misfits)
         if len(rows):
-            written = np.zeros(len(self.trace))
-            written[self.passes.row] = self._written
+            written = column_at(len(self.trace), self.passes.row, self._written, 0.0)
             with np.errstate(divide="ignore", invalid="ignore"):  # an R of 0 is a factor of nothing
                 ratio = np.abs(written[rows] / self.radius_needed[rows])
                 factor = np.array(_FACTORS)[np.argmin(np.abs(np.log(ratio[:, None] / np.array(_FACTORS))), axis=1)]

@@ -10,7 +10,7 @@ from polarcheck.columns.contour.slots import Slots
 from polarcheck.columns.filling import before, fill_down
 from polarcheck.columns.path.tool_center import ToolCenter
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Columns, Floats, Mask, Points, Rows, cached_property
+from polarcheck.foundation.arrays import Columns, Floats, Mask, Points, Rows, cached_property, mask_at
 from polarcheck.foundation.states import Motion
 from polarcheck.geometry.cutter_compensation.offset_path import Phase
 from polarcheck.geometry.overcuts.uncompensated_moves import Bare, flat_loops, may_reach
@@ -34,14 +34,12 @@ class UncompensatedCuts(Columns, frozen=True):
         """
         trace = self.trace
         section = fill_down(trace.mode.section, (trace.mode.section >= 0) | trace.blocks.starts, -1)
-        has = np.zeros(len(trace.mode.sections) + 1, bool)
-        has[trace.mode.section[trace.compensation.compensates]] = True
+        has = mask_at(len(trace.mode.sections) + 1, trace.mode.section[trace.compensation.compensates])
         taken = trace.tools.changes_tool & trace.mode.in_polar
         if not taken.any():
             return has[section]
         since = fill_down(np.where(taken, np.cumsum(taken), 0), taken | trace.mode.enters | trace.blocks.starts, 0)
-        compensates = np.zeros(int(since.max()) + 1, bool)
-        compensates[since[trace.compensation.compensates]] = True
+        compensates = mask_at(int(since.max()) + 1, since[trace.compensation.compensates])
         works_alone = (since > 0) & ~compensates[since] & (trace.axes.motion != Motion.RAPID)
         return np.asarray(has[section] & ~works_alone)
 

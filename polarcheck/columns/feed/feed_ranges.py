@@ -7,7 +7,7 @@ import numpy as np
 from polarcheck.columns.path.ramps import Ramps
 from polarcheck.columns.path.tool_center import ToolCenter
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Floats, Mask, Rows, cached_property
+from polarcheck.foundation.arrays import Floats, Mask, Rows, cached_property, mask_at
 from polarcheck.foundation.states import Motion, Side
 from polarcheck.geometry.tolerances import ROUNDING, SHARE
 
@@ -132,8 +132,7 @@ class FeedRanges:
     def is_of_fast_loop(self) -> Mask:
         """No move along the contour of the loop is at an F for cutting."""
         loop = self.ramps.loop
-        slow = np.zeros(int(loop.max(initial=0)) + 1, bool)
-        slow[loop[self._slow]] = True
+        slow = mask_at(int(loop.max(initial=0)) + 1, loop[self._slow])
         return self._on_contour & ~slow[loop]
 
     @cached_property

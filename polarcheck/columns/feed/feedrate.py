@@ -10,7 +10,7 @@ from polarcheck.columns.modes.executed_blocks import ExecutedBlocks
 from polarcheck.columns.modes.modal import ModalStates
 from polarcheck.columns.modes.mode import PolarMode
 from polarcheck.columns.path.lengths import Lengths
-from polarcheck.foundation.arrays import Columns, Floats, Mask, Rows, States, cached_property
+from polarcheck.foundation.arrays import Columns, Floats, Mask, Rows, States, cached_property, column_at
 from polarcheck.foundation.states import NO_FEED, FeedMode
 from polarcheck.program.execution.run import Run
 from polarcheck.program.machines.machine import Machine
@@ -42,8 +42,7 @@ class Feedrate(Columns, frozen=True):
     def feed_word(self) -> Rows:
         """Where in the file the F in force is written, its first character; -1 before the first."""
         words = self.blocks.word_indices("F")
-        start = np.full(len(self.run), -1, np.int64)
-        start[self.run.row[words]] = self.run.words.start[words]
+        start = column_at(len(self.run), self.run.row[words], self.run.words.start[words], -1)
         return self._of_corners(fill_down(start, (self.blocks.has("F") & self._takes_feed) | self.blocks.starts, -1))
 
     def _of_corners(self, column: NDArray[Scalar]) -> NDArray[Scalar]:

@@ -16,7 +16,7 @@ from polarcheck.columns.filling import last_row
 from polarcheck.columns.metal.bar import Bar
 from polarcheck.columns.metal.workpiece import Workpiece
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Columns, Floats, Mask, Rows, States, cached_property
+from polarcheck.foundation.arrays import Columns, Floats, Mask, Rows, States, cached_property, column_at, mask_at
 from polarcheck.foundation.states import Motion
 from polarcheck.geometry.tolerances import ROUNDING
 
@@ -286,8 +286,7 @@ class AirCuts(Columns, frozen=True):
         again = np.append(False, np.diff(block[order]) == 0)
         if not again.any():
             return mask
-        period = np.zeros(len(rows), np.int64)
-        period[order[again]] = order[again] - order[np.flatnonzero(again) - 1]
+        period = column_at(len(rows), order[again], order[again] - order[np.flatnonzero(again) - 1], 0)
         earlier = rows[np.arange(len(rows)) - period]
         path, section = trace.path, trace.mode.section
         apart = np.abs(path.end[rows] - path.end[earlier]) + np.abs(path.start[rows] - path.start[earlier])
@@ -336,8 +335,7 @@ class AirCuts(Columns, frozen=True):
         alike = _groups(keys)
         if not alike:
             return []
-        kept = np.zeros(count, bool)
-        kept[np.concatenate(alike)] = True
+        kept = mask_at(count, np.concatenate(alike))
         rows, section = rows[kept[section]], section[kept[section]]
         path, direction = trace.path, _direction(section)
         more = sums(

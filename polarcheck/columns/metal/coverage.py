@@ -19,6 +19,7 @@ from polarcheck.foundation.arrays import (
     Points,
     Rows,
     cached_property,
+    column_at,
     computed,
     different,
     repeated,
@@ -170,8 +171,7 @@ class Coverage(Columns, frozen=True):
         length, begins = np.zeros(len(self.trace)), np.full(len(self.trace), NOWHERE)
         row = checked.loops.curves.row[last]
         length[row], begins[row] = part.gap[is_open], checked.loops.curves.start[first]
-        begins_in = np.full(len(self.trace), -1)
-        begins_in[row] = checked.loops.curves.row[first]
+        begins_in = column_at(len(self.trace), row, checked.loops.curves.row[first], -1)
         return length, begins, begins_in
 
     # ---- ribs ----

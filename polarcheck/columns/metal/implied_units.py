@@ -11,7 +11,7 @@ import numpy as np
 
 from polarcheck.columns.modes.entry import Entry
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Columns, Floats, Mask, Rows, cached_property
+from polarcheck.foundation.arrays import Columns, Floats, Mask, Rows, cached_property, column_at
 from polarcheck.foundation.states import MM_PER_INCH, FeedMode, Units
 from polarcheck.geometry.tolerances import ROUNDING
 
@@ -199,6 +199,5 @@ class ImpliedUnits(Columns, frozen=True):
         trace = self.trace
         rows: Rows = trace.mode.sections.enter
         programs, first = np.unique(trace.blocks.program[rows], return_index=True)
-        of_program = np.zeros(self._program_count, bool)
-        of_program[programs] = column[rows[first]]
+        of_program = column_at(self._program_count, programs, column[rows[first]], False)
         return np.asarray(of_program[trace.blocks.program])

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Columns, Floats, Mask, Rows, Table, cached_property, is_among
+from polarcheck.foundation.arrays import Columns, Floats, Mask, Rows, Table, cached_property, is_among, mask_at
 from polarcheck.foundation.states import Motion
 from polarcheck.geometry.tolerances import ROUNDING
 
@@ -66,8 +66,7 @@ class TurningTools(Columns, frozen=True):
         uses_c |= trace.blocks.has("Y", "V") & trace.axes.moves
         excluded = uses_c | (trace.modal.drilling != 0) | (trace.mode.section >= 0) | trace.mode.on_cylinder
         call = self.tool_call
-        has_other = np.zeros(int(call.max(initial=0)) + 1, bool)
-        has_other[call[excluded]] = True
+        has_other = mask_at(int(call.max(initial=0)) + 1, call[excluded])
         return np.asarray(~has_other[call] & trace.tools.has_called_tool & ~trace.modal.on_sub_spindle)
 
     @cached_property

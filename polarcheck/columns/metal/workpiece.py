@@ -20,7 +20,7 @@ from polarcheck.columns.metal.milled import Milled
 from polarcheck.columns.path.moves import z_along
 from polarcheck.columns.path.tool_center import ToolCenter
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Columns, Floats, Mask, Points, Rows, Table, cached_property, is_among
+from polarcheck.foundation.arrays import Columns, Floats, Mask, Points, Rows, Table, cached_property, is_among, mask_at
 from polarcheck.foundation.errors import TooHardError
 from polarcheck.foundation.states import Motion
 from polarcheck.geometry import polar
@@ -98,8 +98,7 @@ class Workpiece(Columns, frozen=True):
         """Rows of tool calls that enter the mode, along Z of the main spindle."""
         trace = self.trace
         call = self.bar.tools.tool_call
-        has_section = np.zeros(int(call.max(initial=0)) + 1, bool)
-        has_section[call[trace.mode.sections.enter]] = True
+        has_section = mask_at(int(call.max(initial=0)) + 1, call[trace.mode.sections.enter])
         return np.asarray(has_section[call] & self.milled.is_along_z & ~trace.modal.on_sub_spindle)
 
     @cached_property
@@ -327,8 +326,9 @@ class Workpiece(Columns, frozen=True):
             return
         down = self.is_rapid & (trace.mode.section < 0) & (trace.path.z < self.top - _CLEARANCE)
         down &= (np.abs(trace.path.x) < bar.smallest / 2) & trace.axes.moves
-        calls = np.zeros(int(self.bar.tools.tool_call.max(initial=0)) + 1, bool)
-        calls[self.bar.tools.tool_call[trace.mode.sections.enter]] = True
+        calls = mask_at(
+            int(self.bar.tools.tool_call.max(initial=0)) + 1, self.bar.tools.tool_call[trace.mode.sections.enter]
+        )
         mills = calls[self.bar.tools.tool_call]
         why_not = [
             (mills & trace.modal.on_sub_spindle, "the sub-spindle has a Z of its own"),

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from polarcheck.columns.filling import fill_down
 from polarcheck.columns.lookups import Lookups
-from polarcheck.foundation.arrays import Floats, Mask, Rows, States, cached_property, repeated
+from polarcheck.foundation.arrays import Floats, Mask, Rows, States, cached_property, column_at, mask_at, repeated
 from polarcheck.program.execution.programs import find_programs
 from polarcheck.program.execution.run import Run
 from polarcheck.program.machines.axis_table import FIRST_NAMED, NO_AXIS, NOT_NAMED
@@ -88,9 +88,7 @@ class ExecutedBlocks(Lookups):
         """Per executed word: whether it is one of these."""
         if not len(indices):
             return self.no_words
-        mask = np.zeros(len(self.run.words), bool)
-        mask[indices] = True
-        return mask
+        return mask_at(len(self.run.words), indices)
 
     @cached_property
     def no_words(self) -> Mask:
@@ -116,9 +114,7 @@ class ExecutedBlocks(Lookups):
         words = np.flatnonzero(words) if words.dtype == np.bool_ else words
         if not len(words):
             return self.nowhere
-        mask = np.zeros(len(self.run), bool)
-        mask[self.run.row[words]] = True
-        return mask
+        return mask_at(len(self.run), self.run.row[words])
 
     @cached_property
     def nowhere(self) -> Mask:
@@ -165,9 +161,7 @@ class ExecutedBlocks(Lookups):
         index = self.word_indices(address)
         if not len(index):
             return repeated(_NOT_WRITTEN, len(self.run))
-        column = np.full(len(self.run), np.nan)
-        column[self.run.row[index]] = values[index]
-        return column
+        return column_at(len(self.run), self.run.row[index], values[index], np.nan)
 
     def assigns(self, ranges: Iterable[tuple[int, int]]) -> Mask:
         """True where the row assigns a variable of an offset in one of these ranges."""
@@ -300,9 +294,7 @@ class ExecutedBlocks(Lookups):
     @cached_property
     def row_of_block(self) -> Rows:
         """Per block of the file the first row that runs it, -1 where none does."""
-        rows = np.full(len(self.text.blocks), -1, np.int64)
-        rows[self.run.block[::-1]] = np.arange(len(self.run) - 1, -1, -1)
-        return rows
+        return column_at(len(self.text.blocks), self.run.block[::-1], np.arange(len(self.run) - 1, -1, -1), -1)
 
     @cached_property
     def program(self) -> Rows:
@@ -329,8 +321,7 @@ class ExecutedBlocks(Lookups):
 
     def anywhere_in_program(self, mask: Mask) -> Mask:
         """Rows of programs in which any row is in the mask."""
-        programs = np.zeros(int(np.count_nonzero(self.starts)) + 1, bool)
-        programs[self.program[mask]] = True
+        programs = mask_at(int(np.count_nonzero(self.starts)) + 1, self.program[mask])
         return programs[self.program]
 
     @cached_property
@@ -341,9 +332,7 @@ class ExecutedBlocks(Lookups):
     def mask_of(self, rows: Rows | Sequence[int]) -> Mask:
         """Per row: whether it is one of these; those beyond the last are left out."""
         rows = np.asarray(rows, np.int64)
-        mask = np.zeros(len(self.run), bool)
-        mask[rows[rows < len(self.run)]] = True
-        return mask
+        return mask_at(len(self.run), rows[rows < len(self.run)])
 
 
 @functools.lru_cache(1000)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from polarcheck.columns.filling import fill_down, happened
 from polarcheck.columns.lookups import Lookups
 from polarcheck.columns.modes.executed_blocks import ExecutedBlocks
-from polarcheck.foundation.arrays import Mask, Rows, States, cached_property, computed, is_among, repeated
+from polarcheck.foundation.arrays import Mask, Rows, States, cached_property, column_at, computed, is_among, repeated
 from polarcheck.foundation.states import NO_MOVE, STATES, Distance, FeedMode, Motion, Side, Units
 from polarcheck.program.execution.run import Run
 from polarcheck.program.machines.code_tables import code, modal_tables
@@ -114,8 +114,7 @@ class ModalStates(Lookups):
     def motion_word(self) -> Rows:
         """First character in the file of the motion code in force; -1 before the first such code."""
         words = self.blocks.code_indices(*(code for key in STATES["motion"] for code in self.machine.codes(key)))
-        start = np.full(len(self.run), -1, np.int64)
-        start[self.run.row[words]] = self.run.words.start[words]
+        start = column_at(len(self.run), self.run.row[words], self.run.words.start[words], -1)
         return fill_down(start, self.sets("motion") | self.blocks.starts, -1)
 
     def switched(self, on: list[str], off: list[str], spindle: str = "") -> Mask:

@@ -10,7 +10,7 @@ from polarcheck.columns.modes.modal import ModalStates
 from polarcheck.columns.modes.sections import Marks, Sections, find_sections, section_column
 from polarcheck.columns.modes.tools import CalledTools
 from polarcheck.columns.path.axes import PlaneAxes
-from polarcheck.foundation.arrays import Columns, Mask, Rows, cached_property, is_among
+from polarcheck.foundation.arrays import Columns, Mask, Rows, cached_property, is_among, mask_at
 from polarcheck.foundation.states import STATES, Motion, Side
 from polarcheck.program.execution.run import Run
 from polarcheck.program.machines.code_tables import code_numbers, code_set
@@ -89,8 +89,7 @@ class PolarMode(Columns, frozen=True):
 
     def anywhere_in_section(self, mask: Mask) -> Mask:
         """Rows of sections in which any row is in the mask."""
-        hit = np.zeros(len(self.sections) + 1, bool)
-        hit[self.section[mask & (self.section >= 0)]] = True
+        hit = mask_at(len(self.sections) + 1, self.section[mask & (self.section >= 0)])
         return hit[self.section]
 
     def nowhere_in_section(self, mask: Mask) -> Mask:

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from polarcheck.columns.filling import fill_down, positions
-from polarcheck.foundation.arrays import Floats, Mask, Rows
+from polarcheck.foundation.arrays import Floats, Mask, Rows, mask_at
 from polarcheck.geometry.tolerances import ADJUSTMENT, ROUNDING
 
 #: Kinds of settings.
@@ -88,8 +88,7 @@ class Steps:
         geometry = self._summed(value, absolute, (kind == RADIUS) & is_step)
         of_wear = np.where(of_both, 0.0, value)
         wear = self._summed(of_wear, (kind == RADIUS_WEAR) & ~is_step, (kind == RADIUS_WEAR) & is_step)
-        written = np.zeros(len(self.row), bool)
-        written[self.at[absolute]] = True
+        written = mask_at(len(self.row), self.at[absolute])
         return geometry, wear, fill_down(written, written | self.starts, False)[self.asked].astype(bool)
 
     def _summed(self, value: Floats, absolute: Mask, added: Mask) -> Floats:

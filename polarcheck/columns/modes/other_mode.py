@@ -10,7 +10,7 @@ import numpy as np
 
 from polarcheck.columns.filling import happened
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Columns, Mask, Rows, cached_property, is_among
+from polarcheck.foundation.arrays import Columns, Mask, Rows, cached_property, is_among, mask_at
 from polarcheck.foundation.states import Motion
 from polarcheck.program.machines import profiles
 from polarcheck.program.machines.axis_table import AXES
@@ -132,8 +132,7 @@ class OtherMode(Columns, frozen=True):
         """Rows from a beginning on to the next one, or to the next program, in which something belongs to the mode."""
         begins, cuts, ends = self._marks(switch)
         stretch = np.cumsum(begins | self.trace.blocks.starts)
-        has_mark = np.zeros(len(self.trace) + 1, bool)
-        has_mark[stretch[ends | cuts]] = True
+        has_mark = mask_at(len(self.trace) + 1, stretch[ends | cuts])
         return has_mark[stretch]
 
     def _marks(self, switch: Switch) -> tuple[Mask, Mask, Mask]:

@@ -9,7 +9,7 @@ import numpy as np
 
 from polarcheck.columns.filling import before, fill_down
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Columns, Mask, Rows, cached_property
+from polarcheck.foundation.arrays import Columns, Mask, Rows, cached_property, column_at
 from polarcheck.foundation.patterns import lazy_pattern
 from polarcheck.program.machines.code_lists import FRAME_LISTS
 
@@ -77,9 +77,9 @@ class Since(Columns, frozen=True):
             numbers.append(opened[-1])
             if mark[1] == b"ENDIF":
                 opened.pop()
-        structure = np.full(len(blocks), -1)
-        structure[np.searchsorted(blocks.start, [mark.start(1) for mark in marks], side="right") - 1] = numbers
-        return structure
+        return column_at(
+            len(blocks), np.searchsorted(blocks.start, [mark.start(1) for mark in marks], side="right") - 1, numbers, -1
+        )
 
     def _last(self, sets: Mask) -> Rows:
         return np.cumsum(sets | self.trace.blocks.starts)

@@ -5,7 +5,17 @@ from __future__ import annotations
 import numpy as np
 
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Columns, Floats, Mask, Points, Rows, cached_property, is_among, repeated
+from polarcheck.foundation.arrays import (
+    Columns,
+    Floats,
+    Mask,
+    Points,
+    Rows,
+    cached_property,
+    column_at,
+    is_among,
+    repeated,
+)
 from polarcheck.foundation.states import Motion
 from polarcheck.geometry.tolerances import ROUNDING
 from polarcheck.program.reading.translation import spans
@@ -77,9 +87,7 @@ class Arcs(Columns, frozen=True):
         """A column of the values of some rows; NaN for others."""
         if not len(rows):
             return repeated(np.float64(np.nan), len(self.trace))
-        column = np.full(len(self.trace), np.nan)
-        column[rows] = values
-        return column
+        return column_at(len(self.trace), rows, values, np.nan)
 
     @cached_property
     def start_radius(self) -> Floats:

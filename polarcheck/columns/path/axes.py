@@ -29,6 +29,7 @@ from polarcheck.foundation.arrays import (
     computed,
     different,
     is_among,
+    mask_at,
     repeated,
 )
 from polarcheck.foundation.states import Motion
@@ -83,8 +84,7 @@ class PlaneAxes(Columns, frozen=True):
         if not enters.any():
             return enters
         stretch = np.cumsum(self.switches_on | self.ends_mode | self.blocks.starts)
-        has_virtual_axis = np.zeros(int(stretch[-1]) + 1, bool)
-        has_virtual_axis[stretch[self.blocks.has(mode.virtual_axis)]] = True
+        has_virtual_axis = mask_at(int(stretch[-1]) + 1, stretch[self.blocks.has(mode.virtual_axis)])
         return enters & ~has_virtual_axis[stretch]
 
     @property

@@ -7,7 +7,7 @@ import numpy as np
 
 from polarcheck.columns.filling import positions
 from polarcheck.columns.modes.sections import Sections
-from polarcheck.foundation.arrays import Floats, Mask, Points, Rows
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, mask_at
 from polarcheck.geometry import polar
 from polarcheck.geometry.tolerances import ZERO
 
@@ -60,8 +60,7 @@ def entry_places(
     if not count:
         return places
     absolute, turn = words
-    ends = np.zeros(len(turn), bool)
-    ends[sections.leave[sections.leave < len(turn)]] = True
+    ends = mask_at(len(turn), sections.leave[sections.leave < len(turn)])
     resets = referenced | ends | lost
     angle = positions(absolute, turn, resets, np.where(referenced, 0.0, np.nan))[sections.enter]
     places.by_words[:] = _turned(places.by_words, c_axis.sense * np.nan_to_num(angle))

@@ -18,7 +18,7 @@ from polarcheck.columns.modes.modal import ModalStates
 from polarcheck.columns.modes.mode import PolarMode
 from polarcheck.columns.path.axes import PlaneAxes
 from polarcheck.columns.path.lengths import RADIUS_FACTOR, Lengths
-from polarcheck.foundation.arrays import Floats, Mask, Points, cached_property, is_among
+from polarcheck.foundation.arrays import Floats, Mask, Points, cached_property, is_among, mask_at
 
 #: G18 and G19.
 _OTHER_PLANES = (18, 19)
@@ -158,8 +158,7 @@ def along(linear: AxisPath, virtual: AxisPath, turn: Points) -> Points:
     ones: this is done for one such row after the other, and for all rows between at once.
     """
     changes = np.flatnonzero(np.append(False, turn[1:] != turn[:-1])[: len(turn)])
-    is_change = np.zeros(len(turn), bool)
-    is_change[changes] = True
+    is_change = mask_at(len(turn), changes)
     x, hangs_x = _between(linear, is_change)
     y, hangs_y = _between(virtual, is_change)
     base = np.zeros(len(changes) + 1, np.complex128)

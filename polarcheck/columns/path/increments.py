@@ -7,7 +7,7 @@ import numpy as np
 from polarcheck.columns.contour.passes import LEADS, Passes
 from polarcheck.columns.path.path import NOWHERE
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Columns, Floats, Mask, Points, Rows, cached_property
+from polarcheck.foundation.arrays import Columns, Floats, Mask, Points, Rows, cached_property, column_at
 from polarcheck.foundation.states import Motion
 from polarcheck.geometry.plane import arc_sweep
 from polarcheck.program.machines.axis_table import INCREMENTS
@@ -87,16 +87,12 @@ class Increments(Columns, frozen=True):
     @cached_property
     def begins(self) -> Points:
         """In these rows the start of the contour [mm]; NaN in others."""
-        column = np.full(len(self.trace), NOWHERE)
-        column[self._gaps[0]] = self._gaps[2]
-        return column
+        return column_at(len(self.trace), self._gaps[0], self._gaps[2], NOWHERE)
 
     @cached_property
     def gap(self) -> Floats:
         """In these rows the distance from the end of the contour to its start [mm]; 0 in others."""
-        column = np.zeros(len(self.trace))
-        column[self._gaps[0]] = np.abs(self._gaps[1] - self._gaps[2])
-        return column
+        return column_at(len(self.trace), self._gaps[0], np.abs(self._gaps[1] - self._gaps[2]), 0.0)
 
 
 def _nearest(point: complex, start: Points, end: Points) -> float:

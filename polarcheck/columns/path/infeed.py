@@ -26,7 +26,7 @@ from msgspec.structs import replace
 
 from polarcheck.columns.path.moves import Moves, compensation_path, of_tool, tool_center_path
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Columns, Floats, Mask, Rows, cached_property, repeated
+from polarcheck.foundation.arrays import Columns, Floats, Mask, Rows, cached_property, column_at, repeated
 from polarcheck.foundation.states import Motion, Side
 from polarcheck.geometry.cutter_compensation.offset_path import ToolPath
 from polarcheck.geometry.plane_path import PlanePath
@@ -271,9 +271,7 @@ class Infeed(Columns, frozen=True):
     def _counts(self, counts: dict[int, int]) -> Rows:
         if not counts:
             return repeated(np.int64(0), len(self.trace))
-        column = np.zeros(len(self.trace), np.int64)
-        column[list(counts)] = list(counts.values())
-        return column
+        return column_at(len(self.trace), list(counts), list(counts.values()), 0)
 
     @cached_property
     def passes(self) -> Rows:

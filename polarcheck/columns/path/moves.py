@@ -8,7 +8,7 @@ import numpy as np
 
 from polarcheck.columns.path.path import NOWHERE
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, States, cached_property, is_among
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, States, cached_property, is_among, mask_at
 from polarcheck.foundation.states import ArcFeed, Motion
 from polarcheck.geometry import polar, rates
 from polarcheck.geometry.cutter_compensation import offset_path
@@ -171,9 +171,7 @@ def _has(moves: Moves, count: int) -> Mask:
 
 def any_in_row(hit: Mask, moves: Moves, count: int) -> Mask:
     """The rows of the trace with a move that is hit."""
-    rows = np.zeros(count, bool)
-    rows[moves.row[hit]] = True
-    return rows
+    return mask_at(count, moves.row[hit])
 
 
 def programmed_moves(trace: Trace) -> Moves:

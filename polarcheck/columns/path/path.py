@@ -29,6 +29,7 @@ from polarcheck.foundation.arrays import (
     Rows,
     States,
     cached_property,
+    column_at,
     is_among,
     repeated,
 )
@@ -535,9 +536,7 @@ class ProgrammedPath(Columns, frozen=True):
     def length(self) -> Floats:
         """Distance of the row on the polar plane [mm]; 0 where it does not move there, NaN where unknown."""
         moving = self.mode.in_polar & self.axes.moves_plane
-        length = np.zeros(len(self.run))
-        length[moving] = self.moves_of(moving).length
-        return length
+        return column_at(len(self.run), moving, self.moves_of(moving).length, 0.0)
 
     @cached_property
     def rise(self) -> Floats:

@@ -6,7 +6,7 @@ import numpy as np
 
 from polarcheck.columns.path.tool_center import ToolCenter
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Columns, Floats, Mask, Rows, cached_property
+from polarcheck.foundation.arrays import Columns, Floats, Mask, Rows, cached_property, column_at
 from polarcheck.foundation.states import Side
 from polarcheck.geometry.tolerances import ROUNDING
 
@@ -105,9 +105,7 @@ class Ramps(Columns, frozen=True):
         events = np.flatnonzero(trace.path.travels | ends | ramp)
         index = np.flatnonzero(rows)
         next_event = np.append(events, len(trace))[np.searchsorted(events, index, side="right")]
-        alone = np.zeros(len(trace), bool)
-        alone[index] = ~np.append(ramp, False)[next_event]
-        return alone
+        return column_at(len(trace), index, ~np.append(ramp, False)[next_event], False)
 
     @cached_property
     def shorter_than_radius(self) -> Mask:

@@ -6,7 +6,7 @@ import msgspec
 import numpy as np
 
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Columns, Floats, Mask, Rows, cached_property, is_among, repeated
+from polarcheck.foundation.arrays import Columns, Floats, Mask, Rows, cached_property, column_at, is_among, repeated
 from polarcheck.foundation.states import Motion
 from polarcheck.program.machines.code_tables import code_set
 
@@ -41,9 +41,7 @@ class Series(msgspec.Struct, frozen=True):
 
     def in_rows(self, values: Floats, count: int) -> Floats:
         """A value of each series in its rows; NaN in the others of `count` rows."""
-        column = np.full(count, np.nan)
-        column[self.rows] = np.repeat(values, self.count)
-        return column
+        return column_at(count, self.rows, np.repeat(values, self.count), np.nan)
 
 
 _NOTHING = np.zeros(0, np.int64)
@@ -110,10 +108,9 @@ class Angles(Columns, frozen=True):
         """The virtual axis has the number of a usual angle in the mode, of either sign."""
         size = np.abs(self._written)
         whole = np.flatnonzero(size == np.rint(size))
-        found = np.zeros(len(size), bool)
-        # NumPy's isin would load its masked arrays for doubles.
-        found[whole] = _USUAL[np.searchsorted(_USUAL, size[whole]) % len(_USUAL)] == size[whole]
-        return found
+        return column_at(
+            len(size), whole, _USUAL[np.searchsorted(_USUAL, size[whole]) % len(_USUAL)] == size[whole], False
+        )
 
     @cached_property
     def has_both_signs(self) -> Mask:
@@ -123,9 +120,7 @@ class Angles(Columns, frozen=True):
         which = np.searchsorted(_USUAL, np.abs(value))
         seen = np.zeros((2, len(self.trace.mode.sections), len(_USUAL)), bool)
         seen[(value < 0).astype(int), section, which] = True
-        both = np.zeros(len(self.trace), bool)
-        both[rows] = (seen[0] & seen[1])[section, which]
-        return both
+        return column_at(len(self.trace), rows, (seen[0] & seen[1])[section, which], False)
 
     @cached_property
     def series(self) -> Series:
@@ -174,9 +169,7 @@ class Angles(Columns, frozen=True):
         for column in (np.abs(trace.path.x[rows]), virtual):
             known = np.isfinite(column)
             np.maximum.at(farthest, section[known], column[known])
-        reach = np.full(len(trace), np.nan)
-        reach[rows] = farthest[section]
-        return reach
+        return column_at(len(trace), rows, farthest[section], np.nan)
 
     @cached_property
     def in_misplaced_cycle(self) -> Mask:

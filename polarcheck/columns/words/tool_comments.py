@@ -7,7 +7,7 @@ import numpy as np
 from polarcheck.columns.modes.executed_blocks import ExecutedBlocks
 from polarcheck.columns.modes.tools import CalledTools
 from polarcheck.columns.words.comments import Comments, named_tool
-from polarcheck.foundation.arrays import Columns, Mask, Rows, cached_property, repeated
+from polarcheck.foundation.arrays import Columns, Mask, Rows, cached_property, mask_at, repeated
 from polarcheck.program.execution.run import Run
 
 
@@ -94,6 +94,4 @@ class ToolComments(Columns, frozen=True):
     @cached_property
     def _calls_tool(self) -> Mask:
         text = self.comments.text
-        mask = np.zeros(len(text.blocks), bool)
-        mask[text.words.block[text.words.address == ord("T")]] = True
-        return mask
+        return mask_at(len(text.blocks), text.words.block[text.words.address == ord("T")])

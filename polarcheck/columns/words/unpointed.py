@@ -6,7 +6,7 @@ import numpy as np
 
 from polarcheck.columns.path.coordinates import MEANT_IN_INCREMENTS
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Columns, Floats, Mask, Rows, cached_property, repeated
+from polarcheck.foundation.arrays import Columns, Floats, Mask, Rows, cached_property, mask_at, repeated
 from polarcheck.foundation.states import FeedMode, Units
 from polarcheck.program.reading.numbers import NumberFault
 
@@ -185,9 +185,7 @@ class Unpointed(Columns, frozen=True):
 
     def _of_file(self, words: Mask) -> Mask:
         """The words of the file that executed words are."""
-        mask = np.zeros(len(self.trace.text.words), bool)
-        mask[self._in_file(np.flatnonzero(words))[0]] = True
-        return mask
+        return mask_at(len(self.trace.text.words), self._in_file(np.flatnonzero(words))[0])
 
     def _in_file(self, index: Rows) -> tuple[Rows, Mask]:
         """Where executed words stand among the words of the file, and which do: those of macro statements do not."""

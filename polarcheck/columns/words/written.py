@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from polarcheck.foundation.arrays import Mask, Rows, cached_property, is_among, repeated
+from polarcheck.foundation.arrays import Mask, Rows, cached_property, column_at, is_among, repeated
 from polarcheck.foundation.patterns import lazy_pattern
 from polarcheck.program.execution.programs import block_text, find_programs
 from polarcheck.program.machines.code_lists import is_code
@@ -243,9 +243,7 @@ class Written:
         differs = self.words.value[other] != self.words.value[later]
         if not differs.any():
             return repeated(np.int64(-1), len(self.words))
-        earlier_word = np.full(len(self.words), -1)
-        earlier_word[later[differs]] = other[differs]
-        return earlier_word
+        return column_at(len(self.words), later[differs], other[differs], -1)
 
     @cached_property
     def unknown_code_count(self) -> Rows:
@@ -289,9 +287,7 @@ class Written:
         is_too_long = (digits > control.digit_limit) & is_large & ~self._in_broken_block(long)
         if not is_too_long.any():
             return repeated(np.int64(0), len(words))
-        column = np.zeros(len(words), np.int64)
-        column[long[is_too_long]] = digits[is_too_long]
-        return column
+        return column_at(len(words), long[is_too_long], digits[is_too_long], 0)
 
     @cached_property
     def is_first_lower_case(self) -> Mask:
@@ -451,9 +447,7 @@ class Written:
         index = np.flatnonzero(is_counted)
         length = (spans.end - spans.start)[index]
         first = np.flatnonzero(np.append(True, line[index][1:] != line[index][:-1])) if len(index) else index
-        count = np.zeros(len(spans), np.int64)
-        count[index[first]] = np.add.reduceat(length, first) if len(first) else 0
-        return count
+        return column_at(len(spans), index[first], np.add.reduceat(length, first) if len(first) else 0, 0)
 
     @cached_property
     def foreign_line_count(self) -> Rows:

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import shapely  # type: ignore[import-untyped]
 
-from polarcheck.foundation.arrays import Floats, Mask, Points, Rows
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, column_at
 from polarcheck.geometry.comparison.measured_path import MeasuredPath, path_of_outline
 from polarcheck.geometry.comparison.rounds import Rounds, rounds_of
 from polarcheck.geometry.outline import Outline
@@ -253,8 +253,7 @@ def _extremes(path: MeasuredPath, measured: Callable[[Points], Floats], places: 
     along, compared = places
     if not compared.any():
         return _Extremes((0.0, complex(np.nan)), (0.0, complex(np.nan)), np.inf, 0.0)
-    value = np.full(len(along), np.nan)
-    value[compared] = measured(path.at(along[compared])[0])
+    value = column_at(len(along), compared, measured(path.at(along[compared])[0]), np.nan)
     share = np.gradient(along) if len(along) > 1 else np.ones(1)
     length = float(share[compared].sum())
     mean = float((np.abs(value[compared]) * share[compared]).sum() / length) if length else np.inf

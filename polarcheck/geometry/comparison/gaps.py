@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 import shapely  # type: ignore[import-untyped]
 
-from polarcheck.foundation.arrays import Points
+from polarcheck.foundation.arrays import Points, column_at
 from polarcheck.geometry.polygons.faces import coordinates
 
 #: Ends farther apart than this do not belong together [mm].
@@ -41,8 +41,7 @@ def widest_gap(curves: Sequence[Points]) -> Gap | None:
     points = shapely.points(coordinates(end))
     tree = shapely.STRtree(points)
     one, nearest = tree.query_nearest(points, max_distance=_WIDEST, exclusive=True, all_matches=False)
-    peer = np.full(len(end), -1)
-    peer[one] = nearest
+    peer = column_at(len(end), one, nearest, -1)
     is_mutual = (peer >= 0) & (peer[peer] == np.arange(len(end)))
     turn, size = np.abs(np.angle(-out[peer] * out.conj())), np.abs(end[peer] - end)
     length = np.repeat([float(np.abs(np.diff(curve)).sum()) for curve in opened], 2)

@@ -15,7 +15,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, States
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, States, column_at
 from polarcheck.foundation.states import Motion
 from polarcheck.geometry.cutter_compensation.offset_vectors import Vectors, end_vectors
 from polarcheck.geometry.cutter_compensation.programmed_path import Method, Path, Programmed, fits, moving_rows
@@ -148,9 +148,7 @@ def _of_sections(path: Path, method: Method) -> ToolPath:
         )
 
     def per_row(mask: Mask) -> Mask:
-        result = np.zeros(len(path.section), dtype=np.bool_)
-        result[programmed.row] = mask
-        return result
+        return column_at(len(path.section), programmed.row, mask, False)
 
     return ToolPath(
         *moves.shape,

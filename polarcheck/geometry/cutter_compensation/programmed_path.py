@@ -8,7 +8,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, States, Table
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, States, Table, column_at
 from polarcheck.foundation.states import Motion, Side
 from polarcheck.geometry.tolerances import ROUNDING, ZERO
 
@@ -162,8 +162,7 @@ def _arcs(path: Path) -> tuple[Mask, Mask]:
     rows = np.flatnonzero(is_arc)
     center = path.center[rows]
     near = np.minimum(np.abs(center - path.start[rows]), np.abs(center - path.end[rows])) <= ROUNDING
-    on_path = np.zeros(len(is_arc), dtype=np.bool_)
-    on_path[rows] = near
+    on_path = column_at(len(is_arc), rows, near, False)
     return np.asarray(is_arc & ~on_path), on_path
 
 

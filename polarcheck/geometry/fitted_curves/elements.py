@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from polarcheck.foundation.arrays import Rows
+from polarcheck.foundation.arrays import Rows, column_at
 from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.fitted_curves.bends import bend, error
 from polarcheck.geometry.fitted_curves.spirals import Samples
@@ -78,8 +78,7 @@ def _longest(fits: Callable[[int], float | None], start: int, last: int, guess: 
 
 def _joined_best(samples: Samples, tolerance: float, elements: list[Element], joints: Rows) -> list[Element]:
     """Move each joint to where the squares of the distances along both of its elements are least."""
-    ordinal = np.zeros(len(samples), np.int64)
-    ordinal[joints] = np.arange(len(joints))
+    ordinal = column_at(len(samples), joints, np.arange(len(joints)), 0)
     result = list(elements)
     for k in range(1, len(result)):
         keep_time()

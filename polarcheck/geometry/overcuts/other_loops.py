@@ -12,7 +12,7 @@ import msgspec
 import numpy as np
 import shapely  # type: ignore[import-untyped]
 
-from polarcheck.foundation.arrays import Floats, Mask, Rows
+from polarcheck.foundation.arrays import Floats, Mask, Rows, column_at
 from polarcheck.geometry.overcuts.cuts import Cuts, assign_walls, cuts_into, endless, shortened
 from polarcheck.geometry.polygons import areas
 from polarcheck.geometry.polygons.faces import lines_of
@@ -35,8 +35,7 @@ def cuts_into_others(contour: Contours, level: Rows, path: Curves, radius: Float
         return Cuts.none(), loops
     index = np.minimum(np.searchsorted(loops, path.loop), len(loops) - 1)
     chosen = np.flatnonzero(loops[index] == path.loop)
-    group_of_move = np.full(len(path), -1)
-    group_of_move[chosen] = group[index[chosen]]
+    group_of_move = column_at(len(path), chosen, group[index[chosen]], -1)
     smallest = np.full(int(group.max()) + 1, np.inf)
     np.minimum.at(smallest, group_of_move[chosen], radius[chosen])
     order = np.argsort(group, kind="stable")

@@ -12,7 +12,7 @@ import msgspec
 import numpy as np
 import shapely  # type: ignore[import-untyped]
 
-from polarcheck.foundation.arrays import Floats, Mask, Rows, ranges
+from polarcheck.foundation.arrays import Floats, Mask, Rows, mask_at, ranges
 from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.overcuts.cuts import Cuts, assign_walls, cuts_into, endless, shortened
 from polarcheck.geometry.overcuts.uncompensated_moves import Bare, FlatLoops
@@ -131,9 +131,7 @@ def _first_of_equal(curves: Curves, section: Rows, loop: Rows) -> Mask:
     sums = [np.add.reduceat(column, begin) for column in (start, start * index, np.abs(curves.end[curve]))]
     key = [section, count, *(np.rint(part / _SAME_SUM) for total in sums for part in (total.real, total.imag))]
     _, first = np.unique(np.stack(key, axis=1), axis=0, return_index=True)
-    fresh = np.zeros(len(loop), bool)
-    fresh[first] = True
-    return fresh
+    return mask_at(len(loop), first)
 
 
 def _pairs(groups: _Groups, bare: Bare) -> tuple[Rows, Rows]:
@@ -212,6 +210,5 @@ def _nearby(curves: Curves, chords: Segments, group: Rows, radius: Floats) -> Ro
     is_close = (apart - long[curve] <= nearest[chord] + ROUNDING) | (
         aside - long[curve] <= radius[group][chord] + ROUNDING
     )
-    chosen = np.zeros(len(curves), bool)
-    chosen[curve[is_close]] = True
+    chosen = mask_at(len(curves), curve[is_close])
     return np.flatnonzero(chosen)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, Table
+from polarcheck.foundation.arrays import Floats, Mask, Points, Rows, Table, column_at
 from polarcheck.geometry.shapes.shape import SAME
 from polarcheck.geometry.shapes.side_rings import Ring
 
@@ -89,8 +89,7 @@ def sides_of(ring: Ring) -> Sides | None:
         fits &= np.abs(inside - rounding) <= _TANGENT
     if not fits.all():
         return None
-    radius = np.zeros(len(ring))
-    radius[before] = rounding
+    radius = column_at(len(ring), before, rounding, 0.0)
     rows = np.flatnonzero(line)
     return Sides(ring.start[rows], ring.end[rows], ring.row[rows], radius[rows], np.zeros(len(rows)))
 

@@ -10,7 +10,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from polarcheck.foundation.arrays import Mask, Rows, different, is_among, stretch
+from polarcheck.foundation.arrays import Mask, Rows, different, is_among, mask_at, stretch
 from polarcheck.program.execution.arithmetic import FromVacant, Unknown
 from polarcheck.program.execution.run import Assigned, FlowFault, Remark, Run, ValueSet, is_code
 from polarcheck.program.execution.statement import Statement, Word
@@ -230,9 +230,7 @@ class ExecutedRows:
                     yield position, value
 
     def _mask_of(self, rows: Sequence[int]) -> Mask:
-        mask = np.zeros(self.count, bool)
-        mask[[row for row in rows if row < self.count]] = True
-        return mask
+        return mask_at(self.count, [row for row in rows if row < self.count])
 
     def _distance(self, index: Rows) -> NDArray[np.int16] | None:
         """Per executed word what it says of itself; index: among the words of the text and the computed ones."""

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from polarcheck.foundation.arrays import Floats, Mask, States
+from polarcheck.foundation.arrays import Floats, Mask, States, mask_at
 from polarcheck.foundation.states import OF_CODE, STATES
 from polarcheck.program.machines.code_lists import numbers
 from polarcheck.program.machines.machine import Machine
@@ -54,8 +54,7 @@ def code_set(words: Iterable[str]) -> Mask:
 @functools.lru_cache(1000)
 def _code_set(words: tuple[str, ...]) -> Mask:
     """The same, once for each of the lists of a machine."""
-    table = np.zeros(CODE_LIMIT + 1, bool)
-    table[numbers(words)] = True
+    table = mask_at(CODE_LIMIT + 1, numbers(words))
     table.setflags(write=False)
     return table
 

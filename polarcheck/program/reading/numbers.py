@@ -8,7 +8,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from polarcheck.foundation.arrays import Floats, Mask, Table
+from polarcheck.foundation.arrays import Floats, Mask, Table, column_at
 from polarcheck.program.reading.source import DASH, Bytes, Positions
 
 Masks = NDArray[np.uint64]
@@ -151,8 +151,7 @@ def _read_odd(numbers: Numbers, code: Bytes, start: Positions, end: Positions, i
     digits_before = np.cumsum(is_digit)
     points = np.bincount(word[is_point], minlength=count)
     signs = np.bincount(word[is_sign], minlength=count)
-    decimals = np.zeros(count, np.int64)
-    decimals[word[is_point]] = last_digit[word[is_point]] - digits_before[is_point]
+    decimals = column_at(count, word[is_point], last_digit[word[is_point]] - digits_before[is_point], 0)
     value = mantissa / _POWERS[np.minimum(decimals, len(_POWERS) - 1)]
     negative = np.bincount(word[is_sign & (characters != _PLUS)], minlength=count) > 0
     started = (digits_before > (last_digit - digits)[word]) | (np.cumsum(is_point) > (np.cumsum(points) - points)[word])

@@ -14,7 +14,7 @@ from typing import Any
 import msgspec
 import numpy as np
 
-from polarcheck.foundation.arrays import Mask, Table, is_among
+from polarcheck.foundation.arrays import Mask, Table, is_among, mask_at
 from polarcheck.foundation.patterns import lazy_pattern
 from polarcheck.program.reading.source import CR, LF, Bytes, Positions
 
@@ -197,9 +197,7 @@ def blank(code: Bytes, ranges: Ranges) -> None:
 def _has_text(code: Bytes, start: Positions, end: Positions) -> Mask:
     """True where there is anything but blanks between the positions."""
     positions, owner = _characters(Ranges(start, end), len(code))
-    has_text = np.zeros(len(start), bool)
-    has_text[owner[~_IS_BLANK[code[positions]]]] = True
-    return has_text
+    return mask_at(len(start), owner[~_IS_BLANK[code[positions]]])
 
 
 def _within(inner: Ranges, outer: Ranges) -> Mask:

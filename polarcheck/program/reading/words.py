@@ -9,7 +9,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from polarcheck.foundation.arrays import Floats, Mask, Table, is_among
+from polarcheck.foundation.arrays import Floats, Mask, Table, is_among, mask_at
 from polarcheck.foundation.patterns import lazy_pattern
 from polarcheck.program.reading.characters import KINDS, Character
 from polarcheck.program.reading.language_blocks import extract_statements
@@ -172,8 +172,7 @@ def read_words(
     line = np.cumsum(np.append(True, code[breaks] == LF), dtype=breaks.dtype)
     if extracted.is_joined:
         line = np.searchsorted(source.line_starts, starts, side="right").astype(breaks.dtype)
-    is_macro = np.zeros(len(starts), bool)
-    is_macro[_block_of(table.macro, starts)] = True
+    is_macro = mask_at(len(starts), _block_of(table.macro, starts))
     is_macro[_block_of(extracted.statements, starts)] = True
     is_macro[table.words.block[_begins_statement(table.words)]] = True
     words = _only(table.words, ~is_macro[table.words.block])

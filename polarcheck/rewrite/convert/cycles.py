@@ -8,7 +8,7 @@ import numpy as np
 
 from polarcheck.columns.filling import fill_down
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Rows, stretch
+from polarcheck.foundation.arrays import Rows, column_at, stretch
 from polarcheck.program.machines.code_tables import code_numbers
 from polarcheck.program.machines.machine import Machine
 from polarcheck.rewrite.convert.g_meanings import GMeanings
@@ -72,8 +72,7 @@ class CycleWords:
         """Per row: the last word with the code of a cycle; -1 before the first."""
         blocks = self.trace.blocks
         words = blocks.code_indices(*(code for key in _CYCLES for code in self.source.codes(key)))
-        word_of_row = np.full(len(self.trace), -1, np.int64)
-        word_of_row[self.trace.run.row[words]] = words
+        word_of_row = column_at(len(self.trace), self.trace.run.row[words], words, -1)
         return fill_down(word_of_row, (word_of_row >= 0) | blocks.starts, -1).astype(np.int64)
 
     def _why_other_arguments(self, row: int) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Mask
+from polarcheck.foundation.arrays import Mask, mask_at
 
 
 class SpindleRoles:
@@ -32,8 +32,7 @@ class SpindleRoles:
 def _in_sections(trace: Trace, begins: Mask) -> Mask:
     """Rows from the start of a spindle that runs in a section up to the code that stops it, that row included."""
     stretch = np.cumsum(begins | trace.blocks.starts)
-    milling = np.zeros(int(stretch[-1]) + 1 if len(stretch) else 1, bool)
-    milling[stretch[trace.modal.spindle & trace.mode.in_polar]] = True
+    milling = mask_at(int(stretch[-1]) + 1 if len(stretch) else 1, stretch[trace.modal.spindle & trace.mode.in_polar])
     return milling[stretch]
 
 

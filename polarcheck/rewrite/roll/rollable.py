@@ -8,7 +8,7 @@ import msgspec
 import numpy as np
 
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Mask, Rows
+from polarcheck.foundation.arrays import Mask, Rows, column_at, mask_at
 from polarcheck.foundation.states import Distance, FeedMode, Motion, Side
 from polarcheck.program.machines.code_tables import code_set
 from polarcheck.rewrite.roll.following import Following
@@ -107,8 +107,7 @@ def _belongs(trace: Trace) -> Mask:
     blocks, machine, words = trace.blocks, trace.machine, trace.run.words
     rotary = machine.polar.rotary_words
     names = [name for name in ("N", "X", "U", "Z", "W", "F", *rotary) if name]
-    is_known = np.zeros(256, bool)
-    is_known[[machine.address_number(name) for name in names]] = True
+    is_known = mask_at(256, [machine.address_number(name) for name in names])
     allowed = is_known[words.address]
     codes = code_set([code for key in _CODES for code in machine.codes(key)])
     allowed[blocks.g_words] = codes[blocks.g_codes]
@@ -176,11 +175,12 @@ def _unwinds(trace: Trace) -> Mask:
     rows = np.flatnonzero(turn)
     turns, before = turn[rows][1:], turn[rows][:-1]
     shorter = turns - 360 * np.round(turns / 360)
-    result = np.zeros(len(trace), bool)
-    result[rows[1:]] = (
-        (np.abs(turns) > 180) & (np.abs(shorter) <= _STEP) & (shorter * before > 0) & (turns * before < 0)
+    return column_at(
+        len(trace),
+        rows[1:],
+        (np.abs(turns) > 180) & (np.abs(shorter) <= _STEP) & (shorter * before > 0) & (turns * before < 0),
+        False,
     )
-    return result
 
 
 def _is_computed(trace: Trace) -> Mask:

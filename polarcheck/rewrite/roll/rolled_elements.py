@@ -7,7 +7,7 @@ import math
 import msgspec
 import numpy as np
 
-from polarcheck.foundation.arrays import Floats
+from polarcheck.foundation.arrays import Floats, mask_at
 from polarcheck.foundation.errors import TooHardError
 from polarcheck.foundation.states import Motion
 from polarcheck.foundation.time_limit import keep_time
@@ -93,8 +93,7 @@ def fit_of(moves: AxisMoves, tolerance: float, reserve: float, noise: float) -> 
 
 def _bow(samples: Samples, radius: Floats, angle: Floats) -> float:
     """How far blocks bow of which the contour passes the ends alone [mm]."""
-    free = np.zeros(len(radius) - 1, bool)
-    free[samples.block[samples.slack > 0]] = True
+    free = mask_at(len(radius) - 1, samples.block[samples.slack > 0])
     return float(bows(radius, angle)[free].max(initial=0.0))
 
 

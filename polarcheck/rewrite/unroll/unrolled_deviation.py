@@ -10,7 +10,7 @@ import numpy as np
 from polarcheck.columns.path.moves import Moves
 from polarcheck.columns.path.tool_center import ToolCenter
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Floats, Mask, Rows
+from polarcheck.foundation.arrays import Floats, Mask, Rows, mask_at
 from polarcheck.foundation.states import MM_PER_INCH, FeedMode, Motion
 from polarcheck.foundation.time_limit import keep_time
 from polarcheck.geometry.straight_axes.spiral_pieces import along, distances
@@ -44,8 +44,7 @@ def outside(old: Trace, new: Trace, rows: Mask) -> Iterator[Refusal]:
 
 def depths(old: Trace, new: Trace, within: Mask) -> Iterator[Refusal]:
     """Blocks with Z alone in the sections, in order."""
-    alone = np.zeros(len(old), bool)
-    alone[old.path.moves_z & (old.mode.section >= 0)] = True
+    alone = mask_at(len(old), old.path.moves_z & (old.mode.section >= 0))
     on_plane = old.path.travels
     before = np.flatnonzero(alone & ~on_plane)
     rotary = new.machine.polar.rotary_address

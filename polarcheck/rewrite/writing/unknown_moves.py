@@ -6,7 +6,7 @@ import numpy as np
 
 from polarcheck.columns.filling import happened
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Mask, Rows
+from polarcheck.foundation.arrays import Mask, Rows, mask_at
 from polarcheck.foundation.states import MOVES, Distance
 from polarcheck.program.machines.code_lists import expanded, is_code
 from polarcheck.program.machines.m_codes import OF_EVERY_LATHE, MCodes
@@ -51,8 +51,7 @@ class UnknownMoves:
         blocks = self.trace.blocks
         words = blocks.g_words if letter == "G" else blocks.m_words
         listed = [code for code in listed_codes(self.trace.machine) if code.startswith(letter)]
-        known = np.zeros(len(self.trace.run.words), bool)
-        known[blocks.code_indices(*listed)] = True
+        known = mask_at(len(self.trace.run.words), blocks.code_indices(*listed))
         return words[~known[words]]
 
     def _first_axis(self, count: int) -> Rows:
