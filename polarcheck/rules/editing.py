@@ -55,7 +55,7 @@ def begins_program(run: Run, row: int) -> bool:
 def written_word(run: Run, index: int) -> str:
     """An executed word as it is written, without blanks."""
     words = run.words
-    text = squeezed(run.text.source.excerpt(int(words.start[index]), int(words.end[index])))
+    text = squeezed(run.text.written(words, index))
     return "".join(filter(str.isprintable, text))
 
 

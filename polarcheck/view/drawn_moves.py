@@ -173,8 +173,7 @@ def _sequence_numbers(trace: Trace) -> dict[int, str]:
     """Return the N words as written, by row."""
     words = trace.run.words
     return {
-        int(trace.run.row[index]): trace.text.source.excerpt(int(words.start[index]), int(words.end[index]))
-        for index in trace.blocks.word_indices("N").tolist()
+        int(trace.run.row[index]): trace.text.written(words, index) for index in trace.blocks.word_indices("N").tolist()
     }
 
 

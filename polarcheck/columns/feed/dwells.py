@@ -82,5 +82,5 @@ def _has_other_words(trace: Trace, rows: Mask) -> Mask:
     blocks, has_equals = trace.text.blocks, np.zeros(len(trace), bool)
     for row in np.flatnonzero(dwells(trace) & rows).tolist():
         block = int(trace.run.block[row])
-        has_equals[row] = "=" in trace.text.source.excerpt(int(blocks.start[block]), int(blocks.end[block]))
+        has_equals[row] = "=" in trace.text.written(blocks, block)
     return has_equals

@@ -59,7 +59,7 @@ class Comments(Columns, frozen=True):
     def written(self, number: int) -> str:
         """A comment as it is written."""
         comments = self.text.comments
-        return self.text.source.excerpt(int(comments.start[number]), int(comments.end[number]))
+        return self.text.written(comments, number)
 
     def with_words(self, words: tuple[str, ...]) -> Iterator[PlacedComment]:
         """

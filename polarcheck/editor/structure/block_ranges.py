@@ -54,10 +54,8 @@ def _tool_words(listing: Listing, program: Program) -> Iterator[tuple[int, str]]
     digits = machine.control.offset_digits if machine.offsets.called_by == "last-digits" else 0
     for index in (np.flatnonzero(words.address[low:high] == ord("T")) + low).tolist():
         yield int(words.block[index]), _tool(float(words.value[index]), digits)
-    source = listing.text.source
     for block in (np.flatnonzero(listing.text.blocks.is_macro[program.first : program.end]) + program.first).tolist():
-        start, end = int(listing.text.blocks.start[block]), int(listing.text.blocks.end[block])
-        if "T" not in source.excerpt(start, end).upper():
+        if "T" not in listing.text.written(listing.text.blocks, block).upper():
             continue
         lexed = tokens(listing, block)
         for token, following in itertools.pairwise(lexed):

@@ -142,7 +142,7 @@ def _comment(listing: Listing, block: int) -> str:
 def _comments(listing: Listing, spans: Spans, block: int) -> Iterator[str]:
     low, high = np.searchsorted(spans.block, (block, block + 1)).tolist()
     for index in range(low, high):
-        written = listing.text.source.excerpt(int(spans.start[index]), int(spans.end[index]))
+        written = listing.text.written(spans, index)
         yield shortened(written.lstrip("(;").rstrip().removesuffix(")").strip(), _LONGEST)
 
 

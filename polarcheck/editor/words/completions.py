@@ -174,7 +174,7 @@ def _tools(context: CursorContext, typed: str) -> Iterator[Item]:
     words = context.listing.text.words
     is_tool = np.flatnonzero((words.address == ord("T")) & np.isfinite(words.value))
     for index in is_tool[:_MOST].tolist():
-        written = context.listing.text.source.excerpt(int(words.start[index]), int(words.end[index])).upper()
+        written = context.listing.text.written(words, index).upper()
         label = "".join(written.split())
         labels.setdefault(label, _comment(context.listing, int(words.block[index])))
     digits = machine.control.offset_digits
@@ -210,7 +210,7 @@ def _comment(listing: Listing, block: int) -> str:
     low, high = np.searchsorted(comments.block, (block, block + 1)).tolist()
     if low == high:
         return ""
-    return listing.text.source.excerpt(int(comments.start[low]), int(comments.end[low])).strip("();")
+    return listing.text.written(comments, low).strip("();")
 
 
 def _sequence_numbers(context: CursorContext, typed: str) -> Iterator[Item]:

@@ -132,6 +132,10 @@ class Text(msgspec.Struct, frozen=True):
     letters: Positions
     labels: Spans
 
+    def written(self, table: Words | Blocks | Spans, index: int) -> str:
+        """Return the characters of an element of one of its tables."""
+        return self.source.excerpt(int(table.start[index]), int(table.end[index]))
+
 
 def read_words(
     source: Source,

@@ -21,7 +21,7 @@ def differences(case: Case, report: FileReport) -> Iterator[str]:
     """
     remaining = list(report.findings)
     lacking: list[ExpectedFinding] = []
-    for expected in sorted(case.findings, key=_is_anywhere):
+    for expected in sorted(case.findings, key=lambda finding: finding.line is None and finding.block is None):
         match = next((finding for finding in remaining if _matches(expected, finding)), None)
         if match is None:
             lacking.append(expected)
@@ -41,10 +41,6 @@ def differences(case: Case, report: FileReport) -> Iterator[str]:
         reasons = [missing.reason for missing in report.not_evaluated if missing.matters]
         because = f": {'; '.join(dict.fromkeys(reasons))}" if reasons and report.verdict == "unverified" else ""
         yield f"expected the verdict {case.expected}, found {report.verdict}{because}"
-
-
-def _is_anywhere(expected: ExpectedFinding) -> bool:
-    return expected.line is None and expected.block is None
 
 
 def _location(expected: ExpectedFinding) -> str:

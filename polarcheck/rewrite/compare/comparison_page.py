@@ -74,7 +74,9 @@ def _headline(comparison: Comparison, sizes: Sizes) -> str:
     if comparison.deviation is not None:
         is_bound = not comparison.is_exact and comparison.deviation > comparison.tolerance
         most = "at most " if is_bound else ""
-        deviation = f"largest deviation {most}{_fine(comparison.deviation, sizes)} {unit}"
+        # One digit more than the program has.
+        value = f"{comparison.deviation / 25.4:.5f}" if sizes.inch else f"{comparison.deviation:.4f}"
+        deviation = f"largest deviation {most}{value} {unit}"
     if comparison.verdict == SAME_METAL:
         return f"the same metal{f': {deviation}' if deviation else ''}"
     if comparison.verdict == NOT_COMPARED:
@@ -90,11 +92,6 @@ def _kinds(comparison: Comparison) -> list[str]:
     ]
     kinds = {_KINDS.get(difference.what, "state at entry") for difference in differing}
     return [kind for kind in dict.fromkeys((*_KINDS.values(), "state at entry")) if kind in kinds]
-
-
-def _fine(value: float, sizes: Sizes) -> str:
-    """Return a deviation with one digit more than the program has."""
-    return f"{value / 25.4:.5f}" if sizes.inch else f"{value:.4f}"
 
 
 def _section(section: SectionPair, sizes: Sizes) -> Iterator[str]:

@@ -94,7 +94,8 @@ def _joined(
     """Return the contours; consecutive turns of a ring at several depths are one contour."""
     result: list[tuple[Candidate, Contour]] = []
     for candidate, aside in zip(candidates, part_sides, strict=True):
-        closed = candidate.ring is not None and not candidate.ring.aside and _comes_back(moves, candidate)
+        gap = abs(moves[candidate.last].piece.end - moves[candidate.first].piece.start)
+        closed = candidate.ring is not None and not candidate.ring.aside and gap <= NEAR
         contour = Contour(candidate.first, candidate.last, aside, closed)
         if result and _goes_on(trace, moves, result[-1][1], contour):
             before, began = result.pop()
@@ -121,10 +122,6 @@ def _goes_on(trace: Trace, moves: Sequence[Move], before: Contour, contour: Cont
         and len(between) <= max(trace.machine.compensation.read_ahead, 3) - 2
         and not stops[list(between)].any()
     )
-
-
-def _comes_back(moves: Sequence[Move], candidate: Candidate) -> bool:
-    return abs(moves[candidate.last].piece.end - moves[candidate.first].piece.start) <= NEAR
 
 
 # ---- which side ----

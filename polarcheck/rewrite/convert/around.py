@@ -14,9 +14,10 @@ from polarcheck.columns.filling import fill_down
 from polarcheck.foundation.arrays import Rows
 from polarcheck.foundation.states import MOVES
 from polarcheck.program.machines.machine import Machine
+from polarcheck.rewrite.convert.axis_words import Translated
 from polarcheck.rewrite.convert.block_texts import BlockTexts
 from polarcheck.rewrite.convert.heads import Heads, writes_numbers
-from polarcheck.rewrite.convert.translating import Translated, Translation
+from polarcheck.rewrite.convert.translating import Translation
 from polarcheck.rewrite.writing.new_blocks import NewBlock, decision_comment
 from polarcheck.rewrite.writing.original import Original
 from polarcheck.rewrite.writing.outcome import Decision, Refusal, RefusedError, refused_at

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Protocol
+
+import msgspec
 
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.states import NO_MOVE, Motion
@@ -14,13 +15,29 @@ from polarcheck.rewrite.writing.outcome import refused_at
 _ARCS = (Motion.CW, Motion.CCW)
 
 
-class Result(Protocol):
-    """What the words of a row have become (translating.Translated)."""
+class Translated(msgspec.Struct):
+    """
+    The words of a row on the other machine.
 
-    words: list[str]
-    behind: list[str]
-    decisions: list[str]
-    whole: str
+    words: in order.
+    behind: of a block that follows it, as G90 behind a block of distances.
+    decisions: what is to be decided of single words, which do not stand among them.
+    remarks: what is to be decided though its words stay.
+    changed: some word is another one.
+    whole: why the whole block is to be decided; or empty.
+    """
+
+    words: list[str] = []
+    behind: list[str] = []
+    decisions: list[str] = []
+    remarks: list[str] = []
+    changed: bool = False
+    whole: str = ""
+
+    @property
+    def comment(self) -> str:
+        """What the new block says of what is to be decided; empty where nothing is."""
+        return ". ".join((*self.decisions, *self.remarks))
 
 
 class AxisWords:
@@ -31,7 +48,7 @@ class AxisWords:
         self._has_letters = target.control.g_code_system == "A"
         self._no_move = trace.blocks.listed(*NO_MOVE)
 
-    def written(self, row: int, axes: Sequence[AxisWord], in_steps: bool, result: Result) -> dict[int, list[str]]:
+    def written(self, row: int, axes: Sequence[AxisWord], in_steps: bool, result: Translated) -> dict[int, list[str]]:
         """
         The words by the index of that in whose place they stand.
 
@@ -76,7 +93,7 @@ class AxisWords:
             return written
         raise refused_at(self.trace, row, f"{written} is computed, and has to be another number there")
 
-    def of_arc(self, row: int, index: int, letter: str, result: Result) -> None:
+    def of_arc(self, row: int, index: int, letter: str, result: Translated) -> None:
         """I, J, K and R of an arc; anything else that they say, as a corner, is a thing to decide."""
         trace, written = self.trace, self.measures.written(index)
         says = trace.run.distance is not None and bool(trace.run.distance[index])

@@ -32,14 +32,11 @@ class BlockTexts:
         names = self.text.names
         self._named = set(names.block.tolist())
         self._words = set(words.block.tolist())
-        self._marks = {self._block_at(int(offset)) for offset in self.text.tape_marks}
+        self._marks = set((np.searchsorted(self.text.blocks.start, self.text.tape_marks, side="right") - 1).tolist())
         other_spans = (self.text.prose, self.text.outside, self.text.dots)
         self._texts = {block for spans in other_spans for block in spans.block.tolist()}
         is_n = words.address == ord("N")
         self._numbers = words.value[is_n], words.block[is_n]
-
-    def _block_at(self, offset: int) -> int:
-        return int(np.searchsorted(self.text.blocks.start, offset, side="right")) - 1
 
     def line(self, block: int) -> int:
         """The line of a block in the original, from 1."""
@@ -116,11 +113,7 @@ class BlockTexts:
     def ends(self) -> tuple[int, int]:
         """The first and the last block that is not empty."""
         blocks = self.text.blocks
-        filled = [
-            block
-            for block in range(len(blocks))
-            if self.text.source.excerpt(int(blocks.start[block]), int(blocks.end[block])).strip()
-        ]
+        filled = [block for block in range(len(blocks)) if self.text.written(blocks, block).strip()]
         return (filled[0], filled[-1]) if filled else (0, len(blocks) - 1)
 
     def first_block(self, row: int) -> int | None:

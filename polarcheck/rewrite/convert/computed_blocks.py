@@ -63,10 +63,10 @@ class ComputedBlocks:
         """
         if self.trace.modal.incremental[row]:
             raise refused_at(self.trace, row, "distances in a block with computed words are not converted")
-        return [self._word(row, index, pen) for index in words if not self.words.key(index) and not self._is_g(index)]
-
-    def _is_g(self, index: int) -> bool:
-        return int(self.trace.run.words.address[index]) == ord("G")
+        address = self.trace.run.words.address
+        return [
+            self._word(row, index, pen) for index in words if not self.words.key(index) and address[index] != ord("G")
+        ]
 
     def _word(self, row: int, index: int, pen: Pen) -> str:
         letter = chr(int(self.trace.run.words.address[index]))

@@ -15,11 +15,12 @@ from polarcheck.columns.trace import Trace
 from polarcheck.foundation.states import STATES, Motion, Side, Units
 from polarcheck.program.machines.machine import Machine
 from polarcheck.rewrite.compare.terms import ANGLE
+from polarcheck.rewrite.convert.axis_words import Translated
 from polarcheck.rewrite.convert.block_texts import BlockTexts
 from polarcheck.rewrite.convert.computed_blocks import ComputedBlocks
 from polarcheck.rewrite.convert.section_refusals import SectionFeeds, refusals
 from polarcheck.rewrite.convert.section_words import SectionWords
-from polarcheck.rewrite.convert.translating import Translated, Translation
+from polarcheck.rewrite.convert.translating import Translation
 from polarcheck.rewrite.writing.new_blocks import NewBlock, decision_comment
 from polarcheck.rewrite.writing.original import Original
 from polarcheck.rewrite.writing.outcome import Decision, RefusedError, refused_at

@@ -91,7 +91,7 @@ def _of_numbers(trace: Trace) -> Iterator[Refusal]:
     """Numbers without a point that the control counts in increments, though they seem to be meant otherwise."""
     words = trace.run.words
     for index in np.flatnonzero(trace.coordinates.is_taken_as_pointed).tolist():
-        written = trace.text.source.excerpt(int(words.start[index]), int(words.end[index]))
+        written = trace.text.written(words, index)
         text = f"{written} has no point, and the control counts it in increments: write the point, or"
         how = "--set control.number_without_point=whole-unit where the control takes it for a whole unit"
         yield refusal_at(trace, int(trace.run.row[index]), f"{text} {how}")

@@ -5,15 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from fractions import Fraction
 
-import msgspec
-
 from polarcheck.checking.settings import Settings
 from polarcheck.foundation.arrays import stretch
 from polarcheck.foundation.states import NO_MOVE, FeedMode
 from polarcheck.program.machines.code_lists import numbers
 from polarcheck.program.machines.code_tables import code_numbers
 from polarcheck.program.machines.machine import Machine
-from polarcheck.rewrite.convert.axis_words import AxisWords
+from polarcheck.rewrite.convert.axis_words import AxisWords, Translated
 from polarcheck.rewrite.convert.call_words import Calls
 from polarcheck.rewrite.convert.cycles import WITH_ARGUMENTS, CycleWords
 from polarcheck.rewrite.convert.g_meanings import GMeanings, Meaning
@@ -71,31 +69,6 @@ def word_for(machine: Machine, dwell: Fraction, is_turns: bool, per_revolution: 
 _OF_ITS_BLOCK = frozenset((*NO_MOVE, *WITH_ARGUMENTS, "thread_cutting"))
 _OF_UNITS = ("inch", "mm")
 _OF_DISTANCE = ("absolute", "incremental")
-
-
-class Translated(msgspec.Struct):
-    """
-    The words of a row on the other machine.
-
-    words: in order.
-    behind: of a block that follows it, as G90 behind a block of distances.
-    decisions: what is to be decided of single words, which do not stand among them.
-    remarks: what is to be decided though its words stay.
-    changed: some word is another one.
-    whole: why the whole block is to be decided; or empty.
-    """
-
-    words: list[str] = []
-    behind: list[str] = []
-    decisions: list[str] = []
-    remarks: list[str] = []
-    changed: bool = False
-    whole: str = ""
-
-    @property
-    def comment(self) -> str:
-        """What the new block says of what is to be decided; empty where nothing is."""
-        return ". ".join((*self.decisions, *self.remarks))
 
 
 class Translation:

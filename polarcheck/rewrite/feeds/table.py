@@ -218,7 +218,8 @@ class _Columns:
             feed, slowest = of_block(np.maximum, self.feed), of_block(np.minimum, self.feed)
             most = of_block(np.maximum, np.where(np.isnan(self.highest), np.inf, self.highest))
             load = self.highest / self.feeds.cuts_of_teeth
-        allowed, c_feed = of_block(np.minimum, self.feeds.allowed), of_block(np.maximum, self._c_feed)
+        c_feeds = np.where(self.dynamics.on_path, self.dynamics.tool_center.c_feed, 0.0)
+        allowed, c_feed = of_block(np.minimum, self.feeds.allowed), of_block(np.maximum, c_feeds)
         time, highest_time = of_block(np.add, self.dynamics.time), of_block(np.add, self.highest_time)
         several = (feed != slowest) | (most != self.highest[worst])
         several &= ~np.isnan(feed) & ~np.isnan(self.highest[worst])
@@ -240,10 +241,6 @@ class _Columns:
             )
             for index, row in enumerate(worst.tolist())
         ]
-
-    @property
-    def _c_feed(self) -> Floats:
-        return np.where(self.dynamics.on_path, self.dynamics.tool_center.c_feed, 0.0)
 
     def total(self, number: int, enter: int) -> FeedTotal:
         """What a section takes."""
@@ -290,7 +287,7 @@ def _total(trace: Trace, times: Times, row: int, cutting: tuple[float, ...], one
 
 def _text(trace: Trace, row: int) -> str:
     blocks, block = trace.text.blocks, int(trace.run.block[row])
-    return trace.text.source.excerpt(int(blocks.start[block]), int(blocks.end[block])).strip()
+    return trace.text.written(blocks, block).strip()
 
 
 def feed_number(value: float, points: bool) -> str:

@@ -6,7 +6,7 @@ import msgspec
 import numpy as np
 
 from polarcheck.columns.trace import Trace
-from polarcheck.foundation.arrays import Mask, Rows, stretch
+from polarcheck.foundation.arrays import stretch
 from polarcheck.foundation.states import FeedMode, Motion
 from polarcheck.rewrite.roll.following import Following
 from polarcheck.rewrite.roll.rollable import Stretch
@@ -52,8 +52,8 @@ def entry_of(trace: Trace, candidate: Stretch, moves: AxisMoves, following: Foll
     if trace.machine.polar.plane_is_fixed or abs(angle - turns) <= _AT_ZERO:
         return None
     low = max(candidate.first - _MOST_ROWS, 0)
-    remaining = np.flatnonzero(~_leads_down(trace, np.arange(low, candidate.first)))
-    begin = low + int(remaining[-1]) + 1 if len(remaining) else low
+    remaining = [row for row in range(low, candidate.first) if not _is_of_z(trace, row)]
+    begin = remaining[-1] + 1 if remaining else low
     highest = max(float(moves.z.max()), float(moves.z_before.max()))
     moving = begin + np.flatnonzero(trace.axes.motion[begin : candidate.first] != Motion.NONE)
     above = moving[path.z_before[moving] > highest]
@@ -79,12 +79,8 @@ def _goes_on(trace: Trace, entry_row: int, first: int) -> bool:
     return bool(np.all(np.diff(block) > 0) and line[1] > line[0] and np.all(depth == depth[0]))
 
 
-def _leads_down(trace: Trace, rows: Rows) -> Mask:
-    """Return a mask of the rows that have only Z, or only codes for the following moves."""
-    return np.array([_is_of_z(trace, row) for row in rows.tolist()], bool)
-
-
 def _is_of_z(trace: Trace, row: int) -> bool:
+    """Return True for a row that has only Z, or only codes for the following moves."""
     run, machine = trace.run, trace.machine
     low, high = stretch(run.row, row, row + 1)
     letters = {int(letter) for letter in run.words.address[low:high]}

@@ -68,5 +68,5 @@ def _jump_targets(trace: Trace) -> Mask:
 
 def x_factor(trace: Trace, row: int) -> float:
     """Radius per X word outside of the mode."""
-    factor = float(np.broadcast_to(trace.lengths.x_factor, len(trace))[row])
+    factor = float(trace.lengths.x_factor[row])
     return factor if factor > 0 else RADIUS_FACTOR[trace.machine.control.x]

@@ -48,8 +48,7 @@ def restored(trace: Trace, following: Following, last: int, pen: Pen, *, is_line
     if following.takes_over(last, following.at_feed, following.feed) or (is_time and not writes_x):
         feed = float(trace.feedrate.written_feed[last])
         if is_time:  # a number, and no length
-            scale = float(np.broadcast_to(trace.lengths.feed_scale, len(trace))[last])
-            feed = feed / scale * (MM_PER_INCH if pen.numbers.feed_inch else 1.0)
+            feed = feed / float(trace.lengths.feed_scale[last]) * (MM_PER_INCH if pen.numbers.feed_inch else 1.0)
         words.append(in_case(pen, "F" + pen.numbers.feed(feed)))
     return [NewBlock(tuple(words))] if words else []
 
@@ -214,7 +213,7 @@ class Writer:
 
 
 def _pen(trace: Trace, candidate: Stretch, style: Style) -> Pen:
-    units = [np.broadcast_to(column, len(trace)) for column in (trace.lengths.units, trace.lengths.feed_units)]
+    units = trace.lengths.units, trace.lengths.feed_units
     pen = Pen(trace.machine, style, *(bool(column[candidate.first] == Units.INCH) for column in units))
     pen.numbers.line = candidate.line
     return pen

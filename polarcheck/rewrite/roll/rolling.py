@@ -94,11 +94,15 @@ def rolled(original: Original, options: Rolling) -> Outcome:
         if not differences:
             notes = [
                 *_notes(original, sections, rule, options),
-                *(f"{note}" for note in result.notes),
-                *_refusal_notes(refusals),
+                *result.notes,
+                *(f"line {refusal.line}: left as it is: {refusal.text}" for refusal in dict.fromkeys(refusals)),
             ]
             return Outcome(data, origin, [], _figures(sections, measured), notes)
-        wrong = [section for section in sections if _is_at_fault(section, differences)]
+        wrong = [
+            section
+            for section in sections
+            if any(section.first_line <= refusal.line <= section.stretch.last_line for refusal in differences)
+        ]
         if not wrong:
             raise RefusedError(differences)
         refusals += differences
@@ -112,7 +116,7 @@ def _section(
     trace = original.trace
     machine, tolerance = trace.machine, options.tolerance
     moves = through_center(axis_moves(trace, candidate, rule))
-    step = float(np.broadcast_to(trace.lengths.least_step, len(trace))[candidate.first])
+    step = float(trace.lengths.least_step[candidate.first])
     reserve = _ROUNDING * step
     if tolerance - reserve < step:
         text = f"a tolerance of {tolerance:g} mm is too little: rounding alone takes {reserve:.4f} mm"
@@ -120,7 +124,7 @@ def _section(
     widest = float(np.abs(moves.radius).max(initial=0.0))
     noise = np.hypot(step * x_factor(trace, candidate.first), widest * np.radians(machine.control.least_increment)) / 2
     fit = fit_of(moves, tolerance, reserve, 1.5 * float(noise))
-    unit = float(np.broadcast_to(trace.lengths.feed_scale, len(trace))[candidate.first])
+    unit = float(trace.lengths.feed_scale[candidate.first])
     _require_off_center(original, moves, fit, step)
     feeds = feeds_of(moves, fit.elements, machine, unit)
     entry = None if options.keep_c else entry_of(trace, candidate, moves, following)
@@ -176,10 +180,6 @@ def _written(
     )
 
 
-def _is_at_fault(section: Section, differences: Sequence[Refusal]) -> bool:
-    return any(section.first_line <= refusal.line <= section.stretch.last_line for refusal in differences)
-
-
 def _figures(sections: Sequence[Section], measured: Measured) -> list[Figure]:
     return [
         Figure("sections", len(sections)),
@@ -190,10 +190,6 @@ def _figures(sections: Sequence[Section], measured: Measured) -> list[Figure]:
         Figure("time at feed before", 60 * sum(float(section.way.time.sum()) for section in sections), "s"),
         Figure("time at feed after", measured.time, "s"),
     ]
-
-
-def _refusal_notes(refusals: Sequence[Refusal]) -> list[str]:
-    return [f"line {refusal.line}: left as it is: {refusal.text}" for refusal in dict.fromkeys(refusals)]
 
 
 def _notes(original: Original, sections: Sequence[Section], rule: str, options: Rolling) -> list[str]:

@@ -118,8 +118,7 @@ def edits_of_ranges(
 
 def comments_of(text: Text, index: int) -> list[str]:
     """The comments of a block without their signs."""
-    start, end = int(text.blocks.start[index]), int(text.blocks.end[index])
-    return _comments(text, index, text.source.excerpt(start, end))[0]
+    return _comments(text, index, text.written(text.blocks, index))[0]
 
 
 def next_move_in_motion(trace: Trace, row: int) -> int | None:
@@ -178,7 +177,7 @@ class _Sequence:
         is_number = (text.words.address == ord("N")) & (text.words.value < 1e9)
         numbers = dict(zip(text.words.block[is_number].tolist(), text.words.value[is_number].tolist(), strict=True))
         for index in np.flatnonzero(text.blocks.is_macro).tolist():
-            statement = text.source.excerpt(int(text.blocks.start[index]), int(text.blocks.end[index]))
+            statement = text.written(text.blocks, index)
             if number := _NUMBER.match(statement.lstrip(_BLANK_OR_END + "/")):
                 numbers[index] = float(number[1])
         #: Blocks with an N word in their order, and its value.
@@ -221,7 +220,7 @@ def jump_numbers(text: Text) -> set[int]:
     is_target = np.isin(words.address, np.frombuffer(b"PQ", np.uint8)) & np.isfinite(words.value)
     numbers = {int(value) for value in words.value[is_target].tolist()}
     for index in np.flatnonzero(blocks.is_macro).tolist():
-        statement = text.source.excerpt(int(blocks.start[index]), int(blocks.end[index]))
+        statement = text.written(blocks, index)
         numbers.update(int(match) for match in _REFERENCE.findall(statement) if len(match) < 10)
     return numbers
 

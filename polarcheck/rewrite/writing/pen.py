@@ -145,7 +145,7 @@ class Pen:
         if min(abs(self.at - center), abs(end - center)) <= ROUNDING:
             raise RefusedError([Refusal(self.numbers.line, "the center of this arc is its start or its end")])
         arc = arc_between(self.at, end, center, ccw)
-        if z is not None and self.numbers.increments(z) == self._z_written(z) and z == self.z:
+        if z is not None and self._written[2] in (None, self.numbers.increments(z)) and z == self.z:
             z = None
         if z is not None and not self.machine.writing.helices:
             raise RefusedError([self._refusal("Z cannot move in an arc (a helix)")])
@@ -310,9 +310,6 @@ class Pen:
     def _point(self, linear: int, virtual: int) -> complex:
         step = self.numbers.step
         return complex(linear * step / self.factors[0], virtual * step / self.factors[1])
-
-    def _z_written(self, z: float) -> int | None:
-        return self._written[2] if self._written[2] is not None else self.numbers.increments(z)
 
     def _refusal(self, text: str) -> Refusal:
         return Refusal(self.numbers.line, f"{text}: {self.machine.title}")

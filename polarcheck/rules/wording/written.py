@@ -25,7 +25,7 @@ def short(written: str) -> str:
 def comment_in_words(text: Text, number: int) -> str:
     """A comment by its number, as it is written."""
     comments = text.comments
-    return short(text.source.excerpt(int(comments.start[number]), int(comments.end[number])))
+    return short(text.written(comments, number))
 
 
 def written(blocks: ExecutedBlocks, run: Run, row: int, address: str) -> str:
@@ -101,8 +101,7 @@ def g_code(text: Text, index: int) -> str:
     """A G code of the file, as in G0; as it is written where it is none that a control could know."""
     words = text.words
     number = int(code_numbers(words.value[index : index + 1])[0])
-    start, end = int(words.start[index]), int(words.end[index])
-    return spelled("G", number) if number >= 0 else short(text.source.excerpt(start, end))
+    return spelled("G", number) if number >= 0 else short(text.written(words, index))
 
 
 def with_digits(text: Text, place: Place) -> str:
