@@ -18,10 +18,10 @@ from polarcheck.rewrite.compare.parts_compared import outside_compared
 from polarcheck.rewrite.compare.terms import Terms
 from polarcheck.rewrite.unroll.axis_blocks import Steps, x_factor
 from polarcheck.rewrite.unroll.unrolled_feeds import method_of
+from polarcheck.rewrite.writing.order_refusals import changed_orders, refusal_of
 from polarcheck.rewrite.writing.original import Original
 from polarcheck.rewrite.writing.outcome import Figure, Refusal, refusal_at
 from polarcheck.rewrite.writing.part_paths import path_on_part
-from polarcheck.rewrite.writing.reading_back import changed_orders, refusal_of
 from polarcheck.rewrite.writing.rotary_feed import block_times
 
 

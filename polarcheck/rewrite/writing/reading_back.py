@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections import Counter
 from collections.abc import Collection, Iterator, Sequence
 from typing import Any
@@ -12,18 +11,15 @@ import numpy as np
 
 from polarcheck.checking.check import check_runs
 from polarcheck.checking.settings import Settings
-from polarcheck.columns.trace import Trace
 from polarcheck.foundation.finding import SEVERITIES, Finding, Severity
 from polarcheck.geometry.comparison.path_deviation import path_deviation
-from polarcheck.rewrite.compare.comparison_report import Comparison, Difference, SectionPair
-from polarcheck.rewrite.compare.order_differences import order_differences
-from polarcheck.rewrite.compare.order_meanings import SAME_SPEED, meaning_steps, names_speeds, speed_steps
-from polarcheck.rewrite.compare.orders import Step, steps
+from polarcheck.rewrite.compare.comparison_report import Comparison
 from polarcheck.rewrite.compare.revision_comparison import Revision, compared, default_tolerance
 from polarcheck.rewrite.compare.terms import Terms
+from polarcheck.rewrite.writing.order_refusals import changed_meanings, changed_orders, line_of, refusal_of
 from polarcheck.rewrite.writing.original import Original, read
 from polarcheck.rewrite.writing.outcome import Refusal, RefusedError
-from polarcheck.rewrite.writing.part_paths import CHORD, PartPath, path_on_part
+from polarcheck.rewrite.writing.part_paths import CHORD, path_on_part
 from polarcheck.rules.rule import Rule, load_all
 
 #: Times of a section that differ by less than this share, or by less than this [s], are the same.
@@ -42,12 +38,6 @@ _OF_LIMITS = frozenset(
 )
 #: Chords of arcs and the end of the search add no more than this share to a measured distance.
 _SHARE_OF_CHORDS = 0.05
-#: Values of orders that differ by no more are the same, as lengths [mm].
-_SAME = 1e-6
-#: Dwells that differ by no more are the same [s]: a control counts thousandths.
-_SAME_DWELL = 1e-3
-#: Words of M, S and T in a text.
-_COMMANDS = re.compile(r"\b[MST]\d")
 #: Further differences than this are not listed.
 _LISTED = 20
 
@@ -104,7 +94,7 @@ def read_back(
     differences = [*_of_comparison(result, decided, rapid_as_line, other_states, origin)]
     differences += [] if rapid_as_line else _times(result)
     if not is_same_machine:
-        differences += _changed_meanings(original.trace, new.trace, decided, added_speeds, origin)
+        differences += changed_meanings(original.trace, new.trace, decided, added_speeds, origin)
     open_orders, notes = list[Refusal](), list[str]()
     lowest = Severity.ERROR if is_same_machine else Severity.NOTE
     for rule, severity, refusal in _added_findings(original, new, origin, lowest):
@@ -201,50 +191,6 @@ def _comparison(original: Original, new: Original, **terms: Any) -> Comparison:
     return compared(old_side, new_side, Terms(default_tolerance(old_side, new_side), **terms))
 
 
-def changed_orders(
-    old: Trace, new: Trace, old_path: PartPath, new_path: PartPath, tolerance: float
-) -> Iterator[Refusal]:
-    """
-    Yield what differs between the orders of two programs for the same machine, and where the tool is elsewhere on the
-    part at an order.
-
-    G codes that are added, and G41 to G40 with D, say how the path is written, and are compared by the path.
-    tolerance: of the paths [mm].
-    """
-
-    def moved(step: Step, new_step: Step) -> Difference | None:
-        here, there = old_path.position(step.row), new_path.position(new_step.row)
-        # NaN before the first move: of both or of neither.
-        if np.allclose(here, there, rtol=0, atol=tolerance, equal_nan=True):
-            return None
-        text = f"{step.text} would stand elsewhere on the path"
-        return Difference("place", text, old_line=step.line, new_line=new_step.line)
-
-    before, after = (steps(trace, is_same_machine=True, with_sides=False) for trace in (old, new))
-    for difference in order_differences(before, after, _SAME, moved):
-        if difference.old_line is not None or _COMMANDS.search(difference.text):
-            yield refusal_of(difference)
-
-
-def _changed_meanings(
-    old: Trace, new: Trace, decided: Collection[int], added_speeds: Collection[int], origin: Sequence[int]
-) -> Iterator[Refusal]:
-    """
-    Yield the orders that a program for another machine lacks at their place in the order, and the first speed that
-    differs.
-    """
-    ordered = [step for step in meaning_steps(old) if step.line not in decided]
-    for difference in order_differences(ordered, meaning_steps(new), _SAME_DWELL):
-        if difference.old_line is not None:
-            yield refusal_of(difference)
-    if names_speeds(old) and names_speeds(new):
-        left_out = {*decided, *added_speeds}
-        before = [step for step in speed_steps(old) if step.line not in left_out]
-        after = [step for step in speed_steps(new) if _line(origin, step.line) not in left_out]
-        for difference in order_differences(before, after, SAME_SPEED)[:1]:
-            yield refusal_of(difference)
-
-
 def require_equal(result: ReadBack) -> None:
     """Raise RefusedError if the new program differs from the original."""
     if result.differences:
@@ -272,19 +218,12 @@ def _of_comparison(
             if not is_rapid and difference.what not in other_states:
                 yield refusal_of(difference, section)
     for difference in result.outside:
-        of_line = difference.old_line or (_line(origin, difference.new_line) if difference.new_line else 0)
+        of_line = difference.old_line or (line_of(origin, difference.new_line) if difference.new_line else 0)
         if difference.what != "order" or of_line not in decided:
             yield refusal_of(difference)
     for reason in result.not_compared:
         if reason.matters:
             yield Refusal(0, f"not comparable: {reason.reason}")
-
-
-def refusal_of(difference: Difference, section: SectionPair | None = None) -> Refusal:
-    """Return a difference as a reason not to write the new program."""
-    line = difference.old_line or (section.old.line if section is not None and section.old is not None else 0)
-    where = f" (line {difference.new_line} of the result)" if difference.new_line else ""
-    return Refusal(line, f"{difference.text}{where}")
 
 
 def _times(result: Comparison) -> Iterator[Refusal]:
@@ -309,14 +248,10 @@ def _added_findings(
     for finding in after:
         of_rule.setdefault(finding.rule, []).append(finding)
     for rule, findings in of_rule.items():
-        added = [finding for finding in findings if (rule, _line(origin, finding.line)) not in lines]
+        added = [finding for finding in findings if (rule, line_of(origin, finding.line)) not in lines]
         for finding in added[: max(len(findings) - counts_before[rule], 0)]:
             text = f"{finding.rule} in line {finding.line} of the result: {finding.message}"
-            yield rules[rule], SEVERITIES[finding.severity], Refusal(_line(origin, finding.line), text)
-
-
-def _line(origin: Sequence[int], line: int) -> int:
-    return origin[line - 1] if 0 < line <= len(origin) else 0
+            yield rules[rule], SEVERITIES[finding.severity], Refusal(line_of(origin, finding.line), text)
 
 
 def _findings_of(program: Original, lowest: Severity) -> list[Finding]:
