@@ -23,8 +23,6 @@ from polarcheck.reports.pages import json_schema
 from polarcheck.reports.text import first_sentence
 from polarcheck.rules.rule import load_all
 
-PAGE_WHY = "The control stops with an alarm at a block with G0, and just so at a move without a code of its own"
-
 
 def finding(**changes: Any) -> Finding:
     given = {
@@ -85,8 +83,8 @@ error: G0 cannot be used in the polar mode
     12 | G0 X1.8
        | ^^
   rule   rapid-in-polar, alarm PS0146
-   why   The control stops with an alarm at a block with G0, and just so at a move without a code of
-         its own while G0 is still in force, as it is after the approach.
+   why   The control stops with an alarm at a block with G0, and at a move without a code of its own
+         while G0 is still in force, as after the approach.
 
 fail  a.nc: 1 error, 1 polar section, 40 blocks
 
