@@ -45,6 +45,8 @@ _LESS_LIKELY = 1.5
 #: So many rules must find something that a code in another block explains, in a path of so many blocks: the geometry
 #: does not speak for it.
 _RULES_OF_CODE, _BLOCKS_OF_CODE = 2, 4
+#: Rules that a smaller cutter satisfies: only what is clear beside them explains them by another word.
+_OF_CUTTER = "overcut", "slot-narrower-than-cutter", "inside-arc-smaller-than-radius"
 #: Rules of rates: no code that stands elsewhere explains them.
 _OF_RATES = "c-feed-above-limit", "c-acceleration-above-limit", "x-acceleration-above-limit"
 
@@ -151,6 +153,8 @@ class _Search:
                 break
             edits = self._edits(loop, likely)
             found = self._tried(likely, int(loop.row[likely.edit.corner]), edits, others) if edits else None
+            if found is not None and not likely.is_clear and all(rule in _OF_CUTTER for rule, _ in found.gone):
+                continue
             if found is not None and own.isdisjoint(line for _, line in found.left):
                 whole.append(found)
             elif found is not None and likely.is_clear:
