@@ -11,6 +11,7 @@ from cases import looped
 
 from polarcheck.foundation.states import Motion
 from polarcheck.geometry.comparison import path_deviation as paths
+from polarcheck.geometry.comparison.free_space import Budget, frechet
 from polarcheck.geometry.comparison.path_deviation import SpacePath, path_deviation
 from polarcheck.geometry.comparison.polyline import polyline
 
@@ -167,3 +168,13 @@ def test_empty_and_unknown_paths() -> None:
         path_deviation(square, lines(0j, NOWHERE), TOLERANCE)
     standing = path_of(0j, (0j,))
     assert path_deviation(standing, square, TOLERANCE).largest == pytest.approx(math.sqrt(200))
+
+
+def test_a_distance_that_is_certain_spares_cells_and_changes_nothing() -> None:
+    old = [(float(x), 0.0, 0.0) for x in range(50)]
+    new = [(x, 0.01 if x == 40 else 0.0, 0.0) for x, _, _ in old]
+    plain, bounded = Budget(100_000), Budget(100_000)
+    found = frechet(old, new, 0.02, 1e-5, bounded, 0.01)
+    assert found == frechet(old, new, 0.02, 1e-5, plain)
+    assert found[0] == pytest.approx(0.01, abs=1e-5)
+    assert bounded.cells > plain.cells

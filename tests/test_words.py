@@ -371,6 +371,7 @@ def test_foreign_characters() -> None:
 @pytest.mark.parametrize("piece", [1, 2, 3, 7])
 def test_reading_in_pieces_changes_nothing(piece: int, monkeypatch: pytest.MonkeyPatch) -> None:
     program = "O1\nN1 G1X-1.75,R5. Z.1F7.\n\n5 X1;Y2;\nGOTO 10\n.....\n:5\nX123456789.5(A)Z-2 N5 /2 G1 $,C1.\nM30"
+    program += "\nA1.C2R3,R4A5 R,C6\nAACCRR"
     whole = text_of(program)
     monkeypatch.setattr(reader, "_PIECE", piece)
     parts = text_of(program)
