@@ -280,7 +280,7 @@ class _Lathe:
     def _evaluated(self, text: str) -> float:
         text = re.sub(r"#(\d+)", lambda match: f"({self.macro.get(int(match[1]), 0.0)})", text)
         for word, sign in (("GE", ">="), ("GT", ">"), ("LE", "<="), ("LT", "<"), ("EQ", "=="), ("NE", "!=")):
-            text = re.sub(rf"\b{word}\b", sign, text)
+            text = re.sub(word, sign, text)
         text = text.replace("[", "(").replace("]", ")")
         assert re.fullmatch(r"[-+*/().\d\s<>=!e]*", text), text
         return float(eval(text))  # noqa: S307

@@ -117,6 +117,14 @@ def test_every_control_is_simulated() -> None:
 
 
 @pytest.mark.ci
+def test_programs_of_posts_are_read_whole() -> None:
+    """No code of theirs is unknown to the lathe, loops and subprograms included."""
+    read = {program.name: steps(program.text, program.machine) for program in programs()}
+    assert {name for name, done in read.items() for step in done if step.what[0] in "M?"} == set()
+    assert all(done[-1].what == "end" for done in read.values())
+
+
+@pytest.mark.ci
 @looped(("seed", "target"), [(3, "okuma-osp"), (5, "haas-lathe"), (12, "mazak-quick-turn"), (9, "mitsubishi-m700")])
 def test_programs_of_posts_do_the_same_on_other_controls(seed: int, target: str) -> None:
     result = conversion(drawn(seed), target)
