@@ -83,6 +83,8 @@ class ToolWords:
         if self.target.offsets.called_by == "edge":
             return self._by_edge(row, tool, offset, radius_offset, key)
         if self.target.offsets.called_by == "d-word":
+            if bool(tools.has_edges[row]) and offset == 1:
+                offset = radius_offset = tool
             return self._by_d_word(tool, offset, radius_offset, key)
         if bool(tools.has_edges[row]):
             return self._of_edge(tool, offset, key)
