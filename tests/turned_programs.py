@@ -337,8 +337,9 @@ class Writer:
         for depth in depths:
             self.write(f"G1 {word('Z', depth)} F300", "depth")
             self.write(f"G41 {word('X', 2 * before.real)} {word('C', before.imag)} F250", "ramp")
-            for corner in [*corners, corners[0], corners[0] + along * 0.5]:
-                role = "contour" if corner in corners else "overlap"
+            for place, corner in enumerate([*corners, corners[0], corners[0] + along * 0.5]):
+                # The first point and the last one lie on the first wall, wherever they stand on it.
+                role = "contour" if 0 < place <= len(corners) else "overlap"
                 self.write(f"{word('X', 2 * corner.real)} {word('C', corner.imag)}", role)
             out = corners[0] + along * 0.5 + 1j * along * (self.spigot / 2 + radius)
             self.write(f"G40 {word('X', 2 * out.real)} {word('C', out.imag)} F1500", "cancel")
@@ -475,7 +476,7 @@ def _of_roughing(program: Program, index: int, draw: random.Random) -> list[str]
 def _shows_corner(program: Program) -> bool:
     """One tool cuts six sides or more: of a square any corner may be meant, and what a roughing leaves is finished."""
     passes = sum(line.role == "depth" for line in program.lines)
-    return len(program.radii) == 1 and sum(line.role == "contour" for line in program.lines) >= 7 * passes
+    return len(program.radii) == 1 and sum(line.role == "contour" for line in program.lines) >= 6 * passes
 
 
 def _rough_at_c20(program: Program, index: int, draw: random.Random) -> list[str] | None:
