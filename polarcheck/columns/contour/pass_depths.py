@@ -74,8 +74,8 @@ class PassDepths(Columns, frozen=True):
     @property
     def _beyond_turning(self) -> Iterator[tuple[int, float]]:
         """
-        Passes far below what is turned, or where the bar is wider, much deeper in one step than the cutter is wide, and
-        the Z with the point a digit to the left, which lies in what is turned.
+        Passes far below what is turned, or where the bar is wider, much deeper in one step than the cutter is wide, if
+        Z with the point a digit to the left lies in what is turned; and the Z at which the turning ends.
 
         One of these alone may be meant: a shaft is milled across its shoulder, a wall is milled in one pass.
         """
@@ -88,8 +88,8 @@ class PassDepths(Columns, frozen=True):
         width = 2 * self.air_cuts.workpiece.radius[passes.row]
         is_wider = bar.inner(passes.row, z) > bar.inner(passes.row, z / 10) + width / 4
         deep = ((z < _BEYOND * turned) | is_wider) & (z / 10 > turned) & (step > _STEEP * width)
-        for row, z in zip(passes.row[deep].tolist(), passes.z[deep].tolist(), strict=True):
-            yield row, z / 10
+        for row in passes.row[deep].tolist():
+            yield row, turned * bar.trace.path.z_sense
 
     @cached_property
     def is_beyond_turning(self) -> Mask:

@@ -198,9 +198,12 @@ class AirCuts(Columns, frozen=True):
         """
         The cut stands no lower than the entry of its section above Z0, and other cuts or the turning go below Z0.
 
-        Without compensation that counts of all cuts of the section but full circles: some may be on the way to it.
+        Without compensation that counts of all cuts of the section but full circles at the height of its entry: others
+        may be on the way to it.
         """
-        height = np.where(self._is_contour, self.trace.path.z, self._lowest)
+        z, compensates = self.trace.path.z, self.trace.compensation.compensates
+        is_at_entry = self._is_contour & (z <= self._entry + ROUNDING)
+        height = np.where(compensates | is_at_entry, z, self._lowest)
         stays = (height >= self._entry - ROUNDING) & (height > _CLEAR)
         lowest = np.full(len(self.trace.mode.sections) + 1, np.inf)
         np.minimum.at(lowest, self.trace.mode.section[self.walls], self.trace.path.z[self.walls])

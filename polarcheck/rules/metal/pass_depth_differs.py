@@ -6,14 +6,13 @@ from polarcheck.rules.rule import WARNING, rule
 
 if TYPE_CHECKING:
     from polarcheck.columns.contour.pass_depths import PassDepths
-    from polarcheck.columns.metal.bar import Bar
     from polarcheck.foundation.arrays import Mask
     from polarcheck.rules.hit import Details, Hit
 
 
 @rule(
     WARNING,
-    "the pass at Z{depth} {out_of_step}: Z{in_step} would fit",
+    "the pass at Z{depth} {out_of_step}",
     values=("z", "z_needed"),
     worse=("z:z_needed",),
     follows={"section": ("cut-in-air", "approach-inside-stock")},
@@ -80,14 +79,15 @@ def pass_depth_differs(pass_depths: PassDepths) -> Mask:
     return pass_depths.is_off
 
 
-def details(hit: Hit, pass_depths: PassDepths, bar: Bar) -> Details:
+def details(hit: Hit, pass_depths: PassDepths) -> Details:
     from polarcheck.columns.words.slips import plain_number
 
     z, needed = hit.trace.path.z[hit.row], float(pass_depths.expected[hit.row])
-    out_of_step = "is out of step with the others of its contour"
     if pass_depths.is_beyond_turning[hit.row]:
-        turned = bar.deepest_turned * bar.trace.path.z_sense
-        out_of_step = f"goes in one step far below what is turned there (the turning ends at Z{hit.number(turned)})"
-    # To be written, so with a point: without one some controls read an increment.
-    in_step = plain_number(needed / float(hit.trace.lengths.scale[hit.row]))
-    return {"z": z, "z_needed": needed, "depth": hit.number(z), "out_of_step": out_of_step, "in_step": in_step}
+        turned = hit.number(needed)
+        out_of_step = f"goes in one step far below what is turned, which ends at Z{turned}: look at its digits"
+    else:
+        # To be written, so with a point: without one some controls read an increment.
+        in_step = plain_number(needed / float(hit.trace.lengths.scale[hit.row]))
+        out_of_step = f"is out of step with the others of its contour: Z{in_step} would fit"
+    return {"z": z, "z_needed": needed, "depth": hit.number(z), "out_of_step": out_of_step}
