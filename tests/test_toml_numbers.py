@@ -6,6 +6,8 @@ import pytest
 from cases import looped
 
 from polarcheck.files.settings.of_programs import toml_value
+from polarcheck.foundation.errors import JobError, UsageError
+from polarcheck.program.machines.job import Job, from_table, with_tool
 from polarcheck.program.machines.toml_text import parsed
 
 
@@ -28,6 +30,16 @@ from polarcheck.program.machines.toml_text import parsed
         ("a = [1.5, 4., 3]", "write 4.0"),
         ("radius = 1,5", "write 1.5, with a decimal point"),
         ("radius = M35", 'write "M35", in quotes'),
+        ("radius = +.5", "write 0.5"),
+        ("radius = 1000.", "write 1000.0"),
+        ("radius = 5/8 in", "write 0.625, without in"),
+        ('radius = 1 1/2"', 'write 1.5, without "'),
+        ("radius = 1/2''", "write 0.5, without ''"),
+        ("radius = 1/2”", "write 0.5, without ”"),
+        ("radius = 0,5mm", "write 0.5, with a decimal point and without mm"),
+        ("radius = ,5 # wear", "write 0.5, with a decimal point"),
+        ('radius = 0,5"', 'write 0.5, with a decimal point and without "'),
+        ("angle = 30°", "write 30, without °"),
     ],
 )
 def test_the_message_says_what_to_write(line: str, hint: str) -> None:
@@ -36,11 +48,43 @@ def test_the_message_says_what_to_write(line: str, hint: str) -> None:
     assert str(caught.value).endswith(f"; {hint}")
 
 
-@looped("line", ["radius = 3/0", "radius = 4 ..", "radius = .", "radius = 1.5 x"])
+@looped("line", ["radius = 3/0", "radius = 4 ..", "radius = .", "radius = 1.5 x", "radius = 1,234.5"])
 def test_of_what_is_no_number_nothing_is_said(line: str) -> None:
     with pytest.raises(ValueError, match="at line 2") as caught:
         parsed(f"[tools.8]\n{line}\n")
     assert "write" not in str(caught.value)
+
+
+@looped(
+    ("value", "hint"),
+    [
+        ("3/16", "write 0.1875"),
+        ("8mm", "write 8, without mm"),
+        (".5", "write 0.5"),
+        ("4.", "write 4.0"),
+        ("0,5", "write 0.5, with a decimal point"),
+        ("0,5 mm", "write 0.5, with a decimal point and without mm"),
+        ("4.5", "write 4.5, without quotes"),
+    ],
+)
+def test_so_does_that_of_a_text_in_quotes(value: str, hint: str) -> None:
+    with pytest.raises(JobError) as caught:
+        from_table({"tools": {"8": {"radius": value}}}, "polarcheck.toml")
+    assert str(caught.value).endswith(f"found {value!r}; {hint}")
+
+
+@looped(("value", "hint"), [("3/16", "write 0.1875"), ("8mm", "write 8, without mm"), ('1/2"', 'write 0.5, without "')])
+def test_so_does_that_of_an_option(value: str, hint: str) -> None:
+    with pytest.raises(UsageError) as caught:
+        with_tool(Job(), f"8:radius={value}")
+    assert str(caught.value).endswith(f"found {value!r}; {hint}")
+
+
+@looped("value", ["big", "8 x", "3/0", ""])
+def test_of_other_texts_nothing_is_said(value: str) -> None:
+    with pytest.raises(JobError) as caught:
+        from_table({"tools": {"8": {"radius": value}}}, "polarcheck.toml")
+    assert str(caught.value).endswith(f"found {value!r}")
 
 
 @looped(("text", "value"), [(".5", 0.5), ("4.", 4.0), ("-.25", -0.25), ("4", 4), ("3/16", "3/16"), (".", ".")])

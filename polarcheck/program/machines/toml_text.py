@@ -31,12 +31,13 @@ _LONG_NUMBER = lazy_pattern(r"(?<![\d_])\d[\d_]{1000,}+")
 #: 3401#0, the bit of a parameter, as a key without quotes.
 _BIT = r"^[ \t]*+(\w{1,20}#\w{1,20})[ \t]*+="
 
-#: 1,5 for 1.5.
-_COMMA = lazy_pattern(r"=[ \t]*+([-+]?\d{1,9}+),(\d{1,9}+)[ \t]*+(?:#.*)?$")
+_UNIT = r"[ \t]*+(mm|inches|inch|in|deg|°|\"|''|[”″])?[ \t]*+"
+#: 1,5 for 1.5, be it with a unit behind it.
+_COMMA = lazy_pattern(rf"=[ \t]*+([-+]?)(\d{{0,9}}+),(\d{{1,9}}+){_UNIT}(?:#.*)?$", re.IGNORECASE)
 #: .5, 4., 08, 3/16 and 1 3/16 as a value, be it with a unit behind it.
 _NUMBER = lazy_pattern(
     r"[=\[,][ \t]*+([-+]?)(?:(?:(\d{1,9})[ \t-]+)?(\d{1,9})[ \t]*+/[ \t]*+(\d{1,9})|(\d{0,9})\.?(\d{0,9}))"
-    r"[ \t]*+(mm|inches|inch|in|\"|'')?[ \t]*+(?=[,\]}#]|$)",
+    rf"{_UNIT}(?=[,\]}}#]|$)",
     re.IGNORECASE,
 )
 #: M35 without quotes.
@@ -103,8 +104,6 @@ def _hint(text: str, said: str) -> str:
         return f'; write "{bit[1]}" in quotes: # begins a comment'
     if bare := _BARE.match(line):
         return f'; "{bare[1]}" has no value behind the =: write one, or # before the line'
-    if comma := _COMMA.search(line):
-        return f"; write {comma[1]}.{comma[2]}, with a decimal point"
     if written := _written_number(line):
         return f"; write {written}"
     if code := _UNQUOTED.search(line):
@@ -112,8 +111,18 @@ def _hint(text: str, said: str) -> str:
     return ""
 
 
+def number_hint(text: str) -> str:
+    """`; write 0.5` for a text that was given as a number; empty if it is none."""
+    is_quoted = re.fullmatch(r"[-+]?\d{1,9}(?:\.\d{1,9})?", text.strip())
+    written = _written_number(f"= {text}") or (f"{text.strip()}, without quotes" if is_quoted else "")
+    return f"; write {written}" if written else ""
+
+
 def _written_number(line: str) -> str:
     """The first number of a line that TOML does not read, as it is to be written; empty without one."""
+    if comma := _COMMA.search(line):
+        without = f" and without {comma[4]}" if comma[4] else ""
+        return f"{comma[1]}{comma[2] or 0}.{comma[3]}, with a decimal point{without}"
     for match in _NUMBER.finditer(line):
         sign, whole, above, below, before, behind, unit = (group or "" for group in match.groups())
         sign = sign.replace("+", "")

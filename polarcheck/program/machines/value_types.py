@@ -6,7 +6,6 @@ the key as the user writes it: Python types and paths with `[...]` mean nothing 
 from __future__ import annotations
 
 import math
-import re
 import types
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Annotated, Any, Literal, TypeVar, Union, get_args, get_origin
@@ -15,6 +14,7 @@ import msgspec
 
 from polarcheck.foundation.decoding import converted
 from polarcheck.foundation.errors import UsageError, suggestion
+from polarcheck.program.machines.toml_text import number_hint
 
 #: Key of `extra` in msgspec.Meta: the expected value in words, where the type and its bounds do not say it well.
 EXPECTED = "expected"
@@ -147,7 +147,7 @@ def _misfit(part: _Part, error: Exception | None = None) -> MisfitError:
         if isinstance(error.__cause__, KeyedError) and error.__cause__.key:
             part = msgspec.structs.replace(part, key=_below(part.key, error.__cause__.key))
     else:
-        text = f"expected {_expected(part.kind)}{_beyond(part)}, found {display(part.value)}{_with_point(part)}"
+        text = f"expected {_expected(part.kind)}{_beyond(part)}, found {display(part.value)}{_as_number(part)}"
     return MisfitError(part.key, f"{part.key}: {text}" if part.key else text)
 
 
@@ -244,9 +244,7 @@ def display(value: Any) -> str:
     return text if len(text) <= _LONGEST else f"{text[:_LONGEST]}..."
 
 
-def _with_point(part: _Part) -> str:
-    """The advice for a number with a decimal comma."""
-    text = part.value
-    if _bare(part.kind) is float and isinstance(text, str) and re.fullmatch(r"[-+]?\d*,\d+", text.strip()):
-        return f"; write {text.strip().replace(',', '.')}, with a decimal point"
-    return ""
+def _as_number(part: _Part) -> str:
+    """The advice for a text that was given as a number."""
+    is_text = _bare(part.kind) is float and isinstance(part.value, str)
+    return number_hint(part.value) if is_text else ""
