@@ -105,3 +105,23 @@ def test_the_number_that_is_meant_has_all_of_its_digits(written: str, how: str) 
     program = f"O1\nG20 G98 G40\nT0101\nG0 X4. Z.1 C-1.\nG12.1\nG1 Z-.1 F8.\nG42 {blocks}\nG40 X4. C-1.\nG13.1\nM30\n"
     (slip,) = report_of(program, "fanuc", "1:radius=.05", only=["nearly-regular-contour"]).findings
     assert f"{how}: with X1.0246 it would be a regular pentagon" in slip.message
+
+
+@looped(
+    ("written", "how"),
+    [
+        ("X-25.6", "a digit is wrong"),
+        ("X-25.5", "a digit is wrong"),
+        ("X-24.5", "two digits are swapped"),
+        ("X-5.4", "a digit is missing"),
+        ("X-2.54", "the point is at the wrong place"),
+    ],
+)
+def test_a_number_that_one_slip_writes_exactly_is_none_of_another_that_is_near(written: str, how: str) -> None:
+    """A hexagon of 22 mm across flats with 25.4 as whole tenths: 25.46 is near, and a missing digit would make it."""
+    program = (
+        "O1\nG21 G98 G40\nT0101\nG0 X140. Z5. C0\nG12.1\nG1 Z-2. F5000\nG1 G42 X25.4 F700\nX12.7 C11.\nX-12.7 C11.\n"
+        f"{written} C0\nX-12.7 C-11.\nX12.7 C-11.\nX25.4 C0\nX12.7 C11.\nG1 G40 X140. C0 F5000\nG13.1\nM30\n"
+    )
+    (slip,) = report_of(program, "fanuc", "1:radius=3", only=["nearly-regular-contour"]).findings
+    assert f"{how}: with X-25.4 it would be a regular hexagon" in slip.message

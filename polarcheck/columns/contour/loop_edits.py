@@ -200,23 +200,31 @@ def _numbers(
     others: the sizes of the numbers of all blocks, one of which may be meant. beside: the numbers of the blocks before
     and behind, one of which may be what is written. is_angle: it looks like an angle.
     """
-    known = {round(value / _SAME_NUMBER)}
+    known = {_key(value)}
     is_beside = any(abs(number - value) < _SAME_NUMBER for number in beside)
     why = "it is that of the block beside it" if is_beside else _IS_ANGLE if is_angle else "another number is meant"
     of_others = Slip("", why, False)
     step = _STEPS * 10.0 ** -_decimals(written)
-    likely = (slip._replace(text=_of_others(float(slip.text), slip.text, others, step)) for slip in slips_of(written))
+    of_pen = list(slips_of(written))
+    exact = {_key(slip.text) for slip in of_pen}
+    # A number that one slip writes exactly is none that another one writes but for rounding.
+    inexact = tuple(size for size in others if _key(size) not in exact and _key(-size) not in exact)
+    likely = (slip._replace(text=_of_others(float(slip.text), slip.text, inexact, step)) for slip in of_pen)
     slips = [(slip, _cost(slip, written, others)) for slip in likely]
     for size in others:
         cost = _SELDOM if is_beside or is_angle else _FAR
         slips += [(of_others._replace(text=plain_number(number)), cost) for number in (size, -size)]
     found = []
     for slip, cost in sorted(slips, key=lambda pair: (pair[1], pair[0].kind != _IS_ANGLE)):
-        key = round(float(slip.text) / _SAME_NUMBER)
+        key = _key(slip.text)
         if key not in known and (_LEAST <= abs(float(slip.text)) <= _GREATEST or not key):
             known.add(key)
             found.append((slip, cost))
     return tuple(found)
+
+
+def _key(number: str | float) -> int:
+    return round(float(number) / _SAME_NUMBER)
 
 
 def _of_others(value: float, text: str, others: tuple[float, ...], step: float) -> str:
