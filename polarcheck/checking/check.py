@@ -16,8 +16,7 @@ from polarcheck.checking.engine import Engine, in_order, with_following
 from polarcheck.checking.not_evaluated import all_unevaluated, bounds_not_reported
 from polarcheck.checking.polar_sections import known_stock, polar_sections
 from polarcheck.checking.suppression import UNUSED, divided
-from polarcheck.checking.written_for import RULE as OF_OTHER_CONTROL
-from polarcheck.checking.written_for import written_for
+from polarcheck.checking.written_for import stated_by
 from polarcheck.columns.words.allow_mention import Used, mentions_allow
 from polarcheck.foundation.finding import (
     DESELECTED,
@@ -170,12 +169,13 @@ def _check_channel(
 
     Where the program is written for another control, what this one would make of its words is not worth reporting.
     """
-    saying = [rule for rule in rules if rule.name == OF_OTHER_CONTROL]
-    if saying and any(written_for(tables) for _, tables in channel):
+    names = next(filter(None, (stated_by(tables) for _, tables in channel)), ())
+    if saying := [rule for rule in rules if rule.name in names]:
         report, engines = _check_runs_of_channel(channel, saying, severities, inline)
         if report.findings or report.silenced:
-            rest = {"not_evaluated": [], "looked_at": [], "verdict": verdict(report.findings, [])}
-            return msgspec.structs.replace(report, **rest), engines
+            findings = report.findings[:1]
+            rest = {"not_evaluated": [], "looked_at": [], "verdict": verdict(findings, [])}
+            return msgspec.structs.replace(report, findings=findings, **rest), engines
     report, engines = _check_runs_of_channel(channel, rules, severities, inline)
     if any(finding.rule == _OF_SWITCH for finding in report.findings):
         from polarcheck.checking.builders_switch import supposition, with_supposed  # imported late: it is rare
@@ -220,7 +220,7 @@ def engine_of(
     """
     machine: Machine = tables["machine"]
     levels = {**machine.severities, **(severities or {})}
-    tables.give("other_machine", OtherMachine(tables))
+    tables.setdefault("other_machine", OtherMachine(tables))
     active = [rule for rule in rules if rule.level(levels) != "off" and UNUSED not in rule.parameters]
     of_dialect = [rule for rule in active if "dialect" in rule.parameters]
     if of_dialect and tables["dialect"].recognised is not None:

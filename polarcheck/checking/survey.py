@@ -111,7 +111,7 @@ def _begins(requested: Profile | None) -> re.Pattern[bytes]:
 def _written(code: str) -> bytes:
     match = _NUMBERED.fullmatch(code)
     if match is None:
-        return re.escape(code).encode()
+        return r"\s*".join(map(re.escape, code.split())).encode()  # G16XC is G16 XC
     point = rf"\s*\.\s*{match[3]}" if match[3] else r"(?:\.0*)?"
     return rf"{match[1]}\s*0*{match[2]}{point}(?!\d)".encode()
 

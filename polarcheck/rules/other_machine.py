@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import msgspec
 import numpy as np
 
@@ -14,13 +16,15 @@ from polarcheck.program.machines.machine import Machine
 from polarcheck.program.machines.profiles import Profile
 from polarcheck.program.reading import source
 from polarcheck.program.reading.channel_texts import channel_like
-from polarcheck.program.reading.translation import translated
-from polarcheck.program.reading.words import read_words
+from polarcheck.program.reading.translation import stands_in, translated
+from polarcheck.program.reading.words import Text, read_words
 from polarcheck.rules.remedies import is_chosen
 from polarcheck.rules.tables import Tables
 
 #: More titles than this in one message help nobody.
 NAMED = 3
+#: Blocks that are searched for words of other controls.
+_LOOKED_AT = 20
 
 
 class Fit(msgspec.Struct, frozen=True):
@@ -53,23 +57,36 @@ class OtherMachine:
             return ""
         return f"; it reads well on {self._fit.text()}"
 
+    @property
+    def is_in_its_language(self) -> bool:
+        """The program has an axis or words that this machine does not have, and another reads it well with them."""
+        has_signs = _names_other_axis(self.tables).any() or self.tables["words"].is_unreadable.any()
+        return bool(has_signs and self.text)
+
 
 def _find(tables: Tables) -> Fit | None:
     """
     The machines that read the program well where this one does not.
 
-    Cheap for a program that is read well: only an axis address of other controls, or arcs that close with X read the
-    other way, make it look at other machines.
+    Cheap for a program that is read well: only an axis address of other controls, words of their languages, or arcs
+    that close with X read the other way make it look at other machines.
     """
     trace: Trace = tables["trace"]
-    if not len(trace.mode.sections) or not np.any(_names_other_axis(tables) | tables["arcs"].x_is_misread):
+    if not len(trace.mode.sections):
+        return None
+    is_misread = bool(np.any(_names_other_axis(tables) | tables["arcs"].x_is_misread))
+    unread = _unread_lines(trace.text)
+    if not is_misread and not unread:
         return None
     fitting: dict[tuple[str, ...], list[Profile]] = {}
     told = [_reads(trace.machine)]
     for profile in profiles.built_in():
-        if _reads(profile.machine) in told:
+        if {*profile.machine.polar.on} <= {*profile.written.control.native_words.values()}:
+            continue  # its programs begin the mode by a word, for which such a code stands inside alone
+        words = words_of(profile.machine, unread)
+        if (not words and not is_misread) or _reads(profile.machine) in told:
             continue
-        reasons = _reasons(tables, profile.machine)
+        reasons = _reasons(tables, profile.machine, words)
         if reasons:
             told.append(_reads(profile.machine))
             fitting.setdefault(reasons, []).append(profile)
@@ -87,8 +104,8 @@ def _reads(machine: Machine) -> tuple[object, ...]:
     return mode.on, mode.virtual_axes, mode.x, machine.arcs.radius_word, native, control.motion_codes
 
 
-def _reasons(tables: Tables, machine: Machine) -> tuple[str, ...]:
-    """Why the machine reads the program well; empty where it does not."""
+def _reasons(tables: Tables, machine: Machine, words: list[str]) -> tuple[str, ...]:
+    """Why the machine reads the program well; empty where it does not. words: those of its own language."""
     there = _read_by(tables, machine)
     trace: Trace = tables["trace"]
     other: Trace = there["trace"]
@@ -100,7 +117,25 @@ def _reasons(tables: Tables, machine: Machine) -> tuple[str, ...]:
         reasons.append(f"{mode.virtual_axis} is the second axis of the polar plane there")
     if mode.x != own.x and np.any(tables["arcs"].x_is_misread):
         reasons.append(f"all arcs close there, where X is a {mode.x} in the polar mode")
+    reasons += [f"it has {word}" for word in words[:1]]
     return tuple(reasons)
+
+
+def _unread_lines(text: Text) -> str:
+    """The blocks of a program with a number that the control cannot read, a line each, up to a limit."""
+    blocks = np.unique(text.words.block[text.words.is_unreadable])[:_LOOKED_AT]
+    return "\n".join(without_comments(text.source.line_text(int(line))) for line in text.blocks.line[blocks])
+
+
+def without_comments(block: str) -> str:
+    """A block without what stands in parentheses or behind a semicolon."""
+    return re.sub(r"\([^)]*+\)?|;.*", " ", block)
+
+
+def words_of(machine: Machine, lines: str) -> list[str]:
+    """The words in some lines that a machine has in a language of its own, longer than one letter."""
+    named = dict.fromkeys([*machine.control.native_words, *filter(str.isalpha, machine.macro.statements)])
+    return [word for word in named if len(word) > 1 and stands_in(lines, word)]
 
 
 def _names_other_axis(tables: Tables) -> Mask:

@@ -66,6 +66,12 @@ def spans(source: Source, word: str) -> tuple[Positions, Positions]:
     return begins, ends
 
 
+def stands_in(text: str, word: str) -> bool:
+    """A native word stands in a text."""
+    native, code = word.upper().encode("latin-1").strip(), text.upper().encode("latin-1", "replace")
+    return _BLANKS.split(native)[0] in code and re.search(_pattern(native), code) is not None
+
+
 def _pattern(word: bytes) -> bytes:
     word = word.strip()
     begins = rb"(?<![A-Z_])" if word[:1].isalpha() else b""

@@ -7,8 +7,10 @@ from polarcheck.rules.rule import ERROR, Hits, rule
 if TYPE_CHECKING:
     from polarcheck.columns.modes.other_mode import OtherMode
     from polarcheck.columns.words.written import Written
+    from polarcheck.program.machines.machine import Machine
     from polarcheck.program.reading.words import Words
     from polarcheck.rules.hit import Details, Hit
+    from polarcheck.rules.other_machine import OtherMachine
 
 _FAULTS = {
     "NO_DIGITS": "no digits after the address",
@@ -66,7 +68,35 @@ def bad_number(written: Written, other_mode: OtherMode) -> Hits:
     return Hits(count > 0, values={"count": count}, follows={"file": other_mode.explained})
 
 
-def details(hit: Hit, words: Words) -> Details:
+def details(hit: Hit, words: Words, machine: Machine, other_machine: OtherMachine) -> Details:
     from polarcheck.program.reading.numbers import NumberFault
 
-    return {"number_fault": _FAULTS[NumberFault(int(words.fault[hit.index])).name]}
+    fault = NumberFault(int(words.fault[hit.index]))
+    of_other = _of_other_control(hit, words, machine, other_machine) if fault == NumberFault.NO_DIGITS else ""
+    return {"number_fault": f"{_FAULTS[fault.name]}{of_other}"}
+
+
+def _of_other_control(hit: Hit, words: Words, machine: Machine, other_machine: OtherMachine) -> str:
+    """
+    `; WAITM is a word of siemens-iso (--machine)`, where letters begin a word of other controls, or stand in it; which
+    machines read the program well, where some do.
+    """
+    from polarcheck.program.machines import profiles
+    from polarcheck.rules.other_machine import NAMED, without_comments, words_of
+    from polarcheck.rules.remedies import enumerated
+
+    if other_machine.text:
+        return other_machine.text
+    text, start = hit.trace.text, int(words.start[hit.index])
+    line = without_comments(text.source.line_text(int(text.blocks.line[words.block[hit.index]])))
+    if words_of(machine, line):
+        return ""
+    rest = text.source.excerpt(start, start + len(line)).upper()
+    known_by: dict[str, list[str]] = {}
+    for profile in profiles.built_in():
+        for word in words_of(profile.machine, line):
+            if rest.startswith(next(filter(str.isalpha, word.split()), "=")):
+                known_by.setdefault(word, []).append(profile.name)
+    for word, names in known_by.items():
+        return f"; {word} is a word of {enumerated(names[:NAMED], 'and')} (--machine)"
+    return ""
