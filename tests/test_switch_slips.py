@@ -118,6 +118,26 @@ def test_the_contour_is_judged_as_if_they_switched_the_mode(
         assert finding.fix is None
 
 
+@pytest.mark.ci
+@looped("machine", ["mitsubishi-m700", "fanuc-30i", "doosan"])
+@looped(
+    ("before", "block", "rule"),
+    [
+        ("C10.\nX-30.", "C10.\nG0 X-30.", "rapid-in-polar"),
+        ("C10.\nX-30.", "C10.\nG3 X-30. R1.", "arc-radius-too-small"),
+        ("C10.\nX-30.", "C10.\nG18\nX-30.", "plane-selected-in-polar"),
+    ],
+)
+def test_so_it_is_on_other_controls_and_with_other_faults(machine: str, before: str, block: str, rule: str) -> None:
+    program = OWN.format(on="G121", off="G120", leave="60.").replace(before, block)
+    assert block in program
+    report = report_of(program, machine, "8:radius=4,nose=0")
+    assert UNKNOWN in {finding.rule for finding in report.findings}
+    (finding,) = (finding for finding in report.findings if finding.rule == rule)
+    assert finding.message.startswith("if G121 begins the mode: ")
+    assert isinstance(finding, Undecided)
+
+
 def test_without_the_rule_nothing_is_supposed() -> None:
     program = OWN.format(on="G121", off="G120", leave="32.")
     job = {"severities": {"polar-switch-unknown": "off"}}
