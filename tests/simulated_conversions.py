@@ -64,10 +64,11 @@ def conversion(program: Drawn, target: str) -> Conversion:
 
 
 def differences_of(program: Drawn, target: str, outcome: Outcome) -> list[str]:
-    """What the new program does otherwise, but where a comment in it or a note says that something is other there."""
-    told = {decision.line for decision in outcome.decisions}
-    left_out = (re.match(r"line (\d+): .* is left out", note) for note in outcome.notes)
-    told |= {int(match[1]) for match in left_out if match}
-    told_there = frozenset(line for line, origin in enumerate(outcome.origin, 1) if origin in told)
-    ours, theirs = steps(program.text, program.machine), steps(outcome.data.decode("latin-1"), target)
-    return differences(ours, theirs, frozenset(told), told_there)[0]
+    """What the new program does otherwise, but by words that a comment in it or a note names there."""
+    left_out = (re.match(r"line (\d+): (.*) is left out", note) for note in outcome.notes)
+    texts = [(decision.line, decision.text.partition(": ")[0]) for decision in outcome.decisions]
+    told = dict[int, str]()
+    for line, words in texts + [(int(match[1]), match[2]) for match in left_out if match]:
+        told[line] = told.get(line, "") + "".join(re.findall(r"(?<![A-Z])([A-Z])B?\d?=?[-.\d\[#]", words))
+    theirs = steps(outcome.data.decode("latin-1"), target, outcome.origin)
+    return differences(steps(program.text, program.machine), theirs, told)[0]

@@ -10,8 +10,9 @@ from __future__ import annotations
 import cmath
 import math
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from string import ascii_uppercase
 from typing import Any
 
 INCH = 25.4
@@ -173,16 +174,21 @@ class Step:
     in_mode: bool = False
 
 
-def steps(text: str, machine: str) -> list[Step]:
-    """Run a program, and return what the lathe does: moves of no length left out, arcs about one center as one."""
-    return _joined(_Lathe(CONTROLS[machine], text).run())
+def steps(text: str, machine: str, lines: Sequence[int] = ()) -> list[Step]:
+    """
+    Run a program, and return what the lathe does: moves of no length left out, arcs about one center as one.
+
+    lines: the number of each line in the steps, as in the program from which it was converted; else they count from 1.
+    """
+    return _joined(_Lathe(CONTROLS[machine], text, lines).run())
 
 
 class _Lathe:
-    def __init__(self, control: Control, text: str) -> None:
+    def __init__(self, control: Control, text: str, numbers: Sequence[int]) -> None:
         self.control = control
         self.codes = {**_OF_ALL, **_OF_SYSTEM[control.system]}
         self.lines = [self._plain(line) for line in text.upper().replace("\r", "").split("\n")]
+        self.numbers = numbers or range(1, len(self.lines) + 1)
         self.known: dict[str, tuple[float | str, int]] = dict.fromkeys(_STATES, ("off", 0))
         self.known |= {"side": ("40", 0), "origin": ("G54", 0)}
         self.known |= {"x": (_ABSENT, 0), "z": (_ABSENT, 0), "c": (_ABSENT, 0), "feed": (_ABSENT, 0)}
@@ -218,7 +224,7 @@ class _Lathe:
     def _run(self, index: int, depth: int) -> None:
         """Run the blocks from a line on, up to the end of the program or the return to who called."""
         while index < len(self.lines) and depth < 8 and len(self.done) < 20000:
-            line, self.number = self.lines[index], index + 1
+            line, self.number = self.lines[index], self.numbers[index]
             if re.match(r"[O:]\d|%_N_\w+_[MS]PF", line) and depth:
                 return
             if (jump := self._statement(line, index)) is not None:
@@ -563,6 +569,17 @@ def _go_on(last: Step, step: Step) -> bool:
 
 # ---- comparing ----
 
+_NOTHING: Mapping[int, str] = {}
+_AXES = "XUZWCHYV"
+#: The addresses of the words that set a value or make a step; all for those that are not here.
+_SET_BY = {
+    **dict.fromkeys(("main", "live", "c_axis", "clamp", "coolant", "stop", "end"), "M"),
+    **dict.fromkeys(("css", "origin", "side", "turn", "reference", "machine", "data", "set", "call", "dwell"), "G"),
+    **dict.fromkeys(("rapid", "line", "arc", "cycle"), _AXES), **dict.fromkeys(("tool", "number", "offset"), "TD"),
+    "main_speed": "MS", "live_speed": "MSP", "limit": "GS", "seconds": "GXUPF", "feed": "GF", "x": "XU", "z": "ZW",
+    "c": "CH", "re": "XUCHYV", "im": "XUCHYV",
+}  # fmt: skip
+
 
 def _tolerance(name: str, value: object) -> float:
     if name in ("feed", "main_speed", "live_speed", "speed") and isinstance(value, float):
@@ -578,29 +595,30 @@ def _is_near(ours: object, theirs: object, tolerance: float) -> bool:
     return abs(ours - theirs) <= tolerance  # type: ignore[operator]
 
 
-def differences(
-    ours: list[Step], theirs: list[Step], told: frozenset[int] = frozenset(), told_there: frozenset[int] = frozenset()
-) -> tuple[list[str], int]:
+def differences(ours: list[Step], theirs: list[Step], told: Mapping[int, str] = _NOTHING) -> tuple[list[str], int]:
     """
-    Return what two programs do otherwise, and how many of their differences come from lines that were told.
+    Return what two programs do otherwise, and how many of their differences come from words that were told.
 
-    told, told_there: lines of each program about which a comment or a note says that something is other there.
+    told: lines about which a comment or a note says that something is other there, with the addresses of the words
+    that it names.
     """
     result: list[str] = []
     excused = i = j = 0
     while i < len(ours) or j < len(theirs):
         first = ours[i] if i < len(ours) else None
         second = theirs[j] if j < len(theirs) else None
+        is_one = False
         if first and second and _same_kind(first, second):
+            is_one = first.line == second.line
             names = _different(first, second)
-            open_names = [name for name in names if not _is_told(name, first, second, told, told_there)]
-            if not names or (not open_names and first.line not in told):
+            open_names = [name for name in names if not _is_told(name, first, second, told)]
+            if not names or (not open_names and (is_one or not _names(told, first.line, first.what))):
                 excused += len(names)
                 i, j = i + 1, j + 1
                 continue
-        if first and first.line in told:
+        if first and not is_one and _names(told, first.line, first.what):
             excused, i = excused + 1, i + 1
-        elif second and second.line in told_there:
+        elif second and not is_one and _names(told, second.line, second.what):
             excused, j = excused + 1, j + 1
         elif first and second and _same_kind(first, second):
             text = ", ".join(f"{n} {_shown(first, n)} -> {_shown(second, n)}" for n in open_names)
@@ -632,9 +650,15 @@ def _near_angle(name: str, ours: object, theirs: object) -> bool:
     return _is_near(ours, theirs, _tolerance(name, ours))
 
 
-def _is_told(name: str, first: Step, second: Step, told: frozenset[int], told_there: frozenset[int]) -> bool:
+def _is_told(name: str, first: Step, second: Step, told: Mapping[int, str]) -> bool:
     ours, theirs = first.values.get(name, ("", first.line)), second.values.get(name, ("", second.line))
-    return ours[1] in told or theirs[1] in told_there
+    return _names(told, ours[1], name) or _names(told, theirs[1], name)
+
+
+def _names(told: Mapping[int, str], line: int, name: str) -> bool:
+    """What is told about a line names a word that sets this value, or makes this step."""
+    by = "M" if re.fullmatch(r"M\d+", name) else _SET_BY.get(name.partition(" ")[0], ascii_uppercase)
+    return not set(by).isdisjoint(told.get(line, ""))
 
 
 def _shown(step: Step, name: str) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from string import ascii_uppercase
 
 import pytest
 from cases import looped
@@ -82,8 +83,37 @@ def test_a_planted_difference_is_found(before: str, after: str, said: str) -> No
     ours, theirs = steps(PROGRAM, "haas-lathe"), steps(PROGRAM.replace(before, after), "haas-lathe")
     found, excused = differences(ours, theirs)
     assert (said in found[0], excused) == (True, 0), found
-    everywhere = frozenset(range(40))
-    assert differences(ours, theirs, everywhere, everywhere)[0] == []
+    everywhere = dict.fromkeys(range(40), ascii_uppercase)
+    assert differences(ours, theirs, everywhere)[0] == []
+
+
+@looped(
+    ("before", "after", "named"),
+    [
+        ("G0 X80. Z2.", "G0 X40. Z2.", "X"),
+        ("Z-2. F80.", "Z-2. F800.", "F"),
+        ("Z-2. F80.", "Z-2.1 F80.", "Z"),
+        ("\nY10.", "\nY-10.", "XY"),
+        ("G42 ", "", "G"),
+        ("G97 P2500 M133", "G97 P2500 M134", "M"),
+        ("P2500", "P2400", "P"),
+        ("M8", "", "M"),
+        ("T0303", "T0403", "T"),
+        ("G4 P500", "", "G"),
+        ("G28 H0", "", "G"),
+        ("G0 X100. Z50.", "", "XYZ"),
+    ],
+    one_in=1,
+)
+def test_a_decided_word_excuses_no_other_word(before: str, after: str, named: str) -> None:
+    """Where other words of a line are decided, a difference is found; where its own are, it is none."""
+    assert PROGRAM.count(before) == 1
+    ours, theirs = steps(PROGRAM, "haas-lathe"), steps(PROGRAM.replace(before, after), "haas-lathe")
+    others = "".join({*"XYZFGMPT"} - {*named} - {*("MS" if named == "P" else "G" if named == "F" else "")})
+    line = PROGRAM[: PROGRAM.index(before) + 1].count("\n") + 1
+    lines = (line, line + 1)  # An arc behind has another center.
+    assert differences(ours, theirs, dict.fromkeys(lines, named))[0] == []
+    assert differences(ours, theirs, dict.fromkeys(lines, others))[0] != []
 
 
 def test_what_is_written_otherwise_is_no_difference() -> None:
