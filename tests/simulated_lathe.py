@@ -641,13 +641,18 @@ def _different(first: Step, second: Step) -> list[str]:
     if first.what != second.what:
         names = dict.fromkeys(name for name in names if name not in ("feed", "turn"))
     values = {name: (first.values.get(name, ("", 0))[0], second.values.get(name, ("", 0))[0]) for name in names}
-    return [name for name, (a, b) in values.items() if not _near_angle(name, a, b)]
+    is_near = {name: _is_near(ours, theirs, _tolerance(name, ours)) for name, (ours, theirs) in values.items()}
+    if "c" in values:
+        is_near["c"] = _near_angle(*values["c"], abs(float(first.values.get("x", (_ABSENT, 0))[0])))
+    return [name for name in names if not is_near[name]]
 
 
-def _near_angle(name: str, ours: object, theirs: object) -> bool:
-    if name == "c" and not isinstance(ours, str) and not isinstance(theirs, str) and ours == ours and theirs == theirs:
-        return abs(math.remainder(ours - theirs, 360)) <= 0.003  # type: ignore[operator]
-    return _is_near(ours, theirs, _tolerance(name, ours))
+def _near_angle(ours: object, theirs: object, radius: float) -> bool:
+    """The same angle of C, up to 0.001 mm at the radius: behind the mode C is that of a rounded point."""
+    if isinstance(ours, float) and isinstance(theirs, float) and not math.isnan(ours - theirs):
+        apart = abs(math.remainder(ours - theirs, 360))
+        return apart <= 0.003 or math.radians(apart) * radius <= 0.001
+    return _is_near(ours, theirs, 0.003)
 
 
 def _is_told(name: str, first: Step, second: Step, told: Mapping[int, str]) -> bool:

@@ -123,6 +123,15 @@ def test_what_is_written_otherwise_is_no_difference() -> None:
     assert differences(steps(PROGRAM, "haas-lathe"), steps(other, "haas-lathe")) == ([], 0)
 
 
+def test_c_behind_the_mode_is_that_of_a_rounded_point() -> None:
+    """0.0005 mm at a radius of 5 mm are 0.006 deg; 0.006 deg at a radius of 40 mm are another place."""
+    near = PROGRAM.replace("G40 X30.", "G40 X5.").replace("G0 X100. Z50.", "G0 Z50.")
+    rounded = near.replace("G40 X5.", "G40 X5. Y0.0005")
+    assert differences(steps(near, "haas-lathe"), steps(rounded, "haas-lathe")) == ([], 0)
+    turned = PROGRAM.replace("C0.", "C0.006")
+    assert "rapid: c 0.0000 -> 0.0060" in differences(steps(PROGRAM, "haas-lathe"), steps(turned, "haas-lathe"))[0][0]
+
+
 def test_one_part_on_four_controls() -> None:
     """The same moves in the words of each, by hand."""
     head = "G0 X80. Z2. C0.\n"
