@@ -384,8 +384,8 @@ class _Lathe:
     def _tool(self, values: dict[str, Any], texts: dict[str, str]) -> None:
         for address in [address for address in values if re.fullmatch(r"S|SB=|S\d=", address)]:
             speed = values.pop(address) * (0.3048 if self.inch and self.known["css"][0] == "on" else 1)
-            of_live = (address == self.control.live_speed, self.control.live_speed in ("S", "P"))
-            for spindle in ("main", *(("live",) if any(of_live) else ())) if address == "S" else ("live",):
+            of_live = address == self.control.live_speed or (address == "S" and self.control.live_speed == "P")
+            for spindle in (*(("main",) if address == "S" else ()), *(("live",) if of_live else ())):
                 self.speed[spindle] = speed, self.number
         number, edge = values.pop("T", values.pop("T=", 0)), values.pop("D", None)
         if not number and edge is None and not {"T", "T="} & set(texts):
@@ -409,6 +409,7 @@ class _Lathe:
         for spindle in ("main", "live"):
             runs = self.known[spindle][0] in ("cw", "ccw")
             values[f"{spindle}_speed"] = self.speed[spindle] if runs else (0.0, self.known[spindle][1])
+            values[f"{spindle}_word"] = self.speed[spindle]
         values |= {name: value if isinstance(value, tuple) else (value, self.number) for name, value in own.items()}
         values.pop("turn")
         self.done.append(Step(what, self.number, values, in_mode))
@@ -576,13 +577,13 @@ _SET_BY = {
     **dict.fromkeys(("main", "live", "c_axis", "clamp", "coolant", "stop", "end"), "M"),
     **dict.fromkeys(("css", "origin", "side", "turn", "reference", "machine", "data", "set", "call", "dwell"), "G"),
     **dict.fromkeys(("rapid", "line", "arc", "cycle"), _AXES), **dict.fromkeys(("tool", "number", "offset"), "TD"),
-    "main_speed": "MS", "live_speed": "MSP", "limit": "GS", "seconds": "GXUPF", "feed": "GF", "x": "XU", "z": "ZW",
-    "c": "CH", "re": "XUCHYV", "im": "XUCHYV",
+    "main_speed": "MS", "live_speed": "MSP", "main_word": "S", "live_word": "SP", "limit": "GS", "seconds": "GXUPF",
+    "feed": "GF", "x": "XU", "z": "ZW", "c": "CH", "re": "XUCHYV", "im": "XUCHYV",
 }  # fmt: skip
 
 
 def _tolerance(name: str, value: object) -> float:
-    if name in ("feed", "main_speed", "live_speed", "speed") and isinstance(value, float):
+    if name in ("feed", "main_speed", "live_speed", "main_word", "live_word", "speed") and isinstance(value, float):
         return 0.006 * max(1.0, abs(value))
     return {"center_re": 0.03, "center_im": 0.03, "sweep": 0.2, "seconds": 0.0015}.get(name, 0.003)
 
@@ -640,6 +641,10 @@ def _different(first: Step, second: Step) -> list[str]:
     names = dict.fromkeys((*first.values, *second.values))
     if first.what != second.what:
         names = dict.fromkeys(name for name in names if name not in ("feed", "turn"))
+    for spindle in ("main", "live"):
+        # Where the order to one of the two is decided, the word of its speed is there all the same.
+        if (first.values[spindle][0] == "off") == (second.values[spindle][0] == "off"):
+            names.pop(f"{spindle}_word")
     values = {name: (first.values.get(name, ("", 0))[0], second.values.get(name, ("", 0))[0]) for name in names}
     is_near = {name: _is_near(ours, theirs, _tolerance(name, ours)) for name, (ours, theirs) in values.items()}
     if "c" in values:

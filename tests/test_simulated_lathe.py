@@ -116,6 +116,13 @@ def test_a_decided_word_excuses_no_other_word(before: str, after: str, named: st
     assert differences(ours, theirs, dict.fromkeys(lines, others))[0] != []
 
 
+@looped(("written", "is_found"), [("G97 S2500", False), ("G97 S2400", True), ("G97", True)], one_in=1)
+def test_the_speed_beside_a_decided_order_is_compared(written: str, is_found: bool) -> None:
+    ours = steps("O1\nG21\nG97 S2500 M70\nG0 X80. Z2. C0.\nM72\nM30\n", "takisawa")
+    theirs = steps(f"O1\nG21\n{written} (DECIDE: M70)\nG0 X80. Z2. C0.\nM72\nM30\n", "takisawa")
+    assert bool(differences(ours, theirs, {3: "M"})[0]) == is_found
+
+
 def test_what_is_written_otherwise_is_no_difference() -> None:
     """Arcs in parts, blanks, a move of no length, speeds that are said again."""
     other = PROGRAM.replace("G3 X-20. Y-20. I0. J-20.", "G3 X-40. Y0. R20.\nG3 X-20. Y-20. R20.")
