@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 from cases import looped
-from editor import Editor, place
+from lsp_editor import Editor, place
 from test_cli import COMPENSATED, RAPID
 
 from polarcheck.checking import check

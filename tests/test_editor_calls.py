@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from cases import looped
-from editor import Editor, place
+from lsp_editor import Editor, place
 from lsprotocol import types
 from test_cli import COMPENSATED
 from test_editor_features import judged_of

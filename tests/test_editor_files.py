@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 from cases import looped
-from editor import Editor
+from lsp_editor import Editor
 from test_cli import COMPENSATED, RAPID
 
 from polarcheck.editor import server_session

@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 from cases import looped
-from editor import Editor
+from lsp_editor import Editor
 from test_cli import RAPID
 
 from polarcheck.commands.server import _Settings

@@ -9,9 +9,9 @@ from typing import Any
 
 import pytest
 from cases import looped
-from editor import Editor, place
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from lsp_editor import Editor, place
 from polarcheck.errors import PolarcheckError
 
 from polarcheck.commands.server import _Settings

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from editor import Editor, Json
+from lsp_editor import Editor, Json
 from test_cli import RAPID
 
 pytestmark = [pytest.mark.ci, pytest.mark.usefixtures("own_folder")]

@@ -7,9 +7,9 @@ from typing import Any
 
 import pytest
 from cases import looped
-from editor import Editor, place
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from lsp_editor import Editor, place
 from lsprotocol import types
 from polarcheck.errors import PolarcheckError
 from test_editor_names import files

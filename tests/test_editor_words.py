@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 from cases import looped
-from editor import Editor, place
+from lsp_editor import Editor, place
 from lsprotocol import types
 
 from polarcheck.commands import server as command

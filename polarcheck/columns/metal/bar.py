@@ -157,6 +157,8 @@ class Bar(Columns, frozen=True):
     @cached_property
     def deepest_turned(self) -> float:
         """The lowest Z that a turning tool cuts before the first section [mm]; inf without any."""
+        if not len(self.trace.mode.sections):
+            return np.inf
         enter = self.trace.mode.sections.enter[0]
         rows, cuts = self.tools.moving_rows, self.turned_cuts.cuts
         of_moves = self.trace.path.z[rows[rows < enter]]

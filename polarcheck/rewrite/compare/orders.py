@@ -178,10 +178,12 @@ class _Reader:
         name, value = self._address(int(words.address[index])), float(words.value[index])
         is_as_written = np.isnan(value) or not name[-1].isalnum()
         text = executed_word(self._trace.run, index) if is_as_written else f"{name}{value:.10g}"
+        # Two codes that are not known may be the same.
+        token = f"{name}{value:.10g}" if np.isnan(value) else text
         if self._is_left_out[index]:
             return None
         if name == "M":
-            return (text, None, text) if self._is_same_machine or text in _EVERYWHERE else None
+            return (token, None, text) if self._is_same_machine or text in _EVERYWHERE else None
         if not self._is_same_machine:
             return None
         if name in ("S", "T"):
@@ -196,7 +198,7 @@ class _Reader:
         if name in ("N", "O", "/") or (name == "F" and self._trace.modal.in_cycle[row]):
             return None
         if name == "G":
-            return text, None, text
+            return token, None, text
         return (name, self._length(name, row, value), text) if is_special or name not in self._of_moves else None
 
     def _feed(self, row: int) -> tuple[str, float | None, str]:
