@@ -177,7 +177,7 @@ def test_want_of_memory_during_any_import_is_one_line(module: str, error: str) -
 
 def test_any_other_fault_of_an_import_is_not_taken_for_want_of_memory() -> None:
     code = AT_IMPORT.format(module="numpy", happens="raise ImportError('no such symbol')")
-    # A run that asks whether nothing has changed only looks where NumPy is, and the fault of that is no end of it.
+    # The fault stays: a run first looks where NumPy is, to see whether anything has changed, and goes on after a fault.
     status, _, said = check(code.replace("sys.meta_path.remove(self)", "pass"))
     assert (status, said.count("\n")) == (3, 1)
     assert "internal error: ImportError: no such symbol" in said

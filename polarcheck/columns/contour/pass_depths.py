@@ -94,10 +94,9 @@ class PassDepths(Columns, frozen=True):
     @cached_property
     def is_beyond_turning(self) -> Mask:
         """Of the rows that are off, those that are too deep for the bar, not for the other passes."""
-        mask = np.zeros(len(self.trace), bool)
         of_steps = dict(self._in_steps())
-        mask[[self._row_of_infeed(row) for row, _ in self._beyond_turning if row not in of_steps]] = True
-        return mask
+        rows = [self._row_of_infeed(row) for row, _ in self._beyond_turning if row not in of_steps]
+        return self.trace.blocks.mask_of(rows)
 
     def _row_of_infeed(self, row: int) -> int:
         """The row that goes to the Z of a pass, which may stand before a call; its first cut where none does."""
