@@ -260,6 +260,20 @@ def test_what_lies_between_two_sections_is_no_fault_of_either(control: str, word
     assert (report.verdict, [finding.rule for finding in report.findings]) == ("unverified", [])
 
 
+@looped("word", ["C#500.", "H#500.5", "C=5"])
+@looped("control", ["fanuc-30i", "gsk-988", "mitsubishi-m700"])
+def test_c_is_not_known_after_a_block_that_is_not_executed(control: str, word: str) -> None:
+    program = FLATS.replace("C90.", word).replace("/", "\n")
+    report = report_of(program, control, CUTTER)
+    assert (report.verdict, report.findings) == ("unverified", [])
+    line = program.splitlines().index(word) + 1
+    assert f"C at the beginning of a section is not known after line {line}, {word}, which is not executed" in str(
+        report.not_evaluated
+    )
+    followed = FLATS.replace("C90.", f"{word}/C90.").replace("/", "\n")
+    assert "at the beginning of a section" not in str(report_of(followed, control, CUTTER).not_evaluated)
+
+
 def test_an_axis_is_nowhere_from_an_unknown_word_on() -> None:
     rows = "O1000/G98 G0 X10. Z5. C30./X#500/X20./Z#500/Z20./C#500/C20./H#500/M30"
     path = tables_of(rows.replace("/", "\n"), "fanuc-30i", CUTTER)["trace"].path

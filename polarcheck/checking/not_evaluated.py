@@ -22,7 +22,7 @@ from polarcheck.checking.not_followed import (
     on_cylinder,
     on_sub_spindle,
 )
-from polarcheck.checking.not_known import cause_of, is_argument, of_variables, value_not_known, why
+from polarcheck.checking.not_known import angles_not_known, cause_of, is_argument, of_variables, value_not_known, why
 from polarcheck.columns.contour.skipped_loops import SkipReason
 from polarcheck.columns.filling import before
 from polarcheck.columns.trace import Trace
@@ -169,6 +169,7 @@ def unexecuted(tables: Tables) -> Iterator[NotEvaluated]:
         on_cylinder(trace),
         contours_outside(trace),
         extrudes(trace),
+        *angles_not_known(trace),
     ):
         if count:
             yield NotEvaluated(rule="all", reason=reason, blocks=count)

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections import Counter
+from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
+from polarcheck.columns.filling import fill_down
 from polarcheck.columns.trace import Trace
 from polarcheck.foundation.arrays import Rows
 from polarcheck.program.execution.variable_names import FIRST_PARAMETER, FIRST_VARIABLE
@@ -161,11 +163,28 @@ def _position(tables: Tables, row: int) -> str:
         return (
             f"the position is not known: {axis} was not programmed before the polar mode; write G0 {axis}... before it"
         )
-    row_lost = int(lost[-1])
-    written = f"line {int(trace.blocks.line[row_lost])}, {block_in_line(trace.run, row_lost, _BLOCK_LENGTH)}"
-    axes = f"X and {trace.machine.polar.rotary_address}"
+    return f"the position {_after_unexecuted(trace, int(lost[-1]), f'X and {trace.machine.polar.rotary_address}')}"
+
+
+def _after_unexecuted(trace: Trace, row: int, axes: str) -> str:
+    written = f"line {int(trace.blocks.line[row])}, {block_in_line(trace.run, row, _BLOCK_LENGTH)}"
     remedy = f"--subprograms FOLDER says where called programs lie, or program {axes} after it"
-    return f"the position is not known after {written}, which is not executed; {remedy}"
+    return f"is not known after {written}, which is not executed; {remedy}"
+
+
+def angles_not_known(trace: Trace) -> Iterator[tuple[str, int]]:
+    """
+    Yield why C at the beginning of sections is not known, where their X and Z are: after a block that is not executed.
+    """
+    enter = trace.mode.sections.enter[~trace.path.knows_section_entry]
+    if not len(enter) or not trace.run.unknown.any():
+        return
+    known = ~np.isnan(trace.path.c_angle)
+    follows = np.append(False, known[:-1]) & ~known
+    lost = fill_down(np.where(follows, np.arange(len(trace)), -1), follows | trace.blocks.starts, -1)[enter]
+    for row, count in Counter(lost[(lost >= 0) & trace.run.unknown[lost]].tolist()).items():
+        axis = trace.machine.polar.rotary_address
+        yield f"{axis} at the beginning of a section {_after_unexecuted(trace, row, axis)}", count
 
 
 def _origin(tables: Tables, row: int) -> str:
