@@ -14,7 +14,8 @@ from polarcheck.foundation.finding import Producer
 from polarcheck.foundation.time_limit import seconds_for, time_limit
 from polarcheck.foundation.version import __version__
 from polarcheck.program.reading import files
-from polarcheck.rewrite.certify import expectations, golden, near_path, quoting, results
+from polarcheck.rewrite.certify import expectations, near_path, quoting, results
+from polarcheck.rewrite.certify.case_paths import NOTHING, UPDATE, with_golden, with_reference
 from polarcheck.rewrite.certify.case_runs import CaseRun, run
 from polarcheck.rewrite.certify.conditions import ConditionsOfCases
 from polarcheck.rewrite.certify.loading import Loaded
@@ -30,7 +31,6 @@ from polarcheck.rewrite.certify.results import (
     Cell,
     Certificate,
 )
-from polarcheck.rewrite.certify.tool_path import ToolPath, tool_path
 
 
 class Certified(msgspec.Struct, frozen=True):
@@ -151,8 +151,8 @@ def certified_cases(
 
 def _alone(loaded: Loaded, case: Case, of_case: CaseRun) -> _Alone:
     if of_case.report is None:
-        return _Alone([of_case.failure], None, _NOTHING)
-    return _Alone([*expectations.differences(case, of_case.report)], *_golden(loaded, case, of_case))
+        return _Alone([of_case.failure], None, NOTHING)
+    return _Alone([*expectations.differences(case, of_case.report)], *with_golden(loaded, case, of_case))
 
 
 def _result(
@@ -166,7 +166,7 @@ def _result(
     report, itself = case_runs[case.title].report, alone[case.title]
     reasons = list(itself.reasons)
     remarks = [loaded.remarks[case.title]] if case.title in loaded.remarks else []
-    same_path, compared = (None, _NOTHING) if report is None else _compared_with_reference(loaded, case, case_runs)
+    same_path, compared = (None, NOTHING) if report is None else with_reference(loaded, case, case_runs)
     outside = [] if report is None else case_runs[case.title].outside
     not_quoted = [quoting.remark(outside)] if outside else []
     is_golden_there = loaded.has_golden(case)
@@ -195,91 +195,11 @@ def _result(
     )
 
 
-_UPDATE = ": certify --update"
-_NO_GOLDEN = f"no golden trace yet{_UPDATE}"
-_NOTHING = near_path.Comparison(None, [], [])
-_Compared = tuple[results.PathComparison | None, near_path.Comparison]
-
-
 def _state(is_run: bool, reasons: Sequence[str]) -> str:
     if not is_run:
         return NOT_RUN
-    is_golden_alone = len(reasons) == 1 and reasons[0].endswith(_UPDATE)
+    is_golden_alone = len(reasons) == 1 and reasons[0].endswith(UPDATE)
     return PASS if not reasons else NO_GOLDEN if is_golden_alone else FAIL
-
-
-def _golden(loaded: Loaded, case: Case, of_case: CaseRun) -> _Compared:
-    """Compare the path of a case with its golden trace."""
-    if case.golden is None:
-        return None, _NOTHING
-    file, tolerance = loaded.beside(case.golden), loaded.tolerance(case)
-    title = files.display_path(case.golden)
-    if not file.exists():
-        compared = near_path.Comparison(None, [_NO_GOLDEN], [])
-    else:
-        try:
-            before = golden.read(file)
-        except CertificateError as error:
-            compared = near_path.Comparison(None, [str(error)], [])
-        else:
-            ours = of_case.golden_trace(loaded.path_of(case))
-            compared = near_path.with_golden(ours, before, of_case.sense, tolerance, title)
-        outside = loaded.outside([file])
-        if compared.reasons and (of_case.outside or outside):
-            compared = _without_text(compared, title, outside)
-    return _comparison(title, compared, tolerance), compared
-
-
-def path_of_run(of_case: CaseRun, name: str) -> ToolPath:
-    """Return the path of a program by its name, tool or programmed; controls lift Z in the mode or behind it."""
-    path = tool_path(of_case.moves[name], of_case.sense)
-    return path[~path.is_z_alone]
-
-
-def _compared_with_reference(loaded: Loaded, case: Case, case_runs: Mapping[str, CaseRun]) -> _Compared:
-    """Compare the path of a case with that of another one."""
-    if case.same_path_as is None:
-        return None, _NOTHING
-    title, which, tolerance = case.same_path_as, loaded.path_of(case), loaded.tolerance(case)
-    of_case, reference = case_runs[case.title], case_runs[title]
-    if reference.report is None:
-        compared = _not_compared(f"{title} was not run")
-    elif not of_case.moves[which] and not reference.moves[which]:
-        compared = _not_compared(f"neither this program nor {title} has any")
-    else:
-        ours, theirs = path_of_run(of_case, which), path_of_run(reference, which)
-        compared = near_path.with_other(ours, theirs, tolerance, title)
-        if which == "tool" and compared.deviation is not None and compared.reasons:
-            programmed = path_of_run(of_case, "programmed"), path_of_run(reference, "programmed")
-            if not near_path.with_other(*programmed, tolerance, title).reasons:
-                compared.reasons.append(
-                    f"the programmed path is that of {title}: controls lead the tool round corners in different ways; "
-                    'path = "programmed" compares what is programmed'
-                )
-        if compared.reasons and (of_case.outside or reference.outside):
-            compared = _without_text(compared, title)
-    return _comparison(title, compared, tolerance), compared
-
-
-def _not_compared(why: str) -> near_path.Comparison:
-    return near_path.Comparison(None, [f"the path is not compared: {why}"], [])
-
-
-def _without_text(compared: near_path.Comparison, title: str, outside: Sequence[str] = ()) -> near_path.Comparison:
-    """Return the same comparison without lines, points and feeds, since they come from files that are not quoted."""
-    remarks = [quoting.remark(outside)] if outside else []
-    return near_path.Comparison(compared.deviation, [f"the path is not that of {title}"], remarks)
-
-
-def _comparison(reference: str, compared: near_path.Comparison, tolerance: float) -> results.PathComparison:
-    deviation = compared.deviation
-    is_number = deviation is not None and deviation < float("inf")
-    return results.PathComparison(
-        reference=reference,
-        agrees=not compared.reasons,
-        deviation=round(deviation, 6) if deviation is not None and is_number else None,
-        tolerance=tolerance,
-    )
 
 
 def certificate(loaded: Loaded, certified: Mapping[str, Certified]) -> Certificate:

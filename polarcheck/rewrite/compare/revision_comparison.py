@@ -5,23 +5,17 @@ compared.
 
 from __future__ import annotations
 
-import re
-from collections import Counter
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple, TypeVar
 
 import msgspec
 import numpy as np
-from numpy.typing import NDArray
 
-from polarcheck.checking.not_evaluated import bounds_not_reported, unexecuted, unknown_value
 from polarcheck.checking.polar_sections import polar_sections
 from polarcheck.columns.trace import Trace
-from polarcheck.columns.words.unknown_words import UnknownItem
 from polarcheck.foundation.arrays import Rows
 from polarcheck.foundation.finding import PolarSection
 from polarcheck.foundation.time_limit import keep_time
-from polarcheck.program.reading.words import Blocks, Spans, Text
 from polarcheck.rewrite.compare.compared_sections import Stretch, of_sections
 from polarcheck.rewrite.compare.comparison_report import (
     DIFFERS,
@@ -37,53 +31,15 @@ from polarcheck.rewrite.compare.comparison_report import (
 )
 from polarcheck.rewrite.compare.differences import Part, depth_of
 from polarcheck.rewrite.compare.entry_state import entry_differences
-from polarcheck.rewrite.compare.order_differences import order_differences
-from polarcheck.rewrite.compare.order_meanings import shift_steps
-from polarcheck.rewrite.compare.orders import not_comparable, steps
+from polarcheck.rewrite.compare.not_compared import incomparable, not_known_in_both, why_not
+from polarcheck.rewrite.compare.orders import steps
 from polarcheck.rewrite.compare.pairing import paired
 from polarcheck.rewrite.compare.parts_compared import Measured, measured, outside_compared
+from polarcheck.rewrite.compare.same_words import has_same_words
 from polarcheck.rewrite.compare.terms import Terms
 from polarcheck.rules.quantity import rounded
 from polarcheck.rules.tables import Tables
 
-
-def has_same_words(old: Trace, new: Trace) -> bool:
-    """
-    Return True if the programs have the same words in the same blocks, but for N and comments.
-
-    X10 is not X10., since controls read them differently, nor X1O. or X10. beside a stray character. Comments count
-    where R is taken from them. Blocks with macro statements count by their characters. A word that the control cannot
-    read is like no other.
-    """
-    first, second = old.text, new.text
-    if first.words.is_unreadable.any() or second.words.is_unreadable.any():
-        return False
-    if _spans(first, first.strays) != _spans(second, second.strays) or len(first.letters) != len(second.letters):
-        return False
-    if old.job.radius_from_comments and _spans(first, first.comments) != _spans(second, second.comments):
-        return False
-    macros = [_spans(text, text.blocks[text.blocks.is_macro]) for text in (first, second)]
-    return macros[0] == macros[1] and all(
-        np.array_equal(old_column, new_column)
-        for old_column, new_column in zip(_columns(first), _columns(second), strict=True)
-    )
-
-
-def _columns(text: Text) -> Iterator[NDArray[np.generic]]:
-    words = text.words[text.words.address != ord("N")]
-    yield from (words.address, np.nan_to_num(words.value, nan=np.inf), words.has_point, words.fault)
-    # Where blocks begin.
-    yield np.diff(words.block, prepend=-1) != 0
-
-
-def _spans(text: Text, spans: Blocks | Spans) -> list[bytes]:
-    """Return the characters of spans without spaces, in upper case."""
-    bounds = zip(spans.start.tolist(), spans.end.tolist(), strict=True)
-    return [b"".join(text.source.code[start:end].tobytes().split()).upper() for start, end in bounds]
-
-
-#: What stands before the value of a word; nothing before `#2001=`.
-_ADDRESS = re.compile(r"^,?[A-Z]+(?:[0-9]*=)?")
 Item = TypeVar("Item")
 #: A run of a file as checking.check.read gives it: the state of block skip, and its tables.
 Run = tuple[str, Tables]
@@ -198,83 +154,12 @@ class _Runs:
         self._partner, self._ordered = (numbers, numbers) if is_in_order else paired(self._old, self._new)
         #: Largest deviations [mm], and whether they are exact.
         self.measured: list[tuple[float, bool]] = []
-        self.not_compared: list[NotCompared] = list(self._missing())
+        self.not_compared: list[NotCompared] = list(incomparable(self._tables, terms))
 
     @property
     def is_broken_off(self) -> bool:
         """True if one of the runs ended at a bound."""
         return any(len(tables["faults"].is_bound) and tables["faults"].is_bound.any() for tables in self._tables)
-
-    def _missing(self) -> Iterator[NotCompared]:
-        for name, tables in zip(("old", "new"), self._tables, strict=True):
-            for entry in (*unexecuted(tables), *bounds_not_reported(tables, ())):
-                yield NotCompared(f"{name}: {entry.reason}", matters=entry.matters)
-            unreadable = int(np.count_nonzero(tables["words"].is_unreadable))
-            if unreadable:
-                count = "a word" if unreadable == 1 else f"{unreadable} words"
-                yield NotCompared(f"{name}: {count} that the control cannot read: polarcheck check names them")
-            written = tables["written"]
-            if any(count.any() for count in (written.stray_count, written.wrong_dash_count, written.letter_count)):
-                reason = f"{name}: characters that the control cannot read: polarcheck check names them"
-                yield NotCompared(reason, matters=not self._terms.is_kept)
-        yield from self._other_feed_mode()
-        yield from self._other_unknown_values()
-        if self._is_same_machine:
-            return
-        yield NotCompared("the machines differ: tool numbers, planes and G codes are not compared", matters=False)
-        for name, trace in zip(("old", "new"), self._traces, strict=True):
-            codes = not_comparable(trace)
-            if codes:
-                reason = f"{name}: {', '.join(codes)}: what another lathe needs in their place is not compared"
-                yield NotCompared(reason, matters=False)
-        shifts = [shift_steps(trace) for trace in self._traces]
-        if (first := next(iter(order_differences(shifts[0], shifts[1], self._terms.tolerance)), None)) is not None:
-            where = f"line {first.old_line} (old)" if first.old_line else f"line {first.new_line} (new)"
-            reason = f"where codes as {first.old or first.new} of {where} put the coordinates on another lathe"
-            yield NotCompared(f"{reason} is not compared", matters=not self._terms.is_rewritten)
-
-    def _other_feed_mode(self) -> Iterator[NotCompared]:
-        """Yield an entry where one program alone leaves it to the lathe what F means."""
-        is_open = [
-            bool((tables["feeds"].mode_is_unknown & trace.path.moves_at_feed).any())
-            for tables, trace in zip(self._tables, self._traces, strict=True)
-        ]
-        if is_open[0] != is_open[1]:
-            reason = f"{'old' if is_open[0] else 'new'}: no code says whether F is per minute or per revolution"
-            yield NotCompared(reason, matters=not self._terms.is_kept)
-
-    def _other_unknown_values(self) -> Iterator[NotCompared]:
-        """
-        Yield an entry for the values of each program that are not known, and that the other may have otherwise.
-
-        They are the same where all statements are, where a variable that has no value stands there itself, and where a
-        rewriter has kept what is written.
-        """
-        texts = [trace.text for trace in self._traces]
-        statements = [_spans(text, text.blocks[text.blocks.is_macro]) for text in texts]
-        if self._is_same_machine and statements[0] == statements[1]:
-            return
-        items = [self._unknown_items(0), self._unknown_items(1)]
-        written = [Counter(text for text, _ in of_side) for of_side in items]
-        for name, trace, of_side in zip(("old", "new"), self._traces, items, strict=True):
-            unlike = [
-                item
-                for text, item in of_side
-                if written[0][text] != written[1][text] or not (self._terms.is_kept or text == f"#{item.variable}")
-            ]
-            if unlike:
-                value = unknown_value(trace, [unlike[0].variable], unlike, matters=True)
-                yield NotCompared(f"{name}: {value.reason}")
-
-    def _unknown_items(self, side: int) -> list[tuple[str, UnknownItem]]:
-        """Return the values of a program that are not known, each as it is written behind its address."""
-        trace, left_out = self._traces[side], () if side else self._terms.left_out
-        excerpt, line = trace.text.source.excerpt, trace.blocks.line_in_file
-        return [
-            (_ADDRESS.sub("", "".join(excerpt(item.start, item.end).split()).upper()), item)
-            for item in self._tables[side]["unknown_words"].items
-            if int(line[item.row]) not in left_out
-        ]
 
     # ---- sections ----
 
@@ -315,7 +200,7 @@ class _Runs:
         reported.update(
             (difference.what, difference.old, difference.new) for difference in state if difference.what != "c_angle"
         )
-        why = self._why_not(old, new)
+        why = why_not(old, new)
         result = Measured(why) if why else measured(old, new, self._terms)
         why = result.reason
         self._take(result, f"section of line {side.line} (old) and {new_side.line} (new)")
@@ -325,7 +210,7 @@ class _Runs:
         if not why:
             self.not_compared += [
                 NotCompared(f"section of line {side.line}: {reason}", matters=not self._terms.is_kept)
-                for reason in _not_known_in_both(old, new)
+                for reason in not_known_in_both(old)
             ]
         differences = [*result.differences, *state]
         change = "changed" if differences else "not compared" if why else "same"
@@ -336,24 +221,6 @@ class _Runs:
         deviation = result.deviation
         largest = None if deviation is None else rounded(result.length)
         return SectionPair(side, new_side, change, largest, deviation is None or deviation.is_exact, differences)
-
-    def _why_not(self, old: Part, new: Part) -> str:
-        for name, part in (("old", old), ("new", new)):
-            if part.stretch.needs:
-                return f"{name}: {part.stretch.needs}"
-        for what, is_unknown in (
-            ("Z", [part.stretch.knows_z for part in (old, new)]),
-            (
-                "C at its beginning",
-                [bool(part.trace.path.knows_section_entry[part.stretch.section]) for part in (old, new)],
-            ),
-        ):
-            if is_unknown[0] != is_unknown[1]:
-                return f"{'new' if is_unknown[0] else 'old'}: {what} is not known"
-        without = [part.stretch.as_programmed for part in (old, new)]
-        if bool(without[0]) != bool(without[1]):
-            return f"{'old' if without[0] else 'new'}: {without[0] or without[1]}"
-        return ""
 
     # ---- between sections ----
 
@@ -374,14 +241,6 @@ class _Runs:
             self.not_compared.append(NotCompared(f"{name}: {result.reason}"))
         elif result.deviation is not None and np.isfinite(result.deviation.largest):
             self.measured.append((result.length, result.deviation.is_exact))
-
-
-def _not_known_in_both(old: Part, new: Part) -> Iterator[str]:
-    """Yield what neither of two sections says of the part: the angle or the depth at which the metal goes."""
-    if not old.trace.path.knows_section_entry[old.stretch.section]:
-        yield "C at its beginning is not known in either: at which angle of the part it mills is not compared"
-    if not old.stretch.knows_z:
-        yield "Z is not known in either: how deep it mills is not compared"
 
 
 def _left_open(old: Part, new: Part) -> Iterator[Difference]:
