@@ -133,3 +133,34 @@ def test_a_section_reads_back_as_it_was_asked_for(machine: str, inch: bool) -> N
     assert min(trace.path.z[rows]) == pytest.approx(-3 if profile.writing.helices else -2, abs=step)
     cuts = trace.axes.motion[rows] > 0
     assert 200.0 in {round(feed, 1) for feed in trace.feedrate.feed[rows][cuts].tolist()}
+
+
+@pytest.mark.parametrize("growth", [0.0, 0.00127, -0.00254, 0.00254])
+@pytest.mark.parametrize("sweep", [30, 60, 89.9])
+def test_an_arc_by_radius_runs_between_ends_of_two_radii(sweep: float, growth: float) -> None:
+    """
+    An arc whose ends are rounded to 0.0001 inch grows by up to 0.00254 mm. By L it is one block all the same.
+
+    The circle through both written ends is computed here from the chord. Both arcs meet at the ends but for rounding;
+    a radius that grows evenly with the angle leaves a circle through its ends by less than 0.03 of the growth, and a
+    rounded L moves the middle of the chord by (1 / cos(sweep / 2) - 1) / 2 least increments at most.
+    """
+    machine, step = machine_of("okuma-osp"), 0.001
+    center, turn = 3.111 - 2.345j, math.radians(sweep)
+    for radius in (3.11912, 7.3406, 12.3456, 31.98765):
+        end = center + (radius + growth) * cmath.exp(1j * (0.4 + turn))
+        start = center + radius * cmath.exp(0.4j)
+        pen = Pen(machine)
+        pen.enter(start, 0.0)
+        pen.line(start)
+        (block,) = pen.arc(end, center, True, feed=100)
+        words = {word[0]: float(word[1:]) for word in block.words}
+        assert block.words[0] == "G103"
+        first = complex(round(start.real, 3), round(start.imag, 3))
+        chord = complex(words["X"], words["Y"]) - first
+        height = math.sqrt(words["L"] ** 2 - abs(chord) ** 2 / 4)
+        written_center = first + chord / 2 + 1j * chord / abs(chord) * height
+        allowed = step * (math.sqrt(0.5) + (1 / math.cos(turn / 2) - 1) / 2) + 0.03 * abs(growth)
+        for share in np.linspace(0, 1, 33):
+            point = center + (radius + growth * share) * cmath.exp(1j * (0.4 + turn * share))
+            assert abs(abs(point - written_center) - words["L"]) < allowed, (radius, share)

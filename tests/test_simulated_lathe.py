@@ -171,7 +171,10 @@ def test_programs_of_posts_are_read_whole() -> None:
 
 
 @pytest.mark.ci
-@looped(("seed", "target"), [(3, "okuma-osp"), (5, "haas-lathe"), (12, "mazak-quick-turn"), (9, "mitsubishi-m700")])
+@looped(
+    ("seed", "target"),
+    [(3, "okuma-osp"), (43, "okuma-osp"), (5, "haas-lathe"), (12, "mazak-quick-turn"), (9, "mitsubishi-m700")],
+)
 def test_programs_of_posts_do_the_same_on_other_controls(seed: int, target: str) -> None:
     result = conversion(drawn(seed), target)
     assert result.what not in (NEEDLESS, WRONG), result.why
